@@ -1,5 +1,5 @@
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test bench baseline advice charts stability validation peers pictures docs valgrind miri clean
+.PHONY: help setup demo test python bench baseline advice charts stability validation peers pictures docs valgrind miri clean
 
 VALGRIND := valgrind --leak-check=full --error-exitcode=1 \
 	--errors-for-leak-kinds=definite,indirect
@@ -17,16 +17,24 @@ demo: setup ## The jumping square and a scene file by the command: tables here, 
 	@echo "The pictures are in $(CURDIR)/out:"
 	@find out -name '*.svg' -o -name '*.html' | sort | sed 's/^/  /'
 
+# The library and the Python module: crates that both need are compiled once, with the features of both.
+BOTH := -p pliant -p pliant-python --features pliant/play
+
 # Unit tests are short: to optimize them, which compiles the library once more, would take longer than to run them as they are.
 # Examples are checked by clippy; the two that are named have tests of their own.
 test: ## Every check: format, lints, tests, documentation and its examples
-	@scripts/setup.sh chromium valgrind
+	@scripts/setup.sh chromium valgrind python3-venv
 	cargo fmt --all --check
-	cargo clippy --workspace --all-targets --features play -- -D warnings
-	cargo test --features play --lib --config profile.dev.opt-level=0
-	cargo test --features play --bins --test '*' --example gallery --example integrators
-	cargo test --features play --doc
-	RUSTDOCFLAGS=-Dwarnings cargo doc --no-deps --features play
+	cargo clippy --workspace --all-targets --features pliant/play -- -D warnings
+	cargo test $(BOTH) --lib --config profile.dev.opt-level=0
+	cargo test $(BOTH) --bins --test '*' --example gallery --example integrators
+	cargo test $(BOTH) --doc
+	RUSTDOCFLAGS=-Dwarnings cargo doc $(BOTH) --no-deps
+	scripts/python.sh test
+
+python: ## The wheel of the Python module, made, installed into an environment of its own, and tested there
+	@scripts/setup.sh python3-venv
+	scripts/python.sh wheel
 
 bench: ## What cells and the parts of steps cost, and what has become slower; all others: cargo bench
 	@scripts/setup.sh valgrind

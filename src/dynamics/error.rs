@@ -33,13 +33,15 @@ pub enum Error {
     Panicked(#[from] Panicked),
 
     /// A scene file holds something that cannot be used.
-    #[error("{}:{line}: {message}", path.display())]
+    #[error("{}:{line}: {key}{}{message}", path.display(), if key.is_empty() { "" } else { ": " })]
     SceneFile {
         /// The file.
         path: PathBuf,
         /// Number of the line, from 1.
         line: usize,
-        /// The key, what is wrong with it and how to correct it.
+        /// The key, with those of the tables around it; empty for what is about no single key.
+        key: String,
+        /// What is wrong with it and how to correct it.
         message: String,
     },
 

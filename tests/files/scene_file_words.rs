@@ -347,6 +347,56 @@ fn of_numbers() {
     agree(&file.unwrap(), &scene.phase(Phase::until(0.01).pressure("bag", 100.0)));
 }
 
+/// A mesh that is listed is the one that its lists were taken from, with its sets and groups.
+#[test]
+fn listed_meshes() {
+    let mesh = Mesh::rectangle([0.1, 0.02], [6, 2], Cells::Triangles6).unwrap();
+    let list = |numbers: &mut dyn Iterator<Item = String>| numbers.collect::<Vec<_>>().join(", ");
+    let positions = list(&mut mesh.positions().chunks(2).map(|x| format!("{x:?}")));
+    let numbered = |nodes: &[usize]| nodes.iter().map(|node| node + 1).collect::<Vec<_>>();
+    let cells = list(&mut mesh.cells().map(|nodes| format!("{:?}", numbered(nodes))));
+    let left = numbered(&mesh.sets()["left"]);
+    let text = |cells: &str, more: &str| {
+        format!(
+            "[body]\nthickness = 0.01\nmaterial = {{ density = 1000.0, young = 1e6, poisson = 0.3 }}\n\
+             region = {{ group = \"soft\", material = {{ young = 2e5 }} }}\n\
+             [body.mesh]\nkind = \"listed\"\ncells = \"triangles6\"\npositions = [{positions}]\n\
+             connectivity = [{cells}]\nsets = {{ name = \"wall\", nodes = {left:?} }}\n\
+             groups = {{ name = \"soft\", cells = [1, 4] }}\n{more}\n[[phase]]\nuntil = 0.01\nhold = \"wall\"\n"
+        )
+    };
+    let rubber = Material { density: 1000.0, young: 1e6, poisson: 0.3, viscosity: 0.0 };
+    let soft = Material { young: 2e5, ..rubber };
+    let body = Body::new(mesh.clone(), rubber).thickness(0.01);
+    let body = body.region(CellSelection::Numbers(vec![1, 4]), soft).build().unwrap();
+    agree(&parse(&text(&cells, "")), &Scene::new(body).phase(Phase::until(0.01).hold("left")));
+
+    let error = |text: &str| SceneFile::parse(text, Path::new("s.toml")).unwrap_err().to_string();
+    for (cells, more, part) in [
+        ("[1, 2, 3]", "", "body.mesh.connectivity: expected the nodes of each cell"),
+        (
+            "[1, 2, 3, 4, 5, 99]",
+            "",
+            "node of cell 1 = 99 cannot be used: the mesh has the nodes 1 to 33",
+        ),
+        ("[0, 1, 2, 3, 4, 5]", "", "a number, 1 or above; found 0"),
+        (&cells, "origin = [0.0]", "body.mesh.origin"),
+    ] {
+        let message = error(&text(cells, more));
+        assert!(message.contains(part), "{message}");
+    }
+    let message = error(&text(&cells, "").replace("[1, 4]", "[1, 400]"));
+    assert!(
+        message.contains("cell = 400 cannot be used: the mesh has the cells 1 to 10"),
+        "{message}"
+    );
+    let message = error(&text(&cells, "").replace("\"triangles6\"", "\"triangles\""));
+    assert!(
+        message.contains("expected the nodes of each cell, by number (from 1): 3 nodes"),
+        "{message}"
+    );
+}
+
 fn parse(text: &str) -> SceneFile {
     SceneFile::parse(text, Path::new("scene.toml")).unwrap()
 }

@@ -125,6 +125,31 @@ impl Mesh {
         Ok(self)
     }
 
+    /// Gives a name to a group of cells, by their numbers (from 1), for regions of a body. A group of that name is
+    /// replaced.
+    ///
+    /// # Errors
+    /// A cell that does not exist, no cell at all.
+    pub fn name_cells(
+        mut self,
+        name: impl Into<String>,
+        cells: impl Into<Vec<usize>>,
+    ) -> Result<Self, InputError> {
+        let (mut cells, count) = (cells.into(), self.cell_count());
+        if let Some(bad) = cells.iter().find(|cell| !(1..=count).contains(*cell)) {
+            let help = format!("the mesh has the cells 1 to {count} (numbers count from 1)");
+            return Err(InputError::new("cell", bad, help));
+        }
+        if cells.is_empty() {
+            return Err(InputError::new("cells of a group", "[]", "name at least one"));
+        }
+        cells.sort_unstable();
+        cells.dedup();
+        cells.iter_mut().for_each(|cell| *cell -= 1);
+        self.cell_groups.insert(name.into(), cells);
+        Ok(self)
+    }
+
     fn by_number(&self, numbers: &[usize]) -> Result<Vec<usize>, InputError> {
         let count = self.node_count();
         let mut seen = vec![false; count];

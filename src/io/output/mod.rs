@@ -45,7 +45,7 @@ pub use self::plot::{Plot, Table};
 pub use self::reference::reference;
 #[cfg(feature = "study")]
 pub(crate) use self::report::OfIndicator;
-pub use self::report::{write_report, write_static_report};
+pub use self::report::{report, static_report, write_report, write_static_report};
 pub use self::svg::Snapshots;
 pub use self::vtk::write_vtk;
 pub(crate) use crate::io::file::write_file;

@@ -326,8 +326,13 @@ pub fn write_report(
     run: Result<&Trajectory, &IntegrationFailure>,
     path: impl AsRef<Path>,
 ) -> Result<(), Error> {
+    write_json(path.as_ref(), &report(run))
+}
+
+/// What [`write_report`] writes.
+pub fn report(run: Result<&Trajectory, &IntegrationFailure>) -> Value {
     let trajectory = run.unwrap_or_else(|end| &end.trajectory);
-    write_json(path.as_ref(), &OfRun::object((trajectory, run.err())))
+    OfRun::object((trajectory, run.err()))
 }
 
 /// Writes how an equilibrium was found, or how far the search for it came, as JSON, with the keys of
@@ -339,7 +344,12 @@ pub fn write_static_report(
     found: Result<&Equilibrium, &NoEquilibrium>,
     path: impl AsRef<Path>,
 ) -> Result<(), Error> {
-    write_json(path.as_ref(), &OfStatics::object(found))
+    write_json(path.as_ref(), &static_report(found))
+}
+
+/// What [`write_static_report`] writes.
+pub fn static_report(found: Result<&Equilibrium, &NoEquilibrium>) -> Value {
+    OfStatics::object(found)
 }
 
 fn write_json(path: &Path, document: &Value) -> Result<(), Error> {

@@ -1,6 +1,7 @@
 //! `mesh` of `[body]`: generators and files.
 
 use super::keys::{AUTO, Holds, Key, Kind, TableKeys};
+use super::listed::{self, listed};
 use super::table::Table;
 use super::value::Value;
 use crate::base::input::InputError;
@@ -63,6 +64,7 @@ pub(super) const MESH: TableKeys = TableKeys::new(
         keys: &[Key::new("file", Holds::Text, "the path of a Gmsh mesh, relative to the scene file")
             .required()],
     },
+    Kind { word: "listed", about: "node by node, as programs hand meshes over", keys: listed::KEYS },
 ]);
 
 const FINER: &str = "Triangles, tetrahedra and hexahedra; quadrilaterals are divided into triangles first. Numbers of nodes in the file are \
@@ -139,7 +141,7 @@ pub(super) fn on_finer_mesh(scene: Scene, value: &Value) -> Result<Scene, Error>
 pub(super) fn has_auto_cells(value: &Value) -> Result<bool, Error> {
     let table = value.table(&MESH)?;
     match table.kind() {
-        "bar" | "gmsh" => Ok(false),
+        "bar" | "gmsh" | "listed" => Ok(false),
         _ => Ok(table.optional("cells", Value::string)? == Some(AUTO)),
     }
 }
@@ -170,6 +172,7 @@ fn generate(table: &Table) -> Result<Mesh, Error> {
             table.optional("grading", Value::array)?.unwrap_or([1.0; 3]),
             table.required("cells", |value| value.word(&solid_cells()))?,
         )?,
+        "listed" => listed(table)?,
         _ => table.required("file", |value| {
             let file = value.source.beside(value.string()?);
             Mesh::read_gmsh(file).map_err(|error| value.error(error))

@@ -42,6 +42,7 @@ mod body;
 mod contents;
 mod initial;
 mod keys;
+mod listed;
 mod material;
 mod mesh;
 mod overrides;
@@ -71,7 +72,9 @@ use toml::de::DeTable;
 pub use self::contents::{
     AccuracyRequest, AutoRequest, Format, OutputRequest, SceneFile, StaticsRequest,
 };
+pub use self::listed::cell_word;
 use self::overrides::{as_toml, merge};
+pub use self::overrides::{override_of, toml_of};
 pub use self::reference::{laws, reference};
 #[cfg(feature = "play")]
 pub(crate) use self::rewrite::{Rewritten, rewritten};
@@ -116,7 +119,16 @@ impl SceneFile {
     /// the text has no place.
     #[cfg(any(feature = "play", feature = "study"))]
     pub fn text_with(path: impl AsRef<Path>, overrides: &[String]) -> Result<String, Error> {
-        overrides.iter().try_fold(text_of(path.as_ref())?, |text, over| written(&text, over))
+        Self::written_with(&text_of(path.as_ref())?, overrides)
+    }
+
+    /// As [`text_with`](Self::text_with), from the text itself.
+    ///
+    /// # Errors
+    /// As there.
+    #[cfg(any(feature = "play", feature = "study"))]
+    pub fn written_with(text: &str, overrides: &[String]) -> Result<String, Error> {
+        overrides.iter().try_fold(text.to_owned(), |text, over| written(&text, over))
     }
 
     /// As [`read`](Self::read), from the `text` of a file at `path`.
@@ -124,7 +136,15 @@ impl SceneFile {
     /// # Errors
     /// As [`read`](Self::read).
     pub fn parse(text: &str, path: &Path) -> Result<Self, Error> {
-        parse(text.into(), path, &[])
+        Self::parse_with(text, path, &[])
+    }
+
+    /// As [`read_with`](Self::read_with), from the `text` of a file at `path`.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn parse_with(text: &str, path: &Path, overrides: &[String]) -> Result<Self, Error> {
+        parse(text.into(), path, overrides)
     }
 }
 

@@ -6,6 +6,29 @@ use toml::de::{DeTable, DeValue};
 use crate::base::input::{InputError, unknown};
 use crate::dynamics::error::Error;
 
+/// A scene, given as tables and lists of JSON, as the text of a scene file.
+///
+/// # Errors
+/// What is no table, and values that TOML does not have, as `null`.
+pub fn toml_of(scene: &serde_json::Value) -> Result<String, Error> {
+    toml::to_string(scene).map_err(|error| not_of_toml("scene", scene, &error))
+}
+
+/// The override that gives `key`, as in `phase.free.until`, this value, for
+/// [`SceneFile::read_with`](super::SceneFile::read_with).
+///
+/// # Errors
+/// As [`toml_of`].
+pub fn override_of(key: &str, value: &serde_json::Value) -> Result<String, Error> {
+    let toml = toml::Value::try_from(value).map_err(|error| not_of_toml(key, value, &error))?;
+    Ok(format!("{key}={toml}"))
+}
+
+fn not_of_toml(key: &str, value: &serde_json::Value, error: &toml::ser::Error) -> Error {
+    let beginning: String = value.to_string().chars().take(60).collect();
+    InputError::new(key, beginning, error.to_string()).into()
+}
+
 /// The text of an override as TOML: `KEY=VALUE`, in which a text needs no quotes.
 pub(super) fn as_toml(text: &str) -> Result<String, Error> {
     let help = "write KEY=VALUE, as in body.material.young=2e5 or phase.2.until=1.5";

@@ -21,16 +21,13 @@ pub(super) struct SourceText<'a> {
 impl SourceText<'_> {
     /// An error about the part `at` of the text, the value of `key` (empty: of none).
     pub(super) fn error(&self, at: &Range<usize>, key: &str, message: impl Display) -> Error {
-        let message = match key {
-            "" => message.to_string(),
-            key => format!("{key}: {message}"),
-        };
+        let (key, message) = (key.to_owned(), message.to_string());
         let line = self.line(at.start);
         match at.start.checked_sub(self.own + 1) {
-            None => Error::SceneFile { path: self.path.into(), line, message },
+            None => Error::SceneFile { path: self.path.into(), line, key, message },
             Some(_) => {
                 let line = line - self.line(self.own);
-                Error::SceneFile { path: "--set".into(), line, message }
+                Error::SceneFile { path: "--set".into(), line, key, message }
             }
         }
     }

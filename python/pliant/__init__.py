@@ -1,0 +1,36 @@
+"""Dynamics of soft elastic bodies: finite elements and stiff integrators.
+
+>>> import pliant
+>>> scene = pliant.Scene.from_toml("scenes/square-press.toml")
+>>> motion = scene.run(rtol=1e-5)
+
+A :class:`Scene` is a body, what surrounds it, and what happens; :meth:`Scene.run` gives its :class:`Motion`,
+:meth:`Scene.start` a :class:`Simulation` that a program drives. :mod:`pliant.words` has builders for the tables of scenes.
+:func:`solve_ivp` integrates any equations, with the signature of SciPy's.
+"""
+
+from .errors import Error, FileError, InputError, IntegrationError, ModelWarning, NoEquilibrium, SceneError
+from .ivp import OdeResult, solve_ivp
+from .mesh import Mesh
+from .motion import Equilibrium, Motion
+from .scene import Scene
+from .simulation import Simulation
+
+__version__ = "0.1.0"
+
+__all__ = [
+    "Equilibrium",
+    "Error",
+    "FileError",
+    "InputError",
+    "IntegrationError",
+    "Mesh",
+    "ModelWarning",
+    "Motion",
+    "NoEquilibrium",
+    "OdeResult",
+    "Scene",
+    "SceneError",
+    "Simulation",
+    "solve_ivp",
+]

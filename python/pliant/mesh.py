@@ -1,0 +1,119 @@
+"""Meshes from arrays, from meshio and from Gmsh."""
+
+import os
+import tempfile
+
+import numpy as np
+
+from . import _pliant
+
+#: The word for cells, and its name in meshio. Nodes are in the order of VTK in both.
+_MESHIO = {
+    "segments": "line",
+    "triangles": "triangle",
+    "triangles6": "triangle6",
+    "quadrilaterals": "quad",
+    "tetrahedra": "tetra",
+    "tetrahedra10": "tetra10",
+    "hexahedra": "hexahedron",
+    "hexahedra20": "hexahedron20",
+}
+
+
+class Mesh:
+    """Nodes and cells of a body.
+
+    Parameters
+    ----------
+    nodes : array [node, axis]
+        Positions (m).
+    cells : array [cell, node]
+        Nodes of the cells, counted from 0, in the order of VTK.
+    kind : str
+        What the cells are: ``segments``, ``triangles``, ``triangles6``, ``quadrilaterals``, ``tetrahedra``,
+        ``tetrahedra10``, ``hexahedra`` or ``hexahedra20``.
+    sets : dict, optional
+        Nodes (from 0) by the names of node sets.
+    groups : dict, optional
+        Cells (from 0) by the names of groups, for regions.
+    """
+
+    def __init__(self, nodes, cells, kind, sets=None, groups=None):
+        self.nodes = np.asarray(nodes, dtype=float)
+        self.cells = np.asarray(cells, dtype=np.int64)
+        if self.nodes.ndim != 2 or self.cells.ndim != 2:
+            raise ValueError("nodes are an array [node, axis], cells an array [cell, node]")
+        self.kind = kind
+        self.sets = {name: np.asarray(nodes, dtype=np.int64) for name, nodes in (sets or {}).items()}
+        self.groups = {name: np.asarray(cells, dtype=np.int64) for name, cells in (groups or {}).items()}
+
+    def __repr__(self):
+        return f"Mesh({len(self.nodes)} nodes, {len(self.cells)} {self.kind}, sets {sorted(self.sets)})"
+
+    @classmethod
+    def read_gmsh(cls, path):
+        """The mesh in a file of Gmsh; its physical groups are node sets, and groups of cells."""
+        return cls(*_pliant.read_gmsh(os.fspath(path)))
+
+    @classmethod
+    def from_gmsh(cls, gmsh):
+        """The mesh of the present model of the module `gmsh`."""
+        with tempfile.TemporaryDirectory() as directory:
+            path = os.path.join(directory, "mesh.msh")
+            gmsh.write(path)
+            return cls.read_gmsh(path)
+
+    @classmethod
+    def from_meshio(cls, mesh):
+        """A mesh of meshio: its cells of the highest dimension, its sets of points and of cells.
+
+        Coordinates along axes in which nothing extends are left out.
+        """
+        known = {name: word for word, name in _MESHIO.items()}
+        blocks = [block for block in mesh.cells if block.type in known]
+        if not blocks:
+            raise ValueError(f"cells are none of {', '.join(known)}: {[block.type for block in mesh.cells]}")
+        highest = max(block.dim for block in blocks)
+        kinds = {block.type for block in blocks if block.dim == highest}
+        if len(kinds) > 1:
+            raise ValueError(f"all cells must be of one kind, and these are {sorted(kinds)}")
+        kind = kinds.pop()
+        cells = np.concatenate([block.data for block in blocks if block.type == kind])
+        used = np.unique(cells)
+        number = np.full(len(mesh.points), -1)
+        number[used] = np.arange(len(used))
+        nodes = np.asarray(mesh.points, dtype=float)[used]
+        flat = [axis for axis in range(nodes.shape[1]) if axis >= highest and np.ptp(nodes[:, axis]) == 0.0]
+        nodes = np.delete(nodes, flat, axis=1)
+        sets = {}
+        for name, points in (mesh.point_sets or {}).items():
+            kept = number[np.asarray(points, dtype=int)]
+            sets[name] = kept[kept >= 0]
+        groups, first = {}, 0
+        for place, block in enumerate(mesh.cells):
+            if block.type != kind:
+                continue
+            for name, members in (mesh.cell_sets or {}).items():
+                if members[place] is not None and len(members[place]):
+                    groups.setdefault(name, []).extend(first + np.asarray(members[place], dtype=int))
+            first += len(block.data)
+        return cls(nodes, number[cells], known[kind], sets, groups)
+
+    def to_meshio(self):
+        """As a mesh of meshio."""
+        import meshio
+
+        nodes = np.zeros((len(self.nodes), 3))
+        nodes[:, : self.nodes.shape[1]] = self.nodes
+        return meshio.Mesh(nodes, [(_MESHIO[self.kind], self.cells)], point_sets=self.sets)
+
+    def to_dict(self):
+        """As `mesh` of a scene."""
+        mesh = {"kind": "listed", "positions": self.nodes, "cells": self.kind, "connectivity": self.cells + 1}
+        own = [{"name": name, "nodes": nodes + 1} for name, nodes in self.sets.items() if name not in ("all", "boundary")]
+        groups = [{"name": name, "cells": cells + 1} for name, cells in self.groups.items()]
+        if own:
+            mesh["sets"] = own
+        if groups:
+            mesh["groups"] = groups
+        return mesh

@@ -1,0 +1,33 @@
+"""A bar that shows how far a run has come."""
+
+import contextlib
+import sys
+import time
+
+WIDTH = 30
+
+
+@contextlib.contextmanager
+def bar(title, end, wanted):
+    """Gives a function of the time reached, or None if no bar is wanted."""
+    if wanted is None:
+        wanted = sys.stderr.isatty() or "ipykernel" in sys.modules
+    if not wanted:
+        yield None
+        return
+    start, shown = time.monotonic(), [False]
+
+    def show(reached):
+        part = min(reached / end, 1.0)
+        spent = time.monotonic() - start
+        left = spent / part - spent if part > 0 else float("inf")
+        full = int(WIDTH * part)
+        line = f"\r{title}: {100 * part:3.0f}%|{'#' * full}{' ' * (WIDTH - full)}| {reached:.4g}/{end:.4g} s"
+        print(f"{line} [{spent:.0f} s, {left:.0f} s to go]", end="", file=sys.stderr, flush=True)
+        shown[0] = True
+
+    try:
+        yield show
+    finally:
+        if shown[0]:
+            print(file=sys.stderr)

@@ -1,0 +1,153 @@
+"""Scenes: a body, what surrounds it, what happens."""
+
+import os
+import warnings
+
+import numpy as np
+
+from . import _pliant
+from .errors import ModelWarning
+from .mesh import Mesh
+from .motion import Equilibrium, Motion
+from .plain import as_json
+from .progress import bar
+from .simulation import Simulation
+
+
+class Scene:
+    """A scene, in the words of scene files.
+
+    ``Scene({...})`` takes the tables of a scene file as dicts, ``Scene(body=..., phase=...)`` as keywords, for which
+    :mod:`pliant.words` has builders with all keys. NumPy arrays, lists, and a :class:`Mesh` for `mesh` may stand anywhere.
+    All numbers are in SI units; nodes that are named by number count from 1.
+
+    >>> import pliant
+    >>> from pliant import words
+    >>> scene = pliant.Scene(
+    ...     gravity=[0.0, -9.8],
+    ...     body=words.body(
+    ...         mesh=words.mesh_rectangle(size=[0.1, 0.02], nodes=[6, 2], cells="triangles6"),
+    ...         thickness=0.01,
+    ...         material=words.material(density=1000.0, young=1e6, poisson=0.4),
+    ...     ),
+    ...     phase=words.phase(until=0.1, hold="left"),
+    ... )
+    >>> motion = scene.run(sampling=0.01)
+    >>> motion.positions.shape
+    (11, 33, 2)
+    """
+
+    def __init__(self, tables=None, /, *, path="scene.toml", **keywords):
+        if isinstance(tables, str):
+            raise TypeError("Scene takes dicts: Scene.from_toml reads files and their text")
+        text = _pliant.toml_of(as_json({**(tables or {}), **keywords}))
+        self._scene = _pliant.Scene(text, os.fspath(path), [])
+
+    @classmethod
+    def _of(cls, scene):
+        new = cls.__new__(cls)
+        new._scene = scene
+        return new
+
+    @classmethod
+    def from_toml(cls, source, set=None):
+        """The scene in a file, or in a text that is no path.
+
+        `set` gives other values to some keys, as ``{"body.material.young": 2e5, "phase.free.until": 1.5}``.
+        """
+        if isinstance(source, os.PathLike) or "\n" not in source:
+            with open(source, encoding="utf-8") as file:
+                text, path = file.read(), os.fspath(source)
+        else:
+            text, path = source, "scene.toml"
+        return cls._of(_pliant.Scene(text, path, _values(set)))
+
+    def with_values(self, values=None, /, **keywords):
+        """The same scene with other values for some keys, which may be a path as in ``phase.free.until``."""
+        return Scene._of(self._scene.with_values(_values({**(values or {}), **keywords})))
+
+    def to_toml(self):
+        """The text of the scene file."""
+        return self._scene.to_toml()
+
+    def save(self, path):
+        """Writes the scene as a file, which `pliant run` takes."""
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(self.to_toml())
+
+    title = property(lambda self: self._scene.title, doc="The title.")
+    end = property(lambda self: self._scene.end, doc="The end of the last phase (s).")
+    notes = property(lambda self: self._scene.notes, doc="What is outdated in the file.")
+
+    @property
+    def mesh(self):
+        """The mesh of the body, with its node sets."""
+        scene = self._scene
+        return Mesh(scene.nodes(), scene.cells(), scene.cell_kind, scene.sets())
+
+    def run(self, *, sampling=None, accuracy=None, progress=None, **solver):
+        """Runs the scene and returns its :class:`Motion`.
+
+        Parameters
+        ----------
+        sampling : float or list, optional
+            Time between samples, or times of samples (s), instead of those of `[output]`.
+        accuracy : optional
+            As of `[solver]`: ``"1%"``, ``0.01``. The scene is run until two runs agree to that.
+        progress : bool, optional
+            Whether a bar is shown; by default in terminals and notebooks.
+        **solver
+            Keys of `[solver]`: ``rtol``, ``method``, ``max_step`` and others.
+
+        Ctrl-C ends the run; what was computed until then is returned, and ``motion.failure`` says so.
+        """
+        scene = self._scene.with_values(_settings(sampling, accuracy, solver))
+        with bar(scene.title or "run", scene.end, progress) as show:
+            motion = Motion(scene.run(show))
+        for warning in motion.warnings:
+            warnings.warn(warning, ModelWarning, stacklevel=2)
+        if motion.failure:
+            warnings.warn(motion.failure, ModelWarning, stacklevel=2)
+        return motion
+
+    def static(self, **statics):
+        """The :class:`Equilibrium` of the phase that `[statics]` names; keywords are keys of that table."""
+        values = [(f"statics.{key}", as_json(value)) for key, value in statics.items()]
+        equilibrium = Equilibrium(*self._scene.with_values(values).equilibrium())
+        for warning in equilibrium.warnings:
+            warnings.warn(warning, ModelWarning, stacklevel=2)
+        return equilibrium
+
+    def advise(self, within, quantity=None, budget=None):
+        """Which model, mesh, method and tolerance are enough: the answer of `pliant advise`, in words.
+
+        Parameters
+        ----------
+        within : float
+            The error that is allowed, as a part of the quantity: 0.02.
+        quantity : str, optional
+            What has to be right, as in `--quantity`. Default: the whole motion.
+        budget : float, optional
+            Time for the search (s).
+        """
+        return self._scene.advise(within, quantity, budget)
+
+    def start(self, **solver):
+        """The scene in motion under the control of a program: a :class:`Simulation`."""
+        return Simulation(self._scene.with_values(_settings(None, None, solver)).start())
+
+    def __repr__(self):
+        return f"<pliant.Scene {self.title!r}: {self.mesh!r}, {self.end} s>"
+
+
+def _values(values):
+    return [(key, as_json(value)) for key, value in (values or {}).items()]
+
+
+def _settings(sampling, accuracy, solver):
+    values = {f"solver.{key}": value for key, value in solver.items() if value is not None}
+    if accuracy is not None:
+        values["solver.accuracy"] = accuracy
+    if sampling is not None:
+        values["output.step" if np.ndim(sampling) == 0 else "output.times"] = sampling
+    return _values(values)

@@ -1,0 +1,271 @@
+//! Scenes, as the reader of scene files makes them.
+
+use std::path::PathBuf;
+
+use numpy::{PyArray1, PyArray2, PyArrayMethods};
+use pliant::scene_file::{override_of, toml_of as toml_of_scene};
+use pliant::study::{Adviser, Quantity, Verification};
+use pliant::{Error, Mesh, SceneFile, Trajectory};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use crate::arrays::vectors;
+use crate::errors::{made, raised};
+use crate::motion::Motion;
+use crate::simulation::Simulation;
+use crate::watch::Watch;
+
+/// A scene with how it is run: the text of a scene file, with other values for some of its keys.
+#[pyclass(frozen, module = "pliant._pliant")]
+pub struct Scene {
+    text: String,
+    path: PathBuf,
+    overrides: Vec<String>,
+    file: SceneFile,
+}
+
+/// Number of samples of a motion that is to be accurate, if none were requested.
+const SAMPLES: f64 = 100.0;
+
+impl Scene {
+    fn read(text: String, path: PathBuf, overrides: Vec<String>) -> Result<Self, Error> {
+        let file = SceneFile::parse_with(&text, &path, &overrides)?;
+        Ok(Self { text, path, overrides, file })
+    }
+
+    fn motion(&self, mut trajectory: Trajectory, failure: Option<String>) -> Motion {
+        self.file.explain(&mut trajectory);
+        Motion::new(trajectory, self.file.title.clone(), failure)
+    }
+
+    /// One run.
+    fn once(&self, watch: &mut Watch) -> Result<Motion, Error> {
+        let SceneFile { scene, settings, output, .. } = &self.file;
+        let seen = |progress: &pliant::simulate::Progress| watch.see(progress.time);
+        match scene.simulate_with(settings, &output.sampling(), seen) {
+            Ok(trajectory) => Ok(self.motion(trajectory, None)),
+            Err(error) => self.interrupted(error),
+        }
+    }
+
+    /// Runs at ever finer tolerances, until two agree.
+    fn verified(&self, within: f64, watch: &mut Watch) -> Result<Motion, Error> {
+        let SceneFile { scene, settings, accuracy, output, .. } = &self.file;
+        let mut output = output.clone();
+        if output.times.is_none() {
+            output.step.get_or_insert(scene.end() / SAMPLES);
+        }
+        let quantity = accuracy.quantity.as_deref().unwrap_or("motion");
+        let quantity = Quantity::named(quantity, scene, &output.sensors)?;
+        let mut verification = Verification::new(scene, within)
+            .settings(settings.clone())
+            .sampling(output.sampling())
+            .quantity(quantity);
+        loop {
+            match verification.refine(|simulation| watch.see(simulation.time())) {
+                Ok(true) => {}
+                Ok(false) => break,
+                Err(error) => return self.interrupted(error),
+            }
+        }
+        match verification.into_trajectory() {
+            Some(trajectory) => Ok(self.motion(trajectory, None)),
+            None => Err(Error::from(pliant::InputError {
+                input: "accuracy".into(),
+                value: within.to_string(),
+                help: "no run came to its end".into(),
+            })),
+        }
+    }
+
+    /// A run that was stopped from outside has a motion; other errors stay errors.
+    fn interrupted(&self, error: Error) -> Result<Motion, Error> {
+        match error {
+            Error::Integration(failure) if failure.is_interruption() => {
+                let text = failure.to_string();
+                Ok(self.motion(failure.trajectory, Some(text)))
+            }
+            error => Err(error),
+        }
+    }
+}
+
+#[pymethods]
+impl Scene {
+    /// The scene of a text that is or could be in the file `path`; `values` are pairs of a key, as in
+    /// `phase.free.until`, and a value as JSON.
+    #[new]
+    fn new(text: String, path: PathBuf, values: Vec<(String, String)>) -> PyResult<Self> {
+        let overrides = values.iter().map(|(key, value)| overriding(key, value));
+        Self::read(text, path, overrides.collect::<PyResult<_>>()?).map_err(raised)
+    }
+
+    /// The scene with other values for some keys, in addition to those that it has.
+    fn with_values(&self, values: Vec<(String, String)>) -> PyResult<Self> {
+        let mut overrides = self.overrides.clone();
+        for (key, value) in &values {
+            overrides.push(overriding(key, value)?);
+        }
+        Self::read(self.text.clone(), self.path.clone(), overrides).map_err(raised)
+    }
+
+    /// The text, with other values written into it.
+    fn to_toml(&self) -> PyResult<String> {
+        SceneFile::written_with(&self.text, &self.overrides).map_err(raised)
+    }
+
+    #[getter]
+    fn title(&self) -> &str {
+        &self.file.title
+    }
+
+    #[getter]
+    fn end(&self) -> f64 {
+        self.file.scene.end()
+    }
+
+    #[getter]
+    fn notes(&self) -> Vec<String> {
+        self.file.notes.clone()
+    }
+
+    fn nodes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let mesh = self.file.scene.body().mesh();
+        vectors(py, mesh.positions().to_vec(), mesh.dimension())
+    }
+
+    fn cells<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<i64>>> {
+        cells(py, self.file.scene.body().mesh())
+    }
+
+    /// The word for the cells.
+    #[getter]
+    fn cell_kind(&self) -> &'static str {
+        pliant::scene_file::cell_word(self.file.scene.body().mesh().kind())
+    }
+
+    /// Node sets: names and nodes, from 0.
+    fn sets<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        sets(py, self.file.scene.body().mesh())
+    }
+
+    /// Runs the scene.
+    #[pyo3(signature = (progress = None))]
+    fn run(&self, py: Python<'_>, progress: Option<Py<PyAny>>) -> PyResult<Motion> {
+        let mut watch = Watch::new(progress);
+        let motion = py.detach(|| match self.file.accuracy.within {
+            Some(within) => self.verified(within.0, &mut watch),
+            None => self.once(&mut watch),
+        });
+        watch.check(py)?;
+        motion.map_err(raised)
+    }
+
+    /// The equilibrium of the phase that `[statics]` names.
+    fn equilibrium(&self, py: Python<'_>) -> PyResult<(Motion, String)> {
+        let found = py.detach(|| self.file.equilibrium()).map_err(raised)?;
+        let report = pliant::output::static_report(Ok(&found)).to_string();
+        Ok((self.motion(found.trajectory().clone(), None), report))
+    }
+
+    /// What is enough for the scene: the answer in words, and the values that it gives keys of the scene.
+    #[pyo3(signature = (within, quantity = None, budget = None, progress = None))]
+    fn advise(
+        &self,
+        py: Python<'_>,
+        within: f64,
+        quantity: Option<String>,
+        budget: Option<f64>,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<String> {
+        let SceneFile { scene, settings, output, .. } = &self.file;
+        let quantity =
+            Quantity::named(quantity.as_deref().unwrap_or("motion"), scene, &output.sensors);
+        let quantity = quantity.map_err(raised)?;
+        let mut watch = Watch::new(progress);
+        let advice = py.detach(|| {
+            let mut adviser =
+                Adviser::new(scene, within).settings(settings.clone()).quantity(quantity);
+            if let Some(seconds) = budget {
+                adviser = adviser.budget(seconds);
+            }
+            adviser.run(&mut |_| watch.see(0.0))
+        });
+        watch.check(py)?;
+        advice.map(|advice| advice.to_string()).map_err(raised)
+    }
+
+    /// Starts the scene, to be driven.
+    fn start(&self, py: Python<'_>) -> PyResult<Simulation> {
+        let SceneFile { scene, settings, output, .. } = &self.file;
+        let started = py.detach(|| {
+            let mut simulation = scene.start(settings)?;
+            simulation.record(&output.sampling())?;
+            Ok::<_, Error>(simulation)
+        });
+        Ok(Simulation::new(started.map_err(raised)?, self.file.title.clone()))
+    }
+}
+
+fn overriding(key: &str, value: &str) -> PyResult<String> {
+    override_of(key, &of_json(value)?).map_err(raised)
+}
+
+fn of_json(text: &str) -> PyResult<serde_json::Value> {
+    serde_json::from_str(text).map_err(|error| {
+        let help = format!("it cannot be written into a scene file: {error}");
+        Python::attach(|py| {
+            made(py, "InputError", (help.clone(), "scene", text, help))
+                .unwrap_or_else(|broken| broken)
+        })
+    })
+}
+
+/// The text of a scene file with what `json` says.
+#[pyfunction]
+pub fn toml_of(json: &str) -> PyResult<String> {
+    toml_of_scene(&of_json(json)?).map_err(raised)
+}
+
+/// The JSON Schema of scene files.
+#[pyfunction]
+pub fn schema() -> String {
+    pliant::scene_file::schema().to_string()
+}
+
+/// Nodes, cells, the word for these, and node sets of a file of Gmsh.
+#[pyfunction]
+#[allow(clippy::type_complexity)]
+pub fn read_gmsh(
+    py: Python<'_>,
+    path: PathBuf,
+) -> PyResult<(
+    Bound<'_, PyArray2<f64>>,
+    Bound<'_, PyArray2<i64>>,
+    &'static str,
+    Bound<'_, PyDict>,
+    Bound<'_, PyDict>,
+)> {
+    let mesh = Mesh::read_gmsh(path).map_err(raised)?;
+    let nodes = vectors(py, mesh.positions().to_vec(), mesh.dimension())?;
+    let groups = PyDict::new(py);
+    for (name, cells) in mesh.cell_groups() {
+        groups.set_item(name, PyArray1::from_iter(py, cells.iter().map(|cell| *cell as i64)))?;
+    }
+    let word = pliant::scene_file::cell_word(mesh.kind());
+    Ok((nodes, cells(py, &mesh)?, word, sets(py, &mesh)?, groups))
+}
+
+/// Nodes of the cells, from 0: [cell, node].
+pub fn cells<'py>(py: Python<'py>, mesh: &Mesh) -> PyResult<Bound<'py, PyArray2<i64>>> {
+    let nodes: Vec<i64> = mesh.cells().flatten().map(|node| *node as i64).collect();
+    PyArray1::from_vec(py, nodes).reshape([mesh.cell_count(), mesh.kind().nodes()])
+}
+
+fn sets<'py>(py: Python<'py>, mesh: &Mesh) -> PyResult<Bound<'py, PyDict>> {
+    let sets = PyDict::new(py);
+    for (name, nodes) in mesh.sets() {
+        sets.set_item(name, PyArray1::from_iter(py, nodes.iter().map(|node| *node as i64)))?;
+    }
+    Ok(sets)
+}

@@ -1,0 +1,348 @@
+//! A scene that a program drives.
+
+use std::path::PathBuf;
+use std::sync::{Mutex, MutexGuard, TryLockError};
+
+use numpy::{PyArray1, PyArray2, PyReadonlyArray2};
+use pliant::{Error, Selection};
+use pyo3::exceptions::PyRuntimeError;
+use pyo3::prelude::*;
+
+use crate::arrays::vectors;
+use crate::errors::raised;
+use crate::motion::Motion;
+
+/// A state of a simulation, to return to.
+#[pyclass(frozen, module = "pliant._pliant")]
+pub struct Checkpoint(pliant::Checkpoint);
+
+#[pymethods]
+impl Checkpoint {
+    /// Time (s).
+    #[getter]
+    fn time(&self) -> f64 {
+        self.0.time()
+    }
+
+    /// Writes it to a file, for another process or another day.
+    fn write(&self, path: PathBuf) -> PyResult<()> {
+        self.0.write(path).map_err(raised)
+    }
+}
+
+/// A scene in motion under the control of a program.
+#[pyclass(frozen, module = "pliant._pliant")]
+pub struct Simulation {
+    inner: Mutex<pliant::Simulation>,
+    title: String,
+}
+
+/// Nodes: the name of a set, a number (from 1), or several.
+#[derive(FromPyObject)]
+enum Nodes {
+    Set(String),
+    Number(usize),
+    Numbers(Vec<usize>),
+}
+
+impl From<Nodes> for Selection {
+    fn from(nodes: Nodes) -> Self {
+        match nodes {
+            Nodes::Set(name) => Self::Set(name),
+            Nodes::Number(number) => Self::Numbers(vec![number]),
+            Nodes::Numbers(numbers) => Self::Numbers(numbers),
+        }
+    }
+}
+
+impl Simulation {
+    pub fn new(simulation: pliant::Simulation, title: String) -> Self {
+        Self { inner: Mutex::new(simulation), title }
+    }
+
+    fn lock(&self) -> PyResult<MutexGuard<'_, pliant::Simulation>> {
+        match self.inner.try_lock() {
+            Ok(guard) => Ok(guard),
+            // a state that a panic has left is a state, and the simulation says what became of it
+            Err(TryLockError::Poisoned(poisoned)) => Ok(poisoned.into_inner()),
+            Err(TryLockError::WouldBlock) => Err(PyRuntimeError::new_err(
+                "the simulation is at work, in another thread or in the function that it calls: fork() one for each thread",
+            )),
+        }
+    }
+
+    /// What `f` does to the simulation, without Python meanwhile.
+    fn detached<T: Send>(
+        &self,
+        py: Python<'_>,
+        f: impl FnOnce(&mut pliant::Simulation) -> Result<T, Error> + Send,
+    ) -> PyResult<T> {
+        let mut simulation = self.lock()?;
+        let simulation = &mut *simulation;
+        py.detach(|| f(simulation)).map_err(raised)
+    }
+}
+
+#[pymethods]
+impl Simulation {
+    /// Time (s).
+    #[getter]
+    fn time(&self) -> PyResult<f64> {
+        Ok(self.lock()?.time())
+    }
+
+    /// End of the scene (s).
+    #[getter]
+    fn end(&self) -> PyResult<f64> {
+        Ok(self.lock()?.scene().end())
+    }
+
+    /// Name of the phase.
+    #[getter]
+    fn phase(&self) -> PyResult<String> {
+        Ok(self.lock()?.phase().to_owned())
+    }
+
+    /// Steps taken.
+    #[getter]
+    fn steps(&self) -> PyResult<usize> {
+        Ok(self.lock()?.steps())
+    }
+
+    /// Displacements (m): [node, axis].
+    #[getter]
+    fn displacements<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let simulation = self.lock()?;
+        let view = simulation.view();
+        vectors(py, view.displacements().to_vec(), view.body().dimension())
+    }
+
+    /// Velocities (m/s): [node, axis].
+    #[getter]
+    fn velocities<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let simulation = self.lock()?;
+        let view = simulation.view();
+        vectors(py, view.velocities().to_vec(), view.body().dimension())
+    }
+
+    /// Places of all nodes (m): [node, axis].
+    #[getter]
+    fn positions<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let simulation = self.lock()?;
+        let view = simulation.view();
+        let natural = view.body().mesh().positions().iter();
+        let places = natural.zip(view.displacements()).map(|(x, u)| x + u).collect();
+        vectors(py, places, view.body().dimension())
+    }
+
+    /// Mean position (m) of nodes.
+    fn position<'py>(&self, py: Python<'py>, nodes: Nodes) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let position = self.lock()?.view().position(nodes).map_err(raised)?;
+        Ok(PyArray1::from_vec(py, position))
+    }
+
+    /// Mean velocity (m/s) of nodes.
+    fn velocity<'py>(&self, py: Python<'py>, nodes: Nodes) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let velocity = self.lock()?.view().velocity(nodes).map_err(raised)?;
+        Ok(PyArray1::from_vec(py, velocity))
+    }
+
+    /// Centre of mass (m).
+    fn centre_of_mass<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        Ok(PyArray1::from_vec(py, self.lock()?.view().centre_of_mass()))
+    }
+
+    /// Velocity of the centre of mass (m/s).
+    fn mean_velocity<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        Ok(PyArray1::from_vec(py, self.lock()?.view().mean_velocity()))
+    }
+
+    /// Angle (rad) by which a body in the plane has turned.
+    fn rotation(&self) -> PyResult<Option<f64>> {
+        Ok(self.lock()?.view().rotation())
+    }
+
+    /// Pressure (Pa) in a chamber.
+    fn pressure(&self, chamber: &str) -> PyResult<f64> {
+        self.lock()?.view().pressure(chamber).map_err(raised)
+    }
+
+    /// Volume (m^3) of a chamber.
+    fn chamber_volume(&self, chamber: &str) -> PyResult<f64> {
+        self.lock()?.view().chamber_volume(chamber).map_err(raised)
+    }
+
+    /// Length (m) of a spring.
+    fn spring_length(&self, spring: &str) -> PyResult<f64> {
+        self.lock()?.view().spring_length(spring).map_err(raised)
+    }
+
+    /// Pull (N) of a spring.
+    fn spring_pull(&self, spring: &str) -> PyResult<f64> {
+        self.lock()?.view().spring_pull(spring).map_err(raised)
+    }
+
+    /// Force (N) of an obstacle on the body.
+    fn contact_force<'py>(
+        &self,
+        py: Python<'py>,
+        obstacle: &str,
+    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let force = self.lock()?.view().contact_force(obstacle).map_err(raised)?;
+        Ok(PyArray1::from_vec(py, force))
+    }
+
+    /// Energies (J) by name.
+    #[getter]
+    fn energy(&self) -> PyResult<Vec<(&'static str, f64)>> {
+        let e = self.lock()?.energy();
+        Ok(vec![
+            ("kinetic", e.kinetic),
+            ("strain", e.strain),
+            ("gravity", e.gravity),
+            ("contact", e.contact),
+            ("springs", e.springs),
+            ("dissipated", e.dissipated),
+            ("supplied", e.supplied),
+        ])
+    }
+
+    /// Takes one step of the integrator; whether the scene goes on.
+    fn step(&self, py: Python<'_>) -> PyResult<bool> {
+        self.detached(py, pliant::Simulation::step)
+    }
+
+    /// Advances to a time (s).
+    fn advance_to(&self, py: Python<'_>, time: f64) -> PyResult<bool> {
+        self.detached(py, |simulation| simulation.advance_to(time))
+    }
+
+    /// Advances by a time (s).
+    fn advance_by(&self, py: Python<'_>, dt: f64) -> PyResult<bool> {
+        self.detached(py, |simulation| simulation.advance_by(dt))
+    }
+
+    /// Advances to a time (s), at most until `event(time, positions, velocities)` changes its sign; whether it did.
+    fn advance_until(&self, py: Python<'_>, time: f64, event: Py<PyAny>) -> PyResult<bool> {
+        let mut error = None;
+        let mut simulation = self.lock()?;
+        let met = {
+            let (error, simulation) = (&mut error, &mut *simulation);
+            py.detach(move || {
+                simulation.advance_until(time, |view| {
+                    Python::attach(|py| {
+                        let body = view.body();
+                        let natural = body.mesh().positions().iter();
+                        let places =
+                            natural.zip(view.displacements()).map(|(x, u)| x + u).collect();
+                        let value = vectors(py, places, body.dimension()).and_then(|places| {
+                            let velocities =
+                                vectors(py, view.velocities().to_vec(), body.dimension())?;
+                            event.call1(py, (view.time(), places, velocities))?.extract(py)
+                        });
+                        value.unwrap_or_else(|raised: PyErr| {
+                            error.get_or_insert(raised);
+                            f64::NAN
+                        })
+                    })
+                })
+            })
+        };
+        match error {
+            Some(error) => Err(error),
+            None => met.map_err(raised),
+        }
+    }
+
+    /// Sets the pressure (Pa) in a chamber.
+    fn set_pressure(&self, chamber: &str, pressure: f64) -> PyResult<()> {
+        self.lock()?.pressure(chamber, pressure).map_err(raised)
+    }
+
+    /// Sets the force (N) of the actuator of a spring.
+    fn actuate(&self, spring: &str, force: f64) -> PyResult<()> {
+        self.lock()?.actuate(spring, force).map_err(raised)
+    }
+
+    /// Sets a force (N) on each of the nodes.
+    fn load(&self, nodes: Nodes, force: Vec<f64>) -> PyResult<()> {
+        self.lock()?.load(nodes, force).map_err(raised)
+    }
+
+    /// Holds nodes where they are.
+    fn hold(&self, nodes: Nodes) -> PyResult<()> {
+        self.lock()?.hold(nodes).map_err(raised)
+    }
+
+    /// Moves nodes with a constant velocity (m/s).
+    fn move_nodes(&self, nodes: Nodes, velocity: Vec<f64>) -> PyResult<()> {
+        self.lock()?.move_nodes(nodes, velocity).map_err(raised)
+    }
+
+    /// Frees nodes that are held or moved.
+    fn release(&self, nodes: Nodes) -> PyResult<()> {
+        self.lock()?.release(nodes).map_err(raised)
+    }
+
+    /// Lets an obstacle act, or not.
+    fn contact(&self, obstacle: &str, acts: bool) -> PyResult<()> {
+        self.lock()?.contact(obstacle, acts).map_err(raised)
+    }
+
+    /// Moves an obstacle on with a constant velocity (m/s).
+    fn move_obstacle(&self, obstacle: &str, velocity: Vec<f64>) -> PyResult<()> {
+        self.lock()?.move_obstacle(obstacle, velocity).map_err(raised)
+    }
+
+    /// Gives the body other displacements (m) and velocities (m/s), as by an impact.
+    fn change_state(
+        &self,
+        displacements: PyReadonlyArray2<'_, f64>,
+        velocities: PyReadonlyArray2<'_, f64>,
+    ) -> PyResult<()> {
+        let flat = |array: &PyReadonlyArray2<'_, f64>| -> Vec<f64> {
+            array.as_array().iter().copied().collect()
+        };
+        let (new_u, new_v) = (flat(&displacements), flat(&velocities));
+        let mut simulation = self.lock()?;
+        for (name, new) in [("displacements", &new_u), ("velocities", &new_v)] {
+            let needed = simulation.view().displacements().len();
+            if new.len() != needed {
+                let help = format!("it needs {needed} numbers, those of all nodes along all axes");
+                let (input, value) = (format!("number of {name}"), new.len().to_string());
+                return Err(raised(pliant::InputError { input, value, help }));
+            }
+        }
+        let changed = simulation.change_state(|u, v| {
+            u.copy_from_slice(&new_u);
+            v.copy_from_slice(&new_v);
+        });
+        changed.map_err(raised)
+    }
+
+    /// Keeps the present state.
+    fn checkpoint(&self) -> PyResult<Checkpoint> {
+        Ok(Checkpoint(self.lock()?.checkpoint()))
+    }
+
+    /// Returns to a state.
+    fn restore(&self, checkpoint: &Checkpoint) -> PyResult<()> {
+        self.lock()?.restore(&checkpoint.0).map_err(raised)
+    }
+
+    /// A state from a file.
+    fn read_checkpoint(&self, path: PathBuf) -> PyResult<Checkpoint> {
+        self.lock()?.read_checkpoint(path).map(Checkpoint).map_err(raised)
+    }
+
+    /// An independent simulation that goes on from here.
+    fn fork(&self) -> PyResult<Self> {
+        let fork = self.lock()?.fork().map_err(raised)?;
+        Ok(Self::new(fork, self.title.clone()))
+    }
+
+    /// The motion so far.
+    fn motion(&self) -> PyResult<Motion> {
+        Ok(Motion::new(self.lock()?.trajectory().clone(), self.title.clone(), None))
+    }
+}

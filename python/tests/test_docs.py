@@ -1,0 +1,31 @@
+"""The code blocks of docs/python.md and of docstrings are run."""
+
+import doctest
+import re
+import warnings
+from pathlib import Path
+
+import pytest
+
+import pliant
+import pliant.scene
+
+ROOT = Path(__file__).parents[2]
+BLOCKS = re.findall(r"^```python\n(.*?)^```", (ROOT / "docs/python.md").read_text(), re.M | re.S)
+
+
+@pytest.mark.parametrize("number", range(len(BLOCKS)))
+def test_blocks_of_the_page(number, tmp_path, monkeypatch):
+    (tmp_path / "scenes").symlink_to(ROOT / "scenes")
+    monkeypatch.chdir(tmp_path)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", pliant.ModelWarning)
+        exec(compile(BLOCKS[number], f"block {number + 1} of docs/python.md", "exec"), {})
+
+
+@pytest.mark.parametrize("module", [pliant.scene, pliant.ivp])
+def test_docstrings(module):
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", pliant.ModelWarning)
+        result = doctest.testmod(module)
+    assert result.attempted > 1 and result.failed == 0

@@ -1,0 +1,127 @@
+"""solve_ivp against closed forms, published values and SciPy."""
+
+import numpy as np
+import pytest
+
+import pliant
+
+IMPLICIT = ["bdf", "adams", "rosenbrock", "esdirk", "BDF", "LSODA", "Radau"]
+EXPLICIT = ["dormand-prince", "RK45", "RK23", "DOP853"]
+
+
+@pytest.mark.parametrize("method", IMPLICIT + EXPLICIT)
+def test_an_oscillator(method):
+    """After one period it is back: within 200 rtol by every method (measured: 0.4 to 90)."""
+    solution = pliant.solve_ivp(lambda t, y: [y[1], -y[0]], (0.0, 2 * np.pi), [1.0, 0.0], method, rtol=1e-6, atol=1e-6)
+    assert solution.success and np.abs(solution.y[:, -1] - [1.0, 0.0]).max() < 200e-6
+
+
+def test_van_der_pol():
+    """The end that the README of pliant states."""
+    fun = lambda t, y: [y[1], 1e3 * (1.0 - y[0] ** 2) * y[1] - y[0]]
+    jac = lambda t, y: np.array([[0.0, 1.0], [-2e3 * y[0] * y[1] - 1.0, 1e3 * (1.0 - y[0] ** 2)]])
+    for options in ({}, {"jac": jac}):
+        solution = pliant.solve_ivp(fun, (0.0, 2000.0), [2.0, 0.0], rtol=1e-8, atol=1e-8, **options)
+        assert abs(solution.y[0, -1] - 1.706167732170465) < 1e-4
+
+
+def heat(n):
+    import scipy.sparse
+
+    ones = np.ones(n)
+    return scipy.sparse.diags([ones[1:], -2 * ones, ones[1:]], [-1, 0, 1], format="csc") * (n + 1.0) ** 2
+
+
+@pytest.mark.parametrize("kind", ["dense", "function", "sparse", "sparse function", "pattern", "band", "differences"])
+def test_jacobians(kind):
+    pytest.importorskip("scipy")
+    n = 40
+    matrix = heat(n)
+    x = np.arange(1, n + 1) / (n + 1)
+    options = {
+        "dense": dict(jac=matrix.toarray()),
+        "function": dict(jac=lambda t, y: matrix.toarray()),
+        "sparse": dict(jac=matrix),
+        "sparse function": dict(jac=lambda t, y: matrix),
+        "pattern": dict(jac_sparsity=matrix),
+        "band": dict(lband=1, uband=1),
+        "differences": {},
+    }[kind]
+    solution = pliant.solve_ivp(lambda t, y: matrix @ y, (0.0, 0.1), np.sin(np.pi * x), rtol=1e-7, atol=1e-10, **options)
+    rate = -4.0 * (n + 1) ** 2 * np.sin(np.pi / (2 * (n + 1))) ** 2
+    assert np.abs(solution.y[:, -1] - np.exp(0.1 * rate) * np.sin(np.pi * x)).max() < 1e-6
+
+
+def test_a_pattern_that_grows_is_told():
+    scipy = pytest.importorskip("scipy.sparse")
+
+    def jac(t, y):
+        return scipy.csc_matrix([[-1.0, t > 0.1], [0.0, -1.0]])
+
+    with pytest.raises(ValueError, match="jac_sparsity"):
+        pliant.solve_ivp(lambda t, y: [-y[0] + (t > 0.1) * y[1], -y[1]], (0.0, 1.0), [1.0, 1.0], jac=jac)
+
+
+def test_events():
+    """A ball thrown up at 10 m/s under 10 m/s^2: on top after 1 s, back after 2 s."""
+    fun = lambda t, y: [y[1], -10.0]
+    floor = lambda t, y: y[0]
+    floor.terminal, floor.direction = True, -1
+    top = lambda t, y: y[1]
+    solution = pliant.solve_ivp(fun, (0.0, 5.0), [0.0, 10.0], events=[floor, top], rtol=1e-8, atol=1e-10)
+    assert solution.status == 1 and abs(solution.t[-1] - 2.0) < 1e-7
+    assert np.allclose(solution.t_events[1], 1.0, atol=1e-7) and np.allclose(solution.y_events[1][0][0], 5.0)
+
+
+def test_between_the_times():
+    solution = pliant.solve_ivp(lambda t, y: [y[1], -y[0]], (0.0, 6.0), [0.0, 1.0], rtol=1e-8, atol=1e-10, dense_output=True)
+    t = np.linspace(0.0, 6.0, 101)
+    assert np.abs(solution.sol(t)[0] - np.sin(t)).max() < 1e-6 and solution.sol(1.0).shape == (2,)
+    at = pliant.solve_ivp(lambda t, y: [y[1], -y[0]], (0.0, 6.0), [0.0, 1.0], rtol=1e-8, atol=1e-10, t_eval=t)
+    assert np.array_equal(at.t, t) and np.abs(at.y[0] - np.sin(t)).max() < 1e-6
+
+
+def test_complex_numbers():
+    solution = pliant.solve_ivp(lambda t, y: 1j * y, (0.0, 1.0), [1.0 + 0j], rtol=1e-8, atol=1e-10)
+    assert abs(solution.y[0, -1] - np.exp(1j)) < 1e-6
+
+
+def test_exceptions_pass_through():
+    def fun(t, y):
+        raise KeyError("mine")
+
+    for method in ("bdf", "dormand-prince", "esdirk"):
+        with pytest.raises(KeyError, match="mine"):
+            pliant.solve_ivp(fun, (0.0, 1.0), [1.0], method)
+    with pytest.raises(ValueError, match="2 numbers where 1"):
+        pliant.solve_ivp(lambda t, y: [1.0, 2.0], (0.0, 1.0), [1.0])
+    with pytest.raises(ZeroDivisionError):
+        pliant.solve_ivp(lambda t, y: -y, (0.0, 1.0), [1.0], events=lambda t, y: 1 / 0)
+
+
+def test_a_run_that_fails_has_status_minus_one():
+    solution = pliant.solve_ivp(lambda t, y: y**2, (0.0, 2.0), [1.0], rtol=1e-6, atol=1e-9)
+    assert solution.status == -1 and not solution.success and abs(solution.t[-1] - 1.0) < 1e-2
+    limited = pliant.solve_ivp(lambda t, y: -y, (0.0, 1.0), [1.0], max_steps=3)
+    assert limited.status == -1 and "max_steps" in limited.message
+
+
+def test_compiled_functions():
+    numba = pytest.importorskip("numba")
+    from numba import types
+
+    number, pointer = types.float64, types.CPointer(types.float64)
+
+    @numba.cfunc(types.void(number, pointer, pointer, pointer))
+    def decay(t, y, ydot, args):
+        ydot[0] = -args[0] * y[0]
+
+    solution = pliant.solve_ivp(decay, (0.0, 1.0), [1.0], args=(50.0,), rtol=1e-8, atol=1e-12)
+    assert abs(solution.y[0, -1] - np.exp(-50.0)) < 1e-9
+
+    @numba.cfunc(types.float64(number))
+    def other(t):
+        return t
+
+    with pytest.raises(TypeError, match="signature"):
+        pliant.solve_ivp(other, (0.0, 1.0), [1.0])

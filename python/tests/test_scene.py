@@ -1,0 +1,223 @@
+"""Scenes and motions: the same words, numbers and errors as those of the command."""
+
+import json
+import subprocess
+import threading
+import warnings
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import pliant
+from pliant import words
+
+ROOT = Path(__file__).parents[2]
+
+BEAM = dict(
+    gravity=[0.0, -9.8],
+    body=dict(
+        mesh=dict(kind="rectangle", size=[0.1, 0.02], nodes=[6, 2], cells="triangles6"),
+        thickness=0.01,
+        material=dict(density=1000.0, young=1e6, poisson=0.4, viscosity=100.0),
+    ),
+    phase=[dict(until=0.05, hold="left")],
+    sensor=[dict(name="tip", kind="position", nodes="right")],
+    output=dict(step=0.01),
+)
+
+
+def test_a_file_a_text_and_dicts_are_one_scene():
+    written = pliant.Scene(BEAM)
+    read = pliant.Scene.from_toml(written.to_toml())
+    built = pliant.Scene(
+        gravity=np.array([0.0, -9.8]),
+        body=words.body(
+            mesh=words.mesh_rectangle(size=(0.1, 0.02), nodes=np.array([6, 2]), cells="triangles6"),
+            thickness=0.01,
+            material=words.material(density=1000.0, young=1e6, poisson=0.4, viscosity=100.0),
+        ),
+        phase=words.phase(until=0.05, hold="left"),
+        sensor=words.sensor_position(name="tip", nodes="right"),
+        output=words.output(step=0.01),
+    )
+    motions = [scene.run(rtol=1e-6) for scene in (written, read, built)]
+    for motion in motions[1:]:
+        assert np.array_equal(motion.positions, motions[0].positions)
+
+
+def test_arrays_are_those_of_the_command(tmp_path, command):
+    scene = pliant.Scene(BEAM)
+    scene.save(tmp_path / "beam.toml")
+    subprocess.run([command, "run", "beam.toml", "--rtol", "1e-6", "--out", "o", "-q"], cwd=tmp_path, check=True, capture_output=True)
+    motion = scene.run(rtol=1e-6)
+    rows = np.genfromtxt(tmp_path / "o/trajectory.csv", delimiter=",", names=True, deletechars="")
+    assert np.array_equal(rows[rows.dtype.names[0]], motion.times)
+    columns = [name for name in rows.dtype.names if name.startswith("tip")]
+    assert len(columns) == 2 and len(motion.sensors) == 2
+    for column, values in zip(columns, motion.sensors.values()):
+        assert np.array_equal(rows[column], values)
+    report = json.loads((tmp_path / "o/report.json").read_text())
+    assert report["steps"] == motion.report["steps"]
+
+
+def test_numbers_of_a_motion_fit_together():
+    motion = pliant.Scene(BEAM).run(rtol=1e-8)
+    assert motion.positions.shape == (6, 33, 2) and len(motion) == 6
+    tip = motion.mesh.nodes[:, 0] == 0.1
+    places = motion.positions[:, tip].mean(axis=1)
+    for axis, values in enumerate(motion.sensors.values()):
+        assert np.allclose(places[:, axis], values, rtol=0, atol=1e-15)
+    # what the clamp bears is the weight and the change of momentum
+    weight = np.array([0.0, -9.8]) * 1000.0 * 0.1 * 0.02 * 0.01
+    borne = motion.reactions.sum(axis=1) + weight
+    slope = np.gradient(motion.momentum, motion.times, axis=0, edge_order=2)
+    assert np.abs(borne - slope)[1:-1].max() < 0.2 * np.abs(weight).max()
+    balance = motion.energies["balance"]
+    assert np.abs(balance - balance[0]).max() < 1e-6 * np.abs(motion.energies["kinetic"]).max()
+
+
+def test_a_mesh_of_arrays_moves_as_the_generated_one():
+    mesh = pliant.Scene(BEAM).mesh
+    body = {**BEAM["body"], "mesh": pliant.Mesh(mesh.nodes, mesh.cells, mesh.kind, {**mesh.sets, "tip": mesh.sets["right"]})}
+    listed = pliant.Scene({**BEAM, "body": body, "sensor": [dict(name="tip", kind="position", nodes="tip")]})
+    assert np.array_equal(listed.run().positions, pliant.Scene(BEAM).run().positions)
+    again = pliant.Scene.from_toml(listed.to_toml())
+    assert np.array_equal(again.mesh.sets["tip"], mesh.sets["right"])
+
+
+def test_regions_of_a_listed_mesh():
+    mesh = pliant.Scene(BEAM).mesh
+    half = np.flatnonzero(mesh.nodes[mesh.cells].mean(axis=1)[:, 0] > 0.05)
+    stiff = words.region(group="stiff", material=words.material(density=1000.0, young=1e8, poisson=0.4))
+    boxed = words.region(box=[[0.05, -1.0], [1.0, 1.0]], material=stiff["material"])
+
+    def run(mesh, region):
+        return pliant.Scene({**BEAM, "body": {**BEAM["body"], "mesh": mesh, "region": [region]}}).run().positions
+
+    listed = pliant.Mesh(mesh.nodes, mesh.cells, mesh.kind, mesh.sets, {"stiff": half})
+    assert np.allclose(run(listed, stiff), run(BEAM["body"]["mesh"], boxed), rtol=0, atol=1e-12)
+
+
+def test_other_values():
+    scene = pliant.Scene(BEAM)
+    soft = scene.with_values({"body.material.young": 1e5, "phase.1.until": 0.02})
+    assert soft.end == 0.02 and scene.end == 0.05
+    assert "100000.0" in soft.to_toml()
+    sampled = scene.run(sampling=[0.01, 0.03])
+    assert sampled.times.tolist() == [0.0, 0.01, 0.03, 0.05]
+    accurate = scene.run(accuracy="1%", sampling=0.01)
+    assert accurate.report["achieved"]["within"] <= 0.01
+
+
+@pytest.mark.parametrize(
+    "change, key, told",
+    [
+        (dict(body={**BEAM["body"], "thicknes": 1.0}), "body.thicknes", "thickness"),
+        (dict(phase=[dict(until=-1.0)]), "until", "above"),
+        (dict(gravity="down"), "gravity", "list"),
+        (dict(solver=dict(rtol=2.0)), "solver.rtol", ""),
+        (dict(body={**BEAM["body"], "mesh": dict(kind="listed", positions=[[0, 0], [1, 0]], cells="triangles", connectivity=[[1, 2]])}), "connectivity", "3 nodes"),
+        (dict(body={**BEAM["body"], "mesh": dict(kind="listed", positions=[[0, 0], [1]], cells="segments", connectivity=[[1, 2]])}), "positions", "2 numbers"),
+        (dict(body={**BEAM["body"], "mesh": dict(kind="listed", positions=[[0, 0], [1, 0]], cells="segments", connectivity=[[0, 1]])}), "connectivity", "1 or above"),
+    ],
+)
+def test_errors_name_key_and_help(change, key, told):
+    with pytest.raises(pliant.SceneError) as caught:
+        pliant.Scene({**BEAM, **change})
+    assert caught.value.key.endswith(key) and told in caught.value.help, (caught.value.key, str(caught.value))
+
+
+def test_errors_of_files_name_the_line(tmp_path):
+    path = tmp_path / "scene.toml"
+    text = pliant.Scene(BEAM).to_toml().replace("young = 1000000.0", "young = -1.0")
+    path.write_text(text)
+    with pytest.raises(pliant.SceneError) as caught:
+        pliant.Scene.from_toml(path)
+    assert caught.value.path == str(path)
+    assert text.splitlines()[caught.value.line - 1].startswith("young")
+    assert isinstance(caught.value, ValueError)
+
+
+def test_what_no_scene_holds():
+    with pytest.raises(TypeError, match="not object"):
+        pliant.Scene({**BEAM, "title": object()})
+    with pytest.raises(ValueError, match="nan"):
+        pliant.Scene({**BEAM, "gravity": [0.0, float("nan")]})
+
+
+def test_an_integration_that_fails_keeps_its_motion():
+    with pytest.raises(pliant.IntegrationError) as caught:
+        pliant.Scene.from_toml(ROOT / "scenes/ring-springs-collapse.toml").run()
+    failure = caught.value
+    assert failure.motion.times[-1] == failure.time and 0.2 < failure.time < 0.22
+    assert "spring" in str(failure)
+
+
+def test_warnings_are_warnings():
+    heavy = pliant.Scene({**BEAM, "body": {**BEAM["body"], "material": {**BEAM["body"]["material"], "density": 1e6}}})
+    with pytest.warns(pliant.ModelWarning, match="density"):
+        motion = heavy.run()
+    assert motion.warnings
+
+
+def test_an_equilibrium():
+    found = pliant.Scene(BEAM).static(load_steps=2)
+    assert found.report["iterations"] > 1
+    released = pliant.Scene({**BEAM, "phase": [dict(until=3.0, hold="left")], "output": {}}).run()
+    tip = found.sensors["tip y"][-1]
+    assert abs(released.sensors["tip y"][-1] - tip) < 1e-3 * abs(tip)
+
+
+def test_tables_of_others(tmp_path):
+    pandas = pytest.importorskip("pandas")
+    motion = pliant.Scene(BEAM).run()
+    table = motion.to_pandas()
+    assert isinstance(table, pandas.DataFrame) and np.array_equal(table["tip y"], motion.sensors["tip y"])
+    motion.write_csv(tmp_path / "motion.csv")
+    assert len(pandas.read_csv(tmp_path / "motion.csv")) == len(table)
+
+
+def test_files(tmp_path):
+    motion = pliant.Scene(BEAM).run()
+    motion.write_html(tmp_path / "a.html")
+    motion.write_svg(tmp_path / "a.svg", [0.0, 0.05])
+    motion.write_vtk(tmp_path / "vtk")
+    motion.write_report(tmp_path / "r.json")
+    assert json.loads((tmp_path / "r.json").read_text()) == motion.report
+    assert "<script" in (tmp_path / "a.html").read_text() and "srcdoc" in motion._repr_html_()
+    assert (tmp_path / "vtk/body.pvd").exists() and (tmp_path / "a.svg").stat().st_size > 1000
+
+
+def test_ctrl_c_keeps_what_there_is():
+    import _thread
+
+    scene = pliant.Scene({**BEAM, "phase": [dict(until=1e4, hold="left")], "output": dict(step=1.0)})
+    threading.Timer(0.5, _thread.interrupt_main).start()
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        motion = scene.run(method="rk")
+    assert motion.failure and 0.0 < motion.times[-1] < 1e4
+
+
+def test_other_threads_work_while_it_runs():
+    scene = pliant.Scene({**BEAM, "phase": [dict(until=3.0, hold="left")]})
+    count, running = [0], threading.Event()
+
+    def work():
+        while not running.is_set():
+            count[0] += 1
+
+    thread = threading.Thread(target=work)
+    thread.start()
+    scene.run(method="rk")
+    running.set()
+    thread.join()
+    assert count[0] > 1000
+
+
+def test_words_are_those_of_the_reader(command):
+    schema = subprocess.run([command, "schema"], check=True, capture_output=True).stdout
+    maker = ROOT / "python/make_words.py"
+    made = subprocess.run(["python3", maker], input=schema, check=True, capture_output=True).stdout
+    assert made.decode() == (ROOT / "python/pliant/words.py").read_text(), "pliant schema | python make_words.py > pliant/words.py"

@@ -1,0 +1,114 @@
+"""Scenes that a program drives."""
+
+import time
+from concurrent.futures import ThreadPoolExecutor
+
+import numpy as np
+import pytest
+
+import pliant
+
+BEAM = pliant.Scene(
+    gravity=[0.0, -9.8],
+    body=dict(
+        mesh=dict(kind="rectangle", size=[0.1, 0.01], nodes=[11, 3], cells="rectangles"),
+        thickness=0.01,
+        material=dict(density=1000.0, young=1e6, poisson=0.48, viscosity=2e4),
+    ),
+    phase=[dict(until=2.0, hold="left")],
+)
+
+
+def test_a_controller_lifts_a_beam():
+    """The controller of the README: the end comes to where it is wanted, as in Rust."""
+    beam = BEAM.start()
+    integral = [0.0]
+
+    def controller(beam):
+        error = 0.006 - beam.position("right")[1]
+        integral[0] += 1e-3 * error
+        beam.load("right", [0.0, 20.0 * integral[0] + 2.0 * error])
+
+    assert beam.control(1e-3, 2.0, controller)
+    assert abs(beam.position("right")[1] - 0.006) < 1e-5
+
+
+def test_states_are_returned_to():
+    beam = BEAM.start(rtol=1e-8)
+    beam.advance_to(0.1)
+    kept = beam.checkpoint()
+    beam.load("right", [0.0, 0.1])
+    beam.advance_to(0.2)
+    pulled = beam.positions
+    beam.restore(kept)
+    assert beam.time == kept.time == 0.1
+    beam.load("right", [0.0, 0.1])
+    beam.advance_to(0.2)
+    assert np.abs(beam.positions - pulled).max() < 1e-8
+
+
+def test_checkpoints_are_files(tmp_path):
+    beam = BEAM.start()
+    beam.advance_to(0.1)
+    beam.checkpoint().write(tmp_path / "c.json")
+    beam.advance_to(0.2)
+    other = BEAM.start()
+    other.restore(other.read_checkpoint(tmp_path / "c.json"))
+    other.advance_to(0.2)
+    assert np.abs(other.positions - beam.positions).max() < 1e-6
+
+
+def test_forks_on_threads():
+    beam = BEAM.start()
+    beam.advance_to(0.05)
+
+    def end(force):
+        fork = beam.fork()
+        fork.load("right", [0.0, force])
+        fork.advance_to(0.3)
+        return fork.position("right")[1]
+
+    forces = np.linspace(0.0, 0.1, 6)
+    with ThreadPoolExecutor(2) as pool:
+        ends = list(pool.map(end, forces))
+    assert np.all(np.diff(ends) > 0) and ends == [end(force) for force in forces]
+
+
+def test_events_are_met():
+    beam = BEAM.start(rtol=1e-8)
+    right = BEAM.mesh.sets["right"]
+    met = beam.advance_until(1.0, lambda t, x, v: x[right, 1].mean() - 0.004)
+    assert met and abs(beam.position("right")[1] - 0.004) < 1e-12
+    with pytest.raises(ZeroDivisionError):
+        beam.advance_until(1.0, lambda t, x, v: 1 / 0)
+
+
+def test_an_impact():
+    beam = BEAM.start()
+    beam.change_state(velocities=np.full_like(beam.velocities, 0.5))
+    assert np.allclose(beam.velocity("right"), 0.5)
+    with pytest.raises(pliant.InputError, match="numbers"):
+        beam.change_state(velocities=np.zeros((2, 2)))
+
+
+def test_bad_commands_name_what_there_is():
+    beam = BEAM.start()
+    with pytest.raises(pliant.InputError, match="right"):
+        beam.load("rigth", [0.0, 1.0])
+    with pytest.raises(pliant.InputError):
+        beam.advance_to(3.0)
+    with pytest.raises(pliant.InputError, match="chamber"):
+        beam.set_pressure("air", 1.0)
+    with pytest.raises(ValueError, match="period"):
+        beam.control(0.0, 1.0, lambda beam: None)
+
+
+def test_one_thread_at_a_time():
+    beam = BEAM.start()
+
+    def inside(t, x, v):
+        beam.step()
+        return 1.0
+
+    with pytest.raises(RuntimeError, match="fork"):
+        beam.advance_until(0.1, inside)

