@@ -27,7 +27,7 @@ class Ring(gymnasium.Env):
 
     metadata = {"render_modes": []}
     action_space = gymnasium.spaces.Box(0.0, 1.0, (len(PAIRS),), np.float64)
-    observation_space = gymnasium.spaces.Box(-np.inf, np.inf, (4 * len(FEET),), np.float64)
+    observation_space = gymnasium.spaces.Box(-20.0, 20.0, (4 * len(FEET),), np.float64)
 
     def __init__(self):
         scene = pliant.Scene.from_toml(SCENE).with_values({"phase": [{"until": SETTLED + DECISIONS * PERIOD}]})

@@ -20,8 +20,8 @@ class SceneError(InputError):
     """A scene that holds something that cannot be used.
 
     Attributes: ``key`` as in ``body.material.young`` (empty: no single key), ``help`` (what is wrong, what is allowed),
-    ``path`` and ``line`` (from 1) of the file, if the scene comes from one; ``--set`` stands for values that replace those
-    of a file.
+    ``path`` and ``line`` (from 1) of the file, or None if the scene comes from none; the path ``--set`` stands for values
+    that replace those of a scene.
     """
 
     def __init__(self, text, key, help, path, line):

@@ -21,6 +21,9 @@ _METHODS = {
     "DOP853": ("VERNER_8_5_6", False),
 }
 
+#: Methods that integrate forward only.
+_FORWARD = ("dormand-prince", "rosenbrock")
+
 _MESSAGES = {
     0: "The solver successfully reached the end of the integration interval.",
     1: "A termination event occurred.",
@@ -54,21 +57,21 @@ class OdeResult(dict):
 class OdeSolution:
     """The solution between its times: `sol(t)` gives [unknown] at one time, [unknown, time] at several."""
 
-    def __init__(self, run, unpacked):
-        self._run, self._unpacked = run, unpacked
-        self.ts = run.t
-        self.t_min, self.t_max = min(run.t[0], run.t[-1]), max(run.t[0], run.t[-1])
+    def __init__(self, run, unpacked, sign):
+        self._run, self._unpacked, self._sign = run, unpacked, sign
+        self.ts = sign * run.t
+        self.t_min, self.t_max = min(self.ts[0], self.ts[-1]), max(self.ts[0], self.ts[-1])
 
     def __call__(self, t):
         t = np.asarray(t, dtype=float)
-        return self._unpacked(self._run.at(t.ravel().tolist())).T.reshape((-1, *t.shape))
+        return self._unpacked(self._run.at((self._sign * t.ravel()).tolist())).T.reshape((-1, *t.shape))
 
 
 def solve_ivp(
     fun,
     t_span,
     y0,
-    method="bdf",
+    method="RK45",
     t_eval=None,
     dense_output=False,
     events=None,
@@ -96,7 +99,7 @@ def solve_ivp(
         ``void(float64, CPointer(float64), CPointer(float64), CPointer(float64))``, that takes t, y, where to write y', and
         `args` as numbers, is called without Python.
     method : str
-        ``"bdf"`` (default) and ``"adams"`` of CVODE, ``"esdirk"`` or any table of ARKODE by its name, ``"rosenbrock"``, and
+        ``"RK45"`` (default, as in SciPy), or better for stiff equations ``"bdf"``; ``"adams"``, also of CVODE, ``"esdirk"`` or any table of ARKODE by its name, ``"rosenbrock"``, and
         ``"dormand-prince"``. Names of SciPy stand for methods of the same kind: ``"BDF"`` and ``"LSODA"`` are ``"bdf"``,
         ``"Radau"`` is an ESDIRK method of order 5, ``"RK45"`` is ``"dormand-prince"``, ``"RK23"`` Bogacki and Shampine's
         method, ``"DOP853"`` Verner's of order 6.
@@ -119,6 +122,7 @@ def solve_ivp(
     True
     """
     start, end = map(float, t_span)
+    method = getattr(method, "__name__", method)  # a solver class of SciPy
     if method not in _METHODS and not isinstance(method, str):
         raise ValueError(f"`method` must be one of {sorted(_METHODS)} or a table of ARKODE by its name, not {method!r}")
     name, implicit = _METHODS.get(method, (method, True))
@@ -141,7 +145,7 @@ def solve_ivp(
             try:
                 args = tuple(args)
             except TypeError as error:
-                raise TypeError(f"`args` is a tuple, as args=({args!r},)") from error
+                raise TypeError(f"Supplied 'args' cannot be unpacked. Give a tuple: args=({args!r},)") from error
             fun = _with(fun, args)
             jac = _with(jac, args) if callable(jac) else jac
         function = parts.function(fun)
@@ -165,15 +169,22 @@ def solve_ivp(
             raise ValueError("Values in `t_eval` are not properly sorted.")
         times = None if dense_output else t_eval.tolist()
     watched = _events(events, args if address is None else None, parts)
-    if start == end:
-        return _at_once(start, parts.unpack(parts.pack(y0)[None, :]), t_eval, dense_output, watched)
+    if start == end or parts.count == 0:
+        return _at_once(start, end, parts.unpack(parts.pack(y0)[None, :]), t_eval, dense_output, watched)
+    # what goes forward only goes back along s = -t
+    sign = -1.0 if end < start and name in _FORWARD else 1.0
+    if sign < 0.0:
+        function, watched, times = _reversed(function, watched, times)
+        jac = (lambda slopes: lambda t, y: slopes(-t, y))(jac) if callable(jac) else jac
     jacobian, sparsity, band = None, None, None
     if implicit:
-        jacobian, sparsity, band = _jacobian(jac, jac_sparsity, lband, uband, fun, start, y0, parts)
+        jacobian, sparsity, band = _jacobian(jac, jac_sparsity, lband, uband, fun, sign * start, y0, parts)
+        if sign < 0.0 and jacobian is not None:
+            jacobian = (lambda slopes: lambda t, y: -slopes(t, y))(jacobian)
     run = _pliant.solve(
         function,
         data,
-        (start, end),
+        (sign * start, sign * end),
         parts.pack(y0).tolist(),
         name,
         rtol,
@@ -190,28 +201,29 @@ def solve_ivp(
         max_steps=max_steps,
     )
     status = -1 if run.failure else int(run.ended_by_event)
-    t, y = run.t, parts.unpack(run.y)
+    t, y = sign * run.t, parts.unpack(run.y)
     if t_eval is not None:
         reached = t[-1]
         kept = t_eval[t_eval <= reached] if end > start else t_eval[t_eval >= reached]
-        y = parts.unpack(run.at(kept.tolist())) if dense_output else y[np.searchsorted(t * np.sign(end - start), kept * np.sign(end - start))]
+        direction = np.sign(end - start)
+        y = parts.unpack(run.at((sign * kept).tolist())) if dense_output else y[np.searchsorted(t * direction, kept * direction)]
         t = kept
     t_events = y_events = None
     if watched is not None:
         t_events = [[] for _ in watched]
         y_events = [[] for _ in watched]
         for number, time, state in run.events():
-            t_events[number].append(time)
+            t_events[number].append(sign * time)
             y_events[number].append(parts.unpack(state[None, :])[0])
         t_events, y_events = [np.asarray(t) for t in t_events], [np.asarray(y) for y in y_events]
     return OdeResult(
         t=t,
         y=y.T,
-        sol=OdeSolution(run, parts.unpack) if dense_output else None,
+        sol=OdeSolution(run, parts.unpack, sign) if dense_output else None,
         t_events=t_events,
         y_events=y_events,
         nfev=run.evaluations,
-        njev=run.jacobian_evaluations,
+        njev=run.jacobian_evaluations if jac is None or callable(jac) else 0,
         nlu=run.factorizations,
         nsteps=run.steps,
         status=status,
@@ -280,8 +292,7 @@ def _tolerances(rtol, atol, parts):
         raise ValueError("`atol` must be positive.")
     if atol.ndim > 0 and atol.shape != (parts.count,):
         raise ValueError("`atol` has wrong shape.")
-    if np.ndim(rtol) > 0:
-        raise ValueError("`rtol` is one number for all unknowns: weigh them by `atol`.")
+    rtol = float(np.min(rtol))  # of several the smallest, for all unknowns
     least = 100 * np.finfo(float).eps
     if rtol < least:
         warnings.warn(f"`rtol` is too small, setting to {least}", stacklevel=3)
@@ -313,6 +324,15 @@ def _events(events, args, parts):
     return watched
 
 
+def _reversed(function, watched, times):
+    """Function, events and times along s = -t."""
+    def back(t, y):
+        return -np.asarray(function(-t, y), dtype=float)
+
+    turned = [((lambda g: lambda t, y: g(-t, y))(event), -direction, last) for event, direction, last in watched or []]
+    return back, None if watched is None else turned, None if times is None else [-t for t in times]
+
+
 def _number(function):
     return lambda t, y: float(np.ravel(function(t, y))[0])
 
@@ -338,6 +358,9 @@ def _jacobian(jac, pattern, lband, uband, fun, t, y0, parts):
         pattern.sort_indices()
         return None, (pattern.indptr.tolist(), pattern.indices.tolist()), None
     first = jac(t, y0) if callable(jac) else jac
+    if np.ndim(first) < 2 and not hasattr(first, "tocsc"):
+        first = np.atleast_2d(first)
+        jac = (lambda slopes: lambda t, y: np.atleast_2d(slopes(t, y)))(jac) if callable(jac) else first
     if hasattr(first, "tocsc"):
         return _sparse_jacobian(jac, first, parts)
     shape = np.shape(first)
@@ -386,14 +409,14 @@ def _sparse_jacobian(jac, first, parts):
     return values, (pattern.indptr.tolist(), pattern.indices.tolist()), None
 
 
-def _at_once(t, y, t_eval, dense_output, watched):
-    """The result where the span has no length."""
-    times = np.array([t]) if t_eval is None else t_eval
+def _at_once(t, end, y, t_eval, dense_output, watched):
+    """The result where nothing changes: the span has no length, or there are no unknowns."""
+    times = np.array([t] if t == end else [t, end]) if t_eval is None else t_eval
     states = np.repeat(y.T, len(times), axis=1)
     nothing = None if watched is None else [np.array([]) for _ in watched]
 
     class Constant:
-        ts, t_min, t_max = np.array([t, t]), t, t
+        ts, t_min, t_max = np.array([t, end]), min(t, end), max(t, end)
 
         def __call__(self, at):
             return np.repeat(y.T, np.size(at), axis=1).reshape((-1, *np.shape(at)))

@@ -6,7 +6,7 @@ import warnings
 import numpy as np
 
 from . import _pliant
-from .errors import ModelWarning
+from .errors import ModelWarning, SceneError
 from .mesh import Mesh
 from .motion import Equilibrium, Motion
 from .plain import as_json
@@ -28,9 +28,9 @@ class Scene:
     ...     body=words.body(
     ...         mesh=words.mesh_rectangle(size=[0.1, 0.02], nodes=[6, 2], cells="triangles6"),
     ...         thickness=0.01,
-    ...         material=words.material(density=1000.0, young=1e6, poisson=0.4),
+    ...         material=words.material(density=1000.0, young=1e6, poisson=0.4, viscosity=0.0),
     ...     ),
-    ...     phase=words.phase(until=0.1, hold="left"),
+    ...     phase=words.phase(until=0.1, hold=words.hold(nodes="left")),
     ... )
     >>> motion = scene.run(sampling=0.01)
     >>> motion.positions.shape
@@ -41,7 +41,12 @@ class Scene:
         if isinstance(tables, str):
             raise TypeError("Scene takes dicts: Scene.from_toml reads files and their text")
         text = _pliant.toml_of(as_json({**(tables or {}), **keywords}))
-        self._scene = _pliant.Scene(text, os.fspath(path), [])
+        try:
+            self._scene = _pliant.Scene(text, os.fspath(path), [])
+        except SceneError as error:
+            # there are no lines where there is no file
+            where = f"{error.key}: " if error.key else ""
+            raise SceneError(f"{where}{error.help}", error.key, error.help, None, None) from None
 
     @classmethod
     def _of(cls, scene):
@@ -72,8 +77,10 @@ class Scene:
 
     def save(self, path):
         """Writes the scene as a file, which `pliant run` takes."""
+        text = self.to_toml()
+        os.makedirs(os.path.dirname(path) or ".", exist_ok=True)
         with open(path, "w", encoding="utf-8") as file:
-            file.write(self.to_toml())
+            file.write(text)
 
     title = property(lambda self: self._scene.title, doc="The title.")
     end = property(lambda self: self._scene.end, doc="The end of the last phase (s).")
@@ -101,9 +108,11 @@ class Scene:
 
         Ctrl-C ends the run; what was computed until then is returned, and ``motion.failure`` says so.
         """
-        scene = self._scene.with_values(_settings(sampling, accuracy, solver))
+        scene = self._scene.with_values(_settings(accuracy, solver))
+        times = None if sampling is None else np.atleast_1d(np.asarray(sampling, dtype=float)).tolist()
+        step = times.pop() if times and np.ndim(sampling) == 0 else None
         with bar(scene.title or "run", scene.end, progress) as show:
-            motion = Motion(scene.run(show))
+            motion = Motion(scene.run(show, step, None if step else times))
         for warning in motion.warnings:
             warnings.warn(warning, ModelWarning, stacklevel=2)
         if motion.failure:
@@ -134,7 +143,7 @@ class Scene:
 
     def start(self, **solver):
         """The scene in motion under the control of a program: a :class:`Simulation`."""
-        return Simulation(self._scene.with_values(_settings(None, None, solver)).start())
+        return Simulation(self._scene.with_values(_settings(None, solver)).start())
 
     def __repr__(self):
         return f"<pliant.Scene {self.title!r}: {self.mesh!r}, {self.end} s>"
@@ -144,10 +153,7 @@ def _values(values):
     return [(key, as_json(value)) for key, value in (values or {}).items()]
 
 
-def _settings(sampling, accuracy, solver):
-    values = {f"solver.{key}": value for key, value in solver.items() if value is not None}
-    if accuracy is not None:
-        values["solver.accuracy"] = accuracy
-    if sampling is not None:
-        values["output.step" if np.ndim(sampling) == 0 else "output.times"] = sampling
-    return _values(values)
+def _settings(accuracy, solver):
+    """Keys of `[solver]` as values that replace those of the scene."""
+    values = {"accuracy": accuracy, **solver}
+    return _values({f"solver.{key}": value for key, value in values.items() if value is not None})

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pliant::scene_file::{override_of, toml_of as toml_of_scene};
 use pliant::study::{Adviser, Quantity, Verification};
-use pliant::{Error, Mesh, SceneFile, Trajectory};
+use pliant::{Error, Mesh, OutputRequest, SceneFile, Trajectory};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -39,8 +39,8 @@ impl Scene {
     }
 
     /// One run.
-    fn once(&self, watch: &mut Watch) -> Result<Motion, Error> {
-        let SceneFile { scene, settings, output, .. } = &self.file;
+    fn once(&self, output: &OutputRequest, watch: &mut Watch) -> Result<Motion, Error> {
+        let SceneFile { scene, settings, .. } = &self.file;
         let seen = |progress: &pliant::simulate::Progress| watch.see(progress.time);
         match scene.simulate_with(settings, &output.sampling(), seen) {
             Ok(trajectory) => Ok(self.motion(trajectory, None)),
@@ -49,9 +49,13 @@ impl Scene {
     }
 
     /// Runs at ever finer tolerances, until two agree.
-    fn verified(&self, within: f64, watch: &mut Watch) -> Result<Motion, Error> {
-        let SceneFile { scene, settings, accuracy, output, .. } = &self.file;
-        let mut output = output.clone();
+    fn verified(
+        &self,
+        within: f64,
+        mut output: OutputRequest,
+        watch: &mut Watch,
+    ) -> Result<Motion, Error> {
+        let SceneFile { scene, settings, accuracy, .. } = &self.file;
         if output.times.is_none() {
             output.step.get_or_insert(scene.end() / SAMPLES);
         }
@@ -149,13 +153,23 @@ impl Scene {
         sets(py, self.file.scene.body().mesh())
     }
 
-    /// Runs the scene.
-    #[pyo3(signature = (progress = None))]
-    fn run(&self, py: Python<'_>, progress: Option<Py<PyAny>>) -> PyResult<Motion> {
+    /// Runs the scene; `step` or `times` (s) replace those of `[output]`.
+    #[pyo3(signature = (progress = None, step = None, times = None))]
+    fn run(
+        &self,
+        py: Python<'_>,
+        progress: Option<Py<PyAny>>,
+        step: Option<f64>,
+        times: Option<Vec<f64>>,
+    ) -> PyResult<Motion> {
         let mut watch = Watch::new(progress);
+        let mut output = self.file.output.clone();
+        if step.is_some() || times.is_some() {
+            (output.step, output.times) = (step, times);
+        }
         let motion = py.detach(|| match self.file.accuracy.within {
-            Some(within) => self.verified(within.0, &mut watch),
-            None => self.once(&mut watch),
+            Some(within) => self.verified(within.0, output, &mut watch),
+            None => self.once(&output, &mut watch),
         });
         watch.check(py)?;
         motion.map_err(raised)

@@ -21,7 +21,7 @@ BEAM = dict(
         thickness=0.01,
         material=dict(density=1000.0, young=1e6, poisson=0.4, viscosity=100.0),
     ),
-    phase=[dict(until=0.05, hold="left")],
+    phase=[dict(until=0.05, hold=dict(nodes="left"))],
     sensor=[dict(name="tip", kind="position", nodes="right")],
     output=dict(step=0.01),
 )
@@ -37,7 +37,7 @@ def test_a_file_a_text_and_dicts_are_one_scene():
             thickness=0.01,
             material=words.material(density=1000.0, young=1e6, poisson=0.4, viscosity=100.0),
         ),
-        phase=words.phase(until=0.05, hold="left"),
+        phase=words.phase(until=0.05, hold=dict(nodes="left")),
         sensor=words.sensor_position(name="tip", nodes="right"),
         output=words.output(step=0.01),
     )
@@ -62,8 +62,8 @@ def test_arrays_are_those_of_the_command(tmp_path, command):
 
 
 def test_numbers_of_a_motion_fit_together():
-    motion = pliant.Scene(BEAM).run(rtol=1e-8)
-    assert motion.positions.shape == (6, 33, 2) and len(motion) == 6
+    motion = pliant.Scene(BEAM).run(rtol=1e-8, sampling=1e-4)
+    assert motion.positions.shape == (501, 33, 2) and len(motion) == 501
     tip = motion.mesh.nodes[:, 0] == 0.1
     places = motion.positions[:, tip].mean(axis=1)
     for axis, values in enumerate(motion.sensors.values()):
@@ -72,7 +72,9 @@ def test_numbers_of_a_motion_fit_together():
     weight = np.array([0.0, -9.8]) * 1000.0 * 0.1 * 0.02 * 0.01
     borne = motion.reactions.sum(axis=1) + weight
     slope = np.gradient(motion.momentum, motion.times, axis=0, edge_order=2)
-    assert np.abs(borne - slope)[1:-1].max() < 0.2 * np.abs(weight).max()
+    off = np.abs(borne - slope)[5:-5].max() / np.abs(weight).max()
+    print(off)
+    assert off < 5e-3
     balance = motion.energies["balance"]
     assert np.abs(balance - balance[0]).max() < 1e-6 * np.abs(motion.energies["kinetic"]).max()
 
@@ -107,14 +109,15 @@ def test_other_values():
     sampled = scene.run(sampling=[0.01, 0.03])
     assert sampled.times.tolist() == [0.0, 0.01, 0.03, 0.05]
     accurate = scene.run(accuracy="1%", sampling=0.01)
-    assert accurate.report["achieved"]["within"] <= 0.01
+    achieved = accurate.report["achieved"]
+    assert achieved["difference"] <= achieved["asked"] == 0.01
 
 
 @pytest.mark.parametrize(
     "change, key, told",
     [
         (dict(body={**BEAM["body"], "thicknes": 1.0}), "body.thicknes", "thickness"),
-        (dict(phase=[dict(until=-1.0)]), "until", "above"),
+        (dict(phase=[dict(until=-1.0)]), "phase.until", "after 0 s"),
         (dict(gravity="down"), "gravity", "list"),
         (dict(solver=dict(rtol=2.0)), "solver.rtol", ""),
         (dict(body={**BEAM["body"], "mesh": dict(kind="listed", positions=[[0, 0], [1, 0]], cells="triangles", connectivity=[[1, 2]])}), "connectivity", "3 nodes"),
@@ -148,7 +151,7 @@ def test_what_no_scene_holds():
 
 def test_an_integration_that_fails_keeps_its_motion():
     with pytest.raises(pliant.IntegrationError) as caught:
-        pliant.Scene.from_toml(ROOT / "scenes/ring-springs-collapse.toml").run()
+        pliant.Scene.from_toml(ROOT / "scenes/ring-springs-5N.toml").run()
     failure = caught.value
     assert failure.motion.times[-1] == failure.time and 0.2 < failure.time < 0.22
     assert "spring" in str(failure)
@@ -162,18 +165,19 @@ def test_warnings_are_warnings():
 
 
 def test_an_equilibrium():
-    found = pliant.Scene(BEAM).static(load_steps=2)
+    beam = pliant.Scene(BEAM).with_values({"body.material.viscosity": 2e4})
+    found = beam.static(load_steps=2)
     assert found.report["iterations"] > 1
-    released = pliant.Scene({**BEAM, "phase": [dict(until=3.0, hold="left")], "output": {}}).run()
-    tip = found.sensors["tip y"][-1]
-    assert abs(released.sensors["tip y"][-1] - tip) < 1e-3 * abs(tip)
+    released = beam.with_values({"phase.1.until": 3.0}).run(sampling=1.0)
+    tip = found.sensors["tip.y"][-1]
+    assert abs(released.sensors["tip.y"][-1] - tip) < 1e-3 * abs(tip)
 
 
 def test_tables_of_others(tmp_path):
     pandas = pytest.importorskip("pandas")
     motion = pliant.Scene(BEAM).run()
     table = motion.to_pandas()
-    assert isinstance(table, pandas.DataFrame) and np.array_equal(table["tip y"], motion.sensors["tip y"])
+    assert isinstance(table, pandas.DataFrame) and np.array_equal(table["tip.y"], motion.sensors["tip.y"])
     motion.write_csv(tmp_path / "motion.csv")
     assert len(pandas.read_csv(tmp_path / "motion.csv")) == len(table)
 
@@ -192,7 +196,7 @@ def test_files(tmp_path):
 def test_ctrl_c_keeps_what_there_is():
     import _thread
 
-    scene = pliant.Scene({**BEAM, "phase": [dict(until=1e4, hold="left")], "output": dict(step=1.0)})
+    scene = pliant.Scene({**BEAM, "phase": [dict(until=1e4, hold=dict(nodes="left"))], "output": dict(step=1.0)})
     threading.Timer(0.5, _thread.interrupt_main).start()
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
@@ -201,7 +205,7 @@ def test_ctrl_c_keeps_what_there_is():
 
 
 def test_other_threads_work_while_it_runs():
-    scene = pliant.Scene({**BEAM, "phase": [dict(until=3.0, hold="left")]})
+    scene = pliant.Scene({**BEAM, "phase": [dict(until=3.0, hold=dict(nodes="left"))]})
     count, running = [0], threading.Event()
 
     def work():

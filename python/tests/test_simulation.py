@@ -15,7 +15,7 @@ BEAM = pliant.Scene(
         thickness=0.01,
         material=dict(density=1000.0, young=1e6, poisson=0.48, viscosity=2e4),
     ),
-    phase=[dict(until=2.0, hold="left")],
+    phase=[dict(until=2.0, hold=dict(nodes="left"))],
 )
 
 

@@ -1,0 +1,2344 @@
+"""Builders for the tables of scenes: one function for each, with all keys, their meanings, units and defaults.
+
+Made by make_words.py of the table of keys, as the reference page of scene files is: do not edit. Each function returns a
+dict without the keys that are left out; a dict with the same keys does as well.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Literal, Sequence
+
+if TYPE_CHECKING:
+    from .mesh import Mesh
+
+#: The name of a node set, the number of a node (from 1), several numbers, or ``{"box": [[x, y], [x, y]]}``.
+Nodes = Any
+#: One number per dimension of space.
+Vector = Sequence[float]
+#: A number, or a function of time as a text: ``"2000 * sin(2*pi*3*t)"``.
+Formula = Any
+
+
+def _table(**keys):
+    return {key.rstrip("_"): value for key, value in keys.items() if value is not None}
+
+
+def body(
+    *,
+    mesh: dict | Mesh,
+    material: dict,
+    thickness: float | None = None,
+    area: float | None = None,
+    strain: Literal["cauchy", "green", "auto"] | None = None,
+    viscous: Literal["natural", "objective"] | None = None,
+    inertia: Literal["consistent", "lumped"] | None = None,
+    plane: Literal["strain", "stress"] | None = None,
+    dilatation: Literal["points", "mean"] | None = None,
+    region: dict | Sequence[dict] | None = None,
+) -> dict:
+    r"""What moves: a mesh made of a material.
+
+    Parameters
+    ----------
+    mesh
+        the mesh. Required.
+    material
+        what the body is made of. Required.
+    thickness
+        the thickness of a body in the plane (m). Default: required in two dimensions.
+    area
+        the cross section of a string (m^2). Default: required in one dimension.
+    strain
+        the measure of strain. Default: auto. Cauchy's is linear, right while no cell turns by more than some degrees;
+        Green's follows any rotation, with the law of the material; `auto` is Green's, and the report tells whether
+        Cauchy's would do.
+    viscous
+        the law of viscosity. Default: natural with Cauchy strain, objective with Green strain. Natural viscosity, -B
+        v, brakes rotations, too; objective viscosity takes the rate of Green's strain.
+    inertia
+        how inertia is shared out. Default: consistent. Consistent with the shape functions, or lumped at the nodes.
+    plane
+        what is 0 across the plane. Default: strain.
+    dilatation
+        where the body resists a change of its volume. Default: points. In the mean over each cell, nearly
+        incompressible bodies do not lock: for quadrilaterals, hexahedra and quadratic cells.
+    region
+        parts with a material of their own. Default: none.
+    """
+    return _table(
+        mesh=mesh,
+        material=material,
+        thickness=thickness,
+        area=area,
+        strain=strain,
+        viscous=viscous,
+        inertia=inertia,
+        plane=plane,
+        dilatation=dilatation,
+        region=region,
+    )
+
+
+def mesh_bar(
+    *,
+    length: float,
+    nodes: int,
+    origin: Vector | None = None,
+    quadratic: bool | None = None,
+    halved: int | None = None,
+) -> dict:
+    r"""Mesh of the kind "bar": segments along x.
+
+    Parameters
+    ----------
+    length
+        the length (m). Required.
+    nodes
+        the number of nodes. Required.
+    origin
+        the place of the lower corner, or of the centre of a ring (m). Default: the origin.
+    quadratic
+        whether cells get mid nodes. Default: false. Triangles, tetrahedra and hexahedra; quadrilaterals are divided
+        into triangles first. Numbers of nodes in the file are those of the mesh without this; where several nodes are
+        held, moved or under tractions, those between them are, too. Forces on each node stay at the nodes that there
+        were, and stiffness and damping of obstacles per node are shared out.
+    halved
+        how often each cell is divided at the middles of its edges. Default: 0. After `quadratic`, and like it.
+    """
+    return _table(
+        kind="bar",
+        length=length,
+        nodes=nodes,
+        origin=origin,
+        quadratic=quadratic,
+        halved=halved,
+    )
+
+
+def mesh_rectangle(
+    *,
+    size: Sequence[float],
+    nodes: Sequence[int],
+    cells: Literal["triangles", "crossed", "rectangles", "triangles6", "auto"],
+    origin: Vector | None = None,
+    quadratic: bool | None = None,
+    halved: int | None = None,
+    grading: Sequence[float] | None = None,
+) -> dict:
+    r"""Mesh of the kind "rectangle": a grid along x and y.
+
+    Parameters
+    ----------
+    size
+        width and height (m). Required.
+    nodes
+        corner nodes along x and y. Required.
+    cells
+        how the grid is divided. Required. Linear `triangles` are too stiff in bending, `crossed` ones less so;
+        `triangles6`, quadratic, bend well, and `auto` is those.
+    origin
+        the place of the lower corner, or of the centre of a ring (m). Default: the origin.
+    quadratic
+        whether cells get mid nodes. Default: false. Triangles, tetrahedra and hexahedra; quadrilaterals are divided
+        into triangles first. Numbers of nodes in the file are those of the mesh without this; where several nodes are
+        held, moved or under tractions, those between them are, too. Forces on each node stay at the nodes that there
+        were, and stiffness and damping of obstacles per node are shared out.
+    halved
+        how often each cell is divided at the middles of its edges. Default: 0. After `quadratic`, and like it.
+    grading
+        the length of the last cell along each axis by that of the first one (no unit). Default: 1 along each axis:
+        equal cells. Within 1e-4 and 1e4; each cell is longer than the one before it by the same factor. Put the fine
+        end where stress is: a clamp on the left asks for a number above 1.
+    """
+    return _table(
+        kind="rectangle",
+        size=size,
+        nodes=nodes,
+        cells=cells,
+        origin=origin,
+        quadratic=quadratic,
+        halved=halved,
+        grading=grading,
+    )
+
+
+def mesh_ring(
+    *,
+    inner: float,
+    outer: float,
+    nodes: Sequence[int],
+    cells: Literal["triangles", "crossed", "rectangles", "triangles6", "auto"],
+    origin: Vector | None = None,
+    quadratic: bool | None = None,
+    halved: int | None = None,
+) -> dict:
+    r"""Mesh of the kind "ring": a grid around a circle.
+
+    Parameters
+    ----------
+    inner
+        the inner radius (m). Required.
+    outer
+        the outer radius (m). Required.
+    nodes
+        corner nodes around and along the radius. Required.
+    cells
+        how the grid is divided. Required. Linear `triangles` are too stiff in bending, `crossed` ones less so;
+        `triangles6`, quadratic, bend well, and `auto` is those.
+    origin
+        the place of the lower corner, or of the centre of a ring (m). Default: the origin.
+    quadratic
+        whether cells get mid nodes. Default: false. Triangles, tetrahedra and hexahedra; quadrilaterals are divided
+        into triangles first. Numbers of nodes in the file are those of the mesh without this; where several nodes are
+        held, moved or under tractions, those between them are, too. Forces on each node stay at the nodes that there
+        were, and stiffness and damping of obstacles per node are shared out.
+    halved
+        how often each cell is divided at the middles of its edges. Default: 0. After `quadratic`, and like it.
+    """
+    return _table(
+        kind="ring",
+        inner=inner,
+        outer=outer,
+        nodes=nodes,
+        cells=cells,
+        origin=origin,
+        quadratic=quadratic,
+        halved=halved,
+    )
+
+
+def mesh_half_ring(
+    *,
+    inner: float,
+    outer: float,
+    nodes: Sequence[int],
+    cells: Literal["triangles", "crossed", "rectangles", "triangles6", "auto"],
+    origin: Vector | None = None,
+    quadratic: bool | None = None,
+    halved: int | None = None,
+) -> dict:
+    r"""Mesh of the kind "half-ring": its upper half.
+
+    Parameters
+    ----------
+    inner
+        the inner radius (m). Required.
+    outer
+        the outer radius (m). Required.
+    nodes
+        corner nodes around and along the radius. Required.
+    cells
+        how the grid is divided. Required. Linear `triangles` are too stiff in bending, `crossed` ones less so;
+        `triangles6`, quadratic, bend well, and `auto` is those.
+    origin
+        the place of the lower corner, or of the centre of a ring (m). Default: the origin.
+    quadratic
+        whether cells get mid nodes. Default: false. Triangles, tetrahedra and hexahedra; quadrilaterals are divided
+        into triangles first. Numbers of nodes in the file are those of the mesh without this; where several nodes are
+        held, moved or under tractions, those between them are, too. Forces on each node stay at the nodes that there
+        were, and stiffness and damping of obstacles per node are shared out.
+    halved
+        how often each cell is divided at the middles of its edges. Default: 0. After `quadratic`, and like it.
+    """
+    return _table(
+        kind="half-ring",
+        inner=inner,
+        outer=outer,
+        nodes=nodes,
+        cells=cells,
+        origin=origin,
+        quadratic=quadratic,
+        halved=halved,
+    )
+
+
+def mesh_cuboid(
+    *,
+    size: Sequence[float],
+    nodes: Sequence[int],
+    cells: Literal["tetrahedra", "hexahedra", "tetrahedra10", "hexahedra20", "auto"],
+    origin: Vector | None = None,
+    quadratic: bool | None = None,
+    halved: int | None = None,
+    grading: Sequence[float] | None = None,
+) -> dict:
+    r"""Mesh of the kind "cuboid": a grid along x, y and z.
+
+    Parameters
+    ----------
+    size
+        lengths along x, y and z (m). Required.
+    nodes
+        corner nodes along x, y and z. Required.
+    cells
+        how the grid is divided. Required. `auto` is `tetrahedra10`, quadratic.
+    origin
+        the place of the lower corner, or of the centre of a ring (m). Default: the origin.
+    quadratic
+        whether cells get mid nodes. Default: false. Triangles, tetrahedra and hexahedra; quadrilaterals are divided
+        into triangles first. Numbers of nodes in the file are those of the mesh without this; where several nodes are
+        held, moved or under tractions, those between them are, too. Forces on each node stay at the nodes that there
+        were, and stiffness and damping of obstacles per node are shared out.
+    halved
+        how often each cell is divided at the middles of its edges. Default: 0. After `quadratic`, and like it.
+    grading
+        the length of the last cell along each axis by that of the first one (no unit). Default: 1 along each axis:
+        equal cells. Within 1e-4 and 1e4; each cell is longer than the one before it by the same factor. Put the fine
+        end where stress is: a clamp on the left asks for a number above 1.
+    """
+    return _table(
+        kind="cuboid",
+        size=size,
+        nodes=nodes,
+        cells=cells,
+        origin=origin,
+        quadratic=quadratic,
+        halved=halved,
+        grading=grading,
+    )
+
+
+def mesh_gmsh(
+    *,
+    file: str,
+    origin: Vector | None = None,
+    quadratic: bool | None = None,
+    halved: int | None = None,
+) -> dict:
+    r"""Mesh of the kind "gmsh": a file of Gmsh; coordinates are metres.
+
+    Parameters
+    ----------
+    file
+        the path of a Gmsh mesh, relative to the scene file. Required.
+    origin
+        the place of the lower corner, or of the centre of a ring (m). Default: the origin.
+    quadratic
+        whether cells get mid nodes. Default: false. Triangles, tetrahedra and hexahedra; quadrilaterals are divided
+        into triangles first. Numbers of nodes in the file are those of the mesh without this; where several nodes are
+        held, moved or under tractions, those between them are, too. Forces on each node stay at the nodes that there
+        were, and stiffness and damping of obstacles per node are shared out.
+    halved
+        how often each cell is divided at the middles of its edges. Default: 0. After `quadratic`, and like it.
+    """
+    return _table(
+        kind="gmsh",
+        file=file,
+        origin=origin,
+        quadratic=quadratic,
+        halved=halved,
+    )
+
+
+def mesh_listed(
+    *,
+    positions: Sequence[Vector],
+    cells: Literal["segments", "triangles", "triangles6", "quadrilaterals", "tetrahedra", "tetrahedra10", "hexahedra", "hexahedra20"],
+    connectivity: Sequence[Sequence[int]],
+    origin: Vector | None = None,
+    quadratic: bool | None = None,
+    halved: int | None = None,
+    sets: dict | Sequence[dict] | None = None,
+    groups: dict | Sequence[dict] | None = None,
+) -> dict:
+    r"""Mesh of the kind "listed": node by node, as programs hand meshes over.
+
+    Parameters
+    ----------
+    positions
+        where each node is (m). Required.
+    cells
+        what the cells are. Required.
+    connectivity
+        the nodes of each cell, by number (from 1). Required. In the order of VTK: corners counter-clockwise, then the
+        middles of edges.
+    origin
+        the place of the lower corner, or of the centre of a ring (m). Default: the origin.
+    quadratic
+        whether cells get mid nodes. Default: false. Triangles, tetrahedra and hexahedra; quadrilaterals are divided
+        into triangles first. Numbers of nodes in the file are those of the mesh without this; where several nodes are
+        held, moved or under tractions, those between them are, too. Forces on each node stay at the nodes that there
+        were, and stiffness and damping of obstacles per node are shared out.
+    halved
+        how often each cell is divided at the middles of its edges. Default: 0. After `quadratic`, and like it.
+    sets
+        sets of nodes with names. Default: none.
+    groups
+        groups of cells with names, for regions. Default: none.
+    """
+    return _table(
+        kind="listed",
+        positions=positions,
+        cells=cells,
+        connectivity=connectivity,
+        origin=origin,
+        quadratic=quadratic,
+        halved=halved,
+        sets=sets,
+        groups=groups,
+    )
+
+
+def sets(
+    *,
+    name: str,
+    nodes: Sequence[int],
+) -> dict:
+    r"""A set of nodes of a listed mesh.
+
+    Parameters
+    ----------
+    name
+        the name of the set. Required.
+    nodes
+        its nodes, by number (from 1). Required.
+    """
+    return _table(
+        name=name,
+        nodes=nodes,
+    )
+
+
+def groups(
+    *,
+    name: str,
+    cells: Sequence[int],
+) -> dict:
+    r"""A group of cells of a listed mesh.
+
+    Parameters
+    ----------
+    name
+        the name of the group. Required.
+    cells
+        its cells, by number (from 1). Required.
+    """
+    return _table(
+        name=name,
+        cells=cells,
+    )
+
+
+def material(
+    *,
+    density: float | None = None,
+    young: float | None = None,
+    poisson: float | None = None,
+    viscosity: float | None = None,
+    mass_damping: float | None = None,
+    branch: dict | Sequence[dict] | None = None,
+    fibres: dict | Sequence[dict] | None = None,
+    law: dict | None = None,
+) -> dict:
+    r"""An isotropic viscoelastic material: Lamé's parameters follow from `young` and `poisson`, and those of viscosity
+    from `viscosity` and `poisson` in the same way.
+
+    Parameters
+    ----------
+    density
+        the density (kg/m^3). Default: required; in a region, that of the body.
+    young
+        Young's modulus at small strains (Pa). Default: required; in a region, that of the body. It follows from the
+        constants of a law that has them.
+    poisson
+        Poisson's ratio at small strains, below 0.5 (no unit). Default: required; in a region, that of the body. It
+        follows from the law's `bulk`, if that is given.
+    viscosity
+        the viscous modulus (Pa s). Default: required; in a region, that of the body.
+    mass_damping
+        damping in proportion to mass: force -a M v (1/s). Default: 0; in a region, that of the body. As of air or
+        water around: it brakes motions of the whole body, too. Vibrations of circular frequency omega are damped by
+        the ratio a / (2 omega).
+    branch
+        Maxwell branches, springs that relax. Default: none; in a region, those of the body.
+    fibres
+        families of fibres that stiffen it along their course. Default: none; in a region, those of the body.
+    law
+        what becomes of the moduli at large strains. Default: as `strain` says: linear elasticity with Cauchy's, St.
+        Venant-Kirchhoff with Green's.
+    """
+    return _table(
+        density=density,
+        young=young,
+        poisson=poisson,
+        viscosity=viscosity,
+        mass_damping=mass_damping,
+        branch=branch,
+        fibres=fibres,
+        law=law,
+    )
+
+
+def branch(
+    *,
+    share: float,
+    time: float,
+    yield_stress: float | None = None,
+) -> dict:
+    r"""A spring and a damper in a row, beside the elasticity of the material: what is strained at once and kept so pulls
+    by the spring, less and less, as exp(-t / `time`). `young` is what is left when all has relaxed. For BDF, Adams,
+    ARKODE and `rk`, and for equilibria. Energies and forces have its part, fields and sensors of stress do not.
+
+    Parameters
+    ----------
+    share
+        Young's modulus of the spring by that of the material (no unit). Required.
+    time
+        the relaxation time (s). Required.
+    yield_stress
+        the von Mises stress below which nothing relaxes (Pa). Default: 0. Above it G' = (1 - `yield_stress` / q)
+        dev(E - G) / `time`, q being the spring's: what shears relaxes down to it, a change of volume does not, and
+        what has flowed stays, as in dough.
+    """
+    return _table(
+        share=share,
+        time=time,
+        yield_stress=yield_stress,
+    )
+
+
+def fibres(
+    *,
+    young: float,
+    stiffening: float | None = None,
+    along: Vector | None = None,
+    centre: Vector | None = None,
+    axis: Vector | None = None,
+    pitch: float | None = None,
+) -> dict:
+    r"""Fibres that run through the material and take tension: with their stretch l and E = (l^2 - 1)/2 they add the
+    energy (`young` / (8 k2)) (exp(4 k2 E^2) - 1) per natural volume where l > 1, k2 being `stiffening`. They lie
+    along a vector, or around an axis: threads wound around an actuator. For bodies with Green's strain; stresses in
+    results are those of the material between them.
+
+    Parameters
+    ----------
+    young
+        Young's modulus that they add along their course: of a fibre, times its share of the section (Pa). Required.
+    stiffening
+        how fast they stiffen (no unit). Default: 0.
+    along
+        a vector along them, of any length. Default: none.
+    centre
+        a point of the axis that they run around (m). Default: none.
+    axis
+        direction of the axis, of any length; none in the plane. Default: across the plane.
+    pitch
+        angle by which they climb along the axis: 0 are rings, others helices (rad). Default: 0.
+    """
+    return _table(
+        young=young,
+        stiffening=stiffening,
+        along=along,
+        centre=centre,
+        axis=axis,
+        pitch=pitch,
+    )
+
+
+def law_st_venant_kirchhoff(
+) -> dict:
+    r"""Law of the kind "st-venant-kirchhoff": Hooke's law for Green's strain: for small strains and any rotation; it
+    softens under compression, and collapses.
+    """
+    return _table(
+        kind="st-venant-kirchhoff",
+    )
+
+
+def law_neo_hookean(
+) -> dict:
+    r"""Law of the kind "neo-hookean": W = c1 (I1 - 3) + U, c1 = mu/2: rubber and silicone up to a strain of a half.
+    """
+    return _table(
+        kind="neo-hookean",
+    )
+
+
+def law_mooney_rivlin(
+    *,
+    c1: float,
+    c2: float,
+    bulk: float | None = None,
+) -> dict:
+    r"""Law of the kind "mooney-rivlin": W = c1 (I1 - 3) + c2 (I2 - 3) + U: rubber up to a strain of one; mu = 2 (c1 +
+    c2).
+
+    Parameters
+    ----------
+    c1
+        the constant of I1 (Pa). Required.
+    c2
+        the constant of I2 (Pa). Required.
+    bulk
+        the bulk modulus kappa (Pa). Default: that of `poisson`.
+    """
+    return _table(
+        kind="mooney-rivlin",
+        c1=c1,
+        c2=c2,
+        bulk=bulk,
+    )
+
+
+def law_yeoh(
+    *,
+    c1: float,
+    c2: float,
+    c3: float,
+    bulk: float | None = None,
+) -> dict:
+    r"""Law of the kind "yeoh": W = c1 (I1 - 3) + c2 (I1 - 3)^2 + c3 (I1 - 3)^3 + U: rubber that stiffens before it tears;
+    mu = 2 c1.
+
+    Parameters
+    ----------
+    c1
+        the constant of I1 (Pa). Required.
+    c2
+        the constant of (I1 - 3)^2 (Pa). Required.
+    c3
+        the constant of (I1 - 3)^3 (Pa). Required.
+    bulk
+        the bulk modulus kappa (Pa). Default: that of `poisson`.
+    """
+    return _table(
+        kind="yeoh",
+        c1=c1,
+        c2=c2,
+        c3=c3,
+        bulk=bulk,
+    )
+
+
+def law_ogden(
+    *,
+    moduli: Sequence[float],
+    exponents: Sequence[float],
+    bulk: float | None = None,
+) -> dict:
+    r"""Law of the kind "ogden": W = sum of mu_p / alpha_p (l1^alpha_p + l2^alpha_p + l3^alpha_p - 3) + U, with the
+    principal stretches l of J^(-2/3) C: rubber over its whole range; 2 mu = sum of mu_p alpha_p.
+
+    Parameters
+    ----------
+    moduli
+        mu_p of one to three terms (Pa). Required.
+    exponents
+        alpha_p of the same terms (no unit). Required.
+    bulk
+        the bulk modulus kappa (Pa). Default: that of `poisson`.
+    """
+    return _table(
+        kind="ogden",
+        moduli=moduli,
+        exponents=exponents,
+        bulk=bulk,
+    )
+
+
+def law_corotated(
+) -> dict:
+    r"""Law of the kind "corotated": W = mu |U - I|^2 + (lambda/2) tr(U - I)^2 with the stretch U of each point: Hooke's
+    law in a frame that turns along, for large rotations and small strains; it does not collapse under compression.
+    """
+    return _table(
+        kind="corotated",
+    )
+
+
+def region(
+    *,
+    material: dict,
+    name: str | None = None,
+    box: Sequence[Vector] | None = None,
+    group: str | None = None,
+    cells: Sequence[int] | None = None,
+) -> dict:
+    r"""A part of the body with a material of its own.
+
+    Parameters
+    ----------
+    material
+        the keys of the material that differ. Required.
+    name
+        the name of the region, for who reads the file. Default: none.
+    box
+        the lower and the upper corner (m). Default: none.
+    group
+        the name of a group of cells. Default: none. A physical group of Gmsh.
+    cells
+        numbers of cells, from 1. Default: none.
+    """
+    return _table(
+        material=material,
+        name=name,
+        box=box,
+        group=group,
+        cells=cells,
+    )
+
+
+def point(
+    *,
+    name: str,
+    position: Vector,
+    mass: float,
+) -> dict:
+    r"""A point mass: a node that belongs to no cell. Its name is a node set.
+
+    Parameters
+    ----------
+    name
+        the name of the point. Required.
+    position
+        its undeformed position (m). Required.
+    mass
+        its mass (kg). Required.
+    """
+    return _table(
+        name=name,
+        position=position,
+        mass=mass,
+    )
+
+
+def initial(
+    *,
+    from_: str | None = None,
+    velocity: Vector | None = None,
+    spin: float | Sequence[float] | None = None,
+    nodes: dict | Sequence[dict] | None = None,
+) -> dict:
+    r"""How the body moves at first. What the first phase holds or moves takes its part of that, as by an impact. In
+    statics nothing moves.
+
+    Parameters
+    ----------
+    from_
+        what `pliant run` or `pliant static` has left of a body with the same mesh: the directory, or its
+        `state.json`, relative to the scene file. Default: undeformed, at rest. It gives displacements and velocities;
+        all else may differ, and time begins anew.
+    velocity
+        the velocity of all nodes (m/s). Default: 0. Not beside a state `from` which they move already.
+    spin
+        the angular velocity about the centre of mass, on top of that (rad/s). Default: 0. One number in the plane,
+        counter-clockwise; three in space.
+    nodes
+        nodes with velocities of their own instead. Default: none.
+    """
+    return _table(
+        from_=from_,
+        velocity=velocity,
+        spin=spin,
+        nodes=nodes,
+    )
+
+
+def initial_nodes(
+    *,
+    nodes: Nodes,
+    velocity: Vector,
+) -> dict:
+    r"""Nodes with a velocity of their own at first.
+
+    Parameters
+    ----------
+    nodes
+        nodes. Required.
+    velocity
+        their velocity (m/s). Required.
+    """
+    return _table(
+        nodes=nodes,
+        velocity=velocity,
+    )
+
+
+def spring(
+    *,
+    ends: Sequence[Nodes | dict],
+    name: str | None = None,
+    stiffness: float | None = None,
+    length: float | None = None,
+    damping: float | None = None,
+) -> dict:
+    r"""A spring with damper and actuator between two nodes, or a node and a fixed point. It acts in all phases; `actuate`
+    in a phase adds a force.
+
+    Parameters
+    ----------
+    ends
+        one node each, by number or name, or a point of space. Required.
+    name
+        the name of the spring. Default: spring 1, spring 2, ...
+    stiffness
+        the stiffness (N/m). Default: 0.
+    length
+        the natural length (m). Default: that at the start.
+    damping
+        the damping (N s/m). Default: 0.
+    """
+    return _table(
+        ends=ends,
+        name=name,
+        stiffness=stiffness,
+        length=length,
+        damping=damping,
+    )
+
+
+def ends(
+    *,
+    point: Vector,
+) -> dict:
+    r"""The end of a spring that is a fixed point of space.
+
+    Parameters
+    ----------
+    point
+        where it is (m). Required.
+    """
+    return _table(
+        point=point,
+    )
+
+
+def chamber(
+    *,
+    name: str,
+    nodes: Nodes | None = None,
+    triangles: Sequence[Sequence[int]] | None = None,
+    closed_by_line: bool | None = None,
+    closed_by_lid: bool | None = None,
+    thickness: float | None = None,
+) -> dict:
+    r"""A closed space that `pressure` in a phase blows up.
+
+    Parameters
+    ----------
+    name
+        the name of the chamber. Required.
+    nodes
+        the nodes of its walls: part of the boundary, or a closed polygon of numbers. Default: none.
+    triangles
+        the triangles of its walls in space, by the numbers of their nodes. Default: none. A closed surface, all of
+        them counter-clockwise as seen from outside, or all clockwise.
+    closed_by_line
+        whether walls in the plane that are open are closed by the straight line between their ends. Default: false.
+        Without it a gap is an error.
+    closed_by_lid
+        whether walls in space that are open are closed by lids on their rims, from the mean of a rim's nodes to its
+        edges. Default: false. Without it a rim is an error. The nodes of the rim feel the pressure on its lid.
+    thickness
+        the thickness (m). Default: that of the body.
+    """
+    return _table(
+        name=name,
+        nodes=nodes,
+        triangles=triangles,
+        closed_by_line=closed_by_line,
+        closed_by_lid=closed_by_lid,
+        thickness=thickness,
+    )
+
+
+def obstacle_half_plane(
+    *,
+    point: Vector,
+    normal: Vector,
+    name: str | None = None,
+    stiffness: float | None = None,
+    stiffness_density: float | None = None,
+    damping: float | None = None,
+    tangential_damping: float | None = None,
+    friction_coefficient: float | dict | None = None,
+    sticking_speed: float | None = None,
+    adhesion: bool | None = None,
+    velocity: Vector | None = None,
+    path: dict | None = None,
+) -> dict:
+    r"""Obstacle of the kind "half-plane": all that lies beyond an edge (in space, a face).
+
+    Parameters
+    ----------
+    point
+        a point on its edge (m). Required.
+    normal
+        the direction out of it (no unit). Required.
+    name
+        the name of the obstacle. Default: obstacle 1, ...
+    stiffness
+        the stiffness per node (N/m). Default: none.
+    stiffness_density
+        the stiffness per area of the body's boundary (N/m^3). Default: none.
+    damping
+        the damping along the normal (N s/m). Default: 0.
+    tangential_damping
+        a force against sliding in proportion to its speed (N s/m). Default: 0.
+    friction_coefficient
+        Coulomb's coefficient of friction, or both of them (no unit). Default: 0.
+    sticking_speed
+        the speed below which friction sticks (m/s). Default: a thousandth of the size of the body per second.
+    adhesion
+        whether damping may pull at a body that leaves. Default: false.
+    velocity
+        the velocity of the obstacle (m/s). Default: 0.
+    path
+        the path of the obstacle, in place of a velocity. Default: none.
+    """
+    return _table(
+        kind="half-plane",
+        point=point,
+        normal=normal,
+        name=name,
+        stiffness=stiffness,
+        stiffness_density=stiffness_density,
+        damping=damping,
+        tangential_damping=tangential_damping,
+        friction_coefficient=friction_coefficient,
+        sticking_speed=sticking_speed,
+        adhesion=adhesion,
+        velocity=velocity,
+        path=path,
+    )
+
+
+def obstacle_disc(
+    *,
+    centre: Vector,
+    radius: float,
+    name: str | None = None,
+    stiffness: float | None = None,
+    stiffness_density: float | None = None,
+    damping: float | None = None,
+    tangential_damping: float | None = None,
+    friction_coefficient: float | dict | None = None,
+    sticking_speed: float | None = None,
+    adhesion: bool | None = None,
+    velocity: Vector | None = None,
+    path: dict | None = None,
+    cavity: bool | None = None,
+) -> dict:
+    r"""Obstacle of the kind "disc": a disc (in space, a ball), or all around one.
+
+    Parameters
+    ----------
+    centre
+        the centre (m). Required.
+    radius
+        the radius (m). Required.
+    name
+        the name of the obstacle. Default: obstacle 1, ...
+    stiffness
+        the stiffness per node (N/m). Default: none.
+    stiffness_density
+        the stiffness per area of the body's boundary (N/m^3). Default: none.
+    damping
+        the damping along the normal (N s/m). Default: 0.
+    tangential_damping
+        a force against sliding in proportion to its speed (N s/m). Default: 0.
+    friction_coefficient
+        Coulomb's coefficient of friction, or both of them (no unit). Default: 0.
+    sticking_speed
+        the speed below which friction sticks (m/s). Default: a thousandth of the size of the body per second.
+    adhesion
+        whether damping may pull at a body that leaves. Default: false.
+    velocity
+        the velocity of the obstacle (m/s). Default: 0.
+    path
+        the path of the obstacle, in place of a velocity. Default: none.
+    cavity
+        whether bodies are inside of it. Default: false.
+    """
+    return _table(
+        kind="disc",
+        centre=centre,
+        radius=radius,
+        name=name,
+        stiffness=stiffness,
+        stiffness_density=stiffness_density,
+        damping=damping,
+        tangential_damping=tangential_damping,
+        friction_coefficient=friction_coefficient,
+        sticking_speed=sticking_speed,
+        adhesion=adhesion,
+        velocity=velocity,
+        path=path,
+        cavity=cavity,
+    )
+
+
+def obstacle_box(
+    *,
+    min: Vector,
+    max: Vector,
+    name: str | None = None,
+    stiffness: float | None = None,
+    stiffness_density: float | None = None,
+    damping: float | None = None,
+    tangential_damping: float | None = None,
+    friction_coefficient: float | dict | None = None,
+    sticking_speed: float | None = None,
+    adhesion: bool | None = None,
+    velocity: Vector | None = None,
+    path: dict | None = None,
+) -> dict:
+    r"""Obstacle of the kind "box": a box along the axes.
+
+    Parameters
+    ----------
+    min
+        the lower corner (m). Required.
+    max
+        the upper corner (m). Required.
+    name
+        the name of the obstacle. Default: obstacle 1, ...
+    stiffness
+        the stiffness per node (N/m). Default: none.
+    stiffness_density
+        the stiffness per area of the body's boundary (N/m^3). Default: none.
+    damping
+        the damping along the normal (N s/m). Default: 0.
+    tangential_damping
+        a force against sliding in proportion to its speed (N s/m). Default: 0.
+    friction_coefficient
+        Coulomb's coefficient of friction, or both of them (no unit). Default: 0.
+    sticking_speed
+        the speed below which friction sticks (m/s). Default: a thousandth of the size of the body per second.
+    adhesion
+        whether damping may pull at a body that leaves. Default: false.
+    velocity
+        the velocity of the obstacle (m/s). Default: 0.
+    path
+        the path of the obstacle, in place of a velocity. Default: none.
+    """
+    return _table(
+        kind="box",
+        min=min,
+        max=max,
+        name=name,
+        stiffness=stiffness,
+        stiffness_density=stiffness_density,
+        damping=damping,
+        tangential_damping=tangential_damping,
+        friction_coefficient=friction_coefficient,
+        sticking_speed=sticking_speed,
+        adhesion=adhesion,
+        velocity=velocity,
+        path=path,
+    )
+
+
+def obstacle_capsule(
+    *,
+    from_: Vector,
+    to: Vector,
+    radius: float,
+    name: str | None = None,
+    stiffness: float | None = None,
+    stiffness_density: float | None = None,
+    damping: float | None = None,
+    tangential_damping: float | None = None,
+    friction_coefficient: float | dict | None = None,
+    sticking_speed: float | None = None,
+    adhesion: bool | None = None,
+    velocity: Vector | None = None,
+    path: dict | None = None,
+) -> dict:
+    r"""Obstacle of the kind "capsule": all that is no farther than `radius` from a straight line.
+
+    Parameters
+    ----------
+    from_
+        one end of its axis (m). Required.
+    to
+        the other end of its axis (m). Required.
+    radius
+        the radius (m). Required.
+    name
+        the name of the obstacle. Default: obstacle 1, ...
+    stiffness
+        the stiffness per node (N/m). Default: none.
+    stiffness_density
+        the stiffness per area of the body's boundary (N/m^3). Default: none.
+    damping
+        the damping along the normal (N s/m). Default: 0.
+    tangential_damping
+        a force against sliding in proportion to its speed (N s/m). Default: 0.
+    friction_coefficient
+        Coulomb's coefficient of friction, or both of them (no unit). Default: 0.
+    sticking_speed
+        the speed below which friction sticks (m/s). Default: a thousandth of the size of the body per second.
+    adhesion
+        whether damping may pull at a body that leaves. Default: false.
+    velocity
+        the velocity of the obstacle (m/s). Default: 0.
+    path
+        the path of the obstacle, in place of a velocity. Default: none.
+    """
+    return _table(
+        kind="capsule",
+        from_=from_,
+        to=to,
+        radius=radius,
+        name=name,
+        stiffness=stiffness,
+        stiffness_density=stiffness_density,
+        damping=damping,
+        tangential_damping=tangential_damping,
+        friction_coefficient=friction_coefficient,
+        sticking_speed=sticking_speed,
+        adhesion=adhesion,
+        velocity=velocity,
+        path=path,
+    )
+
+
+def obstacle_union(
+    *,
+    parts: dict | Sequence[dict],
+    name: str | None = None,
+    stiffness: float | None = None,
+    stiffness_density: float | None = None,
+    damping: float | None = None,
+    tangential_damping: float | None = None,
+    friction_coefficient: float | dict | None = None,
+    sticking_speed: float | None = None,
+    adhesion: bool | None = None,
+    velocity: Vector | None = None,
+    path: dict | None = None,
+) -> dict:
+    r"""Obstacle of the kind "union": several shapes as one, which move together.
+
+    Parameters
+    ----------
+    parts
+        the shapes. Required.
+    name
+        the name of the obstacle. Default: obstacle 1, ...
+    stiffness
+        the stiffness per node (N/m). Default: none.
+    stiffness_density
+        the stiffness per area of the body's boundary (N/m^3). Default: none.
+    damping
+        the damping along the normal (N s/m). Default: 0.
+    tangential_damping
+        a force against sliding in proportion to its speed (N s/m). Default: 0.
+    friction_coefficient
+        Coulomb's coefficient of friction, or both of them (no unit). Default: 0.
+    sticking_speed
+        the speed below which friction sticks (m/s). Default: a thousandth of the size of the body per second.
+    adhesion
+        whether damping may pull at a body that leaves. Default: false.
+    velocity
+        the velocity of the obstacle (m/s). Default: 0.
+    path
+        the path of the obstacle, in place of a velocity. Default: none.
+    """
+    return _table(
+        kind="union",
+        parts=parts,
+        name=name,
+        stiffness=stiffness,
+        stiffness_density=stiffness_density,
+        damping=damping,
+        tangential_damping=tangential_damping,
+        friction_coefficient=friction_coefficient,
+        sticking_speed=sticking_speed,
+        adhesion=adhesion,
+        velocity=velocity,
+        path=path,
+    )
+
+
+def obstacle_parts_half_plane(
+    *,
+    point: Vector,
+    normal: Vector,
+) -> dict:
+    r"""Obstacle.parts of the kind "half-plane": all that lies beyond an edge (in space, a face).
+
+    Parameters
+    ----------
+    point
+        a point on its edge (m). Required.
+    normal
+        the direction out of it (no unit). Required.
+    """
+    return _table(
+        kind="half-plane",
+        point=point,
+        normal=normal,
+    )
+
+
+def obstacle_parts_disc(
+    *,
+    centre: Vector,
+    radius: float,
+    cavity: bool | None = None,
+) -> dict:
+    r"""Obstacle.parts of the kind "disc": a disc (in space, a ball), or all around one.
+
+    Parameters
+    ----------
+    centre
+        the centre (m). Required.
+    radius
+        the radius (m). Required.
+    cavity
+        whether bodies are inside of it. Default: false.
+    """
+    return _table(
+        kind="disc",
+        centre=centre,
+        radius=radius,
+        cavity=cavity,
+    )
+
+
+def obstacle_parts_box(
+    *,
+    min: Vector,
+    max: Vector,
+) -> dict:
+    r"""Obstacle.parts of the kind "box": a box along the axes.
+
+    Parameters
+    ----------
+    min
+        the lower corner (m). Required.
+    max
+        the upper corner (m). Required.
+    """
+    return _table(
+        kind="box",
+        min=min,
+        max=max,
+    )
+
+
+def obstacle_parts_capsule(
+    *,
+    from_: Vector,
+    to: Vector,
+    radius: float,
+) -> dict:
+    r"""Obstacle.parts of the kind "capsule": all that is no farther than `radius` from a straight line.
+
+    Parameters
+    ----------
+    from_
+        one end of its axis (m). Required.
+    to
+        the other end of its axis (m). Required.
+    radius
+        the radius (m). Required.
+    """
+    return _table(
+        kind="capsule",
+        from_=from_,
+        to=to,
+        radius=radius,
+    )
+
+
+def friction_coefficient(
+    *,
+    static: float,
+    kinetic: float,
+) -> dict:
+    r"""Two coefficients of friction.
+
+    Parameters
+    ----------
+    static
+        the friction coefficient at rest (no unit). Required.
+    kinetic
+        the friction coefficient of what slides (no unit). Required.
+    """
+    return _table(
+        static=static,
+        kinetic=kinetic,
+    )
+
+
+def obstacle_path(
+    *,
+    times: Sequence[float] | None = None,
+    displacements: Sequence[Vector] | None = None,
+    displacement: Sequence[Formula] | None = None,
+) -> dict:
+    r"""The obstacle runs smoothly (a cubic spline) through points, and begins and ends at rest; before and after it
+    stays. Or it follows formulas without `abs`, `min`, `max` and `step`, which have no velocity at their kinks.
+
+    Parameters
+    ----------
+    times
+        times in ascending order (s). Default: none.
+    displacements
+        displacements, at these times, from where it was said to be (m). Default: none.
+    displacement
+        the displacement from where it was said to be (m). Default: none.
+    """
+    return _table(
+        times=times,
+        displacements=displacements,
+        displacement=displacement,
+    )
+
+
+def phase(
+    *,
+    until: float,
+    name: str | None = None,
+    gravity: Vector | None = None,
+    hold: dict | Sequence[dict] | None = None,
+    move: dict | Sequence[dict] | None = None,
+    path: dict | Sequence[dict] | None = None,
+    rotate: dict | Sequence[dict] | None = None,
+    symmetry: dict | Sequence[dict] | None = None,
+    hold_combination: dict | Sequence[dict] | None = None,
+    load: dict | Sequence[dict] | None = None,
+    pressure: dict | Sequence[dict] | None = None,
+    pressure_on: dict | Sequence[dict] | None = None,
+    actuate: dict | Sequence[dict] | None = None,
+    contact: bool | str | Sequence[str] | None = None,
+    project_velocity: bool | None = None,
+) -> dict:
+    r"""A stretch of time with its own constraints, loads and contacts. Displacements and velocities carry over from phase
+    to phase. Times in it are those of the scene.
+
+    Parameters
+    ----------
+    until
+        the end of the phase (s). Required.
+    name
+        the name of the phase. Default: phase 1, ...
+    gravity
+        the acceleration of gravity in this phase (m/s^2). Default: that of the file.
+    hold
+        nodes that stay where they are. Default: none.
+    move
+        nodes that move on. Default: none.
+    path
+        nodes that follow a path. Default: none.
+    rotate
+        nodes that turn. Default: none.
+    symmetry
+        nodes on planes of symmetry. Default: none.
+    hold_combination
+        sums of displacements that stay as they are. Default: none.
+    load
+        forces on nodes, tractions on faces. Default: none.
+    pressure
+        pressures in chambers. Default: none.
+    pressure_on
+        pressures on faces. Default: none.
+    actuate
+        forces in springs. Default: none.
+    contact
+        the obstacles that act. Default: true. All, none, or those of these names.
+    project_velocity
+        whether the phase begins with velocities that its constraints allow. Default: false. What is taken away is
+        lost, as in a perfectly plastic impact.
+    """
+    return _table(
+        until=until,
+        name=name,
+        gravity=gravity,
+        hold=hold,
+        move=move,
+        path=path,
+        rotate=rotate,
+        symmetry=symmetry,
+        hold_combination=hold_combination,
+        load=load,
+        pressure=pressure,
+        pressure_on=pressure_on,
+        actuate=actuate,
+        contact=contact,
+        project_velocity=project_velocity,
+    )
+
+
+def hold(
+    *,
+    nodes: Nodes,
+    axes: str | Sequence[str] | None = None,
+) -> dict:
+    r"""Nodes stay where they are when the phase begins.
+
+    Parameters
+    ----------
+    nodes
+        nodes. Required.
+    axes
+        the axes that are prescribed. Default: all of them.
+    """
+    return _table(
+        nodes=nodes,
+        axes=axes,
+    )
+
+
+def move(
+    *,
+    nodes: Nodes,
+    velocity: float | Vector,
+    axes: str | Sequence[str] | None = None,
+) -> dict:
+    r"""Nodes move on, with a constant velocity, from where they are when the phase begins.
+
+    Parameters
+    ----------
+    nodes
+        nodes. Required.
+    velocity
+        the velocity (m/s). Required.
+    axes
+        the axes that are prescribed. Default: all of them.
+    """
+    return _table(
+        nodes=nodes,
+        velocity=velocity,
+        axes=axes,
+    )
+
+
+def path(
+    *,
+    nodes: Nodes,
+    axes: str | Sequence[str] | None = None,
+    times: Sequence[float] | None = None,
+    displacements: Sequence[float | Vector] | None = None,
+    displacement: Formula | Sequence[Formula] | None = None,
+) -> dict:
+    r"""Nodes run smoothly (a cubic spline) through points, and begin and end at rest; before and after they stay. Or they
+    follow a formula without `abs`, `min`, `max` and `step`, which have no velocity at their kinks.
+
+    Parameters
+    ----------
+    nodes
+        nodes. Required.
+    axes
+        the axes that are prescribed. Default: all of them.
+    times
+        times in ascending order (s). Default: none.
+    displacements
+        displacements from the undeformed position at these times (m). Default: none.
+    displacement
+        the displacement from the undeformed position, for each of the axes (m). Default: none.
+    """
+    return _table(
+        nodes=nodes,
+        axes=axes,
+        times=times,
+        displacements=displacements,
+        displacement=displacement,
+    )
+
+
+def rotate(
+    *,
+    nodes: Nodes,
+    centre: Vector,
+    axis: Sequence[float] | None = None,
+    rate: float | None = None,
+    times: Sequence[float] | None = None,
+    angles: Sequence[float] | None = None,
+) -> dict:
+    r"""Nodes turn about a point (in space, an axis) from where they are when the phase begins: at a constant rate, or
+    smoothly (a cubic spline that begins and ends at rest) by what the angle has changed since then.
+
+    Parameters
+    ----------
+    nodes
+        nodes. Required.
+    centre
+        the point, or one of the axis (m). Required.
+    axis
+        the direction of the axis (no unit). Default: none. In space only; in the plane nodes turn counter-clockwise.
+    rate
+        the angular velocity (rad/s). Default: none.
+    times
+        times in ascending order (s). Default: none.
+    angles
+        angles at these times (rad). Default: none.
+    """
+    return _table(
+        nodes=nodes,
+        centre=centre,
+        axis=axis,
+        rate=rate,
+        times=times,
+        angles=angles,
+    )
+
+
+def symmetry(
+    *,
+    nodes: Nodes,
+    normal: Vector,
+) -> dict:
+    r"""Nodes on a plane of symmetry keep their displacement along its normal, and slide freely in it. What is given node
+    by node there has to be halved: loads, point masses, springs, `stiffness` of obstacles.
+
+    Parameters
+    ----------
+    nodes
+        nodes. Required.
+    normal
+        the normal of the plane, of any length (no unit). Required.
+    """
+    return _table(
+        nodes=nodes,
+        normal=normal,
+    )
+
+
+def hold_combination(
+    *,
+    terms: dict | Sequence[dict],
+) -> dict:
+    r"""A row of constraints: the sum of displacements, each times a coefficient, keeps the value that it has when the
+    phase begins. Two nodes with 1 and -1 move alike along an axis.
+
+    Parameters
+    ----------
+    terms
+        the displacements. Required.
+    """
+    return _table(
+        terms=terms,
+    )
+
+
+def terms(
+    *,
+    node: int,
+    axis: Literal["x", "y", "z"],
+    coefficient: float,
+) -> dict:
+    r"""One displacement of a row.
+
+    Parameters
+    ----------
+    node
+        the number of the node, from 1. Required.
+    axis
+        the axis. Required.
+    coefficient
+        the coefficient, other than 0 (no unit). Required.
+    """
+    return _table(
+        node=node,
+        axis=axis,
+        coefficient=coefficient,
+    )
+
+
+def load(
+    *,
+    nodes: Nodes,
+    force: Sequence[Formula] | None = None,
+    total: Sequence[Formula] | None = None,
+    traction: Sequence[Formula] | None = None,
+    times: Sequence[float] | None = None,
+    forces: Sequence[Vector] | None = None,
+    totals: Sequence[Vector] | None = None,
+    tractions: Sequence[Vector] | None = None,
+) -> dict:
+    r"""Forces on nodes, and tractions on the faces of the boundary (edges in the plane) between them. Those of tables are
+    interpolated linearly, and constant before and after. Directions stay as the body turns.
+
+    Parameters
+    ----------
+    nodes
+        nodes. Required.
+    force
+        the force on each node (N). Default: none.
+    total
+        the force on all nodes together (N). Default: none. Spread evenly over the faces that the nodes make up; nodes
+        without faces share it equally.
+    traction
+        the force per undeformed area of the faces (N/m^2). Default: none.
+    times
+        times in ascending order (s). Default: none.
+    forces
+        the force on each node at these times (N). Default: none.
+    totals
+        the force on all nodes at these times (N). Default: none.
+    tractions
+        the traction at these times (N/m^2). Default: none.
+    """
+    return _table(
+        nodes=nodes,
+        force=force,
+        total=total,
+        traction=traction,
+        times=times,
+        forces=forces,
+        totals=totals,
+        tractions=tractions,
+    )
+
+
+def pressure(
+    *,
+    chamber: str,
+    value: Formula | None = None,
+    times: Sequence[float] | None = None,
+    values: Sequence[float] | None = None,
+) -> dict:
+    r"""The pressure in a chamber, positive if it blows it up. That of a table is interpolated linearly, and is constant
+    before and after.
+
+    Parameters
+    ----------
+    chamber
+        the name of a chamber. Required.
+    value
+        the pressure (Pa). Default: none.
+    times
+        times in ascending order (s). Default: none.
+    values
+        pressures at these times (Pa). Default: none.
+    """
+    return _table(
+        chamber=chamber,
+        value=value,
+        times=times,
+        values=values,
+    )
+
+
+def pressure_on(
+    *,
+    nodes: Nodes,
+    value: Formula | None = None,
+    times: Sequence[float] | None = None,
+    values: Sequence[float] | None = None,
+) -> dict:
+    r"""A pressure on the faces of the boundary (edges in the plane) between nodes, positive if it presses onto the body.
+    It follows the body: it acts on the deformed area, along its normal.
+
+    Parameters
+    ----------
+    nodes
+        nodes. Required.
+    value
+        the pressure (Pa). Default: none.
+    times
+        times in ascending order (s). Default: none.
+    values
+        pressures at these times (Pa). Default: none.
+    """
+    return _table(
+        nodes=nodes,
+        value=value,
+        times=times,
+        values=values,
+    )
+
+
+def actuate(
+    *,
+    springs: str | Sequence[str],
+    force: Formula | None = None,
+    times: Sequence[float] | None = None,
+    forces: Sequence[float] | None = None,
+) -> dict:
+    r"""Forces of the actuators in springs. Those of a table are interpolated linearly, and are constant before and after.
+
+    Parameters
+    ----------
+    springs
+        names of springs. Required.
+    force
+        the force, positive if it extends (N). Default: none.
+    times
+        times in ascending order (s). Default: none.
+    forces
+        forces at these times (N). Default: none.
+    """
+    return _table(
+        springs=springs,
+        force=force,
+        times=times,
+        forces=forces,
+    )
+
+
+def sensor_position(
+    *,
+    name: str,
+    nodes: Nodes,
+    component: Literal["x", "y", "z", "norm", "xx", "yy", "zz", "xy", "yz", "xz", "von-mises"] | None = None,
+) -> dict:
+    r"""Sensor of the kind "position": where nodes are (m).
+
+    Parameters
+    ----------
+    name
+        the name of the sensor. Required.
+    nodes
+        the nodes. Required.
+    component
+        one component alone. Default: all, each a column. Vectors have `x`, `y`, `z` and their length `norm`; tensors
+        `xx` and so on; stress has `von-mises` besides.
+    """
+    return _table(
+        kind="position",
+        name=name,
+        nodes=nodes,
+        component=component,
+    )
+
+
+def sensor_displacement(
+    *,
+    name: str,
+    nodes: Nodes,
+    component: Literal["x", "y", "z", "norm", "xx", "yy", "zz", "xy", "yz", "xz", "von-mises"] | None = None,
+) -> dict:
+    r"""Sensor of the kind "displacement": how far nodes are from their undeformed positions (m).
+
+    Parameters
+    ----------
+    name
+        the name of the sensor. Required.
+    nodes
+        the nodes. Required.
+    component
+        one component alone. Default: all, each a column. Vectors have `x`, `y`, `z` and their length `norm`; tensors
+        `xx` and so on; stress has `von-mises` besides.
+    """
+    return _table(
+        kind="displacement",
+        name=name,
+        nodes=nodes,
+        component=component,
+    )
+
+
+def sensor_velocity(
+    *,
+    name: str,
+    nodes: Nodes,
+    component: Literal["x", "y", "z", "norm", "xx", "yy", "zz", "xy", "yz", "xz", "von-mises"] | None = None,
+) -> dict:
+    r"""Sensor of the kind "velocity": how fast nodes move (m/s).
+
+    Parameters
+    ----------
+    name
+        the name of the sensor. Required.
+    nodes
+        the nodes. Required.
+    component
+        one component alone. Default: all, each a column. Vectors have `x`, `y`, `z` and their length `norm`; tensors
+        `xx` and so on; stress has `von-mises` besides.
+    """
+    return _table(
+        kind="velocity",
+        name=name,
+        nodes=nodes,
+        component=component,
+    )
+
+
+def sensor_constraint_force(
+    *,
+    name: str,
+    nodes: Nodes,
+    component: Literal["x", "y", "z", "norm", "xx", "yy", "zz", "xy", "yz", "xz", "von-mises"] | None = None,
+) -> dict:
+    r"""Sensor of the kind "constraint-force": the force of what holds or moves nodes, their reaction (N).
+
+    Parameters
+    ----------
+    name
+        the name of the sensor. Required.
+    nodes
+        the nodes. Required.
+    component
+        one component alone. Default: all, each a column. Vectors have `x`, `y`, `z` and their length `norm`; tensors
+        `xx` and so on; stress has `von-mises` besides.
+    """
+    return _table(
+        kind="constraint-force",
+        name=name,
+        nodes=nodes,
+        component=component,
+    )
+
+
+def sensor_constraint_moment(
+    *,
+    name: str,
+    nodes: Nodes,
+    about: Vector,
+    component: Literal["x", "y", "z", "norm", "xx", "yy", "zz", "xy", "yz", "xz", "von-mises"] | None = None,
+    axis: Vector | None = None,
+) -> dict:
+    r"""Sensor of the kind "constraint-moment": the moment of what holds or moves nodes about a point that stays where it
+    is (N m), counter-clockwise in the plane.
+
+    Parameters
+    ----------
+    name
+        the name of the sensor. Required.
+    nodes
+        the nodes. Required.
+    about
+        the point (m). Required.
+    component
+        one component alone. Default: all, each a column. Vectors have `x`, `y`, `z` and their length `norm`; tensors
+        `xx` and so on; stress has `von-mises` besides.
+    axis
+        the direction along which it is read, of a body in space. Default: all components, each a column.
+    """
+    return _table(
+        kind="constraint-moment",
+        name=name,
+        nodes=nodes,
+        about=about,
+        component=component,
+        axis=axis,
+    )
+
+
+def sensor_contact_force(
+    *,
+    name: str,
+    obstacle: str,
+    component: Literal["x", "y", "z", "norm", "xx", "yy", "zz", "xy", "yz", "xz", "von-mises"] | None = None,
+    nodes: Nodes | None = None,
+) -> dict:
+    r"""Sensor of the kind "contact-force": the force of an obstacle on the body (N).
+
+    Parameters
+    ----------
+    name
+        the name of the sensor. Required.
+    obstacle
+        the name of the obstacle. Required.
+    component
+        one component alone. Default: all, each a column. Vectors have `x`, `y`, `z` and their length `norm`; tensors
+        `xx` and so on; stress has `von-mises` besides.
+    nodes
+        the nodes on which it acts. Default: all. Those of one finger, say: the forces on both sides of what is
+        gripped cancel each other.
+    """
+    return _table(
+        kind="contact-force",
+        name=name,
+        obstacle=obstacle,
+        component=component,
+        nodes=nodes,
+    )
+
+
+def sensor_spring_pull(
+    *,
+    name: str,
+    spring: str,
+    component: Literal["x", "y", "z", "norm", "xx", "yy", "zz", "xy", "yz", "xz", "von-mises"] | None = None,
+) -> dict:
+    r"""Sensor of the kind "spring-pull": the force with which a spring and its actuator pull its ends together (N).
+
+    Parameters
+    ----------
+    name
+        the name of the sensor. Required.
+    spring
+        the name of the spring. Required.
+    component
+        one component alone. Default: all, each a column. Vectors have `x`, `y`, `z` and their length `norm`; tensors
+        `xx` and so on; stress has `von-mises` besides.
+    """
+    return _table(
+        kind="spring-pull",
+        name=name,
+        spring=spring,
+        component=component,
+    )
+
+
+def sensor_spring_length(
+    *,
+    name: str,
+    spring: str,
+    component: Literal["x", "y", "z", "norm", "xx", "yy", "zz", "xy", "yz", "xz", "von-mises"] | None = None,
+) -> dict:
+    r"""Sensor of the kind "spring-length": the length of a spring (m).
+
+    Parameters
+    ----------
+    name
+        the name of the sensor. Required.
+    spring
+        the name of the spring. Required.
+    component
+        one component alone. Default: all, each a column. Vectors have `x`, `y`, `z` and their length `norm`; tensors
+        `xx` and so on; stress has `von-mises` besides.
+    """
+    return _table(
+        kind="spring-length",
+        name=name,
+        spring=spring,
+        component=component,
+    )
+
+
+def sensor_pressure(
+    *,
+    name: str,
+    chamber: str,
+    component: Literal["x", "y", "z", "norm", "xx", "yy", "zz", "xy", "yz", "xz", "von-mises"] | None = None,
+) -> dict:
+    r"""Sensor of the kind "pressure": the pressure in a chamber (Pa).
+
+    Parameters
+    ----------
+    name
+        the name of the sensor. Required.
+    chamber
+        the name of the chamber. Required.
+    component
+        one component alone. Default: all, each a column. Vectors have `x`, `y`, `z` and their length `norm`; tensors
+        `xx` and so on; stress has `von-mises` besides.
+    """
+    return _table(
+        kind="pressure",
+        name=name,
+        chamber=chamber,
+        component=component,
+    )
+
+
+def sensor_volume(
+    *,
+    name: str,
+    chamber: str,
+    component: Literal["x", "y", "z", "norm", "xx", "yy", "zz", "xy", "yz", "xz", "von-mises"] | None = None,
+) -> dict:
+    r"""Sensor of the kind "volume": the volume that the walls of a chamber enclose (m^3).
+
+    Parameters
+    ----------
+    name
+        the name of the sensor. Required.
+    chamber
+        the name of the chamber. Required.
+    component
+        one component alone. Default: all, each a column. Vectors have `x`, `y`, `z` and their length `norm`; tensors
+        `xx` and so on; stress has `von-mises` besides.
+    """
+    return _table(
+        kind="volume",
+        name=name,
+        chamber=chamber,
+        component=component,
+    )
+
+
+def sensor_stress(
+    *,
+    name: str,
+    component: Literal["x", "y", "z", "norm", "xx", "yy", "zz", "xy", "yz", "xz", "von-mises"] | None = None,
+    nodes: Nodes | None = None,
+    point: Vector | None = None,
+) -> dict:
+    r"""Sensor of the kind "stress": the stress of the elasticity, without Maxwell branches, at nodes or at a point,
+    extrapolated from the cells around (Pa).
+
+    Parameters
+    ----------
+    name
+        the name of the sensor. Required.
+    component
+        one component alone. Default: all, each a column. Vectors have `x`, `y`, `z` and their length `norm`; tensors
+        `xx` and so on; stress has `von-mises` besides.
+    nodes
+        the nodes. Default: `point`.
+    point
+        the undeformed position of a point of the body (m). Default: `nodes`.
+    """
+    return _table(
+        kind="stress",
+        name=name,
+        component=component,
+        nodes=nodes,
+        point=point,
+    )
+
+
+def sensor_strain(
+    *,
+    name: str,
+    component: Literal["x", "y", "z", "norm", "xx", "yy", "zz", "xy", "yz", "xz", "von-mises"] | None = None,
+    nodes: Nodes | None = None,
+    point: Vector | None = None,
+) -> dict:
+    r"""Sensor of the kind "strain": the strain at nodes or at a point, extrapolated from the cells around (no unit).
+
+    Parameters
+    ----------
+    name
+        the name of the sensor. Required.
+    component
+        one component alone. Default: all, each a column. Vectors have `x`, `y`, `z` and their length `norm`; tensors
+        `xx` and so on; stress has `von-mises` besides.
+    nodes
+        the nodes. Default: `point`.
+    point
+        the undeformed position of a point of the body (m). Default: `nodes`.
+    """
+    return _table(
+        kind="strain",
+        name=name,
+        component=component,
+        nodes=nodes,
+        point=point,
+    )
+
+
+def sensor_distance(
+    *,
+    name: str,
+    from_: Nodes,
+    to: Nodes,
+    component: Literal["x", "y", "z", "norm", "xx", "yy", "zz", "xy", "yz", "xz", "von-mises"] | None = None,
+) -> dict:
+    r"""Sensor of the kind "distance": the distance between two nodes, or the middles of sets (m).
+
+    Parameters
+    ----------
+    name
+        the name of the sensor. Required.
+    from_
+        where it is measured from. Required.
+    to
+        where it is measured to. Required.
+    component
+        one component alone. Default: all, each a column. Vectors have `x`, `y`, `z` and their length `norm`; tensors
+        `xx` and so on; stress has `von-mises` besides.
+    """
+    return _table(
+        kind="distance",
+        name=name,
+        from_=from_,
+        to=to,
+        component=component,
+    )
+
+
+def sensor_angle(
+    *,
+    name: str,
+    from_: Sequence[Nodes],
+    to: Sequence[Nodes],
+    component: Literal["x", "y", "z", "norm", "xx", "yy", "zz", "xy", "yz", "xz", "von-mises"] | None = None,
+    unit: Literal["rad", "deg"] | None = None,
+) -> dict:
+    r"""Sensor of the kind "angle": the angle from one line to another, counter-clockwise in the plane, where it goes on
+    over whole turns; without sign, from 0 to half a turn, in space.
+
+    Parameters
+    ----------
+    name
+        the name of the sensor. Required.
+    from_
+        the two ends of the one line. Required.
+    to
+        the two ends of the other. Required.
+    component
+        one component alone. Default: all, each a column. Vectors have `x`, `y`, `z` and their length `norm`; tensors
+        `xx` and so on; stress has `von-mises` besides.
+    unit
+        the unit. Default: rad.
+    """
+    return _table(
+        kind="angle",
+        name=name,
+        from_=from_,
+        to=to,
+        component=component,
+        unit=unit,
+    )
+
+
+def sensor_centre_of_mass(
+    *,
+    name: str,
+    component: Literal["x", "y", "z", "norm", "xx", "yy", "zz", "xy", "yz", "xz", "von-mises"] | None = None,
+) -> dict:
+    r"""Sensor of the kind "centre-of-mass": where the centre of mass is (m).
+
+    Parameters
+    ----------
+    name
+        the name of the sensor. Required.
+    component
+        one component alone. Default: all, each a column. Vectors have `x`, `y`, `z` and their length `norm`; tensors
+        `xx` and so on; stress has `von-mises` besides.
+    """
+    return _table(
+        kind="centre-of-mass",
+        name=name,
+        component=component,
+    )
+
+
+def sensor_rotation(
+    *,
+    name: str,
+    component: Literal["x", "y", "z", "norm", "xx", "yy", "zz", "xy", "yz", "xz", "von-mises"] | None = None,
+    unit: Literal["rad", "deg"] | None = None,
+) -> dict:
+    r"""Sensor of the kind "rotation": the angle by which a body in the plane has turned as a whole, counter-clockwise; it
+    goes on over whole turns.
+
+    Parameters
+    ----------
+    name
+        the name of the sensor. Required.
+    component
+        one component alone. Default: all, each a column. Vectors have `x`, `y`, `z` and their length `norm`; tensors
+        `xx` and so on; stress has `von-mises` besides.
+    unit
+        the unit. Default: rad.
+    """
+    return _table(
+        kind="rotation",
+        name=name,
+        component=component,
+        unit=unit,
+    )
+
+
+def solver(
+    *,
+    accuracy: float | str | None = None,
+    method: Literal["auto", "cvode-bdf", "cvode-adams", "ida", "ida-klu", "ida-index-2", "arkode", "rosenbrock", "rk", "central-difference"] | None = None,
+    rtol: float | None = None,
+    atol_position: float | None = None,
+    atol_velocity: float | None = None,
+    alpha: float | None = None,
+    max_order: int | None = None,
+    stability_limit_detection: bool | None = None,
+    contact_events: Literal["auto", "step-over", "locate"] | None = None,
+    max_step: float | None = None,
+    max_steps: int | None = None,
+    quantity: str | None = None,
+) -> dict:
+    r"""How the equations of motion are integrated.
+
+    Parameters
+    ----------
+    accuracy
+        how accurate the motion has to be, as `"1%"` or `0.01`. Default: one run by `rtol`. The scene is run with a
+        tighter and tighter `rtol`, until two runs agree to that: see `pliant run --help`. Not beside `rtol`.
+    method
+        integration method: see "pliant methods". Default: auto.
+    rtol
+        relative tolerance (no unit). Default: 1e-5.
+    atol_position
+        absolute tolerance of displacements (m). Default: `rtol` times a hundredth of the size of the body.
+    atol_velocity
+        absolute tolerance of velocities (m/s). Default: `rtol` times a hundredth of the speed of waves; with friction
+        at most 1/400 of `sticking_speed`.
+    alpha
+        rate at which errors of constraints decay (1/s). Default: 1e3.
+    max_order
+        highest order of a multistep method, order of `arkode` and `rosenbrock`. Default: 5; `cvode-adams`: 12,
+        `arkode`, `rosenbrock`: 4.
+    stability_limit_detection
+        whether BDF lowers its order where stability bounds its steps. Default: false.
+    contact_events
+        how contact events are met: auto, step-over or locate. Default: auto.
+    max_step
+        longest step (s). Default: none.
+    max_steps
+        steps that a phase may take. Default: 10000000.
+    quantity
+        what `accuracy` is of. Default: the whole motion. `motion`; a sensor or a set of nodes, with a component where
+        need be, as `tip.y`; `com`, `rotation`; behind a colon the part that counts, where all times do not: `end`,
+        `max`, `min`, `frequency`, `damping`.
+    """
+    return _table(
+        accuracy=accuracy,
+        method=method,
+        rtol=rtol,
+        atol_position=atol_position,
+        atol_velocity=atol_velocity,
+        alpha=alpha,
+        max_order=max_order,
+        stability_limit_detection=stability_limit_detection,
+        contact_events=contact_events,
+        max_step=max_step,
+        max_steps=max_steps,
+        quantity=quantity,
+    )
+
+
+def statics(
+    *,
+    phase: str | None = None,
+    load_steps: int | None = None,
+    arc_steps: int | None = None,
+    rtol: float | None = None,
+    max_iterations: int | None = None,
+    min_load_step: float | None = None,
+) -> dict:
+    r"""How `pliant static` seeks an equilibrium: that under the constraints, loads, obstacles and springs of a phase at
+    its end. What earlier phases have moved and this one holds stays there. Friction does not act.
+
+    Parameters
+    ----------
+    phase
+        the name of the phase. Default: the first one.
+    load_steps
+        steps in which constraints and loads are brought on. Default: 1. With more than one, the results have the
+        equilibrium of each, with its `load factor`.
+    arc_steps
+        most steps by arc length. Default: 0: the load is given. With them the load rises and falls as the path of
+        equilibria has it, through snap-through and snap-back, until all of it acts. The first step is that of one of
+        the `load_steps`, and none is longer.
+    rtol
+        the largest force left over, relative to the largest force (no unit). Default: 1e-10.
+    max_iterations
+        Newton iterations of one load step. Default: 100.
+    min_load_step
+        the smallest load step, as a part of the whole load (no unit). Default: 1e-3.
+    """
+    return _table(
+        phase=phase,
+        load_steps=load_steps,
+        arc_steps=arc_steps,
+        rtol=rtol,
+        max_iterations=max_iterations,
+        min_load_step=min_load_step,
+    )
+
+
+def output(
+    *,
+    step: float | None = None,
+    times: Sequence[float] | None = None,
+    track: Nodes | None = None,
+    formats: Literal["csv", "vtk", "svg", "html", "plot", "png"] | Sequence[Literal["csv", "vtk", "svg", "html", "plot", "png"]] | None = None,
+) -> dict:
+    r"""What `pliant run` writes.
+
+    Parameters
+    ----------
+    step
+        the time between samples (s). Default: the ends of the phases only.
+    times
+        times of samples, in any order, in place of a step (s). Default: none. The start and the ends of the phases
+        are sampled besides.
+    track
+        nodes whose displacements the table lists. Default: none.
+    formats
+        what is written: a table, files for ParaView, snapshots, an animation, a plot of sensors and energies as a
+        drawing or as pixels. Default: csv, which is always written.
+    """
+    return _table(
+        step=step,
+        times=times,
+        track=track,
+        formats=formats,
+    )
+
+
+def box(
+    *,
+    box: Sequence[Vector],
+) -> dict:
+    r"""All nodes within a box.
+
+    Parameters
+    ----------
+    box
+        the lower and the upper corner (m). Required.
+    """
+    return _table(
+        box=box,
+    )
+
+
+__all__ = [
+    "actuate",
+    "body",
+    "box",
+    "branch",
+    "chamber",
+    "ends",
+    "fibres",
+    "friction_coefficient",
+    "groups",
+    "hold",
+    "hold_combination",
+    "initial",
+    "initial_nodes",
+    "law_corotated",
+    "law_mooney_rivlin",
+    "law_neo_hookean",
+    "law_ogden",
+    "law_st_venant_kirchhoff",
+    "law_yeoh",
+    "load",
+    "material",
+    "mesh_bar",
+    "mesh_cuboid",
+    "mesh_gmsh",
+    "mesh_half_ring",
+    "mesh_listed",
+    "mesh_rectangle",
+    "mesh_ring",
+    "move",
+    "obstacle_box",
+    "obstacle_capsule",
+    "obstacle_disc",
+    "obstacle_half_plane",
+    "obstacle_parts_box",
+    "obstacle_parts_capsule",
+    "obstacle_parts_disc",
+    "obstacle_parts_half_plane",
+    "obstacle_path",
+    "obstacle_union",
+    "output",
+    "path",
+    "phase",
+    "point",
+    "pressure",
+    "pressure_on",
+    "region",
+    "rotate",
+    "sensor_angle",
+    "sensor_centre_of_mass",
+    "sensor_constraint_force",
+    "sensor_constraint_moment",
+    "sensor_contact_force",
+    "sensor_displacement",
+    "sensor_distance",
+    "sensor_position",
+    "sensor_pressure",
+    "sensor_rotation",
+    "sensor_spring_length",
+    "sensor_spring_pull",
+    "sensor_strain",
+    "sensor_stress",
+    "sensor_velocity",
+    "sensor_volume",
+    "sets",
+    "solver",
+    "spring",
+    "statics",
+    "symmetry",
+    "terms",
+]
