@@ -15,6 +15,7 @@ from .mesh import Mesh
 from .motion import Equilibrium, Motion
 from .scene import Scene
 from .simulation import Simulation
+from .sweep import Sweep, sweep
 
 __version__ = "0.1.0"
 
@@ -32,5 +33,7 @@ __all__ = [
     "Scene",
     "SceneError",
     "Simulation",
+    "Sweep",
     "solve_ivp",
+    "sweep",
 ]

@@ -8,8 +8,8 @@ WIDTH = 30
 
 
 @contextlib.contextmanager
-def bar(title, end, wanted):
-    """Gives a function of the time reached, or None if no bar is wanted."""
+def bar(title, end, wanted, unit="s"):
+    """Gives a function of how far it is, of `end` in all, or None if no bar is wanted."""
     if wanted is None:
         wanted = sys.stderr.isatty() or "ipykernel" in sys.modules
     if not wanted:
@@ -22,7 +22,7 @@ def bar(title, end, wanted):
         spent = time.monotonic() - start
         left = spent / part - spent if part > 0 else float("inf")
         full = int(WIDTH * part)
-        line = f"\r{title}: {100 * part:3.0f}%|{'#' * full}{' ' * (WIDTH - full)}| {reached:.4g}/{end:.4g} s"
+        line = f"\r{title}: {100 * part:3.0f}%|{'#' * full}{' ' * (WIDTH - full)}| {reached:.4g}/{end:.4g} {unit}"
         print(f"{line} [{spent:.0f} s, {left:.0f} s to go]", end="", file=sys.stderr, flush=True)
         shown[0] = True
 

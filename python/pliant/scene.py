@@ -1,7 +1,9 @@
 """Scenes: a body, what surrounds it, what happens."""
 
+import json
 import os
 import warnings
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -128,7 +130,7 @@ class Scene:
         return equilibrium
 
     def advise(self, within, quantity=None, budget=None):
-        """Which model, mesh, method and tolerance are enough: the answer of `pliant advise`, in words.
+        """Which model, mesh, method and tolerance are enough, as `pliant advise` finds it: an :class:`Advice`.
 
         Parameters
         ----------
@@ -139,7 +141,38 @@ class Scene:
         budget : float, optional
             Time for the search (s).
         """
-        return self._scene.advise(within, quantity, budget)
+        text, data = self._scene.advise(within, quantity, budget)
+        return Advice(text, json.loads(data))
+
+    def fit(self, measured, unknowns):
+        """Fits keys of the scene to measurements, as `pliant fit` does: a :class:`Fit`.
+
+        Parameters
+        ----------
+        measured : dict of arrays, or a DataFrame
+            The times (s) in ``t`` or ``time``, or as the index of a DataFrame; readings by the names of sensors: ``tip.y``.
+        unknowns : dict
+            The least and the most of each key: ``{"body.material.young": (1e5, 5e5)}``.
+        """
+        columns = {str(name): np.asarray(values, dtype=float).tolist() for name, values in dict(measured).items()}
+        times = [columns.pop(name) for name in ("t", "time") if name in columns]
+        if hasattr(measured, "index") and not times:
+            times = [np.asarray(measured.index, dtype=float).tolist()]
+        if len(times) != 1:
+            raise ValueError("measurements have their times (s) in one column, t or time")
+        if any(len(values) != len(times[0]) for values in columns.values()):
+            raise ValueError("all columns of measurements are as long as their times")
+        limits = [(key, float(least), float(most)) for key, (least, most) in unknowns.items()]
+        text, found, columns = self._scene.fit(times[0], list(columns.items()), limits)
+        return Fit(text, {key: value for key, value, _ in found}, {key: half for key, _, half in found}, dict(columns))
+
+    def chart(self, directory, methods=None, rtol=(1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8), repetitions=3):
+        """Charts speed against accuracy, as `pliant chart` does: chart.svg, .png, .md and .csv in `directory`.
+
+        Returns the table of the fastest method for each accuracy, in Markdown.
+        """
+        os.makedirs(directory, exist_ok=True)
+        return self._scene.chart(os.fspath(directory), methods, [float(r) for r in rtol], repetitions)
 
     def start(self, **solver):
         """The scene in motion under the control of a program: a :class:`Simulation`."""
@@ -147,6 +180,38 @@ class Scene:
 
     def __repr__(self):
         return f"<pliant.Scene {self.title!r}: {self.mesh!r}, {self.end} s>"
+
+
+@dataclass(frozen=True)
+class Advice:
+    """What is enough for a scene: in words (`text`, printed), and as `data`, with the keys of `advice.json`."""
+
+    text: str
+    data: dict
+
+    def __str__(self):
+        return self.text
+
+    @property
+    def enough(self):
+        """The cheapest candidate that is right: model, error, what to set. None if there is none."""
+        return self.data["enough"]
+
+
+@dataclass(frozen=True)
+class Fit:
+    """Keys that were fitted: in words (`text`, printed), their `values`, and the half widths of intervals of 95 % confidence.
+
+    `rms` has the root mean square of what is left over by sensors: in the middle of the ranges, and at the values.
+    """
+
+    text: str
+    values: dict
+    half_widths: dict
+    rms: dict
+
+    def __str__(self):
+        return self.text
 
 
 def _values(values):

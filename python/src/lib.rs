@@ -10,6 +10,7 @@ mod integrators;
 mod motion;
 mod scene;
 mod simulation;
+mod sweep;
 mod watch;
 
 use pyo3::prelude::*;
@@ -25,4 +26,6 @@ mod _pliant {
     use super::scene::{Scene, read_gmsh, schema, toml_of};
     #[pymodule_export]
     use super::simulation::{Checkpoint, Simulation};
+    #[pymodule_export]
+    use super::sweep::Sweep;
 }

@@ -3,9 +3,10 @@
 use std::path::PathBuf;
 
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
+use pliant::fit::{Measured, SceneFit, Unknown};
 use pliant::scene_file::{override_of, toml_of as toml_of_scene};
-use pliant::study::{Adviser, Quantity, Verification};
-use pliant::{Error, Mesh, OutputRequest, SceneFile, Trajectory};
+use pliant::study::{Adviser, Quantity, Scenes, Study, Verification, all_methods};
+use pliant::{Error, Mesh, OutputRequest, SceneFile, Settings, Trajectory};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -191,7 +192,7 @@ impl Scene {
         quantity: Option<String>,
         budget: Option<f64>,
         progress: Option<Py<PyAny>>,
-    ) -> PyResult<String> {
+    ) -> PyResult<(String, String)> {
         let SceneFile { scene, settings, output, .. } = &self.file;
         let quantity =
             Quantity::named(quantity.as_deref().unwrap_or("motion"), scene, &output.sensors);
@@ -206,7 +207,80 @@ impl Scene {
             adviser.run(&mut |_| watch.see(0.0))
         });
         watch.check(py)?;
-        advice.map(|advice| advice.to_string()).map_err(raised)
+        advice.map(|advice| (advice.to_string(), advice.to_json().to_string())).map_err(raised)
+    }
+
+    /// Fits keys, each with the least and the most that it may be, to what was measured: times (s) and readings by the
+    /// names of sensors. Returns the answer in words; the keys with their values and the half widths of their intervals of
+    /// confidence; root mean squares of the residuals before and after, by sensors.
+    #[allow(clippy::type_complexity)]
+    fn fit(
+        &self,
+        py: Python<'_>,
+        times: Vec<f64>,
+        columns: Vec<(String, Vec<f64>)>,
+        unknowns: Vec<(String, f64, f64)>,
+    ) -> PyResult<(String, Vec<(String, f64, f64)>, Vec<(String, [f64; 2])>)> {
+        let fitted = py.detach(|| {
+            let measured = Measured { times, columns };
+            let fit = SceneFit::of_text(&*self.text, &self.path, &self.overrides, &measured)?;
+            let unknowns: Vec<Unknown> = unknowns
+                .into_iter()
+                .map(|(key, least, most)| Unknown::new(key, least, most))
+                .collect();
+            fit.fit(&unknowns, &mut |_, _| {})
+        });
+        let fitted = fitted.map_err(raised)?;
+        let found = fitted
+            .fitted
+            .unknowns
+            .iter()
+            .map(|found| (found.unknown.name.clone(), found.value, found.confidence));
+        let columns =
+            fitted.columns.iter().map(|column| (column.quantity.name.clone(), column.rms));
+        Ok((fitted.to_string(), found.collect(), columns.collect()))
+    }
+
+    /// Charts speed against accuracy of methods at tolerances, into a directory. Returns the table of the fastest.
+    #[pyo3(signature = (directory, methods, tolerances, repetitions))]
+    fn chart(
+        &self,
+        py: Python<'_>,
+        directory: PathBuf,
+        methods: Option<Vec<String>>,
+        tolerances: Vec<f64>,
+        repetitions: usize,
+    ) -> PyResult<String> {
+        let SceneFile { title, scene, settings, .. } = &self.file;
+        let table = py.detach(|| {
+            let lines: Vec<(String, Settings)> = match methods {
+                None => all_methods(),
+                Some(methods) => methods
+                    .into_iter()
+                    .map(|name| {
+                        let method = name.parse()?;
+                        Ok((name, Settings { method, ..Settings::default() }))
+                    })
+                    .collect::<Result<_, pliant::InputError>>()?,
+            };
+            let scenes = Scenes::new(&**title, scene.clone()).alpha(settings.alpha);
+            let mut scenes = lines
+                .into_iter()
+                .fold(scenes.tolerances(tolerances), |scenes, (name, settings)| {
+                    scenes.line(name, settings)
+                });
+            let findings = Study::new(&mut scenes)
+                .repetitions(repetitions)
+                .keep(directory.join("chart.csv"))
+                .run(&mut |_| {})?;
+            findings.write_table(directory.join("chart.md"))?;
+            if findings.rows().any(|row| row.failure.is_none()) {
+                findings.write_chart(directory.join("chart.svg"))?;
+                findings.write_chart(directory.join("chart.png"))?;
+            }
+            Ok::<_, Error>(findings.fastest().to_string())
+        });
+        table.map_err(raised)
     }
 
     /// Starts the scene, to be driven.

@@ -1,6 +1,7 @@
 """The code blocks of docs/python.md and of docstrings are run."""
 
 import doctest
+import json
 import re
 import warnings
 from pathlib import Path
@@ -29,3 +30,16 @@ def test_docstrings(module):
         warnings.simplefilter("ignore", pliant.ModelWarning)
         result = doctest.testmod(module)
     assert result.attempted > 1 and result.failed == 0
+
+
+def test_the_notebook(monkeypatch):
+    matplotlib = pytest.importorskip("matplotlib")
+    matplotlib.use("Agg")
+    notebook = json.loads((ROOT / "python/examples/finger.ipynb").read_text())
+    cells = {}
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        for number, cell in enumerate(notebook["cells"]):
+            if cell["cell_type"] == "code":
+                exec(compile("".join(cell["source"]), f"cell {number} of finger.ipynb", "exec"), cells)
+    assert abs(cells["height"][-1] - cells["wanted"](1.5)) < 1e-3

@@ -225,3 +225,29 @@ def test_words_are_those_of_the_reader(command):
     maker = ROOT / "python/make_words.py"
     made = subprocess.run(["python3", maker], input=schema, check=True, capture_output=True).stdout
     assert made.decode() == (ROOT / "python/pliant/words.py").read_text(), "pliant schema | python make_words.py > pliant/words.py"
+
+
+def test_a_modulus_is_found():
+    """The command and the module give the same words; the truth lies in the interval."""
+    truth = pliant.Scene(BEAM).with_values({"body.material.young": 8e5}).run(rtol=1e-6, sampling=1e-3)
+    noise = np.random.default_rng(3).normal(0.0, 1e-6, len(truth))
+    fit = pliant.Scene(BEAM).fit({"t": truth.times, "tip.y": truth.sensors["tip.y"] + noise}, {"body.material.young": (5e5, 2e6)})
+    young, half = fit.values["body.material.young"], fit.half_widths["body.material.young"]
+    assert abs(young - 8e5) < 2 * half < 4e4 and "young" in str(fit)
+    assert fit.rms["tip.y"][1] < 1.5e-6 < fit.rms["tip.y"][0]
+    with pytest.raises(pliant.InputError, match="tip.y"):
+        pliant.Scene(BEAM).fit({"t": [0.01], "top.y": [0.0]}, {"body.material.young": (5e5, 2e6)})
+    with pytest.raises(ValueError, match="t or time"):
+        pliant.Scene(BEAM).fit({"tip.y": [0.0]}, {"body.material.young": (5e5, 2e6)})
+
+
+def test_advice():
+    beam = pliant.Scene({**BEAM, "title": "a beam"})
+    advice = beam.advise(0.1, "tip.y:end", budget=5.0)
+    assert advice.enough["error"] < 0.1 and advice.data["accuracy"] == 0.1 and str(advice) == advice.text
+
+
+def test_a_chart(tmp_path):
+    table = pliant.Scene(BEAM).chart(tmp_path / "chart", methods=["rk", "arkode"], rtol=[1e-3, 1e-5], repetitions=1)
+    assert "arkode" in table or "rk" in table
+    assert sorted(path.name for path in (tmp_path / "chart").iterdir()) == ["chart.csv", "chart.md", "chart.png", "chart.svg"]

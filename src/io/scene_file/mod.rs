@@ -148,7 +148,8 @@ impl SceneFile {
     }
 }
 
-fn text_of(path: &Path) -> Result<String, Error> {
+/// The text of the file at `path`.
+pub(crate) fn text_of(path: &Path) -> Result<String, Error> {
     let text = read_at_most(path, MOST_BYTES).and_then(|bytes| {
         String::from_utf8(bytes)
             .map_err(|error| io::Error::other(format!("it is no UTF-8 text: {error}")))

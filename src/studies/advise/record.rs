@@ -21,6 +21,12 @@ impl Advice {
     /// # Errors
     /// [`Error::Output`] if it cannot be written.
     pub fn write_json(&self, path: impl AsRef<Path>) -> Result<(), Error> {
+        let document = self.to_json();
+        write_file(path.as_ref(), |file| writeln!(file, "{document:#}"))
+    }
+
+    /// What [`write_json`](Self::write_json) writes.
+    pub fn to_json(&self) -> Value {
         let candidate = |candidate: &Candidate| -> Value {
             let Candidate { choice, set, error, parts, seconds, unknowns, failure } = candidate;
             json!({
@@ -38,7 +44,7 @@ impl Advice {
         let terms = self.terms.iter();
         let terms =
             terms.map(|(term, error)| json!({ "without": term.to_string(), "error": error }));
-        let document = json!({
+        json!({
             "quantity": self.quantity,
             "accuracy": self.accuracy,
             "scale": self.scale,
@@ -66,8 +72,7 @@ impl Advice {
             "runs": self.runs,
             "seconds": self.seconds,
             "known": self.known,
-        });
-        write_file(path.as_ref(), |file| writeln!(file, "{document:#}"))
+        })
     }
 
     /// Writes a row for each candidate as CSV: `model`, `error` (relative), `seconds`, `unknowns`, `failure`.

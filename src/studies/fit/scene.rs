@@ -11,7 +11,7 @@ use crate::dynamics::error::Error;
 use crate::dynamics::simulate::Sampling;
 use crate::dynamics::trajectory::{Quantity, Trajectory};
 use crate::io::output::Chart;
-use crate::io::scene_file::SceneFile;
+use crate::io::scene_file::{SceneFile, text_of};
 
 /// A scene file, and what was measured of the scene.
 ///
@@ -20,6 +20,7 @@ use crate::io::scene_file::SceneFile;
 /// measured in their unit.
 #[derive(Debug, Clone)]
 pub struct SceneFit {
+    text: String,
     path: PathBuf,
     overrides: Vec<String>,
     /// Times of the scene at which something was measured, ascending.
@@ -64,7 +65,21 @@ impl SceneFit {
         measured: &Measured,
     ) -> Result<Self, Error> {
         let path = path.into();
-        let file = SceneFile::read_with(&path, overrides)?;
+        Self::of_text(text_of(&path)?, path, overrides, measured)
+    }
+
+    /// As [`new`](Self::new), of the `text` of a file at `path`.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn of_text(
+        text: impl Into<String>,
+        path: impl Into<PathBuf>,
+        overrides: &[String],
+        measured: &Measured,
+    ) -> Result<Self, Error> {
+        let (text, path) = (text.into(), path.into());
+        let file = SceneFile::parse_with(&text, &path, overrides)?;
         let end = file.scene.end();
         let mut rows: Vec<usize> = (0..measured.times.len())
             .filter(|&row| (0.0..=end).contains(&measured.times[row]))
@@ -96,7 +111,7 @@ impl SceneFit {
         let columns = columns.collect::<Result<Vec<(Quantity, Vec<f64>)>, Error>>()?;
         let scales = columns.iter().map(|(quantity, _)| scale(&columns, &quantity.unit)).collect();
         let precision = file.settings.rtol;
-        Ok(Self { path, overrides: overrides.into(), times, columns, scales, precision })
+        Ok(Self { text, path, overrides: overrides.into(), times, columns, scales, precision })
     }
 
     /// Fits keys of the file, as `body.material.young`. `tell` is as in [`least_squares`].
@@ -134,7 +149,7 @@ impl SceneFit {
     fn residuals(&self, unknowns: &[Unknown], values: &[f64]) -> Result<Vec<Vec<f64>>, Error> {
         let set = unknowns.iter().zip(values).map(|(unknown, value)| set(&unknown.name, *value));
         let overrides: Vec<String> = self.overrides.iter().cloned().chain(set).collect();
-        let file = SceneFile::read_with(&self.path, &overrides)?;
+        let file = SceneFile::parse_with(&self.text, &self.path, &overrides)?;
         let last = self.times.last().copied().unwrap_or_default();
         let scene = match last > 0.0 {
             true => file.scene.clone().ended_at(last),
