@@ -99,6 +99,8 @@ pub use scene::constraint;
 #[cfg(feature = "fit")]
 pub use studies::fit;
 pub use studies::samples;
+#[cfg(feature = "sweep")]
+pub use studies::sweep;
 /// Speed charted against accuracy, and the adviser.
 #[cfg(feature = "study")]
 pub mod study {

@@ -15,6 +15,8 @@ pub(crate) use file::read_at_most;
 pub(crate) use file::read_if_at_most;
 pub use fraction::Fraction;
 pub(crate) use memory::check_memory;
+#[cfg(feature = "sweep")]
+pub(crate) use memory::free_memory;
 #[cfg(feature = "scene-file")]
 pub(crate) use nearest::list;
 pub(crate) use nearest::{unknown, unknown_among};

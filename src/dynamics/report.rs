@@ -77,6 +77,21 @@ impl Achieved {
     pub fn is_enough(&self) -> bool {
         self.difference <= self.asked
     }
+
+    /// The warning that they do not.
+    fn parted(&self) -> String {
+        format!(
+            "two runs with rtol {:.0e} and {:.0e} still differ by {} % in {} (asked: {} %), and are further apart than \
+             that from t = {} s on: small errors grow there, as after impacts. Rely on the motion until then, and \
+             later on energies and means alone",
+            self.rtol[0],
+            self.rtol[1],
+            told(100.0 * self.difference),
+            self.quantity,
+            told(100.0 * self.asked),
+            told(self.known_until),
+        )
+    }
 }
 
 impl fmt::Display for Achieved {
@@ -186,11 +201,17 @@ impl Report {
     /// largest energy and, once the run has ended, indicators beyond their limits: of the scene
     /// ([`Scene::warnings`](crate::Scene::warnings)), of the strain of its cells and of its contacts.
     pub fn warnings(&self) -> Vec<String> {
+        self.named_warnings().into_iter().map(|(_, warning)| warning).collect()
+    }
+
+    /// The [warnings](Self::warnings), each with its name: that of its indicator, or `integrator`, `energy-balance`,
+    /// `accuracy`.
+    pub fn named_warnings(&self) -> Vec<(&'static str, String)> {
         let notice = |phase: &PhaseReport| {
             let notice = phase.counts.notice.as_ref()?;
-            Some(format!("phase \"{}\": {notice}", phase.name))
+            Some(("integrator", format!("phase \"{}\": {notice}", phase.name)))
         };
-        let mut warnings: Vec<String> = self.phases.iter().filter_map(notice).collect();
+        let mut warnings: Vec<_> = self.phases.iter().filter_map(notice).collect();
         let doubt = creation(self.energy_created, self.energy_scale).or_else(|| {
             let part = self.energy_error / self.energy_scale;
             (part > DOUBTFUL).then(|| {
@@ -198,22 +219,13 @@ impl Report {
             })
         });
         warnings.extend(doubt.map(|doubt| {
-            format!("{doubt}, so the motion may be wrong: lower rtol, or choose another method")
+            let help = "so the motion may be wrong: lower rtol, or choose another method";
+            ("energy-balance", format!("{doubt}, {help}"))
         }));
-        warnings.extend(self.achieved.as_ref().filter(|achieved| !achieved.is_enough()).map(|known| {
-            format!(
-                "two runs with rtol {:.0e} and {:.0e} still differ by {} % in {} (asked: {} %), and are further apart than \
-                 that from t = {} s on: small errors grow there, as after impacts. Rely on the motion until then, and \
-                 later on energies and means alone",
-                known.rtol[0],
-                known.rtol[1],
-                told(100.0 * known.difference),
-                known.quantity,
-                told(100.0 * known.asked),
-                told(known.known_until),
-            )
-        }));
-        warnings.extend(self.doubts());
+        let achieved = self.achieved.as_ref().filter(|achieved| !achieved.is_enough());
+        warnings.extend(achieved.map(|known| ("accuracy", known.parted())));
+        let doubtful = self.indicators.iter().filter(|indicator| indicator.is_doubtful());
+        warnings.extend(doubtful.map(|indicator| (indicator.name, indicator.text.clone())));
         warnings
     }
 }

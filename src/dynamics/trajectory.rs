@@ -157,6 +157,18 @@ impl Trajectory {
         self.samples.iter_mut().for_each(|sample| sample.sensors.truncate(count));
     }
 
+    /// Discards the columns of sensors with these names.
+    #[cfg(feature = "sweep")]
+    pub(crate) fn drop_sensors(&mut self, is_dropped: impl Fn(&str) -> bool) {
+        let kept: Vec<bool> = self.sensors.iter().map(|sensor| !is_dropped(&sensor.name)).collect();
+        let mut flags = kept.iter();
+        self.sensors.retain(|_| flags.next() == Some(&true));
+        for sample in &mut self.samples {
+            let mut flags = kept.iter();
+            sample.sensors.retain(|_| flags.next() == Some(&true));
+        }
+    }
+
     /// Adds a column with a value for each sample.
     #[cfg(feature = "study")]
     pub(crate) fn add_column(&mut self, quantity: Quantity, values: &[f64]) {

@@ -1,4 +1,5 @@
-//! Many runs for one answer: speed against accuracy, what to choose, unknowns fitted to measurements; and
+//! Many runs for one answer: speed against accuracy, what to choose, unknowns fitted to measurements, a scene for
+//! many values of its keys; and
 //! problems with trusted answers to try them on.
 
 #[cfg(feature = "study")]
@@ -6,5 +7,7 @@ pub mod advise;
 #[cfg(feature = "fit")]
 pub mod fit;
 pub mod samples;
+#[cfg(feature = "sweep")]
+pub mod sweep;
 #[cfg(feature = "study")]
 pub mod work_precision;

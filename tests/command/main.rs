@@ -2,6 +2,7 @@
 
 mod beside;
 mod fit;
+mod sweep;
 mod trust;
 mod world;
 

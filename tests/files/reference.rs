@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use pliant::scene_file::StudyFile;
 use pliant::{SceneFile, scene_file};
 use serde_json::Value;
 
@@ -61,8 +62,13 @@ fn with(example: &str, mesh: &str) -> String {
 
 #[test]
 fn examples_are_read() {
-    let blocks: Vec<&str> =
-        PAGE.split("```toml\n").skip(1).map(|rest| rest.split("```").next().unwrap()).collect();
+    let (scenes, studies) = PAGE.split_once("\n## Study files").unwrap();
+    let blocks = |part: &'static str| -> Vec<&str> {
+        part.split("```toml\n").skip(1).map(|rest| rest.split("```").next().unwrap()).collect()
+    };
+    let study = blocks(studies).concat();
+    StudyFile::parse(&study, Path::new("example.toml")).unwrap();
+    let blocks = blocks(scenes);
     assert!(blocks.len() > 15);
     for block in blocks {
         let read = |mesh: &&str| SceneFile::parse(&with(block, mesh), Path::new("example.toml"));

@@ -4,6 +4,7 @@ mod advise;
 mod look;
 mod mesh_estimate;
 mod page;
+mod sweep;
 mod verified;
 
 use std::f64::consts::PI;

@@ -5,6 +5,7 @@ mod advise;
 mod beside;
 mod chart;
 mod check;
+mod engine;
 mod failure;
 mod files;
 mod fit;
@@ -21,6 +22,8 @@ mod scene;
 mod schema;
 mod settings;
 mod statics;
+mod sweep;
+mod task;
 
 use std::io::{self, Write};
 use std::process::ExitCode;
@@ -52,6 +55,7 @@ enum Command {
     Beside(beside::Arguments),
     #[command(allow_negative_numbers = true)]
     Fit(fit::Arguments),
+    Sweep(sweep::Arguments),
     Check(check::Arguments),
     Chart(chart::Arguments),
     Laws(laws::Arguments),
@@ -71,6 +75,7 @@ fn main() -> ExitCode {
         Command::Advise(arguments) => advise::run(&arguments),
         Command::Beside(arguments) => beside::run(&arguments),
         Command::Fit(arguments) => fit::run(&arguments),
+        Command::Sweep(arguments) => sweep::run(&arguments),
         Command::Check(arguments) => check::run(&arguments),
         Command::Chart(arguments) => chart::run(&arguments),
         Command::Laws(arguments) => laws::run(&arguments),

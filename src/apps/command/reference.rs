@@ -25,6 +25,12 @@ All that `pliant` reads and writes. This page is made by `pliant reference > doc
 
 ";
 
+const STUDIES: &str = "\
+## Study files
+
+`pliant sweep` reads them. They are TOML, too. [sweeps.md](sweeps.md) teaches them by examples.
+";
+
 const RESULTS: &str = "
 ## Exit codes
 
@@ -48,11 +54,24 @@ All stand in `--out`, by default `out/` and the name of the scene file (`static`
 | `animation.html` | an animation for the web browser, in one file (format `html`; `pliant beside` puts several side by side) |
 | `plot.svg`, `plot.png` | sensors and energies over time (formats `plot`, `png`; not of `static`; `pliant plot` draws them later) |
 | `body.pvd`, `body_0000.vtu`, ... | for ParaView (format `vtk`) |
+
+Those of `pliant sweep`, by default in `out/` and the name of the study file with `-sweep`:
+
+| file | what is in it |
+| --- | --- |
+| `table.csv` | a row for each run: `id`, the keys, the quantities, `verdict` (`fine`, `doubtful`, `failed`), `warnings` (names, with spaces between), `failure`, `difference` (of the last two runs, with an accuracy), `reached` (s), `steps`, `wall_seconds`, `processor_seconds` |
+| `rows/<id>.json` | one row, written as a whole by whoever has computed it |
+| `plot.svg`, `sweep.html` | quantities over one key, as a map over two, parallel coordinates of more; on the page a click shows the run |
+| `runs/<id>/` | the whole output of a run that `--keep` has chosen |
+| `study.json` | which study it is |
+| `claims/<id>` | locked while the row is computed |
+| `slurm.sh`, `tasks/` | the script of an array job, and what tasks have said |
 ";
 
 /// The page.
 fn page(command: Command) -> String {
-    let mut page = format!("{HEAD}{}\n## Commands and flags\n", scene_file::reference());
+    let [scenes, studies] = [scene_file::reference(), scene_file::study_reference()];
+    let mut page = format!("{HEAD}{scenes}\n{STUDIES}{studies}\n## Commands and flags\n");
     for command in command.get_subcommands() {
         // writing to a text cannot fail
         let _ = section(&mut page, command);

@@ -169,7 +169,7 @@ fn once(
 }
 
 /// Writes the report, the table and the last state of a motion, or of the part of it that was computed.
-fn keep(
+pub fn keep(
     outcome: Result<&Trajectory, &IntegrationFailure>,
     directory: &mut Directory,
     write_table: impl FnOnce(&mut Directory) -> Result<(), Failure>,

@@ -20,6 +20,12 @@ pub(crate) fn check_memory(
     Err(InputError::new(input, value, help))
 }
 
+/// Memory (bytes) that is free.
+#[cfg(feature = "sweep")]
+pub(crate) fn free_memory() -> f64 {
+    available().unwrap_or(A_LOT) as f64
+}
+
 /// Memory (bytes) assumed to be free where the system does not report it.
 const A_LOT: u64 = 1 << 40;
 

@@ -37,6 +37,8 @@ pub use self::chart::Chart;
 #[cfg(feature = "study")]
 pub(crate) use self::columns::{DIFFERENCE, OF_SENSOR};
 pub use self::csv::{GrowingTable, write_csv, write_energies};
+#[cfg(feature = "sweep")]
+pub(crate) use self::figure::dots;
 #[cfg(feature = "study")]
 pub(crate) use self::figure::{
     Axis, Field, Point, page, power_text, rectangle, round, stroke, text, write_figure,

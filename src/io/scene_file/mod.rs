@@ -54,8 +54,11 @@ mod rewrite;
 mod schema;
 mod selection;
 mod sensor;
+mod set_value;
 mod settings;
 mod source;
+#[cfg(feature = "sweep")]
+mod study;
 mod surroundings;
 mod table;
 mod top;
@@ -64,7 +67,6 @@ mod value;
 mod written;
 
 use std::cell::RefCell;
-use std::io;
 use std::path::Path;
 
 use toml::de::DeTable;
@@ -75,20 +77,24 @@ pub use self::contents::{
 pub use self::listed::cell_word;
 use self::overrides::{as_toml, merge};
 pub use self::overrides::{override_of, toml_of};
+#[cfg(feature = "sweep")]
+pub use self::reference::study_reference;
 pub use self::reference::{laws, reference};
 #[cfg(feature = "play")]
 pub(crate) use self::rewrite::{Rewritten, rewritten};
 pub use self::schema::schema;
-use self::source::SourceText;
+pub use self::set_value::SetValue;
+pub(crate) use self::source::text_of;
+use self::source::{SourceText, no_toml};
+#[cfg(feature = "sweep")]
+pub use self::study::{
+    SampleMethod, SampleRequest, Spacing, StudyFile, Varied, VariedKey, Written,
+};
 use self::table::Table;
 use self::top::TOP;
 #[cfg(any(feature = "play", feature = "study"))]
 use self::written::written;
-use crate::base::input::read_at_most;
 use crate::dynamics::error::Error;
-
-/// Bytes that a scene file may have.
-const MOST_BYTES: u64 = 16 << 20;
 
 impl SceneFile {
     /// Reads a scene file. Files that it names are sought relative to it.
@@ -131,6 +137,19 @@ impl SceneFile {
         overrides.iter().try_fold(text.to_owned(), |text, over| written(&text, over))
     }
 
+    /// The places that keys, as those of [`read_with`](Self::read_with), have in a scene file: the same for the
+    /// name and the number of an element of a list.
+    ///
+    /// # Errors
+    /// A file that cannot be read, or is not TOML.
+    #[cfg(feature = "sweep")]
+    pub(crate) fn places(path: &Path, keys: &[&str]) -> Result<Vec<Vec<String>>, Error> {
+        let text = text_of(path)?;
+        let source = SourceText { path, text: &text, own: text.len(), notes: RefCell::default() };
+        let document = DeTable::parse(&text).map_err(|error| no_toml(&source, &error))?;
+        Ok(keys.iter().map(|key| overrides::place(document.get_ref(), key)).collect())
+    }
+
     /// As [`read`](Self::read), from the `text` of a file at `path`.
     ///
     /// # Errors
@@ -148,15 +167,6 @@ impl SceneFile {
     }
 }
 
-/// The text of the file at `path`.
-pub(crate) fn text_of(path: &Path) -> Result<String, Error> {
-    let text = read_at_most(path, MOST_BYTES).and_then(|bytes| {
-        String::from_utf8(bytes)
-            .map_err(|error| io::Error::other(format!("it is no UTF-8 text: {error}")))
-    });
-    text.map_err(|source| Error::Read { path: path.into(), source })
-}
-
 fn parse(mut text: String, path: &Path, overrides: &[String]) -> Result<SceneFile, Error> {
     let own = text.len();
     // overrides follow the text, so that errors have a place to point to
@@ -168,12 +178,7 @@ fn parse(mut text: String, path: &Path, overrides: &[String]) -> Result<SceneFil
         text.push_str(&toml);
     }
     let source = SourceText { path, text: &text, own, notes: RefCell::default() };
-    let no_toml = |error: toml::de::Error| {
-        let at = error.span().unwrap_or(0..0);
-        let line = source.line(at.start);
-        let written = text.lines().nth(line - 1).unwrap_or_default().trim();
-        source.error(&at, "", format!("this is not TOML ({}): {written}", error.message()))
-    };
+    let no_toml = |error: toml::de::Error| no_toml(&source, &error);
     let document = DeTable::parse(&text[..own]).map_err(no_toml)?;
     let (at, mut entries) = (document.span(), document.into_inner());
     for over in &padded {

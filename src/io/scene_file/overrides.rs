@@ -74,6 +74,29 @@ pub(super) fn element(list: &[Spanned<DeValue>], key: &str) -> Option<usize> {
     by_name.or_else(by_number).filter(|at| *at < list.len())
 }
 
+/// The place that a key has in a file, whatever way it is written: of elements of lists, which have names or numbers, the number.
+#[cfg(feature = "sweep")]
+pub(super) fn place(document: &DeTable, key: &str) -> Vec<String> {
+    let mut here = Some(document);
+    let mut list: Option<&[Spanned<DeValue>]> = None;
+    let mut place = Vec::new();
+    for word in key.split('.').map(|word| word.trim().trim_matches(['"', '\''])) {
+        let at = list.and_then(|list| element(list, word));
+        let value = match (at, list, here) {
+            (Some(at), Some(list), _) => list.get(at),
+            (_, None, Some(table)) => table.get(word),
+            _ => None,
+        };
+        place.push(at.map_or_else(|| word.to_owned(), |at| (at + 1).to_string()));
+        (here, list) = match value.map(Spanned::get_ref) {
+            Some(DeValue::Table(table)) => (Some(table), None),
+            Some(DeValue::Array(items)) => (None, Some(&items[..])),
+            _ => (None, None),
+        };
+    }
+    place
+}
+
 fn name_of<'t>(value: &'t Spanned<DeValue>) -> Option<&'t str> {
     value.get_ref().as_table()?.get("name")?.get_ref().as_str()
 }

@@ -8,8 +8,18 @@ use super::top::TOP;
 
 /// All tables and keys of scene files in Markdown, with types, units, defaults and examples.
 pub fn reference() -> String {
-    let mut page = String::from(VALUES);
-    for table in tables() {
+    sections(VALUES, &tables())
+}
+
+/// The same of study files.
+#[cfg(feature = "sweep")]
+pub fn study_reference() -> String {
+    sections("", &tables_from(&super::study::STUDY))
+}
+
+fn sections(head: &str, tables: &[&'static TableKeys]) -> String {
+    let mut page = String::from(head);
+    for table in tables {
         // writing to a text cannot fail
         let _ = section(&mut page, table);
     }
@@ -46,7 +56,11 @@ alone will do. Types below:
 
 /// All tables, each once, the file itself first.
 pub(super) fn tables() -> Vec<&'static TableKeys> {
-    let mut tables = vec![&TOP];
+    tables_from(&TOP)
+}
+
+fn tables_from(first: &'static TableKeys) -> Vec<&'static TableKeys> {
+    let mut tables = vec![first];
     let mut at = 0;
     while let Some(table) = tables.get(at) {
         let inner: Vec<_> = table.all().flat_map(|key| inside(&key.holds)).collect();

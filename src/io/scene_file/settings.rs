@@ -4,7 +4,7 @@ use super::contents::{AccuracyRequest, Format, OutputRequest, StaticsRequest};
 use super::keys::{Holds, Key, TableKeys};
 use super::selection::selection;
 use super::value::Value;
-use crate::base::input::{Fraction, InputError, find, positive};
+use crate::base::input::{find, positive};
 use crate::dynamics::error::Error;
 use crate::dynamics::simulate::Sampling;
 use crate::dynamics::statics::Statics;
@@ -122,14 +122,7 @@ pub(super) fn solver(value: &Value) -> Result<Settings, Error> {
 /// How accurate the motion has to be, and in what.
 pub(super) fn accuracy(value: &Value) -> Result<AccuracyRequest, Error> {
     let table = value.table(&SOLVER)?;
-    let fraction = |value: &Value| {
-        let fraction = match value.number() {
-            Ok(number) => number.to_string().parse(),
-            Err(_) => value.string()?.parse(),
-        };
-        fraction.map_err(|error: InputError| value.error(error.help))
-    };
-    let within: Option<Fraction> = table.optional("accuracy", fraction)?;
+    let within = table.optional("accuracy", Value::fraction)?;
     let quantity = table.optional("quantity", Value::string)?.map(String::from);
     if within.is_some() && table.get("rtol").is_some() {
         return Err(table.error("accuracy finds rtol by itself: leave one of them out"));

@@ -2,10 +2,15 @@
 
 use std::cell::RefCell;
 use std::fmt::Display;
+use std::io;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
+use crate::base::input::read_at_most;
 use crate::dynamics::error::Error;
+
+/// Bytes that a scene file may have.
+const MOST_BYTES: u64 = 16 << 20;
 
 /// The text of a scene file and where it comes from.
 pub(super) struct SourceText<'a> {
@@ -50,4 +55,24 @@ impl SourceText<'_> {
         let before = &self.text.as_bytes()[..byte.min(self.text.len())];
         1 + before.iter().filter(|&&byte| byte == b'\n').count()
     }
+}
+
+/// The text of the file at `path`.
+///
+/// # Errors
+/// [`Error::Read`].
+pub(crate) fn text_of(path: &Path) -> Result<String, Error> {
+    let text = read_at_most(path, MOST_BYTES).and_then(|bytes| {
+        String::from_utf8(bytes)
+            .map_err(|error| io::Error::other(format!("it is no UTF-8 text: {error}")))
+    });
+    text.map_err(|source| Error::Read { path: path.into(), source })
+}
+
+/// The error that a text is not TOML.
+pub(super) fn no_toml(source: &SourceText, error: &toml::de::Error) -> Error {
+    let at = error.span().unwrap_or(0..0);
+    let line = source.line(at.start);
+    let written = source.text.lines().nth(line - 1).unwrap_or_default().trim();
+    source.error(&at, "", format!("this is not TOML ({}): {written}", error.message()))
 }

@@ -69,6 +69,12 @@ impl<'a> Table<'a> {
         self.kind.map_or("", |kind| kind.word)
     }
 
+    /// Where the file is.
+    #[cfg(feature = "sweep")]
+    pub(super) fn path(&self) -> &'a std::path::Path {
+        self.source.path
+    }
+
     fn names(&self, keys: impl Iterator<Item = &'static Key>) -> Vec<&'static str> {
         let mut names = if self.keys.kinds.is_empty() { Vec::new() } else { vec![KIND] };
         for key in keys {

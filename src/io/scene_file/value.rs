@@ -8,7 +8,7 @@ use toml::de::{DeTable, DeValue};
 use super::keys::Meaning;
 use super::source::SourceText;
 use crate::base::formula::Formula;
-use crate::base::input::{list, unknown};
+use crate::base::input::{Fraction, InputError, list, unknown};
 use crate::dynamics::error::Error;
 use crate::scene::forces::{Signal, VectorSignal};
 
@@ -43,6 +43,33 @@ impl<'a> Value<'a> {
             DeValue::Table(_) => "a table".into(),
             _ => "a long text".into(),
         }
+    }
+
+    /// The value as it is written.
+    #[cfg(feature = "sweep")]
+    pub(super) fn text(&self) -> &'a str {
+        self.source.text.get(self.at.clone()).unwrap_or_default()
+    }
+
+    /// The line where it stands, from 1.
+    #[cfg(feature = "sweep")]
+    pub(super) fn line(&self) -> usize {
+        self.source.line(self.at.start)
+    }
+
+    /// Whether it is written as a whole number.
+    #[cfg(feature = "sweep")]
+    pub(super) fn is_whole(&self) -> bool {
+        matches!(self.value, DeValue::Integer(_))
+    }
+
+    /// A part of a whole, as a number or a text: 0.01, "1%".
+    pub(super) fn fraction(&self) -> Result<Fraction, Error> {
+        let fraction = match self.number() {
+            Ok(number) => number.to_string().parse(),
+            Err(_) => self.string()?.parse(),
+        };
+        fraction.map_err(|error: InputError| self.error(error.help))
     }
 
     /// A number, whole or not.

@@ -55,6 +55,7 @@ mod row;
 mod runner;
 mod scenes;
 mod standard;
+mod swings;
 pub(super) mod tightening;
 pub(super) mod timing;
 pub(super) mod truth;

@@ -1,10 +1,10 @@
 //! Quantities of interest of a motion, and what their errors are relative to.
 
-use std::f64::consts::PI;
 use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
+use super::swings::swings;
 use crate::base::input::{InputError, unknown_among};
 use crate::dynamics::equilibrium::Equilibrium;
 use crate::dynamics::simulate::{Component, Reading, Sampling};
@@ -229,35 +229,49 @@ impl Quantity {
             change.largest = change.largest.max((read - start[0]).abs());
         }
         let least = (LEAST_CHANGE * largest).max(f64::MIN_POSITIVE);
-        let one = |value: f64, scale: f64| Seen {
-            dimension: 1,
-            values: vec![vec![value]],
-            scale: scale.max(least),
+        if self.is_over_time() {
+            seen.scale = change.mean.max(least);
+            return seen;
+        }
+        let series: Vec<f64> = seen.values.iter().map(|value| value[0]).collect();
+        let read = [least_read.min(start[0]), largest_read.max(start[0])];
+        let value = self.number(&times, &series, read).unwrap_or(f64::NAN);
+        let scale = match self.part {
+            Part::Frequency | Part::Damping => value,
+            _ => change.largest,
         };
-        let series = || seen.values.iter().map(|value| value[0]);
+        Seen { dimension: 1, values: vec![vec![value]], scale: scale.max(least) }
+    }
+
+    /// The number that counts, of a reading that was `series` at some `times` (s), and had the least and the largest
+    /// value `read` besides. None over all times, and where there is no such number: of a motion without swings.
+    pub(crate) fn number(&self, times: &[f64], series: &[f64], read: [f64; 2]) -> Option<f64> {
+        let [least, largest] = read;
+        let values = || series.iter().copied();
         match self.part {
-            Part::OverTime => {
-                seen.scale = change.mean.max(least);
-                seen
-            }
-            Part::End => one(series().next_back().unwrap_or(f64::NAN), change.largest),
-            Part::Largest => {
-                one(series().fold(largest_read.max(start[0]), f64::max), change.largest)
-            }
-            Part::Least => one(series().fold(least_read.min(start[0]), f64::min), change.largest),
-            Part::Frequency => {
-                let frequency = swings(&times, series()).map_or(f64::NAN, |(f, _)| f);
-                one(frequency, frequency)
-            }
-            Part::Damping => {
-                let damping = swings(&times, series()).map_or(f64::NAN, |(_, damping)| damping);
-                one(damping, damping)
-            }
+            Part::OverTime => None,
+            Part::End => values().next_back(),
+            Part::Largest => Some(values().fold(largest, f64::max)),
+            Part::Least => Some(values().fold(least, f64::min)),
+            Part::Frequency => swings(times, values()).map(|(frequency, _)| frequency),
+            Part::Damping => swings(times, values()).map(|(_, damping)| damping),
         }
     }
 
+    /// What is read for it; nothing for the whole motion.
+    #[cfg(feature = "sweep")]
+    pub(crate) fn read_for_it(&self) -> Option<&Reading> {
+        self.reading.as_ref()
+    }
+
+    /// Whether its swings count, which few samples do not show.
+    #[cfg(feature = "sweep")]
+    pub(crate) fn is_of_swings(&self) -> bool {
+        matches!(self.part, Part::Frequency | Part::Damping)
+    }
+
     /// Whether its largest or least value counts, which may lie between samples.
-    fn is_peak(&self) -> bool {
+    pub(crate) fn is_peak(&self) -> bool {
         matches!(self.part, Part::Largest | Part::Least)
     }
 
@@ -339,32 +353,6 @@ fn help(scene: &Scene, sensors: &[(String, Reading)]) -> String {
     )
 }
 
-/// Frequency (Hz) and damping ratio of a free vibration, from its turning points: their distances are half
-/// periods, and from one to the next the swing falls by exp(-pi zeta/sqrt(1 - zeta^2)). None with fewer than
-/// three of them.
-fn swings(times: &[f64], values: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
-    let values: Vec<f64> = values.collect();
-    let mut turns: Vec<[f64; 2]> = Vec::new();
-    for (t, x) in times.windows(3).zip(values.windows(3)) {
-        let (before, after) = (x[1] - x[0], x[2] - x[1]);
-        if before * after < 0.0 || (after == 0.0 && before != 0.0) {
-            // the turning point of the parabola through the three
-            let [before, after] = [before / (t[1] - t[0]), after / (t[2] - t[1])];
-            let curvature = (after - before) / (t[2] - t[0]);
-            let slope = before + curvature * (t[1] - t[0]);
-            let away = -0.5 * slope / curvature;
-            turns.push([t[1] + away, x[1] + 0.5 * slope * away]);
-        }
-    }
-    let (first, last) = (turns.first()?, turns.last()?);
-    let halves = turns.len().checked_sub(1).filter(|halves| *halves >= 2)? as f64;
-    let frequency = halves / (2.0 * (last[0] - first[0]));
-    let swing = |pair: &[[f64; 2]]| (pair[1][1] - pair[0][1]).abs();
-    let (largest, least) = (swing(&turns[..2]), swing(&turns[turns.len() - 2..]));
-    let decrement = (largest / least).ln() / (halves - 1.0);
-    Some((frequency, decrement / PI.hypot(decrement)))
-}
-
 /// A quantity as it was in a motion.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub(crate) struct Seen {
@@ -440,20 +428,5 @@ mod tests {
         assert_eq!((mean, largest), ((125.0_f64 / 4.0).sqrt(), 10.0));
         assert_eq!(one.size(|_, _, x| x).mean, (12.0_f64 / 4.0).sqrt());
         assert_eq!(one.distances(&other), [12.5_f64.sqrt(), 50.0_f64.sqrt()]);
-    }
-
-    /// x = 2 + exp(-zeta w t) cos(w sqrt(1 - zeta^2) t), of 3 Hz.
-    #[test]
-    fn frequency_and_damping_are_those_of_the_swings() {
-        for zeta in [0.0, 0.02, 0.2] {
-            let omega = 2.0 * PI * 3.0 / (1.0_f64 - zeta * zeta).sqrt();
-            let times: Vec<f64> = (0..=2000).map(|k| 1e-3 * f64::from(k)).collect();
-            let decay = |t: &f64| 2.0 + (-zeta * omega * t).exp() * (6.0 * PI * t).cos();
-            let (frequency, damping) = swings(&times, times.iter().map(decay)).unwrap();
-            // parabolas through three of about 330 points in a period
-            assert!((frequency / 3.0 - 1.0).abs() < 1e-6, "{frequency}");
-            assert!((damping - zeta).abs() < 1e-5, "{damping} {zeta}");
-        }
-        assert!(swings(&[0.0, 1.0, 2.0], [0.0, 1.0, 0.0].into_iter()).is_none());
     }
 }

@@ -1,0 +1,363 @@
+//! `pliant sweep`
+
+use std::collections::BTreeMap;
+use std::io;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::{Arc, Mutex};
+
+use clap::Args;
+use indicatif::ProgressBar;
+use pliant::scene_file::{Format, StudyFile, Written};
+use pliant::sweep::{Condition, PointRun, Results, Row, RowVerdict, Runner, Store, Sweep, Watch};
+use pliant::{Error, Fraction, SceneFile};
+
+use crate::engine::{Engine, TaskArray};
+use crate::failure::{Failure, print};
+use crate::files::Directory;
+use crate::progress::rows_bar;
+use crate::run::keep;
+use crate::task::Tasks;
+
+/// Run a scene for many values of its keys
+///
+/// The study file names the scene, the keys with their values (lists, ranges, a Latin hypercube, Sobol's sequence, the rows of a table), and the
+/// quantities that are kept. Writes table.csv (a row for each run: keys, quantities, verdict, warnings, times), plot.svg, and
+/// sweep.html, on which a click on a point shows its run. Runs that fail are rows. Rows that are there are not computed again, so that a
+/// study that was ended, by Ctrl-C or a kill, goes on when the command is given again, and any number of processes may compute one study
+/// side by side.
+#[derive(Args)]
+pub struct Arguments {
+    /// Study file
+    #[arg(value_name = "STUDY")]
+    study: PathBuf,
+    /// A value for a key of the scene that all runs have, as solver.rtol=1e-4; may be given several times
+    #[arg(long, value_name = "KEY=VALUE")]
+    set: Vec<String>,
+    /// Run each point with tighter and tighter tolerances, until two runs agree to this part: 1% or 0.01
+    #[arg(long, value_name = "PART")]
+    accuracy: Option<Fraction>,
+    /// Directory for the rows [default: out/ and the name of the study file, with -sweep]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Points that are run at once [default: one on each core, as far as they fit into memory]
+    #[arg(long, value_name = "COUNT")]
+    cores: Option<usize>,
+    /// Compute so many rows at most, spread over the study; others can follow
+    #[arg(long, value_name = "ROWS")]
+    limit: Option<usize>,
+    /// Keep the whole output of the runs whose row fulfils this: all, com.y:max > 0.5, verdict = doubtful, warning =
+    /// strain, several of them with " and "
+    #[arg(long, value_name = "CONDITION")]
+    keep: Option<Condition>,
+    /// Who computes the rows
+    #[arg(long, value_enum, value_name = "ENGINE", default_value = "local")]
+    engine: Engine,
+    /// Rows in one task of an engine [default: 1 for up to a thousand rows; a thousand tasks of more]
+    #[arg(long, value_name = "ROWS")]
+    batch: Option<usize>,
+    /// Compute the rows of this task alone, from 0, and gather nothing: a number, a range as 0-9, or the number in an environment
+    /// variable, as env:HQ_TASK_ID
+    #[arg(long, value_name = "TASK")]
+    task: Option<Tasks>,
+    /// Compute nothing: gather the rows that are there
+    #[arg(long, conflicts_with = "task")]
+    gather: bool,
+    /// Compute and write nothing: print the points as a table (CSV)
+    #[arg(long, conflicts_with_all = ["task", "gather"])]
+    plan: bool,
+    /// Run more than a million points
+    #[arg(long)]
+    yes: bool,
+    /// Show no progress
+    #[arg(long, short)]
+    quiet: bool,
+}
+
+/// Most tasks of an array, if nothing else is asked for: what Slurm takes.
+const MOST_TASKS: usize = 1000;
+
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let sweep = read(arguments)?;
+    let batch = arguments.batch.unwrap_or(sweep.plan().len().div_ceil(MOST_TASKS));
+    if batch == 0 {
+        return Err(Failure::bad_input("--batch = 0: a task has one row at least"));
+    }
+    if arguments.plan {
+        return tell_plan(&sweep);
+    }
+    let units = match arguments.task {
+        // what has submitted the task has checked all values
+        Some(_) => sweep.check_first()?,
+        None => sweep.check()?,
+    };
+    let path = arguments.out.clone().unwrap_or_else(|| {
+        let stem = arguments.study.file_stem().unwrap_or_default().to_string_lossy();
+        Path::new("out").join(format!("{stem}-sweep"))
+    });
+    Directory::new(path.clone())?; // which can be written to
+    let store = Store::new(path, &sweep)?;
+    let study = Study { arguments, sweep: &sweep, store: &store };
+    if let Some(task) = &arguments.task {
+        let rows = task
+            .rows(batch, sweep.plan().len())
+            .map_err(|error| Failure::bad_input(format!("--task: {error}")))?;
+        let numbers: Vec<usize> = rows.collect();
+        return study.compute(&numbers);
+    }
+    let outcome = match arguments.gather {
+        true => store.create().map_err(Failure::from).map(|()| false),
+        false => study.all(batch),
+    };
+    if let Ok(true) = outcome {
+        return Ok(()); // nothing is there to be gathered yet
+    }
+    study.gather(&units)?;
+    outcome.map(|_| ())
+}
+
+/// The study, with what flags have in place of the file.
+fn read(arguments: &Arguments) -> Result<Sweep, Failure> {
+    let mut file = StudyFile::read(&arguments.study)?;
+    let flags = arguments.set.iter();
+    file.set.extend(flags.map(|set| Written { text: set.clone(), line: 0 }));
+    file.accuracy = arguments.accuracy.or(file.accuracy);
+    let sweep = Sweep::new(file, arguments.yes)?;
+    if let Some(condition) = &arguments.keep {
+        condition.check(&sweep)?;
+    }
+    Ok(sweep)
+}
+
+/// Prints the points.
+fn tell_plan(sweep: &Sweep) -> Result<(), Failure> {
+    let failed = |error: csv::Error| match error.into() {
+        error if io::Error::kind(&error) == io::ErrorKind::BrokenPipe => Ok(()),
+        error => Err(Failure::failed(format!("cannot write to the standard output: {error}"))),
+    };
+    let mut table = csv::Writer::from_writer(io::stdout().lock());
+    let keys = sweep.plan().keys().iter().map(String::as_str);
+    if let Err(error) = table.write_record(["id"].into_iter().chain(keys)) {
+        return failed(error);
+    }
+    for point in sweep.plan().points() {
+        let cells = point.values.iter().map(|value| value.cell());
+        if let Err(error) = table.write_record([point.id.clone()].into_iter().chain(cells)) {
+            return failed(error);
+        }
+    }
+    table.flush().or_else(|error| failed(error.into()))
+}
+
+struct Study<'a> {
+    arguments: &'a Arguments,
+    sweep: &'a Sweep,
+    store: &'a Store,
+}
+
+impl Study<'_> {
+    /// Computes what is not there yet. Returns whether that is left to a job that is yet to be started.
+    fn all(&self, batch: usize) -> Result<bool, Failure> {
+        let Arguments { limit, engine, .. } = self.arguments;
+        let plan = self.sweep.plan();
+        let is_open = |number: &usize| {
+            let row = self.store.row(&plan.point(*number).id);
+            row.is_none_or(|row| self.is_wanted_again(&row))
+        };
+        let mut numbers: Vec<usize> = (0..plan.len()).filter(is_open).collect();
+        // any first part of this order is spread over the study
+        numbers.sort_by_key(|number| number.reverse_bits());
+        numbers.truncate(limit.unwrap_or(usize::MAX));
+        if *engine == Engine::Local {
+            return self.compute(&numbers).map(|()| false);
+        }
+        let mut tasks: Vec<usize> = numbers.iter().map(|number| number / batch).collect();
+        tasks.sort_unstable();
+        tasks.dedup();
+        if tasks.is_empty() {
+            return Ok(false);
+        }
+        self.store.create()?;
+        let flags = self.flags();
+        let (study, directory) = (&self.arguments.study, self.store.path());
+        let array = TaskArray { study, directory, tasks: &tasks, batch, flags: &flags };
+        if *engine == Engine::Slurm {
+            return array.write_script(Runner::new(self.sweep, self.store).bytes()).map(|()| true);
+        }
+        let bar = rows_bar(numbers.len(), self.arguments.quiet);
+        array.submit(&mut || {
+            numbers.retain(is_open);
+            bar.set_position(bar.length().unwrap_or(0).saturating_sub(numbers.len() as u64));
+        })?;
+        bar.finish_and_clear();
+        numbers.retain(is_open);
+        match numbers.len() {
+            0 => Ok(false),
+            missing => Err(Failure::failed(format!(
+                "the job has ended, and {missing} rows are not there: do its workers see {}?",
+                directory.display()
+            ))),
+        }
+    }
+
+    /// The flags of this command that each task has, too.
+    fn flags(&self) -> Vec<String> {
+        let Arguments { set, accuracy, yes, .. } = self.arguments;
+        let mut flags: Vec<String> =
+            set.iter().flat_map(|set| ["--set".into(), set.clone()]).collect();
+        flags.extend(accuracy.iter().map(|part| format!("--accuracy={}", part.0)));
+        flags.extend(self.arguments.keep.iter().map(|keep| format!("--keep={keep}")));
+        flags.extend(yes.then(|| "--yes".into()));
+        flags
+    }
+
+    /// Whether the whole output of a run is to be kept and is not there.
+    fn is_wanted_again(&self, row: &Row) -> bool {
+        let keep = self.arguments.keep.as_ref();
+        keep.is_some_and(|keep| keep.holds(row))
+            && row.reached.is_some()
+            && !self.store.is_kept(&row.id)
+    }
+
+    /// Computes these rows on the cores of this machine.
+    fn compute(&self, numbers: &[usize]) -> Result<(), Failure> {
+        let interrupted = Arc::new(AtomicBool::new(false));
+        let asked = interrupted.clone();
+        ctrlc::set_handler(move || asked.store(true, Ordering::Relaxed))
+            .map_err(|error| Failure::failed(format!("cannot watch for Ctrl-C: {error}")))?;
+        let runner = Runner::new(self.sweep, self.store);
+        let runner = match self.arguments.cores {
+            Some(cores) => runner.cores(cores),
+            None if self.arguments.task.is_some() => runner.cores(1),
+            None => runner,
+        };
+        let watch = RowsWatch {
+            study: self,
+            bar: rows_bar(numbers.len(), self.arguments.quiet),
+            failed: AtomicUsize::new(0),
+            refused: Mutex::new(None),
+            interrupted,
+        };
+        let done = runner.run(numbers, |row| self.is_wanted_again(row), &watch);
+        watch.bar.finish_and_clear();
+        let refused = watch.refused.into_inner().unwrap_or_else(|lock| lock.into_inner());
+        match (done, refused) {
+            (_, Some(failure)) => Err(failure),
+            (Err(error), None) => Err(error.into()),
+            (Ok(true), None) => Ok(()),
+            (Ok(false), None) => {
+                Err(Failure::failed("interrupted: give the command again to go on"))
+            }
+        }
+    }
+
+    /// Writes the table, the plot and the page of the rows that are there.
+    fn gather(&self, units: &[&'static str]) -> Result<(), Failure> {
+        self.store.tidy();
+        let results = Results::gather(self.sweep, self.store);
+        let path = |name: &str| self.store.path().join(name);
+        results.write_csv(self.sweep, path("table.csv"))?;
+        let succeeded = results.rows.iter().any(|row| row.verdict != RowVerdict::Failed);
+        if !results.rows.is_empty() {
+            results.write_plot(self.sweep, units, path("plot.svg"))?;
+            results.write_page(self.sweep, self.store, units, path("sweep.html"))?;
+        }
+        if !self.arguments.quiet {
+            self.summary(&results)?;
+            let place = self.store.path().display();
+            print(format_args!("written to {place}: table.csv, plot.svg, sweep.html"))?;
+        }
+        match succeeded || results.rows.is_empty() {
+            true => Ok(()),
+            false => Err(Failure::failed(format!(
+                "no run succeeded; the first one: {}",
+                results.rows[0].failure.as_deref().unwrap_or_default()
+            ))),
+        }
+    }
+
+    fn summary(&self, results: &Results) -> Result<(), Failure> {
+        let count = |verdict| results.rows.iter().filter(|row| row.verdict == verdict).count();
+        let [fine, doubtful, failed] =
+            [RowVerdict::Fine, RowVerdict::Doubtful, RowVerdict::Failed].map(count);
+        let Results { rows, missing } = results;
+        let left =
+            if *missing > 0 { format!("; {missing} are not there yet") } else { String::new() };
+        print(format_args!(
+            "{} rows: {fine} fine, {doubtful} doubtful, {failed} failed{left}",
+            rows.len()
+        ))?;
+        let mut warnings: BTreeMap<&str, usize> = BTreeMap::new();
+        rows.iter()
+            .flat_map(|row| &row.warnings)
+            .for_each(|name| *warnings.entry(name).or_default() += 1);
+        let told: Vec<String> =
+            warnings.iter().map(|(name, count)| format!("{name} ({count})")).collect();
+        if !told.is_empty() {
+            print(format_args!("warnings: {}", told.join(", ")))?;
+        }
+        if let Some(why) = rows.iter().find_map(|row| row.failure.as_ref()) {
+            print(format_args!("the first failure: {why}"))?;
+        }
+        Ok(())
+    }
+
+    /// Keeps the whole output of a run.
+    fn keep_output(&self, run: &PointRun) -> Result<(), Failure> {
+        let (Some(file), Some(motion)) = (&run.file, &run.motion) else { return Ok(()) };
+        let outcome = match motion {
+            Ok(trajectory) => Ok(trajectory),
+            Err(failure) => Err(&**failure),
+        };
+        let SceneFile { title, output: request, .. } = file;
+        let mut request = request.clone();
+        if !request.formats.contains(&Format::Html) {
+            request.formats.push(Format::Html);
+        }
+        let values: Vec<String> =
+            run.row.keys.iter().map(|(key, value)| format!("{key}={value}")).collect();
+        let title = format!("{title} ({})", values.join(", "));
+        let trajectory = outcome.unwrap_or_else(|failure| &failure.trajectory);
+        let mut directory = Directory::new(self.store.run_directory(&run.row.id))?;
+        directory.claim()?;
+        directory.write_formats(trajectory, &title, &request)?;
+        // the report comes last: with it the output is complete
+        keep(outcome, &mut directory, |directory| directory.write_table(trajectory, &request))
+    }
+}
+
+/// Shows how many rows are there, keeps outputs, and ends the study after Ctrl-C.
+struct RowsWatch<'a> {
+    study: &'a Study<'a>,
+    bar: ProgressBar,
+    failed: AtomicUsize,
+    refused: Mutex<Option<Failure>>,
+    interrupted: Arc<AtomicBool>,
+}
+
+impl Watch for RowsWatch<'_> {
+    fn ran(&self, run: &PointRun) -> Result<(), Error> {
+        let keep = self.study.arguments.keep.as_ref();
+        if keep.is_some_and(|keep| keep.holds(&run.row))
+            && let Err(failure) = self.study.keep_output(run)
+        {
+            let message = failure.message.clone();
+            *self.refused.lock().unwrap_or_else(|lock| lock.into_inner()) = Some(failure);
+            let path = self.study.store.run_directory(&run.row.id);
+            return Err(Error::Output { path, source: io::Error::other(message) });
+        }
+        Ok(())
+    }
+
+    fn has(&self, row: &Row) {
+        if row.verdict == RowVerdict::Failed {
+            self.failed.fetch_add(1, Ordering::Relaxed);
+        }
+        self.bar.inc(1);
+        self.bar.set_message(format!("{} failed", self.failed.load(Ordering::Relaxed)));
+    }
+
+    fn goes_on(&self) -> bool {
+        !self.interrupted.load(Ordering::Relaxed)
+    }
+}

@@ -1,0 +1,22 @@
+//! A scene for many values of its keys: which ones, the run of each, and what came out of them.
+
+mod condition;
+mod factor;
+mod page;
+mod plan;
+mod plot;
+mod points;
+mod row;
+mod run;
+mod runner;
+mod store;
+mod table;
+
+pub use condition::Condition;
+pub use factor::MANY;
+pub use plan::{Plan, Point};
+pub use row::{Cost, Row, RowVerdict};
+pub use run::{PointRun, Sweep};
+pub use runner::{Runner, Watch};
+pub use store::{Claim, Store};
+pub use table::Results;
