@@ -117,7 +117,7 @@ impl Sweep {
                 results.write_plot(&self.sweep, &units, path("plot.svg"))?;
                 results.write_page(&self.sweep, &self.store, &units, path("sweep.html"))?;
             }
-            Ok((results.rows.len(), results.missing))
+            Ok::<_, Error>((results.rows.len(), results.missing))
         };
         gathered().map_err(raised)
     }

@@ -21,7 +21,7 @@ def test_van_der_pol():
     fun = lambda t, y: [y[1], 1e3 * (1.0 - y[0] ** 2) * y[1] - y[0]]
     jac = lambda t, y: np.array([[0.0, 1.0], [-2e3 * y[0] * y[1] - 1.0, 1e3 * (1.0 - y[0] ** 2)]])
     for options in ({}, {"jac": jac}):
-        solution = pliant.solve_ivp(fun, (0.0, 2000.0), [2.0, 0.0], rtol=1e-8, atol=1e-8, **options)
+        solution = pliant.solve_ivp(fun, (0.0, 2000.0), [2.0, 0.0], "bdf", rtol=1e-8, atol=1e-8, **options)
         assert abs(solution.y[0, -1] - 1.706167732170465) < 1e-4
 
 
@@ -47,7 +47,7 @@ def test_jacobians(kind):
         "band": dict(lband=1, uband=1),
         "differences": {},
     }[kind]
-    solution = pliant.solve_ivp(lambda t, y: matrix @ y, (0.0, 0.1), np.sin(np.pi * x), rtol=1e-7, atol=1e-10, **options)
+    solution = pliant.solve_ivp(lambda t, y: matrix @ y, (0.0, 0.1), np.sin(np.pi * x), "bdf", rtol=1e-7, atol=1e-10, **options)
     rate = -4.0 * (n + 1) ** 2 * np.sin(np.pi / (2 * (n + 1))) ** 2
     assert np.abs(solution.y[:, -1] - np.exp(0.1 * rate) * np.sin(np.pi * x)).max() < 1e-6
 
@@ -59,7 +59,7 @@ def test_a_pattern_that_grows_is_told():
         return scipy.csc_matrix([[-1.0, t > 0.1], [0.0, -1.0]])
 
     with pytest.raises(ValueError, match="jac_sparsity"):
-        pliant.solve_ivp(lambda t, y: [-y[0] + (t > 0.1) * y[1], -y[1]], (0.0, 10.0), [1.0, 1.0], jac=jac, rtol=1e-8)
+        pliant.solve_ivp(lambda t, y: [-y[0] + (t > 0.1) * y[1], -y[1]], (0.0, 10.0), [1.0, 1.0], "bdf", jac=jac, rtol=1e-8)
 
 
 def test_events():
@@ -102,7 +102,7 @@ def test_exceptions_pass_through():
 def test_a_run_that_fails_has_status_minus_one():
     solution = pliant.solve_ivp(lambda t, y: y**2, (0.0, 2.0), [1.0], rtol=1e-6, atol=1e-9)
     assert solution.status == -1 and not solution.success and abs(solution.t[-1] - 1.0) < 1e-2
-    limited = pliant.solve_ivp(lambda t, y: -y, (0.0, 1.0), [1.0], max_steps=3)
+    limited = pliant.solve_ivp(lambda t, y: -y, (0.0, 1.0), [1.0], "bdf", max_steps=3)
     assert limited.status == -1 and "max_steps" in limited.message
 
 
