@@ -117,3 +117,8 @@ pub struct ReadmeDoctests;
 #[doc = include_str!("../docs/embedding.md")]
 #[cfg(doctest)]
 pub struct EmbeddingDoctests;
+
+/// Compiles and runs the code blocks of the page on sweeps.
+#[doc = include_str!("../docs/sweeps.md")]
+#[cfg(all(doctest, feature = "sweep"))]
+pub struct SweepsDoctests;

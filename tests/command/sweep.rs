@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::os::unix::fs::PermissionsExt;
 use std::thread::sleep;
-use std::time::Duration;
+use std::time::Instant;
 
 use super::{Place, bar, says, stderr, stdout};
 
@@ -118,6 +118,23 @@ fn rows_are_those_of_single_runs() {
     }
 }
 
+/// With an accuracy, too: the same runs, and the same difference between them.
+#[test]
+fn rows_have_an_accuracy() {
+    let place = Place::of_study(STUDY);
+    place.sweep(&["-q", "--accuracy", "1%", "--limit", "1"]);
+    let row = &place.rows("out/study-sweep").1[0];
+    let set = ["body.material.young", "phase.pull.load.1.force"];
+    let set = [0, 1].map(|at| format!("{}={}", set[at], row[1 + at]));
+    let run = ["run", "scene.toml", "-q", "--accuracy", "1%", "--quantity", "com.x:end"];
+    assert!(
+        place.run(&[&run[..], &["--set", &set[0], "--set", &set[1]]].concat()).status.success()
+    );
+    let report = place.report("out/scene");
+    assert_eq!(row[9].parse::<f64>().unwrap(), report["achieved"]["difference"]);
+    assert_eq!((&row[6][..], &row[11]), ("fine", &report["steps"].to_string()));
+}
+
 /// A run that fails, or cannot begin, is a row; the others go on.
 #[test]
 fn failures_are_rows() {
@@ -147,28 +164,34 @@ fn failures_are_rows() {
 /// Killed at twenty random moments and given again, a study computes no row twice, loses none, and finds the same.
 #[test]
 fn a_killed_study_goes_on() {
-    let study = STUDY.replace("values = [4e4, 8e4]", "from = 4e4\nto = 8e4\ncount = 60");
+    let study = STUDY.replace("values = [4e4, 8e4]", "from = 4e4\nto = 8e4\ncount = 40");
     let place = Place::of_study(&study);
+    let clock = Instant::now();
     place.sweep(&["--out", "whole", "-q"]);
+    let whole = clock.elapsed();
+    let clock = Instant::now();
+    place.sweep(&["--out", "whole", "-q", "--gather"]);
+    // on an average as long as it takes to begin, and to compute a twentieth
+    let longest = 2 * (clock.elapsed() + whole / 20);
     let (mut state, mut before) = (5_u64, BTreeMap::new());
     let mut unfinished = 0;
     for _ in 0..20 {
         let mut child = place.command(&["sweep", "study.toml", "-q"]).spawn().unwrap();
         state =
             state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        sleep(Duration::from_micros(10_000 + (state >> 33) % 100_000));
+        sleep(longest.mul_f64((state >> 33) as f64 / 2_f64.powi(31)));
         child.kill().unwrap(); // by SIGKILL
         child.wait().unwrap();
         let now = place.row_files("out/study-sweep");
         assert!(before.iter().all(|(name, row)| now.get(name) == Some(row)));
-        unfinished += usize::from(now.len() < 180);
+        unfinished += usize::from(now.len() < 120);
         before = now;
     }
     println!("{} rows after 20 kills, {unfinished} of them before the end", before.len());
     place.sweep(&["-q"]);
     let all = place.row_files("out/study-sweep");
     assert!(before.iter().all(|(name, row)| all.get(name) == Some(row)));
-    assert_eq!(all.len(), 180);
+    assert_eq!(all.len(), 120);
     assert_eq!(place.found("out/study-sweep"), place.found("whole"));
     assert_eq!(place.files("out/study-sweep/claims"), Vec::<String>::new());
 }

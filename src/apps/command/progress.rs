@@ -29,7 +29,7 @@ const PARTS: f64 = 1e4;
 /// Time between two updates of the bar.
 const PERIOD: Duration = Duration::from_millis(100);
 /// Exit code after the second Ctrl-C, or one outside of steps: shells report it for programs ended by Ctrl-C.
-const KILLED: i32 = 130;
+pub const KILLED: i32 = 130;
 
 impl RunProgress {
     /// Watches a run up to time `end` (s). The bar is drawn on a terminal only, and not if `quiet`.

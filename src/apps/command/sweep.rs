@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::io;
 use std::path::{Path, PathBuf};
+use std::process;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex};
 
@@ -15,7 +16,7 @@ use pliant::{Error, Fraction, SceneFile};
 use crate::engine::{Engine, TaskArray};
 use crate::failure::{Failure, print};
 use crate::files::Directory;
-use crate::progress::rows_bar;
+use crate::progress::{KILLED, rows_bar};
 use crate::run::keep;
 use crate::task::Tasks;
 
@@ -223,7 +224,12 @@ impl Study<'_> {
     fn compute(&self, numbers: &[usize]) -> Result<(), Failure> {
         let interrupted = Arc::new(AtomicBool::new(false));
         let asked = interrupted.clone();
-        ctrlc::set_handler(move || asked.store(true, Ordering::Relaxed))
+        let stop = move || {
+            if asked.swap(true, Ordering::Relaxed) {
+                process::exit(KILLED); // no row is lost: those under way begin anew
+            }
+        };
+        ctrlc::set_handler(stop)
             .map_err(|error| Failure::failed(format!("cannot watch for Ctrl-C: {error}")))?;
         let runner = Runner::new(self.sweep, self.store);
         let runner = match self.arguments.cores {

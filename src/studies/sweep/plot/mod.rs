@@ -38,6 +38,8 @@ struct Plot<'a> {
     /// Keys that vary.
     keys: Vec<Variable>,
     quantities: Vec<Variable>,
+    /// Whether marks tell their values.
+    is_told: bool,
 }
 
 impl Results {
@@ -52,18 +54,19 @@ impl Results {
         units: &[&str],
         path: impl AsRef<Path>,
     ) -> Result<(), Error> {
-        write_figure(&self.figure(sweep, units), path.as_ref())
+        write_figure(&self.figure(sweep, units, false), path.as_ref())
     }
 
-    /// The same as a document, in which each mark has the number of its row (`data-row`).
-    pub(super) fn figure(&self, sweep: &Sweep, units: &[&str]) -> Document {
+    /// The same as a document, in which each mark has the number of its row (`data-row`), and tells its values if it
+    /// `is_told`.
+    pub(super) fn figure(&self, sweep: &Sweep, units: &[&str], is_told: bool) -> Document {
         let stride = self.rows.len().div_ceil(MOST).max(1);
         let rows: Vec<(usize, &Row)> = self.rows.iter().enumerate().step_by(stride).collect();
         let keys = sweep.plan().keys().iter().filter_map(|key| Variable::key(sweep, key, &rows));
         let units = units.iter().copied().chain(std::iter::repeat(""));
         let quantities = sweep.quantities().zip(units);
         let quantities = quantities.map(|(name, unit)| Variable::quantity(name, unit, &rows));
-        let plot = Plot { keys: keys.collect(), quantities: quantities.collect(), rows };
+        let plot = Plot { keys: keys.collect(), quantities: quantities.collect(), rows, is_told };
         let failed = plot.rows.iter().filter(|(_, row)| row.verdict == RowVerdict::Failed).count();
         let mut about = format!("{} runs", self.rows.len());
         if stride > 1 {
@@ -115,7 +118,11 @@ impl Plot<'_> {
 
     /// The group of a row's mark.
     fn mark(&self, (number, row): (usize, &Row)) -> Group {
-        Group::new().set("data-row", number).set("class", "mark").add(self.told(row))
+        let mark = Group::new().set("data-row", number);
+        match self.is_told {
+            true => mark.set("class", "mark").add(self.told(row)),
+            false => mark,
+        }
     }
 }
 

@@ -1,11 +1,11 @@
 //! Many keys: parallel coordinates, an axis for each key and quantity, a line for each run.
 
-use svg::node::element::{Group, Polyline};
+use svg::node::element::{Group, Polyline, Text};
 
 use super::map::colours;
 use super::scale::{Variable, colour};
 use super::{FAILED, GREY, PANEL, Plot, ROOM};
-use crate::io::output::{Axis, round, stroke, text};
+use crate::io::output::{Axis, Point, round, stroke, text};
 
 /// Distance of two axes (px).
 const APART: f64 = 150.0;
@@ -53,28 +53,25 @@ impl Plot<'_> {
                 if (0.0..=1.0).contains(&place) {
                     group = group
                         .add(stroke([x(at) - 4.0, y(place)], [x(at), y(place)], GREY))
-                        .add(text(label, [x(at) - 7.0, y(place) + 4.0]).set("text-anchor", "end"));
+                        .add(over(label, [x(at) - 7.0, y(place) + 4.0]).set("text-anchor", "end"));
                 }
             }
             let above = TOP - 14.0 - LINE * (at % 2) as f64;
             let name = text(short(&variable.label(axis)), [x(at), above]);
             group = group.add(name.set("text-anchor", "middle"));
         }
-        match (first, &shade) {
-            (Some(quantity), Some(shade)) => {
-                let edges = [0.0, TOP, x(axes.len() - 1) + 10.0, bottom];
-                group.add(
-                    colours(
-                        shade,
-                        &format!("colour: {}", short(&quantity.name)),
-                        [edges[0], edges[1] - 0.0, edges[2], edges[3]],
-                    )
-                    .set("class", "scale"),
-                )
-            }
-            _ => group,
-        }
+        let (Some(quantity), Some(shade)) = (first, &shade) else { return group };
+        let right = x(axes.len() - 1) + 10.0;
+        let name = format!("colour: {}", short(&quantity.name));
+        let name = text(name, [right + 42.0, TOP - 16.0 - 2.0 * LINE]).set("text-anchor", "end");
+        group.add(colours(shade, "", [0.0, TOP, right, bottom])).add(name.set("fill", GREY))
     }
+}
+
+/// A label that can be read over lines.
+fn over(label: &str, place: Point) -> Text {
+    let label = text(label, place).set("paint-order", "stroke").set("stroke", "#ffffff");
+    label.set("stroke-width", 3).set("stroke-linejoin", "round")
 }
 
 /// The end of a long name, which tells more than its beginning.

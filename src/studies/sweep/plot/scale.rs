@@ -73,7 +73,7 @@ impl Variable {
     pub(super) fn axis(&self, room: f64) -> Axis {
         let values = self.values.iter().copied();
         match self.is_logarithmic {
-            true => Axis::logarithmic(values.filter(|value| *value > 0.0), LINES, power_text),
+            true => Axis::logarithmic(values.filter(|value| *value > 0.0), 2 * LINES, power_text),
             false => {
                 let mut axis = Axis::linear(values, room, LINES, &self.unit);
                 if !self.words.is_empty() {
