@@ -42,4 +42,4 @@ def test_the_notebook(monkeypatch):
         for number, cell in enumerate(notebook["cells"]):
             if cell["cell_type"] == "code":
                 exec(compile("".join(cell["source"]), f"cell {number} of finger.ipynb", "exec"), cells)
-    assert abs(cells["height"][-1] - cells["wanted"](3.0)) < 1e-3
+    assert abs(cells["height"][-1] - cells["wanted"](4.5)) < 1e-3
