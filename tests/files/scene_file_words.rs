@@ -358,7 +358,7 @@ fn listed_meshes() {
     let left = numbered(&mesh.sets()["left"]);
     let text = |cells: &str, more: &str| {
         format!(
-            "[body]\nthickness = 0.01\nmaterial = {{ density = 1000.0, young = 1e6, poisson = 0.3 }}\n\
+            "[body]\nthickness = 0.01\nmaterial = {{ density = 1000.0, young = 1e6, poisson = 0.3, viscosity = 0.0 }}\n\
              region = {{ group = \"soft\", material = {{ young = 2e5 }} }}\n\
              [body.mesh]\nkind = \"listed\"\ncells = \"triangles6\"\npositions = [{positions}]\n\
              connectivity = [{cells}]\nsets = {{ name = \"wall\", nodes = {left:?} }}\n\
