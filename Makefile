@@ -20,13 +20,16 @@ demo: setup ## The jumping square and a scene file by the command: tables here, 
 # The library and the Python module: crates that both need are compiled once, with the features of both.
 BOTH := -p pliant -p pliant-python --features pliant/play
 
+# An extension module finds Python's functions in the program that loads it.
+export PYO3_BUILD_EXTENSION_MODULE := 1
+
 # Unit tests are short: to optimize them, which compiles the library once more, would take longer than to run them as they are.
 # Examples are checked by clippy; the two that are named have tests of their own.
 test: ## Every check: format, lints, tests, documentation and its examples
 	@scripts/setup.sh chromium valgrind python3-venv
 	cargo fmt --all --check
 	cargo clippy --workspace --all-targets --features pliant/play -- -D warnings
-	cargo test $(BOTH) --lib --config profile.dev.opt-level=0
+	cargo test $(BOTH) --lib --config profile.dev.package.pliant.opt-level=0
 	cargo test $(BOTH) --bins --test '*' --example gallery --example integrators
 	cargo test $(BOTH) --doc
 	RUSTDOCFLAGS=-Dwarnings cargo doc $(BOTH) --no-deps

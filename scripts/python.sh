@@ -3,6 +3,8 @@
 # `wheel`: the wheel with all libraries, built, installed into a new environment, and tried there.
 set -eu
 
+# as maturin does: an extension module finds Python's functions in the program that loads it
+export PYO3_BUILD_EXTENSION_MODULE=1
 root=$(cd "$(dirname "$0")/.." && pwd)
 cd "$root"
 target=${CARGO_TARGET_DIR:-target}
