@@ -49,7 +49,7 @@ fn turns(motion: &Trajectory) -> Vec<f64> {
     motion.samples().iter().map(follow).collect()
 }
 
-/// By two methods, and by three kinds of cells that are all too coarse: nothing breaks down, and energy is kept.
+/// By two methods, and by kinds of cells that are all too coarse: nothing breaks down, and energy is kept.
 #[test]
 fn a_column_twists_and_comes_back() {
     for (poisson, until) in [(0.45, 0.05), (0.495, 0.2)] {
@@ -73,19 +73,17 @@ fn a_column_twists_and_comes_back() {
         let by_auto = run(SolidCells::Hexahedra20, nodes, until, Method::Auto, 1e-4);
         let by_bdf = run(SolidCells::Hexahedra20, nodes, 0.05, Method::CvodeBdf, 1e-5);
         let apart = by_auto.iter().zip(&by_bdf).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-        let others = [
-            run(SolidCells::Tetrahedra10, nodes, 0.05, Method::Auto, 1e-4),
-            run(SolidCells::Hexahedra, [25, 5, 5], 0.05, Method::Auto, 1e-4),
-        ];
-        println!(
-            "{poisson}: methods {apart:e} rad, at 0.05 s {} {:?}",
-            by_auto[50],
-            others.each_ref().map(|t| t[50])
-        );
+        // the softer column with cells that cost less
+        let (cells, nodes) = match poisson > 0.49 {
+            true => (SolidCells::Tetrahedra10, nodes),
+            false => (SolidCells::Hexahedra, [25, 5, 5]),
+        };
+        let other = run(cells, nodes, 0.05, Method::Auto, 1e-4);
+        println!("{poisson}: methods {apart:e} rad, at 0.05 s {} {}", by_auto[50], other[50]);
         assert!(apart < 1e-3, "{apart:e}");
         assert!(by_auto.get(200).is_none_or(|turns| *turns < -0.5), "{:?}", by_auto.get(200));
         // 4.39 and 4.43 rad
-        for turns in others.iter().chain([&by_auto]) {
+        for turns in [&other, &by_auto] {
             assert!((turns[50] / 4.40 - 1.0).abs() < 0.03, "{}", turns[50]);
         }
     }

@@ -99,7 +99,7 @@ fn a_cube_bounces_off_a_ball_and_a_plate() {
     let plate = Obstacle::box_between([-1.0, -1.0, -0.004], [1.0, 1.0, 0.0]);
     for obstacle in [ball, plate.stiffness(1e6).damping(10.0)] {
         let scene = cube(0.05, [0.0, 0.0, 0.5]).initial_velocity(|_| vec![0.0, 0.0, -10.0]);
-        assert_seen(&scene.obstacle(obstacle).phase(Phase::until(0.1)), 1e-4, 1e-5);
+        assert_seen(&scene.obstacle(obstacle).phase(Phase::until(0.075)), 1e-4, 1e-5);
     }
 }
 
