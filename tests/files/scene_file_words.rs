@@ -362,7 +362,7 @@ fn listed_meshes() {
              region = {{ group = \"soft\", material = {{ young = 2e5 }} }}\n\
              [body.mesh]\nkind = \"listed\"\ncells = \"triangles6\"\npositions = [{positions}]\n\
              connectivity = [{cells}]\nsets = {{ name = \"wall\", nodes = {left:?} }}\n\
-             groups = {{ name = \"soft\", cells = [1, 4] }}\n{more}\n[[phase]]\nuntil = 0.01\nhold = \"wall\"\n"
+             groups = {{ name = \"soft\", cells = [1, 4] }}\n{more}\n[[phase]]\nuntil = 0.01\nhold = {{ nodes = \"wall\" }}\n"
         )
     };
     let rubber = Material { density: 1000.0, young: 1e6, poisson: 0.3, viscosity: 0.0 };
