@@ -231,7 +231,7 @@ fn beams_with_mean(until: f64) -> [Scene; 2] {
 
 #[test]
 fn methods_agree_on_large_motion() {
-    let [flat, solid] = beams_with_mean(0.06);
+    let [flat, solid] = beams_with_mean(0.1);
     let all = &[Method::Auto, Method::CvodeBdf, Method::Arkode][..];
     // how far it swings (m), by which methods, how well energy is kept, and what becomes heat (J)
     for (scene, far, methods, kept, heat) in [
