@@ -47,7 +47,7 @@ class Collected:
 
 def main():
     seen = Collected()
-    pytest.main([tests.__file__, "-q", "-p", "no:cacheprovider", "--no-header", "--tb=short", "--no-summary", *sys.argv[1:]], [seen])
+    pytest.main([tests.__file__, "-q", "-p", "scipy.conftest", "-p", "no:cacheprovider", "--no-header", "--tb=short", "--no-summary", *sys.argv[1:]], [seen])
     counts = collections.Counter(outcome for outcome, _ in seen.outcomes.values())
     print(dict(counts))
     for name, (outcome, text) in seen.outcomes.items():

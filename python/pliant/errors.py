@@ -1,5 +1,7 @@
 """What can go wrong. Every exception says what to change."""
 
+from .motion import Motion
+
 
 class Error(Exception):
     """Any error of pliant."""
@@ -36,8 +38,6 @@ class IntegrationError(Error, RuntimeError):
     """
 
     def __init__(self, text, motion, phase, method, time, step):
-        from .motion import Motion
-
         super().__init__(text)
         self.motion = Motion(motion)
         self.phase, self.method, self.time, self.step = phase, method, time, step
@@ -50,8 +50,6 @@ class NoEquilibrium(Error, RuntimeError):
     """
 
     def __init__(self, text, motion, phase, fraction):
-        from .motion import Motion
-
         super().__init__(text)
         self.motion = Motion(motion)
         self.phase, self.fraction = phase, fraction

@@ -244,11 +244,15 @@ class _Real:
     def unpack(self, states):
         return states
 
+    def whole(self, y):
+        """The unknowns of a packed state."""
+        return y
+
     def function(self, fun):
         return fun
 
     def matrix(self, jac):
-        return np.asarray(jac, dtype=float)
+        return np.ascontiguousarray(jac, dtype=float)
 
 
 class _Complex(_Real):
@@ -260,12 +264,15 @@ class _Complex(_Real):
     def unpack(self, states):
         return states[:, : self.count] + 1j * states[:, self.count :]
 
+    def whole(self, y):
+        return y[: self.count] + 1j * y[self.count :]
+
     def function(self, fun):
-        return lambda t, y: self.pack(fun(t, y[: self.count] + 1j * y[self.count :]))
+        return lambda t, y: self.pack(fun(t, self.whole(y)))
 
     def matrix(self, jac):
         jac = np.asarray(jac)
-        return np.block([[np.real(jac), -np.imag(jac)], [np.imag(jac), np.real(jac)]])
+        return np.ascontiguousarray(np.block([[np.real(jac), -np.imag(jac)], [np.imag(jac), np.real(jac)]]))
 
 
 def _with(fun, args):
@@ -318,9 +325,7 @@ def _events(events, args, parts):
             raise ValueError("The `terminal` attribute of each event must be a boolean or positive integer.")
         direction = int(np.sign(getattr(event, "direction", 0) or 0))
         function = event if args is None else _with(event, args)
-        if isinstance(parts, _Complex):
-            function = (lambda g: lambda t, y: g(t, y[: parts.count] + 1j * y[parts.count :]))(function)
-        watched.append((_number(function), direction, last))
+        watched.append((_number(function, parts), direction, last))
     return watched
 
 
@@ -333,8 +338,8 @@ def _reversed(function, watched, times):
     return back, None if watched is None else turned, None if times is None else [-t for t in times]
 
 
-def _number(function):
-    return lambda t, y: float(np.ravel(function(t, y))[0])
+def _number(function, parts):
+    return lambda t, y: float(np.ravel(function(t, parts.whole(y)))[0])
 
 
 def _jacobian(jac, pattern, lband, uband, fun, t, y0, parts):
@@ -367,11 +372,9 @@ def _jacobian(jac, pattern, lband, uband, fun, t, y0, parts):
     if shape != (n, n):
         raise ValueError(f"`jac` is expected to have shape {(n, n)}, but actually has {shape}.")
     if not callable(jac):
-        matrix = np.ascontiguousarray(parts.matrix(jac))
+        matrix = parts.matrix(jac)
         return (lambda t, y: matrix), None, None
-    if isinstance(parts, _Complex):
-        return (lambda t, y: np.ascontiguousarray(parts.matrix(jac(t, y[:n] + 1j * y[n:])))), None, None
-    return (lambda t, y: np.ascontiguousarray(parts.matrix(jac(t, y)))), None, None
+    return (lambda t, y: parts.matrix(jac(t, parts.whole(y)))), None, None
 
 
 def _sparse_jacobian(jac, first, parts):
@@ -383,10 +386,7 @@ def _sparse_jacobian(jac, first, parts):
         raise ValueError(f"`jac` is expected to have shape {(n, n)}, but actually has {first.shape}.")
 
     def matrix(t, y):
-        value = jac
-        if callable(jac):
-            value = jac(t, y if not isinstance(parts, _Complex) else y[:n] + 1j * y[n:])
-        value = scipy.sparse.csc_matrix(value)
+        value = scipy.sparse.csc_matrix(jac(t, parts.whole(y)) if callable(jac) else jac)
         if isinstance(parts, _Complex):
             value = scipy.sparse.bmat([[value.real, -value.imag], [value.imag, value.real]], format="csc")
         return value

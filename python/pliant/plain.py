@@ -3,11 +3,11 @@
 import json
 import math
 
+from .mesh import Mesh
+
 
 def plain(value):
     """`value` without arrays, meshes and other classes: numbers, texts, lists and dicts."""
-    from .mesh import Mesh
-
     if isinstance(value, Mesh):
         return plain(value.to_dict())
     if isinstance(value, dict):
