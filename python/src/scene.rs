@@ -109,7 +109,7 @@ impl Scene {
     /// The word for the cells.
     #[getter]
     fn cell_kind(&self) -> &'static str {
-        pliant::scene_file::cell_word(self.file.scene.body().mesh().kind())
+        self.file.scene.body().mesh().kind().word()
     }
 
     /// Node sets: names and nodes, from 0.
@@ -300,7 +300,7 @@ pub fn read_gmsh(
     for (name, cells) in mesh.cell_groups() {
         groups.set_item(name, PyArray1::from_iter(py, cells.iter().map(|cell| *cell as i64)))?;
     }
-    let word = pliant::scene_file::cell_word(mesh.kind());
+    let word = mesh.kind().word();
     Ok((nodes, cells(py, &mesh)?, word, sets(py, &mesh)?, groups))
 }
 
