@@ -174,7 +174,7 @@ class Scene:
         os.makedirs(directory, exist_ok=True)
         return self._scene.chart(os.fspath(directory), methods, [float(r) for r in rtol], repetitions)
 
-    def start(self, **solver):
+    def start(self, **solver) -> Simulation:
         """The scene in motion under the control of a program: a :class:`Simulation`."""
         return Simulation(self._scene.with_values(_settings(None, solver)).start())
 

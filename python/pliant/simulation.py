@@ -1,10 +1,19 @@
 """A scene that a program drives."""
 
+from __future__ import annotations
+
 import os
+from collections.abc import Callable, Sequence
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
+from . import _pliant
 from .motion import Motion
+
+#: The name of a node set, the number of a node (from 1), or several numbers.
+Nodes = str | int | Sequence[int]
+Array = NDArray[np.float64]
 
 
 class Simulation:
@@ -14,44 +23,114 @@ class Simulation:
     and stay in force until the phase ends. A simulation belongs to one thread at a time: :meth:`fork` one for each.
     """
 
-    def __init__(self, simulation):
+    def __init__(self, simulation: _pliant.Simulation):
         self._simulation = simulation
-        inner = ("step", "advance_to", "advance_by", "advance_until", "position", "velocity", "centre_of_mass", "mean_velocity")
-        inner += ("rotation", "pressure", "chamber_volume", "spring_length", "spring_pull", "contact_force", "set_pressure")
-        inner += ("actuate", "hold", "release", "contact", "checkpoint", "restore")
-        # without a step in between: a tick of a controller calls many of them
-        for name in inner:
-            setattr(self, name, getattr(simulation, name))
 
-    time = property(lambda self: self._simulation.time, doc="The present time (s).")
-    end = property(lambda self: self._simulation.end, doc="The end of the scene (s).")
-    phase = property(lambda self: self._simulation.phase, doc="The name of the present phase.")
-    steps = property(lambda self: self._simulation.steps, doc="Steps of the integrator so far.")
-    displacements = property(lambda self: self._simulation.displacements, doc="Displacements (m): [node, axis].")
-    velocities = property(lambda self: self._simulation.velocities, doc="Velocities (m/s): [node, axis].")
-    positions = property(lambda self: self._simulation.positions, doc="Places of the nodes (m): [node, axis].")
-    energy = property(lambda self: dict(self._simulation.energy), doc="Energies (J) by name.")
+    @property
+    def time(self) -> float:
+        """The present time (s)."""
+        return self._simulation.time
 
-    def load(self, nodes, force):
-        """Sets a force (N) on each of the nodes, in place of the load that these nodes have."""
-        self._simulation.load(nodes, [float(part) for part in force])
+    @property
+    def end(self) -> float:
+        """The end of the scene (s)."""
+        return self._simulation.end
 
-    def move_nodes(self, nodes, velocity):
-        """Moves nodes on from where they are with a constant velocity (m/s)."""
-        self._simulation.move_nodes(nodes, [float(part) for part in velocity])
+    @property
+    def phase(self) -> str:
+        """The name of the present phase."""
+        return self._simulation.phase
 
-    def move_obstacle(self, obstacle, velocity):
-        """Moves an obstacle on from where it is with a constant velocity (m/s)."""
-        self._simulation.move_obstacle(obstacle, [float(part) for part in velocity])
+    @property
+    def steps(self) -> int:
+        """Steps of the integrator so far."""
+        return self._simulation.steps
 
-    def change_state(self, displacements=None, velocities=None):
-        """Gives the body other displacements (m) or velocities (m/s) at once, as by an impact: arrays [node, axis]."""
-        displacements = self.displacements if displacements is None else displacements
-        velocities = self.velocities if velocities is None else velocities
-        as_array = lambda array: np.ascontiguousarray(array, dtype=float)
-        self._simulation.change_state(as_array(displacements), as_array(velocities))
+    @property
+    def displacements(self) -> Array:
+        """Displacements (m): [node, axis]."""
+        return self._simulation.displacements
 
-    def control(self, period, until, controller):
+    @property
+    def velocities(self) -> Array:
+        """Velocities (m/s): [node, axis]."""
+        return self._simulation.velocities
+
+    @property
+    def positions(self) -> Array:
+        """Places of the nodes (m): [node, axis]."""
+        return self._simulation.positions
+
+    @property
+    def energy(self) -> dict[str, float]:
+        """Energies (J) by name."""
+        return dict(self._simulation.energy)
+
+    @property
+    def motion(self) -> Motion:
+        """The :class:`Motion` so far, sampled as `[output]` says."""
+        return Motion(self._simulation.motion())
+
+    def position(self, nodes: Nodes) -> Array:
+        """Mean position (m) of nodes."""
+        return self._simulation.position(nodes)
+
+    def velocity(self, nodes: Nodes) -> Array:
+        """Mean velocity (m/s) of nodes."""
+        return self._simulation.velocity(nodes)
+
+    def centre_of_mass(self) -> Array:
+        """Centre of mass (m)."""
+        return self._simulation.centre_of_mass()
+
+    def mean_velocity(self) -> Array:
+        """Velocity of the centre of mass (m/s)."""
+        return self._simulation.mean_velocity()
+
+    def rotation(self) -> float | None:
+        """Angle (rad) by which a body in the plane has turned; None for others."""
+        return self._simulation.rotation()
+
+    def pressure(self, chamber: str) -> float:
+        """Pressure (Pa) in a chamber."""
+        return self._simulation.pressure(chamber)
+
+    def chamber_volume(self, chamber: str) -> float:
+        """Volume (m^3) of a chamber."""
+        return self._simulation.chamber_volume(chamber)
+
+    def spring_length(self, spring: str) -> float:
+        """Length (m) of a spring."""
+        return self._simulation.spring_length(spring)
+
+    def spring_pull(self, spring: str) -> float:
+        """Pull (N) of a spring."""
+        return self._simulation.spring_pull(spring)
+
+    def contact_force(self, obstacle: str) -> Array:
+        """Force (N) of an obstacle on the body."""
+        return self._simulation.contact_force(obstacle)
+
+    def step(self) -> bool:
+        """Takes one step of the integrator. Returns whether the scene goes on."""
+        return self._simulation.step()
+
+    def advance_to(self, time: float) -> bool:
+        """Advances to a time (s). Returns whether the scene goes on."""
+        return self._simulation.advance_to(time)
+
+    def advance_by(self, dt: float) -> bool:
+        """Advances by a time (s). Returns whether the scene goes on."""
+        return self._simulation.advance_by(dt)
+
+    def advance_until(self, time: float, event: Callable[[float, Array, Array], float]) -> bool:
+        """Advances to a time (s), at most until ``event(time, positions, velocities)`` changes its sign.
+
+        Returns whether it did.
+        """
+        return self._simulation.advance_until(time, event)
+
+    def control(self, period: float, until: float, controller: Callable[[Simulation], object]) -> bool:
         """Calls ``controller(self)`` now and after each `period` (s), until the time `until` (s).
 
         Returns whether that was reached.
@@ -66,18 +145,60 @@ class Simulation:
             if not advance_to(time) or time >= until:
                 return self.time >= until
 
-    def read_checkpoint(self, path):
+    def set_pressure(self, chamber: str, pressure: float) -> None:
+        """Sets the pressure (Pa) in a chamber."""
+        self._simulation.set_pressure(chamber, pressure)
+
+    def actuate(self, spring: str, force: float) -> None:
+        """Sets the force (N) of the actuator of a spring."""
+        self._simulation.actuate(spring, force)
+
+    def load(self, nodes: Nodes, force: Sequence[float]) -> None:
+        """Sets a force (N) on each of the nodes, in place of the load that these nodes have."""
+        self._simulation.load(nodes, [float(part) for part in force])
+
+    def hold(self, nodes: Nodes) -> None:
+        """Holds nodes where they are."""
+        self._simulation.hold(nodes)
+
+    def move_nodes(self, nodes: Nodes, velocity: Sequence[float]) -> None:
+        """Moves nodes on from where they are with a constant velocity (m/s)."""
+        self._simulation.move_nodes(nodes, [float(part) for part in velocity])
+
+    def release(self, nodes: Nodes) -> None:
+        """Frees nodes that are held or moved."""
+        self._simulation.release(nodes)
+
+    def contact(self, obstacle: str, acts: bool) -> None:
+        """Lets an obstacle act, or not."""
+        self._simulation.contact(obstacle, acts)
+
+    def move_obstacle(self, obstacle: str, velocity: Sequence[float]) -> None:
+        """Moves an obstacle on from where it is with a constant velocity (m/s)."""
+        self._simulation.move_obstacle(obstacle, [float(part) for part in velocity])
+
+    def change_state(self, displacements: ArrayLike | None = None, velocities: ArrayLike | None = None) -> None:
+        """Gives the body other displacements (m) or velocities (m/s) at once, as by an impact: arrays [node, axis]."""
+        displacements = self.displacements if displacements is None else displacements
+        velocities = self.velocities if velocities is None else velocities
+        as_array = lambda array: np.ascontiguousarray(array, dtype=float)
+        self._simulation.change_state(as_array(displacements), as_array(velocities))
+
+    def checkpoint(self) -> _pliant.Checkpoint:
+        """The present state, to return to by :meth:`restore`; its method `write` keeps it in a file."""
+        return self._simulation.checkpoint()
+
+    def restore(self, checkpoint: _pliant.Checkpoint) -> None:
+        """Returns to a state."""
+        self._simulation.restore(checkpoint)
+
+    def read_checkpoint(self, path: str | os.PathLike) -> _pliant.Checkpoint:
         """A state from a file that a checkpoint has written."""
         return self._simulation.read_checkpoint(os.fspath(path))
 
-    def fork(self):
+    def fork(self) -> Simulation:
         """An independent simulation that goes on from here, with the commands in force; for another thread, too."""
         return Simulation(self._simulation.fork())
-
-    @property
-    def motion(self):
-        """The :class:`Motion` so far, sampled as `[output]` says."""
-        return Motion(self._simulation.motion())
 
     def __repr__(self):
         return f"<pliant.Simulation at {self.time:g} of {self.end:g} s, phase {self.phase!r}>"

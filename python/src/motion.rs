@@ -152,7 +152,7 @@ impl Motion {
     /// The word for the cells.
     #[getter]
     fn cell_kind(&self) -> &'static str {
-        pliant::scene_file::cell_word(self.trajectory.body().mesh().kind())
+        self.trajectory.body().mesh().kind().word()
     }
 
     /// Stress (Pa) in each cell of a sample: [cell, axis, axis].

@@ -6,7 +6,7 @@ use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pliant::fit::{Measured, SceneFit, Unknown};
 use pliant::scene_file::{override_of, toml_of as toml_of_scene};
 use pliant::study::{Adviser, Quantity, Scenes, Study, Verification, all_methods};
-use pliant::{Error, Mesh, OutputRequest, SceneFile, Settings, Trajectory};
+use pliant::{Error, Mesh, SceneFile, Settings, Trajectory};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -25,9 +25,6 @@ pub struct Scene {
     file: SceneFile,
 }
 
-/// Number of samples of a motion that is to be accurate, if none were requested.
-const SAMPLES: f64 = 100.0;
-
 impl Scene {
     fn read(text: String, path: PathBuf, overrides: Vec<String>) -> Result<Self, Error> {
         let file = SceneFile::parse_with(&text, &path, &overrides)?;
@@ -39,58 +36,24 @@ impl Scene {
         Motion::new(trajectory, self.file.title.clone(), failure)
     }
 
-    /// One run.
-    fn once(&self, output: &OutputRequest, watch: &mut Watch) -> Result<Motion, Error> {
-        let SceneFile { scene, settings, .. } = &self.file;
-        let seen = |progress: &pliant::simulate::Progress| watch.see(progress.time);
-        match scene.simulate_with(settings, &output.sampling(), seen) {
-            Ok(trajectory) => Ok(self.motion(trajectory, None)),
-            Err(error) => self.interrupted(error),
-        }
-    }
-
-    /// Runs at ever finer tolerances, until two agree.
-    fn verified(
-        &self,
-        within: f64,
-        mut output: OutputRequest,
-        watch: &mut Watch,
-    ) -> Result<Motion, Error> {
-        let SceneFile { scene, settings, accuracy, .. } = &self.file;
-        if output.times.is_none() {
-            output.step.get_or_insert(scene.end() / SAMPLES);
-        }
-        let quantity = accuracy.quantity.as_deref().unwrap_or("motion");
-        let quantity = Quantity::named(quantity, scene, &output.sensors)?;
-        let mut verification = Verification::new(scene, within)
-            .settings(settings.clone())
-            .sampling(output.sampling())
-            .quantity(quantity);
-        loop {
-            match verification.refine(|simulation| watch.see(simulation.time())) {
-                Ok(true) => {}
-                Ok(false) => break,
-                Err(error) => return self.interrupted(error),
+    /// Runs the scene as `file` says, to its accuracy if it has one.
+    fn moved(&self, file: &SceneFile, watch: &mut Watch) -> Result<Motion, Error> {
+        let moved = match file.accuracy.within {
+            Some(within) => Verification::of_file(file, within)?
+                .finish(|simulation| watch.see(simulation.time())),
+            None => {
+                let seen = |progress: &pliant::simulate::Progress| watch.see(progress.time);
+                file.scene.simulate_with(&file.settings, &file.output.sampling(), seen)
             }
-        }
-        match verification.into_trajectory() {
-            Some(trajectory) => Ok(self.motion(trajectory, None)),
-            None => Err(Error::from(pliant::InputError {
-                input: "accuracy".into(),
-                value: within.to_string(),
-                help: "no run came to its end".into(),
-            })),
-        }
-    }
-
-    /// A run that was stopped from outside has a motion; other errors stay errors.
-    fn interrupted(&self, error: Error) -> Result<Motion, Error> {
-        match error {
-            Error::Integration(failure) if failure.is_interruption() => {
+        };
+        match moved {
+            Ok(trajectory) => Ok(self.motion(trajectory, None)),
+            // what was computed before it was stopped from outside
+            Err(Error::Integration(failure)) if failure.is_interruption() => {
                 let text = failure.to_string();
                 Ok(self.motion(failure.trajectory, Some(text)))
             }
-            error => Err(error),
+            Err(error) => Err(error),
         }
     }
 }
@@ -146,7 +109,7 @@ impl Scene {
     /// The word for the cells.
     #[getter]
     fn cell_kind(&self) -> &'static str {
-        pliant::scene_file::cell_word(self.file.scene.body().mesh().kind())
+        self.file.scene.body().mesh().kind().word()
     }
 
     /// Node sets: names and nodes, from 0.
@@ -164,14 +127,11 @@ impl Scene {
         times: Option<Vec<f64>>,
     ) -> PyResult<Motion> {
         let mut watch = Watch::new(progress);
-        let mut output = self.file.output.clone();
+        let mut file = self.file.clone();
         if step.is_some() || times.is_some() {
-            (output.step, output.times) = (step, times);
+            (file.output.step, file.output.times) = (step, times);
         }
-        let motion = py.detach(|| match self.file.accuracy.within {
-            Some(within) => self.verified(within.0, output, &mut watch),
-            None => self.once(&output, &mut watch),
-        });
+        let motion = py.detach(|| self.moved(&file, &mut watch));
         watch.check(py)?;
         motion.map_err(raised)
     }
@@ -340,7 +300,7 @@ pub fn read_gmsh(
     for (name, cells) in mesh.cell_groups() {
         groups.set_item(name, PyArray1::from_iter(py, cells.iter().map(|cell| *cell as i64)))?;
     }
-    let word = pliant::scene_file::cell_word(mesh.kind());
+    let word = mesh.kind().word();
     Ok((nodes, cells(py, &mesh)?, word, sets(py, &mesh)?, groups))
 }
 

@@ -77,11 +77,7 @@ impl Sweep {
 
     /// Numbers of the points that have no row yet; any first part of them is spread over the study.
     fn open(&self) -> Vec<usize> {
-        let plan = self.sweep.plan();
-        let is_open = |number: &usize| self.store.row(&plan.point(*number).id).is_none();
-        let mut numbers: Vec<usize> = (0..plan.len()).filter(is_open).collect();
-        numbers.sort_by_key(|number| number.reverse_bits());
-        numbers
+        self.store.open(self.sweep.plan(), |_| false)
     }
 
     /// Computes rows, so many at once (by default one on each core); `progress` is called with how many are done.
@@ -111,12 +107,7 @@ impl Sweep {
             self.store.create()?;
             self.store.tidy();
             let results = Results::gather(&self.sweep, &self.store);
-            let path = |name: &str| self.store.path().join(name);
-            results.write_csv(&self.sweep, path("table.csv"))?;
-            if !results.rows.is_empty() {
-                results.write_plot(&self.sweep, &units, path("plot.svg"))?;
-                results.write_page(&self.sweep, &self.store, &units, path("sweep.html"))?;
-            }
+            results.write(&self.sweep, &self.store, &units)?;
             Ok::<_, Error>((results.rows.len(), results.missing))
         };
         gathered().map_err(raised)

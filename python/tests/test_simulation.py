@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import pliant
+from pliant import _pliant
 
 BEAM = pliant.Scene(
     gravity=[0.0, -9.8],
@@ -17,6 +18,13 @@ BEAM = pliant.Scene(
     ),
     phase=[dict(until=2.0, hold=dict(nodes="left"))],
 )
+
+
+def test_help_tells_all():
+    """Whatever the engine can do is a method or a property of the class, with its doc."""
+    names = {name for name in dir(_pliant.Simulation) if not name.startswith("_")}
+    assert "advance_to" in names and names <= set(dir(pliant.Simulation))
+    assert all(getattr(pliant.Simulation, name).__doc__ for name in dir(pliant.Simulation) if not name.startswith("_"))
 
 
 def test_a_controller_lifts_a_beam():

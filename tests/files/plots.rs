@@ -140,11 +140,11 @@ fn poor_tables_have_pictures() -> Outcome {
 fn verified_motions_have_bands() -> Outcome {
     let scene = samples::square_jump(4)?;
     let sampling = Sampling::every(0.01).read("top", Reading::position("top"));
-    let mut verification = Verification::new(&scene, 0.01).sampling(sampling);
-    while verification.refine(|_| ControlFlow::Continue(()))? {}
+    let verification = Verification::new(&scene, 0.01).sampling(sampling);
+    let motion = verification.finish(|_| ControlFlow::Continue(()))?;
     let directory = tempfile::tempdir()?;
     let path = directory.path().join("plot.svg");
-    Plot::new().write(verification.trajectory().unwrap(), &path)?;
+    Plot::new().write(&motion, &path)?;
     let (texts, counts) = look(&path, &["band"])?;
     assert_eq!(counts, [2]);
     assert!(!texts.iter().any(|text| text.contains("difference")), "{texts:?}");

@@ -119,9 +119,9 @@ fn a_finished_run() {
 #[test]
 fn what_two_runs_differ_by() {
     let scene = square_jump(4).unwrap();
-    let mut verification = Verification::new(&scene, 0.01);
-    while verification.refine(|_| ControlFlow::Continue(())).unwrap() {}
-    let report = written(Ok(verification.trajectory().unwrap()));
+    let verification = Verification::new(&scene, 0.01);
+    let motion = verification.finish(|_| ControlFlow::Continue(())).unwrap();
+    let report = written(Ok(&motion));
     let documented = without(without(documented("run"), "failure."), "phases[].slips[].");
     assert_eq!(keys(&report), documented);
     let achieved = &report["achieved"];

@@ -32,9 +32,8 @@ fn omega(inertia: Inertia) -> f64 {
     }
 }
 
-fn verify(mut verification: Verification) -> Result<Trajectory, Error> {
-    while verification.refine(|_| ControlFlow::Continue(()))? {}
-    Ok(verification.into_trajectory().unwrap())
+fn verify(verification: Verification) -> Result<Trajectory, Error> {
+    verification.finish(|_| ControlFlow::Continue(()))
 }
 
 fn achieved(trajectory: &Trajectory) -> &Achieved {
@@ -113,6 +112,21 @@ fn numbers_of_a_motion_are_verified() -> Outcome {
         if part == Part::Frequency {
             assert!((achieved.scale / exact - 1.0).abs() < 1e-4, "{achieved} {exact}");
         }
+    }
+    Ok(())
+}
+
+/// Of a scene file that asks for no samples there are a hundred, and the quantity that it names is accurate.
+#[test]
+fn scene_files_say_what_has_to_be_accurate() -> Outcome {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/report-8.toml");
+    let mut file = SceneFile::read(path)?;
+    (file.output.step, file.accuracy.quantity) = (None, Some("top.x".into()));
+    let motion = verify(Verification::of_file(&file, "1%".parse()?)?)?;
+    assert_eq!(achieved(&motion).quantity, "top.x");
+    for k in 0..=100 {
+        let is_there = |sample: &Sample| (sample.time - 0.01 * f64::from(k)).abs() < 1e-12;
+        assert!(motion.samples().iter().any(is_there), "{k}");
     }
     Ok(())
 }

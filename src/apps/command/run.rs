@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use clap::Args;
 use pliant::output::{GrowingTable, write_report};
 use pliant::simulate::Simulation;
-use pliant::studies::work_precision::{Quantity, Verification};
+use pliant::study::Verification;
 use pliant::{Error, Fraction, IntegrationFailure, SceneFile, Trajectory};
 
 use crate::accuracy::AccuracyArguments;
@@ -111,7 +111,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         Some(_) if *resume => Err(Failure::bad_input(
             "--resume goes on with one run, and --accuracy takes several: leave one of them out",
         )),
-        Some(within) => verified(&mut file, within, directory, watch, output.quiet),
+        Some(within) => verified(&file, within, directory, watch, output.quiet),
         None => once(&file, *resume, directory, watch, output.quiet),
     }
 }
@@ -200,33 +200,21 @@ fn tell(
     directory.tell()
 }
 
-/// Number of samples of a motion that is to be accurate, if none were requested.
-const SAMPLES: f64 = 100.0;
-
 /// Runs the scene until two runs agree. The results of each run are written as soon as it has ended.
 fn verified(
-    file: &mut SceneFile,
+    file: &SceneFile,
     within: Fraction,
     mut directory: Directory,
     mut watch: RunProgress,
     quiet: bool,
 ) -> Result<(), Failure> {
-    if file.output.times.is_none() {
-        file.output.step.get_or_insert(file.scene.end() / SAMPLES);
-    }
-    let file = &*file;
-    let SceneFile { title, scene, settings, accuracy, output: request, .. } = file;
+    let SceneFile { title, output: request, .. } = file;
     let explained = |motion: &Trajectory| {
         let mut motion = motion.clone();
         file.explain(&mut motion);
         motion
     };
-    let quantity = accuracy.quantity.as_deref().unwrap_or("motion");
-    let quantity = Quantity::named(quantity, scene, &request.sensors)?;
-    let mut verification = Verification::new(scene, within.0)
-        .settings(settings.clone())
-        .sampling(request.sampling())
-        .quantity(quantity);
+    let mut verification = Verification::of_file(file, within)?;
     let mut refused = None;
     let cut_short = loop {
         let refined = verification.refine(|simulation| match directory.claim() {

@@ -161,13 +161,8 @@ impl Study<'_> {
     fn all(&self, batch: usize) -> Result<bool, Failure> {
         let Arguments { limit, engine, .. } = self.arguments;
         let plan = self.sweep.plan();
-        let is_open = |number: &usize| {
-            let row = self.store.row(&plan.point(*number).id);
-            row.is_none_or(|row| self.is_wanted_again(&row))
-        };
-        let mut numbers: Vec<usize> = (0..plan.len()).filter(is_open).collect();
-        // any first part of this order is spread over the study
-        numbers.sort_by_key(|number| number.reverse_bits());
+        let again = |row: &Row| self.is_wanted_again(row);
+        let mut numbers = self.store.open(plan, again);
         numbers.truncate(limit.unwrap_or(usize::MAX));
         if *engine == Engine::Local {
             return self.compute(&numbers).map(|()| false);
@@ -185,6 +180,7 @@ impl Study<'_> {
         if *engine == Engine::Slurm {
             return array.write_script(Runner::new(self.sweep, self.store).bytes()).map(|()| true);
         }
+        let is_open = |number: &usize| self.store.is_open(&plan.point(*number), again);
         let bar = rows_bar(numbers.len(), self.arguments.quiet);
         array.submit(&mut || {
             numbers.retain(is_open);
@@ -261,13 +257,8 @@ impl Study<'_> {
     fn gather(&self, units: &[&'static str]) -> Result<(), Failure> {
         self.store.tidy();
         let results = Results::gather(self.sweep, self.store);
-        let path = |name: &str| self.store.path().join(name);
-        results.write_csv(self.sweep, path("table.csv"))?;
+        results.write(self.sweep, self.store, units)?;
         let succeeded = results.rows.iter().any(|row| row.verdict != RowVerdict::Failed);
-        if !results.rows.is_empty() {
-            results.write_plot(self.sweep, units, path("plot.svg"))?;
-            results.write_page(self.sweep, self.store, units, path("sweep.html"))?;
-        }
         if !self.arguments.quiet {
             self.summary(&results)?;
             let place = self.store.path().display();

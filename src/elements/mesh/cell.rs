@@ -5,6 +5,8 @@
 
 /// What the kinds of cells differ by. Local numbers of nodes count from 0.
 struct Shape {
+    /// The word for them in files.
+    word: &'static str,
     /// Several of them, in words.
     name: &'static str,
     dimension: usize,
@@ -77,6 +79,7 @@ macro_rules! cell_kinds {
 cell_kinds! {
     /// Two nodes.
     Segment => Shape {
+        word: "segments",
         name: "segments",
         dimension: 1,
         nodes: 2,
@@ -91,6 +94,7 @@ cell_kinds! {
     },
     /// Three nodes, counter-clockwise.
     Triangle => Shape {
+        word: "triangles",
         name: "triangles",
         dimension: 2,
         nodes: 3,
@@ -105,6 +109,7 @@ cell_kinds! {
     },
     /// Six nodes: the corners counter-clockwise, then the middles of the edges 1-2, 2-3, 3-1.
     Triangle6 => Shape {
+        word: "triangles6",
         name: "triangles of 6 nodes",
         dimension: 2,
         nodes: 6,
@@ -119,6 +124,7 @@ cell_kinds! {
     },
     /// Four nodes, counter-clockwise.
     Quadrilateral => Shape {
+        word: "quadrilaterals",
         name: "quadrilaterals",
         dimension: 2,
         nodes: 4,
@@ -133,6 +139,7 @@ cell_kinds! {
     },
     /// Four nodes: the first three counter-clockwise as seen from the fourth.
     Tetrahedron => Shape {
+        word: "tetrahedra",
         name: "tetrahedra",
         dimension: 3,
         nodes: 4,
@@ -148,6 +155,7 @@ cell_kinds! {
     /// Ten nodes: the corners as in [`CellKind::Tetrahedron`], then the middles of the edges 1-2,
     /// 2-3, 3-1, 1-4, 2-4, 3-4.
     Tetrahedron10 => Shape {
+        word: "tetrahedra10",
         name: "tetrahedra of 10 nodes",
         dimension: 3,
         nodes: 10,
@@ -168,6 +176,7 @@ cell_kinds! {
     /// Eight nodes: four around one face, counter-clockwise as seen from the opposite one, then
     /// the four across from them.
     Hexahedron => Shape {
+        word: "hexahedra",
         name: "hexahedra",
         dimension: 3,
         nodes: 8,
@@ -203,6 +212,7 @@ cell_kinds! {
     /// Twenty nodes: the corners as in [`CellKind::Hexahedron`], then the middles of the edges 1-2, 2-3, 3-4,
     /// 4-1, 5-6, 6-7, 7-8, 8-5, 1-5, 2-6, 3-7, 4-8.
     Hexahedron20 => Shape {
+        word: "hexahedra20",
         name: "hexahedra of 20 nodes",
         dimension: 3,
         nodes: 20,
@@ -238,6 +248,11 @@ cell_kinds! {
 }
 
 impl CellKind {
+    /// The word for cells of this kind in files and for other programs: `triangles6`, for one.
+    pub fn word(self) -> &'static str {
+        self.shape().word
+    }
+
     /// Several of them, in words.
     pub(crate) fn name(self) -> &'static str {
         self.shape().name

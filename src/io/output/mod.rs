@@ -28,6 +28,8 @@ mod role;
 mod svg;
 mod vtk;
 
+#[cfg(feature = "sweep")]
+pub(crate) use self::animation::BASE_STYLE;
 #[cfg(feature = "play")]
 pub(crate) use self::animation::Picture;
 #[cfg(feature = "study")]

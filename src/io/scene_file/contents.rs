@@ -151,4 +151,18 @@ impl OutputRequest {
         let sensors = self.sensors.iter();
         sensors.fold(times, |sampling, (name, reading)| sampling.read(name, reading.clone()))
     }
+
+    /// As [`sampling`](Self::sampling), for a motion until `end` (s) that is to be accurate: a hundred samples if none
+    /// are requested.
+    #[cfg(feature = "study")]
+    pub(crate) fn verified_sampling(&self, end: f64) -> Sampling {
+        match (&self.times, self.step) {
+            (None, None) => Self { step: Some(end / SAMPLES), ..self.clone() }.sampling(),
+            _ => self.sampling(),
+        }
+    }
 }
+
+/// Number of samples of a motion that is to be accurate, if none are requested.
+#[cfg(feature = "study")]
+const SAMPLES: f64 = 100.0;

@@ -10,8 +10,12 @@ pub(super) const KEYS: &[Key] = &[
     Key::new("positions", Holds::List(&Holds::Vector), "where each node is")
         .in_unit("m")
         .required(),
-    Key::new("cells", Holds::Word(|| kinds().map(|(word, _)| word).into()), "what the cells are")
-        .required(),
+    Key::new(
+        "cells",
+        Holds::Word(|| CellKind::ALL.iter().map(|kind| kind.word()).collect()),
+        "what the cells are",
+    )
+    .required(),
     Key::new(
         "connectivity",
         Holds::List(&Holds::List(&Holds::Count)),
@@ -43,40 +47,26 @@ const GROUP: TableKeys = TableKeys::new(
     "mesh = { kind = \"listed\", positions = [[0.0, 0.0], [0.1, 0.0], [0.0, 0.1]], cells = \"triangles\", connectivity = [[1, 2, 3]], groups = [{ name = \"stiff\", cells = [1] }] }",
 );
 
-/// Words for kinds of cells.
-pub(super) fn kinds() -> [(&'static str, CellKind); 8] {
-    [
-        ("segments", CellKind::Segment),
-        ("triangles", CellKind::Triangle),
-        ("triangles6", CellKind::Triangle6),
-        ("quadrilaterals", CellKind::Quadrilateral),
-        ("tetrahedra", CellKind::Tetrahedron),
-        ("tetrahedra10", CellKind::Tetrahedron10),
-        ("hexahedra", CellKind::Hexahedron),
-        ("hexahedra20", CellKind::Hexahedron20),
-    ]
-}
-
-/// The word for cells of this kind in a listed mesh.
-pub fn cell_word(kind: CellKind) -> &'static str {
-    kinds().into_iter().find(|(_, other)| *other == kind).map_or("", |(word, _)| word)
+/// Kinds of cells and their words.
+fn kinds() -> Vec<(&'static str, CellKind)> {
+    CellKind::ALL.iter().map(|kind| (kind.word(), *kind)).collect()
 }
 
 /// The mesh that `table` lists.
 pub(super) fn listed(table: &Table) -> Result<Mesh, Error> {
-    let positions =
-        table.required("positions", |value| value.list_of("positions", Value::numbers))?;
-    let dimension = positions.first().map_or(0, Vec::len);
-    table.required("positions", |value| {
-        for (position, node) in positions.iter().zip(value.list()?) {
-            if position.len() != dimension {
-                return Err(node.unexpected(format!(
-                    "{} as of the first node",
-                    number_of(dimension, "number")
-                )));
+    let mut dimension = None;
+    let positions: Vec<Vec<f64>> = table.required("positions", |value| {
+        value.list_of("positions", |node| {
+            let position = node.numbers()?;
+            let dimension = *dimension.get_or_insert(position.len());
+            match position.len() == dimension {
+                true => Ok(position),
+                false => {
+                    let needed = number_of(dimension, "number");
+                    Err(node.unexpected(format!("{needed} as of the first node")))
+                }
             }
-        }
-        Ok(())
+        })
     })?;
     let kind = table.required("cells", |value| value.word(&kinds()))?;
     let connectivity = table.required("connectivity", |value| {
@@ -89,7 +79,8 @@ pub(super) fn listed(table: &Table) -> Result<Mesh, Error> {
         })
     })?;
     let connectivity: Vec<Vec<usize>> = connectivity;
-    let mut mesh = Mesh::new(dimension, positions.concat(), kind, connectivity.concat())?;
+    let mut mesh =
+        Mesh::new(dimension.unwrap_or(0), positions.concat(), kind, connectivity.concat())?;
     for set in tables(table, "sets", &SET)? {
         let name = set.required("name", Value::string)?;
         let nodes = set.required("nodes", |value| value.list_of("numbers of nodes", number))?;

@@ -74,7 +74,6 @@ use toml::de::DeTable;
 pub use self::contents::{
     AccuracyRequest, AutoRequest, Format, OutputRequest, SceneFile, StaticsRequest,
 };
-pub use self::listed::cell_word;
 use self::overrides::{as_toml, merge};
 pub use self::overrides::{override_of, toml_of};
 #[cfg(feature = "sweep")]

@@ -10,7 +10,7 @@ use super::store::Store;
 use super::table::Results;
 use crate::dynamics::error::Error;
 use crate::io::file::write_file;
-use crate::io::output::escaped;
+use crate::io::output::{BASE_STYLE, escaped};
 
 const PAGE: &str = include_str!("page/page.html");
 const STYLE: &str = include_str!("page/page.css");
@@ -43,7 +43,8 @@ impl Results {
         let data = data.to_string().replace('<', "\\u003c");
         let title = &sweep.file().title;
         let title = if title.is_empty() { "A study" } else { title };
-        let page = PAGE.replace("/*style*/", STYLE).replace("/*script*/", SCRIPT);
+        let style = [BASE_STYLE, STYLE].concat();
+        let page = PAGE.replace("/*style*/", &style).replace("/*script*/", SCRIPT);
         let [before, after] = ["<!--plot-->", "/*data*/"];
         // free text is inserted last
         let page = page.replace("<!--title-->", &escaped(title));

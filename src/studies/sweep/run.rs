@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use super::factor::{Factor, looked_at, table_path};
 use super::plan::{Plan, Point};
 use super::row::{Cost, Row, RowVerdict};
-use crate::base::input::{Fraction, InputError};
+use crate::base::input::InputError;
 use crate::dynamics::error::{Error, guarded};
 use crate::dynamics::simulate::{Sampling, Simulation};
 use crate::dynamics::trajectory::{IntegrationFailure, Trajectory};
@@ -62,8 +62,6 @@ pub struct PointRun {
 const SENSOR: &str = "\u{1}sweep";
 /// Times at which swings are looked at.
 const LOOKS: usize = 2000;
-/// Samples of a motion that is to be accurate, if none were requested.
-const SAMPLES: f64 = 100.0;
 
 impl Sweep {
     /// The study of a file; one of more than [`MANY`](super::MANY) runs only if that `is_meant`.
@@ -276,8 +274,8 @@ impl Sweep {
     > {
         let mut file = self.scene(point)?;
         let within = self.file.accuracy.or(file.accuracy.within);
-        if within.is_some() && file.output.times.is_none() {
-            file.output.step.get_or_insert(file.scene.end() / SAMPLES);
+        if file.accuracy.quantity.is_none() {
+            file.accuracy.quantity = self.quantities().next().map(String::from);
         }
         let named = |text: &str| Quantity::named(text, &file.scene, &file.output.sensors);
         let quantities = self.quantities().map(named).collect::<Result<Vec<_>, _>>()?;
@@ -288,7 +286,9 @@ impl Sweep {
                 simulation.record(&sampling)?;
                 simulation.finish(observer)
             }
-            Some(within) => self.verified(&file, sampling.clone(), within, observer),
+            Some(within) => {
+                Verification::of_file(&file, within)?.sampling(sampling.clone()).finish(observer)
+            }
         };
         let mut motion = match result {
             Ok(trajectory) => Ok(trajectory),
@@ -311,31 +311,15 @@ impl Sweep {
         file.explain(trajectory);
         Ok((numbers, file, motion))
     }
-
-    /// Runs until two runs agree.
-    fn verified(
-        &self,
-        file: &SceneFile,
-        sampling: Sampling,
-        within: Fraction,
-        observer: &mut dyn FnMut(&Simulation) -> ControlFlow<()>,
-    ) -> Result<Trajectory, Error> {
-        let first = || self.quantities().next();
-        let quantity = file.accuracy.quantity.as_deref().or_else(first).unwrap_or("motion");
-        let quantity = Quantity::named(quantity, &file.scene, &file.output.sensors)?;
-        let mut verification = Verification::new(&file.scene, within.0)
-            .settings(file.settings.clone())
-            .sampling(sampling)
-            .quantity(quantity);
-        while verification.refine(&mut *observer)? {}
-        let none = || InputError::new("number of runs", 0, "it takes two").into();
-        verification.into_trajectory().ok_or_else(none)
-    }
 }
 
 /// What is sampled: what the scene asks for, and the quantities.
 fn sampling(file: &SceneFile, quantities: &[Quantity], is_verified: bool) -> Sampling {
-    let (mut sampling, end) = (file.output.sampling(), file.scene.end());
+    let end = file.scene.end();
+    let mut sampling = match is_verified {
+        false => file.output.sampling(),
+        true => file.output.verified_sampling(end),
+    };
     if quantities.iter().any(Quantity::is_of_swings) {
         let times: Vec<f64> = (1..LOOKS).map(|k| end * (k as f64 / LOOKS as f64)).collect();
         sampling = match is_verified {

@@ -8,6 +8,7 @@ use std::time::Duration;
 
 use serde::{Deserialize, Serialize};
 
+use super::plan::{Plan, Point};
 use super::row::Row;
 use super::run::Sweep;
 use crate::base::input::InputError;
@@ -118,6 +119,20 @@ impl Store {
     pub fn row(&self, id: &str) -> Option<Row> {
         let text = fs::read_to_string(self.row_path(id)).ok()?;
         serde_json::from_str(&text).ok().filter(|row: &Row| row.id == id)
+    }
+
+    /// Whether the row of a point is to be computed: it is not there, or `again` is true for it.
+    pub fn is_open(&self, point: &Point, again: impl Fn(&Row) -> bool) -> bool {
+        self.row(&point.id).is_none_or(|row| again(&row))
+    }
+
+    /// Numbers of the points whose rows are to be computed, as [`is_open`](Self::is_open). Any first part of them is
+    /// spread over the study.
+    pub fn open(&self, plan: &Plan, again: impl Fn(&Row) -> bool) -> Vec<usize> {
+        let is_open = |number: &usize| self.is_open(&plan.point(*number), &again);
+        let mut numbers: Vec<usize> = (0..plan.len()).filter(is_open).collect();
+        numbers.sort_by_key(|number| number.reverse_bits());
+        numbers
     }
 
     /// Writes a row.

@@ -26,6 +26,21 @@ impl Results {
         Self { missing: sweep.plan().len() - rows.len(), rows }
     }
 
+    /// Writes `table.csv`, and of rows that are there `plot.svg` and `sweep.html`, into the directory of the rows. Quantities
+    /// have these `units`.
+    ///
+    /// # Errors
+    /// [`Error::Output`].
+    pub fn write(&self, sweep: &Sweep, store: &Store, units: &[&str]) -> Result<(), Error> {
+        let path = |name: &str| store.path().join(name);
+        self.write_csv(sweep, path("table.csv"))?;
+        if !self.rows.is_empty() {
+            self.write_plot(sweep, units, path("plot.svg"))?;
+            self.write_page(sweep, store, units, path("sweep.html"))?;
+        }
+        Ok(())
+    }
+
     /// Writes them as CSV: `id`, the keys, the quantities, `verdict`, `warnings`, `failure`, `difference`, `reached`,
     /// `steps`, and at the end the times, which alone differ when a study is run again.
     ///

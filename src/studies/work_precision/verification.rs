@@ -10,6 +10,8 @@ use crate::dynamics::report::Achieved;
 use crate::dynamics::simulate::{Sampling, Simulation};
 use crate::dynamics::trajectory::{Quantity as Column, Trajectory};
 use crate::io::output::{DIFFERENCE, OF_SENSOR};
+#[cfg(feature = "scene-file")]
+use crate::io::scene_file::SceneFile;
 use crate::scene::settings::{ContactEvents, Settings};
 use crate::scene::timeline::{Phase, Scene};
 
@@ -24,9 +26,8 @@ use crate::scene::timeline::{Phase, Scene};
 /// use pliant::{Sampling, samples};
 ///
 /// let scene = samples::square_jump(4)?;
-/// let mut verification = Verification::new(&scene, 0.01).sampling(Sampling::every(0.01));
-/// while verification.refine(|_| ControlFlow::Continue(()))? {}
-/// let motion = verification.into_trajectory().expect("there was a run");
+/// let verification = Verification::new(&scene, 0.01).sampling(Sampling::every(0.01));
+/// let motion = verification.finish(|_| ControlFlow::Continue(()))?;
 /// let achieved = motion.report().achieved.as_ref().unwrap();
 /// assert!(achieved.difference < 0.01 && achieved.known_until == scene.end());
 /// # Ok::<(), pliant::Error>(())
@@ -78,6 +79,21 @@ impl<'a> Verification<'a> {
             runs: 0,
             last: None,
         }
+    }
+
+    /// A verification `within` an accuracy of what a scene file says: its scene, settings, sampling (a hundred samples
+    /// if it requests none) and the quantity that it names, by default the whole motion.
+    ///
+    /// # Errors
+    /// A name of no quantity.
+    #[cfg(feature = "scene-file")]
+    pub fn of_file(file: &'a SceneFile, within: Fraction) -> Result<Self, Error> {
+        let SceneFile { scene, settings, accuracy, output, .. } = file;
+        let quantity = accuracy.quantity.as_deref().unwrap_or("motion");
+        Ok(Self::new(scene, within.0)
+            .settings(settings.clone())
+            .sampling(output.verified_sampling(scene.end()))
+            .quantity(Quantity::named(quantity, scene, &output.sensors)?))
     }
 
     /// How the scene is integrated; `rtol` does not count. Contact events are located, unless `settings` have
@@ -142,14 +158,26 @@ impl<'a> Verification<'a> {
         Ok(difference.is_none_or(|difference| difference > self.accuracy) && !is_tightest)
     }
 
-    /// The motion of the tightest run, if there was one. After its sensors it has the column `difference`
-    /// (m), the root mean square distance of its nodes from the run before at each sample, and for each
-    /// sensor `<sensor>.difference`; its report says what was [achieved](crate::Report::achieved).
-    pub fn into_trajectory(self) -> Option<Trajectory> {
-        self.last.map(|run| run.trajectory)
+    /// Refines until two runs agree, or the tolerance cannot be tighter. Returns the motion of the tightest run, as
+    /// [`trajectory`](Self::trajectory).
+    ///
+    /// # Errors
+    /// As [`refine`](Self::refine).
+    pub fn finish(
+        mut self,
+        mut observer: impl FnMut(&Simulation) -> ControlFlow<()>,
+    ) -> Result<Trajectory, Error> {
+        loop {
+            let goes_on = self.refine(&mut observer)?;
+            if !goes_on && let Some(run) = self.last {
+                return Ok(run.trajectory);
+            }
+        }
     }
 
-    /// As [`into_trajectory`](Self::into_trajectory), of the runs so far.
+    /// The motion of the tightest run so far, if there was one. After its sensors it has the column `difference`
+    /// (m), the root mean square distance of its nodes from the run before at each sample, and for each
+    /// sensor `<sensor>.difference`; its report says what was [achieved](crate::Report::achieved).
     pub fn trajectory(&self) -> Option<&Trajectory> {
         self.last.as_ref().map(|run| &run.trajectory)
     }

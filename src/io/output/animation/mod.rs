@@ -26,7 +26,10 @@ const PAGE: &str = include_str!("page/page.html");
 const MOTIONS: &str = include_str!("page/motions.html");
 /// The body and its colours, in place of `<!--picture-->`: the page of a live motion has the same.
 const PICTURE: &str = include_str!("page/picture.html");
-const STYLE: &str = include_str!("page/page.css");
+const STYLE: &str = concat!(include_str!("page/base.css"), include_str!("page/page.css"));
+/// Colours, letters and cards of all pages.
+#[cfg(feature = "sweep")]
+pub(crate) const BASE_STYLE: &str = include_str!("page/base.css");
 const SCRIPT: &str = concat!(
     include_str!("page/decode.js"),
     include_str!("page/moment.js"),
