@@ -6,11 +6,15 @@
 
 A :class:`Scene` is a body, what surrounds it, and what happens; :meth:`Scene.run` gives its :class:`Motion`,
 :meth:`Scene.start` a :class:`Simulation` that a program drives. :mod:`pliant.words` has builders for the tables of scenes.
-:func:`solve_ivp` integrates any equations, with the signature of SciPy's.
+:func:`solve_ivp` integrates any equations, with the signature of SciPy's, :func:`solve_dae` differential-algebraic ones, and
+:func:`gradient` gives derivatives of what comes of them.
 """
 
+from .adjoint import Gradient, gradient
+from .dae import solve_dae
+from .equations import OdeResult
 from .errors import Error, FileError, InputError, IntegrationError, ModelWarning, NoEquilibrium, SceneError
-from .ivp import OdeResult, solve_ivp
+from .ivp import solve_ivp
 from .mesh import Mesh
 from .motion import Equilibrium, Motion
 from .scene import Scene
@@ -23,6 +27,7 @@ __all__ = [
     "Equilibrium",
     "Error",
     "FileError",
+    "Gradient",
     "InputError",
     "IntegrationError",
     "Mesh",
@@ -34,6 +39,8 @@ __all__ = [
     "SceneError",
     "Simulation",
     "Sweep",
+    "gradient",
+    "solve_dae",
     "solve_ivp",
     "sweep",
 ]

@@ -145,6 +145,17 @@ class Simulation:
             if not advance_to(time) or time >= until:
                 return self.time >= until
 
+    def when(self, event: Callable, action: Callable[[Simulation], bool | None], direction: int = 0) -> None:
+        """Calls ``action(self)`` wherever ``event(time, positions, velocities)`` changes its sign, as of :meth:`advance_until`:
+        upwards (`direction` 1), downwards (-1), or both (0).
+
+        The action reads the motion and gives commands, at exactly that time; if it returns True the advance stops there. While
+        it runs nothing is watched. An exception of the event or the action ends the advance. A motion that is turned back
+        ever sooner, as by an impact, has to be brought to rest by the action below some speed; otherwise the advance ends
+        with an :class:`InputError`. Forks watch nothing.
+        """
+        self._simulation.when(event, lambda: action(self), direction)
+
     def set_pressure(self, chamber: str, pressure: float) -> None:
         """Sets the pressure (Pa) in a chamber."""
         self._simulation.set_pressure(chamber, pressure)

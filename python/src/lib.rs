@@ -12,6 +12,7 @@ mod scene;
 mod simulation;
 mod sweep;
 mod watch;
+mod watched;
 
 use pyo3::prelude::*;
 
@@ -19,7 +20,7 @@ use pyo3::prelude::*;
 #[pymodule]
 mod _pliant {
     #[pymodule_export]
-    use super::integrators::{Run, solve};
+    use super::integrators::{Run, gradient, solve};
     #[pymodule_export]
     use super::motion::Motion;
     #[pymodule_export]

@@ -1,16 +1,18 @@
 //! A scene that a program drives.
 
 use std::path::PathBuf;
-use std::sync::{Mutex, MutexGuard, TryLockError};
+use std::sync::MutexGuard;
 
 use numpy::{PyArray1, PyArray2, PyReadonlyArray2};
-use pliant::{Error, Selection};
-use pyo3::exceptions::PyRuntimeError;
+use pliant::Selection;
+use pliant::simulate::Direction;
+use pyo3::gc::{PyTraverseError, PyVisit};
 use pyo3::prelude::*;
 
 use crate::arrays::vectors;
 use crate::errors::raised;
 use crate::motion::Motion;
+use crate::watched::{Slot, Watched, positions, value};
 
 /// A state of a simulation, to return to.
 #[pyclass(frozen, module = "pliant._pliant")]
@@ -33,7 +35,7 @@ impl Checkpoint {
 /// A scene in motion under the control of a program.
 #[pyclass(frozen, module = "pliant._pliant")]
 pub struct Simulation {
-    inner: Mutex<pliant::Simulation>,
+    inner: Watched,
     title: String,
 }
 
@@ -57,29 +59,11 @@ impl From<Nodes> for Selection {
 
 impl Simulation {
     pub fn new(simulation: pliant::Simulation, title: String) -> Self {
-        Self { inner: Mutex::new(simulation), title }
+        Self { inner: Watched::new(simulation), title }
     }
 
-    fn lock(&self) -> PyResult<MutexGuard<'_, pliant::Simulation>> {
-        match self.inner.try_lock() {
-            Ok(guard) => Ok(guard),
-            // a state that a panic has left is a state, and the simulation says what became of it
-            Err(TryLockError::Poisoned(poisoned)) => Ok(poisoned.into_inner()),
-            Err(TryLockError::WouldBlock) => Err(PyRuntimeError::new_err(
-                "the simulation is at work, in another thread or in the function that it calls: fork() one for each thread",
-            )),
-        }
-    }
-
-    /// What `f` does to the simulation, without Python meanwhile.
-    fn detached<T: Send>(
-        &self,
-        py: Python<'_>,
-        f: impl FnOnce(&mut pliant::Simulation) -> Result<T, Error> + Send,
-    ) -> PyResult<T> {
-        let mut simulation = self.lock()?;
-        let simulation = &mut *simulation;
-        py.detach(|| f(simulation)).map_err(raised)
+    fn lock(&self) -> PyResult<MutexGuard<'_, Slot>> {
+        self.inner.lock()
     }
 }
 
@@ -128,11 +112,7 @@ impl Simulation {
     /// Places of all nodes (m): [node, axis].
     #[getter]
     fn positions<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let simulation = self.lock()?;
-        let view = simulation.view();
-        let natural = view.body().mesh().positions().iter();
-        let places = natural.zip(view.displacements()).map(|(x, u)| x + u).collect();
-        vectors(py, places, view.body().dimension())
+        positions(py, &self.lock()?.view())
     }
 
     /// Mean position (m) of nodes.
@@ -209,49 +189,53 @@ impl Simulation {
 
     /// Takes one step of the integrator; whether the scene goes on.
     fn step(&self, py: Python<'_>) -> PyResult<bool> {
-        self.detached(py, pliant::Simulation::step)
+        self.inner.detached(py, pliant::Simulation::step)
     }
 
     /// Advances to a time (s).
     fn advance_to(&self, py: Python<'_>, time: f64) -> PyResult<bool> {
-        self.detached(py, |simulation| simulation.advance_to(time))
+        self.inner.advancing(py, |simulation| simulation.advance_to(time))
     }
 
     /// Advances by a time (s).
     fn advance_by(&self, py: Python<'_>, dt: f64) -> PyResult<bool> {
-        self.detached(py, |simulation| simulation.advance_by(dt))
+        self.inner.advancing(py, |simulation| simulation.advance_by(dt))
     }
 
     /// Advances to a time (s), at most until `event(time, positions, velocities)` changes its sign; whether it did.
     fn advance_until(&self, py: Python<'_>, time: f64, event: Py<PyAny>) -> PyResult<bool> {
         let mut error = None;
-        let mut simulation = self.lock()?;
         let met = {
-            let (error, simulation) = (&mut error, &mut *simulation);
-            py.detach(move || {
+            let error = &mut error;
+            self.inner.advancing(py, move |simulation| {
                 simulation.advance_until(time, |view| {
-                    Python::attach(|py| {
-                        let body = view.body();
-                        let natural = body.mesh().positions().iter();
-                        let places =
-                            natural.zip(view.displacements()).map(|(x, u)| x + u).collect();
-                        let value = vectors(py, places, body.dimension()).and_then(|places| {
-                            let velocities =
-                                vectors(py, view.velocities().to_vec(), body.dimension())?;
-                            event.call1(py, (view.time(), places, velocities))?.extract(py)
-                        });
-                        value.unwrap_or_else(|raised: PyErr| {
-                            error.get_or_insert(raised);
-                            f64::NAN
-                        })
+                    Python::attach(|py| value(py, &event, view)).unwrap_or_else(|raised| {
+                        error.get_or_insert(raised);
+                        f64::NAN
                     })
                 })
             })
         };
-        match error {
-            Some(error) => Err(error),
-            None => met.map_err(raised),
-        }
+        error.map_or(met, Err)
+    }
+
+    /// Calls `action()` wherever `event(time, positions, velocities)` changes its sign: upwards (1), downwards (-1), or
+    /// both (0). An action that returns True stops the advance.
+    fn when(&self, event: Py<PyAny>, action: Py<PyAny>, direction: i32) -> PyResult<()> {
+        let direction = match direction {
+            1.. => Direction::Rising,
+            0 => Direction::Either,
+            _ => Direction::Falling,
+        };
+        self.inner.when(event, action, direction)
+    }
+
+    fn __traverse__(&self, visit: PyVisit<'_>) -> Result<(), PyTraverseError> {
+        self.inner.traverse(&visit)
+    }
+
+    fn __clear__(&self) {
+        self.inner.clear();
     }
 
     /// Sets the pressure (Pa) in a chamber.

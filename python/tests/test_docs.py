@@ -9,6 +9,9 @@ from pathlib import Path
 import pytest
 
 import pliant
+import pliant.adjoint
+import pliant.dae
+import pliant.ivp
 import pliant.scene
 
 ROOT = Path(__file__).parents[2]
@@ -24,7 +27,7 @@ def test_blocks_of_the_page(number, tmp_path, monkeypatch):
         exec(compile(BLOCKS[number], f"block {number + 1} of docs/python.md", "exec"), {})
 
 
-@pytest.mark.parametrize("module", [pliant.scene, pliant.ivp])
+@pytest.mark.parametrize("module", [pliant.scene, pliant.ivp, pliant.dae, pliant.adjoint])
 def test_docstrings(module):
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", pliant.ModelWarning)

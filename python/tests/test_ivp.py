@@ -118,6 +118,10 @@ def test_compiled_functions():
 
     solution = pliant.solve_ivp(decay, (0.0, 1.0), [1.0], args=(50.0,), rtol=1e-8, atol=1e-12)
     assert abs(solution.y[0, -1] - np.exp(-50.0)) < 1e-9
+    half = pliant.solve_ivp(decay, (0.0, 1.0), [1.0], args=(50.0,), events=lambda t, y, rate: y[0] - 0.5, rtol=1e-8, atol=1e-12)
+    assert abs(half.t_events[0][0] - np.log(2.0) / 50.0) < 1e-9
+    with pytest.raises(ValueError, match="goes forward"):
+        pliant.solve_ivp(decay, (1.0, 0.0), [1.0], args=(50.0,))
 
     @numba.cfunc(types.float64(number))
     def other(t):

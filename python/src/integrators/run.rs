@@ -1,0 +1,99 @@
+//! What a run has computed, as arrays.
+
+use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods};
+use pliant::solve::{End, Solution};
+use pyo3::prelude::*;
+
+use crate::errors::raised;
+
+/// What a run has computed.
+#[pyclass(frozen, module = "pliant._pliant")]
+pub struct Run {
+    pub solution: Solution,
+    pub unknowns: usize,
+    pub failure: Option<String>,
+}
+
+#[pymethods]
+impl Run {
+    /// The times.
+    #[getter]
+    fn t<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        PyArray1::from_slice(py, self.solution.t())
+    }
+
+    /// The states at the times: [time, unknown].
+    #[getter]
+    fn y<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let states = PyArray1::from_slice(py, self.solution.states());
+        states.reshape([self.solution.t().len(), self.unknowns])
+    }
+
+    /// The time derivative of the last state of a DAE; empty otherwise.
+    #[getter]
+    fn last_yp<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        PyArray1::from_slice(py, self.solution.last_yp())
+    }
+
+    /// The sensitivities at the times: [time, parameter, unknown].
+    #[getter]
+    fn sensitivities<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray3<f64>>> {
+        let times = self.solution.t().len();
+        let parameters = self.solution.sensitivities(0).ncols();
+        let all = (0..times).flat_map(|k| self.solution.sensitivities(k).col_iter());
+        let numbers: Vec<f64> = all.flat_map(|column| column.iter().copied()).collect();
+        PyArray1::from_vec(py, numbers).reshape([times, parameters, self.unknowns])
+    }
+
+    /// States at any times within the run: [time, unknown].
+    fn at<'py>(&self, py: Python<'py>, times: Vec<f64>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let mut states = vec![0.0; times.len() * self.unknowns];
+        for (t, y) in times.iter().zip(states.chunks_exact_mut(self.unknowns)) {
+            self.solution.at_into(*t, y).map_err(raised)?;
+        }
+        PyArray1::from_vec(py, states).reshape([times.len(), self.unknowns])
+    }
+
+    /// The events that were met: number, time, state.
+    fn events<'py>(&self, py: Python<'py>) -> Vec<(usize, f64, Bound<'py, PyArray1<f64>>)> {
+        let events = self.solution.events().iter();
+        events.map(|met| (met.event, met.t, PyArray1::from_slice(py, &met.y))).collect()
+    }
+
+    /// Whether an event has ended the run.
+    #[getter]
+    fn ended_by_event(&self) -> bool {
+        matches!(self.solution.end(), End::Event(_))
+    }
+
+    /// Why the run ended early.
+    #[getter]
+    fn failure(&self) -> Option<&str> {
+        self.failure.as_deref()
+    }
+
+    /// Evaluations of the right-hand side, with those for difference quotients.
+    #[getter]
+    fn evaluations(&self) -> u64 {
+        let counts = self.solution.statistics();
+        counts.evaluations + counts.difference_quotient_evaluations
+    }
+
+    /// Evaluations of the Jacobian.
+    #[getter]
+    fn jacobian_evaluations(&self) -> u64 {
+        self.solution.statistics().jacobian_evaluations
+    }
+
+    /// Factorizations of the Newton matrix.
+    #[getter]
+    fn factorizations(&self) -> u64 {
+        self.solution.statistics().linear_setups
+    }
+
+    /// Steps.
+    #[getter]
+    fn steps(&self) -> u64 {
+        self.solution.statistics().steps
+    }
+}
