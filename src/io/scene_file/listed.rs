@@ -44,16 +44,18 @@ const GROUP: TableKeys = TableKeys::new(
 );
 
 /// Words for kinds of cells.
-pub(super) fn kinds() -> [(&'static str, CellKind); 8] {
+pub(super) fn kinds() -> [(&'static str, CellKind); 10] {
     [
         ("segments", CellKind::Segment),
         ("triangles", CellKind::Triangle),
         ("triangles6", CellKind::Triangle6),
         ("quadrilaterals", CellKind::Quadrilateral),
+        ("quadrilaterals9", CellKind::Quadrilateral9),
         ("tetrahedra", CellKind::Tetrahedron),
         ("tetrahedra10", CellKind::Tetrahedron10),
         ("hexahedra", CellKind::Hexahedron),
         ("hexahedra20", CellKind::Hexahedron20),
+        ("hexahedra27", CellKind::Hexahedron27),
     ]
 }
 
