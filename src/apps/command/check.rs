@@ -65,6 +65,7 @@ fn body(scene: &Scene) -> Result<(), Failure> {
     let dilatation = match body.dilatation() {
         Dilatation::AtPoints => "",
         Dilatation::Mean => ", mean dilatation",
+        Dilatation::Linear => ", linear dilatation",
     };
     line("", &format!("{strain} strain, {viscosity} viscosity{dilatation}"))?;
     let labels = std::iter::once("material").chain(std::iter::repeat("region"));

@@ -57,7 +57,9 @@ pub(super) fn quadratic_cells(kind: CellKind) -> Option<&'static str> {
         CellKind::Segment
         | CellKind::Triangle6
         | CellKind::Tetrahedron10
-        | CellKind::Hexahedron20 => None,
+        | CellKind::Quadrilateral9
+        | CellKind::Hexahedron20
+        | CellKind::Hexahedron27 => None,
     }
 }
 

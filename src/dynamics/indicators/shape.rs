@@ -108,7 +108,7 @@ fn area(mesh: &Mesh, face: &[usize]) -> f64 {
     };
     match mesh.kind() {
         kind if kind.dimension() == 2 => along(0, 1).norm(),
-        CellKind::Hexahedron | CellKind::Hexahedron20 => {
+        CellKind::Hexahedron | CellKind::Hexahedron20 | CellKind::Hexahedron27 => {
             0.5 * along(0, 2).cross(&along(1, 3)).norm()
         }
         _ => 0.5 * along(0, 1).cross(&along(0, 2)).norm(),

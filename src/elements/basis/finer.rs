@@ -245,17 +245,19 @@ fn linear(kind: CellKind) -> CellKind {
     match kind {
         CellKind::Triangle6 => CellKind::Triangle,
         CellKind::Tetrahedron10 => CellKind::Tetrahedron,
-        CellKind::Hexahedron20 => CellKind::Hexahedron,
+        CellKind::Quadrilateral9 => CellKind::Quadrilateral,
+        CellKind::Hexahedron20 | CellKind::Hexahedron27 => CellKind::Hexahedron,
         kind => kind,
     }
 }
 
-/// The corners of a cell of a `kind`, and the middles of its edges if it has nodes there.
+/// The corners of a cell of a `kind`, and the middles of its edges, faces and of itself that have nodes.
 fn with_mid_nodes(kind: CellKind, corners: &[Point]) -> Vec<Point> {
     let mut points = corners.to_vec();
     for edge in kind.edges().iter().filter(|edge| edge.len() > 2) {
         points.push(between(&corners[edge[0]], &corners[edge[1]]));
     }
+    points.extend(kind.middles().iter().map(|&[a, b]| between(&corners[a], &corners[b])));
     points
 }
 

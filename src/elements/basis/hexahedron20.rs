@@ -21,7 +21,7 @@ const fn corner([x, y, z]: [f64; 3]) -> ([f64; 3], f64) {
 }
 
 /// Gauss's rule with three points along each axis.
-const CUBE: [([f64; 3], f64); 27] = {
+pub(super) const CUBE: [([f64; 3], f64); 27] = {
     let line = Segment3::MASS_RULE;
     let mut rule = [([0.0; 3], 0.0); 27];
     let mut k = 0;

@@ -9,9 +9,11 @@
 mod finer;
 mod hexahedron;
 mod hexahedron20;
+mod hexahedron27;
 mod locate;
 mod quadrilateral;
 mod quadrilateral8;
+mod quadrilateral9;
 mod recovery;
 mod reference;
 mod segment;
@@ -28,9 +30,11 @@ use nalgebra::{SMatrix, SVector};
 pub(crate) use finer::Finer;
 pub(crate) use hexahedron::Hexahedron;
 pub(crate) use hexahedron20::Hexahedron20;
+pub(crate) use hexahedron27::Hexahedron27;
 pub(crate) use locate::{shares_at, shares_in};
 pub(crate) use quadrilateral::Quadrilateral;
 pub(crate) use quadrilateral8::Quadrilateral8;
+pub(crate) use quadrilateral9::Quadrilateral9;
 pub(crate) use recovery::extrapolation;
 pub(crate) use reference::ReferenceCell;
 pub(crate) use segment::Segment;
@@ -58,10 +62,13 @@ macro_rules! with_element {
             (Kind::Triangle6, _) => $function::<Triangle6, 6, 2, 3, 3>($($argument),*),
             (Kind::Quadrilateral, 2) => $function::<Quadrilateral, 4, 2, 2, 4>($($argument),*),
             (Kind::Quadrilateral, _) => $function::<Quadrilateral, 4, 2, 3, 4>($($argument),*),
+            (Kind::Quadrilateral9, 2) => $function::<Quadrilateral9, 9, 2, 2, 9>($($argument),*),
+            (Kind::Quadrilateral9, _) => $function::<Quadrilateral9, 9, 2, 3, 9>($($argument),*),
             (Kind::Tetrahedron, _) => $function::<Tetrahedron, 4, 3, 3, 1>($($argument),*),
             (Kind::Tetrahedron10, _) => $function::<Tetrahedron10, 10, 3, 3, 4>($($argument),*),
             (Kind::Hexahedron, _) => $function::<Hexahedron, 8, 3, 3, 8>($($argument),*),
             (Kind::Hexahedron20, _) => $function::<Hexahedron20, 20, 3, 3, 14>($($argument),*),
+            (Kind::Hexahedron27, _) => $function::<Hexahedron27, 27, 3, 3, 27>($($argument),*),
         }
     }};
 }

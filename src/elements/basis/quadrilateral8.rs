@@ -55,7 +55,7 @@ fn along(node: f64, x: f64) -> (f64, f64) {
 pub(crate) struct Quadrilateral8;
 
 /// Gauss's rule with three points along each axis.
-const RULE: [([f64; 2], f64); 9] = {
+pub(super) const RULE: [([f64; 2], f64); 9] = {
     let line = Segment3::MASS_RULE;
     let mut rule = [([0.0; 2], 0.0); 9];
     let mut k = 0;

@@ -1,6 +1,7 @@
 //! One interface to the elements of all kinds of cells and dimensions.
 
 use super::branches::Branched;
+use super::dilatation::Dilatation;
 use super::elements::ElementsOf;
 use super::fibres::Reinforced;
 use super::fields::Fields;
@@ -29,17 +30,17 @@ impl<T> Elements for T where
 pub(super) fn elements(
     mesh: &Mesh,
     section: f64,
-    mean_dilatation: bool,
+    dilatation: Dilatation,
     pattern: &NodePattern,
 ) -> Result<Box<dyn Elements>, InputError> {
-    with_element!(mesh.kind(), mesh.dimension(), of(mesh, section, mean_dilatation, pattern))
+    with_element!(mesh.kind(), mesh.dimension(), of(mesh, section, dilatation, pattern))
 }
 
 fn of<C: ReferenceCell<N, M>, const N: usize, const M: usize, const D: usize, const Q: usize>(
     mesh: &Mesh,
     section: f64,
-    mean_dilatation: bool,
+    dilatation: Dilatation,
     pattern: &NodePattern,
 ) -> Result<Box<dyn Elements>, InputError> {
-    Ok(Box::new(ElementsOf::<N, M, D, Q>::new::<C>(mesh, section, mean_dilatation, pattern)?))
+    Ok(Box::new(ElementsOf::<N, M, D, Q>::new::<C>(mesh, section, dilatation, pattern)?))
 }

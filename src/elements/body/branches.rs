@@ -10,11 +10,11 @@
 //! (... + gamma^2 sum B^T C P B) xv = ... + gamma sum B^T C P rG
 //! ```
 //!
-//! With a mean dilatation the stress at a point takes the trace of E - G as its mean over the cell; no other
-//! equation does.
+//! With a projected dilatation the stress at a point takes the projected trace of E - G; no other equation does.
 
 use super::elements::{ElementsOf, gradient};
 use super::forces::{collect, relative};
+use super::projection::{COEFFICIENTS, Projected};
 use super::regions::Regions;
 use super::tangents::add_blocks;
 use crate::base::sparse::{BlockMatrix, Rows};
@@ -139,28 +139,34 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<
                 |count: usize| branches[..count].iter().map(Relaxing::components).sum::<usize>();
             let all = of_point(branches.len());
             let own = |point: usize, branch: usize| of_cells + point * all + of_point(branch);
-            // each branch has its own mean over the cell
-            let together = if self.mean_dilatation { 1 } else { branches.len() };
+            // each branch has its own projection
+            let together = if self.is_projected() { 1 } else { branches.len() };
             for start in (0..branches.len()).step_by(together) {
-                let mean = self.mean_dilatation.then(|| {
-                    let (mut sums, mut volume) = ([0.0; K], 0.0);
+                let projected = self.is_projected().then(|| {
+                    let (mut sums, mut volume) = ([Projected::new(0.0); K], 0.0);
                     for (q, point) in self.points(cell).enumerate() {
                         let (branch, first) = (&branches[start], own(q, start));
                         let strains = strains(&Site::new(branch, &point, &x, cell, first));
+                        let modes = self.modes_of(cell, q);
                         for k in 0..K {
-                            sums[k] += point.volume * trace::<M>(&strains[k]);
+                            sums[k].add(point.volume * trace::<M>(&strains[k]), modes.as_ref());
                         }
                         volume += point.volume;
                     }
-                    sums.map(|sum| sum / volume)
+                    sums.map(|sum| sum.over(volume))
                 });
                 for (q, point) in self.points(cell).enumerate() {
                     let mut first = own(q, start);
+                    let modes = self.modes_of(cell, q);
                     for branch in &branches[start..start + together] {
                         let site = Site::new(branch, &point, &x, cell, first);
                         let strains = strains(&site);
-                        let traces =
-                            mean.unwrap_or_else(|| strains.map(|strain| trace::<M>(&strain)));
+                        let traces = match &projected {
+                            Some(projected) => {
+                                projected.map(|function| function.at(modes.as_ref()))
+                            }
+                            None => strains.map(|strain| trace::<M>(&strain)),
+                        };
                         let stretch = |k: usize| Stretch { strain: strains[k], trace: traces[k] };
                         work(&site, std::array::from_fn(stretch));
                         first += branch.components();
@@ -191,34 +197,37 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<
         }
     }
 
-    /// Adds the tangents of the mean dilatation of each cell: lambda/V G_a G_b^T with G_a = sum w F g_a,
-    /// times the `part` of a step that passes to the spring of a branch.
-    fn add_mean_tangents(
+    /// Adds the tangents of the projected dilatation of each cell: lambda/V sum G_a G_b^T over its functions p, with
+    /// G_a = sum w p F g_a, times the `part` of a step that passes to the spring of a branch.
+    fn add_volume_tangents(
         &self,
         regions: &Regions,
         gamma: f64,
         u: &[f64],
         stiffness: &mut Rows<'_, D>,
     ) {
-        let (mut swelling, mut volume, mut points) = ([[0.0; D]; N], 0.0, 0);
+        let (mut swelling, mut volume, mut points) = ([[[0.0; D]; N]; COEFFICIENTS], 0.0, 0);
         self.visit(
             regions,
             u,
             |_| [],
             |Site { branch, point, at, cell, .. }, []| {
                 let of_point = at.swelling(&point.gradients, point.volume);
-                for (sum, part) in
-                    swelling.as_flattened_mut().iter_mut().zip(of_point.as_flattened())
-                {
-                    *sum += part;
+                let modes = self.modes_of(*cell, points);
+                let values = std::iter::once(1.0).chain(modes.into_iter().flatten());
+                for (value, sums) in values.zip(&mut swelling) {
+                    let sums = sums.as_flattened_mut().iter_mut();
+                    sums.zip(of_point.as_flattened()).for_each(|(sum, part)| *sum += value * part);
                 }
                 (volume, points) = (volume + point.volume, points + 1);
                 if points == Q {
                     // flow above a yield stress keeps the volume: the part is that without strain
                     let part = branch.step::<M>(gamma, &Components::default()).part;
                     let share = part * branch.lambda() / volume;
-                    add_blocks(&self.entries[*cell], stiffness, &OfMean { swelling, share });
-                    (swelling, volume, points) = ([[0.0; D]; N], 0.0, 0);
+                    for swelling in swelling.into_iter().take(self.coefficients()) {
+                        add_blocks(&self.entries[*cell], stiffness, &OfVolume { swelling, share });
+                    }
+                    (swelling, volume, points) = ([[[0.0; D]; N]; COEFFICIENTS], 0.0, 0);
                 }
             },
         );
@@ -226,12 +235,12 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<
 }
 
 /// `share` G_a G_b^T
-struct OfMean<const N: usize, const D: usize> {
+struct OfVolume<const N: usize, const D: usize> {
     swelling: [[f64; D]; N],
     share: f64,
 }
 
-impl<const N: usize, const D: usize> Blocks<f64, D> for OfMean<N, D> {
+impl<const N: usize, const D: usize> Blocks<f64, D> for OfVolume<N, D> {
     fn block(&self, a: usize, b: usize) -> Block<f64, D> {
         let Self { swelling, share } = self;
         std::array::from_fn(|i| swelling[b].map(|along| share * swelling[a][i] * along))
@@ -298,13 +307,13 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Branched
         self.visit(regions, u, apart, |site, [apart]| {
             let Site { branch, point, at, cell, .. } = site;
             let step = branch.step::<M>(gamma, &apart.strain);
-            let lambda = if self.mean_dilatation { 0.0 } else { branch.lambda() };
+            let lambda = if self.is_projected() { 0.0 } else { branch.lambda() };
             let tangent =
                 branch.tangent(at, &apart, (&step, lambda), &point.gradients, point.volume);
             add_blocks(&self.entries[*cell], &mut stiffness, &tangent);
         });
-        if self.mean_dilatation {
-            self.add_mean_tangents(regions, gamma, u, &mut stiffness);
+        if self.is_projected() {
+            self.add_volume_tangents(regions, gamma, u, &mut stiffness);
         }
     }
 
@@ -316,7 +325,7 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Branched
         residuals: &[f64],
         right: &mut [f64],
     ) {
-        // the part that passes differs from point to point, so that the mean includes it
+        // the part that passes differs from point to point, so that the projection includes it
         let passed = |site: &Site<'_, N, M, D>| {
             let step = site.step(gamma, internal);
             let passed = step.passed::<M>(&site.own(residuals));
@@ -324,7 +333,7 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Branched
         };
         self.visit(regions, u, passed, |site, [mut passed, whole]| {
             let part = site.step(gamma, internal).part;
-            if self.mean_dilatation {
+            if self.is_projected() {
                 passed.trace = whole.trace / part;
             }
             let stress = site.branch.stress(&site.at, &passed, site.point.volume);

@@ -81,8 +81,8 @@ impl BodyBuilder {
         self
     }
 
-    /// Where a change of volume is resisted: at each point (default), or in the mean over each cell, which
-    /// does not lock where the body is nearly incompressible.
+    /// Where a change of volume is resisted: at each point (default), or projected onto few functions of each cell,
+    /// which does not lock where the body is nearly incompressible.
     pub fn dilatation(mut self, dilatation: Dilatation) -> Self {
         self.recipe.dilatation = dilatation;
         self
@@ -140,8 +140,8 @@ impl BodyBuilder {
         }
 
         let pattern = Arc::new(NodePattern::new(mesh.node_count(), mesh.cells()));
-        let mean = recipe.dilatation.is_mean(mesh.kind(), mesh.dimension(), plane)?;
-        let elements = elements(&mesh, section, mean, &pattern)?;
+        recipe.dilatation.check(mesh.kind(), mesh.dimension(), plane)?;
+        let elements = elements(&mesh, section, recipe.dilatation, &pattern)?;
         let mut inertia = NodeMatrix::zeros(&pattern);
         let mut stiffness = BlockMatrix::zeros(&pattern, mesh.dimension());
         let mut damping = stiffness.clone();

@@ -8,49 +8,68 @@ use crate::elements::mesh::CellKind;
 ///
 /// A nearly incompressible body (rubber, Poisson's ratio above 0.45) has to keep its volume wherever that is
 /// evaluated. At each point of a cell these are more conditions than its nodes can meet: the cell locks, and
-/// bends too little. In the mean over the cell it is one condition per cell. ("Mean dilatation", B-bar of
-/// linear elasticity, Q1-P0: J. C. Nagtegaal, D. M. Parks, J. R. Rice, Computer Methods in Applied Mechanics
-/// and Engineering 4 (1974) 153-177; J. C. Simo, R. L. Taylor, K. S. Pister, ibid. 51 (1985) 177-208.) The
-/// law's energy U of the volume is taken at the mean of its measure: of J with the laws of rubber, of
-/// tr(U - I) with the corotated law, of tr E with linear elasticity, St. Venant-Kirchhoff material and
-/// Maxwell branches. Energy is conserved, and tangents are symmetric, as without it.
+/// bends too little. Projected onto few functions of the cell they are few: one for the mean, one and one more for each
+/// axis of space for linear functions. The law's energy U of the volume is taken at the projection of its measure: of J
+/// with the laws of rubber, of tr(U - I) with the corotated law, of tr E with linear elasticity, St. Venant-Kirchhoff
+/// material and Maxwell branches. Energy is conserved, and tangents are symmetric, as without it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Dilatation {
     /// At each point of a cell.
     #[default]
     AtPoints,
-    /// In the mean over each cell: for quadrilaterals and hexahedra, and for quadratic triangles, tetrahedra
-    /// and hexahedra.
+    /// In the mean over each cell ("mean dilatation", B-bar of linear elasticity, Q1-P0: J. C. Nagtegaal, D. M. Parks,
+    /// J. R. Rice, Computer Methods in Applied Mechanics and Engineering 4 (1974) 153-177; J. C. Simo, R. L. Taylor,
+    /// K. S. Pister, ibid. 51 (1985) 177-208): for quadrilaterals and hexahedra, and for quadratic triangles and
+    /// tetrahedra.
     Mean,
+    /// Projected onto linear functions of the undeformed position in each cell (Q2/P-1, with a discontinuous linear
+    /// pressure; D. Boffi, L. Gastaldi, Mathematical Models and Methods in Applied Sciences 12 (2002) 1589-1603): for
+    /// quadratic hexahedra and quadrilaterals.
+    Linear,
 }
 
 impl Dilatation {
-    /// Whether it is the mean, in cells of this kind.
-    ///
+    /// Name: `points`, `mean`, `linear`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::AtPoints => "points",
+            Self::Mean => "mean",
+            Self::Linear => "linear",
+        }
+    }
+
     /// # Errors
-    /// Cells with one point, for which it would be the same, and bodies that are free to change their
-    /// thickness.
-    pub(super) fn is_mean(
+    /// Cells that cannot have it, or for which it would be the same, and bodies that are free to change their thickness.
+    pub(super) fn check(
         self,
         kind: CellKind,
         dimension: usize,
         plane: Plane,
-    ) -> Result<bool, InputError> {
+    ) -> Result<(), InputError> {
         let help = match kind {
-            _ if self == Self::AtPoints => return Ok(false),
-            CellKind::Triangle | CellKind::Tetrahedron => {
-                "linear triangles and tetrahedra have one point each: nothing changes for them. Take quadratic ones, \
-                 quadrilaterals or hexahedra"
-            }
+            _ if self == Self::AtPoints => return Ok(()),
             _ if kind.dimension() < dimension.max(2) => {
                 "membranes and strings are free to change their thickness and do not lock: leave it out"
             }
             _ if kind.dimension() == 2 && plane == Plane::Stress => {
                 "bodies in plane stress are free to change their thickness and do not lock: leave it out"
             }
-            _ => return Ok(true),
+            CellKind::Triangle | CellKind::Tetrahedron => {
+                "linear triangles and tetrahedra have one point each: nothing changes for them. Take quadratic ones, \
+                 quadrilaterals or hexahedra"
+            }
+            _ if self == Self::Mean => return Ok(()),
+            CellKind::Quadrilateral9 | CellKind::Hexahedron20 | CellKind::Hexahedron27 => {
+                return Ok(());
+            }
+            CellKind::Triangle6 | CellKind::Tetrahedron10 => {
+                "triangles and tetrahedra lock with a linear dilatation, too: take \"mean\""
+            }
+            _ => {
+                "linear cells lock with a linear dilatation, too: take \"mean\", or quadratic cells"
+            }
         };
-        Err(InputError::new("dilatation", "mean", help))
+        Err(InputError::new("dilatation", self.name(), help))
     }
 }
 

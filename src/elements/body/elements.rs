@@ -11,7 +11,9 @@
 use pulp::Simd;
 
 use super::contiguous::ContiguousCells;
+use super::dilatation::Dilatation;
 use super::partition::Partition;
+use super::projection::{linear_modes, modes_side_by_side};
 use crate::base::input::InputError;
 use crate::base::lane::{Lane, Packed, SIDE_BY_SIDE};
 use crate::base::sparse::NodePattern;
@@ -37,14 +39,16 @@ pub(super) struct ElementsOf<const N: usize, const M: usize, const D: usize, con
     /// For each cell, sum w N_a N_b (m^3).
     pub(super) products: Vec<[[f64; N]; N]>,
     pub(super) quadratic: bool,
-    /// Whether a change of volume is resisted in the mean over each cell.
-    pub(super) mean_dilatation: bool,
+    /// Where a change of volume is resisted.
+    pub(super) dilatation: Dilatation,
+    /// The linear modes of a projected dilatation at the strain points, stored as these are; empty if it has none.
+    pub(super) modes: Vec<[Packed; M]>,
     pub(super) shares: Partition,
     pub(super) rows: ContiguousCells<N>,
 }
 
 impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<N, M, D, Q> {
-    /// Whether a mean dilatation differs from that of the points; where it does not, no loops are compiled
+    /// Whether a projected dilatation differs from that of the points; where it does not, no loops are compiled
     /// for it.
     pub(super) const CAN_LOCK: bool = M == D && M > 1 && Q > 1;
 
@@ -53,17 +57,28 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<
     pub(super) fn new<C: ReferenceCell<N, M>>(
         mesh: &Mesh,
         section: f64,
-        mean_dilatation: bool,
+        dilatation: Dilatation,
         pattern: &NodePattern,
     ) -> Result<Self, InputError> {
         const { assert!(C::STIFFNESS_RULE.len() == Q) };
         let positions = mesh.positions().as_chunks::<D>().0;
+        let values: [[f64; N]; Q] = std::array::from_fn(|q| C::values(C::STIFFNESS_RULE[q].0));
         let (mut nodes, mut points, mut products) = (Vec::new(), Vec::new(), Vec::new());
+        let mut modes = Vec::new();
         let mut entries = Vec::with_capacity(mesh.cell_count());
         for (number, cell) in mesh.cells().enumerate() {
             let natural: [[f64; D]; N] = std::array::from_fn(|a| positions[cell[a]]);
             let of_cell = strain_points::<C, N, M, D>(&natural)
                 .map_err(|volume| bad_cell(number, cell, volume))?;
+            if dilatation == Dilatation::Linear {
+                modes.push(linear_modes::<M, Q>(&std::array::from_fn(|q| {
+                    // such cells fill space
+                    let position = std::array::from_fn(|k| {
+                        (0..N).map(|a| values[q][a] * natural[a][k]).sum::<f64>()
+                    });
+                    (position, of_cell[q].volume)
+                })));
+            }
             points.extend(
                 of_cell
                     .into_iter()
@@ -85,7 +100,7 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<
             nodes.push(std::array::from_fn(|a| cell[a]));
         }
         let points = side_by_side::<N, M, D, Q>(&points);
-        let values = std::array::from_fn(|q| C::values(C::STIFFNESS_RULE[q].0));
+        let modes = modes_side_by_side(&modes);
         let quadratic = mesh.kind().is_quadratic();
         let shares = Partition::new(&nodes, mesh.node_count());
         let rows = ContiguousCells::new(&nodes);
@@ -97,7 +112,8 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<
             extrapolation: extrapolation::<C, N, M, Q>(),
             products,
             quadratic,
-            mean_dilatation,
+            dilatation,
+            modes,
             shares,
             rows,
         })
@@ -119,7 +135,8 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<
             extrapolation: self.extrapolation,
             products: cells.iter().map(|&cell| self.products[cell]).collect(),
             quadratic: self.quadratic,
-            mean_dilatation: false,
+            dilatation: Dilatation::AtPoints,
+            modes: Vec::new(),
             shares: Partition::new(&nodes, node_count),
             rows: ContiguousCells::new(&nodes),
             nodes,

@@ -5,6 +5,7 @@ use std::ops::Range;
 use pulp::{Arch, Simd, WithSimd};
 
 use super::elements::{ElementsOf, gradient};
+use super::projection::Projected;
 use super::regions::Regions;
 use crate::base::lane::{Lane, SIDE_BY_SIDE};
 use crate::elements::material::{CellLaw, Deformation, Elastic};
@@ -50,29 +51,39 @@ impl<L: CellLaw, const N: usize, const M: usize, const D: usize, const Q: usize>
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> f64 {
         let Self { elements, cells, u, law, mut sum } = self;
-        let is_mean = const { ElementsOf::<N, M, D, Q>::CAN_LOCK } && elements.mean_dilatation;
+        let is_projected = const { ElementsOf::<N, M, D, Q>::CAN_LOCK } && elements.is_projected();
         let abreast = elements.abreast();
         let zero = Lane::splat(simd, 0.0);
         for register in cells.start / S::F64_LANES..cells.end.div_ceil(S::F64_LANES) {
             let start = register * S::F64_LANES;
             let (block, part) = (start / SIDE_BY_SIDE, start % SIDE_BY_SIDE / S::F64_LANES);
             let x = elements.gather(simd, start, u);
-            let (mut energy, mut swelling, mut whole) = (zero, zero, zero);
-            for point in &abreast[block] {
-                let point = point.lane(simd, part);
+            let (mut energy, mut dilatation, mut whole) = (zero, Projected::new(zero), zero);
+            for q in 0..Q {
+                let point = abreast[block][q].lane(simd, part);
                 let at = Deformation::new(point.frame, gradient(1, &x, &point.gradients));
-                if is_mean {
-                    let [of_shape, dilatation] = law.shape_and_volume(&at);
+                if is_projected {
+                    let [of_shape, of_point] = law.shape_and_volume(&at);
                     energy += point.volume * of_shape;
-                    swelling += point.volume * dilatation;
+                    let modes = elements.modes_of_lane(simd, block, part, q);
+                    dilatation.add(point.volume * of_point, modes.as_ref());
                     whole += point.volume;
                 } else {
                     energy += point.volume * law.energy_at(&at);
                 }
             }
-            if is_mean {
-                let [of_mean, ..] = law.of_mean(swelling / whole);
-                energy += of_mean * whole;
+            if is_projected {
+                let dilatation = dilatation.over(whole);
+                if elements.modes.is_empty() {
+                    let [of_mean, ..] = law.of_projected(dilatation.mean);
+                    energy += of_mean * whole;
+                } else {
+                    for q in 0..Q {
+                        let modes = elements.modes_of_lane(simd, block, part, q);
+                        let [of_volume, ..] = law.of_projected(dilatation.at(modes.as_ref()));
+                        energy += of_volume * Lane::load(simd, &abreast[block][q].volume.0, part);
+                    }
+                }
             }
             let mut numbers = [0.0; SIDE_BY_SIDE];
             energy.store(&mut numbers, 0);

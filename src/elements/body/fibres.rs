@@ -88,7 +88,7 @@ impl<const N: usize, const D: usize, const Q: usize> Strings for ElementsOf<N, 1
     fn add_forces(&self, law: &Fibre, u: &[f64], forces: &mut [f64]) -> Result<(), Failure> {
         let u = u.as_chunks::<D>().0;
         self.share_out(forces, |run, first, forces| {
-            self.add(run.clone(), [u], first, forces, ElasticStress { law, is_mean: false })
+            self.add(run.clone(), [u], first, forces, ElasticStress { law, is_projected: false })
         })
     }
 
@@ -102,7 +102,12 @@ impl<const N: usize, const D: usize, const Q: usize> Strings for ElementsOf<N, 1
         let u = u.as_chunks::<D>().0;
         self.shares.each(stiffness.rows_mut::<D>(), damping.rows_mut(), &|share, mut rows, _| {
             for run in &self.shares.cells[share] {
-                self.add_to(&mut rows, run.clone(), [u], ElasticTangent { law, is_mean: false });
+                self.add_to(
+                    &mut rows,
+                    run.clone(),
+                    [u],
+                    ElasticTangent { law, is_projected: false },
+                );
             }
         });
     }

@@ -20,6 +20,7 @@ pub use nodal::NodalField;
 pub(super) use nodal::{Probe, nodal_fields};
 
 use super::elements::{ElementsOf, gradient};
+use super::projection::Projected;
 use super::regions::Regions;
 use crate::base::vector::norm;
 use crate::elements::material::{Deformation, ElasticLaw, Strain, with_law};
@@ -116,8 +117,10 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Fields
     fn fields(&self, regions: &Regions, u: &[f64]) -> Vec<CellField> {
         let of_cell = |cell| {
             with_law!(regions.of(cell).elastic, law => {
-                let pull = self.pull_on(&law, cell, u);
-                mean(self.deformed(cell, u).map(|(volume, at)| (volume, PointField::new(&law, &at, pull))))
+                let of_volume = self.of_volume(&law, cell, u);
+                mean(self.deformed(cell, u).enumerate().map(|(q, (volume, at))| {
+                    (volume, PointField::new(&law, &at, of_volume.map(|points| points[q])))
+                }))
             })
         };
         (0..self.nodes.len()).map(of_cell).collect()
@@ -132,9 +135,10 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Fields
     ) {
         let mut at_nodes = [Tensors::default(); N];
         with_law!(regions.of(cell).elastic, law => {
-            let pull = self.pull_on(&law, cell, u);
+            let of_volume = self.of_volume(&law, cell, u);
             for (q, (_, at)) in self.deformed(cell, u).enumerate() {
-                let PointField { tensors, .. } = PointField::new(&law, &at, pull);
+                let PointField { tensors, .. } =
+                    PointField::new(&law, &at, of_volume.map(|points| points[q]));
                 for (sum, factors) in at_nodes.iter_mut().zip(&self.extrapolation) {
                     sum.add(&tensors, factors[q]);
                 }
@@ -196,26 +200,39 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<
     }
 }
 
-/// What a mean dilatation gives at the points of its cell.
-#[derive(Clone, Copy)]
-struct OfMean {
-    /// U' there, and U (J/m^3).
+/// What a projected dilatation gives at a point of its cell.
+#[derive(Clone, Copy, Default)]
+struct OfVolume {
+    /// U', projected, and U (J/m^3).
     pull: f64,
     energy: f64,
 }
 
 impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<N, M, D, Q> {
-    /// The values for a cell, if it has a mean dilatation.
-    fn pull_on<L: ElasticLaw>(&self, law: &L, cell: usize, u: &[f64]) -> Option<OfMean> {
-        let of_mean = || {
-            let sums = self.deformed(cell, u).fold([0.0; 2], |[sum, whole], (volume, at)| {
-                let point = law.point(L::twice_strain(&at));
-                [sum + volume * law.dilatation(&point), whole + volume]
-            });
-            let [energy, pull, _] = law.of_volume(sums[0] / sums[1]);
-            OfMean { pull, energy }
-        };
-        self.mean_dilatation.then(of_mean)
+    /// The values at the points of a cell, if it has a projected dilatation.
+    fn of_volume<L: ElasticLaw>(&self, law: &L, cell: usize, u: &[f64]) -> Option<[OfVolume; Q]> {
+        if !self.is_projected() {
+            return None;
+        }
+        let (mut sum, mut whole) = (Projected::new(0.0), 0.0);
+        for (q, (volume, at)) in self.deformed(cell, u).enumerate() {
+            let point = law.point(L::twice_strain(&at));
+            sum.add(volume * law.dilatation(&point), self.modes_of(cell, q).as_ref());
+            whole += volume;
+        }
+        let dilatation = sum.over(whole);
+        let (mut pull, mut points) = (Projected::new(0.0), [OfVolume::default(); Q]);
+        for (q, point) in self.points(cell).enumerate() {
+            let modes = self.modes_of(cell, q);
+            let [energy, at_point, _] = law.of_volume(dilatation.at(modes.as_ref()));
+            pull.add(point.volume * at_point, modes.as_ref());
+            points[q].energy = energy;
+        }
+        let pull = pull.over(whole);
+        for (q, point) in points.iter_mut().enumerate() {
+            point.pull = pull.at(self.modes_of(cell, q).as_ref());
+        }
+        Some(points)
     }
 }
 
@@ -249,15 +266,15 @@ impl PointField {
     fn new<L: ElasticLaw, const M: usize, const D: usize>(
         law: &L,
         at: &Deformation<f64, M, D>,
-        mean: Option<OfMean>,
+        of_volume: Option<OfVolume>,
     ) -> Self {
         let twice_strain = L::twice_strain(at);
         let point = law.point(twice_strain);
-        let pull = mean.map(|mean| mean.pull);
+        let pull = of_volume.map(|at| at.pull);
         let [strain_across, stress_across] = law.across(&point, pull);
-        let energy_density = match mean {
+        let energy_density = match of_volume {
             None => law.energy(&point),
-            Some(mean) => law.energy_of_shape(&point) + mean.energy,
+            Some(of_volume) => law.energy_of_shape(&point) + of_volume.energy,
         };
         let swelling = match L::SMALL_STRAIN {
             true => 1.0,

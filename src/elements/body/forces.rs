@@ -18,6 +18,7 @@ use rayon::prelude::*;
 
 use super::contiguous;
 use super::elements::{ElementsOf, gradients};
+use super::projection::Projected;
 use super::regions::{Laws, Regions};
 use crate::base::lane::{Lane, SIDE_BY_SIDE};
 use crate::base::tensor::{Matrix, Real};
@@ -76,20 +77,20 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Forces
         if terms.elastic {
             self.share_out(&mut forces.conservative, |run, first, forces| {
                 regions.runs(run).try_for_each(|(cells, laws)| {
-                    let is_mean = self.mean_dilatation;
+                    let is_projected = self.is_projected();
                     match &laws.elastic {
                         Elastic::Linear(law) => {
-                            self.add(cells, [u], first, forces, ElasticStress { law, is_mean })
+                            self.add(cells, [u], first, forces, ElasticStress { law, is_projected })
                         }
                         Elastic::StVenantKirchhoff(law) => {
-                            self.add(cells, [u], first, forces, ElasticStress { law, is_mean })
+                            self.add(cells, [u], first, forces, ElasticStress { law, is_projected })
                         }
                         // a call would cost a seventh of so short a formula
                         Elastic::ByPoint(ByPoint::Rivlin(law)) => {
-                            self.add(cells, [u], first, forces, ElasticStress { law, is_mean })
+                            self.add(cells, [u], first, forces, ElasticStress { law, is_projected })
                         }
                         Elastic::ByPoint(law) => {
-                            self.add(cells, [u], first, forces, ElasticStress { law, is_mean })
+                            self.add(cells, [u], first, forces, ElasticStress { law, is_projected })
                         }
                     }
                 })
@@ -98,7 +99,8 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Forces
         if terms.viscous {
             self.share_out(&mut forces.dissipative, |run, first, forces| {
                 regions.runs(run).try_for_each(|(cells, laws)| {
-                    let pull = ViscousStress { law: &laws.viscous, is_mean: self.mean_dilatation };
+                    let pull =
+                        ViscousStress { law: &laws.viscous, is_projected: self.is_projected() };
                     self.add(cells, [u, v], first, forces, pull)
                 })
             })?;
@@ -119,7 +121,13 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Forces
             self.share_out(forces, |run, first, forces| {
                 regions.runs(run).try_for_each(|(cells, laws)| {
                     let law: Linear = Hookean(hooke(laws));
-                    self.add(cells, [x], first, forces, ElasticStress { law: &law, is_mean: false })
+                    self.add(
+                        cells,
+                        [x],
+                        first,
+                        forces,
+                        ElasticStress { law: &law, is_projected: false },
+                    )
                 })
             })
         };
@@ -228,25 +236,44 @@ impl<
             for k in 0..K {
                 x[k] = elements.gather(simd, start, fields[k]);
             }
-            let mut pull_of_mean = None;
-            if const { ElementsOf::<N, M, D, Q>::CAN_LOCK } && pull.is_mean() {
-                let (mut sum, mut volume) = (zero, zero);
-                for point in &abreast[block] {
-                    let point = point.lane(simd, part);
+            let mut projected = None;
+            if const { ElementsOf::<N, M, D, Q>::CAN_LOCK } && pull.is_projected() {
+                let (mut sum, mut volume) = (Projected::new(zero), zero);
+                for q in 0..Q {
+                    let point = abreast[block][q].lane(simd, part);
                     let gradients = gradients(1, &x, &point.gradients);
                     let at = Deformation::new(point.frame, gradients[0]);
-                    sum += pull.dilatation(&at, &gradients) * point.volume;
+                    let modes = elements.modes_of_lane(simd, block, part, q);
+                    sum.add(pull.dilatation(&at, &gradients) * point.volume, modes.as_ref());
                     volume += point.volume;
                 }
-                pull_of_mean = Some(pull.of_mean(sum / volume));
+                let dilatation = sum.over(volume);
+                let mut of_volume = Projected::new(zero);
+                if elements.modes.is_empty() {
+                    of_volume.mean = pull.of_volume(dilatation.mean);
+                } else {
+                    for q in 0..Q {
+                        let modes = elements.modes_of_lane(simd, block, part, q);
+                        let at_point = pull.of_volume(dilatation.at(modes.as_ref()));
+                        let of_point = Lane::load(simd, &abreast[block][q].volume.0, part);
+                        of_volume.add(at_point * of_point, modes.as_ref());
+                    }
+                    of_volume = of_volume.over(volume);
+                }
+                projected = Some(of_volume);
             }
             let mut pulls = [[Lane::splat(simd, -0.0); D]; N];
             let mut is_inside = true;
-            for point in &abreast[block] {
-                let point = point.lane(simd, part);
+            for q in 0..Q {
+                let point = abreast[block][q].lane(simd, part);
                 let gradients = gradients(1, &x, &point.gradients);
                 let at = Deformation::new(point.frame, gradients[0]);
-                let (stress, domain) = pull.stress(&at, &gradients, pull_of_mean, point.volume);
+                let mut of_volume = None;
+                if let Some(projected) = &projected {
+                    let modes = elements.modes_of_lane(simd, block, part, q);
+                    of_volume = Some(projected.at(modes.as_ref()));
+                }
+                let (stress, domain) = pull.stress(&at, &gradients, of_volume, point.volume);
                 is_inside &= domain.are_positive();
                 collect(&point.gradients, &stress, &mut pulls);
             }

@@ -16,6 +16,7 @@ mod gather;
 mod inertia;
 mod partition;
 mod polynomial;
+mod projection;
 mod recipe;
 mod recovery;
 mod regions;

@@ -12,8 +12,8 @@ use crate::elements::material::{Deformation, Strain};
 /// Elements whose strains can be made continuous.
 pub(super) trait Recovery {
     /// Strain energy (J), and that of the difference between the strain and its continuous mean, both by
-    /// Hooke's law of small strains, and without the energy of a change of volume if that is resisted in the
-    /// mean over each cell.
+    /// Hooke's law of small strains, and without the energy of a change of volume if the dilatation is
+    /// a projected one.
     fn jumps(&self, regions: &Regions, strain: Strain, u: &[f64]) -> [f64; 2];
 }
 
@@ -26,7 +26,7 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Recovery
             let means = self.means(&cells, strain, u);
             for &cell in &cells {
                 let mut hooke = regions.of(cell).hooke;
-                if self.mean_dilatation {
+                if self.is_projected() {
                     // nothing resists a change of volume at the points
                     hooke = hooke.of_shear();
                 }

@@ -11,9 +11,10 @@ use pulp::Arch;
 
 use super::elements::{ElementsOf, pairs};
 use super::forces::Terms;
+use super::projection::COEFFICIENTS;
 use super::regions::{Laws, Regions};
 use crate::base::sparse::{BlockMatrix, Rows};
-use crate::base::tensor::Matrix;
+use crate::base::tensor::{Matrix, times};
 use crate::elements::material::{Blocks, Deformation, Elastic};
 
 mod pass;
@@ -23,7 +24,7 @@ mod tests;
 
 use pass::Pass;
 pub(super) use tangent::ElasticTangent;
-use tangent::{OfMean, RateTangent, TangentTerm, ViscousTangent};
+use tangent::{OfVolume, RateTangent, TangentTerm, ViscousTangent};
 
 /// Elements as matrices.
 pub(super) trait Tangents {
@@ -59,16 +60,16 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Tangents
     ) {
         let mut rows = stiffness.rows_mut::<D>();
         for cell in 0..self.nodes.len() {
-            let is_mean = self.mean_dilatation;
+            let is_projected = self.is_projected();
             match &law(regions.of(cell)) {
                 Elastic::Linear(law) => {
-                    self.add_at_rest(cell, &ElasticTangent { law, is_mean }, &mut rows);
+                    self.add_at_rest(cell, &ElasticTangent { law, is_projected }, &mut rows);
                 }
                 Elastic::StVenantKirchhoff(law) => {
-                    self.add_at_rest(cell, &ElasticTangent { law, is_mean }, &mut rows);
+                    self.add_at_rest(cell, &ElasticTangent { law, is_projected }, &mut rows);
                 }
                 Elastic::ByPoint(law) => {
-                    self.add_at_rest(cell, &ElasticTangent { law, is_mean }, &mut rows);
+                    self.add_at_rest(cell, &ElasticTangent { law, is_projected }, &mut rows);
                 }
             }
         }
@@ -86,7 +87,7 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Tangents
         let (u, v) = (u.as_chunks::<D>().0, v.as_chunks::<D>().0);
         let add = |share: usize, mut stiffness: Rows<'_, D>, mut damping: Rows<'_, D>| {
             for (cells, laws) in self.shares.cells[share].iter().flat_map(|run| regions.runs(run)) {
-                let is_mean = self.mean_dilatation;
+                let is_projected = self.is_projected();
                 if terms.elastic {
                     let cells = cells.clone();
                     match &laws.elastic {
@@ -97,7 +98,7 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Tangents
                                 &mut stiffness,
                                 cells,
                                 [u],
-                                ElasticTangent { law, is_mean },
+                                ElasticTangent { law, is_projected },
                             );
                         }
                         Elastic::ByPoint(law) => {
@@ -105,15 +106,25 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Tangents
                                 &mut stiffness,
                                 cells,
                                 [u],
-                                ElasticTangent { law, is_mean },
+                                ElasticTangent { law, is_projected },
                             );
                         }
                     }
                 }
                 if terms.viscous {
                     let law = &laws.viscous;
-                    self.add_to(&mut damping, cells.clone(), [u], RateTangent { law, is_mean });
-                    self.add_to(&mut stiffness, cells, [u, v], ViscousTangent { law, is_mean });
+                    self.add_to(
+                        &mut damping,
+                        cells.clone(),
+                        [u],
+                        RateTangent { law, is_projected },
+                    );
+                    self.add_to(
+                        &mut stiffness,
+                        cells,
+                        [u, v],
+                        ViscousTangent { law, is_projected },
+                    );
                 }
             }
         };
@@ -125,22 +136,27 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<
     /// Adds the tangent at rest of one cell.
     fn add_at_rest(&self, cell: usize, slope: &impl TangentTerm<1>, rows: &mut Rows<'_, D>) {
         let entries = &self.entries[cell];
-        let (mut swelling, mut volume) = ([[0.0; D]; N], 0.0);
-        let pull = self.mean_dilatation.then_some(0.0);
-        for point in self.points(cell) {
+        let (mut swelling, mut volume) = ([[[0.0; D]; N]; COEFFICIENTS], 0.0);
+        let pull = self.is_projected().then_some(0.0);
+        for (q, point) in self.points(cell).enumerate() {
             let rest = Deformation::new(point.frame, [[0.0; D]; M]);
             let (gradients, weight) = (&point.gradients, point.volume);
             add_blocks(entries, rows, &slope.blocks(&rest, &[rest.h], pull, gradients, weight));
-            if self.mean_dilatation {
+            if self.is_projected() {
                 let (_, by_nodes, _) = slope.swelling(&rest, &[rest.h], gradients, weight);
-                add(&mut swelling, &by_nodes);
+                add(&mut swelling[0], &by_nodes);
+                for (mode, sum) in self.modes_of(cell, q).iter().flatten().zip(&mut swelling[1..]) {
+                    add(sum, &times(by_nodes, *mode));
+                }
                 volume += weight;
             }
         }
-        if self.mean_dilatation {
-            let [_, stiff] = slope.of_mean(0.0);
-            let of_mean = OfMean { force: swelling, motion: swelling, share: stiff / volume };
-            add_blocks(entries, rows, &of_mean);
+        if self.is_projected() {
+            let [_, stiff] = slope.of_volume(0.0);
+            for by_nodes in &swelling[..self.coefficients()] {
+                let share = stiff / volume;
+                add_blocks(entries, rows, &OfVolume { force: *by_nodes, motion: *by_nodes, share });
+            }
         }
     }
 

@@ -7,7 +7,7 @@ use super::laws::ByPoint;
 use super::response::Tangent;
 use crate::base::tensor::{Matrix, Real, product};
 
-/// A law at a point of a cell. A `pull` is that of a mean dilatation, as in [`ElasticLaw`].
+/// A law at a point of a cell. A `pull` is that of a projected dilatation, as in [`ElasticLaw`].
 pub(crate) trait CellLaw {
     /// W (J/m^3), with U at the point.
     fn energy_at<T: Real, const M: usize, const D: usize>(&self, at: &Deformation<T, M, D>) -> T;
@@ -47,8 +47,8 @@ pub(crate) trait CellLaw {
         at: &Deformation<T, M, D>,
     ) -> (T, Matrix<T, D, M>);
 
-    /// U (J/m^3), U' and U'' of a mean dilatation.
-    fn of_mean<T: Real>(&self, dilatation: T) -> [T; 3];
+    /// U (J/m^3), U' and U'' of a projected dilatation.
+    fn of_projected<T: Real>(&self, dilatation: T) -> [T; 3];
 
     /// Says of a cell whose number of [`Self::piola`] is not above 0 what happened to it.
     fn outside_at(&self, domain: f64) -> String;
@@ -111,7 +111,7 @@ impl<L: ElasticLaw> CellLaw for L {
     }
 
     #[inline(always)]
-    fn of_mean<T: Real>(&self, dilatation: T) -> [T; 3] {
+    fn of_projected<T: Real>(&self, dilatation: T) -> [T; 3] {
         self.of_volume(dilatation)
     }
 
@@ -176,7 +176,7 @@ impl CellLaw for ByPoint {
     }
 
     #[inline(always)]
-    fn of_mean<T: Real>(&self, dilatation: T) -> [T; 3] {
+    fn of_projected<T: Real>(&self, dilatation: T) -> [T; 3] {
         self.of_volume(dilatation)
     }
 

@@ -20,8 +20,8 @@ pub(crate) trait Blocks<T, const D: usize> {
 /// A hyperelastic law: strain energy W per natural volume as a function of the strain E, and its derivatives.
 ///
 /// Its resistance to a change of volume is a separate term: W = W_shape + U(g), with a measure g of the
-/// volume that is 0 at rest. So U may be given the mean of g over a cell ("mean dilatation") in place of g at
-/// each point; then `pull` is U' of that mean, else `None`.
+/// volume that is 0 at rest. So U may be given a projection of g onto few functions of a cell ("projected
+/// dilatation", such as its mean) in place of g at each point; then `pull` is U' of that, projected in turn, else `None`.
 pub(crate) trait ElasticLaw {
     /// Whether strains are taken as small: then E is Cauchy's strain, and natural and present shape count as
     /// the same; else E is Green's.

@@ -19,6 +19,8 @@ struct Shape {
     faces: &'static [&'static [usize]],
     /// Empty in two dimensions, where edges and faces are the same.
     edges: &'static [&'static [usize]],
+    /// For each node in the middle of a face or of the cell two opposite corners of that; such nodes come last.
+    middles: &'static [[usize; 2]],
     /// The nodes in the order of a cell that is turned over.
     turned_over: &'static [usize],
     /// The corners at the other ends of the edges from the first one; these edges form a right-handed system.
@@ -40,6 +42,8 @@ pub(crate) enum FaceKind {
     Quadrilateral,
     /// With mid nodes.
     Quadrilateral8,
+    /// With mid nodes and one in the middle.
+    Quadrilateral9,
 }
 
 impl FaceKind {
@@ -48,7 +52,11 @@ impl FaceKind {
         match self {
             Self::Point => 0,
             Self::Segment | Self::Segment3 => 1,
-            Self::Triangle | Self::Triangle6 | Self::Quadrilateral | Self::Quadrilateral8 => 2,
+            Self::Triangle
+            | Self::Triangle6
+            | Self::Quadrilateral
+            | Self::Quadrilateral8
+            | Self::Quadrilateral9 => 2,
         }
     }
 }
@@ -88,6 +96,7 @@ cell_kinds! {
         face: FaceKind::Point,
         faces: &[&[0], &[1]],
         edges: &[&[0, 1]],
+        middles: &[],
         turned_over: &[1, 0],
         neighbours: &[1],
         gmsh: (1, &[0, 1]),
@@ -103,6 +112,7 @@ cell_kinds! {
         face: FaceKind::Segment,
         faces: &[&[0, 1], &[1, 2], &[2, 0]],
         edges: &[],
+        middles: &[],
         turned_over: &[0, 2, 1],
         neighbours: &[1, 2],
         gmsh: (2, &[0, 1, 2]),
@@ -118,6 +128,7 @@ cell_kinds! {
         face: FaceKind::Segment3,
         faces: &[&[0, 1, 3], &[1, 2, 4], &[2, 0, 5]],
         edges: &[],
+        middles: &[],
         turned_over: &[0, 2, 1, 5, 4, 3],
         neighbours: &[1, 2],
         gmsh: (9, &[0, 1, 2, 3, 4, 5]),
@@ -133,9 +144,26 @@ cell_kinds! {
         face: FaceKind::Segment,
         faces: &[&[0, 1], &[1, 2], &[2, 3], &[3, 0]],
         edges: &[],
+        middles: &[],
         turned_over: &[0, 3, 2, 1],
         neighbours: &[1, 3],
         gmsh: (3, &[0, 1, 2, 3]),
+    },
+    /// Nine nodes: the corners counter-clockwise, the middles of the edges 1-2, 2-3, 3-4, 4-1, the middle.
+    Quadrilateral9 => Shape {
+        word: "quadrilaterals9",
+        name: "quadrilaterals of 9 nodes",
+        dimension: 2,
+        nodes: 9,
+        quadratic: true,
+        as_face: Some(FaceKind::Quadrilateral9),
+        face: FaceKind::Segment3,
+        faces: &[&[0, 1, 4], &[1, 2, 5], &[2, 3, 6], &[3, 0, 7]],
+        edges: &[],
+        middles: &[[0, 2]],
+        turned_over: &[0, 3, 2, 1, 7, 6, 5, 4, 8],
+        neighbours: &[1, 3],
+        gmsh: (10, &[0, 1, 2, 3, 4, 5, 6, 7, 8]),
     },
     /// Four nodes: the first three counter-clockwise as seen from the fourth.
     Tetrahedron => Shape {
@@ -148,6 +176,7 @@ cell_kinds! {
         face: FaceKind::Triangle,
         faces: &[&[0, 2, 1], &[0, 1, 3], &[1, 2, 3], &[0, 3, 2]],
         edges: &[&[0, 1], &[1, 2], &[2, 0], &[0, 3], &[1, 3], &[2, 3]],
+        middles: &[],
         turned_over: &[0, 2, 1, 3],
         neighbours: &[1, 2, 3],
         gmsh: (4, &[0, 1, 2, 3]),
@@ -169,6 +198,7 @@ cell_kinds! {
             &[0, 3, 2, 7, 9, 6],
         ],
         edges: &[&[0, 1, 4], &[1, 2, 5], &[2, 0, 6], &[0, 3, 7], &[1, 3, 8], &[2, 3, 9]],
+        middles: &[],
         turned_over: &[0, 2, 1, 3, 6, 5, 4, 7, 9, 8],
         neighbours: &[1, 2, 3],
         gmsh: (11, &[0, 1, 2, 3, 4, 5, 6, 7, 9, 8]),
@@ -205,6 +235,7 @@ cell_kinds! {
             &[2, 6],
             &[3, 7],
         ],
+        middles: &[],
         turned_over: &[0, 3, 2, 1, 4, 7, 6, 5],
         neighbours: &[1, 3, 4],
         gmsh: (5, &[0, 1, 2, 3, 4, 5, 6, 7]),
@@ -241,9 +272,47 @@ cell_kinds! {
             &[2, 6, 18],
             &[3, 7, 19],
         ],
+        middles: &[],
         turned_over: &[0, 3, 2, 1, 4, 7, 6, 5, 11, 10, 9, 8, 15, 14, 13, 12, 16, 19, 18, 17],
         neighbours: &[1, 3, 4],
         gmsh: (17, &[0, 1, 2, 3, 4, 5, 6, 7, 8, 11, 13, 9, 16, 18, 19, 17, 10, 12, 14, 15]),
+    },
+    /// Twenty-seven nodes: those of [`CellKind::Hexahedron20`], then the middles of the faces 1-4-8-5, 2-3-7-6, 1-2-6-5,
+    /// 4-3-7-8, 1-2-3-4, 5-6-7-8, and of the cell.
+        Hexahedron27 => Shape {
+        word: "hexahedra27",
+        name: "hexahedra of 27 nodes",
+        dimension: 3,
+        nodes: 27,
+        quadratic: true,
+        as_face: None,
+        face: FaceKind::Quadrilateral9,
+        faces: &[
+            &[0, 3, 2, 1, 11, 10, 9, 8, 24],
+            &[4, 5, 6, 7, 12, 13, 14, 15, 25],
+            &[0, 1, 5, 4, 8, 17, 12, 16, 22],
+            &[1, 2, 6, 5, 9, 18, 13, 17, 21],
+            &[2, 3, 7, 6, 10, 19, 14, 18, 23],
+            &[3, 0, 4, 7, 11, 16, 15, 19, 20],
+        ],
+        edges: &[
+            &[0, 1, 8],
+            &[1, 2, 9],
+            &[2, 3, 10],
+            &[3, 0, 11],
+            &[4, 5, 12],
+            &[5, 6, 13],
+            &[6, 7, 14],
+            &[7, 4, 15],
+            &[0, 4, 16],
+            &[1, 5, 17],
+            &[2, 6, 18],
+            &[3, 7, 19],
+        ],
+        middles: &[[0, 7], [1, 6], [0, 5], [3, 6], [0, 2], [4, 6], [0, 6]],
+        turned_over: &[0, 3, 2, 1, 4, 7, 6, 5, 11, 10, 9, 8, 15, 14, 13, 12, 16, 19, 18, 17, 22, 23, 20, 21, 24, 25, 26],
+        neighbours: &[1, 3, 4],
+        gmsh: (12, &[0, 1, 2, 3, 4, 5, 6, 7, 8, 11, 13, 9, 16, 18, 19, 17, 10, 12, 14, 15, 22, 23, 21, 24, 20, 25, 26]),
     },
 }
 
@@ -277,7 +346,8 @@ impl CellKind {
     /// The faces of the cell as local node numbers (from 0): its ends in 1D, its edges in 2D.
     ///
     /// Corners come first and run in positive order as seen from outside (in 2D: with the cell to their
-    /// left); the mid nodes of a quadratic cell follow, in the order of the edges of the face.
+    /// left); the mid nodes of a quadratic cell follow, in the order of the edges of the face, and its middle if a
+    /// node is there.
     pub fn faces(self) -> &'static [&'static [usize]] {
         self.shape().faces
     }
@@ -299,6 +369,12 @@ impl CellKind {
             2 => self.faces(),
             _ => self.shape().edges,
         }
+    }
+
+    /// For each node in the middle of a face or of the cell two opposite corners of that, as local numbers (from 0); such
+    /// nodes come last.
+    pub(crate) fn middles(self) -> &'static [[usize; 2]] {
+        self.shape().middles
     }
 
     /// The nodes of the cell in the order of one that is turned over: local numbers (from 0).

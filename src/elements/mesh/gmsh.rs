@@ -21,8 +21,8 @@ impl Mesh {
     /// Coordinates are taken as metres; for a drawing in millimetres, give Gmsh `Mesh.ScalingFactor = 0.001`.
     ///
     /// - **Cells** are the elements of the highest dimension, in the order of the file. All must be of one
-    ///   kind: lines of 2 nodes, triangles of 3 or 6, quadrilaterals of 4, tetrahedra of 4 or 10, hexahedra
-    ///   of 8 or 20 (`Mesh.SecondOrderIncomplete = 1`). If physical groups exist, Gmsh saves only the
+    ///   kind: lines of 2 nodes, triangles of 3 or 6, quadrilaterals of 4 or 9, tetrahedra of 4 or 10, hexahedra
+    ///   of 8, 20 (`Mesh.SecondOrderIncomplete = 1`) or 27. If physical groups exist, Gmsh saves only the
     ///   elements in them.
     /// - **Nodes** keep the order of the file; those that belong to no cell (points of the geometry, centres
     ///   of circles) are left out, and the others are numbered without gaps. A file without such nodes whose
@@ -137,7 +137,7 @@ fn only_kind(blocks: &[Block]) -> Result<CellKind, String> {
         [] => Err("it has no elements".into()),
         [only] => cell_kind(only.0).ok_or_else(|| {
             let known: Vec<&str> = CellKind::ALL.iter().map(|kind| kind.name()).collect();
-            let help = "(in Gmsh: Mesh.ElementOrder; Mesh.SecondOrderIncomplete = 1 for hexahedra of 20 nodes)";
+            let help = "(in Gmsh: Mesh.ElementOrder; Mesh.SecondOrderIncomplete = 1 for hexahedra of 20 nodes, 0 for 27, and for quadrilaterals of 9)";
             format!("it has {}: cells may be {} {help}", words(only), known.join(", "))
         }),
         several => {

@@ -106,10 +106,12 @@ fn grid(trajectory: &Trajectory, sample: &Sample) -> Result<Vtk, Error> {
         CellKind::Triangle => CellType::Triangle,
         CellKind::Triangle6 => CellType::QuadraticTriangle,
         CellKind::Quadrilateral => CellType::Quad,
+        CellKind::Quadrilateral9 => CellType::BiquadraticQuad,
         CellKind::Tetrahedron => CellType::Tetra,
         CellKind::Tetrahedron10 => CellType::QuadraticTetra,
         CellKind::Hexahedron => CellType::Hexahedron,
         CellKind::Hexahedron20 => CellType::QuadraticHexahedron,
+        CellKind::Hexahedron27 => CellType::TriquadraticHexahedron,
     };
     let corners = mesh.kind().nodes() as u64;
     Ok(Vtk {

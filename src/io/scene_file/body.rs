@@ -62,7 +62,9 @@ pub(super) const BODY: TableKeys = TableKeys::new(
             Holds::Word(|| DILATATION.map(|(word, _)| word).into()),
             "where the body resists a change of its volume",
         )
-        .law("In the mean over each cell, nearly incompressible bodies do not lock: for quadrilaterals, hexahedra and quadratic cells.")
+        .law("At each point of a cell, a nearly incompressible body locks. `linear`: projected onto linear functions of each cell, \
+              accurate; for `hexahedra27`, `rectangles9` and, less so, `hexahedra20`. `mean`: in the mean over each cell, for \
+              `rectangles`, `hexahedra`, `triangles6` and `tetrahedra10`.")
         .default("points"),
         Key::new("material", Holds::Table(&MATERIAL), "what the body is made of").required(),
         Key::new("region", Holds::Tables(&REGION), "parts with a material of their own"),
@@ -81,8 +83,8 @@ const VISCOUS: [(&str, Viscosity); 2] =
     [("natural", Viscosity::Natural), ("objective", Viscosity::Objective)];
 const INERTIA: [(&str, Inertia); 2] =
     [("consistent", Inertia::Consistent), ("lumped", Inertia::Lumped)];
-const DILATATION: [(&str, Dilatation); 2] =
-    [("points", Dilatation::AtPoints), ("mean", Dilatation::Mean)];
+const DILATATION: [(&str, Dilatation); 3] =
+    [("points", Dilatation::AtPoints), ("mean", Dilatation::Mean), ("linear", Dilatation::Linear)];
 const PLANE: [(&str, Plane); 2] = [("strain", Plane::Strain), ("stress", Plane::Stress)];
 
 const REGION: TableKeys = TableKeys::new(

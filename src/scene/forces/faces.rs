@@ -6,13 +6,14 @@ use super::surface::{pieces, section};
 use crate::base::tensor::determinant;
 use crate::base::vector::{cross, norm};
 use crate::elements::basis::{
-    Quadrilateral, Quadrilateral8, ReferenceCell, Segment, Segment3, Triangle, Triangle6,
+    Quadrilateral, Quadrilateral8, Quadrilateral9, ReferenceCell, Segment, Segment3, Triangle,
+    Triangle6,
 };
 use crate::elements::body::Body;
 use crate::elements::mesh::{Face, FaceKind, Mesh};
 
 /// Nodes of a face at most.
-pub(super) const MOST_NODES: usize = 8;
+pub(super) const MOST_NODES: usize = 9;
 
 /// A quadrature point of a reference face; what a face does not have is 0.
 pub(super) struct FacePoint {
@@ -36,6 +37,7 @@ pub(super) fn face_points(kind: FaceKind) -> Vec<FacePoint> {
         FaceKind::Triangle6 => points_of::<Triangle6, 6, 2>(),
         FaceKind::Quadrilateral => points_of::<Quadrilateral, 4, 2>(),
         FaceKind::Quadrilateral8 => points_of::<Quadrilateral8, 8, 2>(),
+        FaceKind::Quadrilateral9 => points_of::<Quadrilateral9, 9, 2>(),
     }
 }
 
@@ -73,6 +75,7 @@ pub(super) fn volume_parts<const N: usize>(kind: FaceKind) -> Vec<([usize; N], f
         FaceKind::Segment3 => 3,
         FaceKind::Triangle6 => 6,
         FaceKind::Quadrilateral8 => 8,
+        FaceKind::Quadrilateral9 => 9,
         _ => {
             let parts = pieces(kind);
             return parts.map(|(part, w)| (std::array::from_fn(|k| part[k]), w)).collect();

@@ -63,6 +63,7 @@ pub(crate) fn face_centre(kind: FaceKind, face: &[usize]) -> Option<SurfacePoint
         FaceKind::Triangle6 => &[3, 4, 5],
         FaceKind::Quadrilateral => &[0, 2],
         FaceKind::Quadrilateral8 => &[4, 6],
+        FaceKind::Quadrilateral9 => &[8],
     };
     let nodes: Vec<usize> = locals.iter().map(|&local| face[local]).collect();
     Some(point(&nodes, &vec![1.0 / nodes.len() as f64; nodes.len()], 0.0))
@@ -132,6 +133,19 @@ pub(crate) fn pieces(face: FaceKind) -> impl Iterator<Item = (&'static [usize], 
         FaceKind::Quadrilateral8 => (
             &[&[0, 4, 7], &[4, 1, 5], &[5, 2, 6], &[6, 3, 7]],
             &[&[4, 5, 6], &[4, 6, 7], &[5, 6, 7], &[5, 7, 4]],
+        ),
+        FaceKind::Quadrilateral9 => (
+            &[
+                &[0, 4, 8],
+                &[4, 1, 8],
+                &[1, 5, 8],
+                &[5, 2, 8],
+                &[2, 6, 8],
+                &[6, 3, 8],
+                &[3, 7, 8],
+                &[7, 0, 8],
+            ],
+            &[],
         ),
     };
     whole.iter().map(|part| (*part, 1.0)).chain(halves.iter().map(|part| (*part, 0.5)))

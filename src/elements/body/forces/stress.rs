@@ -1,4 +1,4 @@
-//! What causes stress at the points of cells: elastic laws and viscosity, at points or with a mean
+//! What causes stress at the points of cells: elastic laws and viscosity, at points or with a projected
 //! dilatation.
 
 use crate::base::tensor::{Matrix, Real};
@@ -6,10 +6,10 @@ use crate::elements::material::{CellLaw, Deformation, ObjectiveViscosity};
 
 /// A stress at a point, by the gradients of `K` fields: of displacements and, if K is 2, of velocities.
 pub(in crate::elements::body) trait StressTerm<const K: usize> {
-    /// Whether a change of volume is resisted in the mean over the cell.
-    fn is_mean(&self) -> bool;
+    /// Whether the dilatation is a projected one.
+    fn is_projected(&self) -> bool;
 
-    /// First Piola stress P times the `volume` of the point, with the `pull` of the mean dilatation if there
+    /// First Piola stress P times the `volume` of the point, with the `pull` of a projected dilatation if there
     /// is one, and a number that is above 0 where the stress has meaning.
     fn stress<T: Real, const M: usize, const D: usize>(
         &self,
@@ -26,8 +26,8 @@ pub(in crate::elements::body) trait StressTerm<const K: usize> {
         gradients: &[Matrix<T, D, M>; K],
     ) -> T;
 
-    /// The `pull` at all points of a cell of this mean dilatation.
-    fn of_mean<T: Real>(&self, dilatation: T) -> T;
+    /// The `pull` of a projected dilatation where it has this value.
+    fn of_volume<T: Real>(&self, dilatation: T) -> T;
 
     /// The message for a cell where the number of [`Self::stress`] is not above 0.
     fn outside(&self, domain: f64) -> String;
@@ -36,13 +36,13 @@ pub(in crate::elements::body) trait StressTerm<const K: usize> {
 /// The stress of an elastic law.
 pub(in crate::elements::body) struct ElasticStress<'l, L> {
     pub(in crate::elements::body) law: &'l L,
-    pub(in crate::elements::body) is_mean: bool,
+    pub(in crate::elements::body) is_projected: bool,
 }
 
 impl<L: CellLaw> StressTerm<1> for ElasticStress<'_, L> {
     #[inline(always)]
-    fn is_mean(&self) -> bool {
-        self.is_mean
+    fn is_projected(&self) -> bool {
+        self.is_projected
     }
 
     #[inline(always)]
@@ -66,8 +66,8 @@ impl<L: CellLaw> StressTerm<1> for ElasticStress<'_, L> {
     }
 
     #[inline(always)]
-    fn of_mean<T: Real>(&self, dilatation: T) -> T {
-        let [_, pull, _] = self.law.of_mean(dilatation);
+    fn of_volume<T: Real>(&self, dilatation: T) -> T {
+        let [_, pull, _] = self.law.of_projected(dilatation);
         pull
     }
 
@@ -79,13 +79,13 @@ impl<L: CellLaw> StressTerm<1> for ElasticStress<'_, L> {
 /// Viscous stress.
 pub(super) struct ViscousStress<'l> {
     pub(super) law: &'l ObjectiveViscosity,
-    pub(super) is_mean: bool,
+    pub(super) is_projected: bool,
 }
 
 impl StressTerm<2> for ViscousStress<'_> {
     #[inline(always)]
-    fn is_mean(&self) -> bool {
-        self.is_mean
+    fn is_projected(&self) -> bool {
+        self.is_projected
     }
 
     #[inline(always)]
@@ -109,7 +109,7 @@ impl StressTerm<2> for ViscousStress<'_> {
     }
 
     #[inline(always)]
-    fn of_mean<T: Real>(&self, rate: T) -> T {
+    fn of_volume<T: Real>(&self, rate: T) -> T {
         let [pull, _] = self.law.of_volume(rate);
         pull
     }

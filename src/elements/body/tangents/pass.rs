@@ -6,10 +6,12 @@ use std::ops::Range;
 
 use pulp::{Simd, WithSimd};
 
-use super::tangent::{OfMean, TangentTerm};
+use super::tangent::{OfVolume, TangentTerm};
 use crate::base::lane::{Lane, Packed, SIDE_BY_SIDE};
 use crate::base::sparse::Rows;
+use crate::base::tensor::Real;
 use crate::elements::body::elements::{ElementsOf, gradients};
+use crate::elements::body::projection::{COEFFICIENTS, Projected};
 use crate::elements::material::{Block, Blocks, Deformation};
 
 /// The tangents of a run of cells of one law, compiled for each instruction set.
@@ -57,31 +59,17 @@ impl<
             for k in 0..K {
                 x[k] = elements.gather(simd, start, fields[k]);
             }
-            let nothing = [[zero; D]; N];
-            let mut of_mean = OfMean { force: nothing, motion: nothing, share: zero };
-            let mut pull = None;
-            let is_mean = const { ElementsOf::<N, M, D, Q>::CAN_LOCK } && slope.is_mean();
-            if is_mean {
-                let (mut sum, mut volume) = (zero, zero);
-                for point in &abreast[block] {
-                    let point = point.lane(simd, part);
-                    let fields = gradients(1, &x, &point.gradients);
-                    let at = Deformation::new(point.frame, fields[0]);
-                    let (of_point, force, motion) =
-                        slope.swelling(&at, &fields, &point.gradients, point.volume);
-                    sum += of_point;
-                    volume += point.volume;
-                    for a in 1..N {
-                        for i in 0..D {
-                            of_mean.force[a][i] += force[a][i];
-                            of_mean.motion[a][i] += motion[a][i];
-                        }
-                    }
-                }
-                let [mean_pull, stiff] = slope.of_mean(sum / volume);
-                (pull, of_mean.share) = (Some(mean_pull), stiff / volume);
+            let mut of_volume = None;
+            if const { ElementsOf::<N, M, D, Q>::CAN_LOCK } && slope.is_projected() {
+                let begins = (simd, block, part);
+                of_volume = Some(of_projected(elements, &slope, &x, begins));
             }
             for q in 0..Q {
+                let mut pull = None;
+                if let Some((projected, _)) = &of_volume {
+                    let modes = elements.modes_of_lane(simd, block, part, q);
+                    pull = Some(projected.at(modes.as_ref()));
+                }
                 let point = abreast[block][q].lane(simd, part);
                 let fields = gradients(1, &x, &point.gradients);
                 let at = Deformation::new(point.frame, fields[0]);
@@ -92,10 +80,12 @@ impl<
                     }
                 }
             }
-            if is_mean {
-                for a in 1..N {
-                    for b in if P::IS_SYMMETRIC { a } else { 1 }..N {
-                        sum_up(simd, false, &of_mean.block(a, b), &mut sums[a][b]);
+            if let Some((_, changes)) = &of_volume {
+                for change in &changes[..elements.coefficients()] {
+                    for a in 1..N {
+                        for b in if P::IS_SYMMETRIC { a } else { 1 }..N {
+                            sum_up(simd, false, &change.block(a, b), &mut sums[a][b]);
+                        }
                     }
                 }
             }
@@ -106,6 +96,93 @@ impl<
             }
         }
     }
+}
+
+/// The `pull` of a projected dilatation, and what changes of its coefficients add to the tangents of several cells.
+#[inline(always)]
+#[allow(clippy::type_complexity)]
+fn of_projected<
+    P: TangentTerm<K>,
+    S: Simd,
+    const N: usize,
+    const M: usize,
+    const D: usize,
+    const Q: usize,
+    const K: usize,
+>(
+    elements: &ElementsOf<N, M, D, Q>,
+    slope: &P,
+    x: &[[[Lane<S>; D]; N]; K],
+    (simd, block, part): (S, usize, usize),
+) -> (Projected<Lane<S>, M>, [OfVolume<Lane<S>, N, D>; COEFFICIENTS]) {
+    let points = &elements.abreast()[block];
+    let zero = Lane::splat(simd, 0.0);
+    let nothing = [[zero; D]; N];
+    let mut changes = [OfVolume { force: nothing, motion: nothing, share: zero }; COEFFICIENTS];
+    let (mut sum, mut volume) = (Projected::new(zero), zero);
+    for q in 0..Q {
+        let point = points[q].lane(simd, part);
+        let fields = gradients(1, x, &point.gradients);
+        let at = Deformation::new(point.frame, fields[0]);
+        let (of_point, force, motion) =
+            slope.swelling(&at, &fields, &point.gradients, point.volume);
+        let modes = elements.modes_of_lane(simd, block, part, q);
+        sum.add(of_point, modes.as_ref());
+        volume += point.volume;
+        for a in 1..N {
+            for i in 0..D {
+                changes[0].force[a][i] += force[a][i];
+                changes[0].motion[a][i] += motion[a][i];
+            }
+        }
+        let Some(modes) = modes else { continue };
+        for k in 0..M {
+            for a in 1..N {
+                for i in 0..D {
+                    changes[k + 1].force[a][i] += force[a][i] * modes[k];
+                    changes[k + 1].motion[a][i] += motion[a][i] * modes[k];
+                }
+            }
+        }
+    }
+    let dilatation = sum.over(volume);
+    if elements.modes.is_empty() {
+        let [pull, stiff] = slope.of_volume(dilatation.mean);
+        changes[0].share = stiff / volume;
+        return (Projected::new(pull), changes);
+    }
+    let mut of_volume = Projected::new(zero);
+    // int U'' p_k p_l dV
+    let mut stiff = [[zero; COEFFICIENTS]; COEFFICIENTS];
+    for q in 0..Q {
+        let Some(modes) = elements.modes_of_lane(simd, block, part, q) else { continue };
+        let [pull, by_volume] = slope.of_volume(dilatation.at(Some(&modes)));
+        let of_point = Lane::load(simd, &points[q].volume.0, part);
+        of_volume.add(pull * of_point, Some(&modes));
+        let weight = by_volume * of_point;
+        let mut values = [zero.constant(1.0); COEFFICIENTS];
+        for k in 0..M {
+            values[k + 1] = modes[k];
+        }
+        for k in 0..M + 1 {
+            for l in 0..M + 1 {
+                stiff[k][l] += weight * values[k] * values[l];
+            }
+        }
+    }
+    let motions = changes;
+    for k in 0..M + 1 {
+        changes[k].motion = nothing;
+        changes[k].share = zero.constant(1.0) / (volume * volume);
+        for l in 0..M + 1 {
+            for b in 1..N {
+                for i in 0..D {
+                    changes[k].motion[b][i] += motions[l].motion[b][i] * stiff[k][l];
+                }
+            }
+        }
+    }
+    (of_volume.over(volume), changes)
 }
 
 /// Adds a block of several cells to their sum, or begins with it.

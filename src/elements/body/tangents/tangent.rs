@@ -1,4 +1,4 @@
-//! The tangents at the points of cells: of elastic laws and of viscosity, at points or with a mean
+//! The tangents at the points of cells: of elastic laws and of viscosity, at points or with a projected
 //! dilatation.
 
 #![allow(clippy::needless_range_loop, reason = "indices that several arrays share read best")]
@@ -11,10 +11,10 @@ pub(in crate::elements::body) trait TangentTerm<const K: usize> {
     /// Whether the block of nodes b and a is that of a and b, transposed.
     const IS_SYMMETRIC: bool;
 
-    /// Whether a change of volume is resisted in the mean over the cell.
-    fn is_mean(&self) -> bool;
+    /// Whether the dilatation is a projected one.
+    fn is_projected(&self) -> bool;
 
-    /// The tangent of a point of this `volume`, with the `pull` of a mean dilatation kept constant.
+    /// The tangent of a point of this `volume`, with the `pull` of a projected dilatation kept constant.
     fn blocks<T: Real, const N: usize, const M: usize, const D: usize>(
         &self,
         at: &Deformation<T, M, D>,
@@ -34,19 +34,20 @@ pub(in crate::elements::body) trait TangentTerm<const K: usize> {
         volume: T,
     ) -> (T, [[T; D]; N], [[T; D]; N]);
 
-    /// The `pull` at all points of a cell of this mean dilatation, and its derivative by that.
-    fn of_mean<T: Real>(&self, dilatation: T) -> [T; 2];
+    /// The `pull` of a projected dilatation where it has this value, and its derivative by that.
+    fn of_volume<T: Real>(&self, dilatation: T) -> [T; 2];
 }
 
-/// What a change of the mean dilatation adds: `share` times the product of the derivatives of the forces by
-/// the `pull` and of the dilatation by the motion of the nodes.
-pub(super) struct OfMean<T, const N: usize, const D: usize> {
+/// What a change of a coefficient of the dilatation adds: `share` times the product of the derivatives of the forces by
+/// the coefficient of the `pull`, and of the dilatation by the motion of the nodes.
+#[derive(Clone, Copy)]
+pub(super) struct OfVolume<T, const N: usize, const D: usize> {
     pub(super) force: [[T; D]; N],
     pub(super) motion: [[T; D]; N],
     pub(super) share: T,
 }
 
-impl<T: Real, const N: usize, const D: usize> Blocks<T, D> for OfMean<T, N, D> {
+impl<T: Real, const N: usize, const D: usize> Blocks<T, D> for OfVolume<T, N, D> {
     #[inline(always)]
     fn block(&self, a: usize, b: usize) -> Block<T, D> {
         let mut block = [[self.share; D]; D];
@@ -62,15 +63,15 @@ impl<T: Real, const N: usize, const D: usize> Blocks<T, D> for OfMean<T, N, D> {
 /// Of an elastic law.
 pub(in crate::elements::body) struct ElasticTangent<'l, L> {
     pub(in crate::elements::body) law: &'l L,
-    pub(in crate::elements::body) is_mean: bool,
+    pub(in crate::elements::body) is_projected: bool,
 }
 
 impl<L: CellLaw> TangentTerm<1> for ElasticTangent<'_, L> {
     const IS_SYMMETRIC: bool = true;
 
     #[inline(always)]
-    fn is_mean(&self) -> bool {
-        self.is_mean
+    fn is_projected(&self) -> bool {
+        self.is_projected
     }
 
     #[inline(always)]
@@ -99,8 +100,8 @@ impl<L: CellLaw> TangentTerm<1> for ElasticTangent<'_, L> {
     }
 
     #[inline(always)]
-    fn of_mean<T: Real>(&self, dilatation: T) -> [T; 2] {
-        let [_, pull, stiff] = self.law.of_mean(dilatation);
+    fn of_volume<T: Real>(&self, dilatation: T) -> [T; 2] {
+        let [_, pull, stiff] = self.law.of_projected(dilatation);
         [pull, stiff]
     }
 }
@@ -108,15 +109,15 @@ impl<L: CellLaw> TangentTerm<1> for ElasticTangent<'_, L> {
 /// The tangent of viscous stress by the rate.
 pub(super) struct RateTangent<'l> {
     pub(super) law: &'l ObjectiveViscosity,
-    pub(super) is_mean: bool,
+    pub(super) is_projected: bool,
 }
 
 impl TangentTerm<1> for RateTangent<'_> {
     const IS_SYMMETRIC: bool = true;
 
     #[inline(always)]
-    fn is_mean(&self) -> bool {
-        self.is_mean
+    fn is_projected(&self) -> bool {
+        self.is_projected
     }
 
     #[inline(always)]
@@ -128,7 +129,7 @@ impl TangentTerm<1> for RateTangent<'_> {
         gradients: &[[T; M]; N],
         volume: T,
     ) -> impl Blocks<T, D> {
-        self.law.rate_tangent(at, self.is_mean, gradients, volume)
+        self.law.rate_tangent(at, self.is_projected, gradients, volume)
     }
 
     #[inline(always)]
@@ -144,7 +145,7 @@ impl TangentTerm<1> for RateTangent<'_> {
     }
 
     #[inline(always)]
-    fn of_mean<T: Real>(&self, rate: T) -> [T; 2] {
+    fn of_volume<T: Real>(&self, rate: T) -> [T; 2] {
         self.law.of_volume(rate)
     }
 }
@@ -152,15 +153,15 @@ impl TangentTerm<1> for RateTangent<'_> {
 /// The tangent of viscous stress by the deformation.
 pub(super) struct ViscousTangent<'l> {
     pub(super) law: &'l ObjectiveViscosity,
-    pub(super) is_mean: bool,
+    pub(super) is_projected: bool,
 }
 
 impl TangentTerm<2> for ViscousTangent<'_> {
     const IS_SYMMETRIC: bool = false;
 
     #[inline(always)]
-    fn is_mean(&self) -> bool {
-        self.is_mean
+    fn is_projected(&self) -> bool {
+        self.is_projected
     }
 
     #[inline(always)]
@@ -189,7 +190,7 @@ impl TangentTerm<2> for ViscousTangent<'_> {
     }
 
     #[inline(always)]
-    fn of_mean<T: Real>(&self, rate: T) -> [T; 2] {
+    fn of_volume<T: Real>(&self, rate: T) -> [T; 2] {
         self.law.of_volume(rate)
     }
 }

@@ -11,7 +11,7 @@ use crate::elements::basis::{
     Hexahedron, ReferenceCell, Segment, Tetrahedron10, Triangle, Triangle6,
 };
 use crate::elements::body::tests::{bodies, noise};
-use crate::elements::body::{Body, CellSelection};
+use crate::elements::body::{Body, CellSelection, Dilatation};
 use crate::elements::force::{Force, NodalForces};
 use crate::elements::material::{Hooke, Lame, Material, ObjectiveViscosity, Plane, Strain};
 use crate::elements::mesh::{Cells, Mesh, SolidCells};
@@ -29,7 +29,8 @@ fn is_the_same_on_all_machines<
     mesh: &Mesh,
 ) {
     let pattern = Arc::new(NodePattern::new(mesh.node_count(), mesh.cells()));
-    let elements = ElementsOf::<N, M, D, Q>::new::<C>(mesh, 1.0, false, &pattern).unwrap();
+    let elements =
+        ElementsOf::<N, M, D, Q>::new::<C>(mesh, 1.0, Dilatation::AtPoints, &pattern).unwrap();
     let dofs = mesh.node_count() * D;
     let (u, v) = (noise(dofs, 0.01, 1.0), noise(dofs, 1.0, 2.0));
     let (u, v) = (u.as_chunks().0, v.as_chunks().0);
@@ -46,14 +47,14 @@ fn is_the_same_on_all_machines<
                     rows: &mut by_place.rows_mut(),
                     cells: cells.clone(),
                     fields: [u, v],
-                    slope: ViscousTangent { law: &law, is_mean: false },
+                    slope: ViscousTangent { law: &law, is_projected: false },
                 },
                 Pass {
                     elements,
                     rows: &mut by_rate.rows_mut(),
                     cells,
                     fields: [u],
-                    slope: RateTangent { law: &law, is_mean: false },
+                    slope: RateTangent { law: &law, is_projected: false },
                 },
             );
             [by_place.values, by_rate.values]

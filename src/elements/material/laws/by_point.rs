@@ -63,7 +63,7 @@ macro_rules! formula {
     };
 }
 
-/// A `pull` is that of a mean dilatation, as in [`ElasticLaw`].
+/// A `pull` is that of a projected dilatation, as in [`ElasticLaw`].
 impl ByPoint {
     formula! {
         /// Second Piola stress S (Pa) times `weight`, and the domain of the law at a point that stretches a

@@ -12,8 +12,7 @@ use crate::elements::material::law::{Block, Blocks};
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct ObjectiveViscosity(pub(crate) Hooke);
 
-/// A `pull` is lambda times the mean rate of dilatation over a cell, where that takes the place of lambda
-/// tr(E').
+/// A `pull` is lambda times a projected rate of dilatation, where that takes the place of lambda tr(E').
 impl ObjectiveViscosity {
     /// tr(E')
     #[inline(always)]
@@ -25,7 +24,7 @@ impl ObjectiveViscosity {
         trace(&at.twice_green_rate(rate)) * 0.5
     }
 
-    /// lambda times a mean `rate` tr(E'), and lambda.
+    /// lambda times a projected `rate` tr(E'), and lambda.
     #[inline(always)]
     pub(crate) fn of_volume<T: Real>(&self, rate: T) -> [T; 2] {
         let [_, pull, stiff] = self.0.of_volume(rate);
@@ -70,21 +69,21 @@ impl ObjectiveViscosity {
         }
     }
 
-    /// dP/dF', likewise, and symmetric; `is_mean` leaves out the part of a mean dilatation.
+    /// dP/dF', likewise, and symmetric; `is_projected` leaves out the part of a projected dilatation.
     #[inline(always)]
     pub(crate) fn rate_tangent<'a, T: Real, const N: usize, const M: usize, const D: usize>(
         &self,
         at: &Deformation<T, M, D>,
-        is_mean: bool,
+        is_projected: bool,
         gradients: &'a [[T; M]; N],
         weight: T,
     ) -> impl Blocks<T, D> + use<'a, T, N, M, D> {
-        Spread::new(&at.gradient(), gradients, self.moduli_at_points(is_mean), weight)
+        Spread::new(&at.gradient(), gradients, self.moduli_at_points(is_projected), weight)
     }
 
     #[inline(always)]
-    fn moduli_at_points(&self, is_mean: bool) -> Lame {
-        match is_mean {
+    fn moduli_at_points(&self, is_projected: bool) -> Lame {
+        match is_projected {
             true => self.0.of_shear().lame,
             false => self.0.lame,
         }

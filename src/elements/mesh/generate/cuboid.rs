@@ -23,20 +23,29 @@ pub enum SolidCells {
     /// the nodes in the middle of edges come after all of them, in the order of the grid with half the
     /// spacing.
     Hexahedra20,
+    /// One twenty-seven-node hexahedron per grid cell. Corner nodes are numbered as in [`SolidCells::Hexahedra`]; the
+    /// others come after all of them, in the order of the grid with half the spacing.
+    Hexahedra27,
 }
 
 impl SolidCells {
     /// All ways to divide a grid.
-    pub const ALL: [Self; 4] =
-        [Self::Tetrahedra, Self::Hexahedra, Self::Tetrahedra10, Self::Hexahedra20];
+    pub const ALL: [Self; 5] = [
+        Self::Tetrahedra,
+        Self::Hexahedra,
+        Self::Tetrahedra10,
+        Self::Hexahedra20,
+        Self::Hexahedra27,
+    ];
 
-    /// Name: `tetrahedra`, `hexahedra`, `tetrahedra10`, `hexahedra20`.
+    /// Name: `tetrahedra`, `hexahedra`, `tetrahedra10`, `hexahedra20`, `hexahedra27`.
     pub fn name(self) -> &'static str {
         match self {
             Self::Tetrahedra => "tetrahedra",
             Self::Hexahedra => "hexahedra",
             Self::Tetrahedra10 => "tetrahedra10",
             Self::Hexahedra20 => "hexahedra20",
+            Self::Hexahedra27 => "hexahedra27",
         }
     }
 }
@@ -98,7 +107,7 @@ impl Mesh {
         let mid_nodes = match cells {
             SolidCells::Hexahedra | SolidCells::Tetrahedra => MidNodes::None,
             SolidCells::Hexahedra20 => MidNodes::OnEdges,
-            SolidCells::Tetrahedra10 => MidNodes::Everywhere,
+            SolidCells::Tetrahedra10 | SolidCells::Hexahedra27 => MidNodes::Everywhere,
         };
         let grid = Grid::new(nodes.map(|count| count - 1), false, mid_nodes);
         let (kind, connectivity) = match cells {
@@ -107,6 +116,9 @@ impl Mesh {
             }
             SolidCells::Hexahedra20 => {
                 (CellKind::Hexahedron20, grid.divide(CellKind::Hexahedron20, |_| &HEXAHEDRON))
+            }
+            SolidCells::Hexahedra27 => {
+                (CellKind::Hexahedron27, grid.divide(CellKind::Hexahedron27, |_| &HEXAHEDRON))
             }
             SolidCells::Tetrahedra => {
                 (CellKind::Tetrahedron, grid.divide(CellKind::Tetrahedron, |_| &TETRAHEDRA))

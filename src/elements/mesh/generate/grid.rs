@@ -30,26 +30,31 @@ pub enum Cells {
     /// there; the nodes in the middle of edges come after all of them, row by row of the grid with
     /// half the spacing.
     Triangles6,
+    /// One nine-node quadrilateral per grid cell. Corner nodes are numbered as in [`Cells::Rectangles`]; the others come
+    /// after all of them, row by row of the grid with half the spacing.
+    Rectangles9,
 }
 
 impl Cells {
     /// All ways to divide a grid.
-    pub const ALL: [Self; 4] = [Self::Triangles, Self::Crossed, Self::Rectangles, Self::Triangles6];
+    pub const ALL: [Self; 5] =
+        [Self::Triangles, Self::Crossed, Self::Rectangles, Self::Triangles6, Self::Rectangles9];
 
-    /// Name: `triangles`, `crossed`, `rectangles`, `triangles6`.
+    /// Name: `triangles`, `crossed`, `rectangles`, `triangles6`, `rectangles9`.
     pub fn name(self) -> &'static str {
         match self {
             Self::Triangles => "triangles",
             Self::Crossed => "crossed",
             Self::Rectangles => "rectangles",
             Self::Triangles6 => "triangles6",
+            Self::Rectangles9 => "rectangles9",
         }
     }
 
     /// The nodes that a grid of them has in addition to the corners.
     pub(super) fn mid_nodes(self) -> MidNodes {
         match self {
-            Self::Triangles6 => MidNodes::Everywhere,
+            Self::Triangles6 | Self::Rectangles9 => MidNodes::Everywhere,
             Self::Triangles | Self::Crossed | Self::Rectangles => MidNodes::None,
         }
     }
@@ -80,6 +85,9 @@ const D: [usize; 2] = [0, 1];
 
 /// The cells that a grid cell is divided into, as corners of it.
 type Division<const N: usize, const C: usize> = [[[usize; N]; C]];
+
+/// One quadrilateral.
+const WHOLE: [[[usize; 2]; 4]; 1] = [[A, B, C, D]];
 
 /// Which way a diagonal runs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -206,11 +214,12 @@ impl<const N: usize> Grid<N> {
         connectivity.extend(corners.map(|corner| number(corner.map(|k| self.steps * k))));
         if self.steps == 2 {
             // twice the mean of two corners
-            let middle = |edge: &&[usize]| {
-                let [a, b] = [corners[edge[0]], corners[edge[1]]];
+            let middle = |a: usize, b: usize| {
+                let [a, b] = [corners[a], corners[b]];
                 number(std::array::from_fn(|axis| a[axis] + b[axis]))
             };
-            connectivity.extend(kind.edges().iter().map(middle));
+            connectivity.extend(kind.edges().iter().map(|edge| middle(edge[0], edge[1])));
+            connectivity.extend(kind.middles().iter().map(|&[a, b]| middle(a, b)));
         }
     }
 
@@ -251,8 +260,10 @@ impl Grid<2> {
                 (CellKind::Triangle, self.divide(CellKind::Triangle, alternating))
             }
             Cells::Rectangles => {
-                let whole = |_| -> &'static Division<2, 4> { &[[A, B, C, D]] };
-                (CellKind::Quadrilateral, self.divide(CellKind::Quadrilateral, whole))
+                (CellKind::Quadrilateral, self.divide(CellKind::Quadrilateral, |_| &WHOLE))
+            }
+            Cells::Rectangles9 => {
+                (CellKind::Quadrilateral9, self.divide(CellKind::Quadrilateral9, |_| &WHOLE))
             }
             Cells::Triangles6 => {
                 (CellKind::Triangle6, self.divide(CellKind::Triangle6, |_| triangles.division()))
