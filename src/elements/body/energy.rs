@@ -1,5 +1,7 @@
 //! The strain energy of all elements, computed for as many cells at once as their forces are.
 
+#![allow(clippy::needless_range_loop, reason = "indices that several arrays share read best")]
+
 use std::ops::Range;
 
 use pulp::{Arch, Simd, WithSimd};

@@ -161,9 +161,7 @@ fn of_projected<
         of_volume.add(pull * of_point, Some(&modes));
         let weight = by_volume * of_point;
         let mut values = [zero.constant(1.0); COEFFICIENTS];
-        for k in 0..M {
-            values[k + 1] = modes[k];
-        }
+        values[1..=M].copy_from_slice(&modes);
         for k in 0..M + 1 {
             for l in 0..M + 1 {
                 stiff[k][l] += weight * values[k] * values[l];
