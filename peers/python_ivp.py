@@ -1,10 +1,10 @@
 """`pliant.solve_ivp` beside the integrators that Python has: time against error.
 
-    pip install scipy numba pydiffsol scikit-sundae    # those that are not there are left out
-    python python_ivp.py
+    pip install scipy numba pydiffsol scikit-sundae    # the last two are left out if they are not there
+    python python_ivp.py                               # prints the tables of python.md
 
 HIRES (8 unknowns) and a Brusselator in one dimension (1,000 unknowns, a band), with right-hand sides in Python (NumPy) and
-compiled (numba). Times are processor times, the best of five; errors are those of the last state, weighted as by the
+compiled (numba; pydiffsol compiles a language of its own, the time for which is not counted). Times are processor times, the best of five; errors are those of the last state, weighted as by the
 tolerances: sqrt(mean((e / (atol + rtol |y|))^2)) at rtol = atol = 1e-6.
 """
 
@@ -74,6 +74,35 @@ def compiled():
     return {"HIRES": (dense, hires_c), "Brusselator": (fast, brusselator_c)}
 
 
+def diffsl():
+    """The same in the language of pydiffsol, the unknowns of the Brusselator as all u, then all v; and its last unknowns' order."""
+    of, last = 0.02 * (POINTS + 1) ** 2, POINTS - 1
+    x = np.arange(1, POINTS + 1) / (POINTS + 1)
+    first = ", ".join(f"{u:.17g}" for u in 1.0 + np.sin(2.0 * np.pi * x))
+    ends = f"(0:1): 1, (1:{last}): 0, ({last}:{POINTS}): 1"
+    diffusion = f"(0..{POINTS},0..{POINTS}): {-2 * of}, (0..{last},1..{POINTS}): {of}, (1..{POINTS},0..{last}): {of}"
+    line = f"""
+        D_ij {{ {diffusion} }}
+        e_i {{ {ends} }}
+        z_i {{ {first} }}
+        u_i {{ (0:{POINTS}): p = z_i, ({POINTS}:{2 * POINTS}): q = 3 }}
+        dp_i {{ D_ij * p_j }}
+        dq_i {{ D_ij * q_j }}
+        F_i {{ 1 + p_i * p_i * q_i - 4 * p_i + dp_i + {of} * e_i, 3 * p_i - p_i * p_i * q_i + dq_i + {3 * of} * e_i }}"""
+    chain = """
+        u_i { y0 = 1, y1 = 0, y2 = 0, y3 = 0, y4 = 0, y5 = 0, y6 = 0, y7 = 0.0057 }
+        F_i { -1.71 * y0 + 0.43 * y1 + 8.32 * y2 + 0.0007,
+              1.71 * y0 - 8.75 * y1,
+              -10.03 * y2 + 0.43 * y3 + 0.035 * y4,
+              8.32 * y1 + 1.71 * y2 - 1.12 * y3,
+              -1.745 * y4 + 0.43 * y5 + 0.43 * y6,
+              -280.0 * y5 * y7 + 0.69 * y3 + 1.71 * y4 - 0.43 * y5 + 0.69 * y6,
+              280.0 * y5 * y7 - 1.81 * y6,
+              -280.0 * y5 * y7 + 1.81 * y6 }"""
+    in_turns = np.arange(2 * POINTS).reshape(2, POINTS).T.ravel()
+    return {"HIRES": (chain, slice(None)), "Brusselator": (line, in_turns)}
+
+
 def problems():
     x = np.arange(1, POINTS + 1) / (POINTS + 1)
     start = np.empty(2 * POINTS)
@@ -140,6 +169,20 @@ def main():
             bands = dict(linsolver="band", lband=2, uband=2) if options else {}
             solver = sksundae.cvode.CVODE(slopes, rtol=RTOL, atol=ATOL, method="BDF", **bands)
             row(f"scikit-SUNDAE BDF, {kind}", lambda: solver.solve(np.array(span), y0).y[-1], reference)
+        by_diffsol(name, span[1], reference)
+
+
+def by_diffsol(name, end, reference):
+    try:
+        import pydiffsol
+    except ImportError:
+        return
+    code, order = diffsl()[name]
+    matrix = pydiffsol.faer_sparse if name == "Brusselator" else pydiffsol.faer_dense
+    for method in ("bdf", "esdirk34", "tr_bdf2"):
+        ode = pydiffsol.Ode(code, matrix_type=matrix, ode_solver=getattr(pydiffsol, method))
+        ode.rtol, ode.atol = RTOL, ATOL
+        row(f"pydiffsol {method}, its language", lambda: ode.solve(np.array([]), end).ys[:, -1][order], reference)
 
 
 if __name__ == "__main__":

@@ -302,6 +302,12 @@ fn engines_compute_the_same() {
     place.sweep(&["--gather", "--out", "a b's"]);
     assert_eq!(place.found("a b's"), place.found("whole"));
 
+    // two rows, spread over the study, are of two tasks; whole tasks are counted
+    says(
+        &place.sweep(&["--engine", "slurm", "--batch", "2", "--limit", "2", "--out", "few"]),
+        &["slurm.sh: 1 tasks"],
+    );
+
     let output = place
         .command(&[&submit[..], &["--out", "new"]].concat())
         .env("PATH", "/nowhere")

@@ -1,6 +1,6 @@
 //! `pliant sweep`
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::io;
 use std::path::{Path, PathBuf};
 use std::process;
@@ -44,7 +44,7 @@ pub struct Arguments {
     /// Points that are run at once [default: one on each core, as far as they fit into memory]
     #[arg(long, value_name = "COUNT")]
     cores: Option<usize>,
-    /// Compute so many rows at most, spread over the study; others can follow
+    /// Compute so many rows at most, spread over the study; others can follow. An engine computes whole tasks
     #[arg(long, value_name = "ROWS")]
     limit: Option<usize>,
     /// Keep the whole output of the runs whose row fulfils this: all, com.y:max > 0.5, verdict = doubtful, warning =
@@ -163,16 +163,23 @@ impl Study<'_> {
         let plan = self.sweep.plan();
         let again = |row: &Row| self.is_wanted_again(row);
         let mut numbers = self.store.open(plan, again);
-        numbers.truncate(limit.unwrap_or(usize::MAX));
+        let most = limit.unwrap_or(usize::MAX);
         if *engine == Engine::Local {
+            numbers.truncate(most);
             return self.compute(&numbers).map(|()| false);
         }
-        let mut tasks: Vec<usize> = numbers.iter().map(|number| number / batch).collect();
-        tasks.sort_unstable();
-        tasks.dedup();
+        // rows are in an order that spreads them over the study, and so are the first tasks met
+        let mut tasks = BTreeSet::new();
+        for number in &numbers {
+            if tasks.len() < most.div_ceil(batch) {
+                tasks.insert(number / batch);
+            }
+        }
         if tasks.is_empty() {
             return Ok(false);
         }
+        numbers.retain(|number| tasks.contains(&(number / batch)));
+        let tasks: Vec<usize> = tasks.into_iter().collect();
         self.store.create()?;
         let flags = self.flags();
         let (study, directory) = (&self.arguments.study, self.store.path());
