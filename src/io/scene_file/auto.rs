@@ -4,7 +4,7 @@ use super::contents::{AutoRequest, SceneFile};
 use crate::base::input::{percent, short};
 use crate::dynamics::indicators::largest_turn;
 use crate::dynamics::trajectory::Trajectory;
-use crate::elements::body::Strain;
+use crate::elements::body::{Dilatation, Strain};
 
 /// Rotation (degrees) of cells below which Cauchy strain would do: it takes this for a strain of 0.01 %.
 const FEW_DEGREES: f64 = 0.8;
@@ -32,9 +32,14 @@ impl SceneFile {
             ));
         }
         if cells {
-            let kind = motion.body().mesh().kind().name();
+            let body = motion.body();
+            let kind = body.mesh().kind().name();
+            let dilatation = match body.dilatation() {
+                Dilatation::Linear => " with a linear dilatation",
+                _ => "",
+            };
             chosen.push(format!(
-                "cells: {kind}, for linear ones lock or are too stiff in bending; pliant advise measures whether they are fine enough"
+                "cells: {kind}{dilatation}, for linear ones lock or are too stiff in bending; pliant advise measures whether they are fine enough"
             ));
         }
         motion.report.chosen = chosen;

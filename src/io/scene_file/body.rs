@@ -6,7 +6,7 @@ use super::absent::ONE_BODY;
 use super::contents::AutoRequest;
 use super::keys::{AUTO, Holds, Key, TableKeys};
 use super::material::{MATERIAL, substance};
-use super::mesh::{self, MESH};
+use super::mesh::{self, AutoCells, MESH};
 use super::selection::{CORNERS, corners};
 use super::value::Value;
 use crate::base::input::positive;
@@ -15,7 +15,7 @@ use crate::elements::body::{
     Body, BodyBuilder, CellSelection, Dilatation, Inertia, Strain, Viscosity,
 };
 use crate::elements::material::{Plane, Substance};
-use crate::elements::mesh::Mesh;
+use crate::elements::mesh::{CellKind, Mesh};
 use crate::scene::timeline::Scene;
 
 pub(super) const BODY: TableKeys = TableKeys::new(
@@ -65,7 +65,7 @@ pub(super) const BODY: TableKeys = TableKeys::new(
         .law("At each point of a cell, a nearly incompressible body locks. `linear`: projected onto linear functions of each cell, \
               accurate; for `hexahedra27`, `rectangles9` and, less so, `hexahedra20`. `mean`: in the mean over each cell, for \
               `rectangles`, `hexahedra`, `triangles6` and `tetrahedra10`.")
-        .default("points"),
+        .default("points, or what goes with `cells = \"auto\"`"),
         Key::new("material", Holds::Table(&MATERIAL), "what the body is made of").required(),
         Key::new("region", Holds::Tables(&REGION), "parts with a material of their own"),
     ],
@@ -76,6 +76,8 @@ pub(super) const BODY: TableKeys = TableKeys::new(
      material = { density = 1000.0, young = 1.0e5, poisson = 0.48, viscosity = 40.0 }",
 );
 
+/// Poisson's ratio from which cells left to `auto` are those of silicone.
+const SILICONE: f64 = 0.45;
 /// `auto` is Green: it is right however far a body turns, at a small cost.
 const STRAINS: [(&str, Strain); 3] =
     [("cauchy", Strain::Cauchy), ("green", Strain::Green), (AUTO, Strain::Green)];
@@ -129,8 +131,14 @@ pub(super) fn body(
         );
     }
     let table = value.table(&BODY)?;
-    let mut mesh = table.required("mesh", |value| mesh::mesh(value, dimension))?;
     let material = table.required("material", |value| substance(value, None))?;
+    let plane = table.optional("plane", |value| value.word(&PLANE))?;
+    let is_silicone = material.material.poisson >= SILICONE && plane != Some(Plane::Stress);
+    let auto = match is_silicone {
+        true => AutoCells::of_silicone(dimension.map(Value::count).transpose()? == Some(3)),
+        false => AutoCells::default(),
+    };
+    let mut mesh = table.required("mesh", |value| mesh::mesh(value, dimension, auto))?;
     let mut body = Body::new(mesh.clone(), material.clone());
     if let Some(thickness) = table.optional("thickness", Value::number)? {
         body = body.thickness(thickness);
@@ -147,11 +155,18 @@ pub(super) fn body(
     if let Some(inertia) = table.optional("inertia", |value| value.word(&INERTIA))? {
         body = body.inertia(inertia);
     }
-    if let Some(plane) = table.optional("plane", |value| value.word(&PLANE))? {
+    if let Some(plane) = plane {
         body = body.plane(plane);
     }
-    if let Some(dilatation) = table.optional("dilatation", |value| value.word(&DILATATION))? {
-        body = body.dilatation(dilatation);
+    let has_auto_cells = table.required("mesh", mesh::has_auto_cells)?;
+    match table.optional("dilatation", |value| value.word(&DILATATION))? {
+        Some(dilatation) => body = body.dilatation(dilatation),
+        None if has_auto_cells
+            && matches!(mesh.kind(), CellKind::Quadrilateral9 | CellKind::Hexahedron27) =>
+        {
+            body = body.dilatation(Dilatation::Linear);
+        }
+        None => {}
     }
     if let Some(regions) = table.get("region") {
         body = add_regions(body, &regions, &mesh, &material)?;

@@ -50,10 +50,11 @@ pub(super) const MESH: TableKeys = TableKeys::new(
                 .required(),
             Key::new(
                 "cells",
-                Holds::Word(|| solid_cells().into_iter().map(|(word, _)| word).collect()),
+                Holds::Word(|| words(&solid_cells(AutoCells::default()))),
                 "how the grid is divided",
             )
-            .law("`auto` is `tetrahedra10`, quadratic.")
+            .law("`auto` is `tetrahedra10`, quadratic; for a Poisson's ratio of 0.45 or more it is `hexahedra27` with \
+                  `dilatation = \"linear\"`, as of silicone.")
             .required(),
             grading(3),
         ],
@@ -77,11 +78,12 @@ const NODES: Key =
     Key::new("nodes", Holds::Array(&Holds::Count, 2), "corner nodes along x and y").required();
 const CELLS: Key = Key::new(
     "cells",
-    Holds::Word(|| plane_cells().into_iter().map(|(word, _)| word).collect()),
+    Holds::Word(|| words(&plane_cells(AutoCells::default()))),
     "how the grid is divided",
 )
 .law("Linear `triangles` are too stiff in bending, `crossed` ones less so; `triangles6`, quadratic, bend well, and \
-      `auto` is those.")
+      `auto` is those; for a Poisson's ratio of 0.45 or more in plane strain it is `rectangles9` with `dilatation = \"linear\"`, \
+      as of silicone.")
 .required();
 const fn grading(axes: usize) -> Key {
     let about = "the length of the last cell along each axis by that of the first one";
@@ -99,21 +101,47 @@ const ROUND: &[Key] = &[
     CELLS,
 ];
 
-/// Words for cells of the plane, and of space; `auto` stands for quadratic ones, which neither lock nor are
-/// too stiff in bending.
-fn plane_cells() -> Vec<(&'static str, Cells)> {
-    let named = Cells::ALL.map(|cells| (cells.name(), cells));
-    named.into_iter().chain([(AUTO, Cells::Triangles6)]).collect()
+/// What `auto` stands for, in the plane and in space: quadratic cells, which are not too stiff in bending.
+#[derive(Clone, Copy)]
+pub(super) struct AutoCells {
+    plane: Cells,
+    solid: SolidCells,
 }
-fn solid_cells() -> Vec<(&'static str, SolidCells)> {
+
+impl Default for AutoCells {
+    fn default() -> Self {
+        Self { plane: Cells::Triangles6, solid: SolidCells::Tetrahedra10 }
+    }
+}
+
+impl AutoCells {
+    /// Those that keep their volume without locking, with a linear dilatation. A membrane has none.
+    pub(super) fn of_silicone(is_membrane: bool) -> Self {
+        let plane = if is_membrane { Cells::Triangles6 } else { Cells::Rectangles9 };
+        Self { plane, solid: SolidCells::Hexahedra27 }
+    }
+}
+
+fn plane_cells(auto: AutoCells) -> Vec<(&'static str, Cells)> {
+    let named = Cells::ALL.map(|cells| (cells.name(), cells));
+    named.into_iter().chain([(AUTO, auto.plane)]).collect()
+}
+fn solid_cells(auto: AutoCells) -> Vec<(&'static str, SolidCells)> {
     let named = SolidCells::ALL.map(|cells| (cells.name(), cells));
-    named.into_iter().chain([(AUTO, SolidCells::Tetrahedra10)]).collect()
+    named.into_iter().chain([(AUTO, auto.solid)]).collect()
+}
+fn words<T>(named: &[(&'static str, T)]) -> Vec<&'static str> {
+    named.iter().map(|(word, _)| *word).collect()
 }
 
 /// The mesh that `value` describes, in a space of `dimension` (default: its own).
-pub(super) fn mesh(value: &Value, dimension: Option<&Value>) -> Result<Mesh, Error> {
+pub(super) fn mesh(
+    value: &Value,
+    dimension: Option<&Value>,
+    auto: AutoCells,
+) -> Result<Mesh, Error> {
     let table = value.table(&MESH)?;
-    let mesh = generate(&table).map_err(|error| table.blame(error))?;
+    let mesh = generate(&table, auto).map_err(|error| table.blame(error))?;
     let mesh = match dimension {
         Some(dimension) => placed(mesh, dimension)?,
         None => mesh,
@@ -146,9 +174,9 @@ pub(super) fn has_auto_cells(value: &Value) -> Result<bool, Error> {
     }
 }
 
-fn generate(table: &Table) -> Result<Mesh, Error> {
+fn generate(table: &Table, auto: AutoCells) -> Result<Mesh, Error> {
     let number = |key: &str| table.required(key, Value::number);
-    let cells = |value: &Value| value.word(&plane_cells());
+    let cells = |value: &Value| value.word(&plane_cells(auto));
     Ok(match table.kind() {
         "bar" => Mesh::bar(number("length")?, table.required("nodes", Value::count)?)?,
         "rectangle" => Mesh::graded_rectangle(
@@ -170,7 +198,7 @@ fn generate(table: &Table) -> Result<Mesh, Error> {
             table.required("size", Value::array)?,
             table.required("nodes", Value::counts)?,
             table.optional("grading", Value::array)?.unwrap_or([1.0; 3]),
-            table.required("cells", |value| value.word(&solid_cells()))?,
+            table.required("cells", |value| value.word(&solid_cells(auto)))?,
         )?,
         "listed" => listed(table)?,
         _ => table.required("file", |value| {
