@@ -13,10 +13,12 @@ _MESHIO = {
     "triangles": "triangle",
     "triangles6": "triangle6",
     "quadrilaterals": "quad",
+    "quadrilaterals9": "quad9",
     "tetrahedra": "tetra",
     "tetrahedra10": "tetra10",
     "hexahedra": "hexahedron",
     "hexahedra20": "hexahedron20",
+    "hexahedra27": "hexahedron27",
 }
 
 
@@ -30,8 +32,8 @@ class Mesh:
     cells : array [cell, node]
         Nodes of the cells, counted from 0, in the order of VTK.
     kind : str
-        What the cells are: ``segments``, ``triangles``, ``triangles6``, ``quadrilaterals``, ``tetrahedra``,
-        ``tetrahedra10``, ``hexahedra`` or ``hexahedra20``.
+        What the cells are: ``segments``, ``triangles``, ``triangles6``, ``quadrilaterals``, ``quadrilaterals9``,
+        ``tetrahedra``, ``tetrahedra10``, ``hexahedra``, ``hexahedra20`` or ``hexahedra27``.
     sets : dict, optional
         Nodes (from 0) by the names of node sets.
     groups : dict, optional

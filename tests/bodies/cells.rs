@@ -4,6 +4,8 @@ use faer::Side;
 use pliant::mesh::CellKind;
 use pliant::{Body, Cells, Material, Mesh, SolidCells, Strain};
 
+use super::meshes::middles;
+
 const RUBBER: Material = Material { density: 1000.0, young: 1e6, poisson: 0.48, viscosity: 40.0 };
 /// Sides of the bodies (m).
 const SIZE: [f64; 3] = [3.0, 2.0, 1.5];
@@ -24,15 +26,17 @@ fn grids() -> Vec<Mesh> {
         rectangle(Cells::Crossed),
         rectangle(Cells::Rectangles),
         rectangle(Cells::Triangles6),
+        rectangle(Cells::Rectangles9),
         cuboid(SolidCells::Hexahedra),
         cuboid(SolidCells::Tetrahedra),
         cuboid(SolidCells::Tetrahedra10),
         cuboid(SolidCells::Hexahedra20),
+        cuboid(SolidCells::Hexahedra27),
     ]
 }
 
-/// The mesh with its inner nodes pushed about; mid nodes go back to the middle of their edge if
-/// `straight`.
+/// The mesh with its inner nodes pushed about; mid nodes go back to the middle of their edge, face or cell
+/// if `straight`.
 fn irregular(mesh: Mesh, straight: bool) -> Mesh {
     let dimension = mesh.dimension();
     let inner: Vec<usize> =
@@ -47,13 +51,11 @@ fn irregular(mesh: Mesh, straight: bool) -> Mesh {
     }
     if straight {
         for cell in mesh.cells() {
-            for edge in mesh.kind().edges() {
-                if let [a, b, middle] = edge.iter().map(|&k| cell[k]).collect::<Vec<_>>()[..] {
-                    for axis in 0..dimension {
-                        let mean =
-                            positions[dimension * a + axis] + positions[dimension * b + axis];
-                        positions[dimension * middle + axis] = mean / 2.0;
-                    }
+            for (corners, middle) in middles(mesh.kind()) {
+                for axis in 0..dimension {
+                    let at = |local: usize| dimension * cell[local] + axis;
+                    let sum: f64 = corners.iter().map(|&corner| positions[at(corner)]).sum();
+                    positions[at(middle)] = sum / corners.len() as f64;
                 }
             }
         }
@@ -169,13 +171,7 @@ fn rigid_modes_cost_nothing_and_no_others_are_free() {
 /// 2 x 2 x 2 has none.)
 #[test]
 fn no_cell_has_a_free_motion_of_its_own() {
-    let solids = [
-        SolidCells::Hexahedra,
-        SolidCells::Tetrahedra,
-        SolidCells::Tetrahedra10,
-        SolidCells::Hexahedra20,
-    ];
-    for cells in solids {
+    for cells in SolidCells::ALL {
         for nodes in [[2, 2, 2], [2, 2, 6], [3, 3, 3]] {
             let body = body(Mesh::cuboid(SIZE, nodes, cells).unwrap());
             let eigenvalues = body.stiffness().to_dense().self_adjoint_eigenvalues(Side::Lower);
@@ -225,18 +221,21 @@ fn patch_test_on_irregular_meshes() {
 }
 
 #[test]
-fn curved_triangles_pass_the_patch_test() {
-    patch_test(irregular(rectangle(Cells::Triangles6), false), volume(2));
-    let ring = Mesh::ring(1.0, 2.0, [8, 3], Cells::Triangles6).unwrap();
+fn curved_cells_pass_the_patch_test() {
     // each of 16 pieces of a rim is a parabola over the chord of 45 degrees: area by Simpson's rule
     let (chord, rise) =
         (2.0 * (45f64 / 2.0).to_radians().sin(), 1.0 - (45f64 / 2.0).to_radians().cos());
     let unit_disc = 8.0 * (0.5 * 45f64.to_radians().sin() + 2.0 / 3.0 * chord * rise);
-    patch_test(ring, unit_disc * (4.0 - 1.0) * THICKNESS);
+    for cells in [Cells::Triangles6, Cells::Rectangles9] {
+        patch_test(irregular(rectangle(cells), false), volume(2));
+        let ring = Mesh::ring(1.0, 2.0, [8, 3], cells).unwrap();
+        patch_test(ring, unit_disc * (4.0 - 1.0) * THICKNESS);
+    }
+    patch_test(irregular(cuboid(SolidCells::Hexahedra27), false), volume(3));
 }
 
-/// The displacement (x y, 0, 0), which quadratic cells follow on any straight-sided mesh,
-/// rectangles and hexahedra on a grid.
+/// The displacement (x y, 0, 0), which quadratic triangles and tetrahedra and biquadratic cells follow on any
+/// straight-sided mesh, others on a grid.
 #[test]
 fn stiffness_rules_integrate_a_bilinear_field() {
     let [a, b, _] = SIZE;
@@ -244,7 +243,10 @@ fn stiffness_rules_integrate_a_bilinear_field() {
         let (kind, dimension) = (mesh.kind(), mesh.dimension());
         let mesh = match kind {
             CellKind::Triangle | CellKind::Tetrahedron => continue,
-            CellKind::Triangle6 | CellKind::Tetrahedron10 => irregular(mesh, true),
+            CellKind::Triangle6
+            | CellKind::Tetrahedron10
+            | CellKind::Quadrilateral9
+            | CellKind::Hexahedron27 => irregular(mesh, true),
             _ => mesh,
         };
         let (_, energy) = elastic(&body(mesh), |x| [x[0] * x[1], 0.0, 0.0]);
@@ -294,6 +296,13 @@ fn inertia_in_closed_form() {
         [0, -4, 0, 16, 16, 32],
     ];
     check(mesh, 0.96 * THICKNESS / 180.0, &row.each_ref().map(|row| &row[..]));
+
+    // products of those of a line: its ends, then its middle
+    let mesh = Mesh::rectangle([3.0, 2.0], [2, 2], Cells::Rectangles9).unwrap();
+    let line = [[4, -1, 2], [-1, 4, 2], [2, 2, 16]];
+    let places = [[0, 0], [1, 0], [1, 1], [0, 1], [2, 0], [1, 2], [2, 1], [0, 2], [2, 2]];
+    let row = places.map(|[i, j]| places.map(|[k, l]| line[i][k] * line[j][l]));
+    check(mesh, 6.0 * THICKNESS / 900.0, &row.each_ref().map(|row| &row[..]));
 }
 
 #[test]

@@ -51,22 +51,23 @@ fn slender(mode: usize, length: f64, height: f64) -> f64 {
     b * b * (MATERIAL.young * height * height / (12.0 * MATERIAL.density)).sqrt()
 }
 
-/// Quadratic triangles: the slender limit is approached as (height/length)^2, the shear and
+/// Quadratic triangles and quadrilaterals: the slender limit is approached as (height/length)^2, the shear and
 /// rotary inertia that it neglects.
 #[test]
-fn cantilever_of_quadratic_triangles() {
-    let errors = [(10.0, 21), (20.0, 41), (40.0, 81)].map(|(length, nodes)| {
-        let mesh = Mesh::rectangle([length, 1.0], [nodes, 2], Cells::Triangles6).unwrap();
-        let body =
-            Body::new(mesh, MATERIAL).strain(Strain::Cauchy).thickness(1.0).plane(Plane::Stress);
-        let found = frequencies(body);
-        [0, 1].map(|mode| 1.0 - found[mode] / slender(mode, length, 1.0))
-    });
-    println!("below Euler-Bernoulli, at L/h = 10, 20, 40: {errors:?}");
-    for mode in [0, 1] {
-        let [short, middle, long] = errors.map(|errors| errors[mode]);
-        assert!(short > 0.0 && (short / middle - 4.0).abs() < 1.0, "mode {mode}: {errors:?}");
-        assert!((middle / long - 4.0).abs() < 1.0, "mode {mode}: {errors:?}");
+fn cantilever_of_flat_quadratic_cells() {
+    for cells in [Cells::Triangles6, Cells::Rectangles9] {
+        let errors = [(10.0, 21), (20.0, 41), (40.0, 81)].map(|(length, nodes)| {
+            let mesh = Mesh::rectangle([length, 1.0], [nodes, 2], cells).unwrap();
+            let body = Body::new(mesh, MATERIAL).strain(Strain::Cauchy).thickness(1.0);
+            let found = frequencies(body.plane(Plane::Stress));
+            [0, 1].map(|mode| 1.0 - found[mode] / slender(mode, length, 1.0))
+        });
+        println!("{cells} below Euler-Bernoulli, at L/h = 10, 20, 40: {errors:?}");
+        for mode in [0, 1] {
+            let [short, middle, long] = errors.map(|errors| errors[mode]);
+            assert!(short > 0.0 && (short / middle - 4.0).abs() < 1.0, "mode {mode}: {errors:?}");
+            assert!((middle / long - 4.0).abs() < 1.0, "mode {mode}: {errors:?}");
+        }
     }
 }
 
@@ -82,12 +83,16 @@ fn cantilever_of_solid_cells() {
         found[0] / slender(0, 10.0, 1.0) - 1.0
     };
     let tetrahedra = first(SolidCells::Tetrahedra10, [11, 2, 2]);
-    let quadratic = first(SolidCells::Hexahedra20, [11, 2, 2]);
+    let [quadratic, triquadratic] =
+        [SolidCells::Hexahedra20, SolidCells::Hexahedra27].map(|cells| first(cells, [11, 2, 2]));
     let hexahedra = [6, 11, 21].map(|nodes| first(SolidCells::Hexahedra, [nodes, 2, 2]));
     println!(
-        "above Euler-Bernoulli: tetrahedra10 {tetrahedra:.4}, hexahedra20 {quadratic:.4}, hexahedra {hexahedra:.4?}"
+        "above Euler-Bernoulli: tetrahedra10 {tetrahedra:.4}, hexahedra20 {quadratic:.4}, hexahedra27 \
+         {triquadratic:.4}, hexahedra {hexahedra:.4?}"
     );
-    assert!(tetrahedra.abs() < 0.01 && quadratic.abs() < 0.01, "{tetrahedra} {quadratic}");
+    for found in [tetrahedra, quadratic, triquadratic] {
+        assert!(found.abs() < 0.01, "{found}");
+    }
     let [coarse, middle, fine] = hexahedra;
     assert!(coarse > 0.3 && middle < coarse / 2.5 && fine < middle / 2.5, "{hexahedra:?}");
 }

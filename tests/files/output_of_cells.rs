@@ -41,11 +41,13 @@ fn bodies() -> Vec<(Trajectory, u8, usize, usize)> {
         (flat(Cells::Triangles), 5, 12, 3),
         (flat(Cells::Triangles6), 22, 12, 6),
         (flat(Cells::Rectangles), 9, 6, 4),
+        (flat(Cells::Rectangles9), 28, 6, 8),
         (membrane, 5, 12, 3),
         (solid(SolidCells::Hexahedra), 12, seen, 4),
         (solid(SolidCells::Tetrahedra), 10, 2 * seen, 3),
         (solid(SolidCells::Tetrahedra10), 24, 2 * seen, 6),
         (solid(SolidCells::Hexahedra20), 25, seen, 8),
+        (solid(SolidCells::Hexahedra27), 29, seen, 8),
     ];
     cases.map(|(mesh, vtk, shapes, points)| (pulled(mesh), vtk, shapes, points)).into()
 }

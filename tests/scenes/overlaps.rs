@@ -54,16 +54,10 @@ fn strips_wound_into_themselves() {
         }
     };
     let strips = || {
-        let flat = [Cells::Triangles, Cells::Crossed, Cells::Triangles6, Cells::Rectangles];
-        let flat = flat.map(|cells| Mesh::rectangle([length, THICK], [151, 3], cells).unwrap());
-        let solid = [
-            SolidCells::Tetrahedra,
-            SolidCells::Hexahedra,
-            SolidCells::Tetrahedra10,
-            SolidCells::Hexahedra20,
-        ];
-        let solid =
-            solid.map(|cells| Mesh::cuboid([length, 0.004, THICK], [76, 2, 2], cells).unwrap());
+        let flat =
+            Cells::ALL.map(|cells| Mesh::rectangle([length, THICK], [151, 3], cells).unwrap());
+        let solid = SolidCells::ALL
+            .map(|cells| Mesh::cuboid([length, 0.004, THICK], [76, 2, 2], cells).unwrap());
         flat.into_iter().chain(solid)
     };
     for strip in strips() {
@@ -106,7 +100,7 @@ fn blocks(gap: f64, cells: Cells) -> Mesh {
 /// block's height of 2 cm is the nearest boundary.
 #[test]
 fn pieces_that_fly_through_each_other() {
-    for cells in [Cells::Triangles, Cells::Rectangles, Cells::Triangles6] {
+    for cells in [Cells::Triangles, Cells::Rectangles, Cells::Triangles6, Cells::Rectangles9] {
         let scene = |end: f64| {
             Scene::new(body(blocks(0.01, cells), Strain::Green))
                 .initial_velocity(|x| vec![if x[0] > 0.045 { -1.0 } else { 0.0 }, 0.0])
@@ -159,7 +153,7 @@ fn drawn_into_each_other() {
 /// a quarter of a cell. Straight edges are off the arc by L^2/(8 R) = 0.05 mm, a fifth of the limit.
 #[test]
 fn touching_is_no_overlap() {
-    for cells in [Cells::Triangles, Cells::Triangles6, Cells::Rectangles] {
+    for cells in [Cells::Triangles, Cells::Triangles6, Cells::Rectangles, Cells::Rectangles9] {
         let scene = Scene::new(body(blocks(0.0, cells), Strain::Green)).phase(Phase::until(0.01));
         assert!(!scene.warnings().iter().any(|text| text.contains("overlaps")));
         let motion = begun(blocks(1e-9, cells), |x| {
@@ -176,16 +170,17 @@ fn touching_is_no_overlap() {
 /// between the nodes are. Their depth is half of the thickness, up to where points are along an edge.
 #[test]
 fn slender_cells_that_cross_between_their_nodes() {
-    for (dimension, kind) in
-        [(2, CellKind::Quadrilateral), (2, CellKind::Triangle6), (3, CellKind::Hexahedron)]
-    {
-        let (long, thick) = (0.16, 0.002);
-        let one = match (dimension, kind) {
-            (3, _) => Mesh::cuboid([long, thick, thick], [11, 2, 2], SolidCells::Hexahedra),
-            (_, CellKind::Triangle6) => Mesh::rectangle([long, thick], [11, 2], Cells::Triangles6),
-            _ => Mesh::rectangle([long, thick], [11, 2], Cells::Rectangles),
-        };
-        let one = one.unwrap();
+    let (long, thick) = (0.16, 0.002);
+    let flat = |cells| Mesh::rectangle([long, thick], [11, 2], cells).unwrap();
+    let solid = |cells| Mesh::cuboid([long, thick, thick], [11, 2, 2], cells).unwrap();
+    for one in [
+        flat(Cells::Rectangles),
+        flat(Cells::Triangles6),
+        flat(Cells::Rectangles9),
+        solid(SolidCells::Hexahedra),
+        solid(SolidCells::Hexahedra27),
+    ] {
+        let kind = one.kind();
         let d = one.dimension();
         let first = || one.positions().iter().copied();
         // beside the first one, upright

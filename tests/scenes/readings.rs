@@ -155,12 +155,7 @@ fn angular_momentum_of_a_spinning_block() -> Outcome {
             omega[0] * x[1] - omega[1] * x[0] + drift[2],
         ]
     };
-    for cells in [
-        SolidCells::Tetrahedra,
-        SolidCells::Hexahedra,
-        SolidCells::Tetrahedra10,
-        SolidCells::Hexahedra20,
-    ] {
+    for cells in SolidCells::ALL {
         let body = Body::new(Mesh::cuboid([a, b, c], [2, 3, 4], cells)?, RUBBER)
             .strain(Strain::Cauchy)
             .build()?;

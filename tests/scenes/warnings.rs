@@ -206,7 +206,7 @@ fn cells_that_lock() {
         only(&scene(flat(cells, 0.46)).warnings(), &parts);
         assert_eq!(scene(flat(cells, 0.46).plane(Plane::Stress)).warnings(), NONE);
     }
-    for cells in [Cells::Crossed, Cells::Triangles6] {
+    for cells in [Cells::Crossed, Cells::Triangles6, Cells::Rectangles9] {
         assert_eq!(scene(flat(cells, 0.49)).warnings(), NONE);
     }
     // with corners of one triangle and of two
@@ -228,6 +228,7 @@ fn cells_that_lock() {
         (SolidCells::Hexahedra, true),
         (SolidCells::Tetrahedra10, false),
         (SolidCells::Hexahedra20, false),
+        (SolidCells::Hexahedra27, false),
     ] {
         let mesh = Mesh::cuboid([0.1, 0.1, 0.1], [2, 2, 2], cells).unwrap();
         let warnings =
@@ -300,6 +301,7 @@ fn cells_too_coarse_for_bending() {
         (Cells::Triangles, [41, 9], 0.45, false),
         (Cells::Triangles, [41, 9], 0.48, true),
         (Cells::Triangles6, [11, 3], 0.48, false),
+        (Cells::Rectangles9, [6, 2], 0.48, false),
     ] {
         let (sinks, mut warnings) = cantilever(cells, nodes, poisson, Strain::Cauchy);
         warnings.retain(|warning| !warning.contains("they lock"));
@@ -323,6 +325,7 @@ fn cells_too_coarse_for_bending() {
         (SolidCells::Hexahedra, [11, 3, 3], false),
         (SolidCells::Tetrahedra10, [6, 2, 2], false),
         (SolidCells::Hexahedra20, [6, 2, 2], false),
+        (SolidCells::Hexahedra27, [6, 2, 2], false),
     ] {
         let mesh = Mesh::cuboid([0.1, 0.02, 0.02], nodes, cells).unwrap();
         let pull = Phase::until(1.0).hold("left").load_total("right", [0.0, -0.005, 0.0]);

@@ -110,18 +110,21 @@ fn structured_solve_is_that_of_the_ode_jacobian() {
 fn internal_strains_are_eliminated() {
     let triangles = Mesh::rectangle([0.3, 0.2], [4, 3], Cells::Triangles).unwrap();
     let triangles6 = Mesh::rectangle([0.3, 0.2], [3, 2], Cells::Triangles6).unwrap();
+    let rectangles9 = Mesh::rectangle([0.3, 0.2], [3, 2], Cells::Rectangles9).unwrap();
     let hexahedra = Mesh::cuboid([0.3, 0.2, 0.1], [3, 2, 2], SolidCells::Hexahedra).unwrap();
-    let (points, mean) = (Dilatation::AtPoints, Dilatation::Mean);
+    let (points, mean, linear) = (Dilatation::AtPoints, Dilatation::Mean, Dilatation::Linear);
     // components, points and cells, half of which have two branches; and the accuracy that the dense solve
     // loses (measured: 2e-5 of the energies of triangles of 6 nodes, less than 3e-5 of all)
     for (mesh, dilatation, plane, yield_stress, internal, tolerance) in [
         (&triangles, points, Plane::Strain, 0.0, 3 * (2 * 6 + 6), 1e-5),
         (&triangles6, mean, Plane::Strain, 0.0, 3 * 3 * (2 * 2 + 2), 1e-4),
         (&hexahedra, mean, Plane::Strain, 0.0, 6 * 8 * (2 + 1), 1e-4),
+        (&rectangles9, linear, Plane::Strain, 0.0, 3 * 9 * (2 + 1), 1e-4),
         (&triangles, points, Plane::Strain, 3e3, (4 + 3) * 6 + 4 * 6, 1e-4),
         (&triangles, points, Plane::Stress, 3e3, 3 * (2 * 6 + 6), 1e-4),
         (&hexahedra, points, Plane::Strain, 3e3, 6 * 8 * (2 + 1), 1e-4),
         (&triangles6, mean, Plane::Strain, 3e3, 3 * ((4 + 3) * 2 + 4 * 2), 1e-4),
+        (&rectangles9, linear, Plane::Strain, 3e3, 9 * ((4 + 3) + 4), 1e-4),
     ] {
         for strain in [Strain::Cauchy, Strain::Green] {
             let left = SQUARE_MATERIAL.yielding(0.7, 1e-3, yield_stress).maxwell(2.0, 0.3);

@@ -47,6 +47,11 @@ fn quadrilateral() {
 }
 
 #[test]
+fn quadrilateral9() {
+    check::<Quadrilateral9, 9, 2>(CellKind::Quadrilateral9, [Exact::Cube(5); 2]);
+}
+
+#[test]
 fn tetrahedron() {
     check::<Tetrahedron, 4, 3>(CellKind::Tetrahedron, [Exact::Simplex(1), Exact::Simplex(2)]);
 }
@@ -65,6 +70,11 @@ fn hexahedron() {
 fn hexahedron20() {
     let exact = [Exact::WholeCube(5), Exact::Cube(5)];
     check::<Hexahedron20, 20, 3>(CellKind::Hexahedron20, exact);
+}
+
+#[test]
+fn hexahedron27() {
+    check::<Hexahedron27, 27, 3>(CellKind::Hexahedron27, [Exact::Cube(5); 2]);
 }
 
 /// A face only, which is no kind of cell.
@@ -105,6 +115,38 @@ fn hexahedron20_needs_more_than_8_points() {
     assert!(largest(Hexahedron20::STIFFNESS_RULE) > 1.0);
 }
 
+/// Number of motions of a reference cell without energy at the points of a rule, beside the rigid ones.
+fn free_motions<C: ReferenceCell<N, M>, const N: usize, const M: usize>(
+    rule: &[([f64; M], f64)],
+) -> usize {
+    let n = N * M;
+    let mut stiffness = faer::Mat::<f64>::zeros(n, n);
+    for (xi, weight) in rule {
+        let slopes = C::derivatives(*xi);
+        for (row, column) in (0..n).flat_map(|row| (0..n).map(move |column| (row, column))) {
+            let (a, i, b, j) = (row / M, row % M, column / M, column % M);
+            // of the energy sum e_ij^2
+            let along: f64 = slopes[a].iter().zip(&slopes[b]).map(|(a, b)| a * b).sum();
+            let same = if i == j { along } else { 0.0 };
+            stiffness[(row, column)] += weight * (same + slopes[a][j] * slopes[b][i]);
+        }
+    }
+    let energies = stiffness.self_adjoint_eigenvalues(faer::Side::Lower).unwrap();
+    let most = energies.iter().fold(0.0, |most: f64, energy| most.max(*energy));
+    energies.iter().filter(|energy| **energy < 1e-9 * most).count() - M * (M + 1) / 2
+}
+
+/// Biquadratic cells need their rules: with fewer points there are motions without energy.
+#[test]
+fn free_motions_of_biquadratic_cells() {
+    let flat = free_motions::<Quadrilateral9, 9, 2>;
+    assert_eq!(flat(Quadrilateral9::STIFFNESS_RULE), 0);
+    assert_eq!(flat(Quadrilateral::STIFFNESS_RULE), 3);
+    let solid = free_motions::<Hexahedron27, 27, 3>;
+    assert_eq!(solid(Hexahedron27::STIFFNESS_RULE), 0);
+    assert_eq!(solid(Hexahedron20::STIFFNESS_RULE), 3);
+}
+
 fn check<C: ReferenceCell<N, M>, const N: usize, const M: usize>(
     kind: CellKind,
     [stiffness, mass]: [Exact; 2],
@@ -118,7 +160,7 @@ fn check<C: ReferenceCell<N, M>, const N: usize, const M: usize>(
     rule_is_exact(C::MASS_RULE, mass);
 }
 
-/// Positions of the nodes in the reference cell: corners, then the middles of the edges.
+/// Positions of the nodes in the reference cell: corners, then the middles of the edges, of faces and of the cell.
 fn reference_nodes<const M: usize>(kind: CellKind, shape: Exact) -> Vec<[f64; M]> {
     let unit = |axis: usize| std::array::from_fn(|i| if i == axis { 1.0 } else { 0.0 });
     let mut nodes: Vec<[f64; M]> = match shape {
@@ -137,6 +179,9 @@ fn reference_nodes<const M: usize>(kind: CellKind, shape: Exact) -> Vec<[f64; M]
             assert_eq!(middle, nodes.len(), "mid nodes stand in the order of the edges");
             nodes.push(std::array::from_fn(|i| (nodes[a][i] + nodes[b][i]) / 2.0));
         }
+    }
+    for &[a, b] in kind.middles() {
+        nodes.push(std::array::from_fn(|i| (nodes[a][i] + nodes[b][i]) / 2.0));
     }
     nodes
 }

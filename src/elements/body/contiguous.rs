@@ -98,6 +98,7 @@ mod tests {
     use crate::elements::basis::{
         Hexahedron, Quadrilateral, ReferenceCell, Segment, Tetrahedron, Triangle,
     };
+    use crate::elements::body::Dilatation;
     use crate::elements::body::elements::ElementsOf;
     use crate::elements::body::forces::{Forces, Terms};
     use crate::elements::body::regions::Regions;
@@ -117,9 +118,11 @@ mod tests {
         const Q: usize,
     >(
         mesh: &Mesh,
+        dilatation: Dilatation,
     ) {
         let pattern = NodePattern::new(mesh.node_count(), mesh.cells());
-        let mut elements = ElementsOf::<N, M, D, Q>::new::<C>(mesh, 1.0, false, &pattern).unwrap();
+        let mut elements =
+            ElementsOf::<N, M, D, Q>::new::<C>(mesh, 1.0, dilatation, &pattern).unwrap();
         let base = Material { viscosity: 3.0, ..SQUARE_MATERIAL };
         let stiff =
             (CellSelection::Numbers((13..=27).collect()), Material { young: 2e6, ..base }.into());
@@ -143,14 +146,21 @@ mod tests {
 
     #[test]
     fn cells_in_a_row() {
+        let points = Dilatation::AtPoints;
         let plane = |nodes, cells| Mesh::rectangle([2.0, 1.0], nodes, cells).unwrap();
         let solid = |cells| Mesh::cuboid([2.0, 0.2, 0.2], [20, 3, 3], cells).unwrap();
-        are_those_of_single_cells::<Segment, 2, 1, 1, 1>(&Mesh::bar(1.0, 31).unwrap());
-        are_those_of_single_cells::<Triangle, 3, 2, 2, 1>(&plane([20, 4], Cells::Triangles));
-        are_those_of_single_cells::<Quadrilateral, 4, 2, 2, 4>(&plane([20, 4], Cells::Rectangles));
-        are_those_of_single_cells::<Tetrahedron, 4, 3, 3, 1>(&solid(SolidCells::Tetrahedra));
-        are_those_of_single_cells::<Hexahedron, 8, 3, 3, 8>(&solid(SolidCells::Hexahedra));
+        are_those_of_single_cells::<Segment, 2, 1, 1, 1>(&Mesh::bar(1.0, 31).unwrap(), points);
+        let triangles = plane([20, 4], Cells::Triangles);
+        are_those_of_single_cells::<Triangle, 3, 2, 2, 1>(&triangles, points);
+        let rectangles = plane([20, 4], Cells::Rectangles);
+        are_those_of_single_cells::<Quadrilateral, 4, 2, 2, 4>(&rectangles, points);
+        are_those_of_single_cells::<Quadrilateral, 4, 2, 2, 4>(&rectangles, Dilatation::Mean);
+        let tetrahedra = solid(SolidCells::Tetrahedra);
+        are_those_of_single_cells::<Tetrahedron, 4, 3, 3, 1>(&tetrahedra, points);
+        let hexahedra = solid(SolidCells::Hexahedra);
+        are_those_of_single_cells::<Hexahedron, 8, 3, 3, 8>(&hexahedra, points);
         // nodes in several shares
-        are_those_of_single_cells::<Triangle, 3, 2, 2, 1>(&plane([150, 70], Cells::Triangles));
+        let many = plane([150, 70], Cells::Triangles);
+        are_those_of_single_cells::<Triangle, 3, 2, 2, 1>(&many, points);
     }
 }

@@ -99,10 +99,10 @@ impl<L: CellLaw, const N: usize, const M: usize, const D: usize, const Q: usize>
 
 #[cfg(test)]
 mod tests {
-    use crate::elements::body::Body;
     use crate::elements::body::tests::noise;
+    use crate::elements::body::{Body, Dilatation};
     use crate::elements::material::{Material, Strain};
-    use crate::elements::mesh::{Cells, Mesh, SolidCells};
+    use crate::elements::mesh::{CellKind, Cells, Mesh, SolidCells};
     use crate::studies::samples::SQUARE_MATERIAL;
 
     /// Against the energy densities of the cells, each computed by itself, on meshes that fill no whole
@@ -114,15 +114,26 @@ mod tests {
             Mesh::rectangle([1.0, 0.5], [8, 4], Cells::Triangles),
             Mesh::rectangle([1.0, 0.5], [8, 4], Cells::Rectangles),
             Mesh::rectangle([1.0, 0.5], [6, 4], Cells::Triangles6),
+            Mesh::rectangle([1.0, 0.5], [6, 4], Cells::Rectangles9),
             Mesh::cuboid([1.0, 0.5, 0.5], [4, 3, 4], SolidCells::Tetrahedra),
             Mesh::cuboid([1.0, 0.5, 0.5], [4, 3, 4], SolidCells::Hexahedra),
+            Mesh::cuboid([1.0, 0.5, 0.5], [4, 3, 4], SolidCells::Hexahedra20),
+            Mesh::cuboid([1.0, 0.5, 0.5], [4, 3, 4], SolidCells::Hexahedra27),
         ];
         for mesh in meshes {
             let mesh = mesh.unwrap();
             let stiff = Material { young: 3e6, ..SQUARE_MATERIAL };
             let kind = mesh.kind();
-            for strain in [Strain::Cauchy, Strain::Green] {
+            let linear = matches!(
+                kind,
+                CellKind::Quadrilateral9 | CellKind::Hexahedron20 | CellKind::Hexahedron27
+            );
+            let others = if linear { &[Dilatation::Mean, Dilatation::Linear][..] } else { &[] };
+            let dilatations = [Dilatation::AtPoints].iter().chain(others);
+            let strains = [Strain::Cauchy, Strain::Green];
+            for (dilatation, strain) in dilatations.flat_map(|at| strains.map(|by| (*at, by))) {
                 let body = Body::new(mesh.clone(), SQUARE_MATERIAL).strain(strain);
+                let body = body.dilatation(dilatation);
                 let body = match kind.dimension() {
                     1 => body.area(1e-4),
                     2 => body.thickness(0.01),
@@ -136,7 +147,8 @@ mod tests {
                 let expected: f64 =
                     fields.iter().zip(volumes).map(|(cell, v)| cell.energy_density * v).sum();
                 let energy = body.elements.energy(&body.regions, &u);
-                assert!((energy / expected - 1.0).abs() < 1e-13, "{kind:?}: {energy}, {expected}");
+                let off = energy / expected - 1.0;
+                assert!(off.abs() < 1e-13, "{kind:?}, {dilatation:?}: {energy}, {expected}");
             }
         }
     }

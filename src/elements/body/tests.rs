@@ -31,6 +31,11 @@ fn bodies_with(strain: Strain, inertia: Inertia) -> Vec<(String, Body)> {
         (CellKind::Triangle, square.to_vec(), vec![0, 1, 2, 0, 2, 3]),
         (CellKind::Triangle6, wedge.to_vec(), (0..6).collect()),
         (CellKind::Quadrilateral, square.to_vec(), (0..4).collect()),
+        (
+            CellKind::Quadrilateral9,
+            with_mid_nodes(CellKind::Quadrilateral9, &square, 0.03),
+            (0..9).collect(),
+        ),
         (CellKind::Tetrahedron, solid.to_vec(), (0..4).collect()),
         (
             CellKind::Tetrahedron10,
@@ -41,6 +46,11 @@ fn bodies_with(strain: Strain, inertia: Inertia) -> Vec<(String, Body)> {
             CellKind::Hexahedron20,
             with_mid_nodes(CellKind::Hexahedron20, &brick, 0.0),
             (0..20).collect(),
+        ),
+        (
+            CellKind::Hexahedron27,
+            with_mid_nodes(CellKind::Hexahedron27, &brick, 0.03),
+            (0..27).collect(),
         ),
         (CellKind::Hexahedron, brick, (0..8).collect()),
     ];
@@ -72,15 +82,15 @@ fn bodies_with(strain: Strain, inertia: Inertia) -> Vec<(String, Body)> {
     bodies
 }
 
-/// The corners of a solid and the middles of its edges, off by `bend` or less. (The strain points of bent
-/// hexahedra do not integrate their volumes exactly.)
+/// The corners of a cell and the middles of its edges, faces and of itself, off by `bend` or less. (The strain points
+/// of bent hexahedra of 20 nodes do not integrate their volumes exactly.)
 fn with_mid_nodes(kind: CellKind, corners: &[f64], bend: f64) -> Vec<f64> {
-    let mut positions = corners.to_vec();
-    for (k, edge) in kind.edges().iter().enumerate() {
-        let [a, b] = [edge[0], edge[1]];
-        for i in 0..3 {
+    let (mut positions, d) = (corners.to_vec(), kind.dimension());
+    let edges = kind.edges().iter().map(|edge| [edge[0], edge[1]]);
+    for (k, [a, b]) in edges.chain(kind.middles().iter().copied()).enumerate() {
+        for i in 0..d {
             let bend = bend * (k as f64 + 2.0 * i as f64).sin();
-            positions.push(0.5 * (corners[3 * a + i] + corners[3 * b + i]) + bend);
+            positions.push(0.5 * (corners[d * a + i] + corners[d * b + i]) + bend);
         }
     }
     positions

@@ -81,13 +81,16 @@ fn radius_of_ball(cells: SolidCells, nodes: usize, dilatation: Dilatation, press
 /// shear moduli, and a pressure of the size of one.
 #[test]
 fn a_tube_swells_as_its_integral_says() {
-    let (mean, points) = (Dilatation::Mean, Dilatation::AtPoints);
+    let (mean, linear, points) = (Dilatation::Mean, Dilatation::Linear, Dilatation::AtPoints);
     for (cells, nodes, dilatation, most) in [
         (Cells::Rectangles, [9, 13], mean, 1e-3),
         (Cells::Rectangles, [17, 25], mean, 3e-4),
         (Cells::Triangles6, [5, 7], mean, 1e-3),
         (Cells::Triangles6, [9, 13], mean, 5e-4),
         (Cells::Triangles6, [9, 13], points, 3e-4),
+        (Cells::Rectangles9, [3, 4], linear, 5e-4),
+        (Cells::Rectangles9, [5, 7], linear, 3.5e-4),
+        (Cells::Rectangles9, [9, 13], linear, 3e-4),
     ] {
         let found = radius_of_tube(cells, nodes, dilatation, pressure_in_tube(1.5));
         println!("{cells:?} {nodes:?} {dilatation:?}: {found}");
@@ -98,12 +101,16 @@ fn a_tube_swells_as_its_integral_says() {
 /// The inner radius grows by three tenths.
 #[test]
 fn a_ball_swells_as_its_integral_says() {
-    let mean = Dilatation::Mean;
+    let (mean, linear) = (Dilatation::Mean, Dilatation::Linear);
     for (cells, nodes, dilatation, most) in [
         (SolidCells::Hexahedra, 5, mean, 5e-3),
         (SolidCells::Hexahedra, 9, mean, 1e-3),
         (SolidCells::Hexahedra20, 3, mean, 8e-4),
         (SolidCells::Hexahedra20, 5, mean, 5e-4),
+        (SolidCells::Hexahedra20, 3, linear, 2.5e-4),
+        (SolidCells::Hexahedra20, 5, linear, 2e-4),
+        (SolidCells::Hexahedra27, 3, linear, 5e-4),
+        (SolidCells::Hexahedra27, 5, linear, 2.5e-4),
     ] {
         let found = radius_of_ball(cells, nodes, dilatation, pressure_in_ball(1.3));
         println!("{cells:?} {nodes:?} {dilatation:?}: {found}");

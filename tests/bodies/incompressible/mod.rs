@@ -17,15 +17,17 @@ enum Kind {
 }
 
 impl Kind {
-    const ALL: [Self; 8] = [
+    const ALL: [Self; 10] = [
         Self::Plane(Cells::Triangles),
         Self::Plane(Cells::Crossed),
         Self::Plane(Cells::Rectangles),
         Self::Plane(Cells::Triangles6),
+        Self::Plane(Cells::Rectangles9),
         Self::Solid(SolidCells::Tetrahedra),
         Self::Solid(SolidCells::Hexahedra),
         Self::Solid(SolidCells::Tetrahedra10),
         Self::Solid(SolidCells::Hexahedra20),
+        Self::Solid(SolidCells::Hexahedra27),
     ];
 
     /// A unit square or cube with so many cells along its sides.
@@ -37,13 +39,25 @@ impl Kind {
         .unwrap()
     }
 
-    /// The same with corners within moved by up to a fifth of a cell, edges straight.
+    /// The same with corners within moved by up to a fifth of a cell, edges straight. A node in the middle of a face or
+    /// of a cell moves as the mean of the corners around it.
     fn distorted(self, cells: usize) -> Mesh {
         let noise = |x: &[f64], i: usize| {
             let mixed: f64 = x.iter().enumerate().map(|(k, x)| (k * k + 3) as f64 * 37.7 * x).sum();
             let random = 2.0 * (43758.5453 * (mixed + 2.0 * i as f64).sin()).rem_euclid(1.0) - 1.0;
             let is_within = x.iter().all(|&x| x > 1e-9 && x < 1.0 - 1e-9);
             if is_within { 0.2 / cells as f64 * random } else { 0.0 }
+        };
+        // over the corners around a node, of which each coordinate is on a line of corners or halfway between two
+        let mean = |x: &[f64], i: usize| {
+            let place = |k: usize, axis: usize| {
+                let line = (2.0 * cells as f64 * x[axis]).round() / 2.0;
+                let line = if k >> axis & 1 == 0 { line.floor() } else { line.ceil() };
+                line / cells as f64
+            };
+            let corner = |k: usize| (0..x.len()).map(|axis| place(k, axis)).collect::<Vec<_>>();
+            let count = 1 << x.len();
+            (0..count).map(|k| noise(&corner(k), i)).sum::<f64>() / count as f64
         };
         let (corners, is_quadratic) = match self {
             Self::Plane(Cells::Triangles6) => (Self::Plane(Cells::Triangles), true),
@@ -53,19 +67,23 @@ impl Kind {
         };
         let mesh = corners.mesh(cells);
         let mesh = match mesh.dimension() {
-            2 => mesh.mapped(|x| [0, 1].map(|i| x[i] + noise(x, i))),
-            _ => mesh.mapped(|x| [0, 1, 2].map(|i| x[i] + noise(x, i))),
+            2 => mesh.mapped(|x| [0, 1].map(|i| x[i] + mean(x, i))),
+            _ => mesh.mapped(|x| [0, 1, 2].map(|i| x[i] + mean(x, i))),
         };
         let mesh = mesh.unwrap();
         if is_quadratic { mesh.quadratic().unwrap() } else { mesh }
     }
 
-    /// Whether its cells can have a mean dilatation.
-    fn can_be_mean(self) -> bool {
-        !matches!(
-            self,
-            Self::Plane(Cells::Triangles | Cells::Crossed) | Self::Solid(SolidCells::Tetrahedra)
-        )
+    /// The dilatations that its cells can have.
+    fn dilatations(self) -> &'static [Dilatation] {
+        let all = &[Dilatation::AtPoints, Dilatation::Mean, Dilatation::Linear];
+        match self {
+            Self::Plane(Cells::Triangles | Cells::Crossed)
+            | Self::Solid(SolidCells::Tetrahedra) => &all[..1],
+            Self::Plane(Cells::Rectangles9)
+            | Self::Solid(SolidCells::Hexahedra20 | SolidCells::Hexahedra27) => all,
+            _ => &all[..2],
+        }
     }
 }
 

@@ -2,6 +2,8 @@
 
 use pliant::{Cells, InputError, Mesh, SolidCells};
 
+use super::middles;
+
 /// The lengths of the cells along `axis`, from lines at which corner nodes stand.
 fn lengths(mesh: &Mesh, axis: usize) -> Vec<f64> {
     let corners = 1 << mesh.kind().dimension();
@@ -46,15 +48,22 @@ fn cells_grow_by_the_same_factor() {
 /// Mid nodes are in the middles of edges, as those of cells with straight sides have to be.
 #[test]
 fn mid_nodes_stay_in_the_middle() {
-    let flat = Mesh::graded_rectangle([2.0, 1.0], [4, 3], [10.0, 0.2], Cells::Triangles6);
+    let flat = |cells| Mesh::graded_rectangle([2.0, 1.0], [4, 3], [10.0, 0.2], cells);
     let solid = |cells| Mesh::graded_cuboid([2.0, 1.0, 1.5], [3, 4, 3], [9.0, 0.1, 3.0], cells);
-    for mesh in [flat, solid(SolidCells::Tetrahedra10), solid(SolidCells::Hexahedra20)] {
+    for mesh in [
+        flat(Cells::Triangles6),
+        flat(Cells::Rectangles9),
+        solid(SolidCells::Tetrahedra10),
+        solid(SolidCells::Hexahedra20),
+        solid(SolidCells::Hexahedra27),
+    ] {
         let mesh = mesh.unwrap();
         for cell in mesh.cells() {
-            for edge in mesh.kind().edges() {
-                let [a, b, middle] = [0, 1, 2].map(|k| mesh.position(cell[edge[k]]));
+            for (corners, middle) in middles(mesh.kind()) {
                 for axis in 0..mesh.dimension() {
-                    assert!(((a[axis] + b[axis]) / 2.0 - middle[axis]).abs() < 1e-15);
+                    let sum: f64 = corners.iter().map(|&k| mesh.position(cell[k])[axis]).sum();
+                    let off = sum / corners.len() as f64 - mesh.position(cell[middle])[axis];
+                    assert!(off.abs() < 1e-15, "{:?}: {off:e}", mesh.kind());
                 }
             }
         }

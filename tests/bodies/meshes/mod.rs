@@ -9,21 +9,26 @@ use std::f64::consts::PI;
 use pliant::mesh::CellKind;
 use pliant::{Body, Cells, InputError, Material, Mesh, SolidCells, Strain};
 
-const ALL_CELLS: [Cells; 4] =
-    [Cells::Triangles, Cells::Crossed, Cells::Rectangles, Cells::Triangles6];
-const ALL_SOLIDS: [SolidCells; 4] = [
-    SolidCells::Hexahedra,
-    SolidCells::Tetrahedra,
-    SolidCells::Tetrahedra10,
-    SolidCells::Hexahedra20,
-];
-
 /// Area or volume of all cells (m^2, m^3).
 fn volume(mesh: &Mesh) -> f64 {
     let unit = Material { density: 1.0, young: 1.0, poisson: 0.3, viscosity: 0.0 };
     let body = Body::new(mesh.clone(), unit).strain(Strain::Cauchy);
     let body = if mesh.dimension() == 2 { body.thickness(1.0) } else { body };
     body.build().unwrap().mass()
+}
+
+/// The corners of edges, faces and cells that have a node in their middle, and that node, as local numbers (from 0).
+pub(crate) fn middles(kind: CellKind) -> Vec<(Vec<usize>, usize)> {
+    let edges = kind.edges().iter().filter(|edge| edge.len() == 3);
+    let faces = kind.faces().iter().filter(|face| face.len() == 9);
+    let mut middles: Vec<_> = edges.map(|edge| (edge[..2].to_vec(), edge[2])).collect();
+    middles.extend(faces.map(|face| (face[..4].to_vec(), face[8])));
+    match kind {
+        CellKind::Quadrilateral9 => middles.push(((0..4).collect(), 8)),
+        CellKind::Hexahedron27 => middles.push(((0..8).collect(), 26)),
+        _ => {}
+    }
+    middles
 }
 
 fn cells(mesh: &Mesh) -> Vec<Vec<usize>> {
@@ -41,6 +46,7 @@ fn rectangles_divide_alike() {
         (Cells::Crossed, 20, 8),
         (Cells::Rectangles, 20, 4),
         (Cells::Triangles6, 63, 8),
+        (Cells::Rectangles9, 63, 4),
     ] {
         let mesh = Mesh::rectangle([2.0, 0.7], [5, 4], kind).unwrap();
         assert_eq!((mesh.node_count(), mesh.cell_count()), (nodes, 3 * cells_of_row), "{kind:?}");
@@ -105,30 +111,37 @@ fn mid_nodes_come_last_row_by_row() {
     assert_eq!(set("top"), [7, 24, 8, 25, 9]);
     assert_eq!(set("left"), [1, 12, 4, 19, 7]);
     assert_eq!(set("right"), [3, 16, 6, 23, 9]);
+    let whole = Mesh::rectangle([2.0, 2.0], [3, 3], Cells::Rectangles9).unwrap();
+    assert_eq!((whole.positions(), whole.sets()), (mesh.positions(), mesh.sets()));
+    assert_eq!(one_based(&cells(&whole)[0]), [1, 2, 5, 4, 10, 14, 17, 12, 13]);
 }
 
-/// Every mid node of a straight-sided mesh is the middle of its edge, and of no other.
+/// Every mid node of a straight-sided mesh is the middle of its edge, face or cell, and of no other.
 #[test]
 fn mid_nodes_are_in_the_middle() {
     for mesh in [
         Mesh::rectangle([2.0, 1.0], [4, 3], Cells::Triangles6).unwrap(),
+        Mesh::rectangle([2.0, 1.0], [4, 3], Cells::Rectangles9).unwrap(),
         Mesh::cuboid([2.0, 1.0, 1.5], [3, 4, 3], SolidCells::Tetrahedra10).unwrap(),
         Mesh::cuboid([2.0, 1.0, 1.5], [3, 4, 3], SolidCells::Hexahedra20).unwrap(),
+        Mesh::cuboid([2.0, 1.0, 1.5], [3, 4, 3], SolidCells::Hexahedra27).unwrap(),
     ] {
-        let mut ends = BTreeMap::new();
+        let mut around = BTreeMap::new();
         for cell in mesh.cells() {
-            for edge in mesh.kind().edges() {
-                let [a, b, middle] = [0, 1, 2].map(|k| cell[edge[k]]);
-                let pair = (a.min(b), a.max(b));
-                assert_eq!(*ends.entry(middle).or_insert(pair), pair, "node {middle}");
+            for (corners, middle) in middles(mesh.kind()) {
+                let middle = cell[middle];
+                let corners: BTreeSet<usize> = corners.iter().map(|&corner| cell[corner]).collect();
                 for axis in 0..mesh.dimension() {
-                    let mean = (mesh.position(a)[axis] + mesh.position(b)[axis]) / 2.0;
+                    let sum: f64 = corners.iter().map(|&node| mesh.position(node)[axis]).sum();
+                    let mean = sum / corners.len() as f64;
                     assert!((mesh.position(middle)[axis] - mean).abs() < 1e-15);
                 }
+                let known = around.entry(middle).or_insert_with(|| corners.clone());
+                assert_eq!(*known, corners, "node {middle}");
             }
         }
-        let corners = mesh.node_count() - ends.len();
-        assert!(ends.keys().all(|&middle| middle >= corners));
+        let corners = mesh.node_count() - around.len();
+        assert!(around.keys().all(|&middle| middle >= corners));
     }
 }
 
@@ -157,12 +170,12 @@ fn rings_are_numbered_by_station() {
 #[test]
 fn rings_have_the_area_of_their_polygons() {
     let polygons = |m: f64, angle: f64| 0.5 * m * (angle / m).sin() * (25.0 - 16.0);
-    for cells in ALL_CELLS {
+    for cells in Cells::ALL {
         let ring = Mesh::ring(4.0, 5.0, [24, 3], cells).unwrap();
         let half = Mesh::half_ring(4.0, 5.0, [13, 3], cells).unwrap();
         let (whole, tolerance) = match cells {
             // parabolas through three points of a circle: the area is short by theta^4 / 480
-            Cells::Triangles6 => (9.0 * PI, 2e-5),
+            Cells::Triangles6 | Cells::Rectangles9 => (9.0 * PI, 2e-5),
             _ => (polygons(24.0, 2.0 * PI), 1e-14),
         };
         assert!((volume(&ring) / whole - 1.0).abs() < tolerance, "{cells:?}");
@@ -188,8 +201,11 @@ fn rings_are_symmetric_to_the_last_digit() {
 
 #[test]
 fn quadratic_rings_are_round() {
-    let ring = Mesh::ring(0.02, 0.04, [6, 2], Cells::Triangles6).unwrap();
-    for (name, radius) in [("inner", 0.02), ("outer", 0.04)] {
+    for (cells, name, radius) in [Cells::Triangles6, Cells::Rectangles9]
+        .into_iter()
+        .flat_map(|cells| [(cells, "inner", 0.02), (cells, "outer", 0.04)])
+    {
+        let ring = Mesh::ring(0.02, 0.04, [6, 2], cells).unwrap();
         assert_eq!(ring.sets()[name].len(), 12);
         // counter-clockwise from straight down
         for (k, &node) in ring.sets()[name].iter().enumerate() {
@@ -222,6 +238,7 @@ fn cuboids_number_along_x_then_y_then_z() {
         (SolidCells::Tetrahedra10, 5 * 7 * 5, 72),
         // 36 corners, and the edges along x, y and z
         (SolidCells::Hexahedra20, 36 + 2 * 4 * 3 + 3 * 3 * 3 + 3 * 4 * 2, 12),
+        (SolidCells::Hexahedra27, 5 * 7 * 5, 12),
     ] {
         let mesh = Mesh::cuboid(size, [3, 4, 3], kind).unwrap();
         assert_eq!((mesh.node_count(), mesh.cell_count()), (nodes, count), "{kind:?}");

@@ -63,9 +63,9 @@ fn a_thick_tube_is_lames() {
 }
 
 /// A hollow ball of six patches, each with `cells` x `cells` x `cells`/2 hexahedra.
-fn ball(cells: usize) -> Scene {
+fn ball(kind: SolidCells, cells: usize) -> Scene {
     let nodes = [cells + 1, cells + 1, cells / 2 + 1];
-    let patch = Mesh::cuboid([2.0, 2.0, OUTER - INNER], nodes, SolidCells::Hexahedra20).unwrap();
+    let patch = Mesh::cuboid([2.0, 2.0, OUTER - INNER], nodes, kind).unwrap();
     // where s, t and the direction outward go
     let patches = [
         [[1, 0, 0], [0, 1, 0], [0, 0, 1]],
@@ -112,11 +112,15 @@ fn a_hollow_ball_is_lames() {
     let (a3, b3) = (a.powi(3), b.powi(3));
     let expected = PRESSURE * a3 / (MATERIAL.young * (b3 - a3))
         * ((1.0 - 2.0 * nu) * a + (1.0 + nu) * b3 / (2.0 * a * a));
-    let [coarse, fine] = [2, 4].map(|cells| errors(&ball(cells), expected));
-    println!("corners and middles: {coarse:?}, {fine:?}");
-    let [coarse, fine] = [coarse, fine].map(|[corners, middles]| corners.max(middles));
-    // measured: 2.07e-2 and 2.06e-3
-    assert!(coarse < 2.2e-2 && fine < coarse / 9.0, "{coarse:?} {fine:?}");
+    for (kind, most, by) in
+        [(SolidCells::Hexahedra20, 2.2e-2, 9.0), (SolidCells::Hexahedra27, 1e-2, 12.0)]
+    {
+        let [coarse, fine] = [2, 4].map(|cells| errors(&ball(kind, cells), expected));
+        println!("{kind:?}, corners and middles: {coarse:?}, {fine:?}");
+        let [coarse, fine] = [coarse, fine].map(|[corners, middles]| corners.max(middles));
+        // measured: 2.07e-2 and 2.06e-3; with 27 nodes 9.4e-3 and 7.6e-4
+        assert!(coarse < most && fine < coarse / by, "{kind:?}: {coarse:?} {fine:?}");
+    }
 }
 
 /// The volume within a ring of parabolas: polygons of twice as many corners, and two thirds of the caps besides.
@@ -136,9 +140,11 @@ fn volumes_are_those_within_curved_walls() {
     assert!((found / area - 1.0).abs() < 1e-13, "{found} {area}");
     // it misses the circle by the fourth power of the angle
     assert!((found / (PI * INNER * INNER) - 1.0).abs() < 0.1 * half.powi(4), "{found}");
-    let [coarse, fine] =
-        [2, 4].map(|cells| volume(ball(cells)) / (4.0 / 3.0 * PI * INNER.powi(3)) - 1.0);
-    println!("ball: {coarse:.2e} {fine:.2e}");
-    // of order 4: -1.78e-2 and -1.18e-3
-    assert!(coarse.abs() < 1.9e-2 && fine.abs() < coarse.abs() / 14.0, "{coarse} {fine}");
+    for (kind, most) in [(SolidCells::Hexahedra20, 1.9e-2), (SolidCells::Hexahedra27, 1.9e-3)] {
+        let whole = 4.0 / 3.0 * PI * INNER.powi(3);
+        let [coarse, fine] = [2, 4].map(|cells| volume(ball(kind, cells)) / whole - 1.0);
+        println!("{kind:?}: {coarse:.2e} {fine:.2e}");
+        // of order 4: -1.78e-2 and -1.18e-3; with 27 nodes -1.75e-3 and -1.10e-4
+        assert!(coarse.abs() < most && fine.abs() < coarse.abs() / 14.0, "{coarse} {fine}");
+    }
 }

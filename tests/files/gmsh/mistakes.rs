@@ -105,15 +105,16 @@ fn unsuitable_cells_get_a_message() {
             "Mesh.RecombineAll",
         ],
     );
-    let nine = file("1 1 1 1\n2 1 10 1\n1 1 3 9 7 2 6 8 4 5\n");
+    let eight = file("1 1 1 1\n2 1 16 1\n1 1 3 9 7 2 6 8 4\n");
     says(
-        read(nine),
+        read(eight),
         &[
-            "1 quadrilaterals of 9 node(s)",
-            "triangles, triangles of 6 nodes, quadrilaterals, tetrahedra",
+            "1 quadrilaterals of 8 node(s)",
+            "triangles, triangles of 6 nodes, quadrilaterals, quadrilaterals of 9 nodes, tetrahedra",
             "Mesh.ElementOrder",
         ],
     );
+    assert!(read(file("1 1 1 1\n2 1 10 1\n1 1 3 9 7 2 6 8 4 5\n")).is_ok());
     says(read(file("1 1 1 1\n3 1 6 1\n1 1 2 4 3 5 6\n")), &["1 prisms of 6 node(s)"]);
     says(read(file("1 1 1 1\n1 1 8 1\n1 1 3 2\n")), &["1 lines of 3 node(s)"]);
     says(read(file("1 1 1 1\n0 1 15 1\n1 1\n")), &["1 points of 1 node(s)"]);

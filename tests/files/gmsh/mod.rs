@@ -50,7 +50,9 @@ fn msh(mesh: &Mesh, tag: impl Fn(usize) -> usize) -> String {
         CellKind::Tetrahedron => 4,
         CellKind::Hexahedron => 5,
         CellKind::Triangle6 => 9,
+        CellKind::Quadrilateral9 => 10,
         CellKind::Tetrahedron10 => 11,
+        CellKind::Hexahedron27 => 12,
         CellKind::Hexahedron20 => 17,
         _ => unreachable!(),
     };
@@ -68,10 +70,13 @@ fn msh(mesh: &Mesh, tag: impl Fn(usize) -> usize) -> String {
         let mut cell: Vec<String> = cell.iter().map(|&node| tag(node).to_string()).collect();
         match mesh.kind() {
             CellKind::Tetrahedron10 => cell.swap(8, 9),
-            // Gmsh numbers the mid nodes of a hexahedron by the edges at its corners, one corner after the other
-            CellKind::Hexahedron20 => {
+            // Gmsh numbers the mid nodes of a hexahedron by the edges at its corners, one corner after the other; and
+            // those of faces by the axes across them, first those of the lower faces
+            CellKind::Hexahedron20 | CellKind::Hexahedron27 => {
                 let edges = [8, 11, 16, 9, 17, 10, 18, 19, 12, 15, 13, 14];
-                let middles = edges.map(|edge| cell[edge].clone());
+                let faces = [24, 22, 20, 21, 23, 25, 26];
+                let middles = edges.iter().chain(&faces).take(cell.len() - 8);
+                let middles: Vec<String> = middles.map(|&local| cell[local].clone()).collect();
                 cell[8..].clone_from_slice(&middles);
             }
             _ => {}
@@ -83,13 +88,7 @@ fn msh(mesh: &Mesh, tag: impl Fn(usize) -> usize) -> String {
 
 fn generated() -> Vec<Mesh> {
     let plane = Cells::ALL.map(|cells| Mesh::rectangle([0.3, 0.2], [4, 3], cells));
-    let solid = [
-        SolidCells::Tetrahedra,
-        SolidCells::Hexahedra,
-        SolidCells::Tetrahedra10,
-        SolidCells::Hexahedra20,
-    ]
-    .map(|cells| Mesh::cuboid([0.3, 0.2, 0.1], [4, 3, 2], cells));
+    let solid = SolidCells::ALL.map(|cells| Mesh::cuboid([0.3, 0.2, 0.1], [4, 3, 2], cells));
     let all = plane.into_iter().chain(solid).chain([Mesh::bar(0.1, 5)]);
     all.collect::<Result<_, _>>().unwrap()
 }

@@ -3,11 +3,15 @@ use crate::base::sparse::BlockMatrix;
 use crate::elements::body::Body;
 use crate::elements::body::tests::{bodies, noise};
 use crate::elements::force::{Force, NodalForces};
-use crate::elements::material::{Law, Strain};
+use crate::elements::material::{Law, Plane, Strain};
+use crate::elements::mesh::{CellKind, Cells, Mesh, SolidCells};
 use crate::studies::samples::SQUARE_MATERIAL;
 
-/// Bodies of all kinds of cells that can have a mean dilatation, by each law, nearly incompressible.
-fn with_mean() -> Vec<(String, Body)> {
+const PROJECTIONS: [Dilatation; 2] = [Dilatation::Mean, Dilatation::Linear];
+
+/// Bodies of all kinds of cells that can have a projected dilatation, by each of them and each law, nearly
+/// incompressible.
+fn projected() -> Vec<(String, Body)> {
     let rubber = SQUARE_MATERIAL;
     let laws = [
         (Strain::Cauchy, rubber.into()),
@@ -18,15 +22,16 @@ fn with_mean() -> Vec<(String, Body)> {
     let mut found = Vec::new();
     for (strain, substance) in laws {
         for (name, body) in bodies(strain) {
-            let body =
-                body.to_builder().material(substance.clone()).dilatation(Dilatation::Mean).build();
-            found.extend(
-                body.map(|body| (format!("{name}, {strain:?}, {:?}", substance.law), body)),
-            );
+            for dilatation in PROJECTIONS {
+                let body = body.to_builder().material(substance.clone()).dilatation(dilatation);
+                let name = format!("{name}, {dilatation:?}, {strain:?}, {:?}", substance.law);
+                found.extend(body.build().map(|body| (name, body)));
+            }
         }
     }
-    // quadrilaterals, triangles of 6 nodes, tetrahedra of 10, hexahedra of 8 and of 20, by four laws
-    assert_eq!(found.len(), 5 * 4);
+    // quadrilaterals of 4 and 9 nodes, triangles of 6, tetrahedra of 10, hexahedra of 8, 20 and 27; of these,
+    // quadrilaterals of 9 nodes and hexahedra of 20 and 27 by linear functions, too; by four laws
+    assert_eq!(found.len(), (7 + 3) * 4);
     found
 }
 
@@ -56,7 +61,7 @@ fn moved(x: &[f64], j: usize, by: f64) -> Vec<f64> {
 #[test]
 fn forces_and_tangents_are_derivatives() {
     let h = 1e-5;
-    for (name, body) in with_mean() {
+    for (name, body) in projected() {
         let n = body.dofs();
         let u = noise(n, 0.03, 1.0);
         let at = forces(&body, &u);
@@ -91,7 +96,7 @@ fn forces_and_tangents_are_derivatives() {
 #[test]
 fn viscous_tangents_are_derivatives() {
     let h = 1e-5;
-    for (name, body) in with_mean().into_iter().filter(|(_, body)| body.strain() == Strain::Green) {
+    for (name, body) in projected().into_iter().filter(|(_, body)| body.strain() == Strain::Green) {
         let n = body.dofs();
         let (u, v) = (noise(n, 0.03, 1.0), noise(n, 2.0, 7.0));
         let elastic = body.elastic().unwrap();
@@ -125,10 +130,10 @@ fn viscous_tangents_are_derivatives() {
     }
 }
 
-/// Under a homogeneous deformation forces are those without a mean dilatation; under another one they differ.
+/// Under a homogeneous deformation forces are those without a projected dilatation; under another one they differ.
 #[test]
 fn homogeneous_deformations_have_the_same_forces() {
-    for (name, body) in with_mean() {
+    for (name, body) in projected() {
         let pointwise = body.to_builder().dilatation(Dilatation::AtPoints).build().unwrap();
         let d = body.dimension();
         let u: Vec<f64> = body
@@ -137,23 +142,84 @@ fn homogeneous_deformations_have_the_same_forces() {
             .chunks(d)
             .flat_map(|x| (0..d).map(|i| 0.1 * x[i] - 0.07 * x[(i + 1) % d]).collect::<Vec<_>>())
             .collect();
-        let apart = |u: &[f64]| {
-            let (mean, plain) = (forces(&body, u), forces(&pointwise, u));
-            let largest = plain.iter().fold(0.0_f64, |largest, f| largest.max(f.abs()));
-            let apart = mean.iter().zip(&plain).map(|(a, b)| (a - b).abs());
-            apart.fold(0.0, f64::max) / largest
-        };
+        let apart = |u: &[f64]| apart(&forces(&body, u), &forces(&pointwise, u));
         assert!(apart(&u) < 1e-12, "{name}: {:e}", apart(&u));
         assert!(apart(&noise(body.dofs(), 0.03, 1.0)) > 0.1, "{name}");
+    }
+}
+
+/// The largest difference, over the largest force.
+fn apart(forces: &[f64], others: &[f64]) -> f64 {
+    let largest = others.iter().fold(0.0_f64, |largest, f| largest.max(f.abs()));
+    let apart = forces.iter().zip(others).map(|(a, b)| (a - b).abs());
+    apart.fold(0.0, f64::max) / largest
+}
+
+/// A motion of degree 2 has a linear dilatation. Its projection onto linear functions is itself, and forces are those
+/// at the points, whatever the shape of the cells and however many a register holds; in the mean they are others. Cells
+/// are such that they follow the motion exactly: those of Lagrange where edges are straight, hexahedra of 20
+/// nodes where faces are parallel.
+#[test]
+fn linear_dilatations_have_the_same_forces() {
+    let flat = Mesh::rectangle([1.0, 0.8], [4, 3], Cells::Rectangles9).unwrap();
+    let flat = flat.mapped(|x| [x[0] + 0.3 * x[0] * x[1], x[1] - 0.2 * x[0] * x[1]]);
+    let solid = |cells| Mesh::cuboid([1.0, 0.8, 0.7], [3, 4, 2], cells).unwrap();
+    let skew = solid(SolidCells::Hexahedra20)
+        .mapped(|x| [x[0] + 0.3 * x[1], x[1] - 0.2 * x[2], x[2] + 0.1 * x[0]]);
+    let uneven = solid(SolidCells::Hexahedra27).mapped(|x| {
+        let all = x[0] * x[1] * x[2];
+        [x[0] + 0.3 * x[0] * x[1], x[1] - 0.2 * x[1] * x[2], x[2] + 0.2 * all]
+    });
+    for mesh in [flat, skew, uneven] {
+        let mesh = mesh.unwrap();
+        let (kind, d) = (mesh.kind(), mesh.dimension());
+        let u = mesh.field(|x| {
+            let [x, y, z] = [x[0], x[1], x.get(2).copied().unwrap_or(0.0)];
+            let u = [x * x - y * y + 2.0 * z * x, 3.0 * x * y + z * z, y * z - 0.5 * z * z];
+            u[..d].iter().map(|u| 0.01 * u).collect()
+        });
+        let by = |dilatation| {
+            let body = Body::new(mesh.clone(), SQUARE_MATERIAL).strain(Strain::Cauchy);
+            let body = if d == 2 { body.thickness(0.01) } else { body };
+            forces(&body.dilatation(dilatation).build().unwrap(), &u)
+        };
+        let at_points = by(Dilatation::AtPoints);
+        let [mean, linear] = PROJECTIONS.map(|dilatation| apart(&by(dilatation), &at_points));
+        println!("{kind:?}: {linear:e}, in the mean {mean}");
+        assert!(linear < 1e-13 && mean > 0.1, "{kind:?}: {linear:e} {mean}");
     }
 }
 
 #[test]
 fn bodies_that_do_not_lock_refuse_it() {
     for (name, body) in bodies(Strain::Green) {
-        let Err(error) = body.to_builder().dilatation(Dilatation::Mean).build() else { continue };
-        let message = error.to_string();
-        assert!(message.starts_with("dilatation = mean"), "{name}: {message}");
-        assert!(message.contains("one point") || message.contains("free to change"), "{message}");
+        let kind = body.mesh().kind();
+        for dilatation in PROJECTIONS {
+            let Err(error) = body.to_builder().dilatation(dilatation).build() else { continue };
+            let message = error.to_string();
+            let start = format!("dilatation = {} cannot be used: ", dilatation.name());
+            assert!(message.starts_with(&start), "{name}: {message}");
+            let part = match kind {
+                _ if kind.dimension() < body.dimension().max(2) => {
+                    "membranes and strings are free to change"
+                }
+                CellKind::Triangle | CellKind::Tetrahedron => "one point",
+                _ if dilatation == Dilatation::Mean => panic!("{name}: {message}"),
+                CellKind::Triangle6 | CellKind::Tetrahedron10 => {
+                    "triangles and tetrahedra lock with a linear dilatation"
+                }
+                CellKind::Quadrilateral | CellKind::Hexahedron => {
+                    "linear cells lock with a linear dilatation"
+                }
+                _ => panic!("{name}: {message}"),
+            };
+            assert!(message.contains(part), "{name}: {message}");
+        }
+    }
+    let flat = Mesh::rectangle([1.0; 2], [2; 2], Cells::Rectangles9).unwrap();
+    let flat = Body::new(flat, SQUARE_MATERIAL).thickness(0.01).plane(Plane::Stress);
+    for dilatation in PROJECTIONS {
+        let message = flat.clone().dilatation(dilatation).build().unwrap_err().to_string();
+        assert!(message.contains("bodies in plane stress are free to change"), "{message}");
     }
 }

@@ -16,11 +16,13 @@ fn meshes() -> Vec<Mesh> {
         plane(Cells::Triangles),
         plane(Cells::Rectangles),
         plane(Cells::Triangles6),
+        plane(Cells::Rectangles9),
         membrane.unwrap(),
         solid(SolidCells::Tetrahedra),
         solid(SolidCells::Hexahedra),
         solid(SolidCells::Tetrahedra10),
         solid(SolidCells::Hexahedra20),
+        solid(SolidCells::Hexahedra27),
     ]
 }
 

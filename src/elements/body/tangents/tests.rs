@@ -8,7 +8,8 @@ use pulp::{Scalar, WithSimd};
 use super::*;
 use crate::base::sparse::NodePattern;
 use crate::elements::basis::{
-    Hexahedron, ReferenceCell, Segment, Tetrahedron10, Triangle, Triangle6,
+    Hexahedron, Hexahedron20, Quadrilateral9, ReferenceCell, Segment, Tetrahedron10, Triangle,
+    Triangle6,
 };
 use crate::elements::body::tests::{bodies, noise};
 use crate::elements::body::{Body, CellSelection, Dilatation};
@@ -27,10 +28,11 @@ fn is_the_same_on_all_machines<
     const Q: usize,
 >(
     mesh: &Mesh,
+    dilatation: Dilatation,
 ) {
     let pattern = Arc::new(NodePattern::new(mesh.node_count(), mesh.cells()));
-    let elements =
-        ElementsOf::<N, M, D, Q>::new::<C>(mesh, 1.0, Dilatation::AtPoints, &pattern).unwrap();
+    let elements = ElementsOf::<N, M, D, Q>::new::<C>(mesh, 1.0, dilatation, &pattern).unwrap();
+    let is_projected = elements.is_projected();
     let dofs = mesh.node_count() * D;
     let (u, v) = (noise(dofs, 0.01, 1.0), noise(dofs, 1.0, 2.0));
     let (u, v) = (u.as_chunks().0, v.as_chunks().0);
@@ -47,14 +49,14 @@ fn is_the_same_on_all_machines<
                     rows: &mut by_place.rows_mut(),
                     cells: cells.clone(),
                     fields: [u, v],
-                    slope: ViscousTangent { law: &law, is_projected: false },
+                    slope: ViscousTangent { law: &law, is_projected },
                 },
                 Pass {
                     elements,
                     rows: &mut by_rate.rows_mut(),
                     cells,
                     fields: [u],
-                    slope: RateTangent { law: &law, is_projected: false },
+                    slope: RateTangent { law: &law, is_projected },
                 },
             );
             [by_place.values, by_rate.values]
@@ -75,11 +77,18 @@ fn is_the_same_on_all_machines<
 fn several_cells_at_once() {
     let plane = |cells| Mesh::rectangle([0.3, 0.2], [4, 4], cells).unwrap();
     let solid = |cells| Mesh::cuboid([0.3, 0.2, 0.2], [6, 3, 3], cells).unwrap();
-    is_the_same_on_all_machines::<Segment, 2, 1, 1, 1>(&Mesh::bar(1.0, 12).unwrap());
-    is_the_same_on_all_machines::<Triangle, 3, 2, 2, 1>(&plane(Cells::Triangles));
-    is_the_same_on_all_machines::<Triangle6, 6, 2, 2, 3>(&plane(Cells::Triangles6));
-    is_the_same_on_all_machines::<Hexahedron, 8, 3, 3, 8>(&solid(SolidCells::Hexahedra));
-    is_the_same_on_all_machines::<Tetrahedron10, 10, 3, 3, 4>(&solid(SolidCells::Tetrahedra10));
+    let (points, linear) = (Dilatation::AtPoints, Dilatation::Linear);
+    is_the_same_on_all_machines::<Segment, 2, 1, 1, 1>(&Mesh::bar(1.0, 12).unwrap(), points);
+    is_the_same_on_all_machines::<Triangle, 3, 2, 2, 1>(&plane(Cells::Triangles), points);
+    is_the_same_on_all_machines::<Triangle6, 6, 2, 2, 3>(&plane(Cells::Triangles6), points);
+    is_the_same_on_all_machines::<Quadrilateral9, 9, 2, 2, 9>(&plane(Cells::Rectangles9), linear);
+    let hexahedra = solid(SolidCells::Hexahedra);
+    is_the_same_on_all_machines::<Hexahedron, 8, 3, 3, 8>(&hexahedra, points);
+    is_the_same_on_all_machines::<Hexahedron, 8, 3, 3, 8>(&hexahedra, Dilatation::Mean);
+    let hexahedra20 = solid(SolidCells::Hexahedra20);
+    is_the_same_on_all_machines::<Hexahedron20, 20, 3, 3, 14>(&hexahedra20, linear);
+    let tetrahedra10 = solid(SolidCells::Tetrahedra10);
+    is_the_same_on_all_machines::<Tetrahedron10, 10, 3, 3, 4>(&tetrahedra10, points);
 }
 
 fn tangents(body: &Body, pattern: &Arc<NodePattern>, u: &[f64], v: &[f64]) -> [BlockMatrix; 2] {
