@@ -33,7 +33,7 @@ def body(
     viscous: Literal["natural", "objective"] | None = None,
     inertia: Literal["consistent", "lumped"] | None = None,
     plane: Literal["strain", "stress"] | None = None,
-    dilatation: Literal["points", "mean"] | None = None,
+    dilatation: Literal["points", "mean", "linear"] | None = None,
     region: dict | Sequence[dict] | None = None,
 ) -> dict:
     r"""What moves: a mesh made of a material.
@@ -60,8 +60,10 @@ def body(
     plane
         what is 0 across the plane. Default: strain.
     dilatation
-        where the body resists a change of its volume. Default: points. In the mean over each cell, nearly
-        incompressible bodies do not lock: for quadrilaterals, hexahedra and quadratic cells.
+        where the body resists a change of its volume. Default: points, or what goes with `cells = "auto"`. At each
+        point of a cell, a nearly incompressible body locks. `linear`: projected onto linear functions of each cell,
+        accurate; for `hexahedra27`, `rectangles9` and, less so, `hexahedra20`. `mean`: in the mean over each cell,
+        for `rectangles`, `hexahedra`, `triangles6` and `tetrahedra10`.
     region
         parts with a material of their own. Default: none.
     """
@@ -119,7 +121,7 @@ def mesh_rectangle(
     *,
     size: Sequence[float],
     nodes: Sequence[int],
-    cells: Literal["triangles", "crossed", "rectangles", "triangles6", "auto"],
+    cells: Literal["triangles", "crossed", "rectangles", "triangles6", "rectangles9", "auto"],
     origin: Vector | None = None,
     quadratic: bool | None = None,
     halved: int | None = None,
@@ -135,7 +137,8 @@ def mesh_rectangle(
         corner nodes along x and y. Required.
     cells
         how the grid is divided. Required. Linear `triangles` are too stiff in bending, `crossed` ones less so;
-        `triangles6`, quadratic, bend well, and `auto` is those.
+        `triangles6`, quadratic, bend well, and `auto` is those; for a Poisson's ratio of 0.45 or more in plane strain
+        it is `rectangles9` with `dilatation = "linear"`, as of silicone.
     origin
         the place of the lower corner, or of the centre of a ring (m). Default: the origin.
     quadratic
@@ -167,7 +170,7 @@ def mesh_ring(
     inner: float,
     outer: float,
     nodes: Sequence[int],
-    cells: Literal["triangles", "crossed", "rectangles", "triangles6", "auto"],
+    cells: Literal["triangles", "crossed", "rectangles", "triangles6", "rectangles9", "auto"],
     origin: Vector | None = None,
     quadratic: bool | None = None,
     halved: int | None = None,
@@ -184,7 +187,8 @@ def mesh_ring(
         corner nodes around and along the radius. Required.
     cells
         how the grid is divided. Required. Linear `triangles` are too stiff in bending, `crossed` ones less so;
-        `triangles6`, quadratic, bend well, and `auto` is those.
+        `triangles6`, quadratic, bend well, and `auto` is those; for a Poisson's ratio of 0.45 or more in plane strain
+        it is `rectangles9` with `dilatation = "linear"`, as of silicone.
     origin
         the place of the lower corner, or of the centre of a ring (m). Default: the origin.
     quadratic
@@ -212,7 +216,7 @@ def mesh_half_ring(
     inner: float,
     outer: float,
     nodes: Sequence[int],
-    cells: Literal["triangles", "crossed", "rectangles", "triangles6", "auto"],
+    cells: Literal["triangles", "crossed", "rectangles", "triangles6", "rectangles9", "auto"],
     origin: Vector | None = None,
     quadratic: bool | None = None,
     halved: int | None = None,
@@ -229,7 +233,8 @@ def mesh_half_ring(
         corner nodes around and along the radius. Required.
     cells
         how the grid is divided. Required. Linear `triangles` are too stiff in bending, `crossed` ones less so;
-        `triangles6`, quadratic, bend well, and `auto` is those.
+        `triangles6`, quadratic, bend well, and `auto` is those; for a Poisson's ratio of 0.45 or more in plane strain
+        it is `rectangles9` with `dilatation = "linear"`, as of silicone.
     origin
         the place of the lower corner, or of the centre of a ring (m). Default: the origin.
     quadratic
@@ -256,7 +261,7 @@ def mesh_cuboid(
     *,
     size: Sequence[float],
     nodes: Sequence[int],
-    cells: Literal["tetrahedra", "hexahedra", "tetrahedra10", "hexahedra20", "auto"],
+    cells: Literal["tetrahedra", "hexahedra", "tetrahedra10", "hexahedra20", "hexahedra27", "auto"],
     origin: Vector | None = None,
     quadratic: bool | None = None,
     halved: int | None = None,
@@ -271,7 +276,8 @@ def mesh_cuboid(
     nodes
         corner nodes along x, y and z. Required.
     cells
-        how the grid is divided. Required. `auto` is `tetrahedra10`, quadratic.
+        how the grid is divided. Required. `auto` is `tetrahedra10`, quadratic; for a Poisson's ratio of 0.45 or more
+        it is `hexahedra27` with `dilatation = "linear"`, as of silicone.
     origin
         the place of the lower corner, or of the centre of a ring (m). Default: the origin.
     quadratic
@@ -333,7 +339,7 @@ def mesh_gmsh(
 def mesh_listed(
     *,
     positions: Sequence[Vector],
-    cells: Literal["segments", "triangles", "triangles6", "quadrilaterals", "tetrahedra", "tetrahedra10", "hexahedra", "hexahedra20"],
+    cells: Literal["segments", "triangles", "triangles6", "quadrilaterals", "quadrilaterals9", "tetrahedra", "tetrahedra10", "hexahedra", "hexahedra20", "hexahedra27"],
     connectivity: Sequence[Sequence[int]],
     origin: Vector | None = None,
     quadratic: bool | None = None,
