@@ -62,8 +62,8 @@ def body(
     dilatation
         where the body resists a change of its volume. Default: points, or what goes with `cells = "auto"`. At each
         point of a cell, a nearly incompressible body locks. `linear`: projected onto linear functions of each cell,
-        accurate; for `hexahedra27`, `rectangles9` and, less so, `hexahedra20`. `mean`: in the mean over each cell,
-        for `rectangles`, `hexahedra`, `triangles6` and `tetrahedra10`.
+        accurate; for `hexahedra27` and `rectangles9`, and for `hexahedra20`, whose pressures are not reliable then.
+        `mean`: in the mean over each cell, for `rectangles`, `hexahedra`, `triangles6` and `tetrahedra10`.
     region
         parts with a material of their own. Default: none.
     """

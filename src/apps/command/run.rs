@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use clap::Args;
 use pliant::output::{GrowingTable, write_report};
 use pliant::simulate::Simulation;
-use pliant::study::Verification;
+use pliant::studies::work_precision::Verification;
 use pliant::{Error, Fraction, IntegrationFailure, SceneFile, Trajectory};
 
 use crate::accuracy::AccuracyArguments;

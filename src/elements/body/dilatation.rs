@@ -24,7 +24,8 @@ pub enum Dilatation {
     Mean,
     /// Projected onto linear functions of the undeformed position in each cell (Q2/P-1, with a discontinuous linear
     /// pressure; D. Boffi, L. Gastaldi, Mathematical Models and Methods in Applied Sciences 12 (2002) 1589-1603): for
-    /// quadratic hexahedra and quadrilaterals.
+    /// quadratic hexahedra and quadrilaterals. Those of 20 nodes have more pressures than their faces can feel: displacements
+    /// are better than with the mean, pressures are not reliable.
     Linear,
 }
 

@@ -154,6 +154,42 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<
         let lane = cell % SIDE_BY_SIDE;
         self.abreast()[cell / SIDE_BY_SIDE].iter().map(move |point| point.of_cell(lane))
     }
+
+    /// Whether the dilatation is projected.
+    #[inline(always)]
+    pub(super) fn is_projected(&self) -> bool {
+        self.dilatation != Dilatation::AtPoints
+    }
+
+    /// Number of coefficients of a projected dilatation.
+    #[inline(always)]
+    pub(super) fn coefficients(&self) -> usize {
+        if self.modes.is_empty() { 1 } else { 1 + M }
+    }
+
+    /// The linear modes at point `q` of as many cells of a `block` as a register holds; none if the dilatation is a
+    /// mean.
+    #[inline(always)]
+    pub(super) fn modes_of_lane<S: Simd>(
+        &self,
+        simd: S,
+        block: usize,
+        part: usize,
+        q: usize,
+    ) -> Option<[Lane<S>; M]> {
+        let packed = self.modes.get(block * Q + q)?;
+        let mut modes = [Lane::splat(simd, 0.0); M];
+        for k in 0..M {
+            modes[k] = Lane::load(simd, &packed[k].0, part);
+        }
+        Some(modes)
+    }
+
+    /// The linear modes at point `q` of a cell.
+    pub(super) fn modes_of(&self, cell: usize, q: usize) -> Option<[f64; M]> {
+        let packed = self.modes.get(cell / SIDE_BY_SIDE * Q + q)?;
+        Some(std::array::from_fn(|k| packed[k].0[cell % SIDE_BY_SIDE]))
+    }
 }
 
 impl<const N: usize, const M: usize, const D: usize> StrainPoint<Packed, N, M, D> {

@@ -279,7 +279,7 @@ cell_kinds! {
     },
     /// Twenty-seven nodes: those of [`CellKind::Hexahedron20`], then the middles of the faces 1-4-8-5, 2-3-7-6, 1-2-6-5,
     /// 4-3-7-8, 1-2-3-4, 5-6-7-8, and of the cell.
-        Hexahedron27 => Shape {
+    Hexahedron27 => Shape {
         word: "hexahedra27",
         name: "hexahedra of 27 nodes",
         dimension: 3,

@@ -63,7 +63,7 @@ pub(super) const BODY: TableKeys = TableKeys::new(
             "where the body resists a change of its volume",
         )
         .law("At each point of a cell, a nearly incompressible body locks. `linear`: projected onto linear functions of each cell, \
-              accurate; for `hexahedra27`, `rectangles9` and, less so, `hexahedra20`. `mean`: in the mean over each cell, for \
+              accurate; for `hexahedra27` and `rectangles9`, and for `hexahedra20`, whose pressures are not reliable then. `mean`: in the mean over each cell, for \
               `rectangles`, `hexahedra`, `triangles6` and `tetrahedra10`.")
         .default("points, or what goes with `cells = \"auto\"`"),
         Key::new("material", Holds::Table(&MATERIAL), "what the body is made of").required(),
