@@ -24,11 +24,13 @@ BOTH := -p pliant -p pliant-python --features pliant/play
 export PYO3_BUILD_EXTENSION_MODULE := 1
 
 # Unit tests are short: to optimize them, which compiles the library once more, would take longer than to run them as they are.
-# Examples are checked by clippy; the two that are named have tests of their own.
+# Examples are checked by clippy; the two that are named have tests of their own. What the tests run beside themselves, a browser
+# and Python, is fetched while clippy computes.
 test: ## Every check: format, lints, tests, documentation and its examples
-	@scripts/setup.sh chromium valgrind python3-venv
+	@scripts/setup.sh
 	cargo fmt --all --check
-	cargo clippy --workspace --all-targets --features pliant/play -- -D warnings
+	{ scripts/setup.sh chromium python3-venv && scripts/python.sh environment; } & \
+		cargo clippy --workspace --all-targets --features pliant/play -- -D warnings && wait $$!
 	cargo test $(BOTH) --lib --config profile.dev.package.pliant.opt-level=0
 	cargo test $(BOTH) --bins --test '*' --example gallery --example integrators
 	cargo test $(BOTH) --doc
@@ -44,7 +46,7 @@ bench: ## What cells and the parts of steps cost, and what has become slower; al
 	cargo bench --bench table
 	cargo run --release -p counts
 
-baseline: ## The numbers of instructions that `make test` compares with, stored anew
+baseline: ## The numbers of instructions that `make bench` compares with, stored anew
 	@scripts/setup.sh valgrind
 	cargo run --release -p counts -- --store
 

@@ -1,5 +1,6 @@
 #!/bin/sh
-# The Python module. `test`: the extension as the other tests have built it, tried beside the source.
+# The Python module. `test`: the extension as the other tests have built it, tried beside the source, in an environment that
+# `environment` makes beforehand.
 # `wheel`: the wheel with all libraries, built, installed into a new environment, and tried there.
 set -eu
 
@@ -18,6 +19,9 @@ environment() { # DIRECTORY PACKAGE...
 }
 
 case $1 in
+environment)
+    environment "$target/python-test" $packages
+    ;;
 test)
     environment "$target/python-test" $packages
     cargo build -p pliant -p pliant-python --features pliant/play --lib
