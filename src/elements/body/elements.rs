@@ -51,6 +51,8 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<
     /// Whether a projected dilatation differs from that of the points; where it does not, no loops are compiled
     /// for it.
     pub(super) const CAN_LOCK: bool = M == D && M > 1 && Q > 1;
+    /// Whether it may be linear in a cell: with more points than a linear cell has. Elsewhere no loops are compiled for that.
+    const CAN_BE_LINEAR: bool = Self::CAN_LOCK && Q > 1 << M;
 
     /// The elements on the cells of `mesh`, whose nodes `pattern` couples; `section` is the area or thickness
     /// of the body.
@@ -164,7 +166,13 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<
     /// Number of coefficients of a projected dilatation.
     #[inline(always)]
     pub(super) fn coefficients(&self) -> usize {
-        if self.modes.is_empty() { 1 } else { 1 + M }
+        if self.is_linear() { 1 + M } else { 1 }
+    }
+
+    /// Whether a projected dilatation is linear in a cell.
+    #[inline(always)]
+    pub(super) fn is_linear(&self) -> bool {
+        Self::CAN_BE_LINEAR && !self.modes.is_empty()
     }
 
     /// The linear modes at point `q` of as many cells of a `block` as a register holds; none if the dilatation is a
@@ -177,6 +185,9 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<
         part: usize,
         q: usize,
     ) -> Option<[Lane<S>; M]> {
+        if !Self::CAN_BE_LINEAR {
+            return None;
+        }
         let packed = self.modes.get(block * Q + q)?;
         let mut modes = [Lane::splat(simd, 0.0); M];
         for k in 0..M {

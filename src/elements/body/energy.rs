@@ -76,7 +76,7 @@ impl<L: CellLaw, const N: usize, const M: usize, const D: usize, const Q: usize>
             }
             if is_projected {
                 let dilatation = dilatation.over(whole);
-                if elements.modes.is_empty() {
+                if !elements.is_linear() {
                     let [of_mean, ..] = law.of_projected(dilatation.mean);
                     energy += of_mean * whole;
                 } else {

@@ -249,7 +249,7 @@ impl<
                 }
                 let dilatation = sum.over(volume);
                 let mut of_volume = Projected::new(zero);
-                if elements.modes.is_empty() {
+                if !elements.is_linear() {
                     of_volume.mean = pull.of_volume(dilatation.mean);
                 } else {
                     for q in 0..Q {

@@ -146,7 +146,7 @@ fn of_projected<
         }
     }
     let dilatation = sum.over(volume);
-    if elements.modes.is_empty() {
+    if !elements.is_linear() {
         let [pull, stiff] = slope.of_volume(dilatation.mean);
         changes[0].share = stiff / volume;
         return (Projected::new(pull), changes);
