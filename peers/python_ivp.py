@@ -4,8 +4,8 @@
     python python_ivp.py                               # prints the tables of python.md
 
 HIRES (8 unknowns) and a Brusselator in one dimension (1,000 unknowns, a band), with right-hand sides in Python (NumPy) and
-compiled (numba; pydiffsol compiles a language of its own, the time for which is not counted). Times are processor times, the best of five; errors are those of the last state, weighted as by the
-tolerances: sqrt(mean((e / (atol + rtol |y|))^2)) at rtol = atol = 1e-6.
+compiled (numba; pydiffsol compiles a language of its own, the time for which is not counted). Times are processor times, the
+best of five; errors are those of the last state, weighted as by the tolerances: sqrt(mean((e / (atol + rtol |y|))^2)) at rtol = atol = 1e-6.
 """
 
 import time
@@ -75,7 +75,7 @@ def compiled():
 
 
 def diffsl():
-    """The same in the language of pydiffsol, the unknowns of the Brusselator as all u, then all v; and its last unknowns' order."""
+    """The same in the language of pydiffsol, with the places of our unknowns among its own: all u of the Brusselator, then all v."""
     of, last = 0.02 * (POINTS + 1) ** 2, POINTS - 1
     x = np.arange(1, POINTS + 1) / (POINTS + 1)
     first = ", ".join(f"{u:.17g}" for u in 1.0 + np.sin(2.0 * np.pi * x))
