@@ -12,8 +12,8 @@ relative to the root mean square displacement. Where Green strain gave the advis
 ";
 
 const COLUMNS: &str = "\
-*Promised*: its error as the adviser measured it, with what the adviser's own measure may be off by. *True*: against the run that it
-knows nothing of. *As written*: what it says of the scene file as it stands, and what is true. *Faster*: time of the scene as written over
+*Promised*: the most that it may be off by, the sum of the parts of its error as the adviser measured them, with what the adviser's own
+finest mesh may be off by. *True*: against the run that it knows nothing of. *As written*: what it says of the scene file as it stands, and what is true. *Faster*: time of the scene as written over
 that of what is enough. *Advice*: what the advice took, and how many times the run that it is compared with.
 
 | scene | what is enough | promised | true | as written, told | true | faster | advice | in such runs |

@@ -99,8 +99,7 @@ impl Trial {
             Some(enough) => {
                 let known = !advice.resolution.is_nan();
                 let sure = if known { "" } else { " on this mesh" };
-                let promised = enough.error.map(|error| error + advice.resolution.max(0.0));
-                (enough.choice.to_string(), percent(promised) + sure)
+                (enough.choice.to_string(), percent(enough.parts.map(|parts| parts.sum())) + sure)
             }
             None => ("nothing known".into(), "–".into()),
         };
@@ -116,7 +115,8 @@ impl Trial {
         let faster = ratio(enough_seconds.map(|seconds| advice.written.seconds / seconds));
         let cost = ratio(self.cost());
         let time = time_text(advice.seconds);
-        let [told, wrote, true_] = [advice.written.error, *written, *enough].map(percent);
+        let told = advice.written.parts.map(|parts| parts.sum()).or(advice.written.error);
+        let [told, wrote, true_] = [told, *written, *enough].map(percent);
         format!(
             "| {name}{known} | {needs} | {promised} | {true_} | {told} | {wrote} | {faster} | {time} | {cost} |"
         )

@@ -23,7 +23,8 @@ fn candidate(rtol: f64, seconds: f64, error: Option<f64>) -> Candidate {
         settings: Settings { rtol, ..Settings::default() },
     };
     let set = vec![format!("solver.rtol={rtol:e}")];
-    Candidate { choice, set, error, parts: None, seconds, unknowns: 14, failure: None }
+    let warnings = vec![HOSTILE.into()];
+    Candidate { choice, set, error, parts: None, seconds, unknowns: 14, failure: None, warnings }
 }
 
 /// Six candidates: one that is enough, one that is slower and worse, one that all are compared with, and a failure.
@@ -43,11 +44,13 @@ fn advice() -> Advice {
         enough: Some(enough),
         truth: Some(truth),
         resolution: 0.001,
+        has_rate: true,
         mesh: None,
         alphas: Vec::new(),
         law: None,
         inertia: None,
         terms: Vec::new(),
+        together: None,
         candidates,
         known_until: None,
         end: 0.6,

@@ -89,6 +89,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     progress.finish_and_clear();
     let advice = advice?;
     print(&advice)?;
+    if let Some(enough) = &advice.enough {
+        print(format_args!("\nTo run what is enough:\n{}", command_of(scene, enough)))?;
+    }
     if let Some(directory) = &mut directory {
         let title = match &file.title[..] {
             "" => scene.path.display().to_string(),
@@ -117,6 +120,20 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
 }
 
+/// The command that runs what is enough, as a shell takes it.
+fn command_of(scene: &SceneArguments, enough: &Candidate) -> String {
+    let plain = |c: char| c.is_ascii_alphanumeric() || "._-+=/".contains(c);
+    let quoted = |text: &str| match text.chars().all(plain) {
+        true => text.to_owned(),
+        false => format!("'{}'", text.replace('\'', r"'\''")),
+    };
+    let command = if enough.choice.is_static { "static" } else { "run" };
+    let path = quoted(&scene.path.to_string_lossy());
+    let sets = scene.set.iter().chain(&enough.set);
+    let sets = sets.map(|set| format!(" --set {}", quoted(set)));
+    sets.fold(format!("  pliant {command} {path}"), |line, set| line + &set)
+}
+
 /// Writes the scene file with what is enough; the reasons stand above it as comments.
 fn write_scene(
     scene: &SceneArguments,
@@ -126,7 +143,9 @@ fn write_scene(
 ) -> Result<(), Failure> {
     let comment = |line: &str| format!("# {line}").trim_end().to_owned() + "\n";
     let reasons: String = advice.to_string().lines().map(comment).collect();
-    let text = scene.text(&enough.set)?;
+    let mut set = enough.set.clone();
+    set.extend(scene.mesh_for(path)?);
+    let text = scene.text(&set)?;
     // a schema must stay on the first line
     let (first, rest) = match text.starts_with("#:schema") {
         true => text.split_at(text.find('\n').map_or(text.len(), |end| end + 1)),

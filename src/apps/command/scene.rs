@@ -1,8 +1,10 @@
 //! The scene file that a command is about.
 
+use std::fs;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use pliant::scene_file::override_of;
 use pliant::{Error, SceneFile};
 
 /// The scene file, and values that replace its own.
@@ -39,5 +41,30 @@ impl SceneArguments {
     /// The text of the file with these values, and then `others`, in it.
     pub fn text(&self, others: &[String]) -> Result<String, Error> {
         SceneFile::text_with(&self.path, &[&self.set[..], others].concat())
+    }
+
+    /// What has to be set in a copy of the file at `copy` so that it finds the mesh which the file names relative to itself; none
+    /// if it names no file, or both are in one directory.
+    pub fn mesh_for(&self, copy: &Path) -> Result<Option<String>, Error> {
+        let text = self.text(&[])?;
+        let scene: Option<toml::Table> = toml::from_str(&text).ok();
+        let mesh = scene.as_ref().and_then(|scene| scene.get("body")?.get("mesh")?.get("file"));
+        let Some(file) = mesh.and_then(toml::Value::as_str) else { return Ok(None) };
+        let directory = |path: &Path| match path.parent() {
+            Some(parent) if parent != Path::new("") => parent.to_owned(),
+            _ => PathBuf::from("."),
+        };
+        let here = directory(&self.path);
+        let is_same = match [&here, &directory(copy)].map(fs::canonicalize) {
+            [Ok(here), Ok(there)] => here == there,
+            _ => false,
+        };
+        let path = here.join(file);
+        match fs::canonicalize(&path) {
+            Ok(path) if !is_same => {
+                override_of("body.mesh.file", &path.to_string_lossy().into()).map(Some)
+            }
+            _ => Ok(None),
+        }
     }
 }

@@ -20,13 +20,15 @@ pub struct Advice {
     pub unit: String,
     /// The scene as it was written.
     pub written: Candidate,
-    /// The cheapest candidate that is right, if there is one: the sum of its error and the
-    /// [`resolution`](Self::resolution) is below the accuracy.
+    /// The cheapest candidate that is right, if there is one: the sum of its [`parts`](Candidate::parts) is no larger than the
+    /// accuracy.
     pub enough: Option<Candidate>,
     /// What all were compared with, and the relative error that it may have itself (NaN: not known).
     pub truth: Option<Candidate>,
     /// See `truth`.
     pub resolution: f64,
+    /// Whether the `resolution` is that of a rate which three meshes of one kind of cells tell.
+    pub has_rate: bool,
     /// If no finer mesh is fine enough to compare with, so that the mesh is taken as it was written: by how
     /// much the finest mesh that was tried differs from it (relative).
     pub mesh: Option<f64>,
@@ -38,6 +40,8 @@ pub struct Advice {
     pub inertia: Option<f64>,
     /// What is changed by leaving something out.
     pub terms: Vec<(Term, f64)>,
+    /// What all that was found to matter little, the measure of strain included, changes together on the finest mesh.
+    pub together: Option<f64>,
     /// All that were run, in their order.
     pub candidates: Vec<Candidate>,
     /// Time (s) until which the motion can be known, if small errors grow too large before its end.
@@ -70,9 +74,10 @@ pub struct Candidate {
     pub choice: Choice,
     /// What has to be set for it in the file of the scene, as `--set` takes it.
     pub set: Vec<String>,
-    /// Its relative error; none without a motion, or without anything to compare with.
+    /// Its relative distance from the truth; none without a motion, or without anything to compare with.
     pub error: Option<f64>,
-    /// The parts of this error, if the runs between it and the truth were made, too.
+    /// The parts of this error, if the runs between it and the truth were made, too: their sum bounds it, what the truth may be
+    /// off by included.
     pub parts: Option<Parts>,
     /// Wall-clock time (s) of one run.
     pub seconds: f64,
@@ -80,11 +85,21 @@ pub struct Candidate {
     pub unknowns: usize,
     /// Why there is no motion.
     pub failure: Option<String>,
+    /// What the run warns of.
+    pub warnings: Vec<String>,
 }
 
 impl Candidate {
     pub(super) fn new(choice: Choice) -> Self {
-        let set = Vec::new();
-        Self { choice, set, error: None, parts: None, seconds: 0.0, unknowns: 0, failure: None }
+        Self {
+            choice,
+            set: Vec::new(),
+            error: None,
+            parts: None,
+            seconds: 0.0,
+            unknowns: 0,
+            failure: None,
+            warnings: Vec::new(),
+        }
     }
 }

@@ -133,12 +133,13 @@ impl<'a> Adviser<'a> {
             Candidate { set, ..candidate }
         };
         let candidate = |solved: &Solved| {
-            let Solved { choice, seconds, unknowns, .. } = solved.clone();
+            let Solved { choice, seconds, unknowns, warnings, .. } = solved.clone();
             named(Candidate {
                 error: truth.map(|truth| solved.error(truth)),
                 parts: found.parts(solved),
                 seconds,
                 unknowns,
+                warnings,
                 ..Candidate::new(choice)
             })
         };
@@ -160,6 +161,7 @@ impl<'a> Adviser<'a> {
             enough: found.best(self.request.accuracy).map(candidate),
             truth: truth.map(candidate),
             resolution: found.resolution(),
+            has_rate: found.has_rate(),
             mesh: found.mesh(),
             candidates,
             runs: search.runs,
@@ -169,6 +171,7 @@ impl<'a> Adviser<'a> {
             law: found.law,
             inertia: found.inertia,
             terms: found.terms,
+            together: found.together,
             mesh_estimate: found.mesh_estimate,
             look: None,
             known_until: found.known_until,

@@ -6,7 +6,7 @@ use super::advice::{Advice, Candidate};
 use super::choice::{Choice, times};
 use crate::base::input::{percent, short, told};
 use crate::dynamics::report::Verdict;
-use crate::elements::body::{Inertia, Strain};
+use crate::elements::body::Strain;
 use crate::studies::work_precision::look::Look;
 use crate::studies::work_precision::time_text;
 
@@ -63,17 +63,21 @@ impl Advice {
                 false => format!("without {term} it changes by {}", percent(*error)),
             });
         }
-        if let (Some(error), Some(rich)) = (self.inertia, rich) {
-            let other = match rich.inertia {
-                Inertia::Consistent => "lumped inertia",
-                Inertia::Lumped => "consistent inertia",
-            };
-            reasons.push(format!("{other} {}", self.change(error)));
+        if let Some(error) = self.inertia {
+            reasons.push(format!("lumped inertia {}", self.change(error)));
+        }
+        if let Some(together) = self.together {
+            let what =
+                "what matters little on the mesh as written, all together on the finest one,";
+            reasons.push(format!("{what} {}", self.change(together)));
         }
         if let Some(estimate) = &self.mesh_estimate {
             let apart =
                 self.candidates.iter().find(|candidate| candidate.choice.is_mesh_as_written());
-            let paired = apart.and_then(|candidate| Some(percent(candidate.parts?.mesh)));
+            let paired = apart.and_then(|candidate| {
+                let mesh = candidate.parts?.mesh - self.resolution;
+                (!mesh.is_nan()).then(|| percent(mesh))
+            });
             reasons.push(format!(
                 "the mesh as written is {} off at rest, as adjoint-weighted residuals tell{}{}",
                 percent(estimate.correction.abs() / self.scale),
@@ -119,16 +123,15 @@ impl fmt::Display for Advice {
                 told(self.end)
             )?;
         }
-        let made_of = |candidate: &Candidate| match candidate.parts {
-            Some(parts) => format!(" ({parts})"),
-            None => String::new(),
-        };
         let run = |candidate: &Candidate| match (candidate.error, &candidate.failure) {
             (_, Some(failure)) => format!("{}: {failure}", candidate.choice),
             (Some(error), None) => {
                 let time = time_text(candidate.seconds);
-                let made_of = made_of(candidate);
-                format!("{}: {}{made_of} in {time}", candidate.choice, self.off(error, "off"))
+                let off = match candidate.parts {
+                    Some(parts) => format!("{} off at most ({parts})", percent(parts.sum())),
+                    None => self.off(error, "off"),
+                };
+                format!("{}: {off} in {time}", candidate.choice)
             }
             (None, None) => format!("{}: {}", candidate.choice, time_text(candidate.seconds)),
         };
@@ -153,7 +156,12 @@ impl fmt::Display for Advice {
             )?,
             None => {
                 let resolution = percent(self.resolution);
-                writeln!(f, "What they are compared with may itself be off by {resolution}.")?;
+                let rate = "as the last three meshes tell";
+                let told = if self.has_rate { rate } else { "if halving cells halves the error" };
+                writeln!(
+                    f,
+                    "What they are compared with may itself be off by {resolution}, {told}; this is counted as a part of the mesh."
+                )?;
             }
         }
         writeln!(f)?;
@@ -167,6 +175,19 @@ impl fmt::Display for Advice {
                 _ => "",
             };
             writeln!(f, "- {less}{}", indicator.text)?;
+        }
+        let written = ("as written", &self.written);
+        let others =
+            [("what is enough", &self.enough), ("what all are compared with", &self.truth)];
+        let others = others.iter().filter_map(|(name, run)| Some((*name, run.as_ref()?)));
+        let mut told: Vec<&str> = Vec::new();
+        for (name, candidate) in others.chain([written]) {
+            for warning in &candidate.warnings {
+                if !told.contains(&&warning[..]) {
+                    writeln!(f, "- warning of {name}: {warning}")?;
+                    told.push(warning);
+                }
+            }
         }
         for failed in self.candidates.iter().filter(|candidate| candidate.failure.is_some()) {
             writeln!(f, "- failed: {}", run(failed))?;

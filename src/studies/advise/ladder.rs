@@ -43,17 +43,19 @@ impl Search<'_> {
         found.tight = Some(tight.clone());
         let firm = self.alpha(tight, found)?;
         let rich = self.law(firm, found)?;
+        let rich = self.consistent(rich, found)?;
         found.meshes.push(rich.clone());
         let refined = self.refine(&rich, found);
         found.settle(self.request.accuracy);
         refined?;
         self.leave_out(&rich, found)?;
         let Some(enough) = self.enough(&rich, found) else { return Ok(()) };
+        let enough = self.confirmed(enough, found)?;
+        found.enough = self.known_or_run(&enough, found)?;
         if self.request.quantity.is_at_end() {
             self.rest(&enough, found)?;
         }
-        self.sweep(&enough, found)?;
-        self.by_itself(&rich, found)
+        self.sweep(&enough, found)
     }
 
     /// The model as it was written with hardly any error of the integration. `None` if it has no such motion.
@@ -140,7 +142,21 @@ impl Search<'_> {
         Ok(rich)
     }
 
-    /// Runs finer meshes, until the finest show that they are fine enough, or take too long.
+    /// The run with consistent inertia, if it was written lumped: what that changes is an error of the model, which an error of the
+    /// mesh may hide.
+    fn consistent(&mut self, rich: Solved, found: &mut Found) -> Result<Solved, Stop> {
+        if rich.choice.inertia == Inertia::Consistent {
+            return Ok(rich);
+        }
+        let choice = Choice { inertia: Inertia::Consistent, ..rich.choice.clone() };
+        let Some(consistent) = self.run(&choice)? else { return Ok(rich) };
+        found.models.push(consistent.clone());
+        found.inertia = Some(rich.error(&consistent));
+        Ok(consistent)
+    }
+
+    /// Runs finer meshes, until the finest show that they are fine enough, or take too long. Three of one kind have to show it:
+    /// two may agree by chance.
     fn refine(&mut self, rich: &Solved, found: &mut Found) -> Result<(), Stop> {
         let kind = self.scene.body().mesh().kind();
         let has_quadratic = kind != CellKind::Segment && !kind.is_quadratic();
@@ -157,7 +173,7 @@ impl Search<'_> {
                 }
             };
             let unknowns = 2 * scene.body().dofs() + 2;
-            if unknowns > last.unknowns && !self.affords(unknowns, last) {
+            if unknowns > last.unknowns && !self.affords(unknowns, &found.meshes) {
                 let cells = choice.cells(kind);
                 found
                     .not_tried
@@ -169,7 +185,8 @@ impl Search<'_> {
             }
             // linear cells that lock may agree with each other
             let may_tell = choice.quadratic == has_quadratic;
-            if may_tell && found.resolution() < OF_TRUTH * self.request.accuracy {
+            let is_fine = found.resolution() < OF_TRUTH * self.request.accuracy;
+            if may_tell && found.has_rate() && is_fine {
                 return Ok(());
             }
         }
@@ -185,11 +202,11 @@ impl Search<'_> {
                 found.models.push(solved);
             }
         }
-        let inertia = match rich.choice.inertia {
-            Inertia::Consistent => Inertia::Lumped,
-            Inertia::Lumped => Inertia::Consistent,
-        };
-        if let Some(solved) = self.run(&Choice { inertia, ..rich.choice.clone() })? {
+        if found.inertia.is_some() || rich.choice.inertia == Inertia::Lumped {
+            return Ok(());
+        }
+        let choice = Choice { inertia: Inertia::Lumped, ..rich.choice.clone() };
+        if let Some(solved) = self.run(&choice)? {
             found.inertia = Some(solved.error(rich));
             found.models.push(solved);
         }
@@ -212,15 +229,45 @@ impl Search<'_> {
         Some(Choice { strain, without, ..mesh.choice.clone() })
     }
 
+    /// What is enough, if what it leaves out, and its measure of strain, change as little on the finest mesh as on that which was
+    /// written; all of the model otherwise.
+    fn confirmed(&mut self, enough: Choice, found: &mut Found) -> Result<Choice, Stop> {
+        let Some(truth) = found.truth().cloned() else { return Ok(enough) };
+        let (strain, without) = (enough.strain, enough.without.clone());
+        let poor = Choice { strain, without, ..truth.choice.clone() };
+        if poor == truth.choice {
+            return Ok(enough);
+        }
+        let whole = Choice { strain: truth.choice.strain, without: Vec::new(), ..enough.clone() };
+        let terms = OF_TERM * poor.without.len() as f64;
+        let law = if poor.strain == truth.choice.strain { 0.0 } else { OF_LAW };
+        if let Some(solved) = self.known_or_run(&poor, found)? {
+            let change = solved.error(&truth);
+            found.together = Some(change);
+            found.models.push(solved);
+            if change <= (terms + law) * self.request.accuracy {
+                return Ok(enough);
+            }
+        }
+        Ok(whole)
+    }
+
+    /// A run that was made already, or makes it.
+    fn known_or_run(&mut self, choice: &Choice, found: &Found) -> Result<Option<Solved>, Stop> {
+        let known = found.all().chain(&found.meshes).find(|solved| solved.choice == *choice);
+        match known.cloned() {
+            Some(known) => Ok(Some(known)),
+            None => self.run(choice),
+        }
+    }
+
     /// Tries the equilibrium in place of the motion, and estimates its error on the mesh as it was written.
     fn rest(&mut self, enough: &Choice, found: &mut Found) -> Result<(), Stop> {
         // what damps a motion has no effect at rest
         let choice = Choice { is_static: true, ..enough.clone() };
         let Some(solved) = self.run(&choice)? else { return Ok(()) };
-        let allowed = found.allowed(self.request.accuracy);
-        let is_right = found.truth().is_some_and(|truth| solved.error(truth) <= allowed);
-        found.sweep.push(solved);
-        if is_right {
+        found.sweep.push(solved.clone());
+        if found.is_right(&solved, self.request.accuracy) {
             let coarse = Choice { quadratic: false, halved: 0, ..choice };
             let scene = coarse.scene(&self.scene).ok();
             let equilibrium = scene.and_then(|scene| self.at_rest(&scene).ok());
@@ -234,9 +281,7 @@ impl Search<'_> {
     /// Tries methods and tolerances for a model that is enough, and with the fastest of them the ways to
     /// treat contact events.
     fn sweep(&mut self, enough: &Choice, found: &mut Found) -> Result<(), Stop> {
-        let Some(truth) = found.truth().cloned() else { return Ok(()) };
         let accuracy = self.request.accuracy;
-        let allowed = found.allowed(accuracy);
         let implicit = [Method::Auto, Method::Arkode, Method::CvodeBdf];
         let mut ways = implicit.map(|method| (method, enough.inertia)).to_vec();
         let lumped_is_enough = found.inertia.is_some_and(|error| error <= OF_LAW * accuracy);
@@ -245,6 +290,11 @@ impl Search<'_> {
         }
         let mut fastest: Option<Solved> = None;
         for (method, inertia) in ways {
+            // what the inertia changes on this mesh
+            if inertia != enough.inertia {
+                let own = self.known_or_run(&Choice { inertia, ..enough.clone() }, found)?;
+                found.models.extend(own);
+            }
             for rtol in TOLERANCES {
                 let settings = Settings {
                     alpha: enough.settings.alpha,
@@ -266,7 +316,7 @@ impl Search<'_> {
                     continue;
                 };
                 found.sweep.push(solved.clone());
-                let is_right = solved.error(&truth) <= allowed;
+                let is_right = found.is_right(&solved, accuracy);
                 let is_late = solved.seconds > PATIENCE * limit;
                 if is_right && solved.seconds < limit {
                     fastest = Some(solved);
@@ -286,17 +336,6 @@ impl Search<'_> {
             {
                 found.sweep.push(solved);
             }
-        }
-        Ok(())
-    }
-
-    /// Runs the model that is enough with hardly any error of the integration, to separate the errors of the
-    /// model and of the mesh.
-    fn by_itself(&mut self, rich: &Solved, found: &mut Found) -> Result<(), Stop> {
-        let Some(best) = found.best(self.request.accuracy) else { return Ok(()) };
-        let choice = Choice { settings: rich.choice.settings.clone(), ..best.choice.clone() };
-        if found.all().all(|solved| solved.choice != choice) {
-            found.enough = self.run(&choice)?;
         }
         Ok(())
     }

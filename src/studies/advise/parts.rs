@@ -4,21 +4,32 @@ use crate::base::input::percent;
 use std::fmt;
 
 /// What the error of a run is made of (relative): the distances between runs that differ in one thing each.
-/// The largest of them dominates: nothing is gained by making another one smaller.
+/// The largest of them dominates: nothing is gained by making another one smaller. Their sum bounds the error, while the
+/// parts themselves may cancel.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Parts {
     /// Of the model: measure of strain, inertia, alpha, what is left out.
     pub model: f64,
-    /// Of the mesh.
+    /// Of the mesh, with what the finest mesh may be off by itself; NaN if no other mesh was compared with.
     pub mesh: f64,
     /// Of the integration over time.
     pub time: f64,
 }
 
+impl Parts {
+    /// The sum of those that are known.
+    pub fn sum(&self) -> f64 {
+        self.model + self.time + if self.mesh.is_nan() { 0.0 } else { self.mesh }
+    }
+}
+
 impl fmt::Display for Parts {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { model, mesh, time } = *self;
-        let [model, mesh, time] = [model, mesh, time].map(percent);
+        let [model, mesh, time] = [model, mesh, time].map(|part| match part.is_nan() {
+            true => "not known".into(),
+            false => percent(part),
+        });
         write!(f, "model {model}, mesh {mesh}, time {time}")
     }
 }

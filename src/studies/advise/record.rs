@@ -13,8 +13,8 @@ use crate::studies::work_precision::look::Look;
 impl Advice {
     /// Writes all that was found as JSON.
     ///
-    /// The keys are `quantity`, `accuracy`, `scale`, `unit`, `written`, `enough`, `truth`, `resolution`,
-    /// `mesh`, `alphas`, `law`, `inertia`, `terms`, `candidates`, `known_until`, `end`, `mesh_estimate`,
+    /// The keys are `quantity`, `accuracy`, `scale`, `unit`, `written`, `enough`, `truth`, `resolution`, `has_rate`,
+    /// `mesh`, `alphas`, `law`, `inertia`, `terms`, `together`, `candidates`, `known_until`, `end`, `mesh_estimate`,
     /// `look`, `not_tried`, `is_cut_short`, `runs`, `seconds`, `known`, as the fields are; `null` means not
     /// known. A candidate has `model` and `set`, what has to be set for it in the file of the scene.
     ///
@@ -28,7 +28,8 @@ impl Advice {
     /// What [`write_json`](Self::write_json) writes.
     pub fn to_json(&self) -> Value {
         let candidate = |candidate: &Candidate| -> Value {
-            let Candidate { choice, set, error, parts, seconds, unknowns, failure } = candidate;
+            let Candidate { choice, set, error, parts, seconds, unknowns, failure, warnings } =
+                candidate;
             json!({
                 "model": choice.to_string(),
                 "set": set,
@@ -39,6 +40,7 @@ impl Advice {
                 "seconds": seconds,
                 "unknowns": unknowns,
                 "failure": failure,
+                "warnings": warnings,
             })
         };
         let terms = self.terms.iter();
@@ -53,6 +55,7 @@ impl Advice {
             "enough": self.enough.as_ref().map(candidate),
             "truth": self.truth.as_ref().map(candidate),
             "resolution": self.resolution,
+            "has_rate": self.has_rate,
             "mesh": self.mesh,
             "alphas": self.alphas.iter().map(|(alpha, change)| {
                 json!({ "alpha": alpha, "ten_times_as_much_changes": change })
@@ -60,6 +63,7 @@ impl Advice {
             "law": self.law,
             "inertia": self.inertia,
             "terms": terms.collect::<Vec<_>>(),
+            "together": self.together,
             "candidates": self.candidates.iter().map(candidate).collect::<Vec<_>>(),
             "known_until": self.known_until,
             "end": self.end,

@@ -17,18 +17,20 @@ use crate::studies::work_precision::quantity::{Quantity, Seen};
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub(super) struct Outcome {
     /// Which run it is: a hash of the scene, the quantity, the choice and the version of this library.
-    run: String,
+    pub(super) run: String,
     /// What was seen; `None` without a motion.
     pub(super) seen: Option<Seen>,
     pub(super) seconds: f64,
     pub(super) unknowns: usize,
     /// Why there is no motion.
     pub(super) failure: Option<String>,
+    /// What the run warns of.
+    pub(super) warnings: Vec<String>,
 }
 
 impl Outcome {
     pub(super) fn new(run: String, seen: Option<Seen>, seconds: f64, unknowns: usize) -> Self {
-        Self { run, seen, seconds, unknowns, failure: None }
+        Self { run, seen, seconds, unknowns, failure: None, warnings: Vec::new() }
     }
 
     pub(super) fn failed(run: String, failure: String) -> Self {

@@ -46,6 +46,8 @@ pub(super) struct Solved {
     pub(super) seen: Seen,
     pub(super) seconds: f64,
     pub(super) unknowns: usize,
+    /// What the run warns of.
+    pub(super) warnings: Vec<String>,
 }
 
 impl Solved {
@@ -101,8 +103,10 @@ const REPETITIONS: usize = 3;
 const SHARE: f64 = 0.4;
 /// If less than this part of the budget is left, it counts as spent.
 const LEAST: f64 = 0.02;
-/// Exponent by which run time grows with the unknowns: between those of the plane and of space.
+/// Exponent by which run time grows with the unknowns, between those of the plane and of space, until it is measured; and the
+/// largest that is believed.
 const GROWTH: f64 = 1.5;
+const MOST_GROWTH: f64 = 2.5;
 
 impl<'a> Search<'a> {
     /// A search for `scene`, whose budget begins now.
@@ -149,21 +153,20 @@ impl<'a> Search<'a> {
             }
             None => {
                 let outcome = self.attempt(choice, name);
-                match (outcome, self.cut) {
-                    (Ok(outcome), _) => {
-                        self.kept.keep(&outcome).map_err(Stop::Trouble)?;
-                        outcome
-                    }
-                    (Err(_), Some(Cut::Interrupted)) => return Err(Stop::Interrupted),
-                    (Err(_), Some(Cut::Share)) if self.is_spent() => return Err(Stop::Budget),
-                    (Err(_), Some(Cut::Late)) => return Ok(None),
-                    (Err(outcome), _) => outcome,
+                match self.cut.filter(|_| outcome.failure.is_some()) {
+                    None => self.kept.keep(&outcome).map_err(Stop::Trouble)?,
+                    Some(Cut::Interrupted) => return Err(Stop::Interrupted),
+                    Some(Cut::Share) if self.is_spent() => return Err(Stop::Budget),
+                    Some(Cut::Late) => return Ok(None),
+                    Some(Cut::Share) => {}
                 }
+                outcome
             }
         };
-        let (choice, Outcome { seen, seconds, unknowns, failure, .. }) = (choice.clone(), outcome);
+        let choice = choice.clone();
+        let Outcome { seen, seconds, unknowns, failure, warnings, .. } = outcome;
         match seen {
-            Some(seen) => Ok(Some(Solved { choice, seen, seconds, unknowns })),
+            Some(seen) => Ok(Some(Solved { choice, seen, seconds, unknowns, warnings })),
             None => {
                 self.failures.push(Candidate { failure, ..Candidate::new(choice) });
                 Ok(None)
@@ -171,19 +174,18 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// The result of a run: `Ok` if it is to be kept, `Err` if it was cut short.
-    fn attempt(&mut self, choice: &Choice, name: String) -> Result<Outcome, Outcome> {
+    /// The result of a run.
+    fn attempt(&mut self, choice: &Choice, name: String) -> Outcome {
         match self.solve(choice) {
-            Ok((seen, seconds, unknowns)) => Ok(Outcome::new(name, Some(seen), seconds, unknowns)),
-            Err(error) => {
-                let outcome = Outcome::failed(name, reason(error).to_string());
-                if self.cut.is_some() { Err(outcome) } else { Ok(outcome) }
-            }
+            Ok(outcome) => Outcome { run: name, ..outcome },
+            Err(error) => Outcome::failed(name, reason(error).to_string()),
         }
     }
 
-    /// What is seen in a run, its time (s) and its unknowns.
-    fn solve(&mut self, choice: &Choice) -> Result<(Seen, f64, usize), Error> {
+    /// What comes of a run that has no name yet.
+    fn solve(&mut self, choice: &Choice) -> Result<Outcome, Error> {
+        let outcome =
+            |seen, seconds, unknowns| Outcome::new(String::new(), seen, seconds, unknowns);
         let scene = choice.scene(&self.scene)?;
         let what = format!("{choice}: {} nodes", scene.body().mesh().node_count());
         if choice.is_static {
@@ -193,7 +195,7 @@ impl<'a> Search<'a> {
             }
             let clock = Instant::now();
             let seen = self.request.quantity.seen_at_rest(&self.at_rest(&scene)?)?;
-            return Ok((seen, clock.elapsed().as_secs_f64(), scene.body().dofs()));
+            return Ok(outcome(Some(seen), clock.elapsed().as_secs_f64(), scene.body().dofs()));
         }
         let nodes = (0..self.nodes).collect();
         let probe = Probe::new(&scene, self.request.quantity.clone(), nodes);
@@ -206,7 +208,8 @@ impl<'a> Search<'a> {
             let again = self.once(&scene, &probe, &choice.settings, &what)?;
             seconds = seconds.min(again.report().wall_seconds);
         }
-        Ok((probe.seen(&first), seconds, first.report().states))
+        let (seen, warnings) = (probe.seen(&first), first.report().warnings());
+        Ok(Outcome { warnings, ..outcome(Some(seen), seconds, first.report().states) })
     }
 
     /// The equilibrium in which a scene comes to rest, if it ever does.
@@ -238,9 +241,20 @@ impl<'a> Search<'a> {
         })
     }
 
-    /// Whether there is time for a run with as many unknowns, judged by the time of another.
-    pub(super) fn affords(&self, unknowns: usize, known: &Solved) -> bool {
-        let ratio = unknowns as f64 / known.unknowns as f64;
-        known.seconds * ratio.powf(GROWTH) < SHARE * self.left()
+    /// Whether there is time for a run with as many unknowns, judged by the times of others from coarse to fine: the last of them,
+    /// and how time has grown up to it.
+    pub(super) fn affords(&self, unknowns: usize, known: &[Solved]) -> bool {
+        let Some(last) = known.last() else { return true };
+        let ratio = |a: f64, b: f64| (b / a).ln();
+        let grown = match known {
+            [.., before, _] if before.seconds > SHORT && before.unknowns < last.unknowns => {
+                let times = ratio(before.seconds, last.seconds);
+                times / ratio(before.unknowns as f64, last.unknowns as f64)
+            }
+            _ => GROWTH,
+        };
+        let growth = grown.clamp(1.0, MOST_GROWTH);
+        let ratio = unknowns as f64 / last.unknowns as f64;
+        last.seconds * ratio.powf(growth) < SHARE * self.left()
     }
 }
