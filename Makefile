@@ -25,14 +25,16 @@ export PYO3_BUILD_EXTENSION_MODULE := 1
 
 # Unit tests are short: to optimize them, which compiles the library once more, would take longer than to run them as they are.
 # Examples are checked by clippy; the two that are named have tests of their own. What the tests run beside themselves, a browser
-# and Python, is fetched while clippy computes.
+# and Python, is fetched while clippy computes. Tests run in two halves at once: the last test of a program leaves no core idle.
 test: ## Every check: format, lints, tests, documentation and its examples
 	@scripts/setup.sh
 	cargo fmt --all --check
 	{ scripts/setup.sh chromium python3-venv && scripts/python.sh environment; } & \
 		cargo clippy --workspace --all-targets --features pliant/play -- -D warnings && wait $$!
-	cargo test $(BOTH) --lib --config profile.dev.package.pliant.opt-level=0
-	cargo test $(BOTH) --bins --test '*' --example gallery --example integrators
+	cargo test -p pliant --features play --lib --config profile.dev.package.pliant.opt-level=0
+	cargo test $(BOTH) --bins --test '*' --example gallery --example integrators --no-run
+	cargo test $(BOTH) --test 's*' & \
+		cargo test $(BOTH) --bins --test '[!s]*' --example gallery --example integrators && wait $$!
 	cargo test $(BOTH) --doc
 	RUSTDOCFLAGS=-Dwarnings cargo doc $(BOTH) --no-deps
 	scripts/python.sh test
@@ -83,9 +85,9 @@ valgrind: ## Thousands of SUNDIALS solvers under valgrind: no leak, no invalid a
 # the noise that Miri adds to powers and sines would change.
 miri: export MIRIFLAGS := -Zmiri-deterministic-floats
 miri: setup ## Some tests of the parts without C under Miri: no undefined behaviour, no data race
-	cargo +nightly miri test --no-default-features --test integrators -- \
+	cargo +nightly miri test --no-default-features --features fit,sweep --test integrators -- \
 		rk::failures rk::steps patterns --skip stability --skip klu
-	cargo +nightly miri test --no-default-features --test solving -- breaks ensembles
+	cargo +nightly miri test --no-default-features --features fit,sweep --test solving -- breaks ensembles
 
 clean: ## Remove everything built and every picture made
 	cargo clean
