@@ -83,6 +83,12 @@ impl Found {
         }
     }
 
+    /// What the error of the finest mesh leaves of an `accuracy`. A mesh that was compared with no other is taken as it is.
+    pub(super) fn left(&self, accuracy: f64) -> f64 {
+        let resolution = self.resolution();
+        accuracy - if resolution.is_nan() { 0.0 } else { resolution }
+    }
+
     /// Whether a run is right: by the sum of its parts, which may have cancelled in it.
     pub(super) fn is_right(&self, solved: &Solved, accuracy: f64) -> bool {
         self.parts(solved).is_some_and(|parts| parts.sum() <= accuracy)
@@ -97,7 +103,7 @@ impl Found {
 
     /// Takes the mesh as it was written, if even the finest is not fine enough for an `accuracy`.
     pub(super) fn settle(&mut self, accuracy: f64) {
-        if self.resolution() >= accuracy {
+        if self.left(accuracy) <= 0.0 {
             self.finer = self.meshes.split_off(1);
         }
     }

@@ -12,12 +12,14 @@ use crate::scene::settings::{ContactEvents, Method, Settings};
 use crate::studies::work_precision::tightening;
 
 /// Parts of the accuracy that errors of each kind may take: of the integration in the runs by which models
-/// are compared, of alpha, of the law, of each term that is left out, and of the mesh.
+/// are compared, and of alpha.
 const OF_TIGHT: f64 = 0.05;
 const OF_ALPHA: f64 = 0.05;
-const OF_LAW: f64 = 0.3;
+/// The same, of what the error of the finest mesh leaves of it: of the law, of each term that is left out, and of the mesh. Their sum
+/// leaves room for the integration.
+const OF_LAW: f64 = 0.2;
 const OF_TERM: f64 = 0.05;
-const OF_MESH: f64 = 0.6;
+const OF_MESH: f64 = 0.4;
 /// The finest mesh is fine enough if it may be off by this part of the accuracy itself.
 const OF_TRUTH: f64 = 0.3;
 /// Runs that locate contact events may take this many times as long as the scene as it was written, plus this
@@ -215,16 +217,16 @@ impl Search<'_> {
 
     /// The cheapest model on the cheapest mesh that is right, apart from errors of the integration.
     fn enough(&self, rich: &Solved, found: &Found) -> Option<Choice> {
-        let accuracy = self.request.accuracy;
+        let left = found.left(self.request.accuracy);
         let truth = found.truth()?;
-        let is_fine = |mesh: &&Solved| mesh.error(truth) <= OF_MESH * accuracy;
+        let is_fine = |mesh: &&Solved| mesh.error(truth) <= OF_MESH * left;
         let fine = found.meshes.iter().filter(is_fine);
         let mesh = fine.min_by(|a, b| a.seconds.total_cmp(&b.seconds)).unwrap_or(truth);
         let strain = match found.law {
-            Some(error) if error <= OF_LAW * accuracy => Strain::Cauchy,
+            Some(error) if error <= OF_LAW * left => Strain::Cauchy,
             _ => rich.choice.strain,
         };
-        let small = found.terms.iter().filter(|(_, error)| *error <= OF_TERM * accuracy);
+        let small = found.terms.iter().filter(|(_, error)| *error <= OF_TERM * left);
         let without = small.map(|(term, _)| term.clone()).collect();
         Some(Choice { strain, without, ..mesh.choice.clone() })
     }
@@ -245,7 +247,7 @@ impl Search<'_> {
             let change = solved.error(&truth);
             found.together = Some(change);
             found.models.push(solved);
-            if change <= (terms + law) * self.request.accuracy {
+            if change <= (terms + law) * found.left(self.request.accuracy) {
                 return Ok(enough);
             }
         }
@@ -284,7 +286,8 @@ impl Search<'_> {
         let accuracy = self.request.accuracy;
         let implicit = [Method::Auto, Method::Arkode, Method::CvodeBdf];
         let mut ways = implicit.map(|method| (method, enough.inertia)).to_vec();
-        let lumped_is_enough = found.inertia.is_some_and(|error| error <= OF_LAW * accuracy);
+        let lumped_is_enough =
+            found.inertia.is_some_and(|error| error <= OF_LAW * found.left(accuracy));
         if lumped_is_enough || enough.inertia == Inertia::Lumped {
             ways.push((Method::CentralDifference, Inertia::Lumped));
         }
