@@ -183,8 +183,8 @@ fn it_stands_without_motions() -> Outcome {
     assert!(page.contains("No motion is shown") && page.contains("As written: given up after"));
     assert!(page.contains("default-src 'none'"));
     let text = "&lt;script&gt;alert(&quot;1&quot;)&lt;/script&gt;&lt;!--motions--&gt;/*data*/";
-    // title, heading, quantity, failure in words and in the table, and what was not tried
-    assert_eq!(page.matches(text).count(), 6, "{page}");
+    // title, heading, quantity, warning, failure in words and in the table, and what was not tried
+    assert_eq!(page.matches(text).count(), 7, "{page}");
     // all that the terminal says, line by line
     for line in advice.to_string().lines() {
         let line = line.trim_start_matches("- ").rsplit(": ").next().unwrap_or_default().trim();
