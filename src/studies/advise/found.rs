@@ -12,7 +12,7 @@ pub(super) struct Found {
     pub(super) written: Option<Solved>,
     /// The same with hardly any error of the integration.
     pub(super) tight: Option<Solved>,
-    /// Models on the mesh as it was written that something is learned from.
+    /// Models with hardly any error of the integration that something is learned from, most of them on the mesh as it was written.
     pub(super) models: Vec<Solved>,
     /// The richest model on meshes from coarse to fine; the last one is what all is compared with.
     pub(super) meshes: Vec<Solved>,
@@ -28,10 +28,8 @@ pub(super) struct Found {
     pub(super) terms: Vec<(Term, f64)>,
     /// What all that is left out changes on the finest mesh, with the measure of strain that is enough.
     pub(super) together: Option<f64>,
-    /// What is enough, by several methods and tolerances, ...
+    /// What is enough, by several methods and tolerances.
     pub(super) sweep: Vec<Solved>,
-    /// ... and with hardly any error of the integration.
-    pub(super) enough: Option<Solved>,
     /// By how much an equilibrium is off on the mesh as it was written.
     pub(super) mesh_estimate: Option<MeshEstimate>,
     /// Time (s) until which two tight runs agree, if that is before the end.
@@ -98,7 +96,7 @@ impl Found {
     pub(super) fn all(&self) -> impl Iterator<Item = &Solved> {
         let models = self.written.iter().chain(&self.tight).chain(&self.models);
         let meshes = self.meshes.iter().skip(1).chain(&self.finer);
-        models.chain(meshes).chain(&self.enough).chain(&self.sweep)
+        models.chain(meshes).chain(&self.sweep)
     }
 
     /// Takes the mesh as it was written, if even the finest is not fine enough for an `accuracy`.

@@ -53,7 +53,7 @@ impl Search<'_> {
         self.leave_out(&rich, found)?;
         let Some(enough) = self.enough(&rich, found) else { return Ok(()) };
         let enough = self.confirmed(enough, found)?;
-        found.enough = self.known_or_run(&enough, found)?;
+        self.known_or_run(&enough, found)?;
         if self.request.quantity.is_at_end() {
             self.rest(&enough, found)?;
         }
@@ -246,7 +246,6 @@ impl Search<'_> {
         if let Some(solved) = self.known_or_run(&poor, found)? {
             let change = solved.error(&truth);
             found.together = Some(change);
-            found.models.push(solved);
             if change <= (terms + law) * found.left(self.request.accuracy) {
                 return Ok(enough);
             }
@@ -254,13 +253,15 @@ impl Search<'_> {
         Ok(whole)
     }
 
-    /// A run that was made already, or makes it.
-    fn known_or_run(&mut self, choice: &Choice, found: &Found) -> Result<Option<Solved>, Stop> {
+    /// A run that was made already, or else is made and added to the models.
+    fn known_or_run(&mut self, choice: &Choice, found: &mut Found) -> Result<Option<Solved>, Stop> {
         let known = found.all().chain(&found.meshes).find(|solved| solved.choice == *choice);
-        match known.cloned() {
-            Some(known) => Ok(Some(known)),
-            None => self.run(choice),
+        if let Some(known) = known {
+            return Ok(Some(known.clone()));
         }
+        let solved = self.run(choice)?;
+        found.models.extend(solved.clone());
+        Ok(solved)
     }
 
     /// Tries the equilibrium in place of the motion, and estimates its error on the mesh as it was written.
@@ -295,8 +296,7 @@ impl Search<'_> {
         for (method, inertia) in ways {
             // what the inertia changes on this mesh
             if inertia != enough.inertia {
-                let own = self.known_or_run(&Choice { inertia, ..enough.clone() }, found)?;
-                found.models.extend(own);
+                self.known_or_run(&Choice { inertia, ..enough.clone() }, found)?;
             }
             for rtol in TOLERANCES {
                 let settings = Settings {
