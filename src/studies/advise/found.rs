@@ -182,6 +182,25 @@ mod tests {
     }
 
     #[test]
+    fn errors_that_cancel_are_not_right() {
+        let mut found = meshes(&[(true, 0.02), (true, 0.005), (true, 0.00125)]);
+        // a model that is off by as much as the coarse mesh, the other way: it has the value of the finest mesh
+        let [coarse, _, truth] = &found.meshes[..] else { unreachable!() };
+        let choice = Choice { without: vec![Term::Gravity], ..coarse.choice.clone() };
+        let lucky = Solved { choice, ..truth.clone() };
+        found.tight = Some(coarse.clone());
+        found.models.push(lucky.clone());
+        assert_eq!(lucky.error(found.truth().unwrap()), 0.0);
+        let parts = found.parts(&lucky).unwrap();
+        // the finest mesh is off by a third of the last distance
+        let expected = [0.01875, 0.01875 + 0.00375 / 3.0];
+        for (part, expected) in [parts.model, parts.mesh].into_iter().zip(expected) {
+            assert!((part - expected).abs() < 1e-12, "{parts:?}");
+        }
+        assert!(!found.is_right(&lucky, 0.038) && found.is_right(&lucky, 0.039));
+    }
+
+    #[test]
     fn a_mesh_that_no_other_confirms_is_taken_as_it_was_written() {
         let mut found = meshes(&[(false, 0.5), (false, 0.05), (true, 0.02)]);
         found.settle(0.04);
