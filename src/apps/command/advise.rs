@@ -15,6 +15,7 @@ use pliant::studies::{
 };
 use pliant::{Fraction, Sampling};
 
+use crate::engine::quoted;
 use crate::failure::{Failure, print};
 use crate::files::Directory;
 use crate::progress::spinner;
@@ -122,11 +123,6 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 
 /// The command that runs what is enough, as a shell takes it.
 fn command_of(scene: &SceneArguments, enough: &Candidate) -> String {
-    let plain = |c: char| c.is_ascii_alphanumeric() || "._-+=/".contains(c);
-    let quoted = |text: &str| match text.chars().all(plain) {
-        true => text.to_owned(),
-        false => format!("'{}'", text.replace('\'', r"'\''")),
-    };
     let command = if enough.choice.is_static { "static" } else { "run" };
     let path = quoted(&scene.path.to_string_lossy());
     let sets = scene.set.iter().chain(&enough.set);

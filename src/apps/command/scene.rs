@@ -1,11 +1,13 @@
 //! The scene file that a command is about.
 
-use std::fs;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
 use pliant::scene_file::override_of;
 use pliant::{Error, SceneFile};
+
+use crate::engine::absolute;
+use crate::failure::Failure;
 
 /// The scene file, and values that replace its own.
 #[derive(Args)]
@@ -45,26 +47,15 @@ impl SceneArguments {
 
     /// What has to be set in a copy of the file at `copy` so that it finds the mesh which the file names relative to itself; none
     /// if it names no file, or both are in one directory.
-    pub fn mesh_for(&self, copy: &Path) -> Result<Option<String>, Error> {
-        let text = self.text(&[])?;
-        let scene: Option<toml::Table> = toml::from_str(&text).ok();
+    pub fn mesh_for(&self, copy: &Path) -> Result<Option<String>, Failure> {
+        let scene: Option<toml::Table> = toml::from_str(&self.text(&[])?).ok();
         let mesh = scene.as_ref().and_then(|scene| scene.get("body")?.get("mesh")?.get("file"));
         let Some(file) = mesh.and_then(toml::Value::as_str) else { return Ok(None) };
-        let directory = |path: &Path| match path.parent() {
-            Some(parent) if parent != Path::new("") => parent.to_owned(),
-            _ => PathBuf::from("."),
-        };
-        let here = directory(&self.path);
-        let is_same = match [&here, &directory(copy)].map(fs::canonicalize) {
-            [Ok(here), Ok(there)] => here == there,
-            _ => false,
-        };
-        let path = here.join(file);
-        match fs::canonicalize(&path) {
-            Ok(path) if !is_same => {
-                override_of("body.mesh.file", &path.to_string_lossy().into()).map(Some)
-            }
-            _ => Ok(None),
+        let (own, copy) = (absolute(&self.path)?, absolute(copy)?);
+        if own.parent() == copy.parent() {
+            return Ok(None);
         }
+        let path = own.with_file_name(file);
+        Ok(Some(override_of("body.mesh.file", &path.to_string_lossy().into())?))
     }
 }

@@ -255,7 +255,7 @@ impl Search<'_> {
 
     /// A run that was made already, or else is made and added to the models.
     fn known_or_run(&mut self, choice: &Choice, found: &mut Found) -> Result<Option<Solved>, Stop> {
-        let known = found.all().chain(&found.meshes).find(|solved| solved.choice == *choice);
+        let known = found.all().chain(found.meshes.first()).find(|solved| solved.choice == *choice);
         if let Some(known) = known {
             return Ok(Some(known.clone()));
         }

@@ -29,12 +29,14 @@ pub(super) struct Outcome {
 }
 
 impl Outcome {
-    pub(super) fn new(run: String, seen: Option<Seen>, seconds: f64, unknowns: usize) -> Self {
-        Self { run, seen, seconds, unknowns, failure: None, warnings: Vec::new() }
+    /// One that has no name yet.
+    pub(super) fn new(seen: Option<Seen>, seconds: f64, unknowns: usize) -> Self {
+        let (run, warnings) = (String::new(), Vec::new());
+        Self { run, seen, seconds, unknowns, failure: None, warnings }
     }
 
-    pub(super) fn failed(run: String, failure: String) -> Self {
-        Self { failure: Some(failure), ..Self::new(run, None, 0.0, 0) }
+    pub(super) fn failed(failure: String) -> Self {
+        Self { failure: Some(failure), ..Self::new(None, 0.0, 0) }
     }
 }
 

@@ -152,7 +152,10 @@ impl<'a> Search<'a> {
                 known.clone()
             }
             None => {
-                let outcome = self.attempt(choice, name);
+                let solved = self.solve(choice);
+                let outcome =
+                    solved.unwrap_or_else(|error| Outcome::failed(reason(error).to_string()));
+                let outcome = Outcome { run: name, ..outcome };
                 match self.cut.filter(|_| outcome.failure.is_some()) {
                     None => self.kept.keep(&outcome).map_err(Stop::Trouble)?,
                     Some(Cut::Interrupted) => return Err(Stop::Interrupted),
@@ -174,18 +177,8 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// The result of a run.
-    fn attempt(&mut self, choice: &Choice, name: String) -> Outcome {
-        match self.solve(choice) {
-            Ok(outcome) => Outcome { run: name, ..outcome },
-            Err(error) => Outcome::failed(name, reason(error).to_string()),
-        }
-    }
-
-    /// What comes of a run that has no name yet.
+    /// What comes of a run.
     fn solve(&mut self, choice: &Choice) -> Result<Outcome, Error> {
-        let outcome =
-            |seen, seconds, unknowns| Outcome::new(String::new(), seen, seconds, unknowns);
         let scene = choice.scene(&self.scene)?;
         let what = format!("{choice}: {} nodes", scene.body().mesh().node_count());
         if choice.is_static {
@@ -195,7 +188,8 @@ impl<'a> Search<'a> {
             }
             let clock = Instant::now();
             let seen = self.request.quantity.seen_at_rest(&self.at_rest(&scene)?)?;
-            return Ok(outcome(Some(seen), clock.elapsed().as_secs_f64(), scene.body().dofs()));
+            let seconds = clock.elapsed().as_secs_f64();
+            return Ok(Outcome::new(Some(seen), seconds, scene.body().dofs()));
         }
         let nodes = (0..self.nodes).collect();
         let probe = Probe::new(&scene, self.request.quantity.clone(), nodes);
@@ -209,7 +203,7 @@ impl<'a> Search<'a> {
             seconds = seconds.min(again.report().wall_seconds);
         }
         let (seen, warnings) = (probe.seen(&first), first.report().warnings());
-        Ok(Outcome { warnings, ..outcome(Some(seen), seconds, first.report().states) })
+        Ok(Outcome { warnings, ..Outcome::new(Some(seen), seconds, first.report().states) })
     }
 
     /// The equilibrium in which a scene comes to rest, if it ever does.
@@ -245,11 +239,11 @@ impl<'a> Search<'a> {
     /// and how time has grown up to it.
     pub(super) fn affords(&self, unknowns: usize, known: &[Solved]) -> bool {
         let Some(last) = known.last() else { return true };
-        let ratio = |a: f64, b: f64| (b / a).ln();
+        let rise = |from: f64, to: f64| (to / from).ln();
         let grown = match known {
             [.., before, _] if before.seconds > SHORT && before.unknowns < last.unknowns => {
-                let times = ratio(before.seconds, last.seconds);
-                times / ratio(before.unknowns as f64, last.unknowns as f64)
+                let of_time = rise(before.seconds, last.seconds);
+                of_time / rise(before.unknowns as f64, last.unknowns as f64)
             }
             _ => GROWTH,
         };
