@@ -17,27 +17,30 @@ demo: setup ## The jumping square and a scene file by the command: tables here, 
 	@echo "The pictures are in $(CURDIR)/out:"
 	@find out -name '*.svg' -o -name '*.html' | sort | sed 's/^/  /'
 
+# Kernels for AVX-512 are compiled where they can run.
+AVX512 := $(shell grep -qsw avx512f /proc/cpuinfo && echo ,pliant/avx512)
+FEATURES := --no-default-features --features pliant/cli,pliant/play$(AVX512)
 # The library and the Python module: crates that both need are compiled once, with the features of both.
-BOTH := -p pliant -p pliant-python --features pliant/play
+BOTH := -p pliant -p pliant-python $(FEATURES)
 
 # An extension module finds Python's functions in the program that loads it.
 export PYO3_BUILD_EXTENSION_MODULE := 1
 
 # Unit tests are short: to optimize them, which compiles the library once more, would take longer than to run them as they are.
-# Examples are checked by clippy; the two that are named have tests of their own. What the tests run beside themselves, a browser
+# What clippy reads is not run, and not optimized. Examples are checked by clippy; the two that are named have tests of their own. What the tests run beside themselves, a browser
 # and Python, is fetched while clippy computes. Tests run in two halves at once: the last test of a program leaves no core idle.
 test: ## Every check: format, lints, tests, documentation and its examples
 	@scripts/setup.sh
 	cargo fmt --all --check
 	{ scripts/setup.sh chromium python3-venv && scripts/python.sh environment; } & \
-		cargo clippy --workspace --all-targets --features pliant/play -- -D warnings && wait $$!
-	cargo test -p pliant --features play --lib --config profile.dev.package.pliant.opt-level=0
+		cargo clippy --workspace --all-targets $(FEATURES) --config profile.dev.opt-level=0 -- -D warnings && wait $$!
+	cargo test -p pliant $(FEATURES) --lib --config profile.dev.package.pliant.opt-level=0
 	cargo test $(BOTH) --bins --test '*' --example gallery --example integrators --no-run
 	cargo test $(BOTH) --test 's*' & \
 		cargo test $(BOTH) --bins --test '[!s]*' --example gallery --example integrators && wait $$!
 	cargo test $(BOTH) --doc
 	RUSTDOCFLAGS=-Dwarnings cargo doc $(BOTH) --no-deps
-	scripts/python.sh test
+	scripts/python.sh test $(BOTH)
 
 python: ## The wheel of the Python module, made, installed into an environment of its own, and tested there
 	@scripts/setup.sh python3-venv

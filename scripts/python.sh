@@ -1,5 +1,5 @@
 #!/bin/sh
-# The Python module. `test`: the extension as the other tests have built it, tried beside the source, in an environment that
+# The Python module. `test`: the extension as the other tests have built it, with the packages and features that follow, tried beside the source, in an environment that
 # `environment` makes beforehand.
 # `wheel`: the wheel with all libraries, built, installed into a new environment, and tried there.
 set -eu
@@ -24,7 +24,8 @@ environment)
     ;;
 test)
     environment "$target/python-test" $packages
-    cargo build -p pliant -p pliant-python --features pliant/play --lib
+    shift
+    cargo build "$@" --lib
     module=python/pliant/_pliant.abi3.so
     cp "$target/debug/lib_pliant.so" "$module"
     trap 'rm -f "$module"' EXIT

@@ -12,10 +12,13 @@ _MESHIO = {
     "segments": "line",
     "triangles": "triangle",
     "triangles6": "triangle6",
+    "triangles7": "triangle7",
     "quadrilaterals": "quad",
     "quadrilaterals9": "quad9",
     "tetrahedra": "tetra",
     "tetrahedra10": "tetra10",
+    # meshio has none of 15 nodes: see `to_meshio`
+    "tetrahedra15": None,
     "hexahedra": "hexahedron",
     "hexahedra20": "hexahedron20",
     "hexahedra27": "hexahedron27",
@@ -32,8 +35,8 @@ class Mesh:
     cells : array [cell, node]
         Nodes of the cells, counted from 0, in the order of VTK.
     kind : str
-        What the cells are: ``segments``, ``triangles``, ``triangles6``, ``quadrilaterals``, ``quadrilaterals9``,
-        ``tetrahedra``, ``tetrahedra10``, ``hexahedra``, ``hexahedra20`` or ``hexahedra27``.
+        What the cells are: ``segments``, ``triangles``, ``triangles6``, ``triangles7``, ``quadrilaterals``,
+        ``quadrilaterals9``, ``tetrahedra``, ``tetrahedra10``, ``tetrahedra15``, ``hexahedra``, ``hexahedra20`` or ``hexahedra27``.
     sets : dict, optional
         Nodes (from 0) by the names of node sets.
     groups : dict, optional
@@ -71,7 +74,7 @@ class Mesh:
 
         Coordinates along axes in which nothing extends are left out.
         """
-        known = {name: word for word, name in _MESHIO.items()}
+        known = {name: word for word, name in _MESHIO.items() if name}
         blocks = [block for block in mesh.cells if block.type in known]
         if not blocks:
             raise ValueError(f"cells are none of {', '.join(known)}: {[block.type for block in mesh.cells]}")
@@ -102,12 +105,15 @@ class Mesh:
         return cls(nodes, number[cells], known[kind], sets, groups)
 
     def to_meshio(self):
-        """As a mesh of meshio."""
+        """As a mesh of meshio; of tetrahedra of 15 nodes the first 10."""
         import meshio
 
         nodes = np.zeros((len(self.nodes), 3))
         nodes[:, : self.nodes.shape[1]] = self.nodes
-        return meshio.Mesh(nodes, [(_MESHIO[self.kind], self.cells)], point_sets=self.sets)
+        cells = (_MESHIO[self.kind], self.cells)
+        if self.kind == "tetrahedra15":
+            cells = ("tetra10", self.cells[:, :10])
+        return meshio.Mesh(nodes, [cells], point_sets=self.sets)
 
     def to_dict(self):
         """As `mesh` of a scene."""

@@ -60,10 +60,11 @@ def body(
     plane
         what is 0 across the plane. Default: strain.
     dilatation
-        where the body resists a change of its volume. Default: points, or what goes with `cells = "auto"`. At each
-        point of a cell, a nearly incompressible body locks. `linear`: projected onto linear functions of each cell,
-        accurate; for `hexahedra27` and `rectangles9`, and for `hexahedra20`, whose pressures are not reliable then.
-        `mean`: in the mean over each cell, for `rectangles`, `hexahedra`, `triangles6` and `tetrahedra10`.
+        where the body resists a change of its volume. Default: points, or what goes with `cells = "auto"` and
+        `bubbles`. At each point of a cell, a nearly incompressible body locks. `linear`: projected onto linear
+        functions of each cell, accurate; for `hexahedra27` and `rectangles9`, for triangles and tetrahedra with
+        `bubbles`, and for `hexahedra20`, whose pressures are not reliable then. `mean`: in the mean over each cell,
+        for `rectangles`, `hexahedra`, `triangles6` and `tetrahedra10`.
     region
         parts with a material of their own. Default: none.
     """
@@ -88,6 +89,8 @@ def mesh_bar(
     origin: Vector | None = None,
     quadratic: bool | None = None,
     halved: int | None = None,
+    halved_in: dict | Sequence[dict] | None = None,
+    bubbles: bool | None = None,
 ) -> dict:
     r"""Mesh of the kind "bar": segments along x.
 
@@ -106,6 +109,12 @@ def mesh_bar(
         were, and stiffness and damping of obstacles per node are shared out.
     halved
         how often each cell is divided at the middles of its edges. Default: 0. After `quadratic`, and like it.
+    halved_in
+        where triangles and tetrahedra are divided further. Default: nowhere. After `halved`, and like it.
+    bubbles
+        whether triangles and tetrahedra get mid nodes, and one in the middle of each cell and face. Default: false.
+        With `dilatation = "linear"`, which goes with them, they are the cells for nearly incompressible bodies of any
+        shape: `triangles7` and `tetrahedra15`. After `halved_in`, and like it.
     """
     return _table(
         kind="bar",
@@ -114,6 +123,8 @@ def mesh_bar(
         origin=origin,
         quadratic=quadratic,
         halved=halved,
+        halved_in=halved_in,
+        bubbles=bubbles,
     )
 
 
@@ -125,6 +136,8 @@ def mesh_rectangle(
     origin: Vector | None = None,
     quadratic: bool | None = None,
     halved: int | None = None,
+    halved_in: dict | Sequence[dict] | None = None,
+    bubbles: bool | None = None,
     grading: Sequence[float] | None = None,
 ) -> dict:
     r"""Mesh of the kind "rectangle": a grid along x and y.
@@ -148,6 +161,12 @@ def mesh_rectangle(
         were, and stiffness and damping of obstacles per node are shared out.
     halved
         how often each cell is divided at the middles of its edges. Default: 0. After `quadratic`, and like it.
+    halved_in
+        where triangles and tetrahedra are divided further. Default: nowhere. After `halved`, and like it.
+    bubbles
+        whether triangles and tetrahedra get mid nodes, and one in the middle of each cell and face. Default: false.
+        With `dilatation = "linear"`, which goes with them, they are the cells for nearly incompressible bodies of any
+        shape: `triangles7` and `tetrahedra15`. After `halved_in`, and like it.
     grading
         the length of the last cell along each axis by that of the first one (no unit). Default: 1 along each axis:
         equal cells. Within 1e-4 and 1e4; each cell is longer than the one before it by the same factor. Put the fine
@@ -161,6 +180,8 @@ def mesh_rectangle(
         origin=origin,
         quadratic=quadratic,
         halved=halved,
+        halved_in=halved_in,
+        bubbles=bubbles,
         grading=grading,
     )
 
@@ -174,6 +195,8 @@ def mesh_ring(
     origin: Vector | None = None,
     quadratic: bool | None = None,
     halved: int | None = None,
+    halved_in: dict | Sequence[dict] | None = None,
+    bubbles: bool | None = None,
 ) -> dict:
     r"""Mesh of the kind "ring": a grid around a circle.
 
@@ -198,6 +221,12 @@ def mesh_ring(
         were, and stiffness and damping of obstacles per node are shared out.
     halved
         how often each cell is divided at the middles of its edges. Default: 0. After `quadratic`, and like it.
+    halved_in
+        where triangles and tetrahedra are divided further. Default: nowhere. After `halved`, and like it.
+    bubbles
+        whether triangles and tetrahedra get mid nodes, and one in the middle of each cell and face. Default: false.
+        With `dilatation = "linear"`, which goes with them, they are the cells for nearly incompressible bodies of any
+        shape: `triangles7` and `tetrahedra15`. After `halved_in`, and like it.
     """
     return _table(
         kind="ring",
@@ -208,6 +237,8 @@ def mesh_ring(
         origin=origin,
         quadratic=quadratic,
         halved=halved,
+        halved_in=halved_in,
+        bubbles=bubbles,
     )
 
 
@@ -220,6 +251,8 @@ def mesh_half_ring(
     origin: Vector | None = None,
     quadratic: bool | None = None,
     halved: int | None = None,
+    halved_in: dict | Sequence[dict] | None = None,
+    bubbles: bool | None = None,
 ) -> dict:
     r"""Mesh of the kind "half-ring": its upper half.
 
@@ -244,6 +277,12 @@ def mesh_half_ring(
         were, and stiffness and damping of obstacles per node are shared out.
     halved
         how often each cell is divided at the middles of its edges. Default: 0. After `quadratic`, and like it.
+    halved_in
+        where triangles and tetrahedra are divided further. Default: nowhere. After `halved`, and like it.
+    bubbles
+        whether triangles and tetrahedra get mid nodes, and one in the middle of each cell and face. Default: false.
+        With `dilatation = "linear"`, which goes with them, they are the cells for nearly incompressible bodies of any
+        shape: `triangles7` and `tetrahedra15`. After `halved_in`, and like it.
     """
     return _table(
         kind="half-ring",
@@ -254,6 +293,8 @@ def mesh_half_ring(
         origin=origin,
         quadratic=quadratic,
         halved=halved,
+        halved_in=halved_in,
+        bubbles=bubbles,
     )
 
 
@@ -265,6 +306,8 @@ def mesh_cuboid(
     origin: Vector | None = None,
     quadratic: bool | None = None,
     halved: int | None = None,
+    halved_in: dict | Sequence[dict] | None = None,
+    bubbles: bool | None = None,
     grading: Sequence[float] | None = None,
 ) -> dict:
     r"""Mesh of the kind "cuboid": a grid along x, y and z.
@@ -287,6 +330,12 @@ def mesh_cuboid(
         were, and stiffness and damping of obstacles per node are shared out.
     halved
         how often each cell is divided at the middles of its edges. Default: 0. After `quadratic`, and like it.
+    halved_in
+        where triangles and tetrahedra are divided further. Default: nowhere. After `halved`, and like it.
+    bubbles
+        whether triangles and tetrahedra get mid nodes, and one in the middle of each cell and face. Default: false.
+        With `dilatation = "linear"`, which goes with them, they are the cells for nearly incompressible bodies of any
+        shape: `triangles7` and `tetrahedra15`. After `halved_in`, and like it.
     grading
         the length of the last cell along each axis by that of the first one (no unit). Default: 1 along each axis:
         equal cells. Within 1e-4 and 1e4; each cell is longer than the one before it by the same factor. Put the fine
@@ -300,6 +349,8 @@ def mesh_cuboid(
         origin=origin,
         quadratic=quadratic,
         halved=halved,
+        halved_in=halved_in,
+        bubbles=bubbles,
         grading=grading,
     )
 
@@ -310,6 +361,8 @@ def mesh_gmsh(
     origin: Vector | None = None,
     quadratic: bool | None = None,
     halved: int | None = None,
+    halved_in: dict | Sequence[dict] | None = None,
+    bubbles: bool | None = None,
 ) -> dict:
     r"""Mesh of the kind "gmsh": a file of Gmsh; coordinates are metres.
 
@@ -326,6 +379,12 @@ def mesh_gmsh(
         were, and stiffness and damping of obstacles per node are shared out.
     halved
         how often each cell is divided at the middles of its edges. Default: 0. After `quadratic`, and like it.
+    halved_in
+        where triangles and tetrahedra are divided further. Default: nowhere. After `halved`, and like it.
+    bubbles
+        whether triangles and tetrahedra get mid nodes, and one in the middle of each cell and face. Default: false.
+        With `dilatation = "linear"`, which goes with them, they are the cells for nearly incompressible bodies of any
+        shape: `triangles7` and `tetrahedra15`. After `halved_in`, and like it.
     """
     return _table(
         kind="gmsh",
@@ -333,17 +392,21 @@ def mesh_gmsh(
         origin=origin,
         quadratic=quadratic,
         halved=halved,
+        halved_in=halved_in,
+        bubbles=bubbles,
     )
 
 
 def mesh_listed(
     *,
     positions: Sequence[Vector],
-    cells: Literal["segments", "triangles", "triangles6", "quadrilaterals", "quadrilaterals9", "tetrahedra", "tetrahedra10", "hexahedra", "hexahedra20", "hexahedra27"],
+    cells: Literal["segments", "triangles", "triangles6", "triangles7", "quadrilaterals", "quadrilaterals9", "tetrahedra", "tetrahedra10", "tetrahedra15", "hexahedra", "hexahedra20", "hexahedra27"],
     connectivity: Sequence[Sequence[int]],
     origin: Vector | None = None,
     quadratic: bool | None = None,
     halved: int | None = None,
+    halved_in: dict | Sequence[dict] | None = None,
+    bubbles: bool | None = None,
     sets: dict | Sequence[dict] | None = None,
     groups: dict | Sequence[dict] | None = None,
 ) -> dict:
@@ -367,6 +430,12 @@ def mesh_listed(
         were, and stiffness and damping of obstacles per node are shared out.
     halved
         how often each cell is divided at the middles of its edges. Default: 0. After `quadratic`, and like it.
+    halved_in
+        where triangles and tetrahedra are divided further. Default: nowhere. After `halved`, and like it.
+    bubbles
+        whether triangles and tetrahedra get mid nodes, and one in the middle of each cell and face. Default: false.
+        With `dilatation = "linear"`, which goes with them, they are the cells for nearly incompressible bodies of any
+        shape: `triangles7` and `tetrahedra15`. After `halved_in`, and like it.
     sets
         sets of nodes with names. Default: none.
     groups
@@ -380,6 +449,8 @@ def mesh_listed(
         origin=origin,
         quadratic=quadratic,
         halved=halved,
+        halved_in=halved_in,
+        bubbles=bubbles,
         sets=sets,
         groups=groups,
     )
@@ -421,6 +492,32 @@ def groups(
     """
     return _table(
         name=name,
+        cells=cells,
+    )
+
+
+def halved_in(
+    *,
+    nodes: Nodes | None = None,
+    times: int | None = None,
+    cells: Sequence[int] | None = None,
+) -> dict:
+    r"""A place where cells are divided further, as sharp corners and clamps need it: those that have one of the nodes,
+    and cells around them as far as it takes for no node to hang on an edge.
+
+    Parameters
+    ----------
+    nodes
+        nodes of the mesh that there is by then. Default: none.
+    times
+        how often cells that have one of the nodes are divided. Default: 1. Goes with `nodes`.
+    cells
+        numbers of cells, from 1, of the mesh that there is by then. Default: none. `pliant static --refine` writes
+        such lists.
+    """
+    return _table(
+        nodes=nodes,
+        times=times,
         cells=cells,
     )
 
@@ -2287,6 +2384,7 @@ __all__ = [
     "fibres",
     "friction_coefficient",
     "groups",
+    "halved_in",
     "hold",
     "hold_combination",
     "initial",

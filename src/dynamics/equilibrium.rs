@@ -100,10 +100,27 @@ impl MeshEstimate {
 
     /// Whether the remainder is no larger than the correction, apart from round-off.
     ///
-    /// If it is larger, the correction may be far off.
+    /// If it is larger, the correction may be far off, and is not told in words.
     pub fn is_reliable(&self) -> bool {
         let round_off = 1e-9 * self.value.abs().max(self.change.abs());
         self.remainder.abs() <= self.correction.abs().max(round_off)
+    }
+
+    /// The cells (from 0) that contribute most, with half of all contributions together, ascending: what to divide next, by
+    /// [`Scene::halved_in`](crate::Scene::halved_in) (W. Dörfler, SIAM J. Numer. Anal. 33 (1996) 1106-1124).
+    pub fn worst_cells(&self) -> Vec<usize> {
+        let size = |cell: &usize| self.cells[*cell].abs();
+        let mut order: Vec<usize> = (0..self.cells.len()).collect();
+        order.sort_by(|a, b| size(b).total_cmp(&size(a)));
+        let mut left = 0.5 * order.iter().map(size).sum::<f64>();
+        let is_needed = |cell: &usize| {
+            let is_needed = left > 0.0;
+            left -= size(cell);
+            is_needed
+        };
+        let mut worst: Vec<usize> = order.into_iter().take_while(is_needed).collect();
+        worst.sort_unstable();
+        worst
     }
 
     /// The size of the correction relative to the change; infinite if the quantity has not changed.
@@ -116,23 +133,20 @@ impl fmt::Display for MeshEstimate {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { quantity, unit, value, correction, unknowns, .. } = self;
         let [shown, off, better] = [*value, correction.abs(), self.corrected()].map(told);
-        write!(f, "{quantity} is {shown} {unit}, off by about {off} {unit}")?;
+        write!(f, "{quantity} is {shown} {unit}")?;
+        if !self.is_reliable() {
+            return f.write_str(
+                "\nWARNING: by how much the mesh makes it off cannot be told, as dual-weighted residuals leave out more than they \
+                 tell: the mesh is so coarse that the body would move far on a better one; compare with finer cells (`halved = 1`, \
+                 `--refine`), or take quadratic ones in place of linear ones",
+            );
+        }
+        write!(f, ", off by about {off} {unit}")?;
         if self.change != 0.0 {
             let part = told(100.0 * self.relative());
             write!(f, " ({part} % of its change) because of the mesh")?;
         }
         write!(f, ": {better} {unit}, by dual-weighted residuals with {unknowns} unknowns")?;
-        if !self.is_reliable() {
-            let left = match self.remainder.is_finite() {
-                true => format!("is {} {unit}", told(self.remainder.abs())),
-                false => "cannot be told".into(),
-            };
-            write!(
-                f,
-                "\nWARNING: the estimate may be far off, as what it leaves out {left}: the mesh is so coarse that the body \
-                 would move far on a better one; take finer cells, or quadratic ones in place of linear ones"
-            )?;
-        }
         Ok(())
     }
 }

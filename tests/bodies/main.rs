@@ -1,5 +1,6 @@
 //! Meshes, the matrices and forces of bodies, and their equilibria.
 
+mod bisection;
 mod cells;
 mod equations;
 mod finer;

@@ -69,3 +69,47 @@ fn advice_is_written_into_a_scene_that_runs() {
     assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));
     assert!(stderr(&output).contains("is there already"), "{}", stderr(&output));
 }
+
+/// A clamp divides less than its cells everywhere, and comes as near to what many cells give; the file that is written gives the same.
+#[test]
+fn cells_are_divided_where_the_estimate_says() {
+    let place = Place::new();
+    let silicone = |cells: &str| {
+        format!(
+            "[body]\nmesh = {{ kind = \"rectangle\", size = [0.1, 0.02], nodes = {cells}, cells = \"triangles6\", bubbles = true }}\n\
+             thickness = 0.01\nstrain = \"cauchy\"\n\
+             material = {{ density = 1000.0, young = 1e5, poisson = 0.49, viscosity = 1.0 }}\n\
+             [[sensor]]\nname = \"tip\"\nkind = \"displacement\"\nnodes = \"right\"\ncomponent = \"y\"\n\
+             [[phase]]\nuntil = 1.0\nhold = [{{ nodes = \"left\" }}]\nload = [{{ nodes = \"right\", total = [0.0, -0.05] }}]\n"
+        )
+    };
+    let tip = |scene: &str, arguments: &[&str]| -> (f64, String) {
+        let asked = ["static", scene, "--out", "found", "--formats", "csv"];
+        let output = place.run(&[&asked[..], arguments].concat());
+        assert_eq!((output.status.code(), stderr(&output)), (Some(0), String::new()));
+        let (header, rows) = place.table("found");
+        let column = header.iter().position(|name| name.starts_with("tip")).unwrap();
+        (rows[0][column], stdout(&output))
+    };
+    let fine = place.scene(&silicone("[161, 33]"));
+    let (exact, _) = tip(fine, &[]);
+    let scene = place.scene(&silicone("[11, 3]"));
+    let (coarse, _) = tip(scene, &[]);
+    let refine = ["--quantity", "tip", "--refine", "400"];
+    let (divided, said) = tip(scene, &refine);
+    println!("{said}");
+    says(&said, &["145 nodes: tip is", "% of its change from the one before", "refined.toml"]);
+    let (again, _) = tip("found/refined.toml", &["-q"]);
+    assert_eq!(divided, again);
+    let off = [coarse, divided].map(|found| found / exact - 1.0);
+    println!("{off:?}");
+    assert!(off[1].abs() < 0.25 * off[0].abs(), "{off:?}");
+
+    // what cannot be divided is told before anything is written
+    let grid = silicone("[11, 3]").replace("triangles6\", bubbles = true", "rectangles9\"");
+    let output =
+        place.run(&[&["static", place.scene(&grid), "--out", "none"], &refine[..]].concat());
+    assert_eq!(output.status.code(), Some(2));
+    says(&stderr(&output), &["a grid that is graded"]);
+    assert!(!place.path("none").exists());
+}

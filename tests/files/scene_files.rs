@@ -4,7 +4,9 @@
 use std::path::{Path, PathBuf};
 
 use pliant::samples::{self, BeamJump, RingRoll, SquareJump};
-use pliant::{Cells, Error, Mesh, Scene, SceneFile, Statics, Strain, Trajectory, Viscosity};
+use pliant::{
+    Cells, Dilatation, Error, Mesh, Scene, SceneFile, Statics, Strain, Trajectory, Viscosity,
+};
 
 fn path(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join(name)
@@ -187,4 +189,47 @@ fn all_scenes_are_run() {
         let name = file.file_stem().unwrap().to_str().unwrap();
         assert!(MOTIONS.contains(&name) || other.contains(&name), "{name}");
     }
+}
+
+/// What a file says of finer cells is what programs do with a mesh; a linear dilatation goes with bubbles.
+#[test]
+fn finer_cells() {
+    let file = |mesh: &str, body: &str| {
+        let text = format!(
+            "[body]\nmesh = {{ kind = \"rectangle\", size = [0.1, 0.02], nodes = [6, 3], {mesh} }}\nthickness = 0.01\n{body}\n\
+             material = {{ density = 1e3, young = 1e5, poisson = 0.49, viscosity = 1.0 }}\n\
+             [[phase]]\nuntil = 0.1\nhold = [{{ nodes = \"left\" }}]\n"
+        );
+        SceneFile::parse(&text, Path::new("finer.toml"))
+    };
+    let parse = |mesh: &str, body: &str| file(mesh, body).unwrap().scene;
+    let quadratic = Mesh::rectangle([0.1, 0.02], [6, 3], Cells::Triangles6).unwrap();
+    let at = |mesh: &Mesh| mesh.cells_at("left").unwrap();
+    let divided = quadratic.halved_in(&at(&quadratic)).unwrap();
+    let divided = divided.halved_in(&at(&divided)).unwrap();
+    let divided = divided.with_bubbles().unwrap();
+    let cells =
+        "cells = \"triangles6\", bubbles = true, halved_in = [{ nodes = \"left\", times = 2 }]";
+    let scene = parse(cells, "");
+    assert_eq!(scene.body().mesh().positions(), divided.positions());
+    assert_eq!(scene.body().mesh().sets(), divided.sets());
+    let bubbles = "cells = \"triangles6\", bubbles = true";
+    for (mesh, body, dilatation) in [
+        (bubbles, "", Dilatation::Linear),
+        (bubbles, "dilatation = \"points\"", Dilatation::AtPoints),
+        (bubbles, "dilatation = \"mean\"", Dilatation::Mean),
+        (bubbles, "plane = \"stress\"", Dilatation::AtPoints),
+        ("cells = \"rectangles\", bubbles = true", "", Dilatation::Linear),
+        ("cells = \"triangles\", quadratic = true", "dilatation = \"mean\"", Dilatation::Mean),
+    ] {
+        assert_eq!(parse(mesh, body).body().dilatation(), dilatation, "{mesh}, {body}");
+    }
+    let message = |mesh: &str, body: &str| file(mesh, body).unwrap_err().to_string();
+    let locks = message("cells = \"triangles\", quadratic = true", "dilatation = \"linear\"");
+    assert!(locks.contains("give them bubbles"), "{locks}");
+    let graded = message("cells = \"rectangles\", halved_in = { nodes = \"left\", times = 1 }", "");
+    assert!(
+        graded.contains("body.mesh.halved_in") && graded.contains("a grid that is graded"),
+        "{graded}"
+    );
 }

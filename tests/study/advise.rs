@@ -33,7 +33,7 @@ fn a_bar_needs_segments_and_no_green_strain() -> Outcome {
     // what all are compared with
     let truth = advice.truth.as_ref().unwrap();
     let nodes = |halved: usize| 4 * (1 << halved) + 1;
-    assert!(truth.choice.halved >= 2 && !truth.choice.quadratic);
+    assert!(truth.choice.halved >= 2 && truth.choice.richer.is_none());
     for candidate in &advice.candidates {
         let choice = &candidate.choice;
         let is_plain = choice.without.is_empty() && choice.inertia == Inertia::Consistent;
@@ -131,7 +131,7 @@ fn a_search_goes_on_where_it_was_ended() -> Outcome {
     assert_eq!(rest.known, 3);
     let whole = advise(&scene, 0.05)?;
     let errors = |advice: &Advice| {
-        let tight = advice.candidates.iter().filter(|candidate| !candidate.choice.quadratic);
+        let tight = advice.candidates.iter().filter(|candidate| candidate.choice.richer.is_none());
         tight.map(|candidate| candidate.error.map(f64::to_bits)).collect::<Vec<_>>()
     };
     assert_eq!(errors(&rest)[..4], errors(&whole)[..4]);
@@ -183,7 +183,7 @@ fn what_has_come_to_rest_needs_statics_alone() -> Outcome {
     let same = advice.candidates.iter().find(|candidate| {
         let choice = &candidate.choice;
         let is_mesh =
-            (choice.quadratic, choice.halved) == (enough.choice.quadratic, enough.choice.halved);
+            (choice.richer, choice.halved) == (enough.choice.richer, enough.choice.halved);
         is_mesh && !choice.is_static && choice.settings.rtol < 1e-3
     });
     let same = same.unwrap().error.unwrap();

@@ -15,7 +15,7 @@ const HOSTILE: &str = "<script>alert(\"1\")</script><!--motions-->/*data*/";
 fn candidate(rtol: f64, seconds: f64, error: Option<f64>) -> Candidate {
     let choice = Choice {
         strain: Strain::Cauchy,
-        quadratic: false,
+        richer: None,
         halved: 0,
         inertia: Inertia::Consistent,
         without: Vec::new(),

@@ -78,9 +78,12 @@ const CHECKPOINT: &str = "checkpoint.json";
 const TABLE: &str = "trajectory.csv";
 /// File from which another scene can start.
 const STATE: &str = "state.json";
+/// The scene file with cells divided where it helps.
+pub const REFINED: &str = "refined.toml";
 /// Names of results, in addition to the frames of VTK.
-const RESULTS: [&str; 9] = [
+const RESULTS: [&str; 10] = [
     TABLE,
+    REFINED,
     CHECKPOINT,
     "report.json",
     STATE,
@@ -209,10 +212,15 @@ impl Directory {
         write: impl FnOnce(&Path) -> Result<(), Error>,
     ) -> Result<(), Failure> {
         write(&self.path.join(name))?;
+        self.note(name);
+        Ok(())
+    }
+
+    /// Notes the name of a file that was written.
+    pub fn note(&mut self, name: &'static str) {
         if !self.written.contains(&name) {
             self.written.push(name);
         }
-        Ok(())
     }
 
     /// Writes the requested pictures and files of a motion.

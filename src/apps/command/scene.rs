@@ -24,12 +24,29 @@ pub struct SceneArguments {
 impl SceneArguments {
     /// Reads the file.
     pub fn read(&self) -> Result<SceneFile, Error> {
-        self.read_too(&self.path)
+        self.read_with(&[])
+    }
+
+    /// Reads the file with these values, and then `others`, in place of its own.
+    pub fn read_with(&self, others: &[String]) -> Result<SceneFile, Error> {
+        SceneFile::read_with(&self.path, &[&self.set[..], others].concat())
     }
 
     /// Reads another file, with the same values in place of its own.
     pub fn read_too(&self, path: &Path) -> Result<SceneFile, Error> {
         SceneFile::read_with(path, &self.set)
+    }
+
+    /// Where the file divides cells: `body.mesh.halved_in`.
+    pub fn halved_in(&self) -> Result<Vec<toml::Value>, Error> {
+        let scene: Option<toml::Table> = toml::from_str(&self.text(&[])?).ok();
+        let places =
+            scene.as_ref().and_then(|scene| scene.get("body")?.get("mesh")?.get("halved_in"));
+        Ok(match places {
+            None => Vec::new(),
+            Some(toml::Value::Array(places)) => places.clone(),
+            Some(place) => vec![place.clone()],
+        })
     }
 
     /// A title that names the values that differ from the file.

@@ -1,5 +1,7 @@
 //! `pliant static`
 
+use std::fs;
+
 use clap::Args;
 use pliant::output::write_static_report;
 use pliant::scene_file::Format;
@@ -7,7 +9,7 @@ use pliant::studies::work_precision::Quantity;
 use pliant::{Error, MeshEstimate, OutputRequest, SceneFile};
 
 use crate::failure::{Failure, print};
-use crate::files::OutputArguments;
+use crate::files::{OutputArguments, REFINED};
 use crate::scene::SceneArguments;
 
 /// Find the equilibrium of a phase of a scene
@@ -33,24 +35,72 @@ pub struct Arguments {
     /// com.x
     #[arg(long, value_name = "QUANTITY")]
     quantity: Option<String>,
+    /// Divide triangles and tetrahedra where that estimate says that it helps, until there are so many nodes; writes refined.toml, the
+    /// scene file with that mesh
+    #[arg(long, value_name = "NODES", requires = "quantity")]
+    refine: Option<usize>,
     #[command(flatten)]
     output: OutputArguments,
 }
 
+impl Arguments {
+    /// The scene file with the options of the command line, and these values in place of its own.
+    fn read(&self, set: &[String]) -> Result<SceneFile, Failure> {
+        let mut file = self.scene.read_with(set)?;
+        self.output.apply(&mut file)?;
+        let options = &mut file.statics.options;
+        options.load_steps = self.load_steps.unwrap_or(options.load_steps);
+        options.arc_steps = self.arc_steps.unwrap_or(options.arc_steps);
+        file.statics.phase = self.phase.clone().or(file.statics.phase);
+        Ok(file)
+    }
+
+    fn quantity(&self, file: &SceneFile) -> Result<Option<Quantity>, Error> {
+        let name = self.quantity.as_deref();
+        let quantity = name.map(|name| Quantity::named(name, &file.scene, &file.output.sensors));
+        Ok(quantity.transpose()?)
+    }
+
+    /// What has to be set for a mesh of so many nodes, divided where the estimate says that it helps.
+    fn refined(&self, nodes: usize) -> Result<Vec<String>, Failure> {
+        let (mut places, mut set) = (self.scene.halved_in()?, Vec::new());
+        let mut before = None;
+        loop {
+            let file = self.read(&set)?;
+            let Some(quantity) = self.quantity(&file)? else { return Ok(set) };
+            let estimate = MeshEstimate::of(&file.equilibrium()?, &quantity)?;
+            let count = file.scene.body().mesh().node_count();
+            if !self.output.quiet {
+                let (value, unit) = (estimate.value, &estimate.unit);
+                let by = |before: f64| 100.0 * ((value - before) / estimate.change).abs();
+                let apart = before.map_or_else(String::new, |before| {
+                    format!(", {:.2} % of its change from the one before", by(before))
+                });
+                print(format_args!("{count} nodes: {quantity} is {value:.6} {unit}{apart}"))?;
+            }
+            if count >= nodes {
+                return Ok(set);
+            }
+            before = Some(estimate.value);
+            let cells = estimate.worst_cells().into_iter().map(|cell| cell as i64 + 1);
+            let cells: Vec<toml::Value> = cells.map(toml::Value::Integer).collect();
+            places.push(toml::Table::from_iter([("cells".to_owned(), cells.into())]).into());
+            set = vec![format!("body.mesh.halved_in={}", toml::Value::Array(places.clone()))];
+        }
+    }
+}
+
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let Arguments { scene, phase, load_steps, arc_steps, quantity, output } = arguments;
-    let mut file = scene.read()?;
-    output.apply(&mut file)?;
-    let options = &mut file.statics.options;
-    options.load_steps = load_steps.unwrap_or(options.load_steps);
-    options.arc_steps = arc_steps.unwrap_or(options.arc_steps);
-    file.statics.phase = phase.clone().or(file.statics.phase);
+    let Arguments { scene, output, .. } = arguments;
+    let mut file = arguments.read(&[])?;
     let mut directory = output.directory(&scene.path, "-static")?;
-    let quantity = quantity.as_deref();
-    let quantity = quantity.map(|name| Quantity::named(name, &file.scene, &file.output.sensors));
-    let quantity = quantity.transpose()?;
+    let quantity = arguments.quantity(&file)?;
     if let Some(quantity) = &quantity {
         MeshEstimate::check(&file.scene, quantity)?;
+    }
+    let refined = arguments.refine.map(|nodes| arguments.refined(nodes)).transpose()?;
+    if let Some(set) = &refined {
+        file = arguments.read(set)?;
     }
     let SceneFile { title, statics, output: request, .. } = &file;
     let mut request = request.clone();
@@ -77,6 +127,15 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     };
     directory.claim()?;
     directory.write("report.json", |path| write_static_report(outcome, path))?;
+    if let Some(mut set) = refined {
+        let path = directory.beside(REFINED);
+        set.extend(scene.mesh_for(&path)?);
+        let text = scene.text(&set)?;
+        let failed =
+            |error| Failure::failed(format!("cannot write to {}: {error}", path.display()));
+        fs::write(&path, text).map_err(failed)?;
+        directory.note(REFINED);
+    }
     // the states from the undeformed shape to a single equilibrium are not a motion of the body: only
     // pictures show both
     let found = if statics.options.is_curve() { trajectory.clone() } else { trajectory.at_end() };

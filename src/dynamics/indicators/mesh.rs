@@ -8,12 +8,49 @@ use crate::elements::mesh::CellKind;
 use crate::scene::constraint::PhaseStart;
 use crate::scene::timeline::Scene;
 
-/// Largest Poisson's ratio for cells that can lock.
+/// Largest Poisson's ratio for linear and for quadratic cells that can lock.
 const MOST_POISSON: f64 = 0.45;
+const MOST_POISSON_QUADRATIC: f64 = 0.48;
 
-/// Nearly incompressible material in linear cells: they cannot bend without changing their volume, and get
-/// several times too stiff.
+/// Nearly incompressible material in cells that cannot bend without changing their volume: linear ones get several times too stiff,
+/// quadratic ones by a tenth or two where one cell is across a wall.
 pub(super) fn locking(body: &Body) -> Option<Indicator> {
+    if body.mesh().kind().dimension() == 2 && body.plane() == Plane::Stress {
+        return None;
+    }
+    let most = body.materials().iter().map(|material| material.poisson).fold(-1.0, f64::max);
+    locking_linear(body, most).or_else(|| locking_quadratic(body, most))
+}
+
+/// What is left of it in quadratic cells: with a pressure at each point they are too stiff, with one alone some are too soft.
+fn locking_quadratic(body: &Body, most: f64) -> Option<Indicator> {
+    let mesh = body.mesh();
+    if mesh.kind().dimension() < mesh.dimension() {
+        return None;
+    }
+    let help = match mesh.kind() {
+        CellKind::Triangle6 | CellKind::Tetrahedron10 => {
+            "`bubbles = true` in `mesh` (Mesh::with_bubbles) with dilatation = \"linear\""
+        }
+        CellKind::Hexahedron20 => "dilatation = \"linear\", and hexahedra27 where pressures count",
+        kind if kind.is_quadratic() => "dilatation = \"linear\"",
+        _ => return None,
+    };
+    let off = match (body.dilatation(), mesh.kind()) {
+        (Dilatation::AtPoints, _) => "some 10 to 20 % too stiff",
+        (Dilatation::Mean, CellKind::Triangle6 | CellKind::Tetrahedron10) => return None,
+        (Dilatation::Mean, _) => "twice too soft",
+        (Dilatation::Linear, _) => return None,
+    };
+    let cells = mesh.kind().name();
+    let told = format!("Poisson's ratio {most} in {cells} (limit: {MOST_POISSON_QUADRATIC})");
+    let beyond =
+        || format!("{told}: with one cell across it a wall is {off} in bending; take {help}");
+    let limits = [-1.0, MOST_POISSON_QUADRATIC];
+    Some(Indicator::trusted("poisson", (most, "1"), limits, || told.clone(), beyond))
+}
+
+fn locking_linear(body: &Body, most: f64) -> Option<Indicator> {
     let other = match body.mesh().kind() {
         CellKind::Triangle if is_crossed(body) => return None,
         CellKind::Triangle => " or \"crossed\" ones",
@@ -25,10 +62,6 @@ pub(super) fn locking(body: &Body) -> Option<Indicator> {
         _ => "",
     };
     let help = quadratic_cells(body.mesh().kind())?;
-    if body.mesh().kind().dimension() == 2 && body.plane() == Plane::Stress {
-        return None;
-    }
-    let most = body.materials().iter().map(|material| material.poisson).fold(-1.0, f64::max);
     let cells = body.mesh().kind().name();
     let told = format!("Poisson's ratio {most} in linear {cells} (limit: {MOST_POISSON})");
     let beyond = || {
@@ -56,7 +89,9 @@ pub(super) fn quadratic_cells(kind: CellKind) -> Option<&'static str> {
         ),
         CellKind::Segment
         | CellKind::Triangle6
+        | CellKind::Triangle7
         | CellKind::Tetrahedron10
+        | CellKind::Tetrahedron15
         | CellKind::Quadrilateral9
         | CellKind::Hexahedron20
         | CellKind::Hexahedron27 => None,

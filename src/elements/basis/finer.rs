@@ -1,6 +1,7 @@
 //! Finer meshes: cells divided at the middles of their edges, or given mid nodes.
 
 use std::collections::BTreeMap;
+use std::ops::Range;
 
 use super::ReferenceCell;
 use super::with_element;
@@ -10,8 +11,8 @@ use crate::elements::mesh::{CellKind, Mesh};
 /// A mesh made finer: nodes keep their numbers, and new ones follow.
 pub(crate) struct Finer {
     pub(crate) mesh: Mesh,
-    /// Number of cells that each cell is divided into.
-    pub(crate) children: usize,
+    /// Where the cells begin into which each cell is divided, and their number at the end.
+    first_child: Vec<usize>,
     /// Number of nodes of the first mesh, and the place of every node in it.
     old: usize,
     places: Vec<Place>,
@@ -30,12 +31,12 @@ struct Place {
 /// A point, given by corners of a cell and their weights, ascending: the same from all cells around it.
 type Corners = Vec<(usize, u32)>;
 
-/// The weights of the corners add up to this, so that those of quarter points of edges and of the middle of a
-/// hexahedron are whole numbers.
-const WHOLE: f64 = 64.0;
+/// The weights of the corners add up to this, so that those of quarter points of edges and of the middles of faces and cells are
+/// whole numbers, of their halves, too.
+const WHOLE: f64 = 192.0;
 
 /// A point of the reference cell; coordinates beyond its dimension are 0.
-type Point = [f64; 3];
+pub(super) type Point = [f64; 3];
 
 impl Mesh {
     /// The same mesh with each cell divided into 2, 4 or 8 of its kind, at the middles of its edges.
@@ -68,17 +69,39 @@ impl Mesh {
         self.elevated().map(|finer| finer.mesh)
     }
 
+    /// The same mesh with quadratic triangles and tetrahedra that have bubbles: nodes in the middle of each cell and, in space, of
+    /// each of its faces, too.
+    ///
+    /// With [`Dilatation::Linear`](crate::Dilatation::Linear) they are the cells for nearly incompressible bodies of any shape.
+    /// Quadrilaterals of four nodes are first divided into two triangles. Nodes keep their numbers, as in
+    /// [`halved`](Self::halved).
+    ///
+    /// ```
+    /// use pliant::{Cells, Mesh};
+    ///
+    /// let mesh = Mesh::rectangle([0.2, 0.1], [3, 2], Cells::Triangles6)?;
+    /// let with_bubbles = mesh.with_bubbles()?;
+    /// assert_eq!((mesh.node_count(), with_bubbles.node_count()), (15, 15 + 4));
+    /// # Ok::<(), pliant::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// Cells of other shapes, or that have bubbles already.
+    pub fn with_bubbles(&self) -> Result<Self, InputError> {
+        self.bubbled().map(|finer| finer.mesh)
+    }
+
     pub(crate) fn divided(&self) -> Finer {
         let kind = self.kind();
         let children = halves(linear(kind));
-        Finer::new(self, kind, &children)
+        Finer::new(self, kind, |_| children.clone())
     }
 
     /// See [`quadratic`](Self::quadratic).
     pub(crate) fn elevated(&self) -> Result<Finer, InputError> {
         let (kind, children): (_, &[&[usize]]) = match self.kind() {
             CellKind::Triangle => (CellKind::Triangle6, &[&[0, 1, 2]]),
-            CellKind::Quadrilateral => (CellKind::Triangle6, &[&[0, 1, 2], &[0, 2, 3]]),
+            CellKind::Quadrilateral => (CellKind::Triangle6, HALVES_OF_QUADRILATERAL),
             CellKind::Tetrahedron => (CellKind::Tetrahedron10, &[&[0, 1, 2, 3]]),
             CellKind::Hexahedron => (CellKind::Hexahedron20, &[&[0, 1, 2, 3, 4, 5, 6, 7]]),
             kind => {
@@ -86,20 +109,49 @@ impl Mesh {
                 return Err(InputError::new("cells", kind.name(), help));
             }
         };
+        Ok(self.with_children(kind, children))
+    }
+
+    /// See [`with_bubbles`](Self::with_bubbles).
+    pub(crate) fn bubbled(&self) -> Result<Finer, InputError> {
+        let (kind, children): (_, &[&[usize]]) = match self.kind() {
+            CellKind::Triangle | CellKind::Triangle6 => (CellKind::Triangle7, &[&[0, 1, 2]]),
+            CellKind::Quadrilateral => (CellKind::Triangle7, HALVES_OF_QUADRILATERAL),
+            CellKind::Tetrahedron | CellKind::Tetrahedron10 => {
+                (CellKind::Tetrahedron15, &[&[0, 1, 2, 3]])
+            }
+            kind => {
+                let help = "triangles and tetrahedra get bubbles; quadratic quadrilaterals and hexahedra need none: take \"rectangles9\" or \
+                            \"hexahedra27\" (in Gmsh: Mesh.ElementOrder = 2)";
+                return Err(InputError::new("cells", kind.name(), help));
+            }
+        };
+        Ok(self.with_children(kind, children))
+    }
+
+    /// Cells of this `kind` between these corners of each cell.
+    fn with_children(&self, kind: CellKind, children: &[&[usize]]) -> Finer {
         let corners = nodes(self.kind());
         let child = |child: &&[usize]| child.iter().map(|&node| corners[node]).collect();
-        Ok(Finer::new(self, kind, &children.iter().map(child).collect::<Vec<_>>()))
+        Finer::new(self, kind, |_| children.iter().map(child).collect())
     }
 }
 
+/// The triangles that a quadrilateral is divided into, by its corners.
+const HALVES_OF_QUADRILATERAL: &[&[usize]] = &[&[0, 1, 2], &[0, 2, 3]];
+
 impl Finer {
-    /// `mesh` with cells of this `kind`: `children` are the corners, in the reference cell, of those that
-    /// each cell is divided into.
-    fn new(mesh: &Mesh, kind: CellKind, children: &[Vec<Point>]) -> Self {
+    /// `mesh` with cells of this `kind`: `children` gives the corners, in the reference cell, of those that
+    /// a cell (from 0) is divided into.
+    pub(super) fn new(
+        mesh: &Mesh,
+        kind: CellKind,
+        children: impl Fn(usize) -> Vec<Vec<Point>>,
+    ) -> Self {
         let old = mesh.node_count();
         let mut finer = Self {
             mesh: mesh.clone(),
-            children: children.len(),
+            first_child: vec![0],
             old,
             places: Vec::new(),
             numbers: BTreeMap::new(),
@@ -122,12 +174,11 @@ impl Finer {
             })
         };
         finer.places = places.into_iter().enumerate().map(alone).collect();
-        let points: Vec<Vec<Point>> =
-            children.iter().map(|child| with_mid_nodes(kind, child)).collect();
-        let mut connectivity = Vec::with_capacity(mesh.cell_count() * points.len() * kind.nodes());
-        for cell in mesh.cells() {
-            for point in points.iter().flatten() {
-                let place = Place::new(mesh.kind(), cell, point);
+        let mut connectivity = Vec::new();
+        for (number, cell) in mesh.cells().enumerate() {
+            let children = children(number);
+            for point in children.iter().flat_map(|child| with_mid_nodes(kind, child)) {
+                let place = Place::new(mesh.kind(), cell, &point);
                 let next = finer.places.len();
                 let number = *finer.numbers.entry(place.corners.clone()).or_insert(next);
                 if number == next {
@@ -135,6 +186,7 @@ impl Finer {
                 }
                 connectivity.push(number);
             }
+            finer.first_child.push(connectivity.len() / kind.nodes());
         }
         let positions = finer.interpolated(mesh.positions(), mesh.dimension());
         finer.mesh = mesh.with_cells(positions, kind, connectivity);
@@ -155,10 +207,18 @@ impl Finer {
 
     /// The cells (from 0) into which these `cells` of the first mesh are divided.
     pub(crate) fn children_of(&self, cells: &[usize]) -> Vec<usize> {
-        cells
-            .iter()
-            .flat_map(|cell| (0..self.children).map(move |k| cell * self.children + k))
-            .collect()
+        cells.iter().flat_map(|&cell| self.children(cell)).collect()
+    }
+
+    /// The number of cells of the first mesh.
+    #[cfg(feature = "study")]
+    pub(crate) fn old_cell_count(&self) -> usize {
+        self.first_child.len() - 1
+    }
+
+    /// The cells (from 0) into which a `cell` of the first mesh is divided.
+    pub(crate) fn children(&self, cell: usize) -> Range<usize> {
+        self.first_child[cell]..self.first_child[cell + 1]
     }
 
     /// Nodes (from 0) of the first mesh in the given order, with the new ones between them. If all given
@@ -241,10 +301,10 @@ fn middle(one: &Corners, other: &Corners) -> Corners {
 }
 
 /// The kind with the same corners, and no other nodes.
-fn linear(kind: CellKind) -> CellKind {
+pub(super) fn linear(kind: CellKind) -> CellKind {
     match kind {
-        CellKind::Triangle6 => CellKind::Triangle,
-        CellKind::Tetrahedron10 => CellKind::Tetrahedron,
+        CellKind::Triangle6 | CellKind::Triangle7 => CellKind::Triangle,
+        CellKind::Tetrahedron10 | CellKind::Tetrahedron15 => CellKind::Tetrahedron,
         CellKind::Quadrilateral9 => CellKind::Quadrilateral,
         CellKind::Hexahedron20 | CellKind::Hexahedron27 => CellKind::Hexahedron,
         kind => kind,
@@ -257,12 +317,18 @@ fn with_mid_nodes(kind: CellKind, corners: &[Point]) -> Vec<Point> {
     for edge in kind.edges().iter().filter(|edge| edge.len() > 2) {
         points.push(between(&corners[edge[0]], &corners[edge[1]]));
     }
-    points.extend(kind.middles().iter().map(|&[a, b]| between(&corners[a], &corners[b])));
+    points.extend(kind.middles().iter().map(|ends| mean(corners, ends)));
     points
 }
 
 fn between(a: &Point, b: &Point) -> Point {
     std::array::from_fn(|i| 0.5 * (a[i] + b[i]))
+}
+
+/// The mean of some corners.
+pub(super) fn mean(corners: &[Point], ends: &[usize]) -> Point {
+    let sum = |i: usize| ends.iter().map(|&end| corners[end][i]).sum::<f64>();
+    std::array::from_fn(|i| sum(i) / ends.len() as f64)
 }
 
 /// Corners of the cells into which a linear cell is divided.
@@ -296,7 +362,7 @@ fn halves(kind: CellKind) -> Vec<Vec<Point>> {
 }
 
 /// Where the nodes of the reference cell are.
-fn nodes(kind: CellKind) -> Vec<Point> {
+pub(super) fn nodes(kind: CellKind) -> Vec<Point> {
     fn nodes<
         C: ReferenceCell<N, M>,
         const N: usize,

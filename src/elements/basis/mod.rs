@@ -6,6 +6,7 @@
 //! A cell of dimension M may live in a space of higher dimension D (a string, a membrane). It is
 //! then described in coordinates of its own, along an orthonormal frame in its tangent space.
 
+mod bisection;
 mod finer;
 mod hexahedron;
 mod hexahedron20;
@@ -22,8 +23,10 @@ mod segment3;
 mod tests;
 mod tetrahedron;
 mod tetrahedron10;
+mod tetrahedron15;
 mod triangle;
 mod triangle6;
+mod triangle7;
 
 use nalgebra::{SMatrix, SVector};
 
@@ -41,13 +44,16 @@ pub(crate) use segment::Segment;
 pub(crate) use segment3::Segment3;
 pub(crate) use tetrahedron::Tetrahedron;
 pub(crate) use tetrahedron10::Tetrahedron10;
+pub(crate) use tetrahedron15::Tetrahedron15;
 pub(crate) use triangle::Triangle;
 pub(crate) use triangle6::Triangle6;
+pub(crate) use triangle7::Triangle7;
 
 use crate::base::tensor::{Matrix, determinant};
 
 /// Calls a function that is generic over the reference cell, its number of nodes, its dimension, the
-/// dimension of space and the number of strain points, with those of a kind of cell.
+/// dimension of space and the number of strain points, with those of a kind of cell. What has to fill space has no other
+/// dimension.
 macro_rules! with_element {
     ($kind:expr, $space:expr, $function:ident ( $($argument:expr),* )) => {{
         use $crate::elements::basis::*;
@@ -60,12 +66,13 @@ macro_rules! with_element {
             (Kind::Triangle, _) => $function::<Triangle, 3, 2, 3, 1>($($argument),*),
             (Kind::Triangle6, 2) => $function::<Triangle6, 6, 2, 2, 3>($($argument),*),
             (Kind::Triangle6, _) => $function::<Triangle6, 6, 2, 3, 3>($($argument),*),
+            (Kind::Triangle7, _) => $function::<Triangle7, 7, 2, 2, 6>($($argument),*),
             (Kind::Quadrilateral, 2) => $function::<Quadrilateral, 4, 2, 2, 4>($($argument),*),
             (Kind::Quadrilateral, _) => $function::<Quadrilateral, 4, 2, 3, 4>($($argument),*),
-            (Kind::Quadrilateral9, 2) => $function::<Quadrilateral9, 9, 2, 2, 9>($($argument),*),
-            (Kind::Quadrilateral9, _) => $function::<Quadrilateral9, 9, 2, 3, 9>($($argument),*),
+            (Kind::Quadrilateral9, _) => $function::<Quadrilateral9, 9, 2, 2, 9>($($argument),*),
             (Kind::Tetrahedron, _) => $function::<Tetrahedron, 4, 3, 3, 1>($($argument),*),
             (Kind::Tetrahedron10, _) => $function::<Tetrahedron10, 10, 3, 3, 4>($($argument),*),
+            (Kind::Tetrahedron15, _) => $function::<Tetrahedron15, 15, 3, 3, 14>($($argument),*),
             (Kind::Hexahedron, _) => $function::<Hexahedron, 8, 3, 3, 8>($($argument),*),
             (Kind::Hexahedron20, _) => $function::<Hexahedron20, 20, 3, 3, 14>($($argument),*),
             (Kind::Hexahedron27, _) => $function::<Hexahedron27, 27, 3, 3, 27>($($argument),*),

@@ -14,16 +14,16 @@ pub(crate) fn extrapolation<
     const M: usize,
     const Q: usize,
 >() -> [[f64; Q]; N] {
-    let is_linear = Q == M + 1;
+    let is_simplex = M > 1 && !C::NODES.contains(&[1.0; M]);
     let term = |q: usize, xi: &[f64; M]| -> f64 {
         // axes of the factors of the term
-        let factors = (0..M).filter(|axis| match is_linear {
+        let factors = (0..M).filter(|axis| match is_simplex {
             true => q == axis + 1,
             false => (q >> axis) & 1 == 1,
         });
         factors.map(|axis| xi[axis]).product()
     };
-    let terms = Q.min(1 << M);
+    let terms = Q.min(if is_simplex { M + 1 } else { 1 << M });
     let at_points = DMatrix::from_fn(Q, terms, |p, q| term(q, &C::STIFFNESS_RULE[p].0));
     let inverse = match terms == Q {
         true => at_points.try_inverse(),

@@ -14,6 +14,23 @@ const WEIGHT_B: f64 = 0.012_248_840_519_393_659;
 const C: f64 = 0.045_503_704_125_649_65;
 const WEIGHT_C: f64 = 0.007_091_003_462_846_911;
 
+pub(super) const DEGREE_5: &[([f64; 3], f64)] = &[
+    ([A, A, A], WEIGHT_A),
+    ([1.0 - 3.0 * A, A, A], WEIGHT_A),
+    ([A, 1.0 - 3.0 * A, A], WEIGHT_A),
+    ([A, A, 1.0 - 3.0 * A], WEIGHT_A),
+    ([B, B, B], WEIGHT_B),
+    ([1.0 - 3.0 * B, B, B], WEIGHT_B),
+    ([B, 1.0 - 3.0 * B, B], WEIGHT_B),
+    ([B, B, 1.0 - 3.0 * B], WEIGHT_B),
+    ([C, C, 0.5 - C], WEIGHT_C),
+    ([C, 0.5 - C, C], WEIGHT_C),
+    ([0.5 - C, C, C], WEIGHT_C),
+    ([C, 0.5 - C, 0.5 - C], WEIGHT_C),
+    ([0.5 - C, C, 0.5 - C], WEIGHT_C),
+    ([0.5 - C, 0.5 - C, C], WEIGHT_C),
+];
+
 pub(crate) struct Tetrahedron10;
 
 impl ReferenceCell<10, 3> for Tetrahedron10 {
@@ -34,22 +51,7 @@ impl ReferenceCell<10, 3> for Tetrahedron10 {
     const STIFFNESS_RULE: &'static [([f64; 3], f64)] = FOUR_POINTS;
     /// Exact for degree 5, so for the inertia of a tetrahedron with straight sides and mid nodes
     /// in their middles (degree 4).
-    const MASS_RULE: &'static [([f64; 3], f64)] = &[
-        ([A, A, A], WEIGHT_A),
-        ([1.0 - 3.0 * A, A, A], WEIGHT_A),
-        ([A, 1.0 - 3.0 * A, A], WEIGHT_A),
-        ([A, A, 1.0 - 3.0 * A], WEIGHT_A),
-        ([B, B, B], WEIGHT_B),
-        ([1.0 - 3.0 * B, B, B], WEIGHT_B),
-        ([B, 1.0 - 3.0 * B, B], WEIGHT_B),
-        ([B, B, 1.0 - 3.0 * B], WEIGHT_B),
-        ([C, C, 0.5 - C], WEIGHT_C),
-        ([C, 0.5 - C, C], WEIGHT_C),
-        ([0.5 - C, C, C], WEIGHT_C),
-        ([C, 0.5 - C, 0.5 - C], WEIGHT_C),
-        ([0.5 - C, C, 0.5 - C], WEIGHT_C),
-        ([0.5 - C, 0.5 - C, C], WEIGHT_C),
-    ];
+    const MASS_RULE: &'static [([f64; 3], f64)] = DEGREE_5;
 
     fn values([x, y, z]: [f64; 3]) -> [f64; 10] {
         let w = 1.0 - x - y - z;

@@ -9,6 +9,15 @@ const WEIGHT_A: f64 = 0.111_690_794_839_005_73;
 const B: f64 = 0.091_576_213_509_770_74;
 const WEIGHT_B: f64 = 0.054_975_871_827_660_93;
 
+pub(super) const DEGREE_4: &[([f64; 2], f64)] = &[
+    ([A, A], WEIGHT_A),
+    ([1.0 - 2.0 * A, A], WEIGHT_A),
+    ([A, 1.0 - 2.0 * A], WEIGHT_A),
+    ([B, B], WEIGHT_B),
+    ([1.0 - 2.0 * B, B], WEIGHT_B),
+    ([B, 1.0 - 2.0 * B], WEIGHT_B),
+];
+
 pub(crate) struct Triangle6;
 
 impl ReferenceCell<6, 2> for Triangle6 {
@@ -23,14 +32,7 @@ impl ReferenceCell<6, 2> for Triangle6 {
     ];
     /// Exact for degree 4, so for the inertia of a triangle with straight sides and mid nodes in
     /// their middles.
-    const MASS_RULE: &'static [([f64; 2], f64)] = &[
-        ([A, A], WEIGHT_A),
-        ([1.0 - 2.0 * A, A], WEIGHT_A),
-        ([A, 1.0 - 2.0 * A], WEIGHT_A),
-        ([B, B], WEIGHT_B),
-        ([1.0 - 2.0 * B, B], WEIGHT_B),
-        ([B, 1.0 - 2.0 * B], WEIGHT_B),
-    ];
+    const MASS_RULE: &'static [([f64; 2], f64)] = DEGREE_4;
 
     fn values([x, y]: [f64; 2]) -> [f64; 6] {
         let w = 1.0 - x - y;

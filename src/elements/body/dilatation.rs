@@ -24,7 +24,8 @@ pub enum Dilatation {
     Mean,
     /// Projected onto linear functions of the undeformed position in each cell (Q2/P-1, with a discontinuous linear
     /// pressure; D. Boffi, L. Gastaldi, Mathematical Models and Methods in Applied Sciences 12 (2002) 1589-1603): for
-    /// quadratic hexahedra and quadrilaterals. Those of 20 nodes have more pressures than their faces can feel: displacements
+    /// quadratic hexahedra and quadrilaterals, and for triangles and tetrahedra with bubbles ([`Mesh::with_bubbles`](crate::Mesh::with_bubbles);
+    /// M. Crouzeix, P.-A. Raviart, RAIRO 7 (1973) R3, 33-75). Hexahedra of 20 nodes have more pressures than their faces can feel: displacements
     /// are better than with the mean, pressures are not reliable.
     Linear,
 }
@@ -60,11 +61,14 @@ impl Dilatation {
                  quadrilaterals or hexahedra"
             }
             _ if self == Self::Mean => return Ok(()),
-            CellKind::Quadrilateral9 | CellKind::Hexahedron20 | CellKind::Hexahedron27 => {
-                return Ok(());
-            }
+            CellKind::Triangle7
+            | CellKind::Tetrahedron15
+            | CellKind::Quadrilateral9
+            | CellKind::Hexahedron20
+            | CellKind::Hexahedron27 => return Ok(()),
             CellKind::Triangle6 | CellKind::Tetrahedron10 => {
-                "triangles and tetrahedra lock with a linear dilatation, too: take \"mean\""
+                "triangles and tetrahedra without bubbles lock with a linear dilatation, too: give them bubbles \
+                 (`bubbles = true`, Mesh::with_bubbles), or take \"mean\""
             }
             _ => {
                 "linear cells lock with a linear dilatation, too: take \"mean\", or quadratic cells"

@@ -114,8 +114,12 @@ mod tests {
             Mesh::rectangle([1.0, 0.5], [8, 4], Cells::Triangles),
             Mesh::rectangle([1.0, 0.5], [8, 4], Cells::Rectangles),
             Mesh::rectangle([1.0, 0.5], [6, 4], Cells::Triangles6),
+            Mesh::rectangle([1.0, 0.5], [6, 4], Cells::Triangles6)
+                .and_then(|mesh| mesh.with_bubbles()),
             Mesh::rectangle([1.0, 0.5], [6, 4], Cells::Rectangles9),
             Mesh::cuboid([1.0, 0.5, 0.5], [4, 3, 4], SolidCells::Tetrahedra),
+            Mesh::cuboid([1.0, 0.5, 0.5], [2, 3, 2], SolidCells::Tetrahedra10)
+                .and_then(|mesh| mesh.with_bubbles()),
             Mesh::cuboid([1.0, 0.5, 0.5], [4, 3, 4], SolidCells::Hexahedra),
             Mesh::cuboid([1.0, 0.5, 0.5], [4, 3, 4], SolidCells::Hexahedra20),
             Mesh::cuboid([1.0, 0.5, 0.5], [4, 3, 4], SolidCells::Hexahedra27),
@@ -126,7 +130,11 @@ mod tests {
             let kind = mesh.kind();
             let linear = matches!(
                 kind,
-                CellKind::Quadrilateral9 | CellKind::Hexahedron20 | CellKind::Hexahedron27
+                CellKind::Triangle7
+                    | CellKind::Tetrahedron15
+                    | CellKind::Quadrilateral9
+                    | CellKind::Hexahedron20
+                    | CellKind::Hexahedron27
             );
             let others = if linear { &[Dilatation::Mean, Dilatation::Linear][..] } else { &[] };
             let dilatations = [Dilatation::AtPoints].iter().chain(others);

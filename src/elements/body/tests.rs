@@ -30,6 +30,11 @@ fn bodies_with(strain: Strain, inertia: Inertia) -> Vec<(String, Body)> {
         (CellKind::Segment, vec![0.0, 1.0, 2.2], vec![0, 1, 1, 2]),
         (CellKind::Triangle, square.to_vec(), vec![0, 1, 2, 0, 2, 3]),
         (CellKind::Triangle6, wedge.to_vec(), (0..6).collect()),
+        (
+            CellKind::Triangle7,
+            with_mid_nodes(CellKind::Triangle7, &wedge[..6], 0.03),
+            (0..7).collect(),
+        ),
         (CellKind::Quadrilateral, square.to_vec(), (0..4).collect()),
         (
             CellKind::Quadrilateral9,
@@ -41,6 +46,11 @@ fn bodies_with(strain: Strain, inertia: Inertia) -> Vec<(String, Body)> {
             CellKind::Tetrahedron10,
             with_mid_nodes(CellKind::Tetrahedron10, &solid, 0.03),
             (0..10).collect(),
+        ),
+        (
+            CellKind::Tetrahedron15,
+            with_mid_nodes(CellKind::Tetrahedron15, &solid, 0.03),
+            (0..15).collect(),
         ),
         (
             CellKind::Hexahedron20,
@@ -56,7 +66,8 @@ fn bodies_with(strain: Strain, inertia: Inertia) -> Vec<(String, Body)> {
     ];
     let mut bodies = Vec::new();
     for (kind, flat, cells) in kinds {
-        for dimension in kind.dimension()..=3 {
+        let most = if kind.as_face().is_some() { 3 } else { kind.dimension() };
+        for dimension in kind.dimension()..=most {
             // lifted into space along skew directions
             let lift = [[0.8, 0.3, -0.5], [-0.2, 0.9, 0.4], [0.1, -0.3, 0.7]];
             let positions: Vec<f64> = flat
@@ -86,11 +97,12 @@ fn bodies_with(strain: Strain, inertia: Inertia) -> Vec<(String, Body)> {
 /// of bent hexahedra of 20 nodes do not integrate their volumes exactly.)
 fn with_mid_nodes(kind: CellKind, corners: &[f64], bend: f64) -> Vec<f64> {
     let (mut positions, d) = (corners.to_vec(), kind.dimension());
-    let edges = kind.edges().iter().map(|edge| [edge[0], edge[1]]);
-    for (k, [a, b]) in edges.chain(kind.middles().iter().copied()).enumerate() {
+    let edges = kind.edges().iter().map(|edge| &edge[..2]);
+    for (k, ends) in edges.chain(kind.middles().iter().copied()).enumerate() {
         for i in 0..d {
             let bend = bend * (k as f64 + 2.0 * i as f64).sin();
-            positions.push(0.5 * (corners[d * a + i] + corners[d * b + i]) + bend);
+            let sum: f64 = ends.iter().map(|end| corners[d * end + i]).sum();
+            positions.push(sum / ends.len() as f64 + bend);
         }
     }
     positions

@@ -13,20 +13,21 @@ struct Shape {
     nodes: usize,
     /// Whether edges have mid nodes.
     quadratic: bool,
-    /// What the cell itself is as a face; none of a solid.
+    /// What the cell itself is as a face, in a space of more dimensions; none if it has to fill space.
     as_face: Option<FaceKind>,
     face: FaceKind,
     faces: &'static [&'static [usize]],
     /// Empty in two dimensions, where edges and faces are the same.
     edges: &'static [&'static [usize]],
-    /// For each node in the middle of a face or of the cell two opposite corners of that; such nodes come last.
-    middles: &'static [[usize; 2]],
+    /// For each node in the middle of a face or of the cell corners of that, of which it is the mean: two opposite ones, or all of a
+    /// simplex; such nodes come last.
+    middles: &'static [&'static [usize]],
     /// The nodes in the order of a cell that is turned over.
     turned_over: &'static [usize],
     /// The corners at the other ends of the edges from the first one; these edges form a right-handed system.
     neighbours: &'static [usize],
-    /// The number of its type in Gmsh, and the nodes of Gmsh's cell in the order of ours.
-    gmsh: (u8, &'static [usize]),
+    /// The number of its type in Gmsh, and the nodes of Gmsh's cell in the order of ours; none if Gmsh has no such type.
+    gmsh: Option<(u8, &'static [usize])>,
 }
 
 /// Shape of a face of a cell.
@@ -39,6 +40,8 @@ pub(crate) enum FaceKind {
     Triangle,
     /// With mid nodes.
     Triangle6,
+    /// With mid nodes and one in the middle.
+    Triangle7,
     Quadrilateral,
     /// With mid nodes.
     Quadrilateral8,
@@ -54,6 +57,7 @@ impl FaceKind {
             Self::Segment | Self::Segment3 => 1,
             Self::Triangle
             | Self::Triangle6
+            | Self::Triangle7
             | Self::Quadrilateral
             | Self::Quadrilateral8
             | Self::Quadrilateral9 => 2,
@@ -99,7 +103,7 @@ cell_kinds! {
         middles: &[],
         turned_over: &[1, 0],
         neighbours: &[1],
-        gmsh: (1, &[0, 1]),
+        gmsh: Some((1, &[0, 1])),
     },
     /// Three nodes, counter-clockwise.
     Triangle => Shape {
@@ -115,7 +119,7 @@ cell_kinds! {
         middles: &[],
         turned_over: &[0, 2, 1],
         neighbours: &[1, 2],
-        gmsh: (2, &[0, 1, 2]),
+        gmsh: Some((2, &[0, 1, 2])),
     },
     /// Six nodes: the corners counter-clockwise, then the middles of the edges 1-2, 2-3, 3-1.
     Triangle6 => Shape {
@@ -131,7 +135,23 @@ cell_kinds! {
         middles: &[],
         turned_over: &[0, 2, 1, 5, 4, 3],
         neighbours: &[1, 2],
-        gmsh: (9, &[0, 1, 2, 3, 4, 5]),
+        gmsh: Some((9, &[0, 1, 2, 3, 4, 5])),
+    },
+    /// Seven nodes: those of [`CellKind::Triangle6`], then the middle. A bubble, which is 0 on all edges, belongs to it.
+    Triangle7 => Shape {
+        word: "triangles7",
+        name: "triangles of 7 nodes",
+        dimension: 2,
+        nodes: 7,
+        quadratic: true,
+        as_face: None,
+        face: FaceKind::Segment3,
+        faces: &[&[0, 1, 3], &[1, 2, 4], &[2, 0, 5]],
+        edges: &[],
+        middles: &[&[0, 1, 2]],
+        turned_over: &[0, 2, 1, 5, 4, 3, 6],
+        neighbours: &[1, 2],
+        gmsh: None,
     },
     /// Four nodes, counter-clockwise.
     Quadrilateral => Shape {
@@ -147,7 +167,7 @@ cell_kinds! {
         middles: &[],
         turned_over: &[0, 3, 2, 1],
         neighbours: &[1, 3],
-        gmsh: (3, &[0, 1, 2, 3]),
+        gmsh: Some((3, &[0, 1, 2, 3])),
     },
     /// Nine nodes: the corners counter-clockwise, the middles of the edges 1-2, 2-3, 3-4, 4-1, the middle.
     Quadrilateral9 => Shape {
@@ -156,14 +176,14 @@ cell_kinds! {
         dimension: 2,
         nodes: 9,
         quadratic: true,
-        as_face: Some(FaceKind::Quadrilateral9),
+        as_face: None,
         face: FaceKind::Segment3,
         faces: &[&[0, 1, 4], &[1, 2, 5], &[2, 3, 6], &[3, 0, 7]],
         edges: &[],
-        middles: &[[0, 2]],
+        middles: &[&[0, 2]],
         turned_over: &[0, 3, 2, 1, 7, 6, 5, 4, 8],
         neighbours: &[1, 3],
-        gmsh: (10, &[0, 1, 2, 3, 4, 5, 6, 7, 8]),
+        gmsh: Some((10, &[0, 1, 2, 3, 4, 5, 6, 7, 8])),
     },
     /// Four nodes: the first three counter-clockwise as seen from the fourth.
     Tetrahedron => Shape {
@@ -179,7 +199,7 @@ cell_kinds! {
         middles: &[],
         turned_over: &[0, 2, 1, 3],
         neighbours: &[1, 2, 3],
-        gmsh: (4, &[0, 1, 2, 3]),
+        gmsh: Some((4, &[0, 1, 2, 3])),
     },
     /// Ten nodes: the corners as in [`CellKind::Tetrahedron`], then the middles of the edges 1-2,
     /// 2-3, 3-1, 1-4, 2-4, 3-4.
@@ -201,7 +221,29 @@ cell_kinds! {
         middles: &[],
         turned_over: &[0, 2, 1, 3, 6, 5, 4, 7, 9, 8],
         neighbours: &[1, 2, 3],
-        gmsh: (11, &[0, 1, 2, 3, 4, 5, 6, 7, 9, 8]),
+        gmsh: Some((11, &[0, 1, 2, 3, 4, 5, 6, 7, 9, 8])),
+    },
+    /// Fifteen nodes: those of [`CellKind::Tetrahedron10`], then the middles of the faces 1-2-3, 1-2-4, 2-3-4, 1-3-4 and of
+    /// the cell. Bubbles, which are 0 on all edges, belong to these.
+    Tetrahedron15 => Shape {
+        word: "tetrahedra15",
+        name: "tetrahedra of 15 nodes",
+        dimension: 3,
+        nodes: 15,
+        quadratic: true,
+        as_face: None,
+        face: FaceKind::Triangle7,
+        faces: &[
+            &[0, 2, 1, 6, 5, 4, 10],
+            &[0, 1, 3, 4, 8, 7, 11],
+            &[1, 2, 3, 5, 9, 8, 12],
+            &[0, 3, 2, 7, 9, 6, 13],
+        ],
+        edges: &[&[0, 1, 4], &[1, 2, 5], &[2, 0, 6], &[0, 3, 7], &[1, 3, 8], &[2, 3, 9]],
+        middles: &[&[0, 1, 2], &[0, 1, 3], &[1, 2, 3], &[0, 2, 3], &[0, 1, 2, 3]],
+        turned_over: &[0, 2, 1, 3, 6, 5, 4, 7, 9, 8, 10, 13, 12, 11, 14],
+        neighbours: &[1, 2, 3],
+        gmsh: None,
     },
     /// Eight nodes: four around one face, counter-clockwise as seen from the opposite one, then
     /// the four across from them.
@@ -238,7 +280,7 @@ cell_kinds! {
         middles: &[],
         turned_over: &[0, 3, 2, 1, 4, 7, 6, 5],
         neighbours: &[1, 3, 4],
-        gmsh: (5, &[0, 1, 2, 3, 4, 5, 6, 7]),
+        gmsh: Some((5, &[0, 1, 2, 3, 4, 5, 6, 7])),
     },
     /// Twenty nodes: the corners as in [`CellKind::Hexahedron`], then the middles of the edges 1-2, 2-3, 3-4,
     /// 4-1, 5-6, 6-7, 7-8, 8-5, 1-5, 2-6, 3-7, 4-8.
@@ -275,7 +317,7 @@ cell_kinds! {
         middles: &[],
         turned_over: &[0, 3, 2, 1, 4, 7, 6, 5, 11, 10, 9, 8, 15, 14, 13, 12, 16, 19, 18, 17],
         neighbours: &[1, 3, 4],
-        gmsh: (17, &[0, 1, 2, 3, 4, 5, 6, 7, 8, 11, 13, 9, 16, 18, 19, 17, 10, 12, 14, 15]),
+        gmsh: Some((17, &[0, 1, 2, 3, 4, 5, 6, 7, 8, 11, 13, 9, 16, 18, 19, 17, 10, 12, 14, 15])),
     },
     /// Twenty-seven nodes: those of [`CellKind::Hexahedron20`], then the middles of the faces 1-4-8-5, 2-3-7-6, 1-2-6-5,
     /// 4-3-7-8, 1-2-3-4, 5-6-7-8, and of the cell.
@@ -309,10 +351,10 @@ cell_kinds! {
             &[2, 6, 18],
             &[3, 7, 19],
         ],
-        middles: &[[0, 7], [1, 6], [0, 5], [3, 6], [0, 2], [4, 6], [0, 6]],
+        middles: &[&[0, 7], &[1, 6], &[0, 5], &[3, 6], &[0, 2], &[4, 6], &[0, 6]],
         turned_over: &[0, 3, 2, 1, 4, 7, 6, 5, 11, 10, 9, 8, 15, 14, 13, 12, 16, 19, 18, 17, 22, 23, 20, 21, 24, 25, 26],
         neighbours: &[1, 3, 4],
-        gmsh: (12, &[0, 1, 2, 3, 4, 5, 6, 7, 8, 11, 13, 9, 16, 18, 19, 17, 10, 12, 14, 15, 22, 23, 21, 24, 20, 25, 26]),
+        gmsh: Some((12, &[0, 1, 2, 3, 4, 5, 6, 7, 8, 11, 13, 9, 16, 18, 19, 17, 10, 12, 14, 15, 22, 23, 21, 24, 20, 25, 26])),
     },
 }
 
@@ -371,9 +413,9 @@ impl CellKind {
         }
     }
 
-    /// For each node in the middle of a face or of the cell two opposite corners of that, as local numbers (from 0); such
+    /// For each node in the middle of a face or of the cell corners of which it is the mean, as local numbers (from 0); such
     /// nodes come last.
-    pub(crate) fn middles(self) -> &'static [[usize; 2]] {
+    pub(crate) fn middles(self) -> &'static [&'static [usize]] {
         self.shape().middles
     }
 
@@ -387,8 +429,8 @@ impl CellKind {
         self.shape().neighbours
     }
 
-    /// The number of Gmsh's type of element, and the nodes of it in the order of this crate.
-    pub(super) fn gmsh(self) -> (u8, &'static [usize]) {
+    /// The number of Gmsh's type of element, and the nodes of it in the order of this crate; none if Gmsh has no such type.
+    pub(super) fn gmsh(self) -> Option<(u8, &'static [usize])> {
         self.shape().gmsh
     }
 }

@@ -75,7 +75,7 @@ fn build(contents: &Contents) -> Result<Mesh, String> {
     let (mut connectivity, mut cell_groups) = (Vec::new(), BTreeMap::new());
     for block in body {
         let first = connectivity.len() / kind.nodes();
-        let (_, order) = kind.gmsh();
+        let order = kind.gmsh().map(|(_, order)| order).unwrap_or_default();
         let number = |element: &Vec<usize>| {
             order.iter().filter_map(|&local| numbers[element[local]]).collect()
         };
@@ -136,7 +136,8 @@ fn only_kind(blocks: &[Block]) -> Result<CellKind, String> {
     match &*counts {
         [] => Err("it has no elements".into()),
         [only] => cell_kind(only.0).ok_or_else(|| {
-            let known: Vec<&str> = CellKind::ALL.iter().map(|kind| kind.name()).collect();
+            let known = CellKind::ALL.iter().filter(|kind| kind.gmsh().is_some());
+            let known: Vec<&str> = known.map(|kind| kind.name()).collect();
             let help = "(in Gmsh: Mesh.ElementOrder; Mesh.SecondOrderIncomplete = 1 for hexahedra of 20 nodes, 0 for 27, and for quadrilaterals of 9)";
             format!("it has {}: cells may be {} {help}", words(only), known.join(", "))
         }),
@@ -152,7 +153,10 @@ fn only_kind(blocks: &[Block]) -> Result<CellKind, String> {
 }
 
 fn cell_kind(kind: ElementType) -> Option<CellKind> {
-    CellKind::ALL.iter().copied().find(|cell| cell.gmsh().0 == kind as u8)
+    CellKind::ALL
+        .iter()
+        .copied()
+        .find(|cell| cell.gmsh().is_some_and(|(number, _)| number == kind as u8))
 }
 
 /// A type of elements in words.

@@ -300,10 +300,17 @@ fn twice<'a>(cells: impl Iterator<Item = &'a [usize]>) -> Option<[usize; 2]> {
 
 fn check_dimension(dimension: usize, kind: CellKind) -> Result<(), InputError> {
     let least = kind.dimension();
-    if (least..=3).contains(&dimension) {
+    let most = if kind.as_face().is_some() { 3 } else { least };
+    if (least..=most).contains(&dimension) {
         return Ok(());
     }
-    let allowed = if least == 3 { "3".into() } else { format!("{least} to 3") };
-    let help = format!("{kind:?} cells need a space of dimension {allowed}");
+    let help = match least {
+        _ if least < most => format!("{kind:?} cells need a space of dimension {least} to 3"),
+        2 if dimension == 3 => format!(
+            "{kind:?} cells are for bodies that fill a plane, where they do not lock; a membrane in space does not lock: take \
+             \"triangles6\""
+        ),
+        _ => format!("{kind:?} cells need a space of dimension {least}"),
+    };
     Err(InputError::new("mesh.dimension", dimension, help))
 }

@@ -111,6 +111,18 @@ impl Mesh {
         Ok(nodes)
     }
 
+    /// The cells that have a node of a selection, counted from 0, ascending.
+    ///
+    /// # Errors
+    /// As [`select`](Self::select).
+    pub fn cells_at(&self, nodes: impl Into<Selection>) -> Result<Vec<usize>, InputError> {
+        let mut is_selected = vec![false; self.node_count()];
+        self.select(&nodes.into())?.into_iter().for_each(|node| is_selected[node] = true);
+        let cells = self.cells().enumerate();
+        let touching = cells.filter(|(_, cell)| cell.iter().any(|&node| is_selected[node]));
+        Ok(touching.map(|(number, _)| number).collect())
+    }
+
     /// Gives a name to a set of nodes, to be used in selections. A set of that name is replaced.
     ///
     /// # Errors

@@ -105,15 +105,20 @@ fn grid(trajectory: &Trajectory, sample: &Sample) -> Result<Vtk, Error> {
         CellKind::Segment => CellType::Line,
         CellKind::Triangle => CellType::Triangle,
         CellKind::Triangle6 => CellType::QuadraticTriangle,
+        CellKind::Triangle7 => CellType::BiquadraticTriangle,
         CellKind::Quadrilateral => CellType::Quad,
         CellKind::Quadrilateral9 => CellType::BiquadraticQuad,
         CellKind::Tetrahedron => CellType::Tetra,
-        CellKind::Tetrahedron10 => CellType::QuadraticTetra,
+        // ParaView has none of 15 nodes
+        CellKind::Tetrahedron10 | CellKind::Tetrahedron15 => CellType::QuadraticTetra,
         CellKind::Hexahedron => CellType::Hexahedron,
         CellKind::Hexahedron20 => CellType::QuadraticHexahedron,
         CellKind::Hexahedron27 => CellType::TriquadraticHexahedron,
     };
-    let corners = mesh.kind().nodes() as u64;
+    let shown = match mesh.kind() {
+        CellKind::Tetrahedron15 => 10,
+        kind => kind.nodes(),
+    };
     Ok(Vtk {
         version: Version::new_xml(1, 0),
         title: String::new(),
@@ -122,8 +127,12 @@ fn grid(trajectory: &Trajectory, sample: &Sample) -> Result<Vtk, Error> {
             points: spatial(mesh.positions()).into(),
             cells: Cells {
                 cell_verts: VertexNumbers::XML {
-                    connectivity: mesh.cells().flatten().map(|&node| node as u64).collect(),
-                    offsets: (1..=mesh.cell_count() as u64).map(|k| k * corners).collect(),
+                    connectivity: mesh
+                        .cells()
+                        .flat_map(|cell| &cell[..shown])
+                        .map(|&node| node as u64)
+                        .collect(),
+                    offsets: (1..=mesh.cell_count() as u64).map(|k| k * shown as u64).collect(),
                 },
                 types: vec![kind; mesh.cell_count()],
             },

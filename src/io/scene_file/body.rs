@@ -63,9 +63,9 @@ pub(super) const BODY: TableKeys = TableKeys::new(
             "where the body resists a change of its volume",
         )
         .law("At each point of a cell, a nearly incompressible body locks. `linear`: projected onto linear functions of each cell, \
-              accurate; for `hexahedra27` and `rectangles9`, and for `hexahedra20`, whose pressures are not reliable then. `mean`: in the mean over each cell, for \
+              accurate; for `hexahedra27` and `rectangles9`, for triangles and tetrahedra with `bubbles`, and for `hexahedra20`, whose pressures are not reliable then. `mean`: in the mean over each cell, for \
               `rectangles`, `hexahedra`, `triangles6` and `tetrahedra10`.")
-        .default("points, or what goes with `cells = \"auto\"`"),
+        .default("points, or what goes with `cells = \"auto\"` and `bubbles`"),
         Key::new("material", Holds::Table(&MATERIAL), "what the body is made of").required(),
         Key::new("region", Holds::Tables(&REGION), "parts with a material of their own"),
     ],
@@ -159,7 +159,10 @@ pub(super) fn body(
         body = body.plane(plane);
     }
     let has_auto_cells = table.required("mesh", mesh::has_auto_cells)?;
+    let (gets_mid_nodes, _) = table.required("mesh", mesh::gets_mid_nodes)?;
     match table.optional("dilatation", |value| value.word(&DILATATION))? {
+        // it goes with the cells that are to come: see `on_finer_mesh`
+        Some(_) if gets_mid_nodes => {}
         Some(dilatation) => body = body.dilatation(dilatation),
         None if has_auto_cells
             && matches!(mesh.kind(), CellKind::Quadrilateral9 | CellKind::Hexahedron27) =>
@@ -188,7 +191,17 @@ pub(super) fn auto(value: &Value) -> Result<AutoRequest, Error> {
 /// that.
 pub(super) fn on_finer_mesh(scene: Scene, value: &Value) -> Result<Scene, Error> {
     let table = value.table(&BODY)?;
-    table.required("mesh", |value| mesh::on_finer_mesh(scene, value))
+    let scene = table.required("mesh", |value| mesh::on_finer_mesh(scene, value))?;
+    let (gets_mid_nodes, bubbles) = table.required("mesh", mesh::gets_mid_nodes)?;
+    let body = scene.body();
+    let can_lock = body.mesh().kind().dimension() == body.dimension()
+        && (body.dimension() == 3 || body.plane() == Plane::Strain);
+    let dilatation = match table.optional("dilatation", |value| value.word(&DILATATION))? {
+        Some(dilatation) if gets_mid_nodes => dilatation,
+        None if bubbles && can_lock => Dilatation::Linear,
+        _ => return Ok(scene),
+    };
+    scene.with_body(|body| body.dilatation(dilatation)).map_err(|error| table.blame(error))
 }
 
 fn add_regions(

@@ -2,10 +2,12 @@
 
 use super::keys::{AUTO, Holds, Key, Kind, TableKeys};
 use super::listed::{self, listed};
+use super::selection::selection;
 use super::table::Table;
 use super::value::Value;
 use crate::base::input::InputError;
 use crate::dynamics::error::Error;
+use crate::elements::body::CellSelection;
 use crate::elements::mesh::{Cells, Mesh, SolidCells};
 use crate::scene::timeline::Scene;
 
@@ -24,6 +26,13 @@ pub(super) const MESH: TableKeys = TableKeys::new(
         Key::new("halved", Holds::Count, "how often each cell is divided at the middles of its edges")
             .law("After `quadratic`, and like it.")
             .default("0"),
+        Key::new("halved_in", Holds::Tables(&HALVED_IN), "where triangles and tetrahedra are divided further")
+            .law("After `halved`, and like it.")
+            .default("nowhere"),
+        Key::new("bubbles", Holds::Flag, "whether triangles and tetrahedra get mid nodes, and one in the middle of each cell and face")
+            .law("With `dilatation = \"linear\"`, which goes with them, they are the cells for nearly incompressible bodies of any \
+                  shape: `triangles7` and `tetrahedra15`. After `halved_in`, and like it.")
+            .default("false"),
     ],
     "mesh = { kind = \"ring\", inner = 0.04, outer = 0.05, nodes = [32, 3], cells = \"crossed\", origin = [0.0, 0.05] }",
 )
@@ -67,6 +76,22 @@ pub(super) const MESH: TableKeys = TableKeys::new(
     },
     Kind { word: "listed", about: "node by node, as programs hand meshes over", keys: listed::KEYS },
 ]);
+
+const HALVED_IN: TableKeys = TableKeys::new(
+    "halved_in",
+    "A place where cells are divided further, as sharp corners and clamps need it: those that have one of the nodes, and cells around \
+     them as far as it takes for no node to hang on an edge.",
+    &[
+        Key::new("nodes", Holds::Nodes, "nodes of the mesh that there is by then"),
+        Key::new("times", Holds::Count, "how often cells that have one of the nodes are divided")
+            .law("Goes with `nodes`.")
+            .default("1"),
+        Key::new("cells", Holds::List(&Holds::Count), "numbers of cells, from 1, of the mesh that there is by then")
+            .law("`pliant static --refine` writes such lists."),
+    ],
+    "mesh = { kind = \"rectangle\", size = [0.1, 0.02], nodes = [11, 3], cells = \"triangles6\", halved_in = [{ nodes = \"left\", times = 2 }] }",
+)
+.one_of(&[&["nodes"], &["cells"]]);
 
 const FINER: &str = "Triangles, tetrahedra and hexahedra; quadrilaterals are divided into triangles first. Numbers of nodes in the file are \
      those of the mesh without this; where several nodes are held, moved or under tractions, those between them are, too. Forces \
@@ -157,12 +182,53 @@ pub(super) fn mesh(
 pub(super) fn on_finer_mesh(scene: Scene, value: &Value) -> Result<Scene, Error> {
     let table = value.table(&MESH)?;
     let blame = |error: InputError| table.blame(error);
-    let scene = match table.optional("quadratic", Value::flag)? {
-        Some(true) => scene.quadratic().map_err(blame)?,
-        _ => scene,
+    let is = |key: &str| Ok::<bool, Error>(table.optional(key, Value::flag)? == Some(true));
+    let mut scene = match is("quadratic")? {
+        true => scene.quadratic().map_err(blame)?,
+        false => scene,
     };
     let times = table.optional("halved", Value::count)?.unwrap_or(0);
-    (0..times).try_fold(scene, |scene, _| scene.halved().map_err(blame))
+    for _ in 0..times {
+        scene = scene.halved().map_err(blame)?;
+    }
+    if let Some(places) = table.get("halved_in") {
+        for place in places.tables(&HALVED_IN)? {
+            scene = halved_in(scene, &place)?;
+        }
+    }
+    match is("bubbles")? {
+        true => scene.with_bubbles().map_err(blame),
+        false => Ok(scene),
+    }
+}
+
+fn halved_in(mut scene: Scene, place: &Table) -> Result<Scene, Error> {
+    let blame = |error: InputError| place.blame(error);
+    let times = place.optional("times", Value::count)?;
+    if let Some(value) = place.get("cells") {
+        if times.is_some() {
+            let help = "times goes with nodes: after a division cells have other numbers";
+            return Err(place.error(help));
+        }
+        let numbers = CellSelection::Numbers(value.list_of("cell numbers", Value::count)?);
+        let cells = numbers.cells(scene.body().mesh()).map_err(|error| value.error(error))?;
+        return scene.halved_in(&cells).map_err(blame);
+    }
+    for _ in 0..times.unwrap_or(1) {
+        let mesh = scene.body().mesh();
+        let nodes = place.required("nodes", |value| selection(value, mesh))?;
+        let cells = mesh.cells_at(nodes).map_err(blame)?;
+        scene = scene.halved_in(&cells).map_err(blame)?;
+    }
+    Ok(scene)
+}
+
+/// Whether cells get nodes in the middle of edges, faces or themselves, and whether these bring bubbles.
+pub(super) fn gets_mid_nodes(value: &Value) -> Result<(bool, bool), Error> {
+    let table = value.table(&MESH)?;
+    let [quadratic, bubbles] = ["quadratic", "bubbles"].map(|key| table.optional(key, Value::flag));
+    let bubbles = bubbles? == Some(true);
+    Ok((quadratic? == Some(true) || bubbles, bubbles))
 }
 
 /// Whether the cells of a generated mesh are left to be chosen.

@@ -7,7 +7,7 @@ use crate::base::tensor::determinant;
 use crate::base::vector::{cross, norm};
 use crate::elements::basis::{
     Quadrilateral, Quadrilateral8, Quadrilateral9, ReferenceCell, Segment, Segment3, Triangle,
-    Triangle6,
+    Triangle6, Triangle7,
 };
 use crate::elements::body::Body;
 use crate::elements::mesh::{Face, FaceKind, Mesh};
@@ -35,6 +35,7 @@ pub(super) fn face_points(kind: FaceKind) -> Vec<FacePoint> {
         FaceKind::Segment3 => points_of::<Segment3, 3, 1>(),
         FaceKind::Triangle => points_of::<Triangle, 3, 2>(),
         FaceKind::Triangle6 => points_of::<Triangle6, 6, 2>(),
+        FaceKind::Triangle7 => points_of::<Triangle7, 7, 2>(),
         FaceKind::Quadrilateral => points_of::<Quadrilateral, 4, 2>(),
         FaceKind::Quadrilateral8 => points_of::<Quadrilateral8, 8, 2>(),
         FaceKind::Quadrilateral9 => points_of::<Quadrilateral9, 9, 2>(),
@@ -74,6 +75,7 @@ pub(super) fn volume_parts<const N: usize>(kind: FaceKind) -> Vec<([usize; N], f
     let count: usize = match kind {
         FaceKind::Segment3 => 3,
         FaceKind::Triangle6 => 6,
+        FaceKind::Triangle7 => 7,
         FaceKind::Quadrilateral8 => 8,
         FaceKind::Quadrilateral9 => 9,
         _ => {

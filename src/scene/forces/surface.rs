@@ -61,6 +61,7 @@ pub(crate) fn face_centre(kind: FaceKind, face: &[usize]) -> Option<SurfacePoint
         FaceKind::Point | FaceKind::Segment | FaceKind::Segment3 => return None,
         FaceKind::Triangle => &[0, 1, 2],
         FaceKind::Triangle6 => &[3, 4, 5],
+        FaceKind::Triangle7 => &[6],
         FaceKind::Quadrilateral => &[0, 2],
         FaceKind::Quadrilateral8 => &[4, 6],
         FaceKind::Quadrilateral9 => &[8],
@@ -130,6 +131,9 @@ pub(crate) fn pieces(face: FaceKind) -> impl Iterator<Item = (&'static [usize], 
         FaceKind::Triangle => (&[&[0, 1, 2]], &[]),
         FaceKind::Quadrilateral => (&[], &[&[0, 1, 2], &[0, 2, 3], &[1, 2, 3], &[1, 3, 0]]),
         FaceKind::Triangle6 => (&[&[0, 3, 5], &[3, 1, 4], &[5, 4, 2], &[3, 4, 5]], &[]),
+        FaceKind::Triangle7 => {
+            (&[&[0, 3, 6], &[3, 1, 6], &[1, 4, 6], &[4, 2, 6], &[2, 5, 6], &[5, 0, 6]], &[])
+        }
         FaceKind::Quadrilateral8 => (
             &[&[0, 4, 7], &[4, 1, 5], &[5, 2, 6], &[6, 3, 7]],
             &[&[4, 5, 6], &[4, 6, 7], &[5, 6, 7], &[5, 7, 4]],

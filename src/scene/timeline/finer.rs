@@ -63,6 +63,26 @@ impl Scene {
         Ok(self.on(Mesh::elevated)?.0)
     }
 
+    /// The same scene with these cells of the mesh (counted from 0) divided, and cells around them as far as it takes: see
+    /// [`Mesh::halved_in`], [`Mesh::cells_at`], and [`halved`](Self::halved) for what becomes of the rest. Obstacles whose stiffness is per
+    /// node push finer parts of the boundary harder than coarser ones: theirs should be per area
+    /// ([`Obstacle::stiffness_density`]).
+    ///
+    /// # Errors
+    /// As [`halved`](Self::halved) and [`Mesh::halved_in`].
+    pub fn halved_in(&self, cells: &[usize]) -> Result<Self, InputError> {
+        Ok(self.on(|mesh| mesh.bisected(cells))?.0)
+    }
+
+    /// The same scene with quadratic triangles or tetrahedra that have bubbles: see [`Mesh::with_bubbles`], and
+    /// [`halved`](Self::halved) for what becomes of the rest.
+    ///
+    /// # Errors
+    /// As [`halved`](Self::halved); cells of other shapes, or that have bubbles already.
+    pub fn with_bubbles(&self) -> Result<Self, InputError> {
+        Ok(self.on(Mesh::bubbled)?.0)
+    }
+
     /// The same scene on the next finer mesh, and how its nodes follow from the old ones. Its cells are
     /// quadratic, or halved if they were quadratic before or there are no quadratic ones of their kind.
     #[cfg(feature = "study")]

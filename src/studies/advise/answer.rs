@@ -40,11 +40,11 @@ impl Advice {
             };
             if let (Some(error), true) = (candidate.error, rich.is_some_and(is_mesh)) {
                 let choice = &candidate.choice;
-                let mesh = match (choice.quadratic, choice.halved) {
-                    (false, 0) => "the mesh as written".to_owned(),
-                    (false, count) => format!("cells halved {}", times(count)),
-                    (true, 0) => "quadratic cells".to_owned(),
-                    (true, count) => format!("quadratic cells, halved {}", times(count)),
+                let mesh = match (choice.richer, choice.halved) {
+                    (None, 0) => "the mesh as written".to_owned(),
+                    (None, count) => format!("cells halved {}", times(count)),
+                    (Some(richer), 0) => richer.to_string(),
+                    (Some(richer), count) => format!("{richer}, halved {}", times(count)),
                 };
                 let (unknowns, time) = (candidate.unknowns, time_text(candidate.seconds));
                 let differs = if self.mesh.is_some() { "away" } else { "off" };
@@ -78,10 +78,15 @@ impl Advice {
                 let mesh = candidate.parts?.mesh - self.resolution;
                 (!mesh.is_nan()).then(|| percent(mesh))
             });
+            let told = match estimate.is_reliable() {
+                true => format!(
+                    "is {} off at rest, as",
+                    percent(estimate.correction.abs() / self.scale)
+                ),
+                false => "is off at rest by what no".into(),
+            };
             reasons.push(format!(
-                "the mesh as written is {} off at rest, as adjoint-weighted residuals tell{}{}",
-                percent(estimate.correction.abs() / self.scale),
-                if estimate.is_reliable() { "" } else { " roughly" },
+                "the mesh as written {told} adjoint-weighted residuals tell{}",
                 paired.map_or_else(String::new, |paired| format!(" (by paired runs: {paired})"))
             ));
         }

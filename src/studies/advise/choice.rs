@@ -3,7 +3,8 @@
 use std::fmt;
 
 use crate::base::input::InputError;
-use crate::elements::body::{Inertia, Strain};
+use crate::elements::body::{Body, Dilatation, Inertia, Strain};
+use crate::elements::material::Plane;
 use crate::elements::mesh::CellKind;
 use crate::scene::settings::{ContactEvents, Settings};
 use crate::scene::timeline::{Scene, Term};
@@ -13,8 +14,8 @@ use crate::scene::timeline::{Scene, Term};
 pub struct Choice {
     /// Measure of strain.
     pub strain: Strain,
-    /// Whether cells get mid nodes: see [`Scene::quadratic`].
-    pub quadratic: bool,
+    /// Cells with more nodes; none as they were written.
+    pub richer: Option<RicherCells>,
     /// How often each cell is divided: see [`Scene::halved`].
     pub halved: usize,
     /// How inertia is distributed to the nodes.
@@ -34,7 +35,7 @@ impl Choice {
         let body = scene.body();
         Self {
             strain: body.strain(),
-            quadratic: false,
+            richer: None,
             halved: 0,
             inertia: body.inertia_kind(),
             without: Vec::new(),
@@ -53,8 +54,11 @@ impl Choice {
             own if own == (strain, inertia) => written.clone(),
             _ => written.with_body(|body| body.strain(strain).inertia(inertia))?,
         };
-        if self.quadratic {
-            scene = scene.quadratic()?;
+        if let Some(RicherCells { bubbles, linear }) = self.richer {
+            scene = if bubbles { scene.with_bubbles()? } else { scene.quadratic()? };
+            if linear {
+                scene = scene.with_body(|body| body.dilatation(Dilatation::Linear))?;
+            }
         }
         for _ in 0..self.halved {
             scene = scene.halved()?;
@@ -71,12 +75,12 @@ impl Choice {
 
     /// Whether it is on the mesh as it was written.
     pub(super) fn is_mesh_as_written(&self) -> bool {
-        (self.quadratic, self.halved) == (false, 0)
+        (self.richer, self.halved) == (None, 0)
     }
 
     /// Whether both are on the same mesh.
     pub(super) fn is_mesh_of(&self, other: &Self) -> bool {
-        (self.quadratic, self.halved) == (other.quadratic, other.halved)
+        (self.richer, self.halved) == (other.richer, other.halved)
     }
 
     /// What has to be set in a scene file for it, as `--set` takes it; the file makes the scene `written`
@@ -91,8 +95,12 @@ impl Choice {
             };
             sets.push(format!("body.strain={strain}"));
         }
-        if self.quadratic {
-            sets.push("body.mesh.quadratic=true".into());
+        if let Some(RicherCells { bubbles, linear }) = self.richer {
+            let key = if bubbles { "bubbles" } else { "quadratic" };
+            sets.push(format!("body.mesh.{key}=true"));
+            if linear {
+                sets.push("body.dilatation=linear".into());
+            }
         }
         if self.halved > 0 {
             sets.push(format!("body.mesh.halved={}", self.halved));
@@ -165,10 +173,13 @@ impl Choice {
 
     /// The cells that it makes of those of a `kind`, in words.
     pub(super) fn cells(&self, kind: CellKind) -> String {
-        let kind = match (self.quadratic, kind) {
-            (true, CellKind::Triangle | CellKind::Quadrilateral) => CellKind::Triangle6,
-            (true, CellKind::Tetrahedron) => CellKind::Tetrahedron10,
-            (true, CellKind::Hexahedron) => CellKind::Hexahedron20,
+        let richer = self.richer.map(|richer| richer.bubbles);
+        let kind = match (richer, kind) {
+            (Some(false), CellKind::Triangle | CellKind::Quadrilateral) => CellKind::Triangle6,
+            (Some(false), CellKind::Tetrahedron) => CellKind::Tetrahedron10,
+            (Some(false), CellKind::Hexahedron) => CellKind::Hexahedron20,
+            (Some(true), kind) if kind.dimension() == 2 => CellKind::Triangle7,
+            (Some(true), _) => CellKind::Tetrahedron15,
             (_, kind) => kind,
         };
         let parts = match self.halved {
@@ -180,6 +191,41 @@ impl Choice {
     }
 }
 
+/// What cells get: mid nodes ([`Scene::quadratic`]) and, in nearly incompressible bodies, what keeps them from locking.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct RicherCells {
+    /// Whether triangles and tetrahedra get bubbles, too: see [`Scene::with_bubbles`].
+    pub bubbles: bool,
+    /// Whether the dilatation becomes linear: see [`Dilatation::Linear`].
+    pub linear: bool,
+}
+
+impl fmt::Display for RicherCells {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(if self.bubbles { "quadratic cells with bubbles" } else { "quadratic cells" })
+    }
+}
+
+/// Poisson's ratio from which a body is nearly incompressible.
+const SILICONE: f64 = 0.45;
+
+impl RicherCells {
+    /// Those of a body as it was written; `None` if its cells have them already, or there are none.
+    pub(super) fn of(body: &Body) -> Option<Self> {
+        let kind = body.mesh().kind();
+        let can_lock = kind.dimension() == body.dimension()
+            && (kind.dimension() == 3 || body.plane() == Plane::Strain);
+        let linear = can_lock && body.materials().iter().any(|part| part.poisson >= SILICONE);
+        match kind {
+            CellKind::Triangle | CellKind::Quadrilateral | CellKind::Tetrahedron => {
+                Some(Self { bubbles: linear, linear })
+            }
+            CellKind::Hexahedron => Some(Self { bubbles: false, linear }),
+            _ => None,
+        }
+    }
+}
+
 impl fmt::Display for Choice {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let strain = match self.strain {
@@ -187,8 +233,8 @@ impl fmt::Display for Choice {
             Strain::Green => "Green",
         };
         write!(f, "{strain} strain")?;
-        if self.quadratic {
-            f.write_str(", quadratic cells")?;
+        if let Some(richer) = self.richer {
+            write!(f, ", {richer}")?;
         }
         if self.halved > 0 {
             write!(f, ", cells halved {}", times(self.halved))?;

@@ -76,7 +76,7 @@ impl Found {
     /// Whether the last three meshes are of one kind of cells, so that they tell a rate.
     pub(super) fn has_rate(&self) -> bool {
         match &self.meshes[..] {
-            [.., first, _, third] => first.choice.quadratic == third.choice.quadratic,
+            [.., first, _, third] => first.choice.richer == third.choice.richer,
             _ => false,
         }
     }
@@ -141,7 +141,7 @@ mod tests {
 
     use super::*;
     use crate::scene::settings::Settings;
-    use crate::studies::advise::Choice;
+    use crate::studies::advise::{Choice, RicherCells};
     use crate::studies::samples::beam_jump;
 
     /// Meshes on which a number is off by `errors` of its scale.
@@ -152,7 +152,7 @@ mod tests {
             let seen = json!({ "dimension": 1, "values": values, "scale": 1.0 });
             let choice = Choice::written(&scene, &Settings::default());
             Solved {
-                choice: Choice { quadratic, halved, ..choice },
+                choice: Choice { richer: quadratic.then(RicherCells::default), halved, ..choice },
                 seen: serde_json::from_value(seen).unwrap(),
                 seconds: 1.0,
                 unknowns: 1,

@@ -2,12 +2,11 @@
 
 use std::iter;
 
-use super::choice::Choice;
+use super::choice::{Choice, RicherCells};
 use super::found::Found;
 use super::search::{Cut, Search, Solved, Stop};
 use crate::dynamics::equilibrium::MeshEstimate;
 use crate::elements::body::{Inertia, Strain};
-use crate::elements::mesh::CellKind;
 use crate::scene::settings::{ContactEvents, Method, Settings};
 use crate::studies::work_precision::tightening;
 
@@ -161,11 +160,11 @@ impl Search<'_> {
     /// two may agree by chance.
     fn refine(&mut self, rich: &Solved, found: &mut Found) -> Result<(), Stop> {
         let kind = self.scene.body().mesh().kind();
-        let has_quadratic = kind != CellKind::Segment && !kind.is_quadratic();
-        let finer = |quadratic, halved| Choice { quadratic, halved, ..rich.choice.clone() };
-        let first = if has_quadratic { 0 } else { 2 };
-        let steps = (first..FINEST).map(|halved| finer(has_quadratic, halved));
-        for choice in iter::once(finer(false, 1)).chain(steps) {
+        let richest = RicherCells::of(self.scene.body());
+        let finer = |richer, halved| Choice { richer, halved, ..rich.choice.clone() };
+        let first = if richest.is_some() { 0 } else { 2 };
+        let steps = (first..FINEST).map(|halved| finer(richest, halved));
+        for choice in iter::once(finer(None, 1)).chain(steps) {
             let Some(last) = found.truth() else { return Ok(()) };
             let scene = match choice.scene(&self.scene) {
                 Ok(scene) => scene,
@@ -186,7 +185,7 @@ impl Search<'_> {
                 found.meshes.push(solved);
             }
             // linear cells that lock may agree with each other
-            let may_tell = choice.quadratic == has_quadratic;
+            let may_tell = choice.richer == richest;
             let is_fine = found.resolution() < OF_TRUTH * self.request.accuracy;
             if may_tell && found.has_rate() && is_fine {
                 return Ok(());
@@ -271,7 +270,7 @@ impl Search<'_> {
         let Some(solved) = self.run(&choice)? else { return Ok(()) };
         found.sweep.push(solved.clone());
         if found.is_right(&solved, self.request.accuracy) {
-            let coarse = Choice { quadratic: false, halved: 0, ..choice };
+            let coarse = Choice { richer: None, halved: 0, ..choice };
             let scene = coarse.scene(&self.scene).ok();
             let equilibrium = scene.and_then(|scene| self.at_rest(&scene).ok());
             let estimate =

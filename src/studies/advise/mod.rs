@@ -15,5 +15,5 @@ mod search;
 
 pub use advice::{Advice, Candidate};
 pub use adviser::Adviser;
-pub use choice::Choice;
+pub use choice::{Choice, RicherCells};
 pub use parts::Parts;

@@ -182,7 +182,9 @@ fn contributions(richer: &Scene, finer: &Finer, z: &[f64], f: &[f64]) -> Vec<f64
     };
     let mesh = richer.body().mesh();
     let children: Vec<&[usize]> = mesh.cells().collect();
-    let cells: Vec<Vec<usize>> = children.chunks_exact(finer.children).map(new_nodes_of).collect();
+    let cells =
+        (0..finer.old_cell_count()).map(|cell| new_nodes_of(&children[finer.children(cell)]));
+    let cells: Vec<Vec<usize>> = cells.collect();
     let mut around = vec![0.0; mesh.node_count()];
     cells.iter().flatten().for_each(|&node| around[node] += 1.0);
     let of_node = |&node: &usize| {

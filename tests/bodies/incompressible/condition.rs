@@ -20,7 +20,7 @@ fn linear_bodies_come_to_rest() {
     for kind in Kind::ALL {
         for poisson in [0.3, 0.49999] {
             for &dilatation in kind.dilatations() {
-                let cells = if matches!(kind, Kind::Plane(_)) { 12 } else { 4 };
+                let cells = if kind.is_plane() { 8 } else { 3 };
                 let body = body(kind.mesh(cells), material(poisson), dilatation);
                 let body = body.strain(Strain::Cauchy).build().unwrap();
                 let mut load = vec![0.0; body.dimension()];
@@ -64,7 +64,7 @@ fn conditions_and_steps() {
         (Cells::Rectangles9, Dilatation::Linear),
     ] {
         let mut first = None;
-        for poisson in [0.3, 0.49, 0.4999] {
+        for poisson in [0.3, 0.4999] {
             let body = cantilever(poisson, cells, dilatation);
             let condition = condition(&body);
             let swings = Phase::until(0.2).hold("left").traction("right", [0.0, -2e3]);

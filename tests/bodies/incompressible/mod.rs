@@ -1,7 +1,8 @@
-//! Bodies that keep their volume: patches, pressures, stability, conditions, closed forms.
+//! Bodies that keep their volume: patches, pressures, stability, conditions, closed forms, Cook's membrane.
 
 mod closed_forms;
 mod condition;
+mod cook;
 mod patches;
 mod pressures;
 
@@ -9,15 +10,17 @@ use faer::prelude::Solve;
 use faer::{Mat, Side};
 use pliant::{Body, Cells, Dilatation, Mesh, SolidCells, Substance};
 
-/// How cells are made: in the plane, or in space.
+/// How cells are made: in the plane, or in space; `Triangles7` and `Tetrahedra15` are those with bubbles.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Kind {
     Plane(Cells),
     Solid(SolidCells),
+    Triangles7,
+    Tetrahedra15,
 }
 
 impl Kind {
-    const ALL: [Self; 10] = [
+    const ALL: [Self; 12] = [
         Self::Plane(Cells::Triangles),
         Self::Plane(Cells::Crossed),
         Self::Plane(Cells::Rectangles),
@@ -28,6 +31,8 @@ impl Kind {
         Self::Solid(SolidCells::Tetrahedra10),
         Self::Solid(SolidCells::Hexahedra20),
         Self::Solid(SolidCells::Hexahedra27),
+        Self::Triangles7,
+        Self::Tetrahedra15,
     ];
 
     /// A unit square or cube with so many cells along its sides.
@@ -35,6 +40,8 @@ impl Kind {
         match self {
             Self::Plane(kind) => Mesh::rectangle([1.0; 2], [cells + 1; 2], kind),
             Self::Solid(kind) => Mesh::cuboid([1.0; 3], [cells + 1; 3], kind),
+            Self::Triangles7 => Self::Plane(Cells::Triangles6).mesh(cells).with_bubbles(),
+            Self::Tetrahedra15 => Self::Solid(SolidCells::Tetrahedra10).mesh(cells).with_bubbles(),
         }
         .unwrap()
     }
@@ -42,6 +49,14 @@ impl Kind {
     /// The same with corners within moved by up to a fifth of a cell, edges straight. A node in the middle of a face or
     /// of a cell moves as the mean of the corners around it.
     fn distorted(self, cells: usize) -> Mesh {
+        let straight = match self {
+            Self::Triangles7 => Some(Self::Plane(Cells::Triangles6)),
+            Self::Tetrahedra15 => Some(Self::Solid(SolidCells::Tetrahedra10)),
+            _ => None,
+        };
+        if let Some(straight) = straight {
+            return straight.distorted(cells).with_bubbles().unwrap();
+        }
         let noise = |x: &[f64], i: usize| {
             let mixed: f64 = x.iter().enumerate().map(|(k, x)| (k * k + 3) as f64 * 37.7 * x).sum();
             let random = 2.0 * (43758.5453 * (mixed + 2.0 * i as f64).sin()).rem_euclid(1.0) - 1.0;
@@ -74,13 +89,19 @@ impl Kind {
         if is_quadratic { mesh.quadratic().unwrap() } else { mesh }
     }
 
+    fn is_plane(self) -> bool {
+        matches!(self, Self::Plane(_) | Self::Triangles7)
+    }
+
     /// The dilatations that its cells can have.
     fn dilatations(self) -> &'static [Dilatation] {
         let all = &[Dilatation::AtPoints, Dilatation::Mean, Dilatation::Linear];
         match self {
             Self::Plane(Cells::Triangles | Cells::Crossed)
             | Self::Solid(SolidCells::Tetrahedra) => &all[..1],
-            Self::Plane(Cells::Rectangles9)
+            Self::Triangles7
+            | Self::Tetrahedra15
+            | Self::Plane(Cells::Rectangles9)
             | Self::Solid(SolidCells::Hexahedra20 | SolidCells::Hexahedra27) => all,
             _ => &all[..2],
         }

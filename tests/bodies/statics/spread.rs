@@ -47,7 +47,10 @@ fn patch_test(load: impl Fn(Phase, usize, f64) -> Phase) {
         let rough = roughness(&Scene::new(body).phase(load(plane.clone(), 2, 0.01)), pull);
         println!("{cells}: {rough:e}");
         assert!(rough < 1e-11, "{cells}: {rough:e}");
-        // a membrane in space is pulled at its rim
+        // a membrane in space is pulled at its rim; cells of 9 nodes fill a plane
+        if cells == Cells::Rectangles9 {
+            continue;
+        }
         let mesh = Mesh::rectangle([2.0, 1.0], [4, 5], cells).unwrap();
         let mesh = mesh.mapped(|x| [uneven::<2>(x)[0], uneven::<2>(x)[1], 0.0]).unwrap();
         let body = Body::new(mesh, SQUARE_MATERIAL)

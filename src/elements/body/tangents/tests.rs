@@ -9,7 +9,7 @@ use super::*;
 use crate::base::sparse::NodePattern;
 use crate::elements::basis::{
     Hexahedron, Hexahedron20, Quadrilateral9, ReferenceCell, Segment, Tetrahedron10, Triangle,
-    Triangle6,
+    Triangle6, Triangle7,
 };
 use crate::elements::body::tests::{bodies, noise};
 use crate::elements::body::{Body, CellSelection, Dilatation};
@@ -81,6 +81,8 @@ fn several_cells_at_once() {
     is_the_same_on_all_machines::<Segment, 2, 1, 1, 1>(&Mesh::bar(1.0, 12).unwrap(), points);
     is_the_same_on_all_machines::<Triangle, 3, 2, 2, 1>(&plane(Cells::Triangles), points);
     is_the_same_on_all_machines::<Triangle6, 6, 2, 2, 3>(&plane(Cells::Triangles6), points);
+    let with_bubbles = plane(Cells::Triangles6).with_bubbles().unwrap();
+    is_the_same_on_all_machines::<Triangle7, 7, 2, 2, 6>(&with_bubbles, linear);
     is_the_same_on_all_machines::<Quadrilateral9, 9, 2, 2, 9>(&plane(Cells::Rectangles9), linear);
     let hexahedra = solid(SolidCells::Hexahedra);
     is_the_same_on_all_machines::<Hexahedron, 8, 3, 3, 8>(&hexahedra, points);

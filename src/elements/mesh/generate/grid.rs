@@ -213,13 +213,13 @@ impl<const N: usize> Grid<N> {
         let number = |place: [usize; N]| self.numbers[self.index(&place)];
         connectivity.extend(corners.map(|corner| number(corner.map(|k| self.steps * k))));
         if self.steps == 2 {
-            // twice the mean of two corners
-            let middle = |a: usize, b: usize| {
-                let [a, b] = [corners[a], corners[b]];
+            // twice the mean of two corners; no grid has nodes at thirds
+            let middle = |ends: &[usize]| {
+                let [a, b] = [corners[ends[0]], corners[ends[1]]];
                 number(std::array::from_fn(|axis| a[axis] + b[axis]))
             };
-            connectivity.extend(kind.edges().iter().map(|edge| middle(edge[0], edge[1])));
-            connectivity.extend(kind.middles().iter().map(|&[a, b]| middle(a, b)));
+            connectivity.extend(kind.edges().iter().map(|edge| middle(edge)));
+            connectivity.extend(kind.middles().iter().map(|ends| middle(ends)));
         }
     }
 
