@@ -31,7 +31,7 @@ impl Mesh {
     ///     // towards the lower left corner
     ///     mesh = mesh.halved_in(&mesh.cells_at([1])?)?;
     /// }
-    /// assert_eq!(mesh.cell_count(), 62);
+    /// assert_eq!(mesh.cell_count(), 64);
     /// # Ok::<(), pliant::Error>(())
     /// ```
     ///
