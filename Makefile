@@ -26,20 +26,23 @@ BOTH := -p pliant -p pliant-python $(FEATURES)
 # An extension module finds Python's functions in the program that loads it.
 export PYO3_BUILD_EXTENSION_MODULE := 1
 
+# What is only read, by clippy and rustdoc, is not optimized, and is read once for both.
+READ := --config profile.dev.opt-level=0
+
 # Unit tests are short: to optimize them, which compiles the library once more, would take longer than to run them as they are.
-# What clippy reads is not run, and not optimized. Examples are checked by clippy; the two that are named have tests of their own. What the tests run beside themselves, a browser
+# Examples are checked by clippy; the two that are named have tests of their own. What the tests run beside themselves, a browser
 # and Python, is fetched while clippy computes. Tests run in two halves at once: the last test of a program leaves no core idle.
 test: ## Every check: format, lints, tests, documentation and its examples
 	@scripts/setup.sh
 	cargo fmt --all --check
 	{ scripts/setup.sh chromium python3-venv && scripts/python.sh environment; } & \
-		cargo clippy --workspace --all-targets $(FEATURES) --config profile.dev.opt-level=0 -- -D warnings && wait $$!
+		cargo clippy --workspace --all-targets $(FEATURES) $(READ) -- -D warnings && wait $$!
 	cargo test -p pliant $(FEATURES) --lib --config profile.dev.package.pliant.opt-level=0
 	cargo test $(BOTH) --bins --test '*' --example gallery --example integrators --no-run
 	cargo test $(BOTH) --test 's*' & \
 		cargo test $(BOTH) --bins --test '[!s]*' --example gallery --example integrators && wait $$!
 	cargo test $(BOTH) --doc
-	RUSTDOCFLAGS=-Dwarnings cargo doc $(BOTH) --no-deps
+	RUSTDOCFLAGS=-Dwarnings cargo doc $(BOTH) --no-deps $(READ)
 	scripts/python.sh test $(BOTH)
 
 python: ## The wheel of the Python module, made, installed into an environment of its own, and tested there

@@ -9,8 +9,8 @@
 
 use pliant::samples::ClampedBeam;
 use pliant::{
-    Body, Cells, Error, Inertia, InputError, Material, Mesh, Method, Phase, Report, Sampling,
-    Scene, Settings, SolidCells,
+    Body, Cells, Dilatation, Error, Inertia, InputError, Law, Material, Mesh, Method, Phase,
+    Report, Sampling, Scene, Settings, SolidCells, Strain, Substance,
 };
 use rustix::time::{ClockId, clock_gettime};
 
@@ -98,29 +98,59 @@ fn inertia(method: Method) -> Inertia {
     }
 }
 
-/// Forces and tangents, kind by kind.
-fn kinds() -> Result<(), Error> {
-    let solids = [SolidCells::Tetrahedra, SolidCells::Tetrahedra10, SolidCells::Hexahedra];
+/// A mesh of each kind of cells.
+fn meshes() -> Result<Vec<(String, Mesh)>, InputError> {
     let mut meshes = vec![("segments".into(), Mesh::bar(0.1, 1025)?)];
     for cells in Cells::ALL {
-        meshes.push((cells.to_string(), Mesh::rectangle([0.2, 0.1], [33, 17], cells)?));
+        meshes.push((cells.name().into(), Mesh::rectangle([0.2, 0.1], [33, 17], cells)?));
     }
-    for cells in solids {
-        meshes.push((format!("{cells:?}").to_lowercase(), Mesh::cuboid([0.1; 3], [8; 3], cells)?));
+    for cells in SolidCells::ALL {
+        meshes.push((cells.name().into(), Mesh::cuboid([0.1; 3], [8; 3], cells)?));
     }
-    let rubber = Material { density: 1000.0, young: 1e5, poisson: 0.3, viscosity: 0.0 };
-    println!("| ns per cell | cells | forces | tangents |\n|{}", " --- |".repeat(4));
-    for (name, mesh) in meshes {
+    let triangles = Mesh::rectangle([0.2, 0.1], [33, 17], Cells::Triangles6)?;
+    let tetrahedra = Mesh::cuboid([0.1; 3], [8; 3], SolidCells::Tetrahedra10)?;
+    for mesh in [triangles.with_bubbles()?, tetrahedra.with_bubbles()?] {
+        meshes.push((mesh.kind().word().into(), mesh));
+    }
+    Ok(meshes)
+}
+
+/// Forces and tangents, kind by kind: of linear bodies, and of rubber, at points and with what keeps it from locking.
+fn kinds() -> Result<(), Error> {
+    let soft = Material { density: 1000.0, young: 1e5, poisson: 0.3, viscosity: 0.0 };
+    let rubber = Material { poisson: 0.49, ..soft }.law(Law::NeoHookean);
+    let bodies = [
+        ("linear", Strain::Cauchy, Dilatation::AtPoints, Substance::from(soft)),
+        ("rubber, at points", Strain::Green, Dilatation::AtPoints, rubber.clone()),
+        ("rubber, mean", Strain::Green, Dilatation::Mean, rubber.clone()),
+        ("rubber, linear", Strain::Green, Dilatation::Linear, rubber),
+    ];
+    println!(
+        "| ns per cell: forces, tangents | cells |{}",
+        bodies.clone().map(|body| format!(" {} |", body.0)).concat()
+    );
+    println!("|{}", " --- |".repeat(2 + bodies.len()));
+    for (name, mesh) in meshes()? {
         let cells = mesh.cells().count();
-        let body = match mesh.dimension() {
-            1 => Body::new(mesh, rubber).area(1e-4),
-            2 => Body::new(mesh, rubber).thickness(0.01),
-            _ => Body::new(mesh, rubber),
-        };
-        let scene = Scene::new(body.build()?).phase(Phase::until(1.0));
-        let Parts { forces, tangents, .. } = Parts::of(&scene)?;
-        let [forces, tangents] = [forces, tangents].map(|seconds| 1e9 * seconds / cells as f64);
-        println!("| {name} | {cells} | {forces:.1} | {tangents:.1} |");
+        print!("| {name} | {cells} |");
+        for (_, strain, dilatation, substance) in bodies.clone() {
+            let body = Body::new(mesh.clone(), substance).strain(strain).dilatation(dilatation);
+            let body = match mesh.dimension() {
+                1 => body.area(1e-4),
+                2 => body.thickness(0.01),
+                _ => body,
+            };
+            // not all cells have all dilatations
+            let Ok(body) = body.build() else {
+                print!(" |");
+                continue;
+            };
+            let scene = Scene::new(body).phase(Phase::until(1.0));
+            let Parts { forces, tangents, .. } = Parts::of(&scene)?;
+            let [forces, tangents] = [forces, tangents].map(|seconds| 1e9 * seconds / cells as f64);
+            print!(" {forces:.0}, {tangents:.0} |");
+        }
+        println!();
     }
     println!();
     Ok(())

@@ -62,3 +62,69 @@ pub fn page(trials: &[Trial], within: f64, budget: f64) -> String {
     }
     page
 }
+
+const SOFT: &str = "
+## Thirty scenes of silicone
+
+Fingers, rooms with sharp corners, blocks and pads, each with Poisson's ratio 0.45, 0.49 and 0.499, in a plane and in space: bending,
+air, contact, friction. Each number is *promised / true*, as above. A promise *holds* if the true error is at most what was
+promised; it is compared with a mesh finer than any that the adviser has seen, or stands in brackets: then there was none within the time.
+*On this mesh*: the adviser says that it does not know what the mesh is off by, and promises nothing of it.
+";
+
+/// The section on scenes of silicone: each scene's trials, by accuracy.
+pub fn soft(scenes: &[Vec<Trial>], budget: f64) -> String {
+    let Some(first) = scenes.first() else { return String::new() };
+    let mut page = SOFT.to_owned();
+    page += &format!(
+        "\nWithin {budget} s each:\n\n| asked for | promises | hold | below the accuracy asked for | promised over true, median | not known | advice, mean |\n\
+         | --- | ---: | ---: | ---: | ---: | ---: | ---: |\n"
+    );
+    for (number, accuracy) in first.iter().map(|trial| trial.advice.accuracy).enumerate() {
+        let all: Vec<&Trial> = scenes.iter().map(|trials| &trials[number]).collect();
+        let judged: Vec<(f64, f64)> = all
+            .iter()
+            .filter(|trial| trial.is_against_finer())
+            .filter_map(|trial| Some((trial.promised()?, trial.enough?)))
+            .collect();
+        let hold = judged.iter().filter(|(promised, error)| error <= promised).count();
+        let right = judged.iter().filter(|(_, error)| *error <= accuracy).count();
+        let mut sharpness: Vec<f64> =
+            judged.iter().map(|(promised, error)| promised / error).collect();
+        sharpness.sort_by(f64::total_cmp);
+        let median = sharpness.get(sharpness.len() / 2).copied().unwrap_or(f64::NAN);
+        let unknown = all.iter().filter(|trial| trial.promised().is_none()).count();
+        let seconds: f64 = all.iter().map(|trial| trial.advice.seconds).sum();
+        page += &format!(
+            "| {} % | {} | {hold} | {right} | {median:.1} | {unknown} | {:.1} s |\n",
+            100.0 * accuracy,
+            judged.len(),
+            seconds / all.len() as f64
+        );
+    }
+    page += "\n| scene |";
+    for trial in first {
+        page += &format!(" {} % |", 100.0 * trial.advice.accuracy);
+    }
+    page += &format!("\n| --- |{}\n", " --- |".repeat(first.len()));
+    for trials in scenes {
+        page += &format!("| {} |", trials[0].name);
+        for trial in trials {
+            let text = match (trial.promised(), trial.enough) {
+                (Some(promised), Some(error)) => {
+                    format!("{:.2} / {:.2} %", 100.0 * promised, 100.0 * error)
+                }
+                (None, _) if trial.advice.enough.is_some() => "on this mesh".into(),
+                _ => "not known".into(),
+            };
+            let is_known = trial.promised().is_some() && trial.enough.is_some();
+            let text = match is_known && !trial.is_against_finer() {
+                true => format!("({text})"),
+                false => text,
+            };
+            page += &format!(" {text} |");
+        }
+        page += "\n";
+    }
+    page
+}

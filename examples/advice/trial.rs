@@ -19,6 +19,25 @@ pub struct Trial {
     pub not_finer: Option<String>,
 }
 
+/// A run that advices are compared with: its choice, the end of its motion (s), and its motion.
+pub struct Reference {
+    choice: Choice,
+    end: f64,
+    motion: Motion,
+}
+
+impl Reference {
+    /// Whether it is as fine as one by `choice` until `end` has to be.
+    fn serves(&self, choice: &Choice, end: f64) -> bool {
+        let own = &self.choice;
+        self.end == end
+            && own.richer == choice.richer
+            && own.halved >= choice.halved
+            && own.halved_in.len() >= choice.halved_in.len()
+            && own.settings.rtol <= choice.settings.rtol
+    }
+}
+
 /// Times at which motions are compared.
 const TIMES: usize = 101;
 /// What the tolerance of the run that all is compared with is of the adviser's tightest.
@@ -26,12 +45,13 @@ const TIGHTER: f64 = 0.1;
 
 impl Trial {
     /// Asks about the whole motion of `scene` to an accuracy, within a budget (s); no run that it is compared with may take longer
-    /// than a limit (s).
+    /// than a limit (s). Those on finer meshes are kept in `references`, and taken from there.
     pub fn run(
         name: String,
         scene: &Scene,
         settings: &Settings,
         [accuracy, budget, limit]: [f64; 3],
+        references: &mut Vec<Reference>,
     ) -> Result<Self, Error> {
         let adviser = Adviser::new(scene, accuracy).settings(settings.clone()).budget(budget);
         let advice = adviser.run(&mut |_| ControlFlow::Continue(()))?;
@@ -44,38 +64,55 @@ impl Trial {
         let own = &truth.choice.settings;
         let settings = Settings { method: Method::Arkode, rtol, ..own.clone() };
         let same = Choice { settings, ..truth.choice.clone() };
-        let finer = Choice { halved: same.halved + 1, ..same.clone() };
-        // what is said of the mesh as it was written is true or not on that
-        let found = match (trial.advice.mesh, trial.advice.resolution.is_nan()) {
-            (None, false) => motion(&finer, &scene, limit),
-            (None, true) => Err("no finer mesh gave a motion within the budget".into()),
-            (Some(apart), _) => {
-                Err(format!("the mesh as written; a finer one is {:.0} % away", 100.0 * apart))
-            }
-        };
-        let (converged, choice) = match found {
-            Ok(converged) => (converged, finer),
-            Err(reason) => {
-                trial.not_finer = Some(reason);
-                match motion(&same, &scene, limit) {
-                    Ok(converged) => (converged, same),
-                    Err(_) => return Ok(trial),
+        let mut finer = same.clone();
+        if same.halved_in.is_empty() {
+            finer.halved += 1;
+        } else {
+            // numbers of cells are those of the mesh before
+            let cells = same.scene(&scene)?.body().mesh().cell_count();
+            finer.halved_in.push((0..cells).collect());
+        }
+        let end = scene.end();
+        if !references.iter().any(|known| known.serves(&finer, end)) {
+            // what is said of the mesh as it was written is true or not on that
+            let found = match (trial.advice.mesh, trial.advice.resolution.is_nan()) {
+                (None, false) => {
+                    motion(&finer, &scene, limit).map(|motion| (finer.clone(), motion))
                 }
-            }
-        };
+                (None, true) => Err("no finer mesh gave a motion within the budget".into()),
+                (Some(apart), _) => {
+                    Err(format!("the mesh as written; a finer one is {:.0} % away", 100.0 * apart))
+                }
+            };
+            let own = found.or_else(|reason| {
+                trial.not_finer = Some(reason);
+                motion(&same, &scene, limit).map(|motion| (same.clone(), motion))
+            });
+            let Ok((choice, motion)) = own else { return Ok(trial) };
+            references.push(Reference { choice, end, motion });
+        }
+        let wanted = if trial.not_finer.is_some() { &same } else { &finer };
+        let known = references.iter().rev().find(|known| known.serves(wanted, end));
+        let Some(Reference { choice, motion: converged, .. }) = known else { return Ok(trial) };
         let error = |candidate: &Candidate| {
             let Motion { places, .. } = motion(&candidate.choice, &scene, limit).ok()?;
             Some(distance(&places, &converged.places) / size(&converged.places))
         };
         trial.enough = trial.advice.enough.as_ref().and_then(error);
         trial.written = error(&trial.advice.written);
-        trial.converged = Some((choice, converged.seconds));
+        trial.converged = Some((choice.clone(), converged.seconds));
         Ok(trial)
     }
 
     /// Whether what was promised is true; none where nothing was promised, or nothing is known.
     pub fn is_right(&self) -> Option<bool> {
         self.enough.map(|error| error <= self.advice.accuracy)
+    }
+
+    /// The most that what is enough was promised to be off by, if that is known of the mesh, too.
+    pub fn promised(&self) -> Option<f64> {
+        let enough = self.advice.enough.as_ref()?;
+        enough.parts.map(|parts| parts.sum()).filter(|_| !self.advice.resolution.is_nan())
     }
 
     /// Whether what is enough was compared with a run on a finer mesh than the adviser's own.

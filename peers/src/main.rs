@@ -1,7 +1,7 @@
 //! Runs pliant and its peers on the same equations: charts, tables, `peers/README.md`'s numbers.
 //!
 //! `peers [--quick] [--out FOLDER] [CASE...]` for scenes, `peers equations [--quick] [--out FOLDER] [SYSTEM...]` for systems
-//! of equations, `peers space [--quick] [--out FOLDER] [CASE...]` for blocks in space; programs are expected where `peers/run` puts them.
+//! of equations, `peers silicone [--quick] [--out FOLDER] [CASE...]` for cells of all kinds at rest, `peers space [--quick] [--out FOLDER] [CASE...]` for blocks in space; programs are expected where `peers/run` puts them.
 
 mod comparison;
 mod diffsol_peer;
@@ -9,6 +9,7 @@ mod equations;
 mod external;
 mod implicit;
 mod report;
+mod silicone;
 mod space;
 
 use std::path::{Path, PathBuf};
@@ -34,6 +35,7 @@ fn main() {
         Some((first, rest)) if first == "diffsol" => diffsol_peer::main(rest),
         Some((first, rest)) if first == "equations" => equations::run(rest),
         Some((first, rest)) if first == "space" => space::run(rest),
+        Some((first, rest)) if first == "silicone" => silicone::run(rest),
         _ => run(&arguments),
     };
     if let Err(error) = done {

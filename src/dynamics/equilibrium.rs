@@ -4,6 +4,7 @@ use std::fmt;
 
 use crate::base::input::told;
 use crate::dynamics::trajectory::{Sample, Trajectory};
+use crate::elements::basis::worst_cells;
 
 /// What a small push does to a body in equilibrium.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -109,18 +110,7 @@ impl MeshEstimate {
     /// The cells (from 0) that contribute most, with half of all contributions together, ascending: what to divide next, by
     /// [`Scene::halved_in`](crate::Scene::halved_in) (W. Dörfler, SIAM J. Numer. Anal. 33 (1996) 1106-1124).
     pub fn worst_cells(&self) -> Vec<usize> {
-        let size = |cell: &usize| self.cells[*cell].abs();
-        let mut order: Vec<usize> = (0..self.cells.len()).collect();
-        order.sort_by(|a, b| size(b).total_cmp(&size(a)));
-        let mut left = 0.5 * order.iter().map(size).sum::<f64>();
-        let is_needed = |cell: &usize| {
-            let is_needed = left > 0.0;
-            left -= size(cell);
-            is_needed
-        };
-        let mut worst: Vec<usize> = order.into_iter().take_while(is_needed).collect();
-        worst.sort_unstable();
-        worst
+        worst_cells(&self.cells)
     }
 
     /// The size of the correction relative to the change; infinite if the quantity has not changed.

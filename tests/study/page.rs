@@ -17,6 +17,7 @@ fn candidate(rtol: f64, seconds: f64, error: Option<f64>) -> Candidate {
         strain: Strain::Cauchy,
         richer: None,
         halved: 0,
+        halved_in: Vec::new(),
         inertia: Inertia::Consistent,
         without: Vec::new(),
         is_static: false,

@@ -13,6 +13,7 @@ use crate::comparison::TOO_SLOW;
 use crate::external::Program;
 use crate::{here, report};
 use problem::{Fineness, Space, Way};
+pub use problem::{extrapolated, order};
 
 /// Processor time (s) that a run may take, in full and quickly.
 const LIMITS: [f64; 2] = [20.0, 3.0];

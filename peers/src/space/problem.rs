@@ -171,7 +171,7 @@ fn distance(a: &[f64], b: &[f64]) -> [f64; 2] {
 }
 
 /// The order p at which the differences of three meshes fall as m^-p: (m0^-p - m1^-p) / (m1^-p - m2^-p) = `ratio`, by bisection.
-fn order(meshes: [f64; 3], ratio: f64) -> f64 {
+pub fn order(meshes: [f64; 3], ratio: f64) -> f64 {
     let of = |p: f64| {
         let [a, b, c] = meshes.map(|m| m.powf(-p));
         (a - b) / (b - c)
@@ -185,7 +185,7 @@ fn order(meshes: [f64; 3], ratio: f64) -> f64 {
 }
 
 /// What the motions on two meshes tend to, by order p.
-fn extrapolated(p: f64, [coarse, fine]: [f64; 2], a: &[f64], b: &[f64]) -> Vec<f64> {
+pub fn extrapolated(p: f64, [coarse, fine]: [f64; 2], a: &[f64], b: &[f64]) -> Vec<f64> {
     let factor = 1.0 / ((fine / coarse).powf(p) - 1.0);
     a.iter().zip(b).map(|(a, b)| b + factor * (b - a)).collect()
 }

@@ -22,6 +22,8 @@ use crate::progress::spinner;
 use crate::scene::SceneArguments;
 use crate::settings::{SettingsArguments, ended};
 
+/// Longest command (bytes) that is told: one with lists of cells is not.
+const LONGEST: usize = 2000;
 /// Samples of each motion on the page.
 const FRAMES: f64 = 400.0;
 
@@ -91,7 +93,13 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let advice = advice?;
     print(&advice)?;
     if let Some(enough) = &advice.enough {
-        print(format_args!("\nTo run what is enough:\n{}", command_of(scene, enough)))?;
+        let command = command_of(scene, enough);
+        match command.len() > LONGEST {
+            true => print(
+                "\nTo run what is enough, have it written by --write FILE: it lists the cells that are halved.",
+            )?,
+            false => print(format_args!("\nTo run what is enough:\n{command}"))?,
+        }
     }
     if let Some(directory) = &mut directory {
         let title = match &file.title[..] {

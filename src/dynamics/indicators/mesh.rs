@@ -3,19 +3,19 @@
 use crate::dynamics::report::Indicator;
 use crate::elements::body::{Body, Dilatation};
 use crate::elements::force::Force;
-use crate::elements::material::Plane;
+use crate::elements::material::NEARLY_INCOMPRESSIBLE;
 use crate::elements::mesh::CellKind;
 use crate::scene::constraint::PhaseStart;
 use crate::scene::timeline::Scene;
 
 /// Largest Poisson's ratio for linear and for quadratic cells that can lock.
-const MOST_POISSON: f64 = 0.45;
+const MOST_POISSON: f64 = NEARLY_INCOMPRESSIBLE;
 const MOST_POISSON_QUADRATIC: f64 = 0.48;
 
 /// Nearly incompressible material in cells that cannot bend without changing their volume: linear ones get several times too stiff,
 /// quadratic ones by a tenth or two where one cell is across a wall.
 pub(super) fn locking(body: &Body) -> Option<Indicator> {
-    if body.mesh().kind().dimension() == 2 && body.plane() == Plane::Stress {
+    if !body.can_lock() {
         return None;
     }
     let most = body.materials().iter().map(|material| material.poisson).fold(-1.0, f64::max);
@@ -25,9 +25,6 @@ pub(super) fn locking(body: &Body) -> Option<Indicator> {
 /// What is left of it in quadratic cells: with a pressure at each point they are too stiff, with one alone some are too soft.
 fn locking_quadratic(body: &Body, most: f64) -> Option<Indicator> {
     let mesh = body.mesh();
-    if mesh.kind().dimension() < mesh.dimension() {
-        return None;
-    }
     let help = match mesh.kind() {
         CellKind::Triangle6 | CellKind::Tetrahedron10 => {
             "`bubbles = true` in `mesh` (Mesh::with_bubbles) with dilatation = \"linear\""

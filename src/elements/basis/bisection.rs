@@ -72,6 +72,23 @@ impl Mesh {
     }
 }
 
+/// The cells of the largest contributions (absolute values), which make half of them all together, ascending (W. Dörfler, SIAM J. Numer.
+/// Anal. 33 (1996) 1106-1124).
+pub(crate) fn worst_cells(contributions: &[f64]) -> Vec<usize> {
+    let size = |cell: &usize| contributions[*cell].abs();
+    let mut order: Vec<usize> = (0..contributions.len()).collect();
+    order.sort_by(|a, b| size(b).total_cmp(&size(a)));
+    let mut left = 0.5 * order.iter().map(size).sum::<f64>();
+    let is_needed = |cell: &usize| {
+        let is_needed = left > 0.0;
+        left -= size(cell);
+        is_needed
+    };
+    let mut worst: Vec<usize> = order.into_iter().take_while(is_needed).collect();
+    worst.sort_unstable();
+    worst
+}
+
 /// The edges that get a node in their middle.
 struct Marks<'a> {
     mesh: &'a Mesh,

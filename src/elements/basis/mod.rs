@@ -30,6 +30,7 @@ mod triangle7;
 
 use nalgebra::{SMatrix, SVector};
 
+pub(crate) use bisection::worst_cells;
 pub(crate) use finer::Finer;
 pub(crate) use hexahedron::Hexahedron;
 pub(crate) use hexahedron20::Hexahedron20;

@@ -103,6 +103,12 @@ impl Body {
         self.recipe.dilatation
     }
 
+    /// Whether its cells are not free to change their volume by their thickness, so that they lock if the material is nearly
+    /// incompressible.
+    pub(crate) fn can_lock(&self) -> bool {
+        !Dilatation::is_free(self.mesh.kind(), self.dimension(), self.plane)
+    }
+
     /// What it is made of, then what each of its regions is made of.
     pub fn substances(&self) -> impl Iterator<Item = &Substance> {
         let regions = self.recipe.regions.iter().map(|(_, substance)| substance);
@@ -205,8 +211,14 @@ impl Body {
     /// Part of the strain energy (0 to 1) under the displacements `u` (m) that is stored in the difference
     /// between the strain and a continuous one. `None` without strain.
     pub(crate) fn strain_jumps(&self, u: &[f64]) -> Option<f64> {
-        let [energy, jumps] = self.elements.jumps(&self.regions, self.strain, u);
-        (energy > 0.0).then(|| jumps / energy)
+        let (energy, jumps) = self.elements.jumps(&self.regions, self.strain, u);
+        (energy > 0.0).then(|| jumps.iter().sum::<f64>() / energy)
+    }
+
+    /// The energy (J) of that difference in each cell.
+    #[cfg(feature = "study")]
+    pub(crate) fn strain_jumps_by_cell(&self, u: &[f64]) -> Vec<f64> {
+        self.elements.jumps(&self.regions, self.strain, u).1
     }
 
     /// Cells (counted from 0) that the displacements `u` (m) turn inside out.

@@ -40,6 +40,11 @@ impl Dilatation {
         }
     }
 
+    /// Whether cells change their volume freely by their thickness.
+    pub(super) fn is_free(kind: CellKind, dimension: usize, plane: Plane) -> bool {
+        kind.dimension() < dimension.max(2) || kind.dimension() == 2 && plane == Plane::Stress
+    }
+
     /// # Errors
     /// Cells that cannot have it, or for which it would be the same, and bodies that are free to change their thickness.
     pub(super) fn check(
@@ -50,11 +55,8 @@ impl Dilatation {
     ) -> Result<(), InputError> {
         let help = match kind {
             _ if self == Self::AtPoints => return Ok(()),
-            _ if kind.dimension() < dimension.max(2) => {
-                "membranes and strings are free to change their thickness and do not lock: leave it out"
-            }
-            _ if kind.dimension() == 2 && plane == Plane::Stress => {
-                "bodies in plane stress are free to change their thickness and do not lock: leave it out"
+            _ if Self::is_free(kind, dimension, plane) => {
+                "membranes, strings and bodies in plane stress are free to change their thickness and do not lock: leave it out"
             }
             CellKind::Triangle | CellKind::Tetrahedron => {
                 "linear triangles and tetrahedra have one point each: nothing changes for them. Take quadratic ones, \

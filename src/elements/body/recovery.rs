@@ -11,17 +11,17 @@ use crate::elements::material::{Deformation, Strain};
 
 /// Elements whose strains can be made continuous.
 pub(super) trait Recovery {
-    /// Strain energy (J), and that of the difference between the strain and its continuous mean, both by
+    /// Strain energy (J), and that of the difference between the strain and its continuous mean, cell by cell, both by
     /// Hooke's law of small strains, and without the energy of a change of volume if the dilatation is
     /// a projected one.
-    fn jumps(&self, regions: &Regions, strain: Strain, u: &[f64]) -> [f64; 2];
+    fn jumps(&self, regions: &Regions, strain: Strain, u: &[f64]) -> (f64, Vec<f64>);
 }
 
 impl<const N: usize, const M: usize, const D: usize, const Q: usize> Recovery
     for ElementsOf<N, M, D, Q>
 {
-    fn jumps(&self, regions: &Regions, strain: Strain, u: &[f64]) -> [f64; 2] {
-        let [mut energy, mut jumps] = [0.0; 2];
+    fn jumps(&self, regions: &Regions, strain: Strain, u: &[f64]) -> (f64, Vec<f64>) {
+        let (mut energy, mut jumps) = (0.0, vec![0.0; self.nodes.len()]);
         for cells in regions.by_substance(self.nodes.len()) {
             let means = self.means(&cells, strain, u);
             for &cell in &cells {
@@ -36,11 +36,11 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Recovery
                         add(&mut apart, -value, &means[*node]);
                     }
                     energy += volume * hooke.energy(&own);
-                    jumps += volume * hooke.energy(&apart);
+                    jumps[cell] += volume * hooke.energy(&apart);
                 }
             }
         }
-        [energy, jumps]
+        (energy, jumps)
     }
 }
 

@@ -45,7 +45,14 @@ pub struct Material {
     pub viscosity: f64,
 }
 
+/// Poisson's ratio from which a material is nearly incompressible: cells lock noticeably.
+pub(crate) const NEARLY_INCOMPRESSIBLE: f64 = 0.45;
+
 impl Material {
+    pub(crate) fn is_nearly_incompressible(&self) -> bool {
+        self.poisson >= NEARLY_INCOMPRESSIBLE
+    }
+
     /// The elastic pair: lambda = nu E / ((1 + nu)(1 - 2 nu)), mu = E / (2 (1 + nu)).
     pub fn elastic(&self) -> Lame {
         lame(self.young, self.poisson)

@@ -76,8 +76,6 @@ pub(super) const BODY: TableKeys = TableKeys::new(
      material = { density = 1000.0, young = 1.0e5, poisson = 0.48, viscosity = 40.0 }",
 );
 
-/// Poisson's ratio from which cells left to `auto` are those of silicone.
-const SILICONE: f64 = 0.45;
 /// `auto` is Green: it is right however far a body turns, at a small cost.
 const STRAINS: [(&str, Strain); 3] =
     [("cauchy", Strain::Cauchy), ("green", Strain::Green), (AUTO, Strain::Green)];
@@ -133,7 +131,7 @@ pub(super) fn body(
     let table = value.table(&BODY)?;
     let material = table.required("material", |value| substance(value, None))?;
     let plane = table.optional("plane", |value| value.word(&PLANE))?;
-    let is_silicone = material.material.poisson >= SILICONE && plane != Some(Plane::Stress);
+    let is_silicone = material.material.is_nearly_incompressible() && plane != Some(Plane::Stress);
     let auto = match is_silicone {
         true => AutoCells::of_silicone(dimension.map(Value::count).transpose()? == Some(3)),
         false => AutoCells::default(),
@@ -193,12 +191,9 @@ pub(super) fn on_finer_mesh(scene: Scene, value: &Value) -> Result<Scene, Error>
     let table = value.table(&BODY)?;
     let scene = table.required("mesh", |value| mesh::on_finer_mesh(scene, value))?;
     let (gets_mid_nodes, bubbles) = table.required("mesh", mesh::gets_mid_nodes)?;
-    let body = scene.body();
-    let can_lock = body.mesh().kind().dimension() == body.dimension()
-        && (body.dimension() == 3 || body.plane() == Plane::Strain);
     let dilatation = match table.optional("dilatation", |value| value.word(&DILATATION))? {
         Some(dilatation) if gets_mid_nodes => dilatation,
-        None if bubbles && can_lock => Dilatation::Linear,
+        None if bubbles && scene.body().can_lock() => Dilatation::Linear,
         _ => return Ok(scene),
     };
     scene.with_body(|body| body.dilatation(dilatation)).map_err(|error| table.blame(error))

@@ -40,12 +40,15 @@ impl Advice {
             };
             if let (Some(error), true) = (candidate.error, rich.is_some_and(is_mesh)) {
                 let choice = &candidate.choice;
-                let mesh = match (choice.richer, choice.halved) {
+                let mut mesh = match (choice.richer, choice.halved) {
                     (None, 0) => "the mesh as written".to_owned(),
                     (None, count) => format!("cells halved {}", times(count)),
                     (Some(richer), 0) => richer.to_string(),
                     (Some(richer), count) => format!("{richer}, halved {}", times(count)),
                 };
+                if !choice.halved_in.is_empty() {
+                    mesh += &format!(", {}", choice.halved_locally());
+                }
                 let (unknowns, time) = (candidate.unknowns, time_text(candidate.seconds));
                 let differs = if self.mesh.is_some() { "away" } else { "off" };
                 reasons.push(match error {

@@ -4,7 +4,7 @@ use std::fmt;
 
 use crate::base::input::InputError;
 use crate::elements::body::{Body, Dilatation, Inertia, Strain};
-use crate::elements::material::Plane;
+use crate::elements::material::Material;
 use crate::elements::mesh::CellKind;
 use crate::scene::settings::{ContactEvents, Settings};
 use crate::scene::timeline::{Scene, Term};
@@ -18,6 +18,8 @@ pub struct Choice {
     pub richer: Option<RicherCells>,
     /// How often each cell is divided: see [`Scene::halved`].
     pub halved: usize,
+    /// Cells (from 0) that are divided after that, time after time: see [`Scene::halved_in`].
+    pub halved_in: Vec<Vec<usize>>,
     /// How inertia is distributed to the nodes.
     pub inertia: Inertia,
     /// What is left out.
@@ -37,6 +39,7 @@ impl Choice {
             strain: body.strain(),
             richer: None,
             halved: 0,
+            halved_in: Vec::new(),
             inertia: body.inertia_kind(),
             without: Vec::new(),
             is_static: false,
@@ -54,14 +57,21 @@ impl Choice {
             own if own == (strain, inertia) => written.clone(),
             _ => written.with_body(|body| body.strain(strain).inertia(inertia))?,
         };
-        if let Some(RicherCells { bubbles, linear }) = self.richer {
-            scene = if bubbles { scene.with_bubbles()? } else { scene.quadratic()? };
-            if linear {
-                scene = scene.with_body(|body| body.dilatation(Dilatation::Linear))?;
-            }
+        let RicherCells { bubbles, linear } = self.richer.unwrap_or_default();
+        if self.richer.is_some() && !bubbles {
+            scene = scene.quadratic()?;
         }
         for _ in 0..self.halved {
             scene = scene.halved()?;
+        }
+        for cells in &self.halved_in {
+            scene = scene.halved_in(cells)?;
+        }
+        if bubbles {
+            scene = scene.with_bubbles()?;
+        }
+        if linear {
+            scene = scene.with_body(|body| body.dilatation(Dilatation::Linear))?;
         }
         self.without.iter().try_fold(scene, |scene, term| scene.without(term))
     }
@@ -75,12 +85,13 @@ impl Choice {
 
     /// Whether it is on the mesh as it was written.
     pub(super) fn is_mesh_as_written(&self) -> bool {
-        (self.richer, self.halved) == (None, 0)
+        (self.richer, self.halved) == (None, 0) && self.halved_in.is_empty()
     }
 
     /// Whether both are on the same mesh.
     pub(super) fn is_mesh_of(&self, other: &Self) -> bool {
-        (self.richer, self.halved) == (other.richer, other.halved)
+        (self.richer, self.halved, &self.halved_in)
+            == (other.richer, other.halved, &other.halved_in)
     }
 
     /// What has to be set in a scene file for it, as `--set` takes it; the file makes the scene `written`
@@ -104,6 +115,13 @@ impl Choice {
         }
         if self.halved > 0 {
             sets.push(format!("body.mesh.halved={}", self.halved));
+        }
+        if !self.halved_in.is_empty() {
+            let places = self.halved_in.iter().map(|cells| {
+                let numbers = cells.iter().map(|cell| (cell + 1).to_string());
+                format!("{{ cells = [{}] }}", numbers.collect::<Vec<_>>().join(", "))
+            });
+            sets.push(format!("body.mesh.halved_in=[{}]", places.collect::<Vec<_>>().join(", ")));
         }
         if self.inertia != body.inertia_kind() {
             let inertia = match self.inertia {
@@ -171,6 +189,15 @@ impl Choice {
         sets
     }
 
+    /// How often cells are divided in some places, in words.
+    pub(super) fn halved_locally(&self) -> String {
+        let times = times(self.halved_in.len());
+        match self.halved {
+            0 => format!("cells halved {times} where strains jump"),
+            _ => format!("then {times} where strains jump"),
+        }
+    }
+
     /// The cells that it makes of those of a `kind`, in words.
     pub(super) fn cells(&self, kind: CellKind) -> String {
         let richer = self.richer.map(|richer| richer.bubbles);
@@ -182,12 +209,16 @@ impl Choice {
             (Some(true), _) => CellKind::Tetrahedron15,
             (_, kind) => kind,
         };
-        let parts = match self.halved {
-            0 => return kind.name().into(),
-            1 => "half".to_owned(),
-            times => format!("1/{} of", 1 << times),
-        };
-        format!("{} of {parts} the size", kind.name())
+        let mut cells = kind.name().to_owned();
+        match self.halved {
+            0 => {}
+            1 => cells += " of half the size",
+            times => cells += &format!(" of 1/{} of the size", 1 << times),
+        }
+        if !self.halved_in.is_empty() {
+            cells += &format!(", {}", self.halved_locally());
+        }
+        cells
     }
 }
 
@@ -206,16 +237,12 @@ impl fmt::Display for RicherCells {
     }
 }
 
-/// Poisson's ratio from which a body is nearly incompressible.
-const SILICONE: f64 = 0.45;
-
 impl RicherCells {
     /// Those of a body as it was written; `None` if its cells have them already, or there are none.
     pub(super) fn of(body: &Body) -> Option<Self> {
         let kind = body.mesh().kind();
-        let can_lock = kind.dimension() == body.dimension()
-            && (kind.dimension() == 3 || body.plane() == Plane::Strain);
-        let linear = can_lock && body.materials().iter().any(|part| part.poisson >= SILICONE);
+        let linear =
+            body.can_lock() && body.materials().iter().any(Material::is_nearly_incompressible);
         match kind {
             CellKind::Triangle | CellKind::Quadrilateral | CellKind::Tetrahedron => {
                 Some(Self { bubbles: linear, linear })
@@ -238,6 +265,9 @@ impl fmt::Display for Choice {
         }
         if self.halved > 0 {
             write!(f, ", cells halved {}", times(self.halved))?;
+        }
+        if !self.halved_in.is_empty() {
+            write!(f, ", {}", self.halved_locally())?;
         }
         if self.inertia == Inertia::Lumped {
             f.write_str(", lumped inertia")?;

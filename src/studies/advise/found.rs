@@ -62,8 +62,10 @@ impl Found {
         let left = match &self.meshes[..] {
             [.., first, second, third] if self.has_rate() => {
                 let rate = apart(second, third) / apart(first, second);
+                // cells divided in some places take away half of the error at most
+                let best = if third.choice.halved_in.is_empty() { ORDER_2 } else { ORDER_1 };
                 if rate < 1.0 {
-                    (rate / (1.0 - rate)).clamp(ORDER_2, LEAST_ORDER)
+                    (rate / (1.0 - rate)).clamp(best, LEAST_ORDER)
                 } else {
                     LEAST_ORDER
                 }
@@ -157,6 +159,7 @@ mod tests {
                 seconds: 1.0,
                 unknowns: 1,
                 warnings: Vec::new(),
+                worst: Vec::new(),
             }
         });
         Found { meshes: meshes.collect(), ..Found::default() }
@@ -179,6 +182,10 @@ mod tests {
         near(known(&[(false, 0.5), (false, 0.05), (true, 0.02)]), 0.03);
         near(known(&[(false, 0.05), (true, 0.02), (true, 0.005)]), 0.015);
         assert!(known(&[(false, 0.05)]).is_nan());
+        // cells divided in some places leave as much as they take away
+        let mut found = meshes(&[(true, 0.0257), (true, 0.0017), (true, 0.0002)]);
+        found.meshes[2].choice.halved_in.push(vec![0]);
+        near(found.resolution(), 0.0015);
     }
 
     #[test]

@@ -25,8 +25,9 @@ const OF_TRUTH: f64 = 0.3;
 /// time (s); if they take longer, contact events are treated automatically.
 const LOCATING: f64 = 10.0;
 const LOCATING_SHORT: f64 = 0.5;
-/// Cells are halved fewer times than this.
+/// Cells are halved fewer times than this, and as often at most in some places.
 const FINEST: usize = 6;
+const MOST_LOCAL: usize = 8;
 /// What alpha is multiplied by, and the largest (1/s) that is tried.
 const FIRMER: f64 = 10.0;
 const FIRMEST: f64 = 1e6;
@@ -157,41 +158,64 @@ impl Search<'_> {
     }
 
     /// Runs finer meshes, until the finest show that they are fine enough, or take too long. Three of one kind have to show it:
-    /// two may agree by chance.
+    /// two may agree by chance. Where halving all cells takes too long, triangles and tetrahedra are divided where their strains
+    /// jump most.
     fn refine(&mut self, rich: &Solved, found: &mut Found) -> Result<(), Stop> {
-        let kind = self.scene.body().mesh().kind();
         let richest = RicherCells::of(self.scene.body());
         let finer = |richer, halved| Choice { richer, halved, ..rich.choice.clone() };
         let first = if richest.is_some() { 0 } else { 2 };
         let steps = (first..FINEST).map(|halved| finer(richest, halved));
         for choice in iter::once(finer(None, 1)).chain(steps) {
-            let Some(last) = found.truth() else { return Ok(()) };
-            let scene = match choice.scene(&self.scene) {
-                Ok(scene) => scene,
-                Err(error) => {
-                    found.not_tried.push(format!("finer meshes: {error}"));
-                    return Ok(());
-                }
-            };
-            let unknowns = 2 * scene.body().dofs() + 2;
-            if unknowns > last.unknowns && !self.affords(unknowns, &found.meshes) {
-                let cells = choice.cells(kind);
-                found
-                    .not_tried
-                    .push(format!("{cells}: {unknowns} unknowns take longer than the budget"));
-                return Ok(());
-            }
-            if let Some(solved) = self.run(&choice)? {
-                found.meshes.push(solved);
+            if !self.run_mesh(&choice, found)? {
+                break;
             }
             // linear cells that lock may agree with each other
-            let may_tell = choice.richer == richest;
-            let is_fine = found.resolution() < OF_TRUTH * self.request.accuracy;
-            if may_tell && found.has_rate() && is_fine {
+            if choice.richer == richest && self.is_fine(found) {
+                return Ok(());
+            }
+        }
+        for _ in 0..MOST_LOCAL {
+            let Some(last) = found.truth() else { return Ok(()) };
+            let (mut choice, count) = (last.choice.clone(), found.meshes.len());
+            if choice.richer != richest || last.worst.is_empty() {
+                return Ok(());
+            }
+            choice.halved_in.push(last.worst.clone());
+            let is_done = !self.run_mesh(&choice, found)? || self.is_fine(found);
+            if is_done || found.meshes.len() == count {
                 return Ok(());
             }
         }
         Ok(())
+    }
+
+    /// Whether the finest mesh is known to be fine enough.
+    fn is_fine(&self, found: &Found) -> bool {
+        found.has_rate() && found.resolution() < OF_TRUTH * self.request.accuracy
+    }
+
+    /// Runs the mesh of a `choice`. False if there is no such mesh, or no time for it.
+    fn run_mesh(&mut self, choice: &Choice, found: &mut Found) -> Result<bool, Stop> {
+        let Some(last) = found.truth() else { return Ok(false) };
+        let scene = match choice.scene(&self.scene) {
+            Ok(scene) => scene,
+            Err(error) => {
+                found.not_tried.push(format!("finer meshes: {error}"));
+                return Ok(false);
+            }
+        };
+        let unknowns = 2 * scene.body().dofs() + 2;
+        let can_afford = unknowns <= last.unknowns || self.affords(unknowns, &found.meshes);
+        let solved = if can_afford { self.run(choice)? } else { None };
+        if !can_afford || self.cut == Some(Cut::Share) {
+            let cells = choice.cells(self.scene.body().mesh().kind());
+            found
+                .not_tried
+                .push(format!("{cells}: {unknowns} unknowns take longer than the budget"));
+            return Ok(false);
+        }
+        found.meshes.extend(solved);
+        Ok(true)
     }
 
     /// Tries what may be left out.
@@ -270,7 +294,7 @@ impl Search<'_> {
         let Some(solved) = self.run(&choice)? else { return Ok(()) };
         found.sweep.push(solved.clone());
         if found.is_right(&solved, self.request.accuracy) {
-            let coarse = Choice { richer: None, halved: 0, ..choice };
+            let coarse = Choice { richer: None, halved: 0, halved_in: Vec::new(), ..choice };
             let scene = coarse.scene(&self.scene).ok();
             let equilibrium = scene.and_then(|scene| self.at_rest(&scene).ok());
             let estimate =

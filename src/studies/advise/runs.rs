@@ -26,13 +26,15 @@ pub(super) struct Outcome {
     pub(super) failure: Option<String>,
     /// What the run warns of.
     pub(super) warnings: Vec<String>,
+    /// Cells in which half of the jumps of strain are: what to divide next. None where cells cannot be divided in some places.
+    pub(super) worst: Vec<usize>,
 }
 
 impl Outcome {
     /// One that has no name yet.
     pub(super) fn new(seen: Option<Seen>, seconds: f64, unknowns: usize) -> Self {
-        let (run, warnings) = (String::new(), Vec::new());
-        Self { run, seen, seconds, unknowns, failure: None, warnings }
+        let (run, warnings, worst) = (String::new(), Vec::new(), Vec::new());
+        Self { run, seen, seconds, unknowns, failure: None, warnings, worst }
     }
 
     pub(super) fn failed(failure: String) -> Self {

@@ -10,6 +10,8 @@ use crate::dynamics::equilibrium::Equilibrium;
 use crate::dynamics::error::Error;
 use crate::dynamics::statics::Statics;
 use crate::dynamics::trajectory::Trajectory;
+use crate::elements::basis::worst_cells;
+use crate::elements::mesh::CellKind;
 use crate::scene::settings::{ContactEvents, Method, Settings};
 use crate::scene::timeline::{Phase, Scene};
 use crate::studies::work_precision::quantity::{Quantity, Seen};
@@ -48,6 +50,8 @@ pub(super) struct Solved {
     pub(super) unknowns: usize,
     /// What the run warns of.
     pub(super) warnings: Vec<String>,
+    /// Cells to divide next.
+    pub(super) worst: Vec<usize>,
 }
 
 impl Solved {
@@ -99,6 +103,8 @@ pub(super) enum Cut {
 /// A run this short (s) is timed again, this many times in all.
 const SHORT: f64 = 0.1;
 const REPETITIONS: usize = 3;
+/// Strains are compared from cell to cell at this many times.
+const LOOKS: usize = 10;
 /// A run may take this part of the time that is left: others follow.
 const SHARE: f64 = 0.4;
 /// If less than this part of the budget is left, it counts as spent.
@@ -167,9 +173,9 @@ impl<'a> Search<'a> {
             }
         };
         let choice = choice.clone();
-        let Outcome { seen, seconds, unknowns, failure, warnings, .. } = outcome;
+        let Outcome { seen, seconds, unknowns, failure, warnings, worst, .. } = outcome;
         match seen {
-            Some(seen) => Ok(Some(Solved { choice, seen, seconds, unknowns, warnings })),
+            Some(seen) => Ok(Some(Solved { choice, seen, seconds, unknowns, warnings, worst })),
             None => {
                 self.failures.push(Candidate { failure, ..Candidate::new(choice) });
                 Ok(None)
@@ -203,7 +209,8 @@ impl<'a> Search<'a> {
             seconds = seconds.min(again.report().wall_seconds);
         }
         let (seen, warnings) = (probe.seen(&first), first.report().warnings());
-        Ok(Outcome { warnings, ..Outcome::new(Some(seen), seconds, first.report().states) })
+        let worst = if can_be_halved_in(&scene) { worst_in(&first) } else { Vec::new() };
+        Ok(Outcome { warnings, worst, ..Outcome::new(Some(seen), seconds, first.report().states) })
     }
 
     /// The equilibrium in which a scene comes to rest, if it ever does.
@@ -251,4 +258,23 @@ impl<'a> Search<'a> {
         let ratio = unknowns as f64 / last.unknowns as f64;
         last.seconds * ratio.powf(growth) < SHARE * self.left()
     }
+}
+
+/// Whether cells can be divided in some places: see [`Scene::halved_in`].
+fn can_be_halved_in(scene: &Scene) -> bool {
+    use CellKind::{Tetrahedron, Tetrahedron10, Tetrahedron15, Triangle, Triangle6, Triangle7};
+    let kind = scene.body().mesh().kind();
+    matches!(kind, Triangle | Triangle6 | Triangle7 | Tetrahedron | Tetrahedron10 | Tetrahedron15)
+}
+
+/// The cells in which half of the jumps of strain are in a motion.
+fn worst_in(trajectory: &Trajectory) -> Vec<usize> {
+    let body = trajectory.body();
+    let samples = trajectory.samples();
+    let mut jumps = vec![0.0; body.mesh().cell_count()];
+    for sample in samples.iter().step_by(samples.len().div_ceil(LOOKS)) {
+        let own = body.strain_jumps_by_cell(&sample.u);
+        jumps.iter_mut().zip(own).for_each(|(sum, jump)| *sum += jump);
+    }
+    worst_cells(&jumps)
 }

@@ -1,10 +1,11 @@
-//! Bodies that keep their volume: patches, pressures, stability, conditions, closed forms, Cook's membrane.
+//! Bodies that keep their volume: patches, pressures, stability, conditions, closed forms, Cook's membrane, a punch.
 
 mod closed_forms;
 mod condition;
 mod cook;
 mod patches;
 mod pressures;
+mod punch;
 
 use faer::prelude::Solve;
 use faer::{Mat, Side};
