@@ -110,7 +110,7 @@ impl MeshEstimate {
     /// The cells (from 0) that contribute most, with half of all contributions together, ascending: what to divide next, by
     /// [`Scene::halved_in`](crate::Scene::halved_in) (W. Dörfler, SIAM J. Numer. Anal. 33 (1996) 1106-1124).
     pub fn worst_cells(&self) -> Vec<usize> {
-        worst_cells(&self.cells)
+        worst_cells(&self.cells, 0.5)
     }
 
     /// The size of the correction relative to the change; infinite if the quantity has not changed.

@@ -114,7 +114,7 @@ fn a_search_goes_on_where_it_was_ended() -> Outcome {
     let directory = tempfile::tempdir().unwrap();
     let file = directory.path().join("of the search/runs.jsonl");
     let (mut looks, mut runs) = (0, Vec::<String>::new());
-    let cut = Adviser::new(&scene, 0.05).keep(&file).run(&mut |what| {
+    let cut = Adviser::new(&scene, 0.2).keep(&file).run(&mut |what| {
         if runs.last().is_none_or(|last| last != what) {
             runs.push(what.into());
         }
@@ -127,16 +127,16 @@ fn a_search_goes_on_where_it_was_ended() -> Outcome {
     assert_eq!(text.lines().count(), 4);
     text.truncate(text.len() - 100);
     std::fs::write(&file, text).unwrap();
-    let rest = Adviser::new(&scene, 0.05).keep(&file).run(&mut |_| ControlFlow::Continue(()))?;
+    let rest = Adviser::new(&scene, 0.2).keep(&file).run(&mut |_| ControlFlow::Continue(()))?;
     assert_eq!(rest.known, 3);
-    let whole = advise(&scene, 0.05)?;
+    let whole = advise(&scene, 0.2)?;
     let errors = |advice: &Advice| {
         let tight = advice.candidates.iter().filter(|candidate| candidate.choice.richer.is_none());
         tight.map(|candidate| candidate.error.map(f64::to_bits)).collect::<Vec<_>>()
     };
     assert_eq!(errors(&rest)[..4], errors(&whole)[..4]);
     // nothing is left to do
-    let known = Adviser::new(&scene, 0.05).keep(&file).run(&mut |_| ControlFlow::Continue(()))?;
+    let known = Adviser::new(&scene, 0.2).keep(&file).run(&mut |_| ControlFlow::Continue(()))?;
     assert!(known.runs == 0 && known.known >= rest.candidates.len());
     assert_eq!(errors(&known), errors(&rest));
     Ok(())

@@ -45,7 +45,7 @@ impl Mesh {
     /// See [`halved_in`](Self::halved_in).
     pub(crate) fn bisected(&self, cells: &[usize]) -> Result<Finer, InputError> {
         let kind = self.kind();
-        if ![CellKind::Triangle, CellKind::Tetrahedron].contains(&linear(kind)) {
+        if !can_be_bisected(kind) {
             let help = "triangles and tetrahedra are divided in some places only; divide all cells (`halved`), or make a grid that is \
                         graded";
             return Err(InputError::new("cells", kind.name(), help));
@@ -72,13 +72,18 @@ impl Mesh {
     }
 }
 
-/// The cells of the largest contributions (absolute values), which make half of them all together, ascending (W. Dörfler, SIAM J. Numer.
+/// Whether cells of this kind can be divided in some places only.
+pub(crate) fn can_be_bisected(kind: CellKind) -> bool {
+    [CellKind::Triangle, CellKind::Tetrahedron].contains(&linear(kind))
+}
+
+/// The cells of the largest contributions (absolute values), which make this `part` of all, ascending (W. Dörfler, SIAM J. Numer.
 /// Anal. 33 (1996) 1106-1124).
-pub(crate) fn worst_cells(contributions: &[f64]) -> Vec<usize> {
+pub(crate) fn worst_cells(contributions: &[f64], part: f64) -> Vec<usize> {
     let size = |cell: &usize| contributions[*cell].abs();
     let mut order: Vec<usize> = (0..contributions.len()).collect();
     order.sort_by(|a, b| size(b).total_cmp(&size(a)));
-    let mut left = 0.5 * order.iter().map(size).sum::<f64>();
+    let mut left = part * order.iter().map(size).sum::<f64>();
     let is_needed = |cell: &usize| {
         let is_needed = left > 0.0;
         left -= size(cell);

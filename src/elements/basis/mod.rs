@@ -30,6 +30,8 @@ mod triangle7;
 
 use nalgebra::{SMatrix, SVector};
 
+#[cfg(feature = "study")]
+pub(crate) use bisection::can_be_bisected;
 pub(crate) use bisection::worst_cells;
 pub(crate) use finer::Finer;
 pub(crate) use hexahedron::Hexahedron;

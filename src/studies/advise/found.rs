@@ -42,6 +42,8 @@ pub(super) struct Found {
 const ORDER_2: f64 = 1.0 / 3.0;
 /// ... half of it, which is assumed where there is no third mesh to tell; ...
 const ORDER_1: f64 = 1.0;
+/// ... what is assumed at least if cells were divided in some places only, twice: the error of all others does not show; ...
+const LOCAL: f64 = 2.0;
 /// ... and the most that is assumed, if halving leaves nearly all of the error, as under loads on single
 /// nodes.
 const LEAST_ORDER: f64 = 10.0;
@@ -62,8 +64,19 @@ impl Found {
         let left = match &self.meshes[..] {
             [.., first, second, third] if self.has_rate() => {
                 let rate = apart(second, third) / apart(first, second);
-                // cells divided in some places take away half of the error at most
-                let best = if third.choice.halved_in.is_empty() { ORDER_2 } else { ORDER_1 };
+                let is_local = |coarse: &Solved, fine: &Solved| {
+                    coarse.choice.halved_in.len() < fine.choice.halved_in.len()
+                };
+                let best = match [is_local(first, second), is_local(second, third)] {
+                    [true, true] => LOCAL,
+                    [_, is_local] => {
+                        if is_local {
+                            ORDER_1
+                        } else {
+                            ORDER_2
+                        }
+                    }
+                };
                 if rate < 1.0 {
                     (rate / (1.0 - rate)).clamp(best, LEAST_ORDER)
                 } else {
@@ -182,10 +195,13 @@ mod tests {
         near(known(&[(false, 0.5), (false, 0.05), (true, 0.02)]), 0.03);
         near(known(&[(false, 0.05), (true, 0.02), (true, 0.005)]), 0.015);
         assert!(known(&[(false, 0.05)]).is_nan());
-        // cells divided in some places leave as much as they take away
+        // cells divided in some places leave as much as they take away, at the second time twice that
         let mut found = meshes(&[(true, 0.0257), (true, 0.0017), (true, 0.0002)]);
         found.meshes[2].choice.halved_in.push(vec![0]);
         near(found.resolution(), 0.0015);
+        found.meshes[1].choice.halved_in.push(vec![0]);
+        found.meshes[2].choice.halved_in.push(vec![0]);
+        near(found.resolution(), 0.003);
     }
 
     #[test]

@@ -26,7 +26,7 @@ pub(super) struct Outcome {
     pub(super) failure: Option<String>,
     /// What the run warns of.
     pub(super) warnings: Vec<String>,
-    /// Cells in which half of the jumps of strain are: what to divide next. None where cells cannot be divided in some places.
+    /// Cells in which most jumps of strain are: what to divide next. None where cells cannot be divided in some places.
     pub(super) worst: Vec<usize>,
 }
 

@@ -10,8 +10,7 @@ use crate::dynamics::equilibrium::Equilibrium;
 use crate::dynamics::error::Error;
 use crate::dynamics::statics::Statics;
 use crate::dynamics::trajectory::Trajectory;
-use crate::elements::basis::worst_cells;
-use crate::elements::mesh::CellKind;
+use crate::elements::basis::{can_be_bisected, worst_cells};
 use crate::scene::settings::{ContactEvents, Method, Settings};
 use crate::scene::timeline::{Phase, Scene};
 use crate::studies::work_precision::quantity::{Quantity, Seen};
@@ -103,8 +102,10 @@ pub(super) enum Cut {
 /// A run this short (s) is timed again, this many times in all.
 const SHORT: f64 = 0.1;
 const REPETITIONS: usize = 3;
-/// Strains are compared from cell to cell at this many times.
+/// Strains are compared from cell to cell at this many times, and the cells with this part of all jumps are divided next: more
+/// than half, so that two meshes differ by more than is left.
 const LOOKS: usize = 10;
+const WORST: f64 = 0.8;
 /// A run may take this part of the time that is left: others follow.
 const SHARE: f64 = 0.4;
 /// If less than this part of the budget is left, it counts as spent.
@@ -209,7 +210,8 @@ impl<'a> Search<'a> {
             seconds = seconds.min(again.report().wall_seconds);
         }
         let (seen, warnings) = (probe.seen(&first), first.report().warnings());
-        let worst = if can_be_halved_in(&scene) { worst_in(&first) } else { Vec::new() };
+        let kind = scene.body().mesh().kind();
+        let worst = if can_be_bisected(kind) { worst_in(&first) } else { Vec::new() };
         Ok(Outcome { warnings, worst, ..Outcome::new(Some(seen), seconds, first.report().states) })
     }
 
@@ -260,14 +262,7 @@ impl<'a> Search<'a> {
     }
 }
 
-/// Whether cells can be divided in some places: see [`Scene::halved_in`].
-fn can_be_halved_in(scene: &Scene) -> bool {
-    use CellKind::{Tetrahedron, Tetrahedron10, Tetrahedron15, Triangle, Triangle6, Triangle7};
-    let kind = scene.body().mesh().kind();
-    matches!(kind, Triangle | Triangle6 | Triangle7 | Tetrahedron | Tetrahedron10 | Tetrahedron15)
-}
-
-/// The cells in which half of the jumps of strain are in a motion.
+/// The cells in which most jumps of strain are in a motion.
 fn worst_in(trajectory: &Trajectory) -> Vec<usize> {
     let body = trajectory.body();
     let samples = trajectory.samples();
@@ -276,5 +271,5 @@ fn worst_in(trajectory: &Trajectory) -> Vec<usize> {
         let own = body.strain_jumps_by_cell(&sample.u);
         jumps.iter_mut().zip(own).for_each(|(sum, jump)| *sum += jump);
     }
-    worst_cells(&jumps)
+    worst_cells(&jumps, WORST)
 }
