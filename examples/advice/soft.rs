@@ -68,8 +68,8 @@ fn pulled_finger(poisson: f64) -> Result<Scene, Error> {
 
 /// Two rooms with sharp corners over a layer.
 fn room_scene(poisson: f64) -> Result<Scene, Error> {
-    let rooms = [[[0.005, 0.006], [0.02, 0.015]], [[0.025, 0.006], [0.04, 0.015]]];
-    let (mesh, walls) = with_holes([0.045, 0.018], [31, 13], &rooms)?;
+    let rooms = [[[0.006, 0.006], [0.021, 0.015]], [[0.024, 0.006], [0.039, 0.015]]];
+    let (mesh, walls) = with_holes([0.045, 0.018], [16, 7], &rooms)?;
     let mut scene = Scene::new(plane(mesh, poisson).build()?);
     for (number, wall) in walls.into_iter().enumerate() {
         scene = scene.chamber(Chamber::within(format!("room {}", number + 1), wall));

@@ -2,14 +2,32 @@
 
 use std::path::Path;
 
-use pliant::SceneFile;
+use pliant::{Dilatation, SceneFile};
 
 const PAGE: &str = include_str!("../../docs/scene-files.md");
+const SILICONE: &str = include_str!("../../docs/silicone.md");
 
-/// The blocks of the page in a language.
+/// The blocks of the page on scene files in a language.
 fn blocks(language: &str) -> Vec<&'static str> {
+    blocks_of(PAGE, language)
+}
+
+fn blocks_of(page: &'static str, language: &str) -> Vec<&'static str> {
     let fence = format!("```{language}\n");
-    PAGE.split(&fence).skip(1).map(|rest| rest.split("```").next().unwrap()).collect()
+    page.split(&fence).skip(1).map(|rest| rest.split("```").next().unwrap()).collect()
+}
+
+/// What a user writes for silicone is right at the first try: cells that keep their volume, and nothing to warn of.
+#[test]
+fn fingers_of_silicone_do_not_lock() {
+    let scenes = blocks_of(SILICONE, "toml");
+    assert_eq!(scenes.len(), 2);
+    for text in scenes {
+        let file = SceneFile::parse(text, Path::new("scene.toml")).unwrap();
+        assert_eq!(file.scene.body().dilatation(), Dilatation::Linear);
+        let motion = file.scene.simulate(&file.settings, &file.output.sampling()).unwrap();
+        assert_eq!(motion.report().warnings(), Vec::<String>::new());
+    }
 }
 
 #[test]
