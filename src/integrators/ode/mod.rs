@@ -14,7 +14,7 @@ pub(crate) mod call;
 pub mod check;
 mod closures;
 mod dae;
-mod delegate;
+pub(in crate::integrators) mod delegate;
 mod failure;
 mod first_order;
 mod functional;

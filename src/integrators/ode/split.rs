@@ -3,7 +3,7 @@
 use faer::MatMut;
 
 use super::band::BandMut;
-use super::delegate::delegate_ode;
+use super::delegate::delegate;
 use super::failure::Failure;
 use super::first_order::Ode;
 use super::mass::MassKind;
@@ -54,7 +54,7 @@ where
     S: Ode,
     E: FnMut(f64, &[f64], &mut [f64]) -> Result<(), Failure>,
 {
-    delegate_ode!(system);
+    delegate!(Ode in system: equations, companions, mass);
 
     fn is_split(&self) -> bool {
         true
@@ -65,21 +65,5 @@ where
             return Err(Failure::Fatal("what is split has no place in `split`".into()));
         }
         (self.explicit)(t, y, ydot)
-    }
-
-    fn mass_kind(&self) -> MassKind {
-        self.system.mass_kind()
-    }
-
-    fn dense_mass(&mut self, t: f64, mass: MatMut<'_, f64>) -> Result<(), Failure> {
-        self.system.dense_mass(t, mass)
-    }
-
-    fn banded_mass(&mut self, t: f64, mass: BandMut<'_>) -> Result<(), Failure> {
-        self.system.banded_mass(t, mass)
-    }
-
-    fn sparse_mass(&mut self, t: f64, values: &mut [f64]) -> Result<(), Failure> {
-        self.system.sparse_mass(t, values)
     }
 }

@@ -3,7 +3,7 @@
 use faer::{Mat, MatMut};
 
 use super::band::BandMut;
-use super::delegate::delegate_ode;
+use super::delegate::delegate;
 use super::failure::Failure;
 use super::first_order::Ode;
 use super::mass::MassKind;
@@ -102,15 +102,7 @@ pub fn with_mass<S: Ode>(system: S, mass: impl Into<MassMatrix>) -> WithMass<S> 
 }
 
 impl<S: Ode> Ode for WithMass<S> {
-    delegate_ode!(system);
-
-    fn is_split(&self) -> bool {
-        self.system.is_split()
-    }
-
-    fn explicit_rhs(&mut self, t: f64, y: &[f64], ydot: &mut [f64]) -> Result<(), Failure> {
-        self.system.explicit_rhs(t, y, ydot)
-    }
+    delegate!(Ode in system: equations, companions, explicit_part);
 
     fn mass_kind(&self) -> MassKind {
         MassKind::Constant

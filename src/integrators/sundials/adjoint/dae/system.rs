@@ -5,7 +5,7 @@ use faer::MatMut;
 use crate::base::input::InputError;
 use crate::integrators::{
     common::{Error, Tolerances, check_finite},
-    ode::{BandMut, Dae, Failure, Functional, call},
+    ode::{BandMut, Dae, Failure, Functional, call, delegate::delegate},
     sundials::{
         LinearSolver,
         adjoint::equations::{Equations, refused},
@@ -213,48 +213,7 @@ pub(super) fn uneven(j: usize) -> f64 {
 }
 
 impl<S: Dae, F: Functional> Dae for AdjointDae<S, F> {
-    fn residual(
-        &mut self,
-        t: f64,
-        y: &[f64],
-        yp: &[f64],
-        residual: &mut [f64],
-    ) -> Result<(), Failure> {
-        call::residual(&mut self.equations.system, t, y, yp, residual)
-    }
-
-    fn dense_jacobian(
-        &mut self,
-        t: f64,
-        cj: f64,
-        y: &[f64],
-        yp: &[f64],
-        jacobian: MatMut<'_, f64>,
-    ) -> Result<(), Failure> {
-        self.equations.system.dense_jacobian(t, cj, y, yp, jacobian)
-    }
-
-    fn banded_jacobian(
-        &mut self,
-        t: f64,
-        cj: f64,
-        y: &[f64],
-        yp: &[f64],
-        jacobian: BandMut<'_>,
-    ) -> Result<(), Failure> {
-        self.equations.system.banded_jacobian(t, cj, y, yp, jacobian)
-    }
-
-    fn sparse_jacobian(
-        &mut self,
-        t: f64,
-        cj: f64,
-        y: &[f64],
-        yp: &[f64],
-        values: &mut [f64],
-    ) -> Result<(), Failure> {
-        self.equations.system.sparse_jacobian(t, cj, y, yp, values)
-    }
+    delegate!(Dae in equations.system: equations);
 
     fn quadrature_count(&self) -> usize {
         1

@@ -5,7 +5,7 @@ use faer::MatMut;
 use crate::base::input::InputError;
 use crate::integrators::{
     common::Tolerances,
-    ode::{BandMut, Failure, Functional, Ode, call},
+    ode::{BandMut, Failure, Functional, Ode, call, delegate::delegate},
     sundials::{
         LinearSolver,
         adjoint::{equations::Equations, options::AdjointOptions},
@@ -106,39 +106,7 @@ impl<S: Ode, F: Functional> AdjointSystem<S, F> {
 }
 
 impl<S: Ode, F: Functional> Ode for AdjointSystem<S, F> {
-    fn rhs(&mut self, t: f64, y: &[f64], ydot: &mut [f64]) -> Result<(), Failure> {
-        call::rhs(&mut self.equations.system, t, y, ydot)
-    }
-
-    fn dense_jacobian(
-        &mut self,
-        t: f64,
-        y: &[f64],
-        ydot: &[f64],
-        jacobian: MatMut<'_, f64>,
-    ) -> Result<(), Failure> {
-        self.equations.system.dense_jacobian(t, y, ydot, jacobian)
-    }
-
-    fn banded_jacobian(
-        &mut self,
-        t: f64,
-        y: &[f64],
-        ydot: &[f64],
-        jacobian: BandMut<'_>,
-    ) -> Result<(), Failure> {
-        self.equations.system.banded_jacobian(t, y, ydot, jacobian)
-    }
-
-    fn sparse_jacobian(
-        &mut self,
-        t: f64,
-        y: &[f64],
-        ydot: &[f64],
-        values: &mut [f64],
-    ) -> Result<(), Failure> {
-        self.equations.system.sparse_jacobian(t, y, ydot, values)
-    }
+    delegate!(Ode in equations.system: equations);
 
     fn quadrature_count(&self) -> usize {
         1
