@@ -2,7 +2,7 @@
 
 use std::ptr;
 
-use super::{context::Context, ffi, functions::BackwardFunctions, linear::Linear, vector::Vector};
+use super::{context::Context, ffi, linear::Linear, vector::Vector};
 use crate::integrators::common::Error;
 
 /// Integrals at the present time.
@@ -70,7 +70,6 @@ impl Vectors {
 /// The backward problem of an adjoint gradient, which C frees together with the forward one, and what it
 /// uses.
 pub(super) struct Backward {
-    pub(super) functions: &'static BackwardFunctions,
     /// C's number of the problem.
     pub(super) which: i32,
     /// Used by C; it is kept here and freed after the memory.

@@ -1,15 +1,15 @@
 //! The C functions through which IDA calls a [`Dae`].
 //!
-//! All of them get the [`Host`] of the solver as their data pointer and vectors of its length;
-//! that is what their SAFETY comments refer to.
+//! All of them get the [`Host`] of the solver as their data pointer, and live serial vectors; those that they
+//! fill are different from the others. That is what their SAFETY comments refer to.
 
 use std::ffi::c_void;
 
 use super::{
     ffi,
-    host::{Host, STOP},
-    matrix::{self, Entries},
-    vector::{slice, slice_mut},
+    host::Host,
+    linear_solver::LinearSolver,
+    serial::{slice, slice_mut},
 };
 use crate::integrators::{
     common::{Callback, Point},
@@ -24,12 +24,9 @@ pub(super) unsafe extern "C" fn residual<S: Dae>(
     residual: ffi::N_Vector,
     data: *mut c_void,
 ) -> i32 {
-    // SAFETY: see the module; the three vectors are different.
-    let (host, y, yp, residual) = unsafe {
-        let host = &mut *data.cast::<Host<S>>();
-        let n = host.n;
-        (host, slice(y, n), slice(yp, n), slice_mut(residual, n))
-    };
+    // SAFETY: see the module.
+    let (host, y, yp, residual) =
+        unsafe { (Host::<S>::of(data), slice(y), slice(yp), slice_mut(residual)) };
     host.guard_output(Callback::Residual, t, residual, |system, residual| {
         call::residual(system, t, y, yp, residual)
     })
@@ -45,9 +42,9 @@ pub(super) unsafe extern "C" fn roots<S: Dae>(
 ) -> i32 {
     // SAFETY: see the module; `g` has as many places as root functions were declared.
     let (host, y, yp, g) = unsafe {
-        let host = &mut *data.cast::<Host<S>>();
-        let (n, count) = (host.n, host.root_count);
-        (host, slice(y, n), slice(yp, n), std::slice::from_raw_parts_mut(g, count))
+        let host = Host::<S>::of(data);
+        let g = std::slice::from_raw_parts_mut(g, host.root_count);
+        (host, slice(y), slice(yp), g)
     };
     host.guard_output(Callback::Roots, t, g, |system, g| call::dae_roots(system, t, y, yp, g))
 }
@@ -60,12 +57,9 @@ pub(super) unsafe extern "C" fn quadratures<S: Dae>(
     qdot: ffi::N_Vector,
     data: *mut c_void,
 ) -> i32 {
-    // SAFETY: see the module; `qdot` has as many places as integrals were declared.
-    let (host, y, yp, qdot) = unsafe {
-        let host = &mut *data.cast::<Host<S>>();
-        let (n, count) = (host.n, host.quadrature_count);
-        (host, slice(y, n), slice(yp, n), slice_mut(qdot, count))
-    };
+    // SAFETY: see the module.
+    let (host, y, yp, qdot) =
+        unsafe { (Host::<S>::of(data), slice(y), slice(yp), slice_mut(qdot)) };
     host.guard_output(Callback::Quadratures, t, qdot, |system, qdot| {
         call::dae_quadratures(system, t, y, yp, qdot)
     })
@@ -85,37 +79,17 @@ pub(super) unsafe extern "C" fn jacobian<S: Dae>(
     _: ffi::N_Vector,
     _: ffi::N_Vector,
 ) -> i32 {
-    // SAFETY: see the module.
-    let (host, y, yp, residual) = unsafe {
-        let host = &mut *data.cast::<Host<S>>();
-        let n = host.n;
-        (host, slice(y, n), slice(yp, n), slice(residual, n))
+    // SAFETY: see the module; SUNDIALS passes the matrix that was made for the linear solver of the host.
+    let (host, y, yp, residual, values) = unsafe {
+        let host = Host::<S>::of(data);
+        let values = host.stored(jacobian);
+        (host, slice(y), slice(yp), slice(residual), values)
     };
     host.setup_time = t;
-    let Some(solver) = &host.linear_solver else { return STOP };
-    // SAFETY: SUNDIALS passes the matrix that was made for this linear solver.
-    let entries = unsafe { matrix::entries(jacobian, solver, host.n) };
-    let callback = match entries {
-        Entries::Custom => Callback::NewtonSetup,
-        _ => Callback::Jacobian,
-    };
-    let outcome = match entries {
-        Entries::Dense(matrix) => {
-            host.guard(callback, t, |system| system.dense_jacobian(t, cj, y, yp, matrix))
-        }
-        Entries::Band(matrix) => {
-            host.guard(callback, t, |system| system.banded_jacobian(t, cj, y, yp, matrix))
-        }
-        Entries::Sparse(values) => sparse_jacobian(host, t, (cj, y, yp), residual, values),
-        Entries::Custom => host.guard(callback, t, |system| system.newton_setup(t, cj, y, yp)),
-    };
-    if outcome != 0 {
-        return outcome;
+    if matches!(host.linear_solver, Some(LinearSolver::Custom)) {
+        return host.guard(Callback::NewtonSetup, t, |system| system.newton_setup(t, cj, y, yp));
     }
-    let Some(solver) = &host.linear_solver else { return STOP };
-    // SAFETY: as above; the user's access has ended.
-    let values = unsafe { matrix::stored(jacobian, solver, host.n) };
-    match host.check_finite(callback, t, values) {
+    match evaluate_jacobian(host, t, (cj, y, yp), residual, values) {
         0 => check_jacobian(host, t, (cj, y, yp), values, |_, _, _| Ok(())),
         failed => failed,
     }
@@ -136,9 +110,9 @@ pub(super) fn check_jacobian<S: Dae>(
     host.check_jacobian(t, Point { y, yp, cj }, values, times, evaluate)
 }
 
-/// The values of dF/dy + cj dF/dy' on the pattern of the linear solver: the system's own, or difference
-/// quotients.
-pub(super) fn sparse_jacobian<S: Dae>(
+/// The values of dF/dy + cj dF/dy' that the linear solver or its preconditioner stores: difference quotients,
+/// or the system's own.
+pub(super) fn evaluate_jacobian<S: Dae>(
     host: &mut Host<S>,
     t: f64,
     (cj, y, yp): (f64, &[f64], &[f64]),
@@ -148,8 +122,9 @@ pub(super) fn sparse_jacobian<S: Dae>(
     // Taken out of the host, which calls the system meanwhile.
     let (Some(mut differences), Some(mut scales)) = (host.differences.take(), host.scales.take())
     else {
-        let call = |system: &mut S| system.sparse_jacobian(t, cj, y, yp, values);
-        return host.guard(Callback::Jacobian, t, call);
+        return host.guard_entries(Callback::Jacobian, t, values, |system, entries| {
+            entries.dae_jacobian(system, t, cj, y, yp)
+        });
     };
     let (at, scale) = ((cj, y, yp), scales.read());
     let outcome = differences.of_residual(at, scale, residual, values, |y, yp, residual| {
@@ -158,5 +133,8 @@ pub(super) fn sparse_jacobian<S: Dae>(
         })
     });
     (host.differences, host.scales) = (Some(differences), Some(scales));
-    outcome
+    match outcome {
+        0 => host.check_finite(Callback::Jacobian, t, values),
+        failed => failed,
+    }
 }

@@ -1,15 +1,15 @@
 //! The C functions through which a Krylov method of IDA calls a [`Dae`].
 //!
-//! All of them get the [`Host`] of the solver as their data pointer and vectors of its length; those that
-//! they fill are different from the others. That is what their SAFETY comments refer to.
+//! All of them get the [`Host`] of the solver as their data pointer, and live serial vectors; those that they
+//! fill are different from the others. That is what their SAFETY comments refer to.
 
 use std::ffi::c_void;
 
 use super::{
-    dae_callbacks::{check_jacobian, sparse_jacobian},
+    dae_callbacks::{check_jacobian, evaluate_jacobian},
     ffi,
     host::Host,
-    vector::{slice, slice_mut},
+    serial::{slice, slice_mut},
 };
 use crate::integrators::{
     common::Callback,
@@ -31,11 +31,8 @@ pub(super) unsafe extern "C" fn jacobian_times<S: Dae>(
     _: ffi::N_Vector,
 ) -> i32 {
     // SAFETY: see the module.
-    let (host, v, jv, y, yp) = unsafe {
-        let host = &mut *data.cast::<Host<S>>();
-        let n = host.n;
-        (host, slice(v, n), slice_mut(jv, n), slice(y, n), slice(yp, n))
-    };
+    let (host, v, jv, y, yp) =
+        unsafe { (Host::<S>::of(data), slice(v), slice_mut(jv), slice(y), slice(yp)) };
     let outcome = host.guard_output(Callback::JacobianTimes, t, jv, |system, jv| {
         call::dae_jacobian_times(system, t, cj, y, yp, v, jv)
     });
@@ -57,22 +54,15 @@ pub(super) unsafe extern "C" fn precondition_setup<S: Dae>(
     data: *mut c_void,
 ) -> i32 {
     // SAFETY: see the module.
-    let (host, y, yp, residual) = unsafe {
-        let host = &mut *data.cast::<Host<S>>();
-        let n = host.n;
-        (host, slice(y, n), slice(yp, n), slice(residual, n))
-    };
+    let (host, y, yp, residual) =
+        unsafe { (Host::<S>::of(data), slice(y), slice(yp), slice(residual)) };
     // Taken out of the host, which calls the system meanwhile.
     let Some(mut ilu) = host.ilu.take() else {
         let call = |system: &mut S| system.newton_setup(t, cj, y, yp);
         return host.guard(Callback::NewtonSetup, t, call);
     };
-    let mut outcome = ilu.update_jacobian(|values| {
-        match sparse_jacobian(host, t, (cj, y, yp), residual, values) {
-            0 => host.check_finite(Callback::Jacobian, t, values),
-            failed => failed,
-        }
-    });
+    let mut outcome =
+        ilu.update_jacobian(|values| evaluate_jacobian(host, t, (cj, y, yp), residual, values));
     if outcome == 0 {
         outcome = host.check_pivots(t, ilu.factorize());
     }
@@ -94,12 +84,6 @@ pub(super) unsafe extern "C" fn precondition_solve<S: Dae>(
     data: *mut c_void,
 ) -> i32 {
     // SAFETY: see the module.
-    let (host, z) = unsafe {
-        let host = &mut *data.cast::<Host<S>>();
-        let n = host.n;
-        let z = slice_mut(z, n);
-        z.copy_from_slice(slice(r, n));
-        (host, z)
-    };
-    host.precondition(t, z, Dae::newton_solve)
+    let (host, r, z) = unsafe { (Host::<S>::of(data), slice(r), slice_mut(z)) };
+    host.precondition(t, r, z, Dae::newton_solve)
 }

@@ -157,6 +157,10 @@ pub(super) struct QuadratureFunctions {
 pub(super) type GetBackward =
     unsafe fn(*mut c_void, i32, *mut f64, ffi::N_Vector, ffi::N_Vector) -> i32;
 
+/// Starts a backward problem: (memory, problem, time, lambda, lambda'). An ODE has null for lambda'.
+pub(super) type InitBackward =
+    unsafe fn(*mut c_void, i32, f64, ffi::N_Vector, ffi::N_Vector) -> i32;
+
 /// The functions of CVODES and IDAS for backward problems, which belong to the memory of the forward run and
 /// are identified by a number.
 pub(super) struct BackwardFunctions {
@@ -167,12 +171,16 @@ pub(super) struct BackwardFunctions {
     /// (memory, steps between checkpoints, interpolation)
     pub(super) init_checkpoints: Named<unsafe extern "C" fn(*mut c_void, i64, i32) -> i32>,
     pub(super) create: Named<unsafe fn(*mut c_void, *mut i32) -> i32>,
+    pub(super) init: Named<InitBackward>,
     pub(super) vector_tolerances:
         Named<unsafe extern "C" fn(*mut c_void, i32, f64, ffi::N_Vector) -> i32>,
     pub(super) set_user_data: Named<unsafe extern "C" fn(*mut c_void, i32, *mut c_void) -> i32>,
     pub(super) set_max_steps: Named<unsafe extern "C" fn(*mut c_void, i32, i64) -> i32>,
     pub(super) set_linear_solver:
         Named<unsafe extern "C" fn(*mut c_void, i32, ffi::SUNLinearSolver, ffi::SUNMatrix) -> i32>,
+    pub(super) set_jacobian: Named<unsafe fn(*mut c_void, i32) -> i32>,
+    /// Takes the initial values of the integrals, which are zero.
+    pub(super) init_quadratures: Named<unsafe fn(*mut c_void, i32, ffi::N_Vector) -> i32>,
     pub(super) set_quadrature_error_control:
         Named<unsafe extern "C" fn(*mut c_void, i32, i32) -> i32>,
     pub(super) quadrature_tolerances:

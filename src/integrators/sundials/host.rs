@@ -13,10 +13,12 @@ use std::{
 
 use super::{
     differences::{Differences, Scales},
-    functions::Get,
+    ffi,
+    functions::{Get, Named},
     ilu::IncompleteLu,
     index::Index,
     linear_solver::LinearSolver,
+    matrix::{self, Entries},
     sensitivity::SensitivityRhs,
     shape::Shape,
     signs::Violation,
@@ -51,7 +53,6 @@ pub(super) struct Host<S> {
     /// Number of unknowns: the length of every vector.
     pub(super) n: usize,
     pub(super) root_count: usize,
-    pub(super) quadrature_count: usize,
     pub(super) sensitivity: Option<Box<SensitivityRhs>>,
     /// Determines the form of the Jacobian; none for a fixed-point iteration.
     pub(super) linear_solver: Option<LinearSolver>,
@@ -177,7 +178,6 @@ impl<S> Host<S> {
             system,
             n,
             root_count,
-            quadrature_count: 0,
             sensitivity: None,
             linear_solver,
             custom_solve: None,
@@ -190,6 +190,26 @@ impl<S> Host<S> {
             step_end: None,
             troubles,
         }
+    }
+
+    /// The host that a callback gets as its data.
+    ///
+    /// # Safety
+    /// `data` points to a live host of this type, which nobody else uses during `'a`.
+    pub(super) unsafe fn of<'a>(data: *mut c_void) -> &'a mut Self {
+        // SAFETY: the caller vouches for the pointer.
+        unsafe { &mut *data.cast() }
+    }
+
+    /// All numbers that a matrix of the linear solver stores; none if it stores none.
+    ///
+    /// # Safety
+    /// `matrix` is live and was made for the linear solver and as many unknowns as this host has, and nobody
+    /// else uses it during `'a`.
+    pub(super) unsafe fn stored<'a>(&self, matrix: ffi::SUNMatrix) -> &'a mut [f64] {
+        let Some(solver) = &self.linear_solver else { return &mut [] };
+        // SAFETY: the caller vouches for the matrix.
+        unsafe { matrix::stored(matrix, solver, self.n) }
     }
 
     /// Runs user code of a callback and translates its outcome for SUNDIALS.
@@ -227,6 +247,23 @@ impl<S> Host<S> {
     ) -> i32 {
         let outcome = self.guard(callback, t, |system| call(system, &mut *output));
         if outcome == 0 { self.check_finite(callback, t, output) } else { outcome }
+    }
+
+    /// As [`guard_output`](Self::guard_output), for entries of a matrix of the linear solver, or of its
+    /// preconditioner, which are stored as `values`.
+    pub(super) fn guard_entries(
+        &mut self,
+        callback: Callback,
+        t: f64,
+        values: &mut [f64],
+        call: impl FnOnce(&mut S, Entries<'_>) -> Result<(), Failure>,
+    ) -> i32 {
+        let Some(solver) = &self.linear_solver else { return STOP };
+        let entries = Entries::of(solver, self.n, values);
+        match self.guard(callback, t, |system| call(system, entries)) {
+            0 => self.check_finite(callback, t, values),
+            failed => failed,
+        }
     }
 
     /// Checks a Jacobian that the system has just supplied, if a check is due: its entries, or the products
@@ -270,14 +307,16 @@ impl<S> Host<S> {
         STOP
     }
 
-    /// Solves with the preconditioner of a Krylov method, in place: the incomplete factorization, or `own` of
-    /// the system.
+    /// Solves with the preconditioner of a Krylov method for `r`: by the incomplete factorization, or in place
+    /// by `own` of the system.
     pub(super) fn precondition(
         &mut self,
         t: f64,
+        r: &[f64],
         z: &mut [f64],
         own: impl FnOnce(&mut S, &mut [f64]) -> Result<(), Failure>,
     ) -> i32 {
+        z.copy_from_slice(r);
         match &self.ilu {
             Some(ilu) => {
                 ilu.solve(z);
@@ -352,6 +391,16 @@ impl<S> HostBox<S> {
         Err(Error::Call { function, code, message })
     }
 
+    /// Calls such a function by `call`.
+    pub(super) fn call<F>(
+        &mut self,
+        (name, function): Named<F>,
+        call: impl FnOnce(F) -> i32,
+    ) -> Result<(), Error> {
+        let code = call(function);
+        self.accept(name, code)
+    }
+
     /// Returns the user's system. All C objects that hold the pointer have to be freed before.
     pub(super) fn into_system(self) -> S {
         let pointer = self.0;
@@ -386,7 +435,7 @@ pub(super) unsafe extern "C" fn keep_message<S>(
     // SAFETY: SUNDIALS passes the data pointer that was registered with this handler, and a
     // terminated message; the callbacks that also use the host have returned.
     let (troubles, message) =
-        unsafe { (&mut (*data.cast::<Host<S>>()).troubles, CStr::from_ptr(message)) };
+        unsafe { (&mut Host::<S>::of(data).troubles, CStr::from_ptr(message)) };
     troubles.message.clear();
     troubles.message.push_str(message.to_string_lossy().trim());
 }

@@ -7,7 +7,11 @@
 
 use std::slice;
 
-use super::{ffi, signs};
+use super::{
+    ffi,
+    serial::{self, parts},
+    signs,
+};
 
 /// Gives `vector`, and all its later clones, the operations of this module.
 ///
@@ -29,27 +33,12 @@ pub(super) unsafe fn install(vector: ffi::N_Vector) {
     }
 }
 
-/// Start and length of a serial vector.
-///
-/// # Safety
-/// `vector` is a live serial vector.
-unsafe fn parts(vector: ffi::N_Vector) -> (*mut f64, usize) {
-    // SAFETY: the caller vouches for the vector, whose content is of this type.
-    unsafe {
-        let content = &*(*vector).content.cast::<ffi::_N_VectorContent_Serial>();
-        (content.data, content.length as usize)
-    }
-}
-
 /// sqrt(sum_i (x_i w_i)^2 / n), summed in eight interleaved parts.
 ///
 /// A NaN is returned as infinity: C tests whether norms are too large, and NaN never is.
 unsafe extern "C" fn weighted_norm(x: ffi::N_Vector, w: ffi::N_Vector) -> f64 {
     // SAFETY: SUNDIALS passes live vectors of equal length, and nothing writes to them here.
-    let (x, w) = unsafe {
-        let ((x, n), (w, _)) = (parts(x), parts(w));
-        (slice::from_raw_parts(x, n), slice::from_raw_parts(w, n))
-    };
+    let (x, w) = unsafe { (serial::slice(x), serial::slice(w)) };
     let (x_blocks, x_rest) = x.as_chunks::<8>();
     let (w_blocks, w_rest) = w.as_chunks::<8>();
     let mut sums = [0.0; 8];

@@ -10,7 +10,8 @@ use super::{
     krylov::{Krylov, KrylovMethod, Side},
     linear_solver::LinearSolver,
     matrix::{self, Entries, Matrix},
-    vector::{Vector, slice, slice_mut},
+    serial::{slice, slice_mut},
+    vector::Vector,
 };
 use crate::integrators::common::{Callback, Error};
 
@@ -87,7 +88,7 @@ impl Linear {
         // matrix; `&mut self` keeps others away, and the entries are gone when the solver works.
         unsafe {
             ffi::SUNMatZero(matrix);
-            fill(matrix::entries(matrix, kind, n));
+            fill(Entries::of(kind, n, matrix::stored(matrix, kind, n)));
             self.is_ready = self.is_ready || ffi::SUNLinSolInitialize(solver) == 0;
             self.is_ready && ffi::SUNLinSolSetup(solver, matrix) == 0
         }
@@ -242,13 +243,8 @@ unsafe extern "C" fn solve<S>(
 ) -> i32 {
     // SAFETY: the content is the host of the integrator, which outlives the linear solver;
     // SUNDIALS passes two different vectors of its length.
-    let (host, x) = unsafe {
-        let host = &mut *(*solver).content.cast::<Host<S>>();
-        let n = host.n;
-        let x = slice_mut(x, n);
-        x.copy_from_slice(slice(b, n));
-        (host, x)
-    };
+    let (host, x, b) = unsafe { (Host::<S>::of((*solver).content), slice_mut(x), slice(b)) };
+    x.copy_from_slice(b);
     let Some(custom) = &host.custom_solve else { return ffi::SUNLS_PACKAGE_FAIL_UNREC };
     let (newton_solve, mut parameter) = (custom.solve, f64::NAN);
     // SAFETY: the memory is that of the integrator which is calling; it only reads a number.

@@ -5,7 +5,10 @@ use std::{ptr, slice};
 use faer::MatMut;
 
 use super::{context::Context, ffi, linear_solver::LinearSolver};
-use crate::integrators::{common::Error, ode::BandMut};
+use crate::integrators::{
+    common::Error,
+    ode::{BandMut, Dae, Failure, Ode},
+};
 
 /// Owns a `SUNMatrix`.
 pub(super) struct Matrix(ffi::SUNMatrix);
@@ -78,7 +81,7 @@ unsafe fn empty(context: ffi::SUNContext) -> ffi::SUNMatrix {
     }
 }
 
-/// What a Jacobian callback fills.
+/// The entries of a matrix, to be filled.
 pub(super) enum Entries<'a> {
     Dense(MatMut<'a, f64>),
     Band(BandMut<'a>),
@@ -87,59 +90,79 @@ pub(super) enum Entries<'a> {
     Custom,
 }
 
-/// The entries of `matrix`, to be filled.
-///
-/// # Safety
-/// `matrix` is a live `n` x `n` matrix made for `solver`, and nobody else uses it during `'a`.
-pub(super) unsafe fn entries<'a>(
-    matrix: ffi::SUNMatrix,
-    solver: &LinearSolver,
-    n: usize,
-) -> Entries<'a> {
-    match solver {
-        LinearSolver::Dense(_) => {
-            // SAFETY: the caller vouches for the matrix.
-            let data = unsafe { stored(matrix, solver, n) };
-            Entries::Dense(MatMut::from_column_major_slice_mut(data, n, n))
-        }
-        LinearSolver::Band { lower, upper, .. } => {
-            // SAFETY: the caller vouches for the matrix, which is a band matrix.
-            let (data, stride, diagonal) = unsafe {
-                (
-                    stored(matrix, solver, n),
-                    ffi::SUNBandMatrix_LDim(matrix) as usize,
-                    ffi::SUNBandMatrix_StoredUpperBandwidth(matrix) as usize,
-                )
-            };
-            Entries::Band(BandMut::new(data, stride, diagonal, *lower, *upper))
-        }
-        LinearSolver::Klu { pattern, .. } => {
-            let (pointers, rows) = (pattern.column_pointers(), pattern.row_indices());
-            // SUNDIALS clears the pattern together with the values before each evaluation.
-            // SAFETY: the index arrays have room for the pattern for which they were made.
-            unsafe {
-                let to = ffi::SUNSparseMatrix_IndexPointers(matrix);
-                ptr::copy_nonoverlapping(pointers.as_ptr(), to, pointers.len());
-                let to = ffi::SUNSparseMatrix_IndexValues(matrix);
-                ptr::copy_nonoverlapping(rows.as_ptr(), to, rows.len());
+impl<'a> Entries<'a> {
+    /// Those that `solver`, or its preconditioner, stores as `values` of a matrix with `n` columns.
+    pub(super) fn of(solver: &LinearSolver, n: usize, values: &'a mut [f64]) -> Self {
+        match *solver {
+            LinearSolver::Dense(_) => {
+                Self::Dense(MatMut::from_column_major_slice_mut(values, n, n))
             }
-            // SAFETY: the caller vouches for the matrix.
-            Entries::Sparse(unsafe { stored(matrix, solver, n) })
+            LinearSolver::Band { lower, upper, .. } => {
+                // room for pivots may lie above the band
+                let stride = values.len() / n;
+                Self::Band(BandMut::new(values, stride, stride - lower - 1, lower, upper))
+            }
+            LinearSolver::Klu { .. } | LinearSolver::Krylov(_) => Self::Sparse(values),
+            LinearSolver::Custom => Self::Custom,
         }
-        LinearSolver::Krylov(_) | LinearSolver::Custom => Entries::Custom,
+    }
+
+    /// Lets the system write df/dy.
+    pub(super) fn jacobian<S: Ode>(
+        self,
+        system: &mut S,
+        t: f64,
+        y: &[f64],
+        ydot: &[f64],
+    ) -> Result<(), Failure> {
+        match self {
+            Self::Dense(matrix) => system.dense_jacobian(t, y, ydot, matrix),
+            Self::Band(matrix) => system.banded_jacobian(t, y, ydot, matrix),
+            Self::Sparse(values) => system.sparse_jacobian(t, y, ydot, values),
+            Self::Custom => Ok(()),
+        }
+    }
+
+    /// Lets the system write dF/dy + cj dF/dy'.
+    pub(super) fn dae_jacobian<S: Dae>(
+        self,
+        system: &mut S,
+        t: f64,
+        cj: f64,
+        y: &[f64],
+        yp: &[f64],
+    ) -> Result<(), Failure> {
+        match self {
+            Self::Dense(matrix) => system.dense_jacobian(t, cj, y, yp, matrix),
+            Self::Band(matrix) => system.banded_jacobian(t, cj, y, yp, matrix),
+            Self::Sparse(values) => system.sparse_jacobian(t, cj, y, yp, values),
+            Self::Custom => Ok(()),
+        }
+    }
+
+    /// Lets the system write its mass matrix.
+    pub(super) fn mass<S: Ode>(self, system: &mut S, t: f64) -> Result<(), Failure> {
+        match self {
+            Self::Dense(matrix) => system.dense_mass(t, matrix),
+            Self::Band(matrix) => system.banded_mass(t, matrix),
+            Self::Sparse(values) => system.sparse_mass(t, values),
+            Self::Custom => Ok(()),
+        }
     }
 }
 
-/// All numbers that `matrix` stores, column after column.
+/// All numbers that `matrix` stores, column after column, to be filled. A sparse matrix gets its pattern:
+/// SUNDIALS clears it together with the values before each evaluation.
 ///
 /// # Safety
-/// As for [`entries`].
+/// `matrix` is a live `n` x `n` matrix made for `solver`, and nobody else uses it during `'a`.
 pub(super) unsafe fn stored<'a>(
     matrix: ffi::SUNMatrix,
     solver: &LinearSolver,
     n: usize,
 ) -> &'a mut [f64] {
-    // SAFETY: each kind of matrix has one contiguous array of the length given here.
+    // SAFETY: the caller vouches for the matrix; each kind has one contiguous array of the length given here,
+    // and the index arrays of a sparse one have room for the pattern for which they were made.
     unsafe {
         let (data, len) = match solver {
             LinearSolver::Dense(_) => (ffi::SUNDenseMatrix_Data(matrix), n * n),
@@ -148,6 +171,11 @@ pub(super) unsafe fn stored<'a>(
                 (ffi::SUNBandMatrix_Data(matrix), n * stride)
             }
             LinearSolver::Klu { pattern, .. } => {
+                let (pointers, rows) = (pattern.column_pointers(), pattern.row_indices());
+                let to = ffi::SUNSparseMatrix_IndexPointers(matrix);
+                ptr::copy_nonoverlapping(pointers.as_ptr(), to, pointers.len());
+                let to = ffi::SUNSparseMatrix_IndexValues(matrix);
+                ptr::copy_nonoverlapping(rows.as_ptr(), to, rows.len());
                 (ffi::SUNSparseMatrix_Data(matrix), pattern.entry_count())
             }
             LinearSolver::Krylov(_) | LinearSolver::Custom => return &mut [],

@@ -76,6 +76,7 @@ mod progress;
 mod quadratures;
 mod report;
 mod sensitivity;
+mod serial;
 mod session;
 mod shape;
 mod signs;

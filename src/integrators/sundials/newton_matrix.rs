@@ -4,7 +4,7 @@ use std::{fmt, ptr};
 
 use super::{
     context::Context, differences::Differences, linear::Linear, linear_solver::LinearSolver,
-    matrix::Entries, stored_jacobian::StoredJacobian, vector::Vector,
+    stored_jacobian::StoredJacobian, vector::Vector,
 };
 use crate::base::input::InputError;
 use crate::integrators::{
@@ -66,13 +66,7 @@ impl NewtonMatrix {
         [y, slope]: [&[f64]; 2],
     ) -> Result<u64, Failure> {
         let Some(differences) = &mut self.differences else {
-            match self.jacobian.entries() {
-                Entries::Dense(matrix) => system.dense_jacobian(t, y, slope, matrix)?,
-                Entries::Band(matrix) => system.banded_jacobian(t, y, slope, matrix)?,
-                Entries::Sparse(values) => system.sparse_jacobian(t, y, slope, values)?,
-                Entries::Custom => {}
-            }
-            return Ok(0);
+            return self.jacobian.entries().jacobian(system, t, y, slope).map(|()| 0);
         };
         let before = differences.evaluations;
         let values = self.jacobian.values_mut();

@@ -74,7 +74,6 @@ impl<K, S> Session<K, S> {
         let zeros = vec![0.0; count];
         let values = Vector::from_slice(&zeros, &self.context)?;
         let scratch = Vector::from_slice(&zeros, &self.context)?;
-        self.host.get_mut().quadrature_count = count;
         let memory = self.memory.raw;
         // SAFETY: the memory is alive and copies the vector; the caller vouches for the rest.
         let code = unsafe { init(memory, callback, values.raw()) };

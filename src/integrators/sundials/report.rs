@@ -137,14 +137,9 @@ impl<K, S> Session<K, S> {
             ffi::CV_TOO_MUCH_WORK if self.progress.stands => {
                 (Cause::StandsStill { steps: STRETCH }, true)
             }
-            ffi::CV_TOO_MUCH_WORK => {
-                let steps = u64::from(self.max_steps);
-                (Cause::TooManySteps { steps, target, notice: None }, true)
-            }
             code if self.memory.functions.mass_failures.contains(&code) => {
                 (Cause::MassMatrix, true)
             }
-            ffi::CV_TOO_MUCH_ACC => (Cause::TooMuchAccuracy, false),
             ffi::IDA_LINESEARCH_FAIL | ffi::IDA_NO_RECOVERY if is_dae => {
                 (Cause::InconsistentStart, true)
             }
@@ -157,12 +152,7 @@ impl<K, S> Session<K, S> {
             ffi::CV_ERR_FAILURE | ffi::CV_CONV_FAILURE if is_dae && statistics.steps == 0 => {
                 (Cause::InconsistentStart, true)
             }
-            ffi::CV_ERR_FAILURE => (Cause::ErrorTest, false),
-            ffi::CV_CONV_FAILURE => (Cause::Convergence, true),
-            ffi::CV_LINIT_FAIL | ffi::CV_LSETUP_FAIL | ffi::CV_LSOLVE_FAIL => {
-                (Cause::LinearSolver, true)
-            }
-            _ => (Cause::Other, true),
+            code => cause_of(code, self.max_steps, target),
         };
         // too many steps at a bound may have another reason, unless they make hardly any progress
         let crawls = statistics.current_step.abs() < 1e-6 * (target - self.t).abs();
@@ -196,5 +186,22 @@ impl<K, S> Session<K, S> {
             source,
         }
         .into()
+    }
+}
+
+/// Why an integrator that may take so many steps to `target` stops with this code, and whether a request of
+/// the system for a smaller step can be the reason.
+pub(super) fn cause_of(code: i32, max_steps: u32, target: f64) -> (Cause, bool) {
+    match code {
+        ffi::CV_TOO_MUCH_WORK => {
+            (Cause::TooManySteps { steps: u64::from(max_steps), target, notice: None }, true)
+        }
+        ffi::CV_TOO_MUCH_ACC => (Cause::TooMuchAccuracy, false),
+        ffi::CV_ERR_FAILURE => (Cause::ErrorTest, false),
+        ffi::CV_CONV_FAILURE => (Cause::Convergence, true),
+        ffi::CV_LINIT_FAIL | ffi::CV_LSETUP_FAIL | ffi::CV_LSOLVE_FAIL => {
+            (Cause::LinearSolver, true)
+        }
+        _ => (Cause::Other, true),
     }
 }

@@ -1,8 +1,11 @@
 //! Inequality constraints: unknowns that keep their sign.
 
-use std::{fmt, ptr, slice};
+use std::{fmt, ptr};
 
-use super::ffi;
+use super::{
+    ffi,
+    serial::{slice, slice_mut},
+};
 use crate::base::input::InputError;
 use crate::integrators::common::{Error, check_length};
 
@@ -133,17 +136,6 @@ unsafe extern "C" fn clone(signs: ffi::N_Vector) -> ffi::N_Vector {
     }
 }
 
-/// The numbers of a vector.
-///
-/// # Safety
-/// `vector` is a live serial vector, and nobody writes to it during `'a`.
-unsafe fn numbers<'a>(vector: ffi::N_Vector) -> &'a [f64] {
-    // SAFETY: the caller vouches for the vector; serial vectors are contiguous.
-    unsafe {
-        slice::from_raw_parts(ffi::N_VGetArrayPointer(vector), ffi::N_VGetLength(vector) as usize)
-    }
-}
-
 /// `N_VConstrMask` of serial vectors, which remembers what it found: writes 1 to `mask` where `y` does not
 /// have the sign that `signs` requires, else 0. Returns whether all have it.
 pub(super) unsafe extern "C" fn mask(
@@ -156,8 +148,7 @@ pub(super) unsafe extern "C" fn mask(
     // during a call of C.
     let (signs, y, mask, found) = unsafe {
         let found = &mut *(*(*signs).content.cast::<Content>()).found;
-        let (signs, y) = (numbers(signs), numbers(y));
-        (signs, y, slice::from_raw_parts_mut(ffi::N_VGetArrayPointer(mask), y.len()), found)
+        (slice(signs), slice(y), slice_mut(mask), found)
     };
     let mut first = None;
     for (i, mask) in mask.iter_mut().enumerate() {
@@ -182,7 +173,7 @@ pub(super) unsafe extern "C" fn mask(
 /// Half a step is taken then.
 pub(super) unsafe extern "C" fn least_part(dividend: ffi::N_Vector, divisor: ffi::N_Vector) -> f64 {
     // SAFETY: SUNDIALS passes two live vectors of equal length, and nothing writes to them here.
-    let (dividend, divisor) = unsafe { (numbers(dividend), numbers(divisor)) };
+    let (dividend, divisor) = unsafe { (slice(dividend), slice(divisor)) };
     let quotients = dividend.iter().zip(divisor).filter(|(_, d)| **d != 0.0).map(|(n, d)| n / d);
     let least = quotients.fold(f64::INFINITY, f64::min);
     if least <= 1.0 { least } else { 0.5 }

@@ -1,10 +1,8 @@
 //! Jacobians that are stored in addition to the matrix that a linear solver factorizes.
 
-use faer::MatMut;
-
 use crate::base::input::InputError;
 use crate::integrators::{
-    ode::{BandMut, Failure},
+    ode::Failure,
     sundials::{
         Jacobian, LinearSolver, Pattern, colouring::Colouring, matrix::Entries, shape::Shape,
     },
@@ -77,17 +75,7 @@ impl StoredJacobian {
     /// Its entries, set to zero and to be filled.
     pub(in crate::integrators::sundials) fn entries(&mut self) -> Entries<'_> {
         self.values.fill(0.0);
-        let values = &mut self.values;
-        match &self.forward {
-            LinearSolver::Dense(_) => {
-                Entries::Dense(MatMut::from_column_major_slice_mut(values, self.n, self.n))
-            }
-            LinearSolver::Band { lower, upper, .. } => {
-                let stride = lower + upper + 1;
-                Entries::Band(BandMut::new(values, stride, *upper, *lower, *upper))
-            }
-            _ => Entries::Sparse(values),
-        }
+        Entries::of(&self.forward, self.n, &mut self.values)
     }
 
     /// Makes it the Jacobian of `evaluate` at `x`, by central differences with these steps, of as many

@@ -13,7 +13,7 @@ use crate::integrators::{
 };
 
 /// A system and a functional, with room for their derivatives.
-pub(super) struct Equations<S, F> {
+pub(in crate::integrators::sundials) struct Equations<S, F> {
     pub(super) system: S,
     functional: F,
     access: Access<S>,

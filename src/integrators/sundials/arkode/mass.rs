@@ -1,17 +1,12 @@
 //! The mass matrix of M y' = f(t, y) in ARKODE.
 
-use crate::integrators::sundials::functions::named;
 use std::ffi::c_void;
 
 use crate::integrators::{
     common::{Callback, Error},
     ode::{MassKind, Ode},
     sundials::{
-        ffi,
-        host::{Host, STOP},
-        linear::Linear,
-        linear_solver::LinearSolver,
-        matrix::{self, Entries},
+        ffi, functions::named, host::Host, linear::Linear, linear_solver::LinearSolver,
         session::Session,
     },
 };
@@ -64,22 +59,12 @@ unsafe extern "C" fn fill<S: Ode>(
     _: ffi::N_Vector,
     _: ffi::N_Vector,
 ) -> i32 {
-    // SAFETY: the data is the host of the solver, which nobody else uses during this call.
-    let host = unsafe { &mut *data.cast::<Host<S>>() };
-    let Some(solver) = &host.linear_solver else { return STOP };
-    // SAFETY: SUNDIALS passes the matrix that was made for this linear solver.
-    let entries = unsafe { matrix::entries(mass, solver, host.n) };
-    let outcome = host.guard(Callback::Mass, t, |system| match entries {
-        Entries::Dense(matrix) => system.dense_mass(t, matrix),
-        Entries::Band(matrix) => system.banded_mass(t, matrix),
-        Entries::Sparse(values) => system.sparse_mass(t, values),
-        Entries::Custom => unreachable!("a custom solver has no mass matrix"),
-    });
-    if outcome != 0 {
-        return outcome;
-    }
-    let Some(solver) = &host.linear_solver else { return STOP };
-    // SAFETY: as above; the user's access has ended.
-    let values = unsafe { matrix::stored(mass, solver, host.n) };
-    host.check_finite(Callback::Mass, t, values)
+    // SAFETY: the data is the host of the solver, which nobody else uses during this call; SUNDIALS passes a
+    // matrix that was made for a linear solver of the same form.
+    let (host, values) = unsafe {
+        let host = Host::<S>::of(data);
+        let values = host.stored(mass);
+        (host, values)
+    };
+    host.guard_entries(Callback::Mass, t, values, |system, entries| entries.mass(system, t))
 }

@@ -11,11 +11,10 @@ use crate::integrators::{
         functions::{Functions, named},
         linear_solver::LinearSolver,
         nonlinear::NonlinearSolver,
-        ode_callbacks::{
-            explicit_rhs, jacobian, newton_rhs, newton_setup_with_mass, note_step_end, note_time,
-            rhs, roots,
+        ode_callbacks::{explicit_rhs, jacobian, newton_rhs, note_step_end, note_time, rhs, roots},
+        ode_krylov::{
+            jacobian_times, newton_setup_with_mass, precondition_setup, precondition_solve,
         },
-        ode_krylov::{jacobian_times, precondition_setup, precondition_solve},
         session::{InitialState, Session},
         solver::{Kind, Owner, Solver},
     },

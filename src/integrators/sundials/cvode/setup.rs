@@ -6,13 +6,11 @@ use crate::integrators::{
     ode::{Borrowed, Ode},
     sundials::{
         ffi,
-        functions::{
-            BackwardFunctions, Functions, QuadratureFunctions, SensitivityFunctions, named,
-        },
+        functions::{Functions, QuadratureFunctions, SensitivityFunctions, named},
         linear_solver::LinearSolver,
         nonlinear::NonlinearSolver,
-        ode_callbacks::{jacobian, newton_rhs, newton_setup, project, quadratures, rhs, roots},
-        ode_krylov::{jacobian_times, precondition_setup, precondition_solve},
+        ode_callbacks::{jacobian, newton_rhs, project, quadratures, rhs, roots},
+        ode_krylov::{jacobian_times, newton_setup, precondition_setup, precondition_solve},
         sensitivity::{Access, CarriesSensitivities, one_rhs},
         session::{InitialState, Session},
         solver::{Kind, Owner, Solver, WithSensitivities},
@@ -41,34 +39,8 @@ impl WithSensitivities for CvodeKind {}
 
 static FUNCTIONS: Functions = TABLE;
 
-/// The functions for an adjoint problem.
-pub(in crate::integrators::sundials) static BACKWARD: BackwardFunctions = BackwardFunctions {
-    integrator: "CVODE in the backward run",
-    forward: &WITH_CHECKPOINTS,
-    init_checkpoints: named!(CVodeAdjInit),
-    create: ("CVodeCreateB", |memory, which| {
-        // SAFETY: whoever calls through the table vouches for the arguments.
-        unsafe { ffi::CVodeCreateB(memory, ffi::CV_BDF, which) }
-    }),
-    vector_tolerances: named!(CVodeSVtolerancesB),
-    set_user_data: named!(CVodeSetUserDataB),
-    set_max_steps: named!(CVodeSetMaxNumStepsB),
-    set_linear_solver: named!(CVodeSetLinearSolverB),
-    set_quadrature_error_control: named!(CVodeSetQuadErrConB),
-    quadrature_tolerances: named!(CVodeQuadSVtolerancesB),
-    solve: ffi::CVodeB,
-    get: ("CVodeGetB", |memory, which, t, lambda, _| {
-        // SAFETY: as above.
-        unsafe { ffi::CVodeGetB(memory, which, t, lambda) }
-    }),
-    get_quadratures: named!(CVodeGetQuadB),
-    get_memory: ffi::CVodeGetAdjCVodeBmem,
-    get_current_time: ffi::CVodeGetCurrentTime,
-    get_current_order: ffi::CVodeGetCurrentOrder,
-};
-
 /// CVODES as it runs forward with checkpoints.
-static WITH_CHECKPOINTS: Functions = Functions {
+pub(in crate::integrators::sundials) static WITH_CHECKPOINTS: Functions = Functions {
     solve: ("CVodeF", |memory, target, t, y, _, task| {
         let mut checkpoints = 0;
         // SAFETY: whoever calls through the table vouches for the arguments.

@@ -6,7 +6,7 @@ mod solver;
 mod start;
 
 pub use options::IdaOptions;
-pub(super) use setup::BACKWARD;
 pub use setup::IdaKind;
+pub(super) use setup::WITH_CHECKPOINTS;
 pub use solver::Ida;
 pub use start::{InitialCondition, StartsDae};

@@ -8,9 +8,7 @@ use crate::integrators::{
         dae_callbacks::{jacobian, quadratures, residual, roots},
         dae_krylov::{jacobian_times, precondition_setup, precondition_solve},
         ffi,
-        functions::{
-            BackwardFunctions, Functions, QuadratureFunctions, SensitivityFunctions, named,
-        },
+        functions::{Functions, QuadratureFunctions, SensitivityFunctions, named},
         index::index,
         linear_solver::LinearSolver,
         sensitivity::{Access, all_residuals},
@@ -27,37 +25,11 @@ pub struct IdaKind {
 
 static FUNCTIONS: Functions = TABLE;
 
-/// The functions for an adjoint problem.
-pub(in crate::integrators::sundials) static BACKWARD: BackwardFunctions = BackwardFunctions {
-    integrator: "IDA in the backward run",
-    forward: &WITH_CHECKPOINTS,
-    init_checkpoints: named!(IDAAdjInit),
-    create: ("IDACreateB", |memory, which| {
-        // SAFETY: whoever calls through the table vouches for the arguments.
-        unsafe { ffi::IDACreateB(memory, which) }
-    }),
-    vector_tolerances: named!(IDASVtolerancesB),
-    set_user_data: named!(IDASetUserDataB),
-    set_max_steps: named!(IDASetMaxNumStepsB),
-    set_linear_solver: named!(IDASetLinearSolverB),
-    set_quadrature_error_control: named!(IDASetQuadErrConB),
-    quadrature_tolerances: named!(IDAQuadSVtolerancesB),
-    solve: ffi::IDASolveB,
-    get: ("IDAGetB", |memory, which, t, lambda, slope| {
-        // SAFETY: as above.
-        unsafe { ffi::IDAGetB(memory, which, t, lambda, slope) }
-    }),
-    get_quadratures: named!(IDAGetQuadB),
-    get_memory: ffi::IDAGetAdjIDABmem,
-    get_current_time: ffi::IDAGetCurrentTime,
-    get_current_order: ffi::IDAGetCurrentOrder,
-};
-
 /// IDAS as it runs forward with checkpoints.
-static WITH_CHECKPOINTS: Functions = Functions {
+pub(in crate::integrators::sundials) static WITH_CHECKPOINTS: Functions = Functions {
     solve: ("IDASolveF", |memory, target, t, y, yp, task| {
         let mut checkpoints = 0;
-        // SAFETY: as above.
+        // SAFETY: whoever calls through the table vouches for the arguments.
         unsafe { ffi::IDASolveF(memory, target, t, y, yp, task, &raw mut checkpoints) }
     }),
     ..TABLE

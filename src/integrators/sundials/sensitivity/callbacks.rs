@@ -1,7 +1,7 @@
 //! The C functions through which CVODES and IDAS evaluate the equations of the sensitivities.
 //!
-//! All of them get the [`Host`] of the solver as their data pointer and vectors of its length;
-//! that is what their SAFETY comments refer to.
+//! All of them get the [`Host`] of the solver as their data pointer, and live serial vectors; those that they
+//! fill are different from the others. That is what their SAFETY comments refer to.
 
 use std::ffi::c_void;
 
@@ -12,7 +12,7 @@ use crate::integrators::{
     sundials::{
         ffi,
         host::{Host, STOP},
-        vector::{slice, slice_mut},
+        serial::{slice, slice_mut},
     },
 };
 
@@ -30,12 +30,9 @@ pub(in crate::integrators::sundials) unsafe extern "C" fn one_rhs<S: Ode>(
     _: ffi::N_Vector,
     _: ffi::N_Vector,
 ) -> i32 {
-    // SAFETY: see the module; `sdot` is a separate vector.
-    let (host, y, ydot, s, sdot) = unsafe {
-        let host = &mut *data.cast::<Host<S>>();
-        let n = host.n;
-        (host, slice(y, n), slice(ydot, n), slice(s, n), slice_mut(sdot, n))
-    };
+    // SAFETY: see the module.
+    let (host, y, ydot, s, sdot) =
+        unsafe { (Host::<S>::of(data), slice(y), slice(ydot), slice(s), slice_mut(sdot)) };
     let Some(mut rhs) = host.sensitivity.take() else { return STOP };
     let index = index as usize;
     let outcome = host.guard_output(Callback::Sensitivities, t, sdot, |system, sdot| {
@@ -69,31 +66,19 @@ pub(in crate::integrators::sundials) unsafe extern "C" fn all_residuals<S: Dae>(
     _: ffi::N_Vector,
 ) -> i32 {
     // SAFETY: see the module.
-    let (host, y, yp, residual) = unsafe {
-        let host = &mut *data.cast::<Host<S>>();
-        let n = host.n;
-        (host, slice(y, n), slice(yp, n), slice(residual, n))
-    };
+    let (host, y, yp, residual) =
+        unsafe { (Host::<S>::of(data), slice(y), slice(yp), slice(residual)) };
     let Some(mut rhs) = host.sensitivity.take() else { return STOP };
     let mut outcome = 0;
     for index in 0..count as usize {
-        // SAFETY: the arrays have `count` vectors; those of the residuals are separate vectors.
+        // SAFETY: as above; the arrays have `count` vectors.
         let (s, sp, out) = unsafe {
-            let (s, sp, out) = (*s.add(index), *sp.add(index), *residuals.add(index));
-            (slice(s, host.n), slice(sp, host.n), slice_mut(out, host.n))
+            (slice(*s.add(index)), slice(*sp.add(index)), slice_mut(*residuals.add(index)))
         };
         outcome = host.guard_output(Callback::Sensitivities, t, out, |system, out| {
             if rhs.is_supplied() {
-                return call::sensitivity_residual(
-                    system,
-                    t,
-                    y,
-                    yp,
-                    rhs.parameter(index),
-                    s,
-                    sp,
-                    out,
-                );
+                let parameter = rhs.parameter(index);
+                return call::sensitivity_residual(system, t, y, yp, parameter, s, sp, out);
             }
             let access = Access { get: S::parameters, set: S::set_parameters };
             let line = Line { y: (y, s), yp: (yp, sp) };

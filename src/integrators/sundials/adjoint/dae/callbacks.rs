@@ -1,7 +1,7 @@
 //! The C functions through which IDAS evaluates the equations of the backward run.
 //!
-//! All of them get the [`Host`] of the solver as their data pointer and vectors of its length;
-//! that is what their SAFETY comments refer to.
+//! All of them get the [`Host`] of the solver as their data pointer, and live serial vectors; those that they
+//! fill are different from the others. That is what their SAFETY comments refer to.
 
 use std::ffi::c_void;
 
@@ -12,10 +12,12 @@ use crate::integrators::{
     sundials::{
         ffi,
         host::Host,
-        matrix,
-        vector::{slice, slice_mut},
+        matrix::stored,
+        serial::{slice, slice_mut},
     },
 };
+
+type HostOf<'a, S, F> = Host<Borrowed<'a, AdjointDae<S, F>>>;
 
 /// `IDAResFnB`
 pub(super) unsafe extern "C" fn residual<S: Dae, F: Functional>(
@@ -27,12 +29,10 @@ pub(super) unsafe extern "C" fn residual<S: Dae, F: Functional>(
     out: ffi::N_Vector,
     data: *mut c_void,
 ) -> i32 {
-    // SAFETY: see the module; `out` is a separate vector.
+    // SAFETY: see the module.
     let (host, y, yp, lambda, slope, out) = unsafe {
-        let host = &mut *data.cast::<Host<Borrowed<'_, AdjointDae<S, F>>>>();
-        let n = host.n;
-        let (y, yp) = (slice(y, n), slice(yp, n));
-        (host, y, yp, slice(lambda, n), slice(slope, n), slice_mut(out, n))
+        let host = HostOf::<S, F>::of(data);
+        (host, slice(y), slice(yp), slice(lambda), slice(slope), slice_mut(out))
     };
     host.guard_output(Callback::Adjoint, t, out, |system, out| {
         system.0.backward_residual((t, y, yp), (lambda, slope), out)
@@ -49,13 +49,9 @@ pub(super) unsafe extern "C" fn quadratures<S: Dae, F: Functional>(
     out: ffi::N_Vector,
     data: *mut c_void,
 ) -> i32 {
-    // SAFETY: see the module; `out` has as many places as there are parameters.
-    let (host, y, yp, lambda, out) = unsafe {
-        let host = &mut *data.cast::<Host<Borrowed<'_, AdjointDae<S, F>>>>();
-        let n = host.n;
-        let count = (*(*out).content.cast::<ffi::_N_VectorContent_Serial>()).length as usize;
-        (host, slice(y, n), slice(yp, n), slice(lambda, n), slice_mut(out, count))
-    };
+    // SAFETY: see the module.
+    let (host, y, yp, lambda, out) =
+        unsafe { (HostOf::<S, F>::of(data), slice(y), slice(yp), slice(lambda), slice_mut(out)) };
     host.guard_output(Callback::Adjoint, t, out, |system, out| {
         system.0.backward_quadratures((t, y, yp), lambda, out)
     })
@@ -77,20 +73,13 @@ pub(super) unsafe extern "C" fn jacobian<S: Dae, F: Functional>(
     _: ffi::N_Vector,
     _: ffi::N_Vector,
 ) -> i32 {
-    // SAFETY: see the module.
-    let (host, y, yp) = unsafe {
-        let host = &mut *data.cast::<Host<Borrowed<'_, AdjointDae<S, F>>>>();
-        let n = host.n;
-        (host, slice(y, n), slice(yp, n))
+    // SAFETY: see the module; SUNDIALS passes the matrix that was made for this linear solver.
+    let (host, y, yp, values) = unsafe {
+        let host = HostOf::<S, F>::of(data);
+        let values = stored(jacobian, &host.system.0.equations.backward, host.n);
+        (host, slice(y), slice(yp), values)
     };
-    // SAFETY: SUNDIALS passes the matrix that was made for this linear solver.
-    let entries = unsafe { matrix::entries(jacobian, &host.system.0.equations.backward, host.n) };
-    let outcome = host
-        .guard(Callback::Adjoint, t, |system| system.0.backward_jacobian((t, y, yp), cj, entries));
-    if outcome != 0 {
-        return outcome;
-    }
-    // SAFETY: as above; the access through `entries` has ended.
-    let values = unsafe { matrix::stored(jacobian, &host.system.0.equations.backward, host.n) };
-    host.check_finite(Callback::Adjoint, t, values)
+    host.guard_output(Callback::Adjoint, t, values, |system, values| {
+        system.0.backward_jacobian((t, y, yp), cj, values)
+    })
 }

@@ -1,11 +1,11 @@
 //! The initial values of the backward run.
 
-use super::system::{AdjointDae, Point, uneven};
+use super::system::{AdjointDae, uneven};
 use crate::integrators::{
     common::{Error, check_finite},
     ode::{Dae, Failure, Functional},
     sundials::{
-        adjoint::{equations::refused, gradient::Gradient},
+        adjoint::{backward::Point, equations::refused, gradient::Gradient},
         context::Context,
         linear::Linear,
         vector::Vector,

@@ -2,7 +2,7 @@
 
 mod callbacks;
 mod end;
-mod run;
+mod problem;
 mod setup;
 mod system;
 

@@ -2,16 +2,15 @@
 
 use std::fmt;
 
-use super::{
-    run::{AdjointRun, Start},
-    system::AdjointDae,
-};
+use super::system::AdjointDae;
 use crate::integrators::{
     common::{Error, check_finite, check_length, check_start, check_time},
-    ode::{Dae, Functional},
+    ode::{Borrowed, Dae, Functional},
     sundials::{
-        IdaOptions,
+        IdaOptions, InitialCondition,
         adjoint::{gradient::Gradient, options::AdjointOptions},
+        ida::{IdaKind, StartsDae},
+        session::Session,
     },
 };
 
@@ -73,7 +72,8 @@ use crate::integrators::{
 /// User guide: chapter "Using IDAS for Adjoint Sensitivity Analysis".
 pub struct DaeAdjoint<S, F> {
     system: AdjointDae<S, F>,
-    start: Start,
+    /// Time, state and its time derivative.
+    start: (f64, Vec<f64>, Vec<f64>),
     forward: IdaOptions,
     options: AdjointOptions,
 }
@@ -123,7 +123,7 @@ impl<S: Dae, F: Functional> DaeAdjoint<S, F> {
         let (forward, options) = (forward.clone(), options.clone());
         let mut adjoint = Self { system, start, forward, options };
         // finds other inputs that cannot be used
-        adjoint.run()?;
+        adjoint.session()?;
         Ok(adjoint)
     }
 
@@ -147,11 +147,17 @@ impl<S: Dae, F: Functional> DaeAdjoint<S, F> {
             );
             return Err(Error::input("end time", t, help));
         }
-        self.run()?.gradient(t)
+        let options = self.options.clone();
+        let mut session = self.session()?;
+        session.consistent_start(InitialCondition::Algebraic, t)?;
+        session.gradient(t, &options)
     }
 
-    fn run(&mut self) -> Result<AdjointRun<'_, S, F>, Error> {
-        AdjointRun::new(&mut self.system, &self.start, &self.forward, &self.options)
+    /// For one run.
+    fn session(&mut self) -> Result<Session<IdaKind, Borrowed<'_, AdjointDae<S, F>>>, Error> {
+        let (t0, y0, yp0) = &self.start;
+        self.system.start((*t0, y0, yp0))?;
+        Session::of_ida(Borrowed(&mut self.system), *t0, (y0, yp0), &self.forward)
     }
 
     /// The system.

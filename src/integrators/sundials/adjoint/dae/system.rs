@@ -8,15 +8,15 @@ use crate::integrators::{
     ode::{BandMut, Dae, Failure, Functional, call, delegate::delegate},
     sundials::{
         LinearSolver,
-        adjoint::equations::{Equations, refused},
+        adjoint::{
+            backward::Point,
+            equations::{Equations, refused},
+        },
         matrix::Entries,
         sensitivity::Access,
         stored_jacobian::StoredJacobian,
     },
 };
-
-/// Time, state and its time derivative.
-pub(super) type Point<'a> = (f64, &'a [f64], &'a [f64]);
 
 /// A [`Dae`] F(t, y, y') = 0 with the integral of a functional in addition. dF/dy' is constant, so that F is
 /// linear in y'.
@@ -133,16 +133,17 @@ impl<S: Dae, F: Functional> AdjointDae<S, F> {
         self.equations.parameter_differences(lambda, out, evaluate)
     }
 
-    /// Writes the derivative of `backward_residual` with respect to lambda, with lambda' = cj lambda:
-    /// cj (dF/dy')^T - (dF/dy)^T.
+    /// Writes the values of the derivative of `backward_residual` with respect to lambda, with lambda' =
+    /// cj lambda: cj (dF/dy')^T - (dF/dy)^T.
     pub(super) fn backward_jacobian(
         &mut self,
         point: Point<'_>,
         cj: f64,
-        entries: Entries<'_>,
+        values: &mut [f64],
     ) -> Result<(), Failure> {
         self.update_jacobian(point)?;
         let Equations { jacobian, backward, .. } = &self.equations;
+        let entries = Entries::of(backward, point.1.len(), values);
         let (by_slope, by_state) = (self.mass.values(), jacobian.values());
         let value = |_, place: usize| cj * by_slope[place] - by_state[place];
         jacobian.write_transposed(backward, entries, value);
@@ -151,11 +152,8 @@ impl<S: Dae, F: Functional> AdjointDae<S, F> {
 
     /// Updates dF/dy to this point, and checks that dF/dy' is unchanged there.
     pub(super) fn update_jacobian(&mut self, (t, y, yp): Point<'_>) -> Result<(), Failure> {
-        let supplied = |system: &mut S, entries: Entries<'_>, _: &mut [f64]| match entries {
-            Entries::Dense(matrix) => system.dense_jacobian(t, 0.0, y, yp, matrix),
-            Entries::Band(band) => system.banded_jacobian(t, 0.0, y, yp, band),
-            Entries::Sparse(values) => system.sparse_jacobian(t, 0.0, y, yp, values),
-            Entries::Custom => Ok(()),
+        let supplied = |system: &mut S, entries: Entries<'_>, _: &mut [f64]| {
+            entries.dae_jacobian(system, t, 0.0, y, yp)
         };
         let evaluate = |system: &mut S, y: &[f64], residual: &mut [f64]| {
             call::residual(system, t, y, yp, residual)

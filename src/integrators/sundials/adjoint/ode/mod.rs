@@ -1,7 +1,7 @@
 //! Adjoint gradients of ordinary differential equations, by CVODES.
 
 mod callbacks;
-mod run;
+mod problem;
 mod setup;
 mod system;
 

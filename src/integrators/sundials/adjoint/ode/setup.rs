@@ -2,13 +2,15 @@
 
 use std::fmt;
 
-use super::{run::AdjointRun, system::AdjointSystem};
+use super::system::AdjointSystem;
 use crate::integrators::{
     common::{Error, check_start, check_time},
-    ode::{Functional, Ode},
+    ode::{Borrowed, Functional, Ode},
     sundials::{
         CvodeOptions,
         adjoint::{gradient::Gradient, options::AdjointOptions},
+        cvode::CvodeKind,
+        session::Session,
     },
 };
 
@@ -98,7 +100,7 @@ impl<S: Ode, F: Functional> Adjoint<S, F> {
         let (start, forward, options) = ((t0, y0.to_vec()), forward.clone(), options.clone());
         let mut adjoint = Self { system, start, forward, options };
         // finds other inputs that cannot be used
-        adjoint.run()?;
+        adjoint.session()?;
         Ok(adjoint)
     }
 
@@ -117,11 +119,15 @@ impl<S: Ode, F: Functional> Adjoint<S, F> {
         if t == self.start.0 {
             return Err(Error::input("end time", t, "it is another than the start"));
         }
-        self.run()?.gradient(t)
+        let options = self.options.clone();
+        self.session()?.gradient(t, &options)
     }
 
-    fn run(&mut self) -> Result<AdjointRun<'_, S, F>, Error> {
-        AdjointRun::new(&mut self.system, &self.start, &self.forward, &self.options)
+    /// For one run.
+    fn session(&mut self) -> Result<Session<CvodeKind, Borrowed<'_, AdjointSystem<S, F>>>, Error> {
+        self.system.equations.forget();
+        let (t0, y0) = &self.start;
+        Session::of_cvode(Borrowed(&mut self.system), *t0, y0, &self.forward)
     }
 
     /// The system.

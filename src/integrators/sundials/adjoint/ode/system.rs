@@ -76,15 +76,16 @@ impl<S: Ode, F: Functional> AdjointSystem<S, F> {
         Ok(())
     }
 
-    /// Writes the derivative of `backward_rhs` with respect to lambda: -(df/dy)^T.
+    /// Writes the values of the derivative of `backward_rhs` with respect to lambda: -(df/dy)^T.
     pub(super) fn backward_jacobian(
         &mut self,
         t: f64,
         y: &[f64],
-        entries: Entries<'_>,
+        values: &mut [f64],
     ) -> Result<(), Failure> {
         self.update_jacobian(t, y)?;
         let Equations { jacobian, backward, .. } = &self.equations;
+        let entries = Entries::of(backward, y.len(), values);
         jacobian.write_transposed(backward, entries, |_, place| -jacobian.values()[place]);
         Ok(())
     }
@@ -92,12 +93,7 @@ impl<S: Ode, F: Functional> AdjointSystem<S, F> {
     fn update_jacobian(&mut self, t: f64, y: &[f64]) -> Result<(), Failure> {
         let supplied = |system: &mut S, entries: Entries<'_>, ydot: &mut [f64]| {
             call::rhs(system, t, y, ydot)?;
-            match entries {
-                Entries::Dense(matrix) => system.dense_jacobian(t, y, ydot, matrix),
-                Entries::Band(band) => system.banded_jacobian(t, y, ydot, band),
-                Entries::Sparse(values) => system.sparse_jacobian(t, y, ydot, values),
-                Entries::Custom => Ok(()),
-            }
+            entries.jacobian(system, t, y, ydot)
         };
         let evaluate = |system: &mut S, y: &[f64], f: &mut [f64]| call::rhs(system, t, y, f);
         self.equations.update_jacobian(t, y, supplied, evaluate)?;
