@@ -21,7 +21,7 @@ pub(super) use named;
 /// A function with one argument besides the memory block, mostly to set an option.
 pub(super) type Set<T> = Named<unsafe extern "C" fn(*mut c_void, T) -> i32>;
 
-/// A function with two arguments besides the memory block, mostly to set callbacks.
+/// A function with two arguments besides the memory block, mostly to set an option or callbacks.
 pub(super) type SetTwo<A, B> = Named<unsafe extern "C" fn(*mut c_void, A, B) -> i32>;
 
 /// A function that reads one value.
@@ -49,10 +49,6 @@ pub(super) type Solve =
 /// Starts again: (memory, time, y, y'). An ODE has null for y'.
 pub(super) type Reinit = unsafe fn(*mut c_void, f64, ffi::N_Vector, ffi::N_Vector) -> i32;
 
-type SetErrorHandler = unsafe extern "C" fn(*mut c_void, ffi::CVErrHandlerFn, *mut c_void) -> i32;
-type SetLinearSolver =
-    unsafe extern "C" fn(*mut c_void, ffi::SUNLinearSolver, ffi::SUNMatrix) -> i32;
-
 /// One integrator of SUNDIALS. All functions take its memory block first; a table never mixes
 /// functions of two integrators.
 pub(super) struct Functions {
@@ -62,7 +58,7 @@ pub(super) struct Functions {
     pub(super) solve: Named<Solve>,
     pub(super) reinit: Named<Reinit>,
     /// Continues from a time and state after a change of the system, with the previous step size.
-    pub(super) reset: Option<Named<unsafe extern "C" fn(*mut c_void, f64, ffi::N_Vector) -> i32>>,
+    pub(super) reset: Option<SetTwo<f64, ffi::N_Vector>>,
     /// ARKODE does, and would refuse another stop time if the direction of time has been reversed.
     pub(super) reinit_forgets_stop_time: bool,
     /// Codes of `solve` for a call that cannot be made.
@@ -71,12 +67,11 @@ pub(super) struct Functions {
     /// Codes of `solve` for a mass matrix that cannot be factorized.
     pub(super) mass_failures: &'static [i32],
 
-    pub(super) set_error_handler: Named<SetErrorHandler>,
+    pub(super) set_error_handler: SetTwo<ffi::CVErrHandlerFn, *mut c_void>,
     pub(super) set_user_data: Set<*mut c_void>,
-    pub(super) scalar_tolerances: Named<unsafe extern "C" fn(*mut c_void, f64, f64) -> i32>,
-    pub(super) vector_tolerances:
-        Named<unsafe extern "C" fn(*mut c_void, f64, ffi::N_Vector) -> i32>,
-    pub(super) set_linear_solver: Named<SetLinearSolver>,
+    pub(super) scalar_tolerances: SetTwo<f64, f64>,
+    pub(super) vector_tolerances: SetTwo<f64, ffi::N_Vector>,
+    pub(super) set_linear_solver: SetTwo<ffi::SUNLinearSolver, ffi::SUNMatrix>,
     pub(super) allow_inactive_roots: Named<unsafe extern "C" fn(*mut c_void) -> i32>,
     pub(super) set_max_steps: Set<i64>,
     pub(super) set_initial_step: Set<f64>,
@@ -135,7 +130,7 @@ pub(super) struct SensitivityFunctions {
         Named<unsafe extern "C" fn(*mut c_void, *mut f64, *mut f64, *mut i32) -> i32>,
     pub(super) set_tolerances: Named<unsafe extern "C" fn(*mut c_void) -> i32>,
     pub(super) set_error_control: Set<i32>,
-    pub(super) get: Named<unsafe extern "C" fn(*mut c_void, *mut f64, *mut ffi::N_Vector) -> i32>,
+    pub(super) get: SetTwo<*mut f64, *mut ffi::N_Vector>,
     pub(super) get_dky:
         Named<unsafe extern "C" fn(*mut c_void, f64, i32, i32, ffi::N_Vector) -> i32>,
     pub(super) get_evaluations: Get<i64>,
@@ -144,11 +139,10 @@ pub(super) struct SensitivityFunctions {
 /// The functions of CVODES and IDAS for quadratures.
 pub(super) struct QuadratureFunctions {
     pub(super) reinit: Set<ffi::N_Vector>,
-    pub(super) scalar_tolerances: Named<unsafe extern "C" fn(*mut c_void, f64, f64) -> i32>,
-    pub(super) vector_tolerances:
-        Named<unsafe extern "C" fn(*mut c_void, f64, ffi::N_Vector) -> i32>,
+    pub(super) scalar_tolerances: SetTwo<f64, f64>,
+    pub(super) vector_tolerances: SetTwo<f64, ffi::N_Vector>,
     pub(super) set_error_control: Set<i32>,
-    pub(super) get: Named<unsafe extern "C" fn(*mut c_void, *mut f64, ffi::N_Vector) -> i32>,
+    pub(super) get: SetTwo<*mut f64, ffi::N_Vector>,
     pub(super) get_dky: Named<unsafe extern "C" fn(*mut c_void, f64, i32, ffi::N_Vector) -> i32>,
     pub(super) get_evaluations: Get<i64>,
 }
@@ -169,20 +163,19 @@ pub(super) struct BackwardFunctions {
     /// The integrator as it runs forward with checkpoints.
     pub(super) forward: &'static Functions,
     /// (memory, steps between checkpoints, interpolation)
-    pub(super) init_checkpoints: Named<unsafe extern "C" fn(*mut c_void, i64, i32) -> i32>,
+    pub(super) init_checkpoints: SetTwo<i64, i32>,
     pub(super) create: Named<unsafe fn(*mut c_void, *mut i32) -> i32>,
     pub(super) init: Named<InitBackward>,
     pub(super) vector_tolerances:
         Named<unsafe extern "C" fn(*mut c_void, i32, f64, ffi::N_Vector) -> i32>,
-    pub(super) set_user_data: Named<unsafe extern "C" fn(*mut c_void, i32, *mut c_void) -> i32>,
-    pub(super) set_max_steps: Named<unsafe extern "C" fn(*mut c_void, i32, i64) -> i32>,
+    pub(super) set_user_data: SetTwo<i32, *mut c_void>,
+    pub(super) set_max_steps: SetTwo<i32, i64>,
     pub(super) set_linear_solver:
         Named<unsafe extern "C" fn(*mut c_void, i32, ffi::SUNLinearSolver, ffi::SUNMatrix) -> i32>,
     pub(super) set_jacobian: Named<unsafe fn(*mut c_void, i32) -> i32>,
     /// Takes the initial values of the integrals, which are zero.
     pub(super) init_quadratures: Named<unsafe fn(*mut c_void, i32, ffi::N_Vector) -> i32>,
-    pub(super) set_quadrature_error_control:
-        Named<unsafe extern "C" fn(*mut c_void, i32, i32) -> i32>,
+    pub(super) set_quadrature_error_control: SetTwo<i32, i32>,
     pub(super) quadrature_tolerances:
         Named<unsafe extern "C" fn(*mut c_void, i32, f64, ffi::N_Vector) -> i32>,
     /// (memory, target, task)

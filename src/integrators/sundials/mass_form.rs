@@ -1,9 +1,8 @@
 //! M y' = f(t, y) as a DAE, for mass matrices that may be singular.
 
-use faer::{Mat, MatMut};
+use faer::MatMut;
 
-use super::{linear_solver::LinearSolver, pattern::Pattern};
-use crate::base::input::InputError;
+use super::{linear_solver::LinearSolver, stored_matrix::StoredMatrix};
 use crate::integrators::{
     common::{Error, check_whole},
     ode::{BandMut, Dae, Failure, MassKind, Ode, call},
@@ -41,94 +40,12 @@ use crate::integrators::{
 #[derive(Clone, Debug)]
 pub struct MassForm<S> {
     system: S,
-    mass: Mass,
+    /// In the form of the Newton matrix.
+    mass: StoredMatrix,
     /// Whether `mass` is up to date; one that depends on time never is.
     known: bool,
     /// f(t, y)
     f: Vec<f64>,
-}
-
-/// The mass matrix, in the form of the Newton matrix.
-#[derive(Clone, Debug)]
-enum Mass {
-    Dense(Mat<f64>),
-    /// Columns of `lower + upper + 1` numbers each.
-    Band {
-        data: Vec<f64>,
-        lower: usize,
-        upper: usize,
-    },
-    Sparse {
-        pattern: Pattern,
-        values: Vec<f64>,
-    },
-}
-
-impl Mass {
-    /// A matrix of zeros.
-    fn new(n: usize, solver: &LinearSolver) -> Result<Self, InputError> {
-        solver.check(n)?;
-        match solver {
-            LinearSolver::Dense(_) => Ok(Self::Dense(Mat::zeros(n, n))),
-            LinearSolver::Band { lower, upper, .. } => {
-                let (lower, upper) = (*lower, *upper);
-                Ok(Self::Band { data: vec![0.0; n * (lower + upper + 1)], lower, upper })
-            }
-            LinearSolver::Klu { pattern, .. } => {
-                let values = vec![0.0; pattern.entry_count()];
-                Ok(Self::Sparse { pattern: pattern.clone(), values })
-            }
-            other => {
-                let help = "with a mass matrix it is dense, of band form or sparse (KLU)";
-                Err(InputError::new("linear solver", format!("{other:?}"), help))
-            }
-        }
-    }
-
-    /// Reads the matrix of the system at time `t`.
-    fn read<S: Ode>(&mut self, t: f64, system: &mut S) -> Result<(), Failure> {
-        match self {
-            Self::Dense(matrix) => {
-                matrix.fill(0.0);
-                system.dense_mass(t, matrix.as_mut())
-            }
-            Self::Band { data, lower, upper } => {
-                data.fill(0.0);
-                let band = BandMut::new(data, *lower + *upper + 1, *upper, *lower, *upper);
-                system.banded_mass(t, band)
-            }
-            Self::Sparse { values, .. } => {
-                values.fill(0.0);
-                system.sparse_mass(t, values)
-            }
-        }
-    }
-
-    /// Calls `visit` with row, column and value of each entry that is stored.
-    fn visit(&self, mut visit: impl FnMut(usize, usize, f64)) {
-        match self {
-            Self::Dense(matrix) => {
-                for (j, column) in matrix.col_iter().enumerate() {
-                    column.iter().enumerate().for_each(|(i, value)| visit(i, j, *value));
-                }
-            }
-            Self::Band { data, lower, upper } => {
-                let n = data.len() / (lower + upper + 1);
-                for (j, column) in data.chunks_exact(lower + upper + 1).enumerate() {
-                    for i in j.saturating_sub(*upper)..n.min(j + lower + 1) {
-                        visit(i, j, column[upper + i - j]);
-                    }
-                }
-            }
-            Self::Sparse { pattern, values } => {
-                let mut entries = pattern.row_indices().iter().zip(values);
-                for (j, ends) in pattern.column_pointers().windows(2).enumerate() {
-                    let column = entries.by_ref().take((ends[1] - ends[0]) as usize);
-                    column.for_each(|(i, value)| visit(*i as usize, j, *value));
-                }
-            }
-        }
-    }
 }
 
 impl<S: Ode> MassForm<S> {
@@ -143,7 +60,12 @@ impl<S: Ode> MassForm<S> {
             return Err(Error::input("mass matrix", "none", help));
         }
         check_whole(&system)?;
-        let mass = Mass::new(n, solver)?;
+        solver.check(n)?;
+        if matches!(solver, LinearSolver::Krylov(_) | LinearSolver::Custom) {
+            let help = "with a mass matrix it is dense, of band form or sparse (KLU)";
+            return Err(Error::input("linear solver", format!("{solver:?}"), help));
+        }
+        let mass = StoredMatrix::new(solver, n);
         Ok(Self { system, mass, known: false, f: vec![0.0; n] })
     }
 
@@ -164,7 +86,7 @@ impl<S: Ode> MassForm<S> {
             Error::input("mass matrix", failure.into_error(), help)
         })?;
         let mut differential = vec![false; self.f.len()];
-        self.mass.visit(|_, j, value| differential[j] |= value != 0.0);
+        self.mass.each(|_, j, value| differential[j] |= value != 0.0);
         Ok(differential)
     }
 
@@ -183,7 +105,7 @@ impl<S: Ode> MassForm<S> {
     /// Updates the matrix to time `t`.
     fn update(&mut self, t: f64) -> Result<(), Failure> {
         if !self.known {
-            self.mass.read(t, &mut self.system)?;
+            self.mass.entries().mass(&mut self.system, t)?;
             self.known = self.system.mass_kind() == MassKind::Constant;
         }
         Ok(())
@@ -207,7 +129,7 @@ impl<S: Ode> Dae for MassForm<S> {
         self.update(t)?;
         call::rhs(&mut self.system, t, y, residual)?;
         residual.iter_mut().for_each(|r| *r = -*r);
-        self.mass.visit(|i, j, value| residual[i] += value * yp[j]);
+        self.mass.each(|i, j, value| residual[i] += value * yp[j]);
         Ok(())
     }
 
@@ -221,7 +143,7 @@ impl<S: Ode> Dae for MassForm<S> {
     ) -> Result<(), Failure> {
         self.prepare(t, y)?;
         self.system.dense_jacobian(t, y, &self.f, jacobian.as_mut())?;
-        self.mass.visit(|i, j, value| jacobian[(i, j)] = cj * value - jacobian[(i, j)]);
+        self.mass.each(|i, j, value| jacobian[(i, j)] = cj * value - jacobian[(i, j)]);
         Ok(())
     }
 
@@ -235,7 +157,7 @@ impl<S: Ode> Dae for MassForm<S> {
     ) -> Result<(), Failure> {
         self.prepare(t, y)?;
         self.system.banded_jacobian(t, y, &self.f, jacobian.reborrow())?;
-        self.mass.visit(|i, j, value| jacobian[(i, j)] = cj * value - jacobian[(i, j)]);
+        self.mass.each(|i, j, value| jacobian[(i, j)] = cj * value - jacobian[(i, j)]);
         Ok(())
     }
 
@@ -249,12 +171,9 @@ impl<S: Ode> Dae for MassForm<S> {
     ) -> Result<(), Failure> {
         self.prepare(t, y)?;
         self.system.sparse_jacobian(t, y, &self.f, jacobian)?;
-        let mut places = jacobian.iter_mut();
-        self.mass.visit(|_, _, value| {
-            if let Some(place) = places.next() {
-                *place = cj * value - *place;
-            }
-        });
+        for (entry, value) in jacobian.iter_mut().zip(self.mass.values()) {
+            *entry = cj * value - *entry;
+        }
         Ok(())
     }
 

@@ -83,7 +83,7 @@ mod signs;
 mod solver;
 mod stepping;
 mod stop_time;
-mod stored_jacobian;
+mod stored_matrix;
 mod vector;
 mod version;
 

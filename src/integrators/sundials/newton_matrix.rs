@@ -4,7 +4,7 @@ use std::{fmt, ptr};
 
 use super::{
     context::Context, differences::Differences, linear::Linear, linear_solver::LinearSolver,
-    stored_jacobian::StoredJacobian, vector::Vector,
+    stored_matrix::StoredMatrix, vector::Vector,
 };
 use crate::base::input::InputError;
 use crate::integrators::{
@@ -16,7 +16,7 @@ use crate::integrators::{
 /// once, for all factorizations.
 pub(crate) struct NewtonMatrix {
     solver: LinearSolver,
-    jacobian: StoredJacobian,
+    jacobian: StoredMatrix,
     differences: Option<Differences>,
     // what SUNDIALS owns, in the order in which it has to be freed
     linear: Linear,
@@ -54,7 +54,7 @@ impl NewtonMatrix {
             true => Differences::of_ode(solver, n, tolerances, &[]),
             false => None,
         };
-        let jacobian = StoredJacobian::new(solver, n);
+        let jacobian = StoredMatrix::new(solver, n);
         Ok(Self { solver: solver.clone(), jacobian, differences, linear, rhs, _context: context })
     }
 

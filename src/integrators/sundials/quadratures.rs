@@ -1,13 +1,11 @@
 //! Integrals along the solution (quadratures), by CVODES and IDAS.
 
-use std::ffi::c_void;
-
 use super::{
-    auxiliary::Quadratures, ffi, functions::Named, options::QuadratureOptions, session::Session,
+    auxiliary::Quadratures, ffi, functions::SetTwo, options::QuadratureOptions, session::Session,
     vector::Vector,
 };
 use crate::base::input::InputError;
-use crate::integrators::common::{AbsoluteTolerance, Error, Integrator, Tolerances, check_time};
+use crate::integrators::common::{Error, Integrator, Tolerances, check_time};
 
 /// What also computes integrals, as described at [`Solver`](super::Solver).
 pub trait CarriesIntegrals: Integrator {
@@ -63,7 +61,7 @@ impl<K, S> Session<K, S> {
     pub(super) unsafe fn set_quadratures<F>(
         &mut self,
         count: usize,
-        (name, init): Named<unsafe extern "C" fn(*mut c_void, F, ffi::N_Vector) -> i32>,
+        init: SetTwo<F, ffi::N_Vector>,
         callback: F,
         (options, of_unknowns): (&QuadratureOptions, &Tolerances),
     ) -> Result<(), Error> {
@@ -74,34 +72,23 @@ impl<K, S> Session<K, S> {
         let zeros = vec![0.0; count];
         let values = Vector::from_slice(&zeros, &self.context)?;
         let scratch = Vector::from_slice(&zeros, &self.context)?;
-        let memory = self.memory.raw;
-        // SAFETY: the memory is alive and copies the vector; the caller vouches for the rest.
-        let code = unsafe { init(memory, callback, values.raw()) };
+        let (memory, initial) = (self.memory.raw, values.raw());
         self.quadratures = Some(Quadratures { values, scratch });
-        self.host.accept(name, code)?;
+        // SAFETY: the memory is alive and copies the vector; the caller vouches for the rest.
+        self.host.call(init, |init| unsafe { init(memory, callback, initial) })?;
         if !options.error_control {
             return Ok(());
         }
-        let Tolerances { rtol, atol } = match &options.tolerances {
+        let tolerances = match &options.tolerances {
             Some(tolerances) => tolerances.clone(),
             None => Tolerances::new(of_unknowns.rtol, of_unknowns.least_atol()),
         };
-        let (name, code) = match atol {
-            AbsoluteTolerance::Scalar(atol) => {
-                let (name, set) = functions.scalar_tolerances;
-                // SAFETY: the memory is alive.
-                (name, unsafe { set(memory, rtol, atol) })
-            }
-            AbsoluteTolerance::Vector(atol) => {
-                let atol = Vector::from_slice(&atol, &self.context)?;
-                let (name, set) = functions.vector_tolerances;
-                // SAFETY: the memory is alive and copies the vector, whose length was checked.
-                (name, unsafe { set(memory, rtol, atol.raw()) })
-            }
-        };
-        self.host.accept(name, code)?;
-        // SAFETY: the value is a plain number.
-        unsafe { self.set(functions.set_error_control, 1) }
+        // SAFETY: the length of a vector was checked; the other value is a plain number.
+        unsafe {
+            let set = (functions.scalar_tolerances, functions.vector_tolerances);
+            self.set_tolerances(set, &tolerances)?;
+            self.set(functions.set_error_control, 1)
+        }
     }
 
     /// Reads the integrals at the present time, after a step.
@@ -111,10 +98,10 @@ impl<K, S> Session<K, S> {
         else {
             return Ok(());
         };
-        let ((name, get), mut t) = (functions.get, 0.0);
+        let (memory, mut t) = (self.memory.raw, 0.0);
         // SAFETY: the memory is alive, and the result pointers are valid.
-        let code = unsafe { get(self.memory.raw, &raw mut t, quadratures.values.raw()) };
-        self.host.accept(name, code)
+        self.host
+            .call(functions.get, |get| unsafe { get(memory, &raw mut t, quadratures.values.raw()) })
     }
 
     /// Sets the integrals to zero, with a new start.

@@ -128,10 +128,11 @@ impl<K, S> Session<K, S> {
         if memory.raw.is_null() {
             return Err(Error::out_of_memory(function));
         }
-        let (function, set) = functions.set_error_handler;
+        let data = host.as_ptr();
         // SAFETY: the memory is alive, and the handler fits the host registered as its data.
-        let code = unsafe { set(memory.raw, Some(keep_message::<S>), host.as_ptr()) };
-        host.accept(function, code)?;
+        host.call(functions.set_error_handler, |set| unsafe {
+            set(memory.raw, Some(keep_message::<S>), data)
+        })?;
         Ok(Self {
             memory,
             fixed_point: None,
@@ -170,14 +171,32 @@ impl<K, S> Session<K, S> {
     ///
     /// # Safety
     /// The function belongs to this integrator and may be called with this value.
-    pub(super) unsafe fn set<T>(
-        &mut self,
-        (name, function): Set<T>,
-        value: T,
-    ) -> Result<(), Error> {
+    pub(super) unsafe fn set<T>(&mut self, function: Set<T>, value: T) -> Result<(), Error> {
         // SAFETY: the memory is alive; the caller vouches for the value.
-        let code = unsafe { function(self.memory.raw, value) };
-        self.host.accept(name, code)
+        self.host.call(function, |set| unsafe { set(self.memory.raw, value) })
+    }
+
+    /// Sets tolerances by one of these functions, for a number or for a vector.
+    ///
+    /// # Safety
+    /// The functions belong to this integrator, and a vector is as long as that of the values.
+    pub(super) unsafe fn set_tolerances(
+        &mut self,
+        (scalar, vector): (SetTwo<f64, f64>, SetTwo<f64, ffi::N_Vector>),
+        Tolerances { rtol, atol }: &Tolerances,
+    ) -> Result<(), Error> {
+        let memory = self.memory.raw;
+        match atol {
+            // SAFETY: the memory is alive; the caller vouches for the function.
+            AbsoluteTolerance::Scalar(atol) => {
+                self.host.call(scalar, |set| unsafe { set(memory, *rtol, *atol) })
+            }
+            AbsoluteTolerance::Vector(atol) => {
+                let atol = Vector::from_slice(atol, &self.context)?;
+                // SAFETY: as above; C keeps a copy of the vector.
+                self.host.call(vector, |set| unsafe { set(memory, *rtol, atol.raw()) })
+            }
+        }
     }
 
     /// Registers the host, after the integrator was initialised with the callbacks for it, and
@@ -191,24 +210,11 @@ impl<K, S> Session<K, S> {
         self.max_steps = steps.max_steps;
         self.initial_step = steps.initial_step;
         let functions = self.memory.functions;
-        let (memory, rtol) = (self.memory.raw, tolerances.rtol);
-        let (name, code) = match &tolerances.atol {
-            AbsoluteTolerance::Scalar(atol) => {
-                let (name, set) = functions.scalar_tolerances;
-                // SAFETY: the memory is alive.
-                (name, unsafe { set(memory, rtol, *atol) })
-            }
-            AbsoluteTolerance::Vector(atol) => {
-                let atol = Vector::from_slice(atol, &self.context)?;
-                let (name, set) = functions.vector_tolerances;
-                // SAFETY: the memory is alive; it keeps a copy of the vector, whose length was
-                // checked.
-                (name, unsafe { set(memory, rtol, atol.raw()) })
-            }
-        };
-        self.host.accept(name, code)?;
-        // SAFETY: the host outlives the memory; the other values are plain numbers.
+        // SAFETY: the length of a vector was checked; the host outlives the memory; the other values are plain
+        // numbers.
         unsafe {
+            let set = (functions.scalar_tolerances, functions.vector_tolerances);
+            self.set_tolerances(set, tolerances)?;
             self.set(functions.set_user_data, self.host.as_ptr())?;
             self.set(functions.set_max_steps, i64::from(steps.max_steps))?;
             if let Some(set) = functions.set_max_error_test_failures {
@@ -261,20 +267,19 @@ impl<K, S> Session<K, S> {
     /// `init` belongs to this integrator, and `callback` fits the host.
     pub(super) unsafe fn set_root_functions<F>(
         &mut self,
-        (name, init): (&'static str, unsafe extern "C" fn(*mut c_void, i32, F) -> i32),
+        init: SetTwo<i32, F>,
         callback: F,
     ) -> Result<(), Error> {
         let count = self.roots_found.len() as i32;
         if count == 0 {
             return Ok(());
         }
+        let Memory { raw: memory, functions } = self.memory;
         // SAFETY: the memory is alive; the caller vouches for the callback.
-        let code = unsafe { init(self.memory.raw, count, callback) };
-        self.host.accept(name, code)?;
-        let (name, allow) = self.memory.functions.allow_inactive_roots;
-        // SAFETY: the memory is alive.
-        let code = unsafe { allow(self.memory.raw) };
-        self.host.accept(name, code)
+        unsafe {
+            self.host.call(init, |init| init(memory, count, callback))?;
+            self.host.call(functions.allow_inactive_roots, |allow| allow(memory))
+        }
     }
 
     /// Gives the Newton iteration its linear solver.
@@ -309,10 +314,10 @@ impl<K, S> Session<K, S> {
         // SAFETY: the data is the host, which outlives the solver.
         let linear = unsafe { Linear::new::<S>(solver, &self.y, &self.context, data)? };
         let linear = self.linear.insert(linear);
-        let (name, set) = self.memory.functions.set_linear_solver;
         // SAFETY: memory, solver and matrix are alive, and the memory is dropped first.
-        let code = unsafe { set(self.memory.raw, linear.solver(), linear.matrix()) };
-        self.host.accept(name, code)?;
+        self.host.call(functions.set_linear_solver, |set| unsafe {
+            set(memory, linear.solver(), linear.matrix())
+        })?;
         if let LinearSolver::Krylov(Krylov { tolerance_factor: Some(factor), .. }) = solver {
             // SAFETY: the value is a plain number.
             unsafe { self.set(functions.set_tolerance_factor, *factor)? };
@@ -332,17 +337,14 @@ impl<K, S> Session<K, S> {
         (set_preconditioner, setup, solve): (SetTwo<P, Q>, P, Q),
     ) -> Result<(), Error> {
         let memory = self.memory.raw;
-        if krylov.products == Jacobian::Supplied {
-            let (name, set) = set_products;
-            // SAFETY: the memory is alive; the caller vouches for the callback.
-            let code = unsafe { set(memory, None, times) };
-            self.host.accept(name, code)?;
-        }
-        if krylov.preconditioner.is_some() {
-            let (name, set) = set_preconditioner;
-            // SAFETY: as above.
-            let code = unsafe { set(memory, setup, solve) };
-            self.host.accept(name, code)?;
+        // SAFETY: the memory is alive; the caller vouches for the callbacks.
+        unsafe {
+            if krylov.products == Jacobian::Supplied {
+                self.host.call(set_products, |set| set(memory, None, times))?;
+            }
+            if krylov.preconditioner.is_some() {
+                self.host.call(set_preconditioner, |set| set(memory, setup, solve))?;
+            }
         }
         Ok(())
     }

@@ -5,7 +5,7 @@ use std::ops::Range;
 use super::{colouring::Colouring, linear_solver::LinearSolver, pattern::Pattern};
 
 /// The entries that a linear solver stores of a matrix, column by column.
-#[derive(Clone)]
+#[derive(Clone, Debug)]
 pub(super) enum Shape {
     Dense,
     Band { lower: usize, upper: usize },

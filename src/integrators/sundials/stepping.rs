@@ -6,7 +6,7 @@ use super::{
     differences::Differences,
     ffi,
     progress::{Progress, STRETCH},
-    session::Session,
+    session::{Memory, Session},
     signs::check_state,
     vector::Vector,
 };
@@ -115,11 +115,10 @@ impl<K, S> Integrator for Session<K, S> {
         check_start_time("t", t)?;
         check_finite("y", y)?;
         check_state(&self.signs, "y", y)?;
-        let Some((name, reset)) = self.memory.functions.reset else { return Ok(false) };
+        let Some(reset) = self.memory.functions.reset else { return Ok(false) };
         self.y.as_mut_slice().copy_from_slice(y);
         // SAFETY: memory and vector are alive; the integrator copies the vector.
-        let code = unsafe { reset(self.memory.raw, t, self.y.raw()) };
-        self.host.accept(name, code)?;
+        self.host.call(reset, |reset| unsafe { reset(self.memory.raw, t, self.y.raw()) })?;
         self.t = t;
         (self.has_step, self.failed_within) = (false, false);
         let step_end = &mut self.host.get_mut().step_end;
@@ -316,10 +315,9 @@ impl<K, S> Session<K, S> {
 
     /// Makes C start at time `t` from the present state: `CVodeReInit`, `ARKStepReInit` or `IDAReInit`.
     fn start_c(&mut self, t: f64) -> Result<(), Error> {
-        let (name, reinit) = self.memory.functions.reinit;
+        let (memory, y, yp) = (self.memory.raw, self.y.raw(), self.raw_yp());
         // SAFETY: memory and vectors are alive; the integrator copies the vectors.
-        let code = unsafe { reinit(self.memory.raw, t, self.y.raw(), self.raw_yp()) };
-        self.host.accept(name, code)
+        self.host.call(self.memory.functions.reinit, |reinit| unsafe { reinit(memory, t, y, yp) })
     }
 
     /// Whether the state that C has written is finite.
@@ -342,11 +340,11 @@ impl<K, S> Session<K, S> {
     /// to their bounds.
     fn read_corrected(&mut self) -> Result<(), Error> {
         let Some(yp) = self.yp.as_ref().map(Vector::raw) else { return Ok(()) };
-        let (name, get_dky) = self.memory.functions.get_dky;
+        let Memory { raw: memory, functions } = self.memory;
         for (order, vector) in [(0, self.y.raw()), (1, yp)] {
             // SAFETY: memory and vector are alive; IDA calls no callback here.
-            let code = unsafe { get_dky(self.memory.raw, self.t, order, vector) };
-            self.host.accept(name, code)?;
+            self.host
+                .call(functions.get_dky, |get| unsafe { get(memory, self.t, order, vector) })?;
         }
         Ok(())
     }

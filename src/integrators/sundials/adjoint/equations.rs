@@ -8,7 +8,10 @@ use crate::integrators::{
     common::{Callback, Cause, Error, IntegrationError, Tolerances},
     ode::{Failure, Functional, Slopes},
     sundials::{
-        LinearSolver, matrix::Entries, sensitivity::Access, stored_jacobian::StoredJacobian,
+        LinearSolver,
+        matrix::Entries,
+        sensitivity::Access,
+        stored_matrix::{Quotients, StoredMatrix},
     },
 };
 
@@ -18,7 +21,10 @@ pub(in crate::integrators::sundials) struct Equations<S, F> {
     functional: F,
     access: Access<S>,
     tolerances: Tolerances,
-    pub(super) jacobian: StoredJacobian,
+    pub(super) jacobian: StoredMatrix,
+    /// Whether the system supplies it.
+    is_supplied: bool,
+    pub(super) quotients: Quotients,
     /// The linear solver of the backward run.
     pub(super) backward: LinearSolver,
     /// Time of the Jacobian: in the backward run there is one state at each time.
@@ -41,7 +47,7 @@ impl<S, F: Functional> Equations<S, F> {
         n: usize,
         (forward, tolerances): (&LinearSolver, &Tolerances),
     ) -> Result<Self, InputError> {
-        let jacobian = StoredJacobian::new(forward, n);
+        let jacobian = StoredMatrix::new(forward, n);
         let backward = jacobian.backward_solver()?;
         let p = (access.get)(&system).to_vec();
         Ok(Self {
@@ -49,6 +55,8 @@ impl<S, F: Functional> Equations<S, F> {
             functional,
             access,
             tolerances: tolerances.clone(),
+            is_supplied: forward.supplied().is_some(),
+            quotients: Quotients::new(&jacobian),
             jacobian,
             backward,
             jacobian_time: None,
@@ -88,12 +96,12 @@ impl<S, F: Functional> Equations<S, F> {
             return Ok(false);
         }
         self.jacobian_time = None;
-        let Self { system, jacobian, tolerances, ahead, .. } = self;
-        if jacobian.is_supplied() {
+        let Self { system, jacobian, quotients, tolerances, ahead, .. } = self;
+        if self.is_supplied {
             supplied(system, jacobian.entries(), ahead)?;
         } else {
             let step = |j: usize| f64::EPSILON.cbrt() * tolerances.size_of(j, y[j]);
-            jacobian.quotients(y, step, |y, out| evaluate(system, y, out))?;
+            quotients.write(jacobian, y, step, |y, out| evaluate(system, y, out))?;
         }
         self.jacobian_time = Some(t);
         Ok(true)

@@ -175,8 +175,8 @@ impl<S: Ode> Session<CvodeKind, S> {
         // SAFETY: the memory is alive, the vector has the right length, and the callbacks fit the
         // host that is registered as their data.
         unsafe {
-            let code = ffi::CVodeInit(cvode.memory.raw, Some(rhs::<S>), t0, cvode.y.raw());
-            cvode.host.accept("CVodeInit", code)?;
+            let (memory, y) = (cvode.memory.raw, cvode.y.raw());
+            cvode.host.call(named!(CVodeInit), |init| init(memory, Some(rhs::<S>), t0, y))?;
             cvode.configure(&options.tolerances, &options.steps, &options.limits)?;
             cvode.set_root_functions(named!(CVodeRootInit), Some(roots::<S>))?;
             let tolerances = (&options.quadratures, &options.tolerances);

@@ -160,17 +160,16 @@ impl<K, S> Session<K, S> {
         let s = sensitivities.s.raw();
         let sp = sensitivities.sp.as_mut().map_or(ptr::null_mut(), Vectors::raw);
         self.host.accept(name, init(c_count, method, s, sp))?;
-        let (name, set_parameters) = functions.set_parameters;
-        let (memory, nothing) = (self.memory.raw, ptr::null_mut());
-        // SAFETY: the memory is alive; it copies the scales, and needs no parameters for our callbacks.
-        let code = unsafe { set_parameters(memory, nothing, scales.as_mut_ptr(), ptr::null_mut()) };
-        self.host.accept(name, code)?;
-        let (name, set_tolerances) = functions.set_tolerances;
-        // SAFETY: the memory is alive.
-        let code = unsafe { set_tolerances(memory) };
-        self.host.accept(name, code)?;
-        // SAFETY: the value is a plain number.
-        unsafe { self.set(functions.set_error_control, i32::from(options.error_control)) }
+        let (memory, scales) = (self.memory.raw, scales.as_mut_ptr());
+        // SAFETY: the memory is alive; it copies the scales, and needs no parameters for our callbacks; the
+        // other value is a plain number.
+        unsafe {
+            self.host.call(functions.set_parameters, |set| {
+                set(memory, ptr::null_mut(), scales, ptr::null_mut())
+            })?;
+            self.host.call(functions.set_tolerances, |set| set(memory))?;
+            self.set(functions.set_error_control, i32::from(options.error_control))
+        }
     }
 
     /// Reads the sensitivities at the present time, after a step.

@@ -14,7 +14,7 @@ use crate::integrators::{
         },
         matrix::Entries,
         sensitivity::Access,
-        stored_jacobian::StoredJacobian,
+        stored_matrix::StoredMatrix,
     },
 };
 
@@ -25,7 +25,7 @@ pub(super) struct AdjointDae<S, F> {
     /// Which unknowns were declared differential.
     differential: Vec<bool>,
     /// dF/dy'
-    pub(super) mass: StoredJacobian,
+    pub(super) mass: StoredMatrix,
     /// Which equations contain no y'.
     pub(super) algebraic: Vec<bool>,
     /// Two shifted y', and F at both.
@@ -45,7 +45,7 @@ impl<S: Dae, F: Functional> AdjointDae<S, F> {
         Ok(Self {
             equations: Equations::new(system, functional, access, n, (solver, tolerances))?,
             differential: differential.to_vec(),
-            mass: StoredJacobian::new(solver, n),
+            mass: StoredMatrix::new(solver, n),
             algebraic: vec![false; n],
             moved: [vector(), vector()],
             residuals: [vector(), vector()],
@@ -60,11 +60,11 @@ impl<S: Dae, F: Functional> AdjointDae<S, F> {
         self.equations.forget();
         let step = |j: usize| LARGE * self.equations.size(j, y[j]).max(yp[j].abs());
         let steps: Vec<f64> = (0..y.len()).map(step).collect();
-        let system = &mut self.equations.system;
+        let Equations { system, quotients, .. } = &mut self.equations;
         let evaluate =
             |yp: &[f64], residual: &mut [f64]| call::residual(system, t, y, yp, residual);
-        self.mass
-            .quotients(yp, |j| steps[j], evaluate)
+        quotients
+            .write(&mut self.mass, yp, |j| steps[j], evaluate)
             .map_err(|failure| refused("IDA", t, failure))?;
         check_finite("dF/dy'", self.mass.values())?;
         self.algebraic.fill(true);

@@ -1,4 +1,4 @@
-//! Jacobians that are stored in addition to the matrix that a linear solver factorizes.
+//! Matrices that are stored in addition to the one that a linear solver factorizes.
 
 use crate::base::input::InputError;
 use crate::integrators::{
@@ -8,40 +8,33 @@ use crate::integrators::{
     },
 };
 
-/// A Jacobian at one point, stored in the form of the linear solver of the forward run.
-pub(in crate::integrators::sundials) struct StoredJacobian {
-    forward: LinearSolver,
+/// A matrix in the form of a linear solver.
+#[derive(Clone, Debug)]
+pub(in crate::integrators::sundials) struct StoredMatrix {
+    solver: LinearSolver,
     shape: Shape,
     n: usize,
     values: Vec<f64>,
-    colouring: Colouring,
-    /// Unknowns shifted for difference quotients, and two results.
-    moved: Vec<f64>,
-    ahead: Vec<f64>,
-    behind: Vec<f64>,
 }
 
-impl StoredJacobian {
-    pub(in crate::integrators::sundials) fn new(forward: &LinearSolver, n: usize) -> Self {
-        let count = match forward {
+impl StoredMatrix {
+    /// An `n` x `n` matrix of zeros.
+    pub(in crate::integrators::sundials) fn new(solver: &LinearSolver, n: usize) -> Self {
+        let count = match solver {
             LinearSolver::Dense(_) => n * n,
             LinearSolver::Band { lower, upper, .. } => n * (lower + upper + 1),
             LinearSolver::Klu { pattern, .. } => pattern.entry_count(),
             _ => 0,
         };
-        let vector = || vec![0.0; n];
-        let (moved, ahead, behind) = (vector(), vector(), vector());
-        let shape = Shape::of(forward).unwrap_or(Shape::Dense);
-        let colouring = shape.colouring(n);
-        let (forward, values) = (forward.clone(), vec![0.0; count]);
-        Self { forward, shape, n, values, colouring, moved, ahead, behind }
+        let shape = Shape::of(solver).unwrap_or(Shape::Dense);
+        Self { solver: solver.clone(), shape, n, values: vec![0.0; count] }
     }
 
     /// The linear solver for transposed matrices.
     pub(in crate::integrators::sundials) fn backward_solver(
         &self,
     ) -> Result<LinearSolver, InputError> {
-        match &self.forward {
+        match &self.solver {
             LinearSolver::Dense(_) => Ok(LinearSolver::Dense(Jacobian::Supplied)),
             LinearSolver::Band { lower, upper, .. } => Ok(LinearSolver::Band {
                 lower: *upper,
@@ -62,48 +55,10 @@ impl StoredJacobian {
         }
     }
 
-    /// Whether the system supplies it.
-    pub(in crate::integrators::sundials) fn is_supplied(&self) -> bool {
-        match &self.forward {
-            LinearSolver::Dense(jacobian)
-            | LinearSolver::Band { jacobian, .. }
-            | LinearSolver::Klu { jacobian, .. } => *jacobian == Jacobian::Supplied,
-            _ => false,
-        }
-    }
-
     /// Its entries, set to zero and to be filled.
     pub(in crate::integrators::sundials) fn entries(&mut self) -> Entries<'_> {
         self.values.fill(0.0);
-        Entries::of(&self.forward, self.n, &mut self.values)
-    }
-
-    /// Makes it the Jacobian of `evaluate` at `x`, by central differences with these steps, of as many
-    /// columns at once as share no row.
-    pub(in crate::integrators::sundials) fn quotients(
-        &mut self,
-        x: &[f64],
-        step: impl Fn(usize) -> f64,
-        mut evaluate: impl FnMut(&[f64], &mut [f64]) -> Result<(), Failure>,
-    ) -> Result<(), Failure> {
-        self.values.fill(0.0);
-        let (n, stored) = (self.n, self.values.len());
-        for colour in 0..self.colouring.count() {
-            let columns = self.colouring.columns(colour);
-            for (sign, result) in [(1.0, &mut self.ahead), (-1.0, &mut self.behind)] {
-                self.moved.copy_from_slice(x);
-                columns.iter().for_each(|&j| self.moved[j] += sign * step(j));
-                evaluate(&self.moved, result)?;
-            }
-            for &j in columns {
-                let distance = (x[j] + step(j)) - (x[j] - step(j));
-                for (k, place) in self.shape.places(j, n, stored).enumerate() {
-                    let i = self.shape.row(j, k);
-                    self.values[place] = (self.ahead[i] - self.behind[i]) / distance;
-                }
-            }
-        }
-        Ok(())
+        Entries::of(&self.solver, self.n, &mut self.values)
     }
 
     /// The stored entries.
@@ -188,5 +143,52 @@ impl StoredJacobian {
             }
             _ => {}
         }
+    }
+}
+
+/// Difference quotients for matrices of one form.
+pub(in crate::integrators::sundials) struct Quotients {
+    colouring: Colouring,
+    /// Unknowns shifted, and two results.
+    moved: Vec<f64>,
+    ahead: Vec<f64>,
+    behind: Vec<f64>,
+}
+
+impl Quotients {
+    /// For matrices of the form of this one.
+    pub(in crate::integrators::sundials) fn new(matrix: &StoredMatrix) -> Self {
+        let vector = || vec![0.0; matrix.n];
+        let colouring = matrix.shape.colouring(matrix.n);
+        Self { colouring, moved: vector(), ahead: vector(), behind: vector() }
+    }
+
+    /// Makes `matrix` the Jacobian of `evaluate` at `x`, by central differences with these steps, of as many
+    /// columns at once as share no row.
+    pub(in crate::integrators::sundials) fn write(
+        &mut self,
+        matrix: &mut StoredMatrix,
+        x: &[f64],
+        step: impl Fn(usize) -> f64,
+        mut evaluate: impl FnMut(&[f64], &mut [f64]) -> Result<(), Failure>,
+    ) -> Result<(), Failure> {
+        let StoredMatrix { shape, n, values, .. } = matrix;
+        values.fill(0.0);
+        for colour in 0..self.colouring.count() {
+            let columns = self.colouring.columns(colour);
+            for (sign, result) in [(1.0, &mut self.ahead), (-1.0, &mut self.behind)] {
+                self.moved.copy_from_slice(x);
+                columns.iter().for_each(|&j| self.moved[j] += sign * step(j));
+                evaluate(&self.moved, result)?;
+            }
+            for &j in columns {
+                let distance = (x[j] + step(j)) - (x[j] - step(j));
+                for (k, place) in shape.places(j, *n, values.len()).enumerate() {
+                    let i = shape.row(j, k);
+                    values[place] = (self.ahead[i] - self.behind[i]) / distance;
+                }
+            }
+        }
+        Ok(())
     }
 }
