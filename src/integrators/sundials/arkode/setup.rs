@@ -247,20 +247,18 @@ impl<S: Ode> Session<ArkodeKind, S> {
         unsafe {
             arkode.set_root_functions(named!(ARKStepRootInit), Some(roots::<S>))?;
             let (implicit, explicit) = (implicit_id.as_ptr(), explicit_id.as_ptr());
-            let code = ffi::ARKStepSetTableName(arkode.memory.raw, implicit, explicit);
-            arkode.host.accept("ARKStepSetTableName", code)?;
-            let set = named!(ARKStepSetInterpolantDegree as _);
-            arkode.set(set, degree as i32)?;
+            let (memory, data) = (arkode.memory.raw, arkode.host.as_ptr());
+            arkode.host.call(named!(ARKStepSetTableName), |set| set(memory, implicit, explicit))?;
+            arkode.set(named!(ARKStepSetInterpolantDegree as _), degree as i32)?;
             // Post-processing of steps makes ARKODE evaluate the right-hand side at their ends; it is used
             // for fixed steps only.
             if let Some(h) = options.fixed_step {
                 arkode.set(named!(ARKStepSetFixedStep), h)?;
-                let set = named!(ARKStepSetPostprocessStepFn as _);
-                arkode.set(set, Some(note_step_end::<S> as _))?;
+                arkode
+                    .set(named!(ARKStepSetPostprocessStepFn as _), Some(note_step_end::<S> as _))?;
             } else {
-                let (memory, data) = (arkode.memory.raw, arkode.host.as_ptr());
-                let code = ffi::ARKStepSetStabilityFn(memory, Some(note_time::<S>), data);
-                arkode.host.accept("ARKStepSetStabilityFn", code)?;
+                let (set, note) = (named!(ARKStepSetStabilityFn), Some(note_time::<S> as _));
+                arkode.host.call(set, |set| set(memory, note, data))?;
             }
         }
         if is_implicit {
@@ -280,20 +278,16 @@ fn solve_stages<S: Ode>(
 ) -> Result<(), Error> {
     // SAFETY: the values are plain numbers.
     unsafe {
-        let set = named!(ARKStepSetPredictorMethod as _);
-        arkode.set(set, options.predictor as i32)?;
-        let set = named!(ARKStepSetMaxNonlinIters as _);
-        arkode.set(set, options.max_iterations as i32)?;
+        arkode.set(named!(ARKStepSetPredictorMethod as _), options.predictor as i32)?;
+        arkode.set(named!(ARKStepSetMaxNonlinIters as _), options.max_iterations as i32)?;
         // The slope of a stage follows from its equation: this spares an evaluation, which would
         // also stop the integration if it failed, and magnify errors of stiff components.
-        let set = named!(ARKStepSetDeduceImplicitRhs as _);
-        arkode.set(set, 1)?;
+        arkode.set(named!(ARKStepSetDeduceImplicitRhs as _), 1)?;
         if options.linear {
             arkode.set(named!(ARKStepSetLinear as _), 0)?;
         }
         if let Some(steps) = options.nonlinear.max_steps_between_setups {
-            let set = named!(ARKStepSetLSetupFrequency as _);
-            arkode.set(set, steps as i32)?;
+            arkode.set(named!(ARKStepSetLSetupFrequency as _), steps as i32)?;
         }
     }
     // SAFETY: the callbacks fit the registered host, and the solvers live as long as the memory.
@@ -303,10 +297,9 @@ fn solve_stages<S: Ode>(
                 let for_jacobian = (&options.tolerances, &options.limits);
                 arkode.set_newton(solver, S::newton_solve, for_jacobian)?;
                 if matches!(solver, LinearSolver::Custom) {
-                    let callback = Some(newton_setup_with_mass::<S> as _);
-                    arkode.set(named!(ARKStepSetLinSysFn), callback)?;
-                    let callback = Some(newton_rhs::<S> as _);
-                    arkode.set(named!(ARKStepSetNlsRhsFn), callback)?;
+                    arkode
+                        .set(named!(ARKStepSetLinSysFn), Some(newton_setup_with_mass::<S> as _))?;
+                    arkode.set(named!(ARKStepSetNlsRhsFn), Some(newton_rhs::<S> as _))?;
                 } else if let LinearSolver::Krylov(krylov) = solver {
                     arkode.set_krylov(
                         krylov,
@@ -318,17 +311,14 @@ fn solve_stages<S: Ode>(
                         ),
                     )?;
                 } else {
-                    let callback = Some(jacobian::<S> as _);
-                    arkode.set(named!(ARKStepSetJacFn), callback)?;
+                    arkode.set(named!(ARKStepSetJacFn), Some(jacobian::<S> as _))?;
                 }
                 if let Some(steps) = options.max_steps_between_jacobians {
-                    let set = named!(ARKStepSetJacEvalFrequency as _);
-                    arkode.set(set, i64::from(steps))?;
+                    arkode.set(named!(ARKStepSetJacEvalFrequency as _), i64::from(steps))?;
                 }
             }
             NonlinearSolver::FixedPoint { acceleration } => {
-                let set = named!(ARKStepSetNonlinearSolver as _);
-                arkode.set_fixed_point(set, *acceleration)?;
+                arkode.set_fixed_point(named!(ARKStepSetNonlinearSolver as _), *acceleration)?;
             }
         }
     }

@@ -192,8 +192,7 @@ impl<S: Ode> Session<CvodeKind, S> {
                 cvode.set(named!(CVodeSetStabLimDet), 1)?;
             }
             if let Some(steps) = options.nonlinear.max_steps_between_setups {
-                let function = named!(CVodeSetLSetupFrequency as _);
-                cvode.set(function, i64::from(steps))?;
+                cvode.set(named!(CVodeSetLSetupFrequency as _), i64::from(steps))?;
             }
         }
         if let Some(sensitivities) = &options.sensitivities {
@@ -214,10 +213,8 @@ impl<S: Ode> Session<CvodeKind, S> {
                     let for_jacobian = (&options.tolerances, &options.limits);
                     cvode.set_newton(solver, S::newton_solve, for_jacobian)?;
                     if matches!(solver, LinearSolver::Custom) {
-                        let callback = Some(newton_setup::<S> as _);
-                        cvode.set(named!(CVodeSetLinSysFn), callback)?;
-                        let callback = Some(newton_rhs::<S> as _);
-                        cvode.set(named!(CVodeSetNlsRhsFn), callback)?;
+                        cvode.set(named!(CVodeSetLinSysFn), Some(newton_setup::<S> as _))?;
+                        cvode.set(named!(CVodeSetNlsRhsFn), Some(newton_rhs::<S> as _))?;
                     } else if let LinearSolver::Krylov(krylov) = solver {
                         cvode.set_krylov(
                             krylov,
@@ -229,13 +226,11 @@ impl<S: Ode> Session<CvodeKind, S> {
                             ),
                         )?;
                     } else {
-                        let callback = Some(jacobian::<S> as _);
-                        cvode.set(named!(CVodeSetJacFn), callback)?;
+                        cvode.set(named!(CVodeSetJacFn), Some(jacobian::<S> as _))?;
                     }
                 }
                 NonlinearSolver::FixedPoint { acceleration } => {
-                    let set = named!(CVodeSetNonlinearSolver as _);
-                    cvode.set_fixed_point(set, *acceleration)?;
+                    cvode.set_fixed_point(named!(CVodeSetNonlinearSolver as _), *acceleration)?;
                 }
             }
         }

@@ -136,8 +136,7 @@ impl<S: Dae> Session<IdaKind, S> {
         // SAFETY: the memory is alive, vectors have the right length, and the callbacks fit the host
         // that is registered as their data.
         unsafe {
-            let code = ffi::IDAInit(memory, Some(residual::<S>), t0, y, yp);
-            ida.host.accept("IDAInit", code)?;
+            ida.host.call(named!(IDAInit), |init| init(memory, Some(residual::<S>), t0, y, yp))?;
             ida.configure(&options.tolerances, &options.steps, &options.limits)?;
             ida.set_root_functions(named!(IDARootInit), Some(roots::<S>))?;
             let tolerances = (&options.quadratures, &options.tolerances);
@@ -168,8 +167,7 @@ impl<S: Dae> Session<IdaKind, S> {
             // SAFETY: IDA keeps a copy of the vector, whose length was checked.
             unsafe {
                 ida.set(named!(IDASetId), id.raw())?;
-                let suppress = i32::from(options.suppress_algebraic);
-                ida.set(named!(IDASetSuppressAlg), suppress)?;
+                ida.set(named!(IDASetSuppressAlg), i32::from(options.suppress_algebraic))?;
             }
         }
         if let Some(sensitivities) = &options.sensitivities {

@@ -14,6 +14,7 @@ use crate::integrators::{
     sundials::{
         auxiliary::Vectors,
         ffi,
+        functions::named,
         index::{Index, index},
         sensitivity::CarriesSensitivities,
         session::Session,
@@ -112,9 +113,9 @@ impl<S: Dae> StartsDae for Session<IdaKind, S> {
             let shortest = 1e-4 * LONGEST_STEP * (towards - self.t).abs();
             return Err(self.unfound(code, first_output, [longest, shortest]));
         }
+        let (memory, y, yp) = (self.memory.raw, self.y.raw(), self.raw_yp());
         // SAFETY: memory and vectors are alive.
-        let code = unsafe { ffi::IDAGetConsistentIC(self.memory.raw, self.y.raw(), self.raw_yp()) };
-        self.host.accept("IDAGetConsistentIC", code)?;
+        self.host.call(named!(IDAGetConsistentIC), |get| unsafe { get(memory, y, yp) })?;
         self.read_consistent_sensitivities()
     }
 
