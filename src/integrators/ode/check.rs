@@ -30,6 +30,7 @@ use super::{
     band::BandMut,
     call,
     dae::Dae,
+    entries::Entries,
     failure::Failure,
     first_order::Ode,
     functional::{Functional, Slopes},
@@ -105,11 +106,8 @@ pub fn jacobian(
     let n = y.len();
     let mut ydot = vec![0.0; n];
     call::rhs(system, t, y, &mut ydot)?;
-    let supplied = entries(n, storage, |form| match form {
-        Form::Dense(matrix) => system.dense_jacobian(t, y, &ydot, matrix),
-        Form::Band(band) => system.banded_jacobian(t, y, &ydot, band),
-        Form::Sparse(values) => system.sparse_jacobian(t, y, &ydot, values),
-    })?;
+    let fill = |entries: Entries<'_>| entries.jacobian(system, t, y, &ydot);
+    let supplied = full_matrix(n, storage, fill)?;
     for j in 0..n {
         let column =
             slope(n, size(y, j), |step, out| call::rhs(system, t, &moved(y, j, step), out))?;
@@ -132,11 +130,8 @@ pub fn dae_jacobian(
 ) -> Result<(), CheckError> {
     let n = y.len();
     same_length("length of yp", yp.len(), n)?;
-    let supplied = entries(n, storage, |form| match form {
-        Form::Dense(matrix) => system.dense_jacobian(t, cj, y, yp, matrix),
-        Form::Band(band) => system.banded_jacobian(t, cj, y, yp, band),
-        Form::Sparse(values) => system.sparse_jacobian(t, cj, y, yp, values),
-    })?;
+    let fill = |entries: Entries<'_>| entries.dae_jacobian(system, t, cj, y, yp);
+    let supplied = full_matrix(n, storage, fill)?;
     for j in 0..n {
         let column = slope(n, size(y, j), |step, out| {
             call::residual(system, t, &moved(y, j, step), &moved(yp, j, cj * step), out)
@@ -322,29 +317,22 @@ impl Storage<'_> {
     }
 }
 
-/// What a Jacobian is written into.
-enum Form<'a> {
-    Dense(MatMut<'a, f64>),
-    Band(BandMut<'a>),
-    Sparse(&'a mut [f64]),
-}
-
 /// The supplied Jacobian as a full matrix, column after column.
-fn entries(
+fn full_matrix(
     n: usize,
     storage: Storage<'_>,
-    mut fill: impl FnMut(Form<'_>) -> Result<(), Failure>,
+    fill: impl FnOnce(Entries<'_>) -> Result<(), Failure>,
 ) -> Result<Vec<f64>, CheckError> {
     storage.check(n)?;
     let mut matrix = vec![0.0; n * n];
     match storage {
         Storage::Dense => {
-            fill(Form::Dense(MatMut::from_column_major_slice_mut(&mut matrix, n, n)))?
+            fill(Entries::Dense(MatMut::from_column_major_slice_mut(&mut matrix, n, n)))?
         }
         Storage::Band { lower, upper } => {
             let stride = lower + upper + 1;
             let mut data = vec![0.0; n * stride];
-            fill(Form::Band(BandMut::new(&mut data, stride, upper, lower, upper)))?;
+            fill(Entries::Band(BandMut::new(&mut data, stride, upper, lower, upper)))?;
             let band = BandMut::new(&mut data, stride, upper, lower, upper);
             for j in 0..n {
                 for i in j.saturating_sub(upper)..=(j + lower).min(n - 1) {
@@ -354,7 +342,7 @@ fn entries(
         }
         Storage::Sparse { column_pointers, row_indices } => {
             let mut values = vec![0.0; row_indices.len()];
-            fill(Form::Sparse(&mut values))?;
+            fill(Entries::Sparse(&mut values))?;
             for (j, ends) in column_pointers.windows(2).enumerate() {
                 for place in ends[0] as usize..ends[1] as usize {
                     matrix[j * n + row_indices[place] as usize] += values[place];

@@ -18,14 +18,14 @@ use super::{
     ilu::IncompleteLu,
     index::Index,
     linear_solver::LinearSolver,
-    matrix::{self, Entries},
+    matrix,
     sensitivity::SensitivityRhs,
     shape::Shape,
     signs::Violation,
 };
 use crate::integrators::{
     common::{Callback, Cause, Error, JacobianCheck, Point},
-    ode::Failure,
+    ode::{Entries, Failure},
 };
 
 /// Return value of a callback that requests a smaller step.
@@ -259,7 +259,7 @@ impl<S> Host<S> {
         call: impl FnOnce(&mut S, Entries<'_>) -> Result<(), Failure>,
     ) -> i32 {
         let Some(solver) = &self.linear_solver else { return STOP };
-        let entries = Entries::of(solver, self.n, values);
+        let entries = solver.entries(self.n, values);
         match self.guard(callback, t, |system| call(system, entries)) {
             0 => self.check_finite(callback, t, values),
             failed => failed,

@@ -9,11 +9,14 @@ use super::{
     host::{Host, RETRY, STOP},
     krylov::{Krylov, KrylovMethod, Side},
     linear_solver::LinearSolver,
-    matrix::{self, Entries, Matrix},
+    matrix::{Matrix, stored},
     serial::{slice, slice_mut},
     vector::Vector,
 };
-use crate::integrators::common::{Callback, Error};
+use crate::integrators::{
+    common::{Callback, Error},
+    ode::Entries,
+};
 
 /// Owns a `SUNLinearSolver` and the matrix it factorizes, if any, freed in this order.
 pub(super) struct Linear {
@@ -88,7 +91,7 @@ impl Linear {
         // matrix; `&mut self` keeps others away, and the entries are gone when the solver works.
         unsafe {
             ffi::SUNMatZero(matrix);
-            fill(Entries::of(kind, n, matrix::stored(matrix, kind, n)));
+            fill(kind.entries(n, stored(matrix, kind, n)));
             self.is_ready = self.is_ready || ffi::SUNLinSolInitialize(solver) == 0;
             self.is_ready && ffi::SUNLinSolSetup(solver, matrix) == 0
         }

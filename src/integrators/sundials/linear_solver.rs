@@ -1,7 +1,10 @@
 //! How the linear systems of the Newton iteration are solved.
 
+use faer::MatMut;
+
 use super::{jacobian::Jacobian, krylov::Krylov, pattern::Pattern};
 use crate::base::input::InputError;
+use crate::integrators::ode::{BandMut, Entries};
 
 /// How the linear systems of the Newton iteration are solved.
 ///
@@ -61,6 +64,20 @@ impl LinearSolver {
             Self::Klu { pattern, .. } => pattern.check(n),
             Self::Krylov(krylov) => krylov.check(n),
             _ => Ok(()),
+        }
+    }
+
+    /// The entries of a matrix with `n` columns, or of that of a preconditioner, which are stored as `values`;
+    /// none for a solver of the system's own.
+    pub(super) fn entries<'a>(&self, n: usize, values: &'a mut [f64]) -> Entries<'a> {
+        match *self {
+            Self::Dense(_) => Entries::Dense(MatMut::from_column_major_slice_mut(values, n, n)),
+            Self::Band { lower, upper, .. } => {
+                // room for pivots may lie above the band
+                let stride = values.len() / n;
+                Entries::Band(BandMut::new(values, stride, stride - lower - 1, lower, upper))
+            }
+            Self::Klu { .. } | Self::Krylov(_) | Self::Custom => Entries::Sparse(values),
         }
     }
 

@@ -1,14 +1,9 @@
-//! Matrices: the storage of the Newton matrix, and the view that a Jacobian callback fills.
+//! Matrices: the storage of the Newton matrix, and its numbers, which a Jacobian callback fills.
 
 use std::{ptr, slice};
 
-use faer::MatMut;
-
 use super::{context::Context, ffi, linear_solver::LinearSolver};
-use crate::integrators::{
-    common::Error,
-    ode::{BandMut, Dae, Failure, Ode},
-};
+use crate::integrators::common::Error;
 
 /// Owns a `SUNMatrix`.
 pub(super) struct Matrix(ffi::SUNMatrix);
@@ -78,76 +73,6 @@ unsafe fn empty(context: ffi::SUNContext) -> ffi::SUNMatrix {
             (*(*matrix).ops).zero = Some(zero);
         }
         matrix
-    }
-}
-
-/// The entries of a matrix, to be filled.
-pub(super) enum Entries<'a> {
-    Dense(MatMut<'a, f64>),
-    Band(BandMut<'a>),
-    Sparse(&'a mut [f64]),
-    /// Nothing: the system keeps its own matrix.
-    Custom,
-}
-
-impl<'a> Entries<'a> {
-    /// Those that `solver`, or its preconditioner, stores as `values` of a matrix with `n` columns.
-    pub(super) fn of(solver: &LinearSolver, n: usize, values: &'a mut [f64]) -> Self {
-        match *solver {
-            LinearSolver::Dense(_) => {
-                Self::Dense(MatMut::from_column_major_slice_mut(values, n, n))
-            }
-            LinearSolver::Band { lower, upper, .. } => {
-                // room for pivots may lie above the band
-                let stride = values.len() / n;
-                Self::Band(BandMut::new(values, stride, stride - lower - 1, lower, upper))
-            }
-            LinearSolver::Klu { .. } | LinearSolver::Krylov(_) => Self::Sparse(values),
-            LinearSolver::Custom => Self::Custom,
-        }
-    }
-
-    /// Lets the system write df/dy.
-    pub(super) fn jacobian<S: Ode>(
-        self,
-        system: &mut S,
-        t: f64,
-        y: &[f64],
-        ydot: &[f64],
-    ) -> Result<(), Failure> {
-        match self {
-            Self::Dense(matrix) => system.dense_jacobian(t, y, ydot, matrix),
-            Self::Band(matrix) => system.banded_jacobian(t, y, ydot, matrix),
-            Self::Sparse(values) => system.sparse_jacobian(t, y, ydot, values),
-            Self::Custom => Ok(()),
-        }
-    }
-
-    /// Lets the system write dF/dy + cj dF/dy'.
-    pub(super) fn dae_jacobian<S: Dae>(
-        self,
-        system: &mut S,
-        t: f64,
-        cj: f64,
-        y: &[f64],
-        yp: &[f64],
-    ) -> Result<(), Failure> {
-        match self {
-            Self::Dense(matrix) => system.dense_jacobian(t, cj, y, yp, matrix),
-            Self::Band(matrix) => system.banded_jacobian(t, cj, y, yp, matrix),
-            Self::Sparse(values) => system.sparse_jacobian(t, cj, y, yp, values),
-            Self::Custom => Ok(()),
-        }
-    }
-
-    /// Lets the system write its mass matrix.
-    pub(super) fn mass<S: Ode>(self, system: &mut S, t: f64) -> Result<(), Failure> {
-        match self {
-            Self::Dense(matrix) => system.dense_mass(t, matrix),
-            Self::Band(matrix) => system.banded_mass(t, matrix),
-            Self::Sparse(values) => system.sparse_mass(t, values),
-            Self::Custom => Ok(()),
-        }
     }
 }
 

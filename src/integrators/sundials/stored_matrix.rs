@@ -2,10 +2,8 @@
 
 use crate::base::input::InputError;
 use crate::integrators::{
-    ode::Failure,
-    sundials::{
-        Jacobian, LinearSolver, Pattern, colouring::Colouring, matrix::Entries, shape::Shape,
-    },
+    ode::{Entries, Failure},
+    sundials::{Jacobian, LinearSolver, Pattern, colouring::Colouring, shape::Shape},
 };
 
 /// A matrix in the form of a linear solver.
@@ -58,7 +56,7 @@ impl StoredMatrix {
     /// Its entries, set to zero and to be filled.
     pub(in crate::integrators::sundials) fn entries(&mut self) -> Entries<'_> {
         self.values.fill(0.0);
-        Entries::of(&self.solver, self.n, &mut self.values)
+        self.solver.entries(self.n, &mut self.values)
     }
 
     /// The stored entries.
@@ -92,7 +90,6 @@ impl StoredMatrix {
             Entries::Sparse(values) => {
                 self.each_place(|i, j, place| values[place] = value(i, j, place));
             }
-            Entries::Custom => {}
         }
     }
 

@@ -6,10 +6,9 @@ use super::gradient::Gradient;
 use crate::base::{input::InputError, vector::size_or_one};
 use crate::integrators::{
     common::{Callback, Cause, Error, IntegrationError, Tolerances},
-    ode::{Failure, Functional, Slopes},
+    ode::{Entries, Failure, Functional, Slopes},
     sundials::{
         LinearSolver,
-        matrix::Entries,
         sensitivity::Access,
         stored_matrix::{Quotients, StoredMatrix},
     },

@@ -5,14 +5,13 @@ use faer::MatMut;
 use crate::base::input::InputError;
 use crate::integrators::{
     common::{Error, Tolerances, check_finite},
-    ode::{BandMut, Dae, Failure, Functional, call, delegate::delegate},
+    ode::{BandMut, Dae, Entries, Failure, Functional, call, delegate::delegate},
     sundials::{
         LinearSolver,
         adjoint::{
             backward::Point,
             equations::{Equations, refused},
         },
-        matrix::Entries,
         sensitivity::Access,
         stored_matrix::StoredMatrix,
     },
@@ -143,7 +142,7 @@ impl<S: Dae, F: Functional> AdjointDae<S, F> {
     ) -> Result<(), Failure> {
         self.update_jacobian(point)?;
         let Equations { jacobian, backward, .. } = &self.equations;
-        let entries = Entries::of(backward, point.1.len(), values);
+        let entries = backward.entries(point.1.len(), values);
         let (by_slope, by_state) = (self.mass.values(), jacobian.values());
         let value = |_, place: usize| cj * by_slope[place] - by_state[place];
         jacobian.write_transposed(backward, entries, value);

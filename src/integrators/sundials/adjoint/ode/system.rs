@@ -5,11 +5,10 @@ use faer::MatMut;
 use crate::base::input::InputError;
 use crate::integrators::{
     common::Tolerances,
-    ode::{BandMut, Failure, Functional, Ode, call, delegate::delegate},
+    ode::{BandMut, Entries, Failure, Functional, Ode, call, delegate::delegate},
     sundials::{
         LinearSolver,
         adjoint::{equations::Equations, options::AdjointOptions},
-        matrix::Entries,
         sensitivity::Access,
     },
 };
@@ -85,7 +84,7 @@ impl<S: Ode, F: Functional> AdjointSystem<S, F> {
     ) -> Result<(), Failure> {
         self.update_jacobian(t, y)?;
         let Equations { jacobian, backward, .. } = &self.equations;
-        let entries = Entries::of(backward, y.len(), values);
+        let entries = backward.entries(y.len(), values);
         jacobian.write_transposed(backward, entries, |_, place| -jacobian.values()[place]);
         Ok(())
     }
