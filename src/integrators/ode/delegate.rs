@@ -120,4 +120,4 @@ macro_rules! delegate {
         }
     };
 }
-pub(in crate::integrators) use delegate;
+pub(crate) use delegate;

@@ -8,7 +8,7 @@ use super::failure::Failure;
 use super::first_order::Ode;
 
 /// The entries of a matrix, zero and to be filled.
-pub(in crate::integrators) enum Entries<'a> {
+pub(crate) enum Entries<'a> {
     Dense(MatMut<'a, f64>),
     Band(BandMut<'a>),
     /// The values of a pattern, column by column.
@@ -17,7 +17,7 @@ pub(in crate::integrators) enum Entries<'a> {
 
 impl Entries<'_> {
     /// Lets the system write df/dy.
-    pub(in crate::integrators) fn jacobian(
+    pub(crate) fn jacobian(
         self,
         system: &mut (impl Ode + ?Sized),
         t: f64,
@@ -32,7 +32,7 @@ impl Entries<'_> {
     }
 
     /// Lets the system write dF/dy + cj dF/dy'.
-    pub(in crate::integrators) fn dae_jacobian(
+    pub(crate) fn dae_jacobian(
         self,
         system: &mut (impl Dae + ?Sized),
         t: f64,
@@ -48,11 +48,7 @@ impl Entries<'_> {
     }
 
     /// Lets the system write its mass matrix.
-    pub(in crate::integrators) fn mass(
-        self,
-        system: &mut (impl Ode + ?Sized),
-        t: f64,
-    ) -> Result<(), Failure> {
+    pub(crate) fn mass(self, system: &mut (impl Ode + ?Sized), t: f64) -> Result<(), Failure> {
         match self {
             Self::Dense(matrix) => system.dense_mass(t, matrix),
             Self::Band(matrix) => system.banded_mass(t, matrix),

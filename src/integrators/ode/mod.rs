@@ -14,7 +14,7 @@ pub(crate) mod call;
 pub mod check;
 mod closures;
 mod dae;
-pub(in crate::integrators) mod delegate;
+pub(crate) mod delegate;
 mod entries;
 mod failure;
 mod first_order;
@@ -31,7 +31,7 @@ pub use closures::{
     with_parameters, with_sparse_jacobian,
 };
 pub use dae::Dae;
-pub(in crate::integrators) use entries::Entries;
+pub(crate) use entries::Entries;
 pub use failure::Failure;
 pub use first_order::Ode;
 pub use functional::{Functional, Slopes};
