@@ -15,6 +15,8 @@ use crate::base::input::InputError;
 
 /// A formula, ready to be evaluated.
 #[derive(Clone)]
+#[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "checkpoint", serde(into = "String", try_from = "String"))]
 pub(crate) struct Formula {
     text: String,
     /// In postfix order.
@@ -185,6 +187,22 @@ impl Formula {
             }
         }
         stack[0]
+    }
+}
+
+#[cfg(feature = "checkpoint")]
+impl From<Formula> for String {
+    fn from(formula: Formula) -> Self {
+        formula.text
+    }
+}
+
+#[cfg(feature = "checkpoint")]
+impl TryFrom<String> for Formula {
+    type Error = String;
+
+    fn try_from(text: String) -> Result<Self, String> {
+        Self::parse(&text)
     }
 }
 

@@ -54,14 +54,18 @@ pub(crate) enum Axes {
 }
 
 #[derive(Clone)]
+#[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "checkpoint", serde(rename_all = "snake_case"))]
 pub(crate) enum Motion {
     /// Stay where the nodes are when the phase begins.
     Hold,
     /// Move from there with constant velocity (m/s), one per axis (a single one for a general row).
     Velocity(Vec<f64>),
     /// Follow a path (the same for all axes).
+    #[cfg_attr(feature = "checkpoint", serde(skip))]
     Path(Path),
     /// Follow a smooth path through points (the same for all axes).
+    #[cfg_attr(feature = "checkpoint", serde(rename = "path"))]
     Spline(Arc<Spline>),
     /// Follow a formula of time without kinks (m; the same for all axes).
     #[cfg_attr(not(any(feature = "checkpoint", feature = "scene-file")), allow(dead_code))]

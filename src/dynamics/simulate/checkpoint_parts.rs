@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use serde::{Deserialize, Deserializer, Serialize, Serializer, de};
+
 use super::auto::Plan;
 use super::checkpoint::{Checkpoint, Kept};
 use super::records;
@@ -11,19 +13,42 @@ use crate::dynamics::error::Error;
 use crate::scene::settings::{Method, Settings};
 use crate::scene::timeline::Scene;
 
-/// What [`Method::Auto`] has chosen for the phase in force.
+/// What [`Method::Auto`] has chosen for the phase in force. In files a step without a bound is `null`.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub(crate) struct Choice {
+    #[serde(serialize_with = "name", deserialize_with = "of_name")]
     pub(crate) method: Method,
     pub(crate) max_order: Option<u32>,
     /// Part of the requested tolerances that the method is given.
+    #[serde(rename = "tolerance_part")]
     pub(crate) part: f64,
     pub(crate) reason: String,
     /// Longest stable steps of explicit Runge-Kutta and of central differences (s), steps after which the
     /// implicit method is tried again, and the mean of its last steps (s): see [`Plan`].
+    #[serde(serialize_with = "bounded", deserialize_with = "or_unbounded")]
     pub(crate) explicit_step: f64,
+    #[serde(serialize_with = "bounded", deserialize_with = "or_unbounded")]
     pub(crate) central_step: f64,
     pub(crate) patience: usize,
+    #[serde(default)]
     pub(crate) implicit_step: f64,
+}
+
+fn name<S: Serializer>(method: &Method, to: S) -> Result<S::Ok, S::Error> {
+    method.name().serialize(to)
+}
+
+fn of_name<'de, D: Deserializer<'de>>(from: D) -> Result<Method, D::Error> {
+    String::deserialize(from)?.parse().map_err(de::Error::custom)
+}
+
+fn bounded<S: Serializer>(step: &f64, to: S) -> Result<S::Ok, S::Error> {
+    Some(*step).filter(|step| step.is_finite()).serialize(to)
+}
+
+fn or_unbounded<'de, D: Deserializer<'de>>(from: D) -> Result<f64, D::Error> {
+    Ok(Option::deserialize(from)?.unwrap_or(f64::INFINITY))
 }
 
 impl Checkpoint {

@@ -7,7 +7,6 @@ use super::identity::Identity;
 use crate::base::input::{InputError, finite};
 use crate::dynamics::simulate::{Angles, Checkpoint, Choice, Kept};
 use crate::dynamics::state::State;
-use crate::scene::settings::Method;
 use crate::scene::timeline::Scene;
 
 /// Format of the files that this version writes and reads.
@@ -43,11 +42,11 @@ pub(super) struct Record {
     phase: usize,
     in_force: InForce,
     #[serde(deserialize_with = "Option::deserialize")]
-    chosen: Option<Chosen>,
+    chosen: Option<Choice>,
     #[serde(deserialize_with = "Option::deserialize")]
     next_step: Option<f64>,
-    steps: u64,
-    load_commands: u64,
+    steps: usize,
+    load_commands: usize,
     energy_balance: f64,
     /// Error, rise and scale of the energy balance.
     energies_noted: [f64; 3],
@@ -63,21 +62,6 @@ pub(super) struct Record {
     /// The angles that sensors read, in turns, by the names of the sensors.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     angles: Vec<(String, f64)>,
-}
-
-/// A [`Choice`]; a step without a bound is `null`.
-#[derive(Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Chosen {
-    method: String,
-    max_order: Option<u32>,
-    tolerance_part: f64,
-    reason: String,
-    explicit_step: Option<f64>,
-    central_step: Option<f64>,
-    patience: u64,
-    #[serde(default)]
-    implicit_step: f64,
 }
 
 impl Head {
@@ -110,10 +94,10 @@ impl Record {
             time: kept.time,
             phase: kept.number,
             in_force: InForce::of(&kept.phase, &scene.phases()[kept.number])?,
-            chosen: checkpoint.choice().map(Chosen::from),
+            chosen: checkpoint.choice(),
             next_step: kept.first_step,
-            steps: kept.steps as u64,
-            load_commands: kept.commands as u64,
+            steps: kept.steps,
+            load_commands: kept.commands,
             energy_balance: kept.balance,
             energies_noted: kept.energies,
             dissipated: state.dissipated,
@@ -162,6 +146,14 @@ impl Record {
         if let Some(step) = self.next_step.filter(|step| *step <= 0.0) {
             return Err(format!("next_step {step} s is not above 0: write it anew"));
         }
+        let patience = self.chosen.as_ref().map_or(0, |chosen| chosen.patience);
+        for (what, count) in
+            [("steps", self.steps), ("load_commands", self.load_commands), ("patience", patience)]
+        {
+            if count as u64 > MOST {
+                return Err(format!("{what} {count} is above {MOST}: write it anew"));
+            }
+        }
         let energies = vec![self.dissipated, self.supplied];
         let kept = Kept {
             time: self.time,
@@ -171,58 +163,12 @@ impl Record {
             is_commanded: true,
             origins: self.constraint_starts,
             first_step: self.next_step,
-            steps: count("steps", self.steps)?,
-            commands: count("load_commands", self.load_commands)?,
+            steps: self.steps,
+            commands: self.load_commands,
             balance: self.energy_balance,
             energies: self.energies_noted,
             angles: Angles(self.angles),
         };
-        Ok((kept, self.chosen.map(Chosen::read).transpose()?))
+        Ok((kept, self.chosen))
     }
-}
-
-impl From<Choice> for Chosen {
-    fn from(choice: Choice) -> Self {
-        let Choice {
-            method,
-            max_order,
-            part,
-            reason,
-            explicit_step,
-            central_step,
-            patience,
-            implicit_step,
-        } = choice;
-        let bounded = |step: f64| Some(step).filter(|step| step.is_finite());
-        Self {
-            method: method.name().into(),
-            max_order,
-            tolerance_part: part,
-            reason,
-            explicit_step: bounded(explicit_step),
-            central_step: bounded(central_step),
-            patience: patience as u64,
-            implicit_step,
-        }
-    }
-}
-
-impl Chosen {
-    fn read(self) -> Result<Choice, String> {
-        Ok(Choice {
-            method: self.method.parse::<Method>().map_err(|error| error.to_string())?,
-            max_order: self.max_order,
-            part: self.tolerance_part,
-            reason: self.reason,
-            explicit_step: self.explicit_step.unwrap_or(f64::INFINITY),
-            central_step: self.central_step.unwrap_or(f64::INFINITY),
-            patience: count("patience", self.patience)?,
-            implicit_step: self.implicit_step,
-        })
-    }
-}
-
-fn count(what: &str, number: u64) -> Result<usize, String> {
-    let counted = usize::try_from(number).ok().filter(|_| number <= MOST);
-    counted.ok_or_else(|| format!("{what} {number} is above {MOST}: write it anew"))
 }

@@ -8,13 +8,41 @@ use crate::base::vector::largest;
 /// velocity 0, and rests before the first time and after the last. Between them b, b' and b'' are
 /// continuous; b'' starts and ends with a jump.
 #[derive(Debug, PartialEq)]
+#[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "checkpoint", serde(from = "Points"))]
 pub(crate) struct Spline {
     /// Times (s), ascending.
     times: Vec<f64>,
     /// b at these times (m).
     displacements: Vec<f64>,
     /// b' there (m/s). Between two points the path is the cubic with these values and slopes at its ends.
+    #[cfg_attr(feature = "checkpoint", serde(skip_serializing))]
     velocities: Vec<f64>,
+}
+
+/// What a file has of a spline: by name, or one after the other as [`as_pair`] writes it.
+#[cfg(feature = "checkpoint")]
+#[derive(serde::Deserialize)]
+struct Points {
+    times: Vec<f64>,
+    displacements: Vec<f64>,
+}
+
+#[cfg(feature = "checkpoint")]
+impl From<Points> for Spline {
+    fn from(Points { times, displacements }: Points) -> Self {
+        Self::new(times, displacements)
+    }
+}
+
+/// Writes the times and displacements of a path without their names.
+#[cfg(feature = "checkpoint")]
+pub(super) fn as_pair<S: serde::Serializer>(
+    path: &Option<Spline>,
+    to: S,
+) -> Result<S::Ok, S::Error> {
+    let pair = path.as_ref().map(|path| [&path.times, &path.displacements]);
+    serde::Serialize::serialize(&pair, to)
 }
 
 impl Spline {
@@ -39,12 +67,6 @@ impl Spline {
             largest(&[from, 3.0 * mean - from - to, to])
         };
         (1..self.times.len()).map(|next| piece(next - 1)).fold(0.0, f64::max)
-    }
-
-    /// Displacements (m) of the points.
-    #[cfg(feature = "checkpoint")]
-    pub(crate) fn displacements(&self) -> &[f64] {
-        &self.displacements
     }
 
     /// `values` and `unit` name what the path gives, for messages.

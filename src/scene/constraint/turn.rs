@@ -36,6 +36,7 @@ pub(crate) fn angular(
 
 /// A rotation as the user of a phase gives it.
 #[derive(Debug, PartialEq)]
+#[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Turn {
     /// A point of the axis (m).
     pub(crate) centre: Vec<f64>,
@@ -43,6 +44,14 @@ pub(crate) struct Turn {
     /// length.
     pub(crate) axis: Vec<f64>,
     /// Angle (rad) over time.
+    #[cfg_attr(
+        feature = "checkpoint",
+        serde(
+            rename = "path",
+            serialize_with = "super::spline::as_pair",
+            deserialize_with = "serde::Deserialize::deserialize"
+        )
+    )]
     pub(crate) angles: Option<Spline>,
 }
 

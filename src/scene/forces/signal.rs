@@ -11,6 +11,7 @@ use crate::integrators::ode::Failure;
 /// Vectors at given times (s). In between they are interpolated linearly; before the first time
 /// and after the last they are constant.
 #[derive(Debug, Clone)]
+#[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct TimeTable {
     pub(crate) times: Vec<f64>,
     /// The components at each time.
@@ -71,11 +72,19 @@ pub struct Signal(pub(crate) SignalKind);
 
 /// What a [`Signal`] is.
 #[derive(Clone)]
+#[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "checkpoint", serde(rename_all = "snake_case"))]
 pub(crate) enum SignalKind {
     Constant(f64),
-    Function { function: Arc<dyn Fn(f64) -> f64 + Send + Sync>, breaks: Vec<f64> },
+    #[cfg_attr(feature = "checkpoint", serde(skip))]
+    Function {
+        function: Arc<dyn Fn(f64) -> f64 + Send + Sync>,
+        breaks: Vec<f64>,
+    },
+    #[cfg_attr(feature = "checkpoint", serde(rename = "table"))]
     TimeTable(TimeTable),
     Formula(Arc<Formula>),
+    #[cfg_attr(feature = "checkpoint", serde(skip))]
     Live(Live),
 }
 
@@ -248,16 +257,21 @@ type WriteVector = dyn Fn(f64, &mut [f64]) + Send + Sync;
 
 /// A vector that changes with time (s), with one component per dimension.
 #[derive(Clone)]
+#[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "checkpoint", serde(rename_all = "snake_case"))]
 pub(crate) enum VectorSignal {
     Constant(Vec<f64>),
+    #[cfg_attr(feature = "checkpoint", serde(skip))]
     Function {
         dimension: usize,
         write: Arc<WriteVector>,
     },
+    #[cfg_attr(feature = "checkpoint", serde(rename = "table"))]
     TimeTable(TimeTable),
     /// One per component.
     #[cfg_attr(not(any(feature = "checkpoint", feature = "scene-file")), allow(dead_code))]
     Formulas(Arc<[Formula]>),
+    #[cfg_attr(feature = "checkpoint", serde(skip))]
     Live(Live),
 }
 

@@ -36,6 +36,8 @@ pub struct Phase {
 
 /// The obstacles that act.
 #[derive(Debug, Clone)]
+#[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "checkpoint", serde(untagged))]
 pub(crate) enum ContactWith {
     All,
     These(Vec<String>),
