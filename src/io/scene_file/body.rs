@@ -138,21 +138,11 @@ pub(super) fn body(
     };
     let mut mesh = table.required("mesh", |value| mesh::mesh(value, dimension, auto))?;
     let mut body = Body::new(mesh.clone(), material.clone());
-    if let Some(thickness) = table.optional("thickness", Value::number)? {
-        body = body.thickness(thickness);
-    }
-    if let Some(area) = table.optional("area", Value::number)? {
-        body = body.area(area);
-    }
-    if let Some(strain) = table.optional("strain", |value| value.word(&STRAINS))? {
-        body = body.strain(strain);
-    }
-    if let Some(viscosity) = table.optional("viscous", |value| value.word(&VISCOUS))? {
-        body = body.viscosity(viscosity);
-    }
-    if let Some(inertia) = table.optional("inertia", |value| value.word(&INERTIA))? {
-        body = body.inertia(inertia);
-    }
+    body = table.added(body, "thickness", Value::number, BodyBuilder::thickness)?;
+    body = table.added(body, "area", Value::number, BodyBuilder::area)?;
+    body = table.added(body, "strain", |value| value.word(&STRAINS), BodyBuilder::strain)?;
+    body = table.added(body, "viscous", |value| value.word(&VISCOUS), BodyBuilder::viscosity)?;
+    body = table.added(body, "inertia", |value| value.word(&INERTIA), BodyBuilder::inertia)?;
     if let Some(plane) = plane {
         body = body.plane(plane);
     }

@@ -69,12 +69,10 @@ pub(super) fn add_initial(mut scene: Scene, value: &Value) -> Result<Scene, Erro
     })? {
         scene = scene.spin(spin);
     }
-    if let Some(value) = table.get("nodes") {
-        for part in value.tables(&OF_NODES)? {
-            let nodes = part.required("nodes", |v| selection(v, scene.body().mesh()))?;
-            let velocity = part.required("velocity", |v| v.vector(dimension))?;
-            scene = scene.initial_velocity_of(nodes, velocity);
-        }
+    for part in table.tables("nodes", &OF_NODES)? {
+        let nodes = part.required("nodes", |v| selection(v, scene.body().mesh()))?;
+        let velocity = part.required("velocity", |v| v.vector(dimension))?;
+        scene = scene.initial_velocity_of(nodes, velocity);
     }
     scene.initial_velocities().map_err(|error| table.blame(error))?;
     Ok(scene)

@@ -81,26 +81,18 @@ pub(super) fn listed(table: &Table) -> Result<Mesh, Error> {
     let connectivity: Vec<Vec<usize>> = connectivity;
     let mut mesh =
         Mesh::new(dimension.unwrap_or(0), positions.concat(), kind, connectivity.concat())?;
-    for set in tables(table, "sets", &SET)? {
+    for set in table.tables("sets", &SET)? {
         let name = set.required("name", Value::string)?;
         let nodes = set.required("nodes", |value| value.list_of("numbers of nodes", number))?;
         mesh =
             mesh.name_nodes(name, Selection::Numbers(nodes)).map_err(|error| set.error(error))?;
     }
-    for group in tables(table, "groups", &GROUP)? {
+    for group in table.tables("groups", &GROUP)? {
         let name = group.required("name", Value::string)?;
         let cells = group.required("cells", |value| value.list_of("numbers of cells", number))?;
         mesh = mesh.name_cells(name, cells).map_err(|error| group.error(error))?;
     }
     Ok(mesh)
-}
-
-fn tables<'a>(
-    table: &Table<'a>,
-    key: &str,
-    keys: &'static TableKeys,
-) -> Result<Vec<Table<'a>>, Error> {
-    Ok(table.optional(key, |value| value.tables(keys))?.unwrap_or_default())
 }
 
 /// A number that counts from 1.

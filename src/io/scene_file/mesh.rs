@@ -182,8 +182,7 @@ pub(super) fn mesh(
 pub(super) fn on_finer_mesh(scene: Scene, value: &Value) -> Result<Scene, Error> {
     let table = value.table(&MESH)?;
     let blame = |error: InputError| table.blame(error);
-    let is = |key: &str| Ok::<bool, Error>(table.optional(key, Value::flag)? == Some(true));
-    let mut scene = match is("quadratic")? {
+    let mut scene = match table.flag("quadratic")? {
         true => scene.quadratic().map_err(blame)?,
         false => scene,
     };
@@ -191,12 +190,10 @@ pub(super) fn on_finer_mesh(scene: Scene, value: &Value) -> Result<Scene, Error>
     for _ in 0..times {
         scene = scene.halved().map_err(blame)?;
     }
-    if let Some(places) = table.get("halved_in") {
-        for place in places.tables(&HALVED_IN)? {
-            scene = halved_in(scene, &place)?;
-        }
+    for place in table.tables("halved_in", &HALVED_IN)? {
+        scene = halved_in(scene, &place)?;
     }
-    match is("bubbles")? {
+    match table.flag("bubbles")? {
         true => scene.with_bubbles().map_err(blame),
         false => Ok(scene),
     }
@@ -226,9 +223,8 @@ fn halved_in(mut scene: Scene, place: &Table) -> Result<Scene, Error> {
 /// Whether cells get nodes in the middle of edges, faces or themselves, and whether these bring bubbles.
 pub(super) fn gets_mid_nodes(value: &Value) -> Result<(bool, bool), Error> {
     let table = value.table(&MESH)?;
-    let [quadratic, bubbles] = ["quadratic", "bubbles"].map(|key| table.optional(key, Value::flag));
-    let bubbles = bubbles? == Some(true);
-    Ok((quadratic? == Some(true) || bubbles, bubbles))
+    let [quadratic, bubbles] = [table.flag("quadratic")?, table.flag("bubbles")?];
+    Ok((quadratic || bubbles, bubbles))
 }
 
 /// Whether the cells of a generated mesh are left to be chosen.

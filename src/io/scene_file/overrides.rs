@@ -3,6 +3,7 @@
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
+use super::set_value::quoted;
 use crate::base::input::{InputError, unknown};
 use crate::dynamics::error::Error;
 
@@ -34,8 +35,7 @@ pub(super) fn as_toml(text: &str) -> Result<String, Error> {
     let help = "write KEY=VALUE, as in body.material.young=2e5 or phase.2.until=1.5";
     let bad = || Error::from(InputError::new("--set", text, help));
     let (key, value) = text.split_once('=').ok_or_else(bad)?;
-    let quoted = || format!("{key} = {}", serde_json::Value::from(value.trim()));
-    let candidates = [format!("{key} = {value}"), quoted()];
+    let candidates = [format!("{key} = {value}"), format!("{key} = {}", quoted(value.trim()))];
     let is_one = |toml: &String| DeTable::parse(toml).is_ok_and(|table| table.get_ref().len() == 1);
     candidates.into_iter().find(is_one).ok_or_else(bad)
 }

@@ -60,9 +60,7 @@ fn add_phase(scene: Scene, value: &Value, check: &Check) -> Result<Scene, Error>
         Ok(until)
     })?;
     let mut phase = Phase::until(until);
-    if let Some(name) = table.optional("name", Value::string)? {
-        phase = phase.named(name);
-    }
+    phase = table.added(phase, "name", Value::string, Phase::named)?;
     if let Some(value) = table.get("contact") {
         phase = contact(phase, &value, &scene)?;
     }
@@ -72,13 +70,12 @@ fn add_phase(scene: Scene, value: &Value, check: &Check) -> Result<Scene, Error>
         check(&scene, &phase).map_err(|error| table.blame(error))?;
     }
     for (keys, add) in PARTS {
-        let Some(value) = table.get(keys.name) else { continue };
-        for part in value.tables(keys)? {
+        for part in table.tables(keys.name, keys)? {
             phase = add(phase, &part, &scene)?;
             check(&scene, &phase).map_err(|error| part.blame(error))?;
         }
     }
-    if table.optional("project_velocity", Value::flag)? == Some(true) {
+    if table.flag("project_velocity")? {
         phase = phase.project_velocity();
     }
     Ok(scene.phase(phase))

@@ -12,16 +12,16 @@ pub(super) const PHASE: TableKeys = TableKeys::new(
         Key::new("gravity", Holds::Vector, "the acceleration of gravity in this phase")
             .in_unit("m/s^2")
             .default("that of the file"),
-        part("hold", &HOLD, "nodes that stay where they are"),
-        part("move", &MOVE, "nodes that move on"),
-        part("path", &PATH, "nodes that follow a path"),
-        part("rotate", &ROTATE, "nodes that turn"),
-        part("symmetry", &SYMMETRY, "nodes on planes of symmetry"),
-        part("hold_combination", &HOLD_COMBINATION, "sums of displacements that stay as they are"),
-        part("load", &LOAD, "forces on nodes, tractions on faces"),
-        part("pressure", &PRESSURE, "pressures in chambers"),
-        part("pressure_on", &PRESSURE_ON, "pressures on faces"),
-        part("actuate", &ACTUATE, "forces in springs"),
+        part(&HOLD, "nodes that stay where they are"),
+        part(&MOVE, "nodes that move on"),
+        part(&PATH, "nodes that follow a path"),
+        part(&ROTATE, "nodes that turn"),
+        part(&SYMMETRY, "nodes on planes of symmetry"),
+        part(&HOLD_COMBINATION, "sums of displacements that stay as they are"),
+        part(&LOAD, "forces on nodes, tractions on faces"),
+        part(&PRESSURE, "pressures in chambers"),
+        part(&PRESSURE_ON, "pressures on faces"),
+        part(&ACTUATE, "forces in springs"),
         Key::new(
             "contact",
             Holds::Either(&[Holds::Flag, Holds::OneOrMore(&Holds::Text)]),
@@ -40,8 +40,8 @@ pub(super) const PHASE: TableKeys = TableKeys::new(
     "[[phase]]\nname = \"push\"\nuntil = 0.5\nhold = [{ nodes = \"bottom\" }]\ncontact = false",
 );
 
-const fn part(name: &'static str, keys: &'static TableKeys, meaning: &'static str) -> Key {
-    Key::new(name, Holds::Tables(keys), meaning)
+const fn part(keys: &'static TableKeys, meaning: &'static str) -> Key {
+    Key::new(keys.name, Holds::Tables(keys), meaning)
 }
 
 const NODES: Key = Key::new("nodes", Holds::Nodes, "nodes").required();

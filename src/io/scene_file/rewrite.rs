@@ -4,9 +4,9 @@
 use std::collections::BTreeSet;
 use std::ops::Range;
 
-use serde_json::Value;
 use toml::de::{DeTable, DeValue};
 
+use super::set_value::quoted;
 use super::written::insertion;
 use crate::elements::mesh::Selection;
 use crate::scene::forces::{Signal, SignalKind, VectorSignal};
@@ -147,11 +147,6 @@ fn course(signal: &Signal, [one, many]: [&str; 2]) -> String {
     }
     let values: Vec<f64> = times.iter().map(|t| signal.at(*t)).collect();
     format!("times = {times:?}, {many} = {values:?}")
-}
-
-/// A name in quotes; JSON escapes as TOML does.
-fn quoted(name: &str) -> String {
-    Value::from(name).to_string()
 }
 
 #[cfg(test)]

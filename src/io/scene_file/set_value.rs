@@ -82,7 +82,8 @@ impl fmt::Display for SetValue {
     }
 }
 
-fn number(value: &DeValue) -> Option<f64> {
+/// The number that a value of TOML is, whole or not.
+pub(super) fn number(value: &DeValue) -> Option<f64> {
     match value {
         DeValue::Float(float) => float.as_str().parse().ok(),
         DeValue::Integer(integer) => {
@@ -120,6 +121,7 @@ fn of_number(number: f64) -> String {
     format!("{:?}", number + 0.0)
 }
 
-fn quoted(text: &str) -> String {
+/// A text in quotes; JSON escapes as TOML does.
+pub(super) fn quoted(text: &str) -> String {
     serde_json::Value::from(text).to_string()
 }

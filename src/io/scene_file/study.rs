@@ -231,10 +231,7 @@ fn study(top: &Table) -> Result<StudyFile, Error> {
     };
     let scene = top.required("scene", |value| Ok(value.source.beside(value.string()?)))?;
     top.required("quantities", Value::list)?;
-    let keys = match top.get("key") {
-        Some(tables) => tables.tables(&KEY)?.iter().map(key).collect::<Result<_, _>>()?,
-        None => Vec::new(),
-    };
+    let keys = top.tables("key", &KEY)?.iter().map(key).collect::<Result<_, _>>()?;
     Ok(StudyFile {
         path: top.path().into(),
         title: text("title")?.unwrap_or_default().text,

@@ -236,15 +236,9 @@ pub(super) fn add_spring(scene: Scene, value: &Value) -> Result<Scene, Error> {
         spring.force(body.mesh()).map_err(|error| value.error(error))?;
         Ok(spring)
     })?;
-    if let Some(k) = table.optional("stiffness", Value::number)? {
-        spring = spring.stiffness(k);
-    }
-    if let Some(length) = table.optional("length", Value::number)? {
-        spring = spring.length(length);
-    }
-    if let Some(c) = table.optional("damping", Value::number)? {
-        spring = spring.damping(c);
-    }
+    spring = table.added(spring, "stiffness", Value::number, Spring::stiffness)?;
+    spring = table.added(spring, "length", Value::number, Spring::length)?;
+    spring = table.added(spring, "damping", Value::number, Spring::damping)?;
     spring.force(body.mesh()).map_err(|error| table.blame(error))?;
     Ok(scene.spring(spring))
 }
@@ -275,15 +269,13 @@ pub(super) fn add_chamber(scene: Scene, value: &Value) -> Result<Scene, Error> {
             Chamber::within(name, nodes)
         }
     };
-    if table.optional("closed_by_line", Value::flag)? == Some(true) {
+    if table.flag("closed_by_line")? {
         chamber = chamber.closed_by_line();
     }
-    if table.optional("closed_by_lid", Value::flag)? == Some(true) {
+    if table.flag("closed_by_lid")? {
         chamber = chamber.closed_by_lid();
     }
-    if let Some(h) = table.optional("thickness", Value::number)? {
-        chamber = chamber.thickness(h);
-    }
+    chamber = table.added(chamber, "thickness", Value::number, Chamber::thickness)?;
     unique(table, name, scene.chambers().iter().map(Chamber::name))?;
     chamber.force(body, Vec::new()).map_err(|error| table.blame(error))?;
     Ok(scene.chamber(chamber))
@@ -294,23 +286,16 @@ pub(super) fn add_obstacle(scene: Scene, value: &Value) -> Result<Scene, Error> 
     let body = scene.body();
     let table = &value.table(&OBSTACLE)?;
     let mut obstacle = Obstacle::new(shape(table, body.dimension())?);
-    if let Some(name) = table.optional("name", Value::string)? {
-        obstacle = obstacle.named(name);
-    }
+    obstacle = table.added(obstacle, "name", Value::string, Obstacle::named)?;
     obstacle = match table.optional("stiffness_density", Value::number)? {
         Some(stiffness) => obstacle.stiffness_density(stiffness),
         None => obstacle.stiffness(table.required("stiffness", Value::number)?),
     };
-    if let Some(damping) = table.optional("damping", Value::number)? {
-        obstacle = obstacle.damping(damping);
-    }
+    obstacle = table.added(obstacle, "damping", Value::number, Obstacle::damping)?;
     obstacle = friction(obstacle, table)?;
-    if let Some(adhesion) = table.optional("adhesion", Value::flag)? {
-        obstacle = obstacle.adhesion(adhesion);
-    }
-    if let Some(velocity) = table.optional("velocity", |v| v.vector(body.dimension()))? {
-        obstacle = obstacle.velocity(velocity);
-    }
+    obstacle = table.added(obstacle, "adhesion", Value::flag, Obstacle::adhesion)?;
+    let velocity = |value: &Value| value.vector(body.dimension());
+    obstacle = table.added(obstacle, "velocity", velocity, Obstacle::velocity)?;
     if let Some(value) = table.get("path") {
         if table.get("velocity").is_some() {
             return Err(value.error("a path has its own velocity: give one of path and velocity"));
@@ -338,10 +323,9 @@ fn way(obstacle: Obstacle, table: &Table, dimension: usize) -> Result<Obstacle, 
 }
 
 /// The `obstacle` with the tangential forces of `table`.
-fn friction(mut obstacle: Obstacle, table: &Table) -> Result<Obstacle, Error> {
-    if let Some(damping) = table.optional("tangential_damping", Value::number)? {
-        obstacle = obstacle.tangential_damping(damping);
-    }
+fn friction(obstacle: Obstacle, table: &Table) -> Result<Obstacle, Error> {
+    let damping = Obstacle::tangential_damping;
+    let mut obstacle = table.added(obstacle, "tangential_damping", Value::number, damping)?;
     let coefficients = table.optional("friction_coefficient", |value| {
         if value.entries().is_none() {
             let mu = value.number();
@@ -355,10 +339,7 @@ fn friction(mut obstacle: Obstacle, table: &Table) -> Result<Obstacle, Error> {
     if let Some([at_rest, sliding]) = coefficients {
         obstacle = obstacle.friction_coefficients(at_rest, sliding);
     }
-    if let Some(speed) = table.optional("sticking_speed", Value::number)? {
-        obstacle = obstacle.sticking_speed(speed);
-    }
-    Ok(obstacle)
+    table.added(obstacle, "sticking_speed", Value::number, Obstacle::sticking_speed)
 }
 
 /// Checks that nothing else of its kind has the `name` of what `table` describes.
@@ -383,9 +364,9 @@ fn shape(table: &Table, dimension: usize) -> Result<Shape, Error> {
         "half-plane" => Shape::half_plane(vector("point")?, vector("normal")?),
         "disc" => {
             let centre = vector("centre")?;
-            match table.optional("cavity", Value::flag)? {
-                Some(true) => Shape::cavity(centre, radius()?),
-                _ => Shape::disc(centre, radius()?),
+            match table.flag("cavity")? {
+                true => Shape::cavity(centre, radius()?),
+                false => Shape::disc(centre, radius()?),
             }
         }
         "box" => Shape::box_between(vector("min")?, vector("max")?),

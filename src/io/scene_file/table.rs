@@ -175,6 +175,30 @@ impl<'a> Table<'a> {
             .ok_or_else(|| self.missing(key, format!("expected {}", self.meaning(key))))
     }
 
+    /// What `add` makes of `whole` and the value of `key` as `read` reads it; `whole` alone if that is not there.
+    pub(super) fn added<W, T>(
+        &self,
+        whole: W,
+        key: &str,
+        read: impl FnOnce(&Value<'a>) -> Result<T, Error>,
+        add: impl FnOnce(W, T) -> W,
+    ) -> Result<W, Error> {
+        Ok(match self.optional(key, read)? {
+            Some(value) => add(whole, value),
+            None => whole,
+        })
+    }
+
+    /// Whether `key` is there and true.
+    pub(super) fn flag(&self, key: &str) -> Result<bool, Error> {
+        Ok(self.optional(key, Value::flag)?.unwrap_or(false))
+    }
+
+    /// The tables with these `keys` that `key` lists; none if it is not there.
+    pub(super) fn tables(&self, key: &str, keys: &'static TableKeys) -> Result<Vec<Self>, Error> {
+        Ok(self.optional(key, |value| value.tables(keys))?.unwrap_or_default())
+    }
+
     /// The error that `key` is missing.
     pub(super) fn missing(&self, key: &str, help: impl Display) -> Error {
         self.source.error(&self.at, &self.full(key), format!("missing; {help}"))

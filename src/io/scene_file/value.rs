@@ -6,6 +6,7 @@ use std::ops::Range;
 use toml::de::{DeTable, DeValue};
 
 use super::keys::Meaning;
+use super::set_value::number;
 use super::source::SourceText;
 use crate::base::formula::Formula;
 use crate::base::input::{Fraction, InputError, list, unknown};
@@ -74,14 +75,7 @@ impl<'a> Value<'a> {
 
     /// A number, whole or not.
     pub(super) fn number(&self) -> Result<f64, Error> {
-        let number = match self.value {
-            DeValue::Float(float) => float.as_str().parse().ok(),
-            DeValue::Integer(integer) => {
-                i64::from_str_radix(integer.as_str(), integer.radix()).ok().map(|i| i as f64)
-            }
-            _ => None,
-        };
-        number.ok_or_else(|| self.unexpected("a number"))
+        number(self.value).ok_or_else(|| self.unexpected("a number"))
     }
 
     /// A finite number.
