@@ -143,7 +143,6 @@ pub struct SlipEvent {
 impl Report {
     /// What all phases cost together. Size and order of the last step are those of the last phase, the notice is
     /// the first that there is.
-    #[cfg(feature = "output")]
     pub(crate) fn counts(&self) -> Counts {
         let mut counts = Counts::default();
         self.phases.iter().for_each(|phase| counts.add(phase.counts.clone()));
@@ -152,42 +151,42 @@ impl Report {
 
     /// Steps of all phases.
     pub fn steps(&self) -> usize {
-        self.phases.iter().map(|phase| phase.counts.steps).sum()
+        self.counts().steps
     }
 
     /// Evaluations of the right-hand side or residual in all phases.
     pub fn evaluations(&self) -> usize {
-        self.phases.iter().map(|phase| phase.counts.evaluations).sum()
+        self.counts().evaluations
     }
 
     /// Evaluations of the tangents of the forces in all phases.
     pub fn jacobian_evaluations(&self) -> usize {
-        self.phases.iter().map(|phase| phase.counts.jacobian_evaluations).sum()
+        self.counts().jacobian_evaluations
     }
 
     /// Evaluations of forces for their tangents by finite differences in all phases.
     pub fn difference_evaluations(&self) -> usize {
-        self.phases.iter().map(|phase| phase.counts.difference_evaluations).sum()
+        self.counts().difference_evaluations
     }
 
     /// Factorizations of the Newton matrix in all phases.
     pub fn factorizations(&self) -> usize {
-        self.phases.iter().map(|phase| phase.counts.factorizations).sum()
+        self.counts().factorizations
     }
 
     /// Iterations of conjugate gradients for Newton matrices in all phases.
     pub fn linear_iterations(&self) -> usize {
-        self.phases.iter().map(|phase| phase.counts.linear_iterations).sum()
+        self.counts().linear_iterations
     }
 
     /// Steps of all phases that were repeated because their error was too large.
     pub fn error_test_failures(&self) -> usize {
-        self.phases.iter().map(|phase| phase.counts.error_test_failures).sum()
+        self.counts().error_test_failures
     }
 
     /// Newton iterations of all phases that did not converge.
     pub fn convergence_failures(&self) -> usize {
-        self.phases.iter().map(|phase| phase.counts.convergence_failures).sum()
+        self.counts().convergence_failures
     }
 
     /// The warnings of the [`indicators`](Self::indicators), each with what to change.
@@ -271,9 +270,9 @@ impl fmt::Display for Report {
                  {wall_seconds:9.4}"
             )?;
         }
-        let rejected = self.error_test_failures() + self.convergence_failures();
-        let (steps, seconds) = (self.steps(), self.wall_seconds);
-        let (evaluations, factorizations) = (self.evaluations(), self.factorizations());
+        let (all, seconds) = (self.counts(), self.wall_seconds);
+        let Counts { steps, evaluations, factorizations, .. } = all;
+        let rejected = rejected(&all);
         writeln!(
             f,
             "{:12} {:8} {steps:8} {evaluations:12} {factorizations:15} {rejected:9} {seconds:9.4}",
@@ -285,7 +284,7 @@ impl fmt::Display for Report {
             "largest constraint drift {constraint_drift:.1e} m; energy balance off by at most \
              {energy_error:.1e} of {energy_scale:.1e} J"
         )?;
-        let (differences, tangents) = (self.difference_evaluations(), self.jacobian_evaluations());
+        let (differences, tangents) = (all.difference_evaluations, all.jacobian_evaluations);
         if differences > 0 {
             write!(
                 f,
