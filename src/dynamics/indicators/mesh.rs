@@ -8,8 +8,7 @@ use crate::elements::mesh::CellKind;
 use crate::scene::constraint::PhaseStart;
 use crate::scene::timeline::Scene;
 
-/// Largest Poisson's ratio for linear and for quadratic cells that can lock.
-const MOST_POISSON: f64 = NEARLY_INCOMPRESSIBLE;
+/// Largest Poisson's ratio for quadratic cells that can lock; for linear ones it is [`NEARLY_INCOMPRESSIBLE`].
 const MOST_POISSON_QUADRATIC: f64 = 0.48;
 
 /// Nearly incompressible material in cells that cannot bend without changing their volume: linear ones get several times too stiff,
@@ -60,13 +59,13 @@ fn locking_linear(body: &Body, most: f64) -> Option<Indicator> {
     };
     let help = quadratic_cells(body.mesh().kind())?;
     let cells = body.mesh().kind().name();
-    let told = format!("Poisson's ratio {most} in linear {cells} (limit: {MOST_POISSON})");
+    let told = format!("Poisson's ratio {most} in linear {cells} (limit: {NEARLY_INCOMPRESSIBLE})");
     let beyond = || {
         format!(
             "{told}: they lock, and may be several times too stiff in bending; take {help}{other}, or a smaller ratio"
         )
     };
-    let limits = [-1.0, MOST_POISSON];
+    let limits = [-1.0, NEARLY_INCOMPRESSIBLE];
     Some(Indicator::trusted("poisson", (most, "1"), limits, || told.clone(), beyond))
 }
 

@@ -3,6 +3,7 @@
 
 use super::ReferenceCell;
 use super::quadrilateral8::RULE;
+use super::segment3::Segment3;
 
 /// The shape functions of Lagrange's cells of degree 2 at `x`: products of parabolas along the axes.
 pub(super) fn biquadratic<const N: usize, const M: usize>(
@@ -27,13 +28,11 @@ pub(super) fn biquadratic_derivatives<const N: usize, const M: usize>(
     })
 }
 
-/// The parabola along an axis that is 1 at `node` and 0 at the other two of 0, 1/2 and 1, and its slope.
+/// The parabola along an axis that is 1 at `node` and 0 at the other two of 0, 1/2 and 1, and its slope: a shape function of
+/// the three-node segment.
 fn parabola(node: f64, x: f64) -> (f64, f64) {
-    match node {
-        0.5 => (4.0 * x * (1.0 - x), 4.0 - 8.0 * x),
-        1.0 => (x * (2.0 * x - 1.0), 4.0 * x - 1.0),
-        _ => ((1.0 - x) * (1.0 - 2.0 * x), 4.0 * x - 3.0),
-    }
+    let a = [0, 2, 1][(2.0 * node) as usize];
+    (Segment3::values([x])[a], Segment3::derivatives([x])[a][0])
 }
 
 pub(crate) struct Quadrilateral9;

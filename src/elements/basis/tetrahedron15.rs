@@ -3,6 +3,7 @@
 
 use super::ReferenceCell;
 use super::tetrahedron10::{DEGREE_5, Tetrahedron10};
+use crate::elements::mesh::CellKind;
 
 /// Points and weights of the rule of degree 6 with 24 points, all weights positive (Keast 1986): three orbits (1 - 3a, a, a, a)
 /// and one (d, d, e, 1 - 2d - e) of barycentric coordinates.
@@ -16,11 +17,6 @@ const D: f64 = 0.063_661_001_875_017_53;
 const E: f64 = 0.269_672_331_458_315_8;
 const F: f64 = 1.0 - 2.0 * D - E;
 const WEIGHT_D: f64 = 9.0 / 1120.0;
-
-/// The corners (from 0) of the faces.
-const FACES: [[usize; 3]; 4] = [[0, 1, 2], [0, 1, 3], [1, 2, 3], [0, 2, 3]];
-/// The corners at the ends of the edges, which have a node in their middle.
-const EDGES: [[usize; 2]; 6] = [[0, 1], [1, 2], [0, 2], [0, 3], [1, 3], [2, 3]];
 
 const THIRD: f64 = 1.0 / 3.0;
 
@@ -73,8 +69,8 @@ impl ReferenceCell<15, 3> for Tetrahedron15 {
 
     fn values([x, y, z]: [f64; 3]) -> [f64; 15] {
         let l = [1.0 - x - y - z, x, y, z];
-        let faces = FACES.map(|face| face.map(|corner| l[corner]).iter().product());
-        with_bubbles(Tetrahedron10::values([x, y, z]), faces, l.iter().product())
+        let product = |corners: &[usize]| corners.iter().map(|&corner| l[corner]).product();
+        with_bubbles(Tetrahedron10::values([x, y, z]), product)
     }
 
     fn derivatives([x, y, z]: [f64; 3]) -> [[f64; 3]; 15] {
@@ -89,27 +85,27 @@ impl ReferenceCell<15, 3> for Tetrahedron15 {
             let by = |corner: usize| if corners.contains(&corner) { others(corner) } else { 0.0 };
             by(axis + 1) - by(0)
         };
-        let along = |axis: usize| {
-            let faces = FACES.map(|face| slope(&face, axis));
-            with_bubbles(quadratic.map(|d| d[axis]), faces, slope(&[0, 1, 2, 3], axis))
-        };
-        let along = [along(0), along(1), along(2)];
+        let along = [0, 1, 2]
+            .map(|axis| with_bubbles(quadratic.map(|d| d[axis]), |corners| slope(corners, axis)));
         std::array::from_fn(|a| along.map(|values| values[a]))
     }
 }
 
-/// The quadratic functions without their values in the middles, and the bubbles of these. `faces` are the products of the three
-/// barycentric coordinates of each face, `cell` that of all four. At the middle of a face a corner has -1/9 and the
-/// middle of an edge 4/9, in that of the cell -1/8 and 1/4; a face has 27/64 there.
-fn with_bubbles(quadratic: [f64; 10], faces: [f64; 4], cell: f64) -> [f64; 15] {
+/// The quadratic functions without their values in the middles, and the bubbles of these. `product` is that of the barycentric
+/// coordinates of corners: of the three of a face, or all four. At the middle of a face a corner has -1/9 and the middle
+/// of an edge 4/9, in that of the cell -1/8 and 1/4; a face has 27/64 there.
+fn with_bubbles(quadratic: [f64; 10], product: impl Fn(&[usize]) -> f64) -> [f64; 15] {
+    let (edges, middles) = (CellKind::Tetrahedron15.edges(), CellKind::Tetrahedron15.middles());
+    let products: [f64; 5] = std::array::from_fn(|middle| product(middles[middle]));
+    let (faces, cell) = (&products[..4], products[4]);
     let around = |corners: &[usize]| -> f64 {
-        let faces = FACES.iter().zip(faces);
+        let faces = middles.iter().zip(faces);
         let around = faces.filter(|(face, _)| corners.iter().all(|corner| face.contains(corner)));
         around.map(|(_, product)| product).sum()
     };
     std::array::from_fn(|a| match a {
         0..4 => quadratic[a] + 3.0 * around(&[a]) - 4.0 * cell,
-        4..10 => quadratic[a] - 12.0 * around(&EDGES[a - 4]) + 32.0 * cell,
+        4..10 => quadratic[a] - 12.0 * around(&edges[a - 4][..2]) + 32.0 * cell,
         10..14 => 27.0 * faces[a - 10] - 108.0 * cell,
         _ => 256.0 * cell,
     })
