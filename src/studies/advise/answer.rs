@@ -3,7 +3,7 @@
 use std::fmt;
 
 use super::advice::{Advice, Candidate};
-use super::choice::{Choice, times};
+use super::choice::Choice;
 use crate::base::input::{percent, short, told};
 use crate::dynamics::report::Verdict;
 use crate::elements::body::Strain;
@@ -39,16 +39,7 @@ impl Advice {
                     && !same.is_static
             };
             if let (Some(error), true) = (candidate.error, rich.is_some_and(is_mesh)) {
-                let choice = &candidate.choice;
-                let mut mesh = match (choice.richer, choice.halved) {
-                    (None, 0) => "the mesh as written".to_owned(),
-                    (None, count) => format!("cells halved {}", times(count)),
-                    (Some(richer), 0) => richer.to_string(),
-                    (Some(richer), count) => format!("{richer}, halved {}", times(count)),
-                };
-                if !choice.halved_in.is_empty() {
-                    mesh += &format!(", {}", choice.halved_locally());
-                }
+                let mesh = candidate.choice.mesh();
                 let (unknowns, time) = (candidate.unknowns, time_text(candidate.seconds));
                 let differs = if self.mesh.is_some() { "away" } else { "off" };
                 reasons.push(match error {

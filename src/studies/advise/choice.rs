@@ -189,36 +189,19 @@ impl Choice {
         sets
     }
 
-    /// How often cells are divided in some places, in words.
-    pub(super) fn halved_locally(&self) -> String {
-        let times = times(self.halved_in.len());
-        match self.halved {
-            0 => format!("cells halved {times} where strains jump"),
-            _ => format!("then {times} where strains jump"),
+    /// The mesh in words: what differs from the one as written.
+    pub(super) fn mesh(&self) -> String {
+        let richer = self.richer.map(|richer| richer.to_string());
+        let halved = (self.halved > 0).then(|| format!("cells halved {}", times(self.halved)));
+        let locally = (!self.halved_in.is_empty()).then(|| {
+            let begin = if self.halved == 0 { "cells halved" } else { "then" };
+            format!("{begin} {} where strains jump", times(self.halved_in.len()))
+        });
+        let all: Vec<String> = [richer, halved, locally].into_iter().flatten().collect();
+        match all.is_empty() {
+            true => "the mesh as written".into(),
+            false => all.join(", "),
         }
-    }
-
-    /// The cells that it makes of those of a `kind`, in words.
-    pub(super) fn cells(&self, kind: CellKind) -> String {
-        let richer = self.richer.map(|richer| richer.bubbles);
-        let kind = match (richer, kind) {
-            (Some(false), CellKind::Triangle | CellKind::Quadrilateral) => CellKind::Triangle6,
-            (Some(false), CellKind::Tetrahedron) => CellKind::Tetrahedron10,
-            (Some(false), CellKind::Hexahedron) => CellKind::Hexahedron20,
-            (Some(true), kind) if kind.dimension() == 2 => CellKind::Triangle7,
-            (Some(true), _) => CellKind::Tetrahedron15,
-            (_, kind) => kind,
-        };
-        let mut cells = kind.name().to_owned();
-        match self.halved {
-            0 => {}
-            1 => cells += " of half the size",
-            times => cells += &format!(" of 1/{} of the size", 1 << times),
-        }
-        if !self.halved_in.is_empty() {
-            cells += &format!(", {}", self.halved_locally());
-        }
-        cells
     }
 }
 
@@ -260,14 +243,8 @@ impl fmt::Display for Choice {
             Strain::Green => "Green",
         };
         write!(f, "{strain} strain")?;
-        if let Some(richer) = self.richer {
-            write!(f, ", {richer}")?;
-        }
-        if self.halved > 0 {
-            write!(f, ", cells halved {}", times(self.halved))?;
-        }
-        if !self.halved_in.is_empty() {
-            write!(f, ", {}", self.halved_locally())?;
+        if !self.is_mesh_as_written() {
+            write!(f, ", {}", self.mesh())?;
         }
         if self.inertia == Inertia::Lumped {
             f.write_str(", lumped inertia")?;
@@ -292,7 +269,7 @@ impl fmt::Display for Choice {
 }
 
 /// A number of times in words.
-pub(super) fn times(count: usize) -> String {
+fn times(count: usize) -> String {
     match count {
         1 => "once".into(),
         2 => "twice".into(),

@@ -208,10 +208,9 @@ impl Search<'_> {
         let can_afford = unknowns <= last.unknowns || self.affords(unknowns, &found.meshes);
         let solved = if can_afford { self.run(choice)? } else { None };
         if !can_afford || self.cut == Some(Cut::Share) {
-            let cells = choice.cells(self.scene.body().mesh().kind());
-            found
-                .not_tried
-                .push(format!("{cells}: {unknowns} unknowns take longer than the budget"));
+            let mesh = choice.mesh();
+            let why = format!("{mesh}: {unknowns} unknowns take longer than the budget");
+            found.not_tried.push(why);
             return Ok(false);
         }
         found.meshes.extend(solved);
