@@ -15,12 +15,12 @@ use pliant::studies::{
 };
 use pliant::{Fraction, Sampling};
 
-use crate::engine::quoted;
 use crate::failure::{Failure, print};
 use crate::files::Directory;
 use crate::progress::spinner;
 use crate::scene::SceneArguments;
 use crate::settings::{SettingsArguments, ended};
+use crate::shell::quoted;
 
 /// Longest command (bytes) that is told: one with lists of cells is not.
 const LONGEST: usize = 2000;

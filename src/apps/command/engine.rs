@@ -10,6 +10,7 @@ use std::time::Duration;
 use clap::ValueEnum;
 
 use crate::failure::{Failure, print};
+use crate::shell::{absolute, quoted};
 use crate::task::array;
 
 /// Who computes the rows.
@@ -119,19 +120,5 @@ impl TaskArray<'_> {
             [&text(own), "sweep", &study, "--task", task, "--batch", &batch, "--out", &directory];
         let words = words.into_iter().map(String::from).chain(["--quiet".into()]);
         Ok(words.chain(self.flags.iter().cloned()).collect())
-    }
-}
-
-pub fn absolute(path: &Path) -> Result<PathBuf, Failure> {
-    std::path::absolute(path)
-        .map_err(|error| Failure::bad_input(format!("cannot find {}: {error}", path.display())))
-}
-
-/// A word of a shell.
-pub fn quoted(word: &str) -> String {
-    let is_plain = |c: char| c.is_ascii_alphanumeric() || "/._-:=,%+".contains(c);
-    match word.chars().all(is_plain) {
-        true => word.into(),
-        false => format!("'{}'", word.replace('\'', "'\\''")),
     }
 }

@@ -212,15 +212,10 @@ impl Directory {
         write: impl FnOnce(&Path) -> Result<(), Error>,
     ) -> Result<(), Failure> {
         write(&self.path.join(name))?;
-        self.note(name);
-        Ok(())
-    }
-
-    /// Notes the name of a file that was written.
-    pub fn note(&mut self, name: &'static str) {
         if !self.written.contains(&name) {
             self.written.push(name);
         }
+        Ok(())
     }
 
     /// Writes the requested pictures and files of a motion.
@@ -242,8 +237,7 @@ impl Directory {
                     self.write("animation.html", |path| write_animation(trajectory, path, title))?
                 }
                 Format::Vtk => {
-                    write_vtk(trajectory, &self.path, "body")?;
-                    self.written.push("body.pvd");
+                    self.write("body.pvd", |_| write_vtk(trajectory, &here, "body"))?;
                 }
                 Format::Plot => self.write("plot.svg", draw)?,
                 Format::Png => self.write("plot.png", draw)?,

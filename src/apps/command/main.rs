@@ -21,6 +21,7 @@ mod run;
 mod scene;
 mod schema;
 mod settings;
+mod shell;
 mod statics;
 mod sweep;
 mod task;

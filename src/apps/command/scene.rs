@@ -6,8 +6,8 @@ use clap::Args;
 use pliant::scene_file::override_of;
 use pliant::{Error, SceneFile};
 
-use crate::engine::absolute;
 use crate::failure::Failure;
+use crate::shell::absolute;
 
 /// The scene file, and values that replace its own.
 #[derive(Args)]

@@ -6,7 +6,7 @@ use clap::Args;
 use pliant::output::write_static_report;
 use pliant::scene_file::Format;
 use pliant::studies::work_precision::Quantity;
-use pliant::{Error, MeshEstimate, OutputRequest, SceneFile};
+use pliant::{Equilibrium, Error, MeshEstimate, OutputRequest, SceneFile};
 
 use crate::failure::{Failure, print};
 use crate::files::{OutputArguments, REFINED};
@@ -61,14 +61,16 @@ impl Arguments {
         Ok(quantity.transpose()?)
     }
 
-    /// What has to be set for a mesh of so many nodes, divided where the estimate says that it helps.
-    fn refined(&self, nodes: usize) -> Result<Vec<String>, Failure> {
+    /// The scene on a mesh of so many nodes, divided where the estimate says that it helps: what has to be set for it, the file
+    /// with that, and the equilibrium.
+    fn refined(&self, nodes: usize) -> Result<(Vec<String>, SceneFile, Equilibrium), Failure> {
         let (mut places, mut set) = (self.scene.halved_in()?, Vec::new());
         let mut before = None;
         loop {
             let file = self.read(&set)?;
-            let Some(quantity) = self.quantity(&file)? else { return Ok(set) };
-            let estimate = MeshEstimate::of(&file.equilibrium()?, &quantity)?;
+            let mut found = file.equilibrium()?;
+            let Some(quantity) = self.quantity(&file)? else { return Ok((set, file, found)) };
+            let estimate = MeshEstimate::of(&found, &quantity)?;
             let count = file.scene.body().mesh().node_count();
             if !self.output.quiet {
                 let (value, unit) = (estimate.value, &estimate.unit);
@@ -79,7 +81,8 @@ impl Arguments {
                 print(format_args!("{count} nodes: {quantity} is {value:.6} {unit}{apart}"))?;
             }
             if count >= nodes {
-                return Ok(set);
+                found.mesh_estimate = Some(estimate);
+                return Ok((set, file, found));
             }
             before = Some(estimate.value);
             let cells = estimate.worst_cells().into_iter().map(|cell| cell as i64 + 1);
@@ -92,18 +95,13 @@ impl Arguments {
 
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let Arguments { scene, output, .. } = arguments;
-    let mut file = arguments.read(&[])?;
+    let file = arguments.read(&[])?;
     let mut directory = output.directory(&scene.path, "-static")?;
     let quantity = arguments.quantity(&file)?;
     if let Some(quantity) = &quantity {
         MeshEstimate::check(&file.scene, quantity)?;
     }
-    let refined = arguments.refine.map(|nodes| arguments.refined(nodes)).transpose()?;
-    if let Some(set) = &refined {
-        file = arguments.read(set)?;
-    }
-    let SceneFile { title, statics, output: request, .. } = &file;
-    let mut request = request.clone();
+    let mut request = file.output.clone();
     // a single state has nothing to plot over time
     let asked = request.formats.len();
     request.formats.retain(|format| ![Format::Plot, Format::Png].contains(format));
@@ -112,10 +110,20 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     let request = &request;
 
-    let mut result = file.equilibrium();
-    if let (Ok(equilibrium), Some(quantity)) = (&mut result, &quantity) {
-        equilibrium.mesh_estimate = Some(MeshEstimate::of(equilibrium, quantity)?);
-    }
+    let (refined, file, result) = match arguments.refine {
+        Some(nodes) => {
+            let (set, file, found) = arguments.refined(nodes)?;
+            (Some(set), file, Ok(found))
+        }
+        None => {
+            let mut result = file.equilibrium();
+            if let (Ok(found), Some(quantity)) = (&mut result, &quantity) {
+                found.mesh_estimate = Some(MeshEstimate::of(found, quantity)?);
+            }
+            (None, file, result)
+        }
+    };
+    let SceneFile { title, statics, .. } = &file;
     let outcome = match &result {
         Ok(equilibrium) => Ok(equilibrium),
         Err(Error::Statics(failure)) => Err(&**failure),
@@ -128,13 +136,11 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     directory.claim()?;
     directory.write("report.json", |path| write_static_report(outcome, path))?;
     if let Some(mut set) = refined {
-        let path = directory.beside(REFINED);
-        set.extend(scene.mesh_for(&path)?);
+        set.extend(scene.mesh_for(&directory.beside(REFINED))?);
         let text = scene.text(&set)?;
-        let failed =
-            |error| Failure::failed(format!("cannot write to {}: {error}", path.display()));
-        fs::write(&path, text).map_err(failed)?;
-        directory.note(REFINED);
+        directory.write(REFINED, |path| {
+            fs::write(path, text).map_err(|source| Error::Output { path: path.into(), source })
+        })?;
     }
     // the states from the undeformed shape to a single equilibrium are not a motion of the body: only
     // pictures show both
