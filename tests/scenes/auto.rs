@@ -40,7 +40,7 @@ fn the_choice_follows_the_damping() {
 /// 1, and vibrates in others: BDF crawls there at its orders above 2.
 #[test]
 fn what_creeps_tells_nothing_of_vibrations() {
-    let scene = samples::ring_springs(1.0).unwrap();
+    let scene = samples::ring_springs(1.0).unwrap().ended_at(2.0);
     let trajectory = run(&scene, &auto(1e-3));
     let walks = &trajectory.report().phases[1];
     assert_eq!(walks.method, Method::Arkode);
@@ -128,8 +128,7 @@ fn rtol_is_the_error_of_the_motion() {
     ];
     for (name, scene) in scenes {
         let scene = scene.unwrap();
-        let fine =
-            Settings { method: Method::Arkode, max_order: Some(5), rtol: 1e-8, ..auto(1e-8) };
+        let fine = Settings { method: Method::Arkode, max_order: Some(5), ..auto(1e-7) };
         let reference = scene.simulate(&fine, &Sampling::every(0.02 * scene.end())).unwrap();
         let ratios = [1e-2, 1e-3, 1e-4, 1e-5].map(|rtol| error_over_rtol(&scene, rtol, &reference));
         println!("{name}: {ratios:.2?}");
@@ -162,7 +161,8 @@ fn bar_with_undamped_end(young: f64) -> Scene {
 fn moved(bar: &Scene, rtol: f64) -> (Trajectory, f64) {
     let motion = run(bar, &auto(rtol));
     assert_eq!(motion.report().warnings(), Vec::<String>::new());
-    let reference = Settings { method: Method::Rk, rtol: 1e-9, ..Settings::default() };
+    // within 1e-10 m of what it comes to at tighter tolerances
+    let reference = Settings { method: Method::CvodeAdams, rtol: 1e-7, ..Settings::default() };
     let apart = distance(&motion, &run(bar, &reference));
     println!("{:?}: {apart:e} m", motion.report().phases[0]);
     (motion, apart)
@@ -185,7 +185,7 @@ fn what_is_recorded_before_a_choice_is_revoked_is_complete() {
     let scene = bar_with_undamped_end(1e6);
     let mut revoked = [0; 2];
     for (asked, (number, before)) in
-        (1..20).flat_map(|asked| [(asked, (0, 0.05)), (asked, (1, 0.001))])
+        (1..20).step_by(2).flat_map(|asked| [(asked, (0, 0.05)), (asked, (1, 0.001))])
     {
         let mut bar = scene.start(&auto(1e-2)).unwrap();
         bar.record(&Sampling::every(before)).unwrap();

@@ -25,7 +25,7 @@ fn run_until(
 /// Steps are told one by one, and add up to the time; watching changes nothing.
 #[test]
 fn every_step_is_told() {
-    let scene = square_jump(4).unwrap();
+    let scene = square_jump(4).unwrap().ended_at(1.15);
     for method in Method::ALL {
         let settings = settings(method);
         let (mut time, mut steps, mut phase, mut highest) = (0.0, 0, 0, 0);
@@ -56,7 +56,7 @@ fn every_step_is_told() {
 /// run goes through.
 #[test]
 fn a_stopped_run_keeps_its_motion() {
-    let scene = square_jump(4).unwrap();
+    let scene = square_jump(4).unwrap().ended_at(1.0);
     for method in Method::ALL {
         let stopped = run_until(&scene, &settings(method), |progress| progress.time > 0.62);
         let Err(Error::Integration(end)) = stopped else { panic!("{method}: not stopped") };
@@ -115,7 +115,7 @@ fn jacobian_evaluations_are_counted() {
         let phases = trajectory.report().phases.iter();
         phases.map(|p| (p.counts.jacobian_evaluations, p.counts.factorizations)).collect()
     };
-    let ring = ring_jump().unwrap();
+    let ring = ring_jump().unwrap().ended_at(0.3);
     for method in [Method::Ida, Method::IdaKlu] {
         assert!(counts(&ring, method).iter().all(|&(evaluated, made)| evaluated == made));
     }

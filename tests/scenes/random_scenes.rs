@@ -193,7 +193,7 @@ fn verdict(seed: u64) -> Verdict {
         let settings = Settings { method, rtol, max_steps: 200_000, ..Settings::default() };
         scene.simulate(&settings, &Sampling::every(0.25 * scene.end()))
     };
-    let references = match (run(Method::Rk, 1e-8), run(Method::CvodeAdams, 1e-8)) {
+    let references = match (run(Method::CvodeAdams, 1e-8), run(Method::Ida, 1e-6)) {
         (Ok(a), Ok(b)) => [a, b],
         (Err(error), Err(_)) => {
             return match run(Method::Auto, 1e-4) {

@@ -77,7 +77,7 @@ fn a_slope_tells_stick_from_slip() {
 fn stick_slip_has_its_period() {
     let (scene, closed_form, highest) = stick_slip();
     let fine = {
-        let fine = Settings { rtol: 1e-8, ..settings(Method::Ida, ContactEvents::StepOver) };
+        let fine = Settings { rtol: 1e-7, ..settings(Method::Ida, ContactEvents::StepOver) };
         let motion = scene.simulate(&fine, &Sampling::every(1e-3)).unwrap();
         let x: Vec<f64> = motion.samples().iter().map(|sample| sample.u[2 * 5]).collect();
         // times of the peaks, by parabolas
