@@ -10,7 +10,7 @@ use pliant::{Body, Cells, Material, Mesh, Plane, SolidCells, Strain};
 const MATERIAL: Material = Material { density: 1000.0, young: 1e6, poisson: 0.0, viscosity: 0.0 };
 
 /// Natural frequencies (rad/s), ascending, of a body whose node set `left` is held.
-pub(crate) fn frequencies(body: BodyBuilder) -> Vec<f64> {
+fn frequencies(body: BodyBuilder) -> Vec<f64> {
     let body = body.build().unwrap();
     let d = body.dimension();
     let held = &body.mesh().sets()["left"];

@@ -20,7 +20,7 @@ fn linear_bodies_come_to_rest() {
     for kind in Kind::ALL {
         for poisson in [0.3, 0.49999] {
             for &dilatation in kind.dilatations() {
-                let cells = if kind.is_plane() { 8 } else { 3 };
+                let cells = if kind.is_plane() { 8 } else { 2 };
                 let body = body(kind.mesh(cells), material(poisson), dilatation);
                 let body = body.strain(Strain::Cauchy).build().unwrap();
                 let mut load = vec![0.0; body.dimension()];
@@ -55,7 +55,8 @@ fn condition(body: &Body) -> f64 {
     found[found.len() - 1] / found[0]
 }
 
-/// The table of docs/architecture.md: conditions grow as 1 / (1 - 2 nu), and steps know nothing of it.
+/// The table of docs/architecture.md: conditions grow as 1 / (1 - 2 nu), and steps know nothing of it; here in a quarter of
+/// its span.
 #[test]
 fn conditions_and_steps() {
     for (cells, dilatation) in [
@@ -67,7 +68,7 @@ fn conditions_and_steps() {
         for poisson in [0.3, 0.4999] {
             let body = cantilever(poisson, cells, dilatation);
             let condition = condition(&body);
-            let swings = Phase::until(0.2).hold("left").traction("right", [0.0, -2e3]);
+            let swings = Phase::until(0.05).hold("left").traction("right", [0.0, -2e3]);
             let scene = Scene::new(body).phase(swings);
             let settings = Settings { method: Method::Arkode, rtol: 1e-4, ..Settings::default() };
             let motion = scene.simulate(&settings, &Sampling::phase_ends()).unwrap();

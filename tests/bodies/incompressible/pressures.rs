@@ -33,28 +33,29 @@ fn inf_sup(kind: Kind, cells: usize, dilatation: Dilatation) -> (f64, usize) {
 /// keep their value as the mesh gets finer: they are stable. The others do not, and nobody expects it: quadrilaterals and hexahedra have pressures that do no work in a regular mesh that is held all around, a chess board
 /// the first of them, and those like it do little. Other quadratic cells in space would need a node in the middle of their faces, or faces
 /// that bulge; theirs falls slowly. With a linear pressure hexahedra of 20 nodes have more of them that do no work.
+/// (With one cell more along each side solids of quadratic cells had, in the order below, 0.0707, 0.293, 0.353, 0.270 and 0.0759.)
 #[test]
 fn numerical_inf_sup() {
     let (plane, solid) = (Kind::Plane, Kind::Solid);
     let (mean, linear) = (Dilatation::Mean, Dilatation::Linear);
-    for (kind, dilatation, meshes, values, idle) in [
-        (plane(Cells::Triangles6), mean, [2, 4, 8], [0.490, 0.464, 0.446], [1, 1, 1]),
-        (solid(SolidCells::Tetrahedra10), mean, [2, 3, 4], [0.0973, 0.0869, 0.0707], [4, 4, 4]),
-        (solid(SolidCells::Hexahedra20), mean, [2, 3, 4], [0.409, 0.346, 0.293], [2, 2, 2]),
-        (plane(Cells::Rectangles9), linear, [2, 4, 8], [0.453, 0.446, 0.432], [1, 1, 1]),
-        (solid(SolidCells::Hexahedra27), linear, [2, 3, 4], [0.358, 0.359, 0.353], [1, 1, 1]),
-        (Kind::Triangles7, linear, [2, 4, 8], [0.346; 3], [1, 1, 1]),
-        (Kind::Tetrahedra15, linear, [1, 2, 3], [0.217, 0.263, 0.270], [1, 1, 1]),
-        (solid(SolidCells::Hexahedra20), linear, [2, 3, 4], [0.151, 0.113, 0.0759], [14, 23, 32]),
-        (plane(Cells::Rectangles), mean, [4, 8, 16], [0.309, 0.178, 0.0943], [2, 2, 2]),
-        (solid(SolidCells::Hexahedra), mean, [2, 4, 6], [0.375, 0.156, 0.0828], [5, 11, 17]),
+    // cells along each side, the value, and how many pressures do no work
+    for (kind, dilatation, values) in [
+        (plane(Cells::Triangles6), mean, &[(2, 0.490, 1), (4, 0.464, 1), (8, 0.446, 1)][..]),
+        (solid(SolidCells::Tetrahedra10), mean, &[(2, 0.0973, 4), (3, 0.0869, 4)]),
+        (solid(SolidCells::Hexahedra20), mean, &[(2, 0.409, 2), (3, 0.346, 2)]),
+        (plane(Cells::Rectangles9), linear, &[(2, 0.453, 1), (4, 0.446, 1), (8, 0.432, 1)]),
+        (solid(SolidCells::Hexahedra27), linear, &[(2, 0.358, 1), (3, 0.359, 1)]),
+        (Kind::Triangles7, linear, &[(2, 0.346, 1), (4, 0.346, 1), (8, 0.346, 1)]),
+        (Kind::Tetrahedra15, linear, &[(1, 0.217, 1), (2, 0.263, 1)]),
+        (solid(SolidCells::Hexahedra20), linear, &[(2, 0.151, 14), (3, 0.113, 23)]),
+        (plane(Cells::Rectangles), mean, &[(4, 0.309, 2), (8, 0.178, 2), (16, 0.0943, 2)]),
+        (solid(SolidCells::Hexahedra), mean, &[(2, 0.375, 5), (4, 0.156, 11), (6, 0.0828, 17)]),
     ] {
-        let found = meshes.map(|cells| inf_sup(kind, cells, dilatation));
-        println!("{kind:?}, {dilatation:?}, {meshes:?} cells a side: {found:.4?}");
-        for ((value, lazy), (expected, idle)) in found.into_iter().zip(values.into_iter().zip(idle))
-        {
-            assert!((value / expected - 1.0).abs() < 0.01, "{kind:?}: {found:?}");
-            assert_eq!(lazy, idle, "{kind:?}: {found:?}");
+        for &(cells, expected, idle) in values {
+            let (value, lazy) = inf_sup(kind, cells, dilatation);
+            println!("{kind:?}, {dilatation:?}, {cells} cells a side: {value:.4}, {lazy}");
+            assert!((value / expected - 1.0).abs() < 0.01, "{kind:?} {cells}: {value}");
+            assert_eq!(lazy, idle, "{kind:?} {cells}");
         }
     }
 }
