@@ -83,6 +83,7 @@ docs: setup ## Documentation of the library
 	@echo "Open $(CURDIR)/target/doc/pliant/index.html"
 
 # The runner of the test binary is valgrind; PLIANT_LIFECYCLES sets the rounds of 30 solvers.
+valgrind: export PLIANT_LIFECYCLES ?= 100
 valgrind: ## Thousands of SUNDIALS solvers under valgrind: no leak, no invalid access
 	@scripts/setup.sh valgrind
 	cargo test --test integrators lifecycle --config 'target."cfg(all())".runner = "$(VALGRIND)"'

@@ -37,8 +37,9 @@ fn agree(file: &SceneFile, sample: Scene) -> (Trajectory, Option<String>) {
     (found, error)
 }
 
-/// Steps per phase after which long motions have been compared enough.
-const MAX_STEPS: usize = 4000;
+/// Steps per phase after which long motions have been compared enough, and a tolerance by which few are needed.
+const MAX_STEPS: usize = 2000;
+const RTOL: f64 = 1e-3;
 
 /// Tests of scenes by the name of their file. They run to their ends, or to the most steps of a phase.
 macro_rules! motions {
@@ -47,7 +48,7 @@ macro_rules! motions {
         $(#[test]
         fn $test() {
             let mut file = SceneFile::read(path(concat!("scenes/", $file, ".toml"))).unwrap();
-            file.settings.max_steps = MAX_STEPS;
+            (file.settings.max_steps, file.settings.rtol) = (MAX_STEPS, RTOL);
             let (trajectory, error) = agree(&file, $sample.unwrap());
             match error {
                 None => assert_eq!(trajectory.last().time, file.scene.end()),

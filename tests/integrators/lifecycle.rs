@@ -203,7 +203,7 @@ fn solvers_that_fail() {
 
 #[test]
 fn solvers_come_and_go() {
-    let rounds = std::env::var("PLIANT_LIFECYCLES").ok().map_or(100, |n| n.parse().unwrap());
+    let rounds = std::env::var("PLIANT_LIFECYCLES").ok().map_or(10, |n| n.parse().unwrap());
     // Keep the expected panics quiet.
     panic::set_hook(Box::new(|_| ()));
     for _ in 0..rounds {
