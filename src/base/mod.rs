@@ -1,10 +1,11 @@
 //! What all rooms use and what knows nothing of mechanics: vectors, small tensors, SIMD registers, matrices
-//! over pairs of nodes, formulas of time, the error of an input.
+//! over pairs of nodes, formulas of time, roots of functions, the error of an input.
 
 #[cfg(feature = "bodies")]
 pub(crate) mod formula;
 pub(crate) mod input;
 pub(crate) mod lane;
+pub(crate) mod root;
 pub(crate) mod simd;
 #[cfg(feature = "bodies")]
 pub mod sparse;

@@ -1,6 +1,7 @@
 //! Contact events: where a node touches an obstacle or leaves it, slips or sticks.
 
 use super::stepper::{Failed, Stepper};
+use crate::base::root::{Point, bracket};
 use crate::dynamics::report::SlipEvent;
 use crate::dynamics::state::State;
 use crate::dynamics::system::System;
@@ -97,7 +98,7 @@ impl Events {
     }
 
     /// The first event between `start` (s), where no switch has changed, and `end` (s), where at least one
-    /// has, by bisection.
+    /// has, by bisection: values are of several units, and may jump.
     fn locate(
         &mut self,
         stepper: &mut dyn Stepper,
@@ -105,19 +106,14 @@ impl Events {
         end: f64,
         work: &mut [f64],
     ) -> Result<f64, Failed> {
-        let (mut before, mut after) = (start, end);
-        while after - before > PRECISION * (end - start) {
-            let middle = 0.5 * (before + after);
-            if middle <= before || middle >= after {
-                break;
-            }
-            stepper.interpolate(middle, work)?;
-            match self.change(stepper.system(), middle, work) {
-                true => after = middle,
-                false => before = middle,
-            }
-        }
-        Ok(after)
+        let sign = |changed: bool| if changed { f64::NEG_INFINITY } else { f64::INFINITY };
+        let [before, after] =
+            [(start, false), (end, true)].map(|(t, changed)| Point { t, g: sign(changed) });
+        let (_, after) = bracket(before, after, PRECISION * (end - start), &mut |t| {
+            stepper.interpolate(t, work)?;
+            Ok::<_, Failed>(sign(self.change(stepper.system(), t, work)))
+        })?;
+        Ok(after.t)
     }
 
     /// Continues after an event at time `t` in `state`, at the end of a step of size `step` (s).

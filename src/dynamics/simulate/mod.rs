@@ -47,8 +47,8 @@ pub use sampling::Sampling;
 pub use simulation::Simulation;
 use view::Gauges;
 pub use view::View;
-pub use watch::Direction;
 
+pub use crate::base::root::Direction;
 use crate::dynamics::error::Error;
 use crate::dynamics::trajectory::Trajectory;
 use crate::scene::settings::Settings;

@@ -4,31 +4,8 @@ use std::ops::ControlFlow;
 
 use super::view::View;
 use crate::base::input::InputError;
+use crate::base::root::Direction;
 use crate::dynamics::error::Error;
-
-/// Which changes of the sign of an event count.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Direction {
-    /// All.
-    #[default]
-    Either,
-    /// From below 0 upwards.
-    Rising,
-    /// From above 0 downwards.
-    Falling,
-}
-
-impl Direction {
-    /// Whether a change from one value to another counts.
-    pub(super) fn counts(self, before: f64, after: f64) -> bool {
-        let (rises, falls) = (before < 0.0 && after >= 0.0, before > 0.0 && after <= 0.0);
-        match self {
-            Self::Either => rises || falls,
-            Self::Rising => rises,
-            Self::Falling => falls,
-        }
-    }
-}
 
 type Event = dyn FnMut(&View) -> f64 + Send;
 type Action<S> = dyn FnMut(&mut S) -> Result<ControlFlow<()>, Error> + Send;

@@ -5,8 +5,9 @@ use std::ops::ControlFlow;
 
 use super::simulation::Simulation;
 use super::view::View;
-use super::watch::{Arrival, Direction, Turns, WatchedEvent};
+use super::watch::{Arrival, Turns, WatchedEvent};
 use crate::base::input::InputError;
+use crate::base::root::{Direction, crosses};
 use crate::base::vector::largest;
 use crate::dynamics::error::{Error, guarded};
 use crate::dynamics::state::State;
@@ -208,8 +209,8 @@ impl Simulation {
         for event in &mut *events {
             let mut start = from;
             event.after = self.value(event.number, event.event)?;
-            if commanded && event.value == 0.0 && event.direction.counts(-event.after, event.after)
-            {
+            let has_left = event.value == 0.0 && event.after != 0.0;
+            if commanded && has_left && event.direction.counts(event.after) {
                 match (self.turn(event, from)?, event.number) {
                     (Some(t), _) => start = t,
                     (None, Some(number)) if event.tendency * event.after < 0.0 => {
@@ -345,6 +346,6 @@ impl<'a> Pending<'a> {
 
     /// Whether it is met between its last two values.
     fn counts(&self) -> bool {
-        self.direction.counts(self.value, self.after)
+        crosses(self.value, self.after) && self.direction.counts(-self.value)
     }
 }

@@ -29,5 +29,6 @@ pub(crate) use options::{
     SHORTEST, StepOptions, check_count, check_finite, check_form, check_length, check_start,
     check_start_time, check_step, check_time, check_whole, step_options,
 };
+pub(crate) use roots::time_tolerance;
 pub use statistics::Statistics;
 pub use tolerances::{AbsoluteTolerance, Tolerances};

@@ -5,6 +5,7 @@ use std::mem::take;
 use super::error::{Callback, Cause, Error};
 use super::march::{March, StepMethod};
 use super::one_step::OneStep;
+use super::roots::time_tolerance;
 use crate::integrators::ode::{Ode, call};
 
 impl<S: Ode, M: StepMethod> OneStep<S, M> {
@@ -91,9 +92,4 @@ impl<S: Ode, M: StepMethod> OneStep<S, M> {
     fn time_tolerance(&self) -> f64 {
         time_tolerance(self.march.t, self.march.t - self.march.t_old)
     }
-}
-
-/// Accuracy in time of a root.
-fn time_tolerance(t: f64, step: f64) -> f64 {
-    100.0 * f64::EPSILON * (t.abs() + step)
 }

@@ -1,12 +1,12 @@
 //! Where root functions change sign within a step.
 //!
-//! The search is that of SUNDIALS: the Illinois algorithm, a secant method that keeps the root between
-//! its two points (K. L. Hiebert, L. F. Shampine, "Implicitly defined output points for solutions of
-//! ODEs", Sandia report SAND80-0180, 1980; CVODE user guide, "Rootfinding").
+//! They are followed as by SUNDIALS (K. L. Hiebert, L. F. Shampine, "Implicitly defined output points for
+//! solutions of ODEs", Sandia report SAND80-0180, 1980; CVODE user guide, "Rootfinding").
 
 use std::mem::swap;
 
 use super::error::Error;
+use crate::base::root::{Illinois, Point, crosses};
 
 /// The root functions g of a system, as far as they have been followed.
 #[derive(Debug, Default)]
@@ -34,13 +34,6 @@ enum Change {
     Zero,
     /// The sign of this one changes, the earliest of all according to their secants.
     Sign(usize),
-}
-
-/// The end of an interval.
-#[derive(Clone, Copy, PartialEq)]
-enum End {
-    Low,
-    High,
 }
 
 impl Roots {
@@ -80,43 +73,26 @@ impl Roots {
     ) -> Result<Option<f64>, Error> {
         evaluate(high, &mut self.at_high)?;
         let mut change = self.change(&self.at_high);
-        // weight of the lower end in the secant, halved or doubled when the same end moves again
-        let (mut weight, mut moved, mut moved_before) = (1.0, None, None);
-        while let Change::Sign(i) = change
-            && high - self.low > tolerance
-        {
-            weight = match moved {
-                Some(End::Low) if moved == moved_before => 2.0 * weight,
-                Some(End::High) if moved == moved_before => 0.5 * weight,
-                _ => 1.0,
-            };
-            moved_before = moved;
-            let width = high - self.low;
-            let part = self.at_high[i] / (self.at_high[i] - weight * self.at_low[i]);
-            // a point too near to an end would tell nothing new
-            let edge = 0.5 * tolerance / width;
-            let inward = if width > 5.0 * tolerance { 0.1 } else { edge };
-            let part = match part {
-                part if part < edge => inward,
-                part if part > 1.0 - edge => 1.0 - inward,
-                part => part,
-            };
-            let middle = high - part * width;
+        let mut search = Illinois::new(tolerance);
+        while let Change::Sign(i) = change {
+            let low = Point { t: self.low, g: self.at_low[i] };
+            let end = Point { t: high, g: self.at_high[i] };
+            let Some(middle) = search.next(low, end) else { break };
             evaluate(middle, &mut self.trial)?;
             match self.change(&self.trial) {
                 Change::None => {
-                    (self.low, moved) = (middle, Some(End::Low));
+                    self.low = middle;
                     swap(&mut self.at_low, &mut self.trial);
                 }
                 nearer => {
-                    (high, moved, change) = (middle, Some(End::High), nearer);
+                    (high, change) = (middle, nearer);
                     swap(&mut self.at_high, &mut self.trial);
                 }
             }
         }
         for i in 0..self.found.len() {
             let (before, after) = (self.at_low[i], self.at_high[i]);
-            let is_root = self.active[i] && (after == 0.0 || differ(before, after));
+            let is_root = self.active[i] && crosses(before, after);
             self.found[i] = if is_root { -before.signum() as i32 } else { 0 };
             self.active[i] |= after != 0.0;
         }
@@ -130,25 +106,21 @@ impl Roots {
     fn change(&self, values: &[f64]) -> Change {
         let (mut change, mut largest) = (Change::None, 0.0);
         for (i, (&before, &after)) in self.at_low.iter().zip(values).enumerate() {
-            if !self.active[i] {
+            if !self.active[i] || !crosses(before, after) {
                 continue;
             }
-            if after == 0.0 {
-                if largest == 0.0 {
-                    change = Change::Zero;
-                }
-            } else if differ(before, after) {
-                let part = after / (after - before);
-                if part > largest {
-                    (change, largest) = (Change::Sign(i), part);
-                }
+            let part = after / (after - before);
+            if part > largest {
+                (change, largest) = (Change::Sign(i), part);
+            } else if largest == 0.0 {
+                change = Change::Zero;
             }
         }
         change
     }
 }
 
-/// Whether the signs of two numbers differ, neither of which is 0.
-fn differ(a: f64, b: f64) -> bool {
-    (a < 0.0) != (b < 0.0)
+/// Accuracy in time of a root within a step of this size that ends at time `t`: that of SUNDIALS.
+pub(crate) fn time_tolerance(t: f64, step: f64) -> f64 {
+    100.0 * f64::EPSILON * (t.abs() + step.abs())
 }

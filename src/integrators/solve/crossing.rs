@@ -13,7 +13,7 @@ use super::{
     watch::{Root, Sight, Turn},
 };
 use crate::base::input::InputError;
-use crate::integrators::common::check_finite;
+use crate::integrators::common::{check_finite, time_tolerance};
 
 /// A state and, for a DAE, its time derivative.
 struct State {
@@ -34,8 +34,7 @@ impl<'a> Run<'a> {
     /// stop the step, which are recorded last. `is_last` says that the next step, if any, does not continue
     /// from there, but starts at a break.
     pub(super) fn look_for_events(&mut self, t: f64, is_last: bool) -> Result<Found, Reason> {
-        // the tolerance of SUNDIALS
-        let tolerance = 100.0 * f64::EPSILON * (t.abs() + (t - self.t).abs());
+        let tolerance = time_tolerance(t, t - self.t);
         let count = self.counts.len();
         let mut roots = Vec::with_capacity(count);
         for i in 0..count {

@@ -4,19 +4,8 @@ use std::fmt;
 
 use super::error::Reason;
 use crate::base::input::InputError;
+use crate::base::root::Direction;
 use crate::integrators::common::check_finite;
-
-/// Which changes of sign of an event function count.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Direction {
-    /// Both.
-    #[default]
-    Either,
-    /// From negative to positive.
-    Rising,
-    /// From positive to negative.
-    Falling,
-}
 
 /// g(t, y, p), whose roots are the events.
 pub(super) type Function<'a> = Box<dyn FnMut(f64, &[f64], &[f64]) -> f64 + 'a>;

@@ -35,11 +35,11 @@ mod event;
 mod gradient;
 mod history;
 mod method;
+mod minimum;
 #[cfg(doctest)]
 mod misuse;
 mod options;
 mod problem;
-mod root;
 mod run;
 mod saved;
 mod sensitivities;
@@ -50,7 +50,7 @@ mod watch;
 
 pub use ensemble::ensemble;
 pub use error::{Error, Reason, Stopped};
-pub use event::{Direction, Event, Jump};
+pub use event::{Event, Jump};
 pub use gradient::gradient;
 pub use method::Method;
 pub use options::{Options, Output};
@@ -60,4 +60,5 @@ pub use saved::Saved;
 pub use solution::{End, Occurrence, Solution};
 pub use solver::solve;
 
+pub use crate::base::root::Direction;
 pub use crate::integrators::common::Statistics;

@@ -1,9 +1,7 @@
 //! An event function followed along the steps.
 
-use super::{
-    event::{Direction, Event},
-    root::{Point, bracket, crosses, minimum},
-};
+use super::{event::Event, minimum::minimum};
+use crate::base::root::{Direction, Point, bracket, crosses};
 
 /// A root of an event function.
 #[derive(Clone, Copy, Debug)]
@@ -120,12 +118,7 @@ impl EventTracker {
                 other => return Ok(other),
             };
             (self.t, self.g) = (root.behind.t, root.behind.g);
-            let counts = match self.direction {
-                Direction::Either => true,
-                Direction::Rising => root.sign >= 0,
-                Direction::Falling => root.sign <= 0,
-            };
-            if counts {
+            if self.direction.counts(root.sign.into()) {
                 return Ok(Sight::Root(root));
             }
         }
