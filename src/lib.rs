@@ -61,7 +61,9 @@ pub use dynamics::{
 };
 #[cfg(feature = "bodies")]
 pub use elements::{
-    body::{Body, CellField, CellSelection, Dilatation, Inertia, NodalField, Strain, Viscosity},
+    body::{
+        Body, CellField, CellSelection, Dilatation, Inertia, NodalField, Part, Strain, Viscosity,
+    },
     material::{FibreDirection, Fibres, Lame, Law, Material, MaxwellBranch, Plane, Substance},
     mesh::{Cells, Mesh, Selection, SolidCells},
 };

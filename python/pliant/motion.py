@@ -101,6 +101,11 @@ class Motion:
         motion = self._motion
         return Mesh(motion.nodes(), motion.cells(), motion.cell_kind)
 
+    @property
+    def bodies(self):
+        """Which nodes several bodies have, by name: ``motion.displacements[:, motion.bodies["hand"]]``."""
+        return {name: slice(first, end) for name, first, end in self._motion.bodies()}
+
     def stress(self, sample=-1):
         """Stress (Pa) in each cell of a sample: [cell, axis, axis]."""
         return self._motion.stress(self._number(sample))

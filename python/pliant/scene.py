@@ -90,9 +90,14 @@ class Scene:
 
     @property
     def mesh(self):
-        """The mesh of the body, with its node sets."""
+        """The mesh of the body, or of all bodies if they have the same kind of cells, with its node sets."""
         scene = self._scene
         return Mesh(scene.nodes(), scene.cells(), scene.cell_kind, scene.sets())
+
+    @property
+    def bodies(self):
+        """The meshes of several bodies by name, with their own numbers of nodes and node sets."""
+        return {name: Mesh(*mesh) for name, *mesh in self._scene.bodies()}
 
     def run(self, *, sampling=None, accuracy=None, progress=None, **solver):
         """Runs the scene and returns its :class:`Motion`.

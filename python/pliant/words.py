@@ -27,6 +27,7 @@ def body(
     *,
     mesh: dict | Mesh,
     material: dict,
+    name: str | None = None,
     thickness: float | None = None,
     area: float | None = None,
     strain: Literal["cauchy", "green", "auto"] | None = None,
@@ -35,8 +36,11 @@ def body(
     plane: Literal["strain", "stress"] | None = None,
     dilatation: Literal["points", "mean", "linear"] | None = None,
     region: dict | Sequence[dict] | None = None,
+    velocity: Vector | None = None,
+    spin: float | Sequence[float] | None = None,
 ) -> dict:
-    r"""What moves: a mesh made of a material.
+    r"""What moves: a mesh made of a material. A list of several, `[[body]]`, do not feel each other where they touch:
+    ties, springs and combinations of displacements that are held join them.
 
     Parameters
     ----------
@@ -44,6 +48,9 @@ def body(
         the mesh. Required.
     material
         what the body is made of. Required.
+    name
+        its name among several bodies. Default: `body 1`, `body 2` and so on. It is a node set and a group of cells,
+        and stands before the node sets and groups of the body: `finger/tip`.
     thickness
         the thickness of a body in the plane (m). Default: required in two dimensions.
     area
@@ -67,10 +74,16 @@ def body(
         for `rectangles`, `hexahedra`, `triangles6` and `tetrahedra10`.
     region
         parts with a material of their own. Default: none.
+    velocity
+        its velocity at first, in place of that of `[initial]` (m/s). Default: that of `[initial]`.
+    spin
+        its angular velocity at first about its own centre of mass, on top of that (rad/s). Default: 0. One number in
+        the plane, counter-clockwise; three in space.
     """
     return _table(
         mesh=mesh,
         material=material,
+        name=name,
         thickness=thickness,
         area=area,
         strain=strain,
@@ -79,6 +92,8 @@ def body(
         plane=plane,
         dilatation=dilatation,
         region=region,
+        velocity=velocity,
+        spin=spin,
     )
 
 
@@ -787,6 +802,7 @@ def point(
     name: str,
     position: Vector,
     mass: float,
+    body: str | None = None,
 ) -> dict:
     r"""A point mass: a node that belongs to no cell. Its name is a node set.
 
@@ -798,11 +814,14 @@ def point(
         its undeformed position (m). Required.
     mass
         its mass (kg). Required.
+    body
+        the name of the body that it is a node of. Default: required with several bodies.
     """
     return _table(
         name=name,
         position=position,
         mass=mass,
+        body=body,
     )
 
 
@@ -855,6 +874,27 @@ def initial_nodes(
     return _table(
         nodes=nodes,
         velocity=velocity,
+    )
+
+
+def tie(
+    *,
+    nodes: Nodes,
+    to: str,
+) -> dict:
+    r"""Nodes of one body that are glued to another, whose mesh need not match: in all phases each moves with the point at
+    which it is. Name the nodes of the finer surface.
+
+    Parameters
+    ----------
+    nodes
+        the nodes. Required.
+    to
+        the name of the body that they are glued to. Required.
+    """
+    return _table(
+        nodes=nodes,
+        to=to,
     )
 
 
@@ -2178,6 +2218,7 @@ def sensor_centre_of_mass(
     *,
     name: str,
     component: Literal["x", "y", "z", "norm", "xx", "yy", "zz", "xy", "yz", "xz", "von-mises"] | None = None,
+    body: str | None = None,
 ) -> dict:
     r"""Sensor of the kind "centre-of-mass": where the centre of mass is (m).
 
@@ -2188,11 +2229,40 @@ def sensor_centre_of_mass(
     component
         one component alone. Default: all, each a column. Vectors have `x`, `y`, `z` and their length `norm`; tensors
         `xx` and so on; stress has `von-mises` besides.
+    body
+        the name of one of several bodies. Default: all together.
     """
     return _table(
         kind="centre-of-mass",
         name=name,
         component=component,
+        body=body,
+    )
+
+
+def sensor_momentum(
+    *,
+    name: str,
+    component: Literal["x", "y", "z", "norm", "xx", "yy", "zz", "xy", "yz", "xz", "von-mises"] | None = None,
+    body: str | None = None,
+) -> dict:
+    r"""Sensor of the kind "momentum": the momentum (kg m/s).
+
+    Parameters
+    ----------
+    name
+        the name of the sensor. Required.
+    component
+        one component alone. Default: all, each a column. Vectors have `x`, `y`, `z` and their length `norm`; tensors
+        `xx` and so on; stress has `von-mises` besides.
+    body
+        the name of one of several bodies. Default: all together.
+    """
+    return _table(
+        kind="momentum",
+        name=name,
+        component=component,
+        body=body,
     )
 
 
@@ -2201,6 +2271,7 @@ def sensor_rotation(
     name: str,
     component: Literal["x", "y", "z", "norm", "xx", "yy", "zz", "xy", "yz", "xz", "von-mises"] | None = None,
     unit: Literal["rad", "deg"] | None = None,
+    body: str | None = None,
 ) -> dict:
     r"""Sensor of the kind "rotation": the angle by which a body in the plane has turned as a whole, counter-clockwise; it
     goes on over whole turns.
@@ -2214,12 +2285,15 @@ def sensor_rotation(
         `xx` and so on; stress has `von-mises` besides.
     unit
         the unit. Default: rad.
+    body
+        the name of one of several bodies. Default: all together.
     """
     return _table(
         kind="rotation",
         name=name,
         component=component,
         unit=unit,
+        body=body,
     )
 
 
@@ -2430,6 +2504,7 @@ __all__ = [
     "sensor_contact_force",
     "sensor_displacement",
     "sensor_distance",
+    "sensor_momentum",
     "sensor_position",
     "sensor_pressure",
     "sensor_rotation",
@@ -2445,4 +2520,5 @@ __all__ = [
     "statics",
     "symmetry",
     "terms",
+    "tie",
 ]

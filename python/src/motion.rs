@@ -149,6 +149,12 @@ impl Motion {
         crate::scene::cells(py, self.trajectory.body().mesh())
     }
 
+    /// The bodies: their names, and their first and last node, from 0.
+    fn bodies(&self) -> Vec<(String, usize, usize)> {
+        let parts = self.trajectory.body().parts();
+        parts.map(|part| (part.name.into(), part.nodes.start, part.nodes.end)).collect()
+    }
+
     /// The word for the cells.
     #[getter]
     fn cell_kind(&self) -> &'static str {

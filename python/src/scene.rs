@@ -6,7 +6,8 @@ use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pliant::fit::{Measured, SceneFit, Unknown};
 use pliant::scene_file::{override_of, toml_of as toml_of_scene};
 use pliant::study::{Adviser, Quantity, Scenes, Study, Verification, all_methods};
-use pliant::{Error, Mesh, SceneFile, Settings, Trajectory};
+use pliant::{Error, Mesh, Part, SceneFile, Settings, Trajectory};
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -110,6 +111,28 @@ impl Scene {
     #[getter]
     fn cell_kind(&self) -> &'static str {
         self.file.scene.body().mesh().kind().word()
+    }
+
+    /// The bodies: their names, nodes, cells, words for the cells, and node sets.
+    #[allow(clippy::type_complexity)]
+    fn bodies<'py>(
+        &self,
+        py: Python<'py>,
+    ) -> PyResult<
+        Vec<(
+            String,
+            Bound<'py, PyArray2<f64>>,
+            Bound<'py, PyArray2<i64>>,
+            &'static str,
+            Bound<'py, PyDict>,
+        )>,
+    > {
+        let of_part = |Part { name, body, .. }: Part| {
+            let mesh = body.mesh();
+            let nodes = vectors(py, mesh.positions().to_vec(), mesh.dimension())?;
+            Ok((name.into(), nodes, cells(py, mesh)?, mesh.kind().word(), sets(py, mesh)?))
+        };
+        self.file.scene.body().parts().map(of_part).collect()
     }
 
     /// Node sets: names and nodes, from 0.
@@ -305,7 +328,15 @@ pub fn read_gmsh(
 }
 
 /// Nodes of the cells, from 0: [cell, node].
+///
+/// # Errors
+/// Cells of several kinds.
 pub fn cells<'py>(py: Python<'py>, mesh: &Mesh) -> PyResult<Bound<'py, PyArray2<i64>>> {
+    if mesh.cells_with_kinds().any(|(kind, _)| kind != mesh.kind()) {
+        let help =
+            "the bodies have cells of different kinds: take the mesh of each, scene.bodies[name]";
+        return Err(PyValueError::new_err(help));
+    }
     let nodes: Vec<i64> = mesh.cells().flatten().map(|node| *node as i64).collect();
     PyArray1::from_vec(py, nodes).reshape([mesh.cell_count(), mesh.kind().nodes()])
 }

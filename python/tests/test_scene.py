@@ -88,6 +88,28 @@ def test_a_mesh_of_arrays_moves_as_the_generated_one():
     assert np.array_equal(again.mesh.sets["tip"], mesh.sets["right"])
 
 
+def test_several_bodies():
+    """Bodies by name: their meshes, and their parts of arrays; what falls together keeps its distance."""
+    soft = {"density": 1000.0, "young": 1e5, "poisson": 0.3, "viscosity": 10.0}
+    square = {"kind": "rectangle", "size": [0.1, 0.1], "nodes": [3, 3], "cells": "triangles"}
+    quadratic = {**square, "cells": "rectangles9", "origin": [0.5, 0.0]}
+    scene = pliant.Scene(
+        gravity=[0.0, -10.0],
+        body=[
+            {"name": "left", "mesh": square, "thickness": 0.01, "material": soft},
+            {"name": "right", "mesh": quadratic, "thickness": 0.01, "material": soft, "velocity": [0.0, 1.0]},
+        ],
+        phase={"until": 0.1},
+    )
+    assert [len(mesh.nodes) for mesh in scene.bodies.values()] == [9, 25]
+    assert scene.bodies["right"].kind == "quadrilaterals9"
+    motion = scene.run()
+    left, right = (motion.displacements[-1, nodes, 1] for nodes in motion.bodies.values())
+    assert len(right) == 25 and abs(right - left.mean() - 0.1).max() < 1e-9
+    with pytest.raises(ValueError, match="scene.bodies"):
+        motion.mesh  # noqa: B018
+
+
 def test_regions_of_a_listed_mesh():
     mesh = pliant.Scene(BEAM).mesh
     half = np.flatnonzero(mesh.nodes[mesh.cells].mean(axis=1)[:, 0] > 0.05)

@@ -131,7 +131,6 @@ mod tests {
         for (ends, most) in [([0.0, 5.0], 16), ([5.0, 0.0], 16), ([0.693, 0.694], 5)] {
             for (tolerance, off) in [(1e-14, 1e-14), (0.0, 1e-15)] {
                 let (points, count) = enclosed(ends, tolerance, |t| t.exp() - 2.0);
-                println!("{count}");
                 assert!(points.iter().all(|at| (at.t - root).abs() < off), "{points:?}");
                 assert!(count <= most, "{count}");
             }
@@ -145,7 +144,6 @@ mod tests {
         for (below, above, most) in [(-1.0, 1e6, 65), (f64::NEG_INFINITY, f64::INFINITY, 53)] {
             let step = |t: f64| if t < 0.3 { below } else { above };
             let ([near, far], count) = enclosed([0.0, 1.0], 0.0, step);
-            println!("{count}");
             assert!(near.t < 0.3 && far.t >= 0.3 && far.t - near.t < 1e-15, "{near:?} {far:?}");
             assert!(count <= most, "{count}");
         }

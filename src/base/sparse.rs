@@ -69,6 +69,13 @@ impl NodeMatrix {
         moved
     }
 
+    /// The matrices of several bodies as one.
+    pub(crate) fn join<'a>(bodies: impl Iterator<Item = &'a Self> + Clone) -> Self {
+        let pattern = NodePattern::join(bodies.clone().map(|body| &*body.pattern));
+        let values = bodies.flat_map(|body| &body.values).copied().collect();
+        Self { pattern: pattern.into(), values }
+    }
+
     /// Whether no entry couples two different nodes.
     pub(crate) fn is_diagonal(&self) -> bool {
         let row_is = |row| {
@@ -124,6 +131,25 @@ pub struct BlockMatrix {
 impl BlockMatrix {
     pub(crate) fn zeros(pattern: &Arc<NodePattern>, dimension: usize) -> Self {
         let values = vec![0.0; pattern.entries() * dimension * dimension];
+        Self { pattern: pattern.clone(), dimension, values }
+    }
+
+    /// The matrices of several bodies as one on the `pattern` that joins theirs; 0 for a body without a matrix,
+    /// of which the pattern is given.
+    pub(crate) fn join<'a>(
+        pattern: &Arc<NodePattern>,
+        dimension: usize,
+        bodies: impl Iterator<Item = Result<&'a Self, &'a NodePattern>>,
+    ) -> Self {
+        let mut values = Vec::with_capacity(pattern.entries() * dimension * dimension);
+        for body in bodies {
+            match body {
+                Ok(matrix) => values.extend_from_slice(&matrix.values),
+                Err(none) => {
+                    values.resize(values.len() + none.entries() * dimension * dimension, 0.0);
+                }
+            }
+        }
         Self { pattern: pattern.clone(), dimension, values }
     }
 

@@ -57,6 +57,11 @@ fn with(example: &str, mesh: &str) -> String {
     if !PARTS.iter().any(|(part, _)| *part == place) {
         text += example; // a table of its own
     }
+    if key == "[[tie]]" {
+        let beside = mesh.replace(" }", ", origin = [0.1, 0.0] }");
+        let tip = format!("[[body]]\nname = \"tip\"\nthickness = 0.01\n{beside}{MATERIAL}");
+        text = text.replace("[body]\n", &format!("{tip}[[body]]\nname = \"base\"\n"));
+    }
     text
 }
 
@@ -95,6 +100,8 @@ fn the_schema_knows_the_scenes() {
             if line.starts_with('[') {
                 let name = line.split_inclusive(']').collect::<String>();
                 let name = name.split('#').next().unwrap().trim();
+                // a list of bodies
+                let name = if name == "[[body]]" { "[body]" } else { name };
                 let definition = &schema["definitions"][name];
                 assert!(definition.is_object(), "{path:?}: {name}");
                 table = definition;

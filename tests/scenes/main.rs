@@ -30,6 +30,7 @@ mod relaxing;
 mod ring;
 mod rubber_motion;
 mod sensors;
+mod several;
 mod simulation;
 mod slips;
 mod square_jump;

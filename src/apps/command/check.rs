@@ -1,9 +1,13 @@
 //! `pliant check`
 
+use std::collections::BTreeSet;
+
 use clap::Args;
 use pliant::scene_file::Format;
 use pliant::studies::work_precision::Look;
-use pliant::{Dilatation, Lame, Law, PhaseSummary, Scene, SceneFile, Settings, Strain, Substance};
+use pliant::{
+    Dilatation, Lame, Law, Part, PhaseSummary, Scene, SceneFile, Settings, Strain, Substance,
+};
 
 use crate::failure::{Failure, print};
 use crate::scene::SceneArguments;
@@ -52,16 +56,22 @@ fn line(label: &str, text: &str) -> Result<(), Failure> {
 fn body(scene: &Scene) -> Result<(), Failure> {
     let body = scene.body();
     let mesh = body.mesh();
-    let kind = format!("{:?}", mesh.kind()).to_lowercase();
+    let kinds = body.parts().map(|part| format!("{:?}", part.body.mesh().kind()).to_lowercase());
+    let kind = kinds.collect::<BTreeSet<_>>().into_iter().collect::<Vec<_>>().join(", ");
     let (nodes, cells, boundary) =
         (mesh.node_count(), mesh.cell_count(), mesh.boundary_nodes().len());
     line("mesh", &format!("{nodes} nodes ({boundary} on the boundary), {cells} cells ({kind})"))?;
     let sets = mesh.sets().iter().map(|(name, nodes)| format!("{name} ({})", nodes.len()));
     line("node sets", &sets.collect::<Vec<_>>().join(", "))?;
-    let (size, mass, dofs) = (mesh.size(), body.mass(), body.dofs());
+    body.parts().try_for_each(|part| part_of(&part))
+}
+
+fn part_of(Part { name, body, .. }: &Part) -> Result<(), Failure> {
+    let (size, mass, dofs) = (body.mesh().size(), body.mass(), body.dofs());
     let strain = format!("{:?}", body.strain()).to_lowercase();
     let viscosity = format!("{:?}", body.viscosity()).to_lowercase();
-    line("body", &format!("{size:.4} m across, {mass:.4} kg, {dofs} displacements"))?;
+    let name = if name.is_empty() { String::new() } else { format!("\"{name}\": ") };
+    line("body", &format!("{name}{size:.4} m across, {mass:.4} kg, {dofs} displacements"))?;
     let dilatation = match body.dilatation() {
         Dilatation::AtPoints => "",
         Dilatation::Mean => ", mean dilatation",

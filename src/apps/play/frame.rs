@@ -66,6 +66,6 @@ pub(super) fn mesh(scene: &Scene) -> Value {
     json!({
         "nodes": mesh.node_count(),
         "cells": mesh.cell_count(),
-        "cellName": mesh.kind().name(),
+        "cellName": scene.body().cell_names(),
     })
 }

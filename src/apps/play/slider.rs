@@ -40,7 +40,7 @@ impl Slider {
         let young = scene.body().material().young;
         let pressure = USUAL * young;
         // what a spring of the stiffness of the body needs for half of that strain is a usual force
-        let force = USUAL * young * scene.body().volume() / scene.body().mesh().size();
+        let force = USUAL * young * scene.body().volume() / scene.body().size();
         let chambers = scene.chambers().iter().map(|chamber| {
             let target = Target::Pressure(chamber.name().to_owned());
             let range = [target.largest_in(scene), pressure];

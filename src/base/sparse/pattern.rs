@@ -58,6 +58,20 @@ impl NodePattern {
         wider
     }
 
+    /// The patterns of several bodies as one: their rows and entries one after the other. No pair of two bodies
+    /// is coupled.
+    pub(crate) fn join<'a>(bodies: impl Iterator<Item = &'a Self>) -> Self {
+        let mut joined =
+            Self { offsets: vec![0], columns: Vec::new(), transposed: Vec::new(), widened: None };
+        for body in bodies {
+            let (node, entry) = (joined.nodes(), joined.entries());
+            joined.offsets.extend(body.offsets[1..].iter().map(|offset| entry + offset));
+            joined.columns.extend(body.columns.iter().map(|column| node + column));
+            joined.transposed.extend(body.transposed.iter().map(|other| entry + other));
+        }
+        joined
+    }
+
     /// Number of nodes.
     pub fn nodes(&self) -> usize {
         self.offsets.len() - 1

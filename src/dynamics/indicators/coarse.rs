@@ -3,7 +3,8 @@
 use super::mesh::quadratic_cells;
 use crate::base::input::told;
 use crate::dynamics::report::Indicator;
-use crate::dynamics::trajectory::{Sample, Trajectory};
+use crate::dynamics::trajectory::Sample;
+use crate::elements::body::Body;
 
 /// Largest factor by which its cells may make a body too stiff.
 const MOST_STIFF: f64 = 1.25;
@@ -16,14 +17,14 @@ const LEAST_STRAIN: f64 = 1e-8;
 
 /// Too few linear cells where the strain varies, as through the thickness of a beam in bending. The strain
 /// energy of the jumps between cells is an effect of the mesh, which makes the body that much too stiff.
-pub(super) fn coarse(trajectory: &Trajectory, samples: &[&Sample]) -> Option<Indicator> {
-    let body = trajectory.body();
+/// `energy_scale` (J) is that of the motion.
+pub(super) fn coarse(body: &Body, energy_scale: f64, samples: &[&Sample]) -> Option<Indicator> {
     let help = quadratic_cells(body.mesh().kind())?;
-    let young = body.materials().iter().map(|material| material.young).fold(0.0, f64::max);
+    let young = body.materials().map(|material| material.young).fold(0.0, f64::max);
     let round_off = 0.5 * young * body.volume() * LEAST_STRAIN.powi(2);
     let energy = |sample: &Sample| sample.energy.strain;
     let largest = samples.iter().map(|sample| energy(sample)).fold(0.0, f64::max);
-    if largest <= round_off.max(SEEN * trajectory.report.energy_scale) {
+    if largest <= round_off.max(SEEN * energy_scale) {
         return None;
     }
     let counts = samples.iter().filter(|sample| energy(sample) >= LARGE * largest);

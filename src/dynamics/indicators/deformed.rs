@@ -6,7 +6,7 @@ use super::rigid::without_turn;
 use super::shape::Extent;
 use crate::base::input::{percent, told};
 use crate::dynamics::report::Indicator;
-use crate::dynamics::trajectory::{Sample, Trajectory};
+use crate::dynamics::trajectory::Sample;
 use crate::elements::body::{Body, Strain};
 use crate::elements::material::Law;
 
@@ -59,22 +59,17 @@ impl Deformed {
     }
 
     /// The indicators, of a body of this `extent` if that is known.
-    pub(super) fn indicators(
-        &self,
-        trajectory: &Trajectory,
-        extent: Option<&Extent>,
-    ) -> Vec<Indicator> {
-        let strain = trajectory.body().strain();
+    pub(super) fn indicators(&self, body: &Body, extent: Option<&Extent>) -> Vec<Indicator> {
+        let strain = body.strain();
         let slenderness = extent.map(Extent::slenderness);
         let nonlinear =
             slenderness.filter(|_| strain == Strain::Green && self.strain > LEAST_STRAIN);
         // only bodies with Green's strain have fibres
-        let has_fibres = trajectory.body().substances().any(|of| !of.fibres.is_empty());
+        let has_fibres = body.substances().any(|of| !of.fibres.is_empty());
         let nonlinear = nonlinear.filter(|_| !has_fibres);
-        let nonlinear =
-            nonlinear.map(|slenderness| self.nonlinearity(trajectory.body(), slenderness));
-        let turns = (trajectory.body().mesh().kind().dimension() > 1).then(|| self.turns());
-        [self.largest_strain(trajectory.body())].into_iter().chain(turns).chain(nonlinear).collect()
+        let nonlinear = nonlinear.map(|slenderness| self.nonlinearity(body, slenderness));
+        let turns = (body.mesh().kind().dimension() > 1).then(|| self.turns());
+        [self.largest_strain(body)].into_iter().chain(turns).chain(nonlinear).collect()
     }
 
     fn turns(&self) -> Indicator {

@@ -1,7 +1,10 @@
 //! What can be checked on a body before it moves: its cells and its pieces.
 
+use std::collections::BTreeMap;
+
+use super::each::named;
 use crate::dynamics::report::Indicator;
-use crate::elements::body::{Body, Dilatation};
+use crate::elements::body::{Body, Dilatation, Part};
 use crate::elements::force::Force;
 use crate::elements::material::NEARLY_INCOMPRESSIBLE;
 use crate::elements::mesh::CellKind;
@@ -17,7 +20,7 @@ pub(super) fn locking(body: &Body) -> Option<Indicator> {
     if !body.can_lock() {
         return None;
     }
-    let most = body.materials().iter().map(|material| material.poisson).fold(-1.0, f64::max);
+    let most = body.materials().map(|material| material.poisson).fold(-1.0, f64::max);
     locking_linear(body, most).or_else(|| locking_quadratic(body, most))
 }
 
@@ -106,20 +109,31 @@ fn is_crossed(body: &Body) -> bool {
     mesh.cells().all(|cell| cell.iter().any(|&node| cells_at[node] == 4))
 }
 
-/// Pieces of the body that neither cells nor springs, other forces or constraints of several nodes join.
-pub(super) fn pieces(scene: &Scene) -> Option<Indicator> {
-    let pattern = scene.body().inertia().pattern();
+/// Pieces of each body that neither cells nor springs, other forces or constraints of several nodes join.
+pub(super) fn pieces(scene: &Scene) -> Vec<Indicator> {
+    let body = scene.body();
+    let mut pieces = body.inertia().pattern().pieces();
+    if pieces.iter().max() >= Some(&body.parts().count()) {
+        pieces = body.inertia().pattern().with_pairs(&joints(scene)).pieces();
+    }
+    let of_body = |part: Part| {
+        named(part.name, body, pieces_of(&pieces[part.nodes.clone()], part.nodes.start).into_iter())
+    };
+    body.parts().flat_map(of_body).collect()
+}
+
+/// Those of a body whose nodes are in these `pieces`; `first_node` is the first of them.
+fn pieces_of(pieces: &[usize], first_node: usize) -> Option<Indicator> {
     let whole = || "the body is of one piece (limit: 1 piece)".to_owned();
-    if pattern.pieces().iter().all(|&piece| piece == 0) {
+    let mut sizes = BTreeMap::new();
+    pieces.iter().for_each(|&piece| *sizes.entry(piece).or_insert(0) += 1);
+    let count = sizes.len();
+    if count == 1 {
         return Some(Indicator::trusted("pieces", (1.0, ""), [1.0, 1.0], whole, String::new));
     }
-    let pieces = pattern.with_pairs(&joints(scene)).pieces();
-    let count = pieces.iter().max().map_or(1, |last| last + 1);
-    let mut sizes = vec![0; count];
-    pieces.iter().for_each(|&piece| sizes[piece] += 1);
     // point masses come after all other nodes, so that the smallest piece is identified by its first node
-    let (smallest, nodes) = sizes.iter().enumerate().min_by_key(|(_, nodes)| **nodes)?;
-    let first = pieces.iter().position(|&piece| piece == smallest)?;
+    let (smallest, nodes) = sizes.into_iter().min_by_key(|(_, nodes)| *nodes)?;
+    let first = first_node + pieces.iter().position(|&piece| piece == smallest)?;
     let beyond = || {
         format!(
             "the body consists of {count} pieces that nothing joins and that pass through each other (limit: \

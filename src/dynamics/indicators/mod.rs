@@ -41,6 +41,7 @@
 mod chamber;
 mod coarse;
 mod deformed;
+mod each;
 mod felt;
 mod grid;
 mod mesh;
@@ -58,10 +59,12 @@ mod units;
 mod waves;
 
 use deformed::Deformed;
+use each::{each_body, named};
 use shape::Extent;
 
 use crate::dynamics::report::{Indicator, warnings};
 use crate::dynamics::trajectory::{Sample, Trajectory};
+use crate::elements::body::Part;
 use crate::scene::timeline::Scene;
 
 impl Scene {
@@ -90,10 +93,12 @@ impl Scene {
     /// begins inside. Indicators beyond their limits are the [`warnings`](Self::warnings).
     pub fn indicators(&self) -> Vec<Indicator> {
         let body = self.body();
-        units::units(self)
-            .into_iter()
-            .chain(mesh::locking(body))
-            .chain(mesh::pieces(self))
+        let of_body = |part: Part| {
+            let measured = units::units(self, part.body).into_iter();
+            named(part.name, body, measured.chain(mesh::locking(part.body)))
+        };
+        let each = body.parts().flat_map(of_body);
+        each.chain(mesh::pieces(self))
             .chain(overlap::drawn(body))
             .chain(touch::begun_inside(self))
             .collect()
@@ -118,18 +123,21 @@ impl Trajectory {
     /// ```
     pub fn indicators(&self) -> Vec<Indicator> {
         let (body, samples) = (self.body(), looked_at(self));
-        let deformed = Deformed::of(body, &samples);
-        let extent = Extent::of(body);
-        let mut all = self.report().indicators.clone();
-        all.extend(deformed.indicators(self, extent.as_ref()));
-        all.extend(
-            extent
-                .iter()
-                .flat_map(|extent| extent.indicators(body, deformed.own_turn, deformed.strain)),
-        );
         let inertia = pace::inertia(&samples);
         let is_static = inertia.as_ref().is_some_and(Indicator::is_beyond);
-        all.extend(waves::resolution(self, &samples, is_static));
+        let mut all = self.report().indicators.clone();
+        all.extend(each_body(self, &samples, |body, samples| {
+            let deformed = Deformed::of(body, samples);
+            let extent = Extent::of(body);
+            let mut own = deformed.indicators(body, extent.as_ref());
+            own.extend(
+                extent
+                    .iter()
+                    .flat_map(|extent| extent.indicators(body, deformed.own_turn, deformed.strain)),
+            );
+            own.extend(waves::resolution(body, samples, is_static));
+            own
+        }));
         all.extend(points::single(self, &samples));
         all.extend(felt::depth(self, &samples, &touch::meetings(self, &samples)));
         all.extend(felt::friction(self, &samples));
@@ -192,13 +200,15 @@ fn overlaps(trajectory: &Trajectory) -> Option<Indicator> {
 }
 
 /// Deformations that cells cannot represent.
-fn of_cells(trajectory: &Trajectory, samples: &[&Sample]) -> impl Iterator<Item = Indicator> {
-    let measured = [
-        strain::turning(trajectory, samples),
-        strain::inversion(trajectory, samples),
-        coarse::coarse(trajectory, samples),
-    ];
-    measured.into_iter().flatten()
+fn of_cells(trajectory: &Trajectory, samples: &[&Sample]) -> Vec<Indicator> {
+    each_body(trajectory, samples, |body, samples| {
+        let measured = [
+            strain::turning(body, samples),
+            strain::inversion(body, samples),
+            coarse::coarse(body, trajectory.report().energy_scale, samples),
+        ];
+        measured.into_iter().flatten().collect()
+    })
 }
 
 /// Largest numbers of samples, and of cells in all of them, that are evaluated; few samples always are.

@@ -1,7 +1,5 @@
 //! Whether a body passes through itself, or pieces of it through each other: no force resists that.
 
-use std::borrow::Cow;
-
 use super::grid::Grid;
 use super::size::cell_sizes;
 use super::skin::{Skin, points};
@@ -9,7 +7,8 @@ use crate::base::input::told;
 use crate::dynamics::report::Indicator;
 use crate::dynamics::trajectory::Sample;
 use crate::elements::basis::shares_in;
-use crate::elements::body::Body;
+use crate::elements::body::{Body, Part};
+use crate::elements::mesh::CellKind;
 use crate::scene::forces::SurfacePoint;
 
 /// How deep a point of the boundary may be within a cell of another part of the body, relative to the size of
@@ -42,20 +41,20 @@ struct Overlaps<'a> {
     body: &'a Body,
     skin: Skin<'a>,
     points: Vec<SurfacePoint>,
-    cells: Vec<&'a [usize]>,
+    cells: Vec<(CellKind, &'a [usize])>,
     /// Largest depth allowed for a point within each cell (m).
     limits: Vec<f64>,
 }
 
 impl<'a> Overlaps<'a> {
-    /// Only for a body that fills its space; others have no inside.
+    /// Only where a body fills its space; others have no inside.
     fn new(body: &'a Body) -> Option<Self> {
-        let mesh = body.mesh();
-        (mesh.kind().dimension() == mesh.dimension()).then(|| Self {
+        let fills_space = |part: Part| part.body.mesh().kind().dimension() == body.dimension();
+        body.parts().any(fills_space).then(|| Self {
             body,
             skin: Skin::new(body),
             points: points(body),
-            cells: mesh.cells().collect(),
+            cells: body.mesh().cells_with_kinds().collect(),
             limits: cell_sizes(body).into_iter().map(|size| MOST_OF_CELL * size).collect(),
         })
     }
@@ -70,7 +69,10 @@ impl<'a> Overlaps<'a> {
         let places: Vec<[f64; 3]> = self.points.iter().map(|point| point.at(&now, d)).collect();
         let grid = Grid::new(&places);
         let mut met = Vec::new();
-        for (number, cell) in self.cells.iter().enumerate() {
+        for (number, (kind, cell)) in self.cells.iter().enumerate() {
+            if kind.dimension() != d {
+                continue;
+            }
             let mut corners = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
             corners.iter_mut().for_each(|corner| corner[d..].fill(0.0));
             for &node in *cell {
@@ -81,7 +83,7 @@ impl<'a> Overlaps<'a> {
             }
             grid.each_within(&corners, |point| {
                 if !self.is_near(point, cell)
-                    && let Some(shares) = shares_in(mesh, &now, cell, &places[point][..d])
+                    && let Some(shares) = shares_in((*kind, d), &now, cell, &places[point][..d])
                 {
                     met.push((point, number, shares));
                 }
@@ -95,7 +97,7 @@ impl<'a> Overlaps<'a> {
         let mut is_redirected = vec![false; mesh.node_count()];
         inverted
             .iter()
-            .flat_map(|&cell| self.cells[cell])
+            .flat_map(|&cell| self.cells[cell].1)
             .for_each(|&node| is_redirected[node] = true);
         met.retain(|(point, cell, _)| {
             let is_redirected = self.points[*point].nodes().any(|(node, _)| is_redirected[node]);
@@ -117,7 +119,7 @@ impl<'a> Overlaps<'a> {
 
     /// The depth of a point, the cell that it is in, counted from 1, and the limit.
     fn names(&self, entry: &Entry) -> String {
-        let cell: Vec<usize> = self.cells[entry.cell].iter().map(|node| node + 1).collect();
+        let cell: Vec<usize> = self.cells[entry.cell].1.iter().map(|node| node + 1).collect();
         let limit = told(entry.limit);
         format!(
             "{} m within cell {} (nodes {cell:?}; limit: {limit} m, a twentieth of the cell)",
@@ -211,10 +213,19 @@ pub(super) fn overlap(body: &Body, samples: &[&Sample]) -> Option<Indicator> {
         };
         let (node, at) = (overlaps.node(deepest), told(sample.time));
         let pieces = body.inertia().pattern().pieces();
-        let what: Cow<str> = match [node, overlaps.cells[deepest.cell][0]].map(|node| pieces[node])
-        {
-            [own, other] if own == other => "the body passes through itself".into(),
-            _ => "pieces of the body pass through each other".into(),
+        let nodes = [node, overlaps.cells[deepest.cell].1[0]];
+        let what = match (nodes.map(|node| pieces[node]), nodes.map(|node| body.part_of(node))) {
+            (_, [own, other]) if own.nodes != other.nodes => {
+                format!("body \"{}\" passes through body \"{}\"", own.name, other.name)
+            }
+            ([own, other], [part, _]) => {
+                let name =
+                    if body.is_single() { "the body" } else { &format!("body \"{}\"", part.name) };
+                match own == other {
+                    true => format!("{name} passes through itself"),
+                    false => format!("pieces of {name} pass through each other"),
+                }
+            }
         };
         let since = if first == sample.time {
             String::new()

@@ -102,7 +102,7 @@ pub(super) fn drift(trajectory: &Trajectory, samples: &[&Sample]) -> Option<Indi
 pub(super) fn tolerance(trajectory: &Trajectory, samples: &[&Sample]) -> Option<Indicator> {
     let (tolerance, body) = (trajectory.report().atol_position, trajectory.body());
     let way = travel(body, samples);
-    if way <= REST * body.mesh().size() {
+    if way <= REST * body.size() {
         return None;
     }
     let (part, most) =
@@ -118,7 +118,7 @@ pub(super) fn tolerance(trajectory: &Trajectory, samples: &[&Sample]) -> Option<
         format!(
             "{said}, and errors may be as large: set atol_position to {enough} m or below; or, if the body ought to move \
              further than {} of its size, look at the units of young and of what loads it",
-            percent(way / body.mesh().size())
+            percent(way / body.size())
         )
     };
     let limits = [0.0, most];

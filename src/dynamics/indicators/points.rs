@@ -19,17 +19,21 @@ const MOST_GROWTH: f64 = 0.01;
 /// compared with the motion do not count.
 pub(super) fn single(trajectory: &Trajectory, samples: &[&Sample]) -> Option<Indicator> {
     let body = trajectory.body();
-    let (mesh, way) = (body.mesh(), travel(body, samples));
-    let dimension = mesh.kind().dimension();
+    let way = travel(body, samples);
+    let dimension = body.parts().map(|part| part.body.mesh().kind().dimension()).max()?;
     if dimension < 2 || way == 0.0 {
         return None;
     }
-    let young =
-        body.materials().iter().map(|material| material.young).fold(f64::INFINITY, f64::min);
     let sizes = least_cell_sizes(body);
-    let growth = |force: f64, node: usize| match dimension {
-        2 => 2.0 * force * LN_2 / (PI * young * body.section()),
-        _ => force / (young * sizes[node]),
+    let growth = |force: f64, node: usize| {
+        let own = body.part_of(node).body;
+        let moduli = own.materials().map(|material| material.young);
+        let young = moduli.fold(f64::INFINITY, f64::min);
+        match own.mesh().kind().dimension() {
+            1 => 0.0,
+            2 => 2.0 * force * LN_2 / (PI * young * own.section()),
+            _ => force / (young * sizes[node]),
+        }
     };
     // nodes that share a cell
     let pattern = body.inertia().pattern();

@@ -1,15 +1,18 @@
 //! Sizes of cells.
 
-use crate::elements::body::Body;
+use crate::elements::body::{Body, Part};
 
 /// The size (m) of each cell: the edge of a square or cube that is cut into such cells, or that is such a cell.
 pub(super) fn cell_sizes(body: &Body) -> Vec<f64> {
-    let dimension = body.mesh().kind().dimension();
-    let size = |volume: f64| (volume / body.section()).powf(1.0 / dimension as f64);
-    block_volumes(body).map(size).collect()
+    let of_body = |part: Part| {
+        let (dimension, section) = (part.body.mesh().kind().dimension(), part.body.section());
+        let size = move |volume: f64| (volume / section).powf(1.0 / dimension as f64);
+        block_volumes(part.body).map(size).collect::<Vec<f64>>()
+    };
+    body.parts().flat_map(of_body).collect()
 }
 
-/// For each cell the volume (m^3) of the block that it is cut from, or is itself.
+/// For each cell of a single body the volume (m^3) of the block that it is cut from, or is itself.
 pub(super) fn block_volumes(body: &Body) -> impl Iterator<Item = f64> {
     let kind = body.mesh().kind();
     // the parallelepiped of the edges of a simplex has this many times its volume

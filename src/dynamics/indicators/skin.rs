@@ -3,9 +3,10 @@
 use std::collections::BTreeMap;
 
 use super::size::block_volumes;
-use crate::base::vector::{dot, norm};
-use crate::elements::body::Body;
-use crate::elements::mesh::Mesh;
+use crate::base::vector::norm;
+use crate::elements::basis::closest;
+use crate::elements::body::{Body, Part};
+use crate::elements::mesh::{CellKind, Mesh};
 use crate::scene::forces::{SurfacePoint, boundary_nodes, edge_points, face_centre, pieces};
 
 /// An edge is divided into at most this many parts.
@@ -28,19 +29,19 @@ pub(super) struct Skin<'a> {
 impl<'a> Skin<'a> {
     pub(super) fn new(body: &'a Body) -> Self {
         let mesh = body.mesh();
-        let cut = pieces(mesh.face_kind());
         let faces = mesh.boundary_faces();
         let of_face = |face: &Vec<usize>| {
             let nodes = |part: &[usize]| part.iter().map(|&local| face[local]).collect();
-            cut.clone().map(|(part, _)| nodes(part)).collect::<Vec<Vec<usize>>>()
+            let cut = pieces(mesh.face_kind(face));
+            cut.map(|(part, _)| nodes(part)).collect::<Vec<Vec<usize>>>()
         };
         let parts: Vec<Vec<usize>> = faces.iter().flat_map(of_face).collect();
         let mut at_nodes = vec![Vec::new(); mesh.node_count()];
         for (number, part) in parts.iter().enumerate() {
             part.iter().for_each(|&node| at_nodes[node].push(number));
         }
-        let edges = mesh.cells().flat_map(|cell| {
-            mesh.kind().edges().iter().map(|edge| length(mesh, cell[edge[0]], cell[edge[1]]))
+        let edges = mesh.cells_with_kinds().flat_map(|(kind, cell)| {
+            kind.edges().iter().map(|edge| length(mesh, cell[edge[0]], cell[edge[1]]))
         });
         let longest = edges.fold(0.0, f64::max);
         Self { body, parts, at_nodes, longest, seen: vec![0; mesh.node_count()], searches: 0 }
@@ -94,14 +95,19 @@ pub(super) fn points(body: &Body) -> Vec<SurfacePoint> {
     if mesh.dimension() < 2 {
         return points;
     }
-    let blocks: Vec<f64> = block_volumes(body).map(|volume| volume / body.section()).collect();
+    let of_body = |part: Part| {
+        let section = part.body.section();
+        block_volumes(part.body).map(|volume| volume / section).collect::<Vec<f64>>()
+    };
+    let blocks: Vec<f64> = body.parts().flat_map(of_body).collect();
     // an edge of two cells is divided as the thinner one requires
     let mut edges: BTreeMap<[usize; 2], (Vec<usize>, usize)> = BTreeMap::new();
-    let cells: Vec<&[usize]> = mesh.cells().collect();
+    let cells: Vec<(CellKind, &[usize])> = mesh.cells_with_kinds().collect();
     for (cell, face) in mesh.boundary_faces_of_cells() {
-        points.extend(face_centre(mesh.face_kind(), &face));
-        for edge in mesh.kind().edges() {
-            let edge: Vec<usize> = edge.iter().map(|&local| cells[cell][local]).collect();
+        points.extend(face_centre(mesh.face_kind(&face), &face));
+        let (kind, nodes) = cells[cell];
+        for edge in kind.edges() {
+            let edge: Vec<usize> = edge.iter().map(|&local| nodes[local]).collect();
             if !edge[..2].iter().all(|end| face.contains(end)) {
                 continue;
             }
@@ -148,66 +154,4 @@ fn mean(
         x.iter_mut().zip(of_node).for_each(|(x, y)| *x += share * y);
     }
     x
-}
-
-/// Barycentric coordinates, by the `corners` of a point, segment or triangle, of its point that is nearest to
-/// `x`.
-fn closest(corners: &[[f64; 3]], x: &[f64; 3]) -> [f64; 3] {
-    match corners {
-        [_] => [1.0, 0.0, 0.0],
-        [a, b] => {
-            let along = difference(b, a);
-            let part = dot(&difference(x, a), &along) / dot(&along, &along);
-            let part = part.clamp(0.0, 1.0);
-            [1.0 - part, part, 0.0]
-        }
-        [a, b, c, ..] => {
-            let (ab, ac, ax) = (difference(b, a), difference(c, a), difference(x, a));
-            let [bb, bc, cc] = [dot(&ab, &ab), dot(&ab, &ac), dot(&ac, &ac)];
-            let [bx, cx] = [dot(&ab, &ax), dot(&ac, &ax)];
-            let whole = bb * cc - bc * bc;
-            let [of_b, of_c] = [(cc * bx - bc * cx) / whole, (bb * cx - bc * bx) / whole];
-            if of_b >= 0.0 && of_c >= 0.0 && of_b + of_c <= 1.0 {
-                return [1.0 - of_b - of_c, of_b, of_c];
-            }
-            // outside the triangle: the nearest point is on one of its edges
-            let on = [[0, 1], [1, 2], [2, 0]].map(|[from, to]| {
-                let part = closest(&[corners[from], corners[to]], x);
-                let mut shares = [0.0; 3];
-                (shares[from], shares[to]) = (part[0], part[1]);
-                shares
-            });
-            let away = |shares: &[f64; 3]| {
-                let there = |i: usize| (0..3).map(|k| shares[k] * corners[k][i]).sum();
-                distance(&std::array::from_fn(there), x)
-            };
-            on.into_iter().min_by(|p, q| away(p).total_cmp(&away(q))).unwrap_or([1.0, 0.0, 0.0])
-        }
-        [] => [0.0; 3],
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::base::vector::noise;
-
-    /// No point of a fine lattice on it is nearer.
-    #[test]
-    fn the_nearest_point_of_a_triangle() {
-        let corners = [[0.0, 0.1, 0.0], [1.0, 0.0, 0.3], [0.2, 0.9, -0.2]];
-        let at = |shares: [f64; 3]| -> [f64; 3] {
-            std::array::from_fn(|i| (0..3).map(|k| shares[k] * corners[k][i]).sum())
-        };
-        const N: usize = 60;
-        for x in noise(150, 3).chunks_exact(3) {
-            let x: [f64; 3] = std::array::from_fn(|i| 1.5 * x[i]);
-            let found = distance(&at(closest(&corners, &x)), &x);
-            let lattice = (0..=N).flat_map(|i| (0..=N - i).map(move |j| [i, j, N - i - j]));
-            let away = lattice.map(|parts| distance(&at(parts.map(|p| p as f64 / N as f64)), &x));
-            let least = away.fold(f64::INFINITY, f64::min);
-            // an edge of the lattice is 1/60 of 1.1
-            assert!(found <= least + 1e-12 && least < found + 0.02, "{found} {least}");
-        }
-    }
 }

@@ -2,7 +2,7 @@
 
 use crate::base::input::told;
 use crate::dynamics::report::Indicator;
-use crate::dynamics::trajectory::{Sample, Trajectory};
+use crate::dynamics::trajectory::Sample;
 use crate::elements::body::{Body, Strain};
 
 /// Degrees by which a cell may turn under Cauchy strain: they count as a strain of 1.5 %.
@@ -10,11 +10,11 @@ const MOST_TURN: f64 = 10.0;
 
 /// Cells that turn further than Cauchy strain allows: it takes a rotation by theta for a compression by
 /// 1 - cos theta.
-pub(super) fn turning(trajectory: &Trajectory, samples: &[&Sample]) -> Option<Indicator> {
-    if trajectory.body().strain() != Strain::Cauchy {
+pub(super) fn turning(body: &Body, samples: &[&Sample]) -> Option<Indicator> {
+    if body.strain() != Strain::Cauchy {
         return None;
     }
-    let most = largest_turn(trajectory.body(), samples);
+    let most = largest_turn(body, samples);
     let false_strain = |angle: f64| 100.0 * (1.0 - angle.cos());
     let told = format!(
         "cells turn by up to {:.1} degrees, which Cauchy strain takes for a strain of {:.1} % (limit: \
@@ -34,8 +34,7 @@ pub(super) fn largest_turn(body: &Body, samples: &[&Sample]) -> f64 {
 }
 
 /// Cells that are turned inside out, which linear forces do not resist.
-pub(super) fn inversion(trajectory: &Trajectory, samples: &[&Sample]) -> Option<Indicator> {
-    let body = trajectory.body();
+pub(super) fn inversion(body: &Body, samples: &[&Sample]) -> Option<Indicator> {
     if body.strain() != Strain::Cauchy {
         return None;
     }

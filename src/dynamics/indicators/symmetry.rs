@@ -23,8 +23,7 @@ const AXES: [&str; 3] = ["x", "y", "z"];
 /// plane, and the change of those along it in the normal direction, relative to the deformation and rotation
 /// of the body.
 pub(super) fn plane(body: &Body, samples: &[&Sample]) -> Option<Indicator> {
-    let mesh = body.mesh();
-    if mesh.kind().dimension() != 3 {
+    if body.parts().any(|part| part.body.mesh().kind().dimension() != 3) {
         return None;
     }
     let scale = motion(body, samples)?;

@@ -74,7 +74,7 @@ pub(super) fn meetings(trajectory: &Trajectory, samples: &[&Sample]) -> Vec<Meet
     }
     let limits = depth_limits(scene.body());
     // precision of speeds of paths given by formulas
-    let precision = 1e-3 * scene.body().mesh().size();
+    let precision = 1e-3 * scene.body().size();
     let mut meetings: Vec<Meeting> = Vec::new();
     let mut acting: Option<(&Phase, Vec<Contact>)> = None;
     let mut last = 0.0;
@@ -112,7 +112,7 @@ pub(super) fn meetings(trajectory: &Trajectory, samples: &[&Sample]) -> Vec<Meet
 
 /// For each node the depth (m) up to which it may be inside an obstacle, by the smallest of its cells.
 fn depth_limits(body: &Body) -> Vec<f64> {
-    let least = MOST_OF_BODY * body.mesh().size();
+    let least = MOST_OF_BODY * body.size();
     least_cell_sizes(body).into_iter().map(|size| f64::max(MOST_OF_CELL * size, least)).collect()
 }
 

@@ -26,12 +26,11 @@ const PER_METRE: f64 = 1.0;
 const HEAVIEST_STRAIN: f64 = 1.0;
 
 /// The indicators; those that the scene declares as [meant](Scene::unusual) count as within their limits.
-pub(super) fn units(scene: &Scene) -> Vec<Indicator> {
-    let body = scene.body();
+pub(super) fn units(scene: &Scene, body: &Body) -> Vec<Indicator> {
     let mut all = extent(body);
     all.extend(materials(body));
     all.extend(thickness(body));
-    all.extend(weight(scene));
+    all.extend(weight(scene, body));
     for indicator in &mut all {
         let is_meant = scene.unusual_quantities().iter().any(|name| name == indicator.name);
         if is_meant && indicator.is_beyond() {
@@ -69,7 +68,7 @@ fn extent(body: &Body) -> Vec<Indicator> {
 fn materials(body: &Body) -> Vec<Indicator> {
     let mut all = Vec::new();
     // materials that no cell is made of do not count
-    let used = body.substances().filter(|used| body.materials().contains(&used.material));
+    let used = body.substances().filter(|used| body.materials().any(|own| *own == used.material));
     for substance in used {
         let material = &substance.material;
         let density = material.density;
@@ -134,8 +133,7 @@ fn thickness(body: &Body) -> Option<Indicator> {
 
 /// How far a column of the softest material, as high as the body, is compressed by its own weight: rho g H /
 /// E.
-fn weight(scene: &Scene) -> Option<Indicator> {
-    let body = scene.body();
+fn weight(scene: &Scene, body: &Body) -> Option<Indicator> {
     let gravities = scene.phases().iter().filter_map(|phase| scene.gravity_in(phase));
     let gravity = gravities.max_by(|a, b| norm(a).total_cmp(&norm(b)))?;
     let strength = norm(gravity);
@@ -148,7 +146,7 @@ fn weight(scene: &Scene) -> Option<Indicator> {
         (low.min(height), high.max(height))
     });
     let strain = |material: &Material| material.density * strength * (high - low) / material.young;
-    let strain = body.materials().iter().map(strain).fold(0.0, f64::max);
+    let strain = body.materials().map(strain).fold(0.0, f64::max);
     let said = format!(
         "a column as high as the body is strained by {} under its own weight (limit: {})",
         percent(strain),
@@ -178,7 +176,8 @@ mod tests {
     #[test]
     fn what_may_be_unusual_is_what_is_measured() {
         let scene = square_jump(4).unwrap().gravity([0.0, -9.8]).phase(Phase::until(9.0));
-        let mut names: Vec<&str> = units(&scene).iter().map(|indicator| indicator.name).collect();
+        let mut names: Vec<&str> =
+            units(&scene, scene.body()).iter().map(|indicator| indicator.name).collect();
         names.sort_unstable();
         let mut known = UNITS.to_vec();
         known.sort_unstable();

@@ -7,7 +7,8 @@ use super::rigid::without_spin;
 use crate::base::input::short;
 use crate::base::vector::dot;
 use crate::dynamics::report::Indicator;
-use crate::dynamics::trajectory::{Sample, Trajectory};
+use crate::dynamics::trajectory::Sample;
+use crate::elements::body::Body;
 
 /// Fewest cells in a wavelength: linear cells are some 5 % too stiff or too slow there, quadratic ones 1 %.
 const LINEAR: f64 = 6.0;
@@ -20,12 +21,7 @@ const SEEN: f64 = 1e-4;
 /// change of velocity along the edges of a cell. For a single wave this is exact; for several it lies between
 /// their numbers, nearer to those of the short ones. Where inertia hardly acts (`is_static`), the number is
 /// for information only.
-pub(super) fn resolution(
-    trajectory: &Trajectory,
-    samples: &[&Sample],
-    is_static: bool,
-) -> Option<Indicator> {
-    let body = trajectory.body();
+pub(super) fn resolution(body: &Body, samples: &[&Sample], is_static: bool) -> Option<Indicator> {
     let (mesh, d) = (body.mesh(), body.dimension());
     let (kind, volumes) = (mesh.kind(), body.cell_volumes());
     let [mut all, mut squares, mut changes] = [0.0; 3];

@@ -53,8 +53,9 @@ impl Matrices {
             let is_large = pattern.nodes() >= LARGE;
             is_large.then(|| nested_dissection(pattern, positions, dimension))
         };
-        let size = body.mesh().size();
-        let scales = [size, body.material().wave_speed()].map(|scale| 0.01 * scale);
+        let size = body.size();
+        let speeds = body.parts().map(|part| part.body.material().wave_speed());
+        let scales = [size, speeds.fold(0.0, f64::max)].map(|scale| 0.01 * scale);
         let (inertia, stiffness, damping) =
             (body.shared_inertia(), body.constant_stiffness(), body.constant_damping());
         let (linear_by_cells, mass_damping) = (body.linear_by_cells(), body.mass_damping());

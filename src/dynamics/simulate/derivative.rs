@@ -67,9 +67,8 @@ impl Reading {
             What::Distance(_) | What::Angle(_) | What::ChamberVolume(_) => true,
             What::ConstraintForce(_) => true,
             What::ConstraintMoment(..) => false,
-            What::Velocity(_) | What::ContactForce(..) | What::Rotation | What::Pressure(_) => {
-                false
-            }
+            What::Velocity(_) | What::Momentum => false,
+            What::ContactForce(..) | What::Rotation | What::Pressure(_) => false,
             What::SpringPull(_) | What::SpringLength(_) | What::Stress(_) | What::Strain(_) => {
                 false
             }

@@ -8,7 +8,7 @@ use super::view::{View, mean};
 use crate::base::input::{InputError, finite};
 use crate::base::vector::{cross, dot, norm};
 use crate::dynamics::trajectory::Sample;
-use crate::elements::body::{NodalField, von_mises};
+use crate::elements::body::{Body, NodalField, Part, von_mises};
 use crate::elements::mesh::Selection;
 use crate::scene::constraint::{ConstraintRow, PhaseStart};
 use crate::scene::forces::Contact;
@@ -105,11 +105,33 @@ impl Reading {
                 let angle = self.angle_gauge(scene)?;
                 Box::new(move |view, _| Value::Number(angle(view)))
             }
-            What::CentreOfMass => Box::new(move |view, _| {
-                let centre = view.centre_of_mass();
-                Value::Vector(std::array::from_fn(|i| centre.get(i).copied().unwrap_or(0.0)))
-            }),
+            What::CentreOfMass => self.of_part(scene, |part, view| {
+                part.body.centre_of_mass(part.of(view.displacements()))
+            })?,
+            What::Momentum => self.of_part(scene, |part, view| {
+                let mean = part.body.mean_velocity(part.of(view.velocities()));
+                mean.into_iter().map(|v| part.body.mass() * v).collect()
+            })?,
         })
+    }
+
+    /// The function that reads a vector of the body that was named, or of all.
+    fn of_part(
+        &self,
+        scene: &Scene,
+        read: fn(&Part, &View) -> Vec<f64>,
+    ) -> Result<Gauge, InputError> {
+        let first_node = self.first_node(scene)?;
+        Ok(Box::new(move |view, _| {
+            let vector = read(&part(view.body(), first_node), view);
+            Value::Vector(std::array::from_fn(|i| vector.get(i).copied().unwrap_or(0.0)))
+        }))
+    }
+
+    /// The first node of the body that was named.
+    fn first_node(&self, scene: &Scene) -> Result<Option<usize>, InputError> {
+        let Some(name) = &self.body else { return Ok(None) };
+        Ok(Some(scene.body().part_named(name, "body")?.nodes.start))
     }
 
     /// The function that reads an angle in `scene`, in its unit.
@@ -132,9 +154,18 @@ impl Reading {
             let help = "a body turns by one angle in two dimensions only: take the angle between two lines";
             return Err(InputError::new("rotation in dimension", d, help));
         }
-        let arms = scene.body().arms();
-        Ok(Arc::new(move |view| in_turn * view.body().rotation_by(&arms, view.displacements())))
+        let first_node = self.first_node(scene)?;
+        let arms = part(scene.body(), first_node).body.arms();
+        Ok(Arc::new(move |view| {
+            let part = part(view.body(), first_node);
+            in_turn * part.body.rotation_by(&arms, part.of(view.displacements()))
+        }))
     }
+}
+
+/// The body with this first node, or all together.
+fn part(body: &Body, first_node: Option<usize>) -> Part<'_> {
+    first_node.map_or_else(|| body.whole(), |node| body.part_of(node))
 }
 
 /// The gauge of a number of the spring or chamber `name`.

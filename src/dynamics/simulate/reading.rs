@@ -15,6 +15,8 @@ pub struct Reading {
     pub(super) component: Option<Component>,
     /// Whether angles are in degrees.
     in_degrees: bool,
+    /// The name of the body that is read; all of them together without one.
+    pub(super) body: Option<String>,
 }
 
 /// What is read.
@@ -36,6 +38,7 @@ pub(super) enum What {
     Distance([Selection; 2]),
     Angle([[Selection; 2]; 2]),
     CentreOfMass,
+    Momentum,
     Rotation,
 }
 
@@ -229,7 +232,7 @@ impl Reading {
         What::Angle([from, to].map(|line| line.map(Into::into))).into()
     }
 
-    /// Where the centre of mass is (m).
+    /// Where the centre of mass of all bodies is, or of one [of them](Self::of_body) (m).
     pub fn centre_of_mass() -> Self {
         What::CentreOfMass.into()
     }
@@ -240,6 +243,17 @@ impl Reading {
     /// like [`angle`](Self::angle).
     pub fn rotation() -> Self {
         What::Rotation.into()
+    }
+
+    /// Momentum of all bodies, or of one [of them](Self::of_body) (kg m/s).
+    pub fn momentum() -> Self {
+        What::Momentum.into()
+    }
+
+    /// Of one of several bodies: its centre of mass, its rotation, its momentum. Default: of all together.
+    pub fn of_body(mut self, name: impl Into<String>) -> Self {
+        self.body = Some(name.into());
+        self
     }
 
     /// An angle in degrees. Default: rad.
@@ -260,6 +274,7 @@ impl Reading {
             What::Position(_) | What::Displacement(_) | What::CentreOfMass => "m",
             What::SpringLength(_) | What::Distance(_) => "m",
             What::Velocity(_) => "m/s",
+            What::Momentum => "kg m/s",
             What::ConstraintForce(_) | What::ContactForce(..) | What::SpringPull(_) => "N",
             What::ConstraintMoment(..) => "N m",
             What::Pressure(_) | What::Stress(_) => "Pa",
@@ -294,6 +309,12 @@ impl Reading {
             let help = format!("angles and rotations alone have it, this is in {}", self.unit());
             return Err(InputError::new("unit", format!("\"{DEGREES}\""), help));
         }
+        let is_of_bodies =
+            matches!(self.what, What::CentreOfMass | What::Rotation | What::Momentum);
+        if let Some(name) = self.body.as_ref().filter(|_| !is_of_bodies) {
+            let help = "the centre of mass, the rotation and the momentum alone are read of a body: name its nodes instead";
+            return Err(InputError::new("body", format!("\"{name}\""), help));
+        }
         // the components that are columns by default, and one more that must be requested
         let (all, more): (&[Component], _) = match (&self.what, dimension) {
             (What::Stress(_), 1) => (&[XX], Some(VonMises)),
@@ -303,9 +324,8 @@ impl Reading {
             (What::Strain(_), 2) => (&[XX, YY, ZZ, XY], None),
             (What::Strain(_), _) => (&[XX, YY, ZZ, XY, YZ, XZ], None),
             (What::Position(_) | What::Displacement(_) | What::Velocity(_), _)
-            | (What::ConstraintForce(_) | What::ContactForce(..) | What::CentreOfMass, _) => {
-                (&[X, Y, Z][..dimension], Some(Norm))
-            }
+            | (What::ConstraintForce(_) | What::ContactForce(..), _)
+            | (What::CentreOfMass | What::Momentum, _) => (&[X, Y, Z][..dimension], Some(Norm)),
             (What::ConstraintMoment(_, Lever { axis: None, .. }), 3) => (&[X, Y, Z], Some(Norm)),
             _ => (&[], None),
         };
@@ -318,6 +338,6 @@ impl Reading {
 
 impl From<What> for Reading {
     fn from(what: What) -> Self {
-        Self { what, component: None, in_degrees: false }
+        Self { what, component: None, in_degrees: false, body: None }
     }
 }

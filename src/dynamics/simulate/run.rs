@@ -23,6 +23,7 @@ use crate::dynamics::report::{Report, creation};
 use crate::dynamics::state::{ENERGIES, State};
 use crate::dynamics::system::System;
 use crate::dynamics::trajectory::{IntegrationFailure, Interrupted, Sample, Trajectory};
+use crate::elements::body::{Body, Part};
 use crate::elements::force::Forces;
 use crate::integrators::ode::Failure;
 use crate::scene::constraint::{PhaseStart, prescribe};
@@ -140,8 +141,7 @@ impl Run {
             rollback_point: RollbackPoint::default(),
             balance,
             trajectory,
-            // the energy of strains of a thousandth
-            least_energy: 1e-6 * scene.body().material().young * scene.body().volume(),
+            least_energy: least_energy(scene.body()),
             pause: None,
             scene: Arc::new(scene.clone()),
         };
@@ -403,4 +403,11 @@ impl Run {
         })
         .into()
     }
+}
+
+/// The strain energy (J) of a body, the softest of several, under strains of a thousandth.
+fn least_energy(body: &Body) -> f64 {
+    let energies =
+        body.parts().map(|Part { body, .. }| 1e-6 * body.material().young * body.volume());
+    energies.fold(f64::INFINITY, f64::min)
 }

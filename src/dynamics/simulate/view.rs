@@ -100,8 +100,7 @@ impl<'a> View<'a> {
 
     /// Centre of mass (m).
     pub fn centre_of_mass(&self) -> Vec<f64> {
-        let natural = self.body().mass_average(self.body().mesh().positions());
-        natural.iter().zip(self.body().mass_average(self.state.u)).map(|(x, u)| x + u).collect()
+        self.body().centre_of_mass(self.state.u)
     }
 
     /// Velocity of the centre of mass (m/s).

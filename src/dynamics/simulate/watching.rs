@@ -297,7 +297,7 @@ impl Simulation {
         if fastest == 0.0 {
             return Ok(0.0);
         }
-        let ahead = AHEAD * view.body().mesh().size() / fastest;
+        let ahead = AHEAD * view.body().size() / fastest;
         let u: Vec<f64> =
             view.state.u.iter().zip(view.state.v).map(|(u, v)| u + ahead * v).collect();
         let near = View { state: State { u: &u, ..view.state }, ..view };

@@ -104,7 +104,7 @@ impl<'a> Search<'a> {
             statics,
             body,
             is_loose: hold == Hold::Loose,
-            size: body.mesh().size(),
+            size: body.size(),
             floor,
             shift: floor,
             highest,

@@ -3,7 +3,7 @@
 use nalgebra::{SMatrix, SVector};
 
 use super::{ReferenceCell, jacobian, size, with_element};
-use crate::elements::mesh::Mesh;
+use crate::elements::mesh::{CellKind, Mesh};
 
 /// Points outside the reference cell by no more than this, by round-off or because someone rounded them,
 /// count as on its boundary.
@@ -14,18 +14,19 @@ const ROUNDS: usize = 20;
 /// The nodes of the cell in which the undeformed position `x` (m) lies, with their shape functions there;
 /// `None` outside the body.
 pub(crate) fn shares_at(mesh: &Mesh, x: &[f64]) -> Option<Vec<(usize, f64)>> {
-    mesh.cells().find_map(|cell| shares_in(mesh, mesh.positions(), cell, x))
+    let mut cells = mesh.cells_with_kinds();
+    cells.find_map(|(kind, cell)| shares_in((kind, mesh.dimension()), mesh.positions(), cell, x))
 }
 
-/// The nodes of a cell with their shape functions at the point `x` (m), if nodes are at `positions` (m);
-/// `None` outside the cell.
+/// The nodes of a cell of some kind, in a space of some dimension, with their shape functions at the point `x`
+/// (m), if nodes are at `positions` (m); `None` outside the cell.
 pub(crate) fn shares_in(
-    mesh: &Mesh,
+    (kind, dimension): (CellKind, usize),
     positions: &[f64],
     cell: &[usize],
     x: &[f64],
 ) -> Option<Vec<(usize, f64)>> {
-    let values = with_element!(mesh.kind(), mesh.dimension(), values_at(positions, cell, x))?;
+    let values = with_element!(kind, dimension, values_at(positions, cell, x))?;
     Some(cell.iter().copied().zip(values).collect())
 }
 

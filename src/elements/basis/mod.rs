@@ -7,6 +7,7 @@
 //! then described in coordinates of its own, along an orthonormal frame in its tangent space.
 
 mod bisection;
+mod closest;
 mod finer;
 mod hexahedron;
 mod hexahedron20;
@@ -33,6 +34,7 @@ use nalgebra::{SMatrix, SVector};
 #[cfg(feature = "study")]
 pub(crate) use bisection::can_be_bisected;
 pub(crate) use bisection::worst_cells;
+pub(crate) use closest::closest;
 pub(crate) use finer::Finer;
 pub(crate) use hexahedron::Hexahedron;
 pub(crate) use hexahedron20::Hexahedron20;

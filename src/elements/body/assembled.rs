@@ -1,16 +1,16 @@
 //! An assembled body: its constant matrices, and what is computed from displacements.
 
 use std::fmt;
+use std::ops::Range;
 use std::sync::Arc;
 
-use super::assembly::Elements;
+use super::continuum::Continuum;
 use super::dilatation::Dilatation;
-use super::fields::{CellField, NodalField, Probe, nodal_fields};
+use super::fields::{CellField, NodalField, Probe, Tensors, nodal_fields};
 use super::forces::Terms;
 use super::inertia::Inertia;
 use super::recipe::Recipe;
-use super::regions::Regions;
-use super::reinforcement::{Families, Reinforcement};
+use super::reinforcement::Reinforcement;
 use super::relaxing::Branches;
 use crate::base::input::{InputError, finite};
 use crate::base::sparse::{BlockMatrix, NodeMatrix};
@@ -33,36 +33,48 @@ use crate::integrators::ode::Failure;
 /// assert!((body.mass() - 0.9).abs() < 1e-12); // kg
 /// # Ok::<(), pliant::Error>(())
 /// ```
+///
+/// Several bodies of one scene are [joined](Self::join) into one, whose nodes and cells are those of one body
+/// after those of the other. What holds of a body then holds of all of them together; what each is made of,
+/// say its [`parts`](Self::parts).
 #[derive(Clone)]
 pub struct Body {
     pub(super) mesh: Mesh,
-    pub(super) material: Material,
-    pub(super) strain: Strain,
-    pub(super) plane: Plane,
-    pub(super) viscosity: Viscosity,
-    pub(super) section: f64,
-    pub(super) elements: Arc<dyn Elements>,
-    pub(super) regions: Arc<Regions>,
+    /// The cells of each body.
+    pub(super) continua: Vec<Continuum>,
+    /// The bodies as they were before they were joined; none in a single one.
+    pub(super) joined: Arc<[Joined]>,
     pub(super) inertia: Arc<NodeMatrix>,
     pub(super) stiffness: Arc<BlockMatrix>,
     pub(super) damping: Arc<BlockMatrix>,
     /// The part a M of the damping, if there is one.
     pub(super) mass_damping: Option<Arc<NodeMatrix>>,
-    pub(super) fibres: Arc<Families>,
-    /// What it was made from.
-    pub(super) recipe: Arc<Recipe>,
+}
+
+/// A body among those that it is joined with.
+pub(super) struct Joined {
+    pub(super) name: String,
+    pub(super) body: Body,
+    pub(super) nodes: Range<usize>,
+    pub(super) cells: Range<usize>,
 }
 
 impl fmt::Debug for Body {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if !self.is_single() {
+            return f
+                .debug_list()
+                .entries(self.parts().map(|part| (part.name, part.body)))
+                .finish();
+        }
         f.debug_struct("Body")
             .field("nodes", &self.mesh.node_count())
             .field("cells", &self.mesh.cell_count())
             .field("kind", &self.mesh.kind())
-            .field("material", &self.recipe.material)
-            .field("regions", &self.recipe.regions)
-            .field("strain", &self.strain)
-            .field("viscosity", &self.viscosity)
+            .field("material", &self.recipe().material)
+            .field("regions", &self.recipe().regions)
+            .field("strain", &self.strain())
+            .field("viscosity", &self.viscosity())
             .finish_non_exhaustive()
     }
 }
@@ -73,63 +85,69 @@ impl Body {
         &self.mesh
     }
 
+    fn recipe(&self) -> &Recipe {
+        &self.continua[0].recipe
+    }
+
     /// What it is made of.
     pub fn material(&self) -> &Material {
-        &self.material
+        &self.continua[0].material
     }
 
     /// What it and its regions are made of.
-    pub(crate) fn materials(&self) -> &[Material] {
-        &self.regions.materials
+    pub(crate) fn materials(&self) -> impl Iterator<Item = &Material> {
+        self.continua.iter().flat_map(|continuum| &continuum.regions.materials)
     }
 
     /// What it assumes about the third dimension, if its cells have two.
     pub(crate) fn plane(&self) -> Plane {
-        self.plane
+        self.continua[0].plane
     }
 
     /// How strain is measured.
     pub fn strain(&self) -> Strain {
-        self.strain
+        self.continua[0].strain
     }
 
     /// How inertia is shared out among the nodes.
     pub fn inertia_kind(&self) -> Inertia {
-        self.recipe.inertia
+        self.recipe().inertia
     }
 
     /// Where it resists a change of its volume.
     pub fn dilatation(&self) -> Dilatation {
-        self.recipe.dilatation
+        self.recipe().dilatation
     }
 
     /// Whether its cells are not free to change their volume by their thickness, so that they lock if the material is nearly
     /// incompressible.
     pub(crate) fn can_lock(&self) -> bool {
-        !Dilatation::is_free(self.mesh.kind(), self.dimension(), self.plane)
+        !Dilatation::is_free(self.mesh.kind(), self.dimension(), self.plane())
     }
 
-    /// What it is made of, then what each of its regions is made of.
+    /// What it is made of, then what each of its regions is made of; body by body.
     pub fn substances(&self) -> impl Iterator<Item = &Substance> {
-        let regions = self.recipe.regions.iter().map(|(_, substance)| substance);
-        std::iter::once(&self.recipe.material).chain(regions)
+        self.continua.iter().flat_map(|continuum| {
+            let regions = continuum.recipe.regions.iter().map(|(_, substance)| substance);
+            std::iter::once(&continuum.recipe.material).chain(regions)
+        })
     }
 
     /// Number of regions that were given.
     #[cfg(feature = "study")]
     pub(crate) fn region_count(&self) -> usize {
-        self.recipe.regions.len()
+        self.recipe().regions.len()
     }
 
     /// How viscosity acts.
     pub fn viscosity(&self) -> Viscosity {
-        self.viscosity
+        self.continua[0].viscosity
     }
 
     /// Thickness (m) of a body of two-dimensional cells, cross-sectional area (m^2) of one of
     /// segments, 1 otherwise.
     pub(crate) fn section(&self) -> f64 {
-        self.section
+        self.continua[0].section
     }
 
     /// Dimension of space.
@@ -163,14 +181,16 @@ impl Body {
         [Lame { lambda: 1.0, mu: 0.0 }, Lame { lambda: 0.0, mu: 1.0 }].map(|unit| {
             let unit = material::Elastic::Linear(Hookean(Hooke::new(unit, 3, Plane::Strain)));
             let mut matrix = BlockMatrix::zeros(self.stiffness.pattern(), self.dimension());
-            self.elements.add_stiffness(&self.regions, &|_| unit, &mut matrix);
+            for Continuum { elements, regions, .. } in &self.continua {
+                elements.add_stiffness(regions, &|_| unit, &mut matrix);
+            }
             matrix
         })
     }
 
     /// Ratio of present to natural volume (area, length) of each cell under the displacements `u` (m).
     pub fn volume_ratios(&self, u: &[f64]) -> Vec<f64> {
-        self.elements.volume_ratios(u)
+        self.by_cell(|of| of.elements.volume_ratios(u))
     }
 
     /// Angle (rad, 0 to pi) by which each cell has turned under the displacements `u` (m): that of the
@@ -188,7 +208,7 @@ impl Body {
     /// # Ok::<(), pliant::Error>(())
     /// ```
     pub fn cell_rotations(&self, u: &[f64]) -> Vec<f64> {
-        self.elements.rotations(u)
+        self.by_cell(|of| of.elements.rotations(u))
     }
 
     /// Strain, stress and strain energy density of each cell under the displacements `u` (m,
@@ -205,25 +225,34 @@ impl Body {
     /// # Ok::<(), pliant::Error>(())
     /// ```
     pub fn cell_fields(&self, u: &[f64]) -> Vec<CellField> {
-        self.elements.fields(&self.regions, u)
+        self.by_cell(|of| of.elements.fields(&of.regions, u))
     }
 
     /// Part of the strain energy (0 to 1) under the displacements `u` (m) that is stored in the difference
     /// between the strain and a continuous one. `None` without strain.
     pub(crate) fn strain_jumps(&self, u: &[f64]) -> Option<f64> {
-        let (energy, jumps) = self.elements.jumps(&self.regions, self.strain, u);
-        (energy > 0.0).then(|| jumps.iter().sum::<f64>() / energy)
+        let (mut energy, mut jumps) = (0.0, 0.0);
+        for Continuum { elements, regions, strain, .. } in &self.continua {
+            let (own, by_cell) = elements.jumps(regions, *strain, u);
+            energy += own;
+            jumps += by_cell.iter().sum::<f64>();
+        }
+        (energy > 0.0).then(|| jumps / energy)
     }
 
     /// The energy (J) of that difference in each cell.
     #[cfg(feature = "study")]
     pub(crate) fn strain_jumps_by_cell(&self, u: &[f64]) -> Vec<f64> {
-        self.elements.jumps(&self.regions, self.strain, u).1
+        self.by_cell(|of| of.elements.jumps(&of.regions, of.strain, u).1)
     }
 
     /// Cells (counted from 0) that the displacements `u` (m) turn inside out.
     pub(crate) fn inverted_cells(&self, u: &[f64]) -> Vec<usize> {
-        self.elements.inverted(u)
+        let of_body = |of: &Continuum| {
+            let first = of.cells.start;
+            of.elements.inverted(u).into_iter().map(move |cell| first + cell)
+        };
+        self.continua.iter().flat_map(of_body).collect()
     }
 
     /// Strain and stress at each node under the displacements `u` (m).
@@ -248,7 +277,24 @@ impl Body {
     /// # Ok::<(), pliant::Error>(())
     /// ```
     pub fn nodal_fields(&self, u: &[f64]) -> Vec<NodalField> {
-        nodal_fields(&*self.elements, &self.regions, self.mesh.node_count(), u)
+        let volumes = self.cell_volumes();
+        nodal_fields(self.mesh.node_count(), &volumes, |cell, see| self.each_node(u, cell, see))
+    }
+
+    /// Calls `see` with the number of each node of a cell, its number among the nodes of the cell, and the
+    /// tensors there.
+    fn each_node(&self, u: &[f64], cell: usize, see: &mut dyn FnMut(usize, usize, &Tensors)) {
+        let body = self.continua.partition_point(|continuum| continuum.cells.end <= cell);
+        let Continuum { elements, regions, cells, .. } = &self.continua[body];
+        elements.each_node(regions, u, cell - cells.start, see);
+    }
+
+    /// What each cell has, body by body.
+    fn by_cell<T>(&self, of_body: impl Fn(&Continuum) -> Vec<T>) -> Vec<T> {
+        match &self.continua[..] {
+            [single] => of_body(single),
+            several => several.iter().flat_map(of_body).collect(),
+        }
     }
 
     /// The nodes of the cell in which the undeformed position `x` (m) lies, with their shape functions there.
@@ -275,12 +321,12 @@ impl Body {
 
     /// What `probe` reads under the displacements `u` (m).
     pub(crate) fn probed(&self, probe: &Probe, u: &[f64]) -> NodalField {
-        probe.read(&*self.elements, &self.regions, u)
+        probe.read(|cell, see| self.each_node(u, cell, see))
     }
 
     /// Natural volume of each cell (m^3).
     pub fn cell_volumes(&self) -> Vec<f64> {
-        self.elements.volumes()
+        self.by_cell(|of| of.elements.volumes())
     }
 
     /// Adds the elastic forces (N) at the displacements `u` (m, dimension components per node) to the
@@ -292,7 +338,9 @@ impl Body {
     pub fn add_elastic_forces(&self, u: &[f64], forces: &mut NodalForces) -> Result<(), Failure> {
         // without objective viscosity velocities are not used
         let terms = Terms { elastic: true, viscous: false };
-        self.elements.add_forces(&self.regions, terms, u, u, forces)
+        self.continua.iter().try_for_each(|Continuum { elements, regions, .. }| {
+            elements.add_forces(regions, terms, u, u, forces)
+        })
     }
 
     /// Volume of the cells (m^3).
@@ -304,18 +352,19 @@ impl Body {
         self.inertia.clone()
     }
 
-    /// K, if the elastic force is -K u.
+    /// The constant part of K, if it is not 0: that of the bodies whose elastic force is -K u.
     pub(crate) fn constant_stiffness(&self) -> Option<Arc<BlockMatrix>> {
-        (self.strain == Strain::Cauchy).then(|| self.stiffness.clone())
-    }
-
-    /// Whether the viscous force is that of a constant matrix, and not 0.
-    pub(super) fn has_natural_viscosity(&self) -> bool {
-        self.viscosity == Viscosity::Natural && self.regions.are_viscous()
+        if self.continua.iter().all(Continuum::is_linear) {
+            return Some(self.stiffness.clone());
+        }
+        self.join_some(|body| body.constant_stiffness())
     }
 
     /// The part of B that is constant, if it is not 0: all of it if viscosity is natural, a M otherwise.
     pub(crate) fn constant_damping(&self) -> Option<Arc<BlockMatrix>> {
+        if !self.joined.is_empty() {
+            return self.join_some(|body| body.constant_damping());
+        }
         if self.has_natural_viscosity() {
             return Some(self.damping.clone());
         }
@@ -324,6 +373,25 @@ impl Body {
             matrix.add_on_all_axes(by_mass);
             Arc::new(matrix)
         })
+    }
+
+    /// The matrices that some of the joined bodies have, as one.
+    fn join_some(
+        &self,
+        matrix: impl Fn(&Self) -> Option<Arc<BlockMatrix>>,
+    ) -> Option<Arc<BlockMatrix>> {
+        let all: Vec<_> = self.joined.iter().map(|part| (&part.body, matrix(&part.body))).collect();
+        let parts = all.iter().map(|(body, of)| of.as_deref().ok_or(&**body.inertia.pattern()));
+        let is_some = all.iter().any(|(_, of)| of.is_some());
+        is_some.then(|| {
+            let pattern = self.stiffness.pattern();
+            Arc::new(BlockMatrix::join(pattern, self.dimension(), parts))
+        })
+    }
+
+    /// Whether a viscous force is that of a constant matrix, and not 0.
+    fn has_natural_viscosity(&self) -> bool {
+        self.continua.iter().any(Continuum::has_natural_viscosity)
     }
 
     /// The part a M of B, if it is not 0.
@@ -338,13 +406,14 @@ impl Body {
 
     /// The forces of its fibres, if it has any.
     pub(crate) fn reinforcement(&self) -> Option<Reinforcement> {
-        (!self.fibres.is_empty()).then(|| Reinforcement(self.fibres.clone()))
+        let fibres = self.continua.iter().map(|continuum| &continuum.fibres);
+        let fibres: Vec<_> = fibres.filter(|families| !families.is_empty()).cloned().collect();
+        (!fibres.is_empty()).then_some(Reinforcement(fibres))
     }
 
     /// The Maxwell branches, if there are any.
     pub(crate) fn branches(&self) -> Option<Branches> {
-        let (elements, regions) = (self.elements.clone(), self.regions.clone());
-        self.regions.branches().next().is_some().then_some(Branches { elements, regions })
+        Branches::of(self.continua.iter())
     }
 
     /// Total mass (kg).
@@ -368,6 +437,17 @@ impl Body {
             average.iter_mut().zip(x).for_each(|(a, x)| *a += nodal_mass * x / mass);
         }
         average
+    }
+
+    /// Centre of mass (m) under the displacements `u` (m).
+    pub fn centre_of_mass(&self, u: &[f64]) -> Vec<f64> {
+        let natural = self.mass_average(self.mesh.positions()).into_iter();
+        natural.zip(self.mass_average(u)).map(|(x, u)| x + u).collect()
+    }
+
+    /// Velocity (m/s) of the centre of mass, where nodes have the velocities `v` (m/s).
+    pub fn mean_velocity(&self, v: &[f64]) -> Vec<f64> {
+        self.mass_average(v)
     }
 
     /// Angle (rad, counter-clockwise) by which a body in the plane has turned as a whole under the

@@ -1,8 +1,10 @@
 //! One interface to the elements of all kinds of cells and dimensions.
 
+use std::sync::Arc;
+
 use super::branches::Branched;
 use super::dilatation::Dilatation;
-use super::elements::ElementsOf;
+use super::elements::{ElementsOf, Offset};
 use super::fibres::Reinforced;
 use super::fields::Fields;
 use super::forces::Forces;
@@ -18,11 +20,16 @@ use crate::elements::mesh::Mesh;
 pub(super) trait Elements:
     Masses + Forces + Branched + Reinforced + Tangents + Fields + Recovery + Send + Sync
 {
+    /// The same on the nodes of several bodies.
+    fn among_others(&self, offset: Offset) -> Arc<dyn Elements>;
 }
 
-impl<T> Elements for T where
-    T: Masses + Forces + Branched + Reinforced + Tangents + Fields + Recovery + Send + Sync
+impl<const N: usize, const M: usize, const D: usize, const Q: usize> Elements
+    for ElementsOf<N, M, D, Q>
 {
+    fn among_others(&self, offset: Offset) -> Arc<dyn Elements> {
+        Arc::new(Self::among_others(self, offset))
+    }
 }
 
 /// The elements on the cells of `mesh`, whose nodes `pattern` couples; `section` is the area or thickness of
@@ -32,7 +39,7 @@ pub(super) fn elements(
     section: f64,
     dilatation: Dilatation,
     pattern: &NodePattern,
-) -> Result<Box<dyn Elements>, InputError> {
+) -> Result<Arc<dyn Elements>, InputError> {
     with_element!(mesh.kind(), mesh.dimension(), of(mesh, section, dilatation, pattern))
 }
 
@@ -41,6 +48,6 @@ fn of<C: ReferenceCell<N, M>, const N: usize, const M: usize, const D: usize, co
     section: f64,
     dilatation: Dilatation,
     pattern: &NodePattern,
-) -> Result<Box<dyn Elements>, InputError> {
-    Ok(Box::new(ElementsOf::<N, M, D, Q>::new::<C>(mesh, section, dilatation, pattern)?))
+) -> Result<Arc<dyn Elements>, InputError> {
+    Ok(Arc::new(ElementsOf::<N, M, D, Q>::new::<C>(mesh, section, dilatation, pattern)?))
 }

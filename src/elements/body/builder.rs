@@ -4,8 +4,10 @@ use std::sync::Arc;
 
 use super::assembled::Body;
 use super::assembly::elements;
+use super::continuum::Continuum;
 use super::dilatation::Dilatation;
 use super::inertia::Inertia;
+use super::joined::Part;
 use super::recipe::Recipe;
 use super::regions::{CellSelection, Laws, Regions};
 use super::reinforcement::{add_at_rest, families};
@@ -16,108 +18,112 @@ use crate::elements::material::{Plane, Strain, Substance, Viscosity};
 use crate::elements::mesh::Mesh;
 
 /// The builder of a body: see [`Body::new`].
+///
+/// That of several bodies ([`Body::join`]) sets an option for each of them.
 #[derive(Debug, Clone)]
 pub struct BodyBuilder {
-    mesh: Mesh,
-    recipe: Recipe,
+    bodies: Vec<(Mesh, Recipe)>,
 }
 
 impl BodyBuilder {
-    /// Thickness h of a two-dimensional body (m).
-    pub fn thickness(mut self, thickness: f64) -> Self {
-        self.recipe.thickness = Some(thickness);
+    fn each(mut self, set: impl Fn(&mut Recipe)) -> Self {
+        self.bodies.iter_mut().for_each(|(_, recipe)| set(recipe));
         self
+    }
+
+    /// The name of the body among others (see [`Body::join`]).
+    pub fn named(self, name: impl Into<String>) -> Self {
+        let name = name.into();
+        self.each(|recipe| recipe.name = Some(name.clone()))
+    }
+
+    /// Thickness h of a two-dimensional body (m).
+    pub fn thickness(self, thickness: f64) -> Self {
+        self.each(|recipe| recipe.thickness = Some(thickness))
     }
 
     /// Cross-sectional area A of a one-dimensional body (m^2).
-    pub fn area(mut self, area: f64) -> Self {
-        self.recipe.area = Some(area);
-        self
+    pub fn area(self, area: f64) -> Self {
+        self.each(|recipe| recipe.area = Some(area))
     }
 
     /// How strain is measured (default: Green).
-    pub fn strain(mut self, strain: Strain) -> Self {
-        self.recipe.strain = strain;
-        self
+    pub fn strain(self, strain: Strain) -> Self {
+        self.each(|recipe| recipe.strain = strain)
     }
 
     /// How viscosity acts. Default: natural with Cauchy strain, objective with Green strain.
-    pub fn viscosity(mut self, viscosity: Viscosity) -> Self {
-        self.recipe.viscosity = Some(viscosity);
-        self
+    pub fn viscosity(self, viscosity: Viscosity) -> Self {
+        self.each(|recipe| recipe.viscosity = Some(viscosity))
     }
 
     /// How inertia is shared out among the nodes (default: consistently).
-    pub fn inertia(mut self, inertia: Inertia) -> Self {
-        self.recipe.inertia = inertia;
-        self
+    pub fn inertia(self, inertia: Inertia) -> Self {
+        self.each(|recipe| recipe.inertia = inertia)
     }
 
     /// A region with a material of its own. Where regions overlap, the last one counts.
-    pub fn region(
-        mut self,
-        cells: impl Into<CellSelection>,
-        substance: impl Into<Substance>,
-    ) -> Self {
-        self.recipe.regions.push((cells.into(), substance.into()));
-        self
+    pub fn region(self, cells: impl Into<CellSelection>, substance: impl Into<Substance>) -> Self {
+        let region = (cells.into(), substance.into());
+        self.each(|recipe| recipe.regions.push(region.clone()))
     }
 
     /// A point mass (kg) at `position` (m): a node that belongs to no cell. It comes after the nodes
     /// of the mesh, and `name` is a node set with it alone.
     pub fn point_mass(
-        mut self,
+        self,
         name: impl Into<String>,
         position: impl Into<Vec<f64>>,
         mass: f64,
     ) -> Self {
-        self.recipe.points.push((name.into(), position.into(), mass));
-        self
+        let point = (name.into(), position.into(), mass);
+        self.each(|recipe| recipe.points.push(point.clone()))
     }
 
     /// Plane strain (default) or plane stress, for two-dimensional bodies.
-    pub fn plane(mut self, plane: Plane) -> Self {
-        self.recipe.plane = plane;
-        self
+    pub fn plane(self, plane: Plane) -> Self {
+        self.each(|recipe| recipe.plane = plane)
     }
 
     /// Where a change of volume is resisted: at each point (default), or projected onto few functions of each cell,
     /// which does not lock where the body is nearly incompressible.
-    pub fn dilatation(mut self, dilatation: Dilatation) -> Self {
-        self.recipe.dilatation = dilatation;
-        self
+    pub fn dilatation(self, dilatation: Dilatation) -> Self {
+        self.each(|recipe| recipe.dilatation = dilatation)
     }
 
-    /// The mesh, without point masses.
+    /// The mesh of a single body, without point masses.
     pub(crate) fn own_mesh(&self) -> &Mesh {
-        &self.mesh
+        &self.bodies[0].0
     }
 
-    /// The same on a finer mesh.
+    /// The same single body on a finer mesh.
     ///
     /// # Errors
     /// Regions of cells that the mesh does not have.
     pub(crate) fn on(mut self, finer: &Finer) -> Result<Self, InputError> {
-        for (cells, _) in &mut self.recipe.regions {
+        let (mesh, recipe) = &mut self.bodies[0];
+        for (cells, _) in &mut recipe.regions {
             if let CellSelection::Numbers(_) = cells {
-                let children = finer.children_of(&cells.cells(&self.mesh)?);
+                let children = finer.children_of(&cells.cells(mesh)?);
                 *cells = CellSelection::Numbers(children.iter().map(|cell| cell + 1).collect());
             }
         }
-        Ok(Self { mesh: finer.mesh.clone(), ..self })
+        *mesh = finer.mesh.clone();
+        Ok(self)
     }
 
     /// The same without viscosity, in its regions, too.
-    pub(crate) fn without_viscosity(mut self) -> Self {
-        self.recipe.material.material.viscosity = 0.0;
-        self.recipe.regions.iter_mut().for_each(|(_, region)| region.material.viscosity = 0.0);
-        self
+    pub(crate) fn without_viscosity(self) -> Self {
+        self.each(|recipe| {
+            recipe.material.material.viscosity = 0.0;
+            recipe.regions.iter_mut().for_each(|(_, region)| region.material.viscosity = 0.0);
+        })
     }
 
     /// Another material, everywhere outside regions.
-    pub fn material(mut self, substance: impl Into<Substance>) -> Self {
-        self.recipe.material = substance.into();
-        self
+    pub fn material(self, substance: impl Into<Substance>) -> Self {
+        let substance = substance.into();
+        self.each(|recipe| recipe.material = substance.clone())
     }
 
     /// Assembles the body.
@@ -126,7 +132,14 @@ impl BodyBuilder {
     /// A material out of range, a missing or misplaced thickness or area, an inverted or flat cell,
     /// a node without a cell.
     pub fn build(self) -> Result<Body, InputError> {
-        let Self { mut mesh, recipe } = self;
+        let bodies = self.bodies.into_iter().map(|(mesh, recipe)| Body::made(mesh, recipe));
+        Body::join(bodies.collect::<Result<Vec<_>, _>>()?)
+    }
+}
+
+impl Body {
+    /// The single body of a recipe.
+    fn made(mut mesh: Mesh, recipe: Recipe) -> Result<Self, InputError> {
         let section = recipe.section(&mesh)?;
         let Recipe { ref material, strain, plane, .. } = recipe;
         let viscosity = recipe.viscosity.unwrap_or(match strain {
@@ -167,21 +180,28 @@ impl BodyBuilder {
         for (node, (_, _, mass)) in (first_point..).zip(&recipe.points) {
             inertia.add(node, node, *mass);
         }
-        let body = Body {
-            mesh,
+        let continuum = Continuum {
+            kind: mesh.kind(),
+            nodes: 0..mesh.node_count(),
+            cells: 0..mesh.cell_count(),
             material: material.material,
             strain,
             plane,
             viscosity,
             section,
-            elements: elements.into(),
+            elements,
             regions: Arc::new(regions),
+            fibres: Arc::new(fibres),
+            recipe: Arc::new(recipe),
+        };
+        let body = Self {
+            mesh,
+            continua: vec![continuum],
+            joined: Arc::default(),
             inertia: Arc::new(inertia),
             stiffness: Arc::new(stiffness),
             damping: Arc::new(damping),
             mass_damping,
-            fibres: Arc::new(fibres),
-            recipe: Arc::new(recipe),
         };
         // not the nodal masses: those of quadratic cells are 0 and below at corners
         let mut nodes = 0..body.mesh.node_count();
@@ -194,14 +214,13 @@ impl BodyBuilder {
             None => Ok(body),
         }
     }
-}
 
-impl Body {
     /// Starts a body of `mesh`, made of `substance`, a [`Material`](crate::Material) or one with a
     /// [`Law`](crate::Law); [`BodyBuilder::build`] assembles it.
     #[allow(clippy::new_ret_no_self)] // a body is made by its builder alone
     pub fn new(mesh: Mesh, substance: impl Into<Substance>) -> BodyBuilder {
         let recipe = Recipe {
+            name: None,
             material: substance.into(),
             regions: Vec::new(),
             strain: Strain::default(),
@@ -213,7 +232,7 @@ impl Body {
             area: None,
             points: Vec::new(),
         };
-        BodyBuilder { mesh, recipe }
+        BodyBuilder { bodies: vec![(mesh, recipe)] }
     }
 
     /// The builder that made it, for a body that differs in some options.
@@ -229,8 +248,17 @@ impl Body {
     /// # Ok::<(), pliant::Error>(())
     /// ```
     pub fn to_builder(&self) -> BodyBuilder {
-        let recipe = (*self.recipe).clone();
-        let mesh = self.mesh.without_last(recipe.points.iter().map(|(name, ..)| &name[..]));
-        BodyBuilder { mesh, recipe }
+        let of_part = |part: Part| {
+            let mut recipe = (*part.body.continua[0].recipe).clone();
+            recipe.name = (!part.name.is_empty()).then(|| part.name.to_owned());
+            let points = recipe.points.iter().map(|(name, ..)| &name[..]);
+            (part.body.mesh.without_last(points), recipe)
+        };
+        BodyBuilder { bodies: self.parts().map(of_part).collect() }
+    }
+
+    /// Its name, if it has one: see [`join`](Self::join).
+    pub fn name(&self) -> Option<&str> {
+        self.continua[0].recipe.name.as_deref().filter(|_| self.is_single())
     }
 }

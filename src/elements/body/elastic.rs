@@ -1,22 +1,16 @@
 //! The elastic and viscous forces that depend on the shape of the body.
 
-use std::sync::Arc;
-
 use super::assembled::Body;
-use super::assembly::Elements;
+use super::continuum::Continuum;
 use super::forces::Terms;
-use super::regions::Regions;
 use crate::base::sparse::BlockMatrix;
 use crate::elements::force::{Force, NodalForces, Reservoir, Tangents};
-use crate::elements::material::{Strain, Viscosity};
 use crate::elements::mesh::CellKind;
 use crate::integrators::ode::Failure;
 
 /// Elastic forces, forces of objective viscosity, or both.
 pub(crate) struct Elastic {
-    pub(super) elements: Arc<dyn Elements>,
-    pub(super) regions: Arc<Regions>,
-    pub(super) terms: Terms,
+    bodies: Vec<(Continuum, Terms)>,
 }
 
 impl Force for Elastic {
@@ -27,7 +21,9 @@ impl Force for Elastic {
         v: &[f64],
         forces: &mut NodalForces,
     ) -> Result<(), Failure> {
-        self.elements.add_forces(&self.regions, self.terms, u, v, forces)
+        self.bodies.iter().try_for_each(|(Continuum { elements, regions, .. }, terms)| {
+            elements.add_forces(regions, *terms, u, v, forces)
+        })
     }
 
     fn add_tangents(
@@ -38,12 +34,14 @@ impl Force for Elastic {
         stiffness: &mut BlockMatrix,
         damping: &mut BlockMatrix,
     ) -> Tangents {
-        self.elements.add_tangents(&self.regions, self.terms, u, v, stiffness, damping);
+        for (Continuum { elements, regions, .. }, terms) in &self.bodies {
+            elements.add_tangents(regions, *terms, u, v, stiffness, damping);
+        }
         Tangents::Added
     }
 
     fn potential(&self, _t: f64, u: &[f64]) -> f64 {
-        if self.terms.elastic { self.elements.energy(&self.regions, u) } else { 0.0 }
+        energy(&self.bodies, u)
     }
 
     fn reservoir(&self) -> Reservoir {
@@ -53,9 +51,7 @@ impl Force for Elastic {
 
 /// The forces -K u and -B v, element by element.
 pub(crate) struct LinearByCells {
-    pub(super) elements: Arc<dyn Elements>,
-    pub(super) regions: Arc<Regions>,
-    pub(super) terms: Terms,
+    bodies: Vec<(Continuum, Terms)>,
 }
 
 impl LinearByCells {
@@ -65,45 +61,49 @@ impl LinearByCells {
         v: &[f64],
         forces: &mut NodalForces,
     ) -> Result<(), Failure> {
-        self.elements.add_linear_forces(&self.regions, self.terms, u, v, forces)
+        self.bodies.iter().try_for_each(|(Continuum { elements, regions, .. }, terms)| {
+            elements.add_linear_forces(regions, *terms, u, v, forces)
+        })
     }
 
     /// Strain energy (J).
     pub(crate) fn energy(&self, u: &[f64]) -> f64 {
-        if self.terms.elastic { self.elements.energy(&self.regions, u) } else { 0.0 }
+        energy(&self.bodies, u)
     }
+}
+
+/// Strain energy (J) of the bodies whose elastic forces are among the terms.
+fn energy(bodies: &[(Continuum, Terms)], u: &[f64]) -> f64 {
+    let elastic = bodies.iter().filter(|(_, terms)| terms.elastic);
+    elastic.map(|(Continuum { elements, regions, .. }, _)| elements.energy(regions, u)).sum()
 }
 
 impl Body {
     /// The elastic and viscous forces that have no constant matrix.
     pub(crate) fn elastic(&self) -> Option<Elastic> {
-        let terms = Terms {
-            elastic: self.strain != Strain::Cauchy,
-            viscous: self.viscosity == Viscosity::Objective && self.regions.are_viscous(),
-        };
-        let (elements, regions) = (self.elements.clone(), self.regions.clone());
-        (terms.elastic || terms.viscous).then_some(Elastic { elements, regions, terms })
+        let bodies = self.with_terms(Continuum::nonlinear_terms);
+        (!bodies.is_empty()).then_some(Elastic { bodies })
     }
 
     /// The forces -K u and -B v element by element, where that is less work than with the matrices: a row of
     /// K has some 7 blocks in a mesh of triangles, and 15 in one of tetrahedra, which are added up one after
     /// the other.
     pub(crate) fn linear_by_cells(&self) -> Option<LinearByCells> {
-        let terms = Terms {
-            elastic: self.constant_stiffness().is_some(),
-            viscous: self.has_natural_viscosity(),
-        };
-        let (elements, regions) = (self.elements.clone(), self.regions.clone());
-        let is_linear = terms.elastic || terms.viscous;
-        (self.is_linear_by_cells() && is_linear).then_some(LinearByCells {
-            elements,
-            regions,
-            terms,
-        })
+        let bodies = self.with_terms(Continuum::linear_terms);
+        (self.is_linear_by_cells() && !bodies.is_empty()).then_some(LinearByCells { bodies })
     }
 
-    /// Whether linear forces are less work cell by cell.
+    /// Whether linear forces are less work cell by cell: for all bodies, as matrices are those of all.
     pub(super) fn is_linear_by_cells(&self) -> bool {
-        matches!(self.mesh.kind(), CellKind::Triangle | CellKind::Tetrahedron)
+        let is_simple = |continuum: &Continuum| {
+            matches!(continuum.kind, CellKind::Triangle | CellKind::Tetrahedron)
+        };
+        self.with_terms(Continuum::linear_terms).iter().all(|(continuum, _)| is_simple(continuum))
+    }
+
+    /// The bodies that have any of the terms.
+    fn with_terms(&self, terms: fn(&Continuum) -> Terms) -> Vec<(Continuum, Terms)> {
+        let all = self.continua.iter().map(|continuum| (continuum.clone(), terms(continuum)));
+        all.filter(|(_, terms)| terms.elastic || terms.viscous).collect()
     }
 }

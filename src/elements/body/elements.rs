@@ -8,6 +8,8 @@
 
 #![allow(clippy::needless_range_loop, reason = "indices that several arrays share read best")]
 
+use std::sync::Arc;
+
 use pulp::Simd;
 
 use super::contiguous::ContiguousCells;
@@ -31,20 +33,30 @@ pub(super) struct ElementsOf<const N: usize, const M: usize, const D: usize, con
     pub(super) entries: Vec<[[u32; N]; N]>,
     /// Strain points of [`SIDE_BY_SIDE`] cells each, those of the same cells one after the other; volumes
     /// times section. Cells that are missing at the end repeat the last one.
-    points: Vec<StrainPoint<Packed, N, M, D>>,
+    points: Arc<Vec<StrainPoint<Packed, N, M, D>>>,
     /// Shape functions at the strain points of a cell.
     pub(super) values: [[f64; N]; Q],
     /// The weights by which values at the strain points of a cell are extrapolated to its nodes.
     pub(super) extrapolation: [[f64; Q]; N],
     /// For each cell, sum w N_a N_b (m^3).
-    pub(super) products: Vec<[[f64; N]; N]>,
+    pub(super) products: Arc<Vec<[[f64; N]; N]>>,
     pub(super) quadratic: bool,
     /// Where a change of volume is resisted.
     pub(super) dilatation: Dilatation,
     /// The linear modes of a projected dilatation at the strain points, stored as these are; empty if it has none.
-    pub(super) modes: Vec<[Packed; M]>,
+    pub(super) modes: Arc<Vec<[Packed; M]>>,
     pub(super) shares: Partition,
     pub(super) rows: ContiguousCells<N>,
+}
+
+/// Where the nodes of a body are among those of several.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Offset {
+    /// The first node, and the entry in the pattern of all nodes at which its row begins.
+    pub(super) node: usize,
+    pub(super) entry: usize,
+    /// Number of all nodes.
+    pub(super) count: usize,
 }
 
 impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<N, M, D, Q> {
@@ -109,13 +121,13 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<
         Ok(Self {
             nodes,
             entries,
-            points,
+            points: points.into(),
             values,
             extrapolation: extrapolation::<C, N, M, Q>(),
-            products,
+            products: products.into(),
             quadratic,
             dilatation,
-            modes,
+            modes: modes.into(),
             shares,
             rows,
         })
@@ -132,14 +144,35 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<
         let nodes: Vec<[usize; N]> = cells.iter().map(|&cell| self.nodes[cell]).collect();
         ElementsOf {
             entries: cells.iter().map(|&cell| self.entries[cell]).collect(),
-            points: side_by_side::<N, 1, D, Q>(points),
+            points: side_by_side::<N, 1, D, Q>(points).into(),
             values: self.values,
             extrapolation: self.extrapolation,
-            products: cells.iter().map(|&cell| self.products[cell]).collect(),
+            products: cells.iter().map(|&cell| self.products[cell]).collect::<Vec<_>>().into(),
             quadratic: self.quadratic,
             dilatation: Dilatation::AtPoints,
-            modes: Vec::new(),
+            modes: Arc::default(),
             shares: Partition::new(&nodes, node_count),
+            rows: ContiguousCells::new(&nodes),
+            nodes,
+        }
+    }
+
+    /// The same elements on the nodes of several bodies, with entries in the pattern of all of them.
+    pub(super) fn among_others(&self, Offset { node, entry, count }: Offset) -> Self {
+        let nodes: Vec<[usize; N]> =
+            self.nodes.iter().map(|cell| cell.map(|own| node + own)).collect();
+        let moved = |own: u32| (entry + own as usize) as u32;
+        let entries = self.entries.iter().map(|cell| cell.map(|row| row.map(moved)));
+        Self {
+            entries: entries.collect(),
+            points: self.points.clone(),
+            values: self.values,
+            extrapolation: self.extrapolation,
+            products: self.products.clone(),
+            quadratic: self.quadratic,
+            dilatation: self.dilatation,
+            modes: self.modes.clone(),
+            shares: Partition::new(&nodes, count),
             rows: ContiguousCells::new(&nodes),
             nodes,
         }
@@ -297,7 +330,7 @@ pub(super) fn pairs<const N: usize>() -> impl Iterator<Item = (usize, usize)> {
     (0..N).flat_map(|a| (0..N).map(move |b| (a, b)))
 }
 
-fn too_many(pattern: &NodePattern) -> InputError {
+pub(super) fn too_many(pattern: &NodePattern) -> InputError {
     let help = "4,294,967,296 are the most: take a coarser mesh";
     InputError::new("number of pairs of nodes that share a cell", pattern.entries(), help)
 }

@@ -154,7 +154,7 @@ mod tests {
                 let fields = body.cell_fields(&u);
                 let expected: f64 =
                     fields.iter().zip(volumes).map(|(cell, v)| cell.energy_density * v).sum();
-                let energy = body.elements.energy(&body.regions, &u);
+                let energy = body.continua[0].elements.energy(&body.continua[0].regions, &u);
                 let off = energy / expected - 1.0;
                 assert!(off.abs() < 1e-13, "{kind:?}, {dilatation:?}: {energy}, {expected}");
             }

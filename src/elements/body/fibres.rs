@@ -3,7 +3,7 @@
 //! A fibre at a point of a cell sees one direction of the strain there. It is a cell of one dimension on the
 //! same nodes: its gradients are those of the shape functions along it, and its frame is its direction.
 
-use super::elements::ElementsOf;
+use super::elements::{ElementsOf, Offset};
 use super::forces::ElasticStress;
 use super::tangents::ElasticTangent;
 use crate::base::input::InputError;
@@ -40,6 +40,9 @@ pub(super) trait Strings: Send + Sync {
     );
 
     fn energy(&self, law: &Fibre, u: &[f64]) -> f64;
+
+    /// The same on the nodes of several bodies.
+    fn among_others(&self, offset: Offset) -> Box<dyn Strings>;
 }
 
 impl<const N: usize, const M: usize, const D: usize, const Q: usize> Reinforced
@@ -114,6 +117,10 @@ impl<const N: usize, const D: usize, const Q: usize> Strings for ElementsOf<N, 1
 
     fn energy(&self, law: &Fibre, u: &[f64]) -> f64 {
         self.add_energy(0..self.nodes.len(), law, u, 0.0)
+    }
+
+    fn among_others(&self, offset: Offset) -> Box<dyn Strings> {
+        Box::new(Self::among_others(self, offset))
     }
 }
 

@@ -44,7 +44,7 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Masses
         sharing: Inertia,
         matrix: &mut NodeMatrix,
     ) {
-        for (cell, (nodes, products)) in self.nodes.iter().zip(&self.products).enumerate() {
+        for (cell, (nodes, products)) in self.nodes.iter().zip(&*self.products).enumerate() {
             let density = density(regions.of(cell));
             let products = match sharing {
                 Inertia::Consistent => *products,

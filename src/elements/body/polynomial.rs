@@ -125,6 +125,7 @@ impl GreenPolynomial {
     /// A body that is not made of triangles in the plane, or of more than 2,097,150 nodes.
     pub fn new(body: &Body) -> Result<Self, InputError> {
         let mesh = body.mesh();
+        body.single("the polynomials")?;
         if (mesh.kind(), mesh.dimension()) != (CellKind::Triangle, 2) {
             let value = format!("{:?} in {} dimensions", mesh.kind(), mesh.dimension());
             let help = "the polynomials are those of triangles in the plane: add the forces up \
@@ -176,7 +177,7 @@ impl GreenPolynomial {
         let area: f64 = triangles.iter().map(|triangle| triangle.area).sum();
         let thickness = body.volume() / area;
         for (number, (cell, triangle)) in cells.iter().zip(&triangles).enumerate() {
-            let lame = body.regions.of(number).hooke.lame;
+            let lame = body.continua[0].regions.of(number).hooke.lame;
             let volume = thickness * triangle.area;
             let weights = [lame.lambda * volume, lame.mu * volume];
             for (p, &row) in cell.iter().enumerate() {

@@ -10,6 +10,7 @@ use crate::elements::mesh::Mesh;
 /// The options of a body.
 #[derive(Debug, Clone)]
 pub(super) struct Recipe {
+    pub(super) name: Option<String>,
     pub(super) material: Substance,
     pub(super) regions: Vec<(CellSelection, Substance)>,
     pub(super) strain: Strain,

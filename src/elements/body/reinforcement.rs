@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::assembly::Elements;
+use super::elements::Offset;
 use super::fibres::Strings;
 use crate::base::input::InputError;
 use crate::base::sparse::BlockMatrix;
@@ -33,6 +34,11 @@ pub(super) fn families<'a>(
     Ok(families)
 }
 
+/// The same families on the nodes of several bodies.
+pub(super) fn among_others(families: &Families, offset: Offset) -> Families {
+    families.iter().map(|(strings, law)| (strings.among_others(offset), *law)).collect()
+}
+
 /// Adds the tangents of families of fibres in the undeformed shape.
 pub(super) fn add_at_rest(
     families: &Families,
@@ -45,7 +51,13 @@ pub(super) fn add_at_rest(
 }
 
 /// The forces of fibres.
-pub(crate) struct Reinforcement(pub(super) Arc<Families>);
+pub(crate) struct Reinforcement(pub(super) Vec<Arc<Families>>);
+
+impl Reinforcement {
+    fn families(&self) -> impl Iterator<Item = &(Box<dyn Strings>, Fibre)> {
+        self.0.iter().flat_map(|of_body| of_body.iter())
+    }
+}
 
 impl Force for Reinforcement {
     fn add_forces(
@@ -56,7 +68,7 @@ impl Force for Reinforcement {
         forces: &mut NodalForces,
     ) -> Result<(), Failure> {
         let conservative = &mut forces.conservative;
-        self.0.iter().try_for_each(|(strings, law)| strings.add_forces(law, u, conservative))
+        self.families().try_for_each(|(strings, law)| strings.add_forces(law, u, conservative))
     }
 
     fn add_tangents(
@@ -67,12 +79,12 @@ impl Force for Reinforcement {
         stiffness: &mut BlockMatrix,
         damping: &mut BlockMatrix,
     ) -> Tangents {
-        self.0.iter().for_each(|(strings, law)| strings.add_tangents(law, u, stiffness, damping));
+        self.families().for_each(|(strings, law)| strings.add_tangents(law, u, stiffness, damping));
         Tangents::Added
     }
 
     fn potential(&self, _t: f64, u: &[f64]) -> f64 {
-        self.0.iter().map(|(strings, law)| strings.energy(law, u)).sum()
+        self.families().map(|(strings, law)| strings.energy(law, u)).sum()
     }
 
     fn reservoir(&self) -> Reservoir {

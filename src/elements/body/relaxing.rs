@@ -1,31 +1,56 @@
 //! The Maxwell branches of a body, whatever its elements are.
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use super::assembly::Elements;
+use super::continuum::Continuum;
 use super::regions::Regions;
 use crate::base::sparse::BlockMatrix;
 
-/// The branches of a body.
+/// The branches of a body: of each of several bodies that have any, one after the other.
 pub(crate) struct Branches {
-    pub(super) elements: Arc<dyn Elements>,
-    pub(super) regions: Arc<Regions>,
+    bodies: Vec<OfBody>,
+}
+
+struct OfBody {
+    elements: Arc<dyn Elements>,
+    regions: Arc<Regions>,
+    /// Its internal strains among those of all.
+    internal: Range<usize>,
 }
 
 impl Branches {
+    /// Those of `bodies`, if there are any.
+    pub(super) fn of<'a>(bodies: impl Iterator<Item = &'a Continuum>) -> Option<Self> {
+        let mut first = 0;
+        let relaxing = bodies.filter(|body| body.regions.branches().next().is_some());
+        let bodies: Vec<OfBody> = relaxing
+            .map(|Continuum { elements, regions, .. }| {
+                let internal = first..first + elements.internal_strains(regions);
+                first = internal.end;
+                OfBody { elements: elements.clone(), regions: regions.clone(), internal }
+            })
+            .collect();
+        (!bodies.is_empty()).then_some(Self { bodies })
+    }
+
     /// Number of internal strains, each component counted.
     pub(crate) fn unknowns(&self) -> usize {
-        self.elements.internal_strains(&self.regions)
+        self.bodies.last().map_or(0, |last| last.internal.end)
     }
 
     /// Largest rate of relaxation (1/s).
     pub(crate) fn fastest(&self) -> f64 {
-        self.regions.branches().map(|branch| 1.0 / branch.time).fold(0.0, f64::max)
+        let branches = self.bodies.iter().flat_map(|body| body.regions.branches());
+        branches.map(|branch| 1.0 / branch.time).fold(0.0, f64::max)
     }
 
     /// Writes the internal strains with which the branches have no stress at the displacements `u` (m).
     pub(crate) fn relax(&self, u: &[f64], internal: &mut [f64]) {
-        self.elements.relax(&self.regions, u, internal);
+        for OfBody { elements, regions, internal: own } in &self.bodies {
+            elements.relax(regions, u, &mut internal[own.clone()]);
+        }
     }
 
     /// Adds the forces (N) at the displacements `u` (m), and writes the rates (1/s) of the internal strains;
@@ -37,15 +62,23 @@ impl Branches {
         forces: &mut [f64],
         rates: &mut [f64],
     ) -> f64 {
-        self.elements.add_branch_forces(&self.regions, u, internal, forces, rates)
+        let of_body = |OfBody { elements, regions, internal: own }: &OfBody| {
+            let (internal, rates) = (&internal[own.clone()], &mut rates[own.clone()]);
+            elements.add_branch_forces(regions, u, internal, forces, rates)
+        };
+        self.bodies.iter().map(of_body).sum()
     }
 
     /// Strain energy (J).
     pub(crate) fn energy(&self, u: &[f64], internal: &[f64]) -> f64 {
-        self.elements.branch_energy(&self.regions, u, internal)
+        let of_body = |OfBody { elements, regions, internal: own }: &OfBody| {
+            elements.branch_energy(regions, u, &internal[own.clone()])
+        };
+        self.bodies.iter().map(of_body).sum()
     }
 
-    /// Adds the stiffness of the branches in a step of the parameter `gamma` (s); 0 is a sudden change.
+    /// Adds the stiffness of the branches in a step of the parameter `gamma` (s); 0 is a sudden change. Without
+    /// `internal` strains they are those without stress.
     pub(crate) fn add_tangents(
         &self,
         gamma: f64,
@@ -53,7 +86,11 @@ impl Branches {
         internal: &[f64],
         stiffness: &mut BlockMatrix,
     ) {
-        self.elements.add_branch_tangents(&self.regions, gamma, [u, internal], stiffness);
+        for OfBody { elements, regions, internal: own } in &self.bodies {
+            // none means without stress
+            let at = [u, internal.get(own.clone()).unwrap_or_default()];
+            elements.add_branch_tangents(regions, gamma, at, stiffness);
+        }
     }
 
     /// Adds gamma sum B^T C P rG, of the `residuals` rG, in a step from the displacements and internal
@@ -61,11 +98,14 @@ impl Branches {
     pub(crate) fn add_residuals(
         &self,
         gamma: f64,
-        at: [&[f64]; 2],
+        [u, internal]: [&[f64]; 2],
         residuals: &[f64],
         right: &mut [f64],
     ) {
-        self.elements.add_branch_residuals(&self.regions, gamma, at, residuals, right);
+        for OfBody { elements, regions, internal: own } in &self.bodies {
+            let at = [u, &internal[own.clone()]];
+            elements.add_branch_residuals(regions, gamma, at, &residuals[own.clone()], right);
+        }
     }
 
     /// Turns the residuals `x` into xG, with the changes `xu` of the displacements. Returns the change of the
@@ -74,11 +114,15 @@ impl Branches {
     pub(crate) fn solve(
         &self,
         gamma: f64,
-        at: [&[f64]; 2],
+        [u, internal]: [&[f64]; 2],
         rates: &[f64],
         xu: &[f64],
         x: &mut [f64],
     ) -> f64 {
-        self.elements.solve_branches(&self.regions, gamma, at, rates, xu, x)
+        let of_body = |OfBody { elements, regions, internal: own }: &OfBody| {
+            let (at, rates) = ([u, &internal[own.clone()]], &rates[own.clone()]);
+            elements.solve_branches(regions, gamma, at, rates, xu, &mut x[own.clone()])
+        };
+        self.bodies.iter().map(of_body).sum()
     }
 }

@@ -66,7 +66,7 @@ fn bodies_with(strain: Strain, inertia: Inertia) -> Vec<(String, Body)> {
     ];
     let mut bodies = Vec::new();
     for (kind, flat, cells) in kinds {
-        let most = if kind.as_face().is_some() { 3 } else { kind.dimension() };
+        let most = if kind.fills_space() { kind.dimension() } else { 3 };
         for dimension in kind.dimension()..=most {
             // lifted into space along skew directions
             let lift = [[0.8, 0.3, -0.5], [-0.2, 0.9, 0.4], [0.1, -0.3, 0.7]];

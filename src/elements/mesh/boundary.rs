@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::{FaceKind, Mesh};
+use super::{Block, FaceKind, Mesh};
 
 /// A face of a cell: a node in 1D, an edge in 2D, a face in 3D.
 ///
@@ -21,37 +21,33 @@ impl Mesh {
 
     /// The same faces, each with the cell that it belongs to.
     pub(crate) fn boundary_faces_of_cells(&self) -> Vec<(usize, Face)> {
-        if self.dimension > self.kind.dimension() {
-            return self.cells().map(<[usize]>::to_vec).enumerate().collect();
+        let (mut all, mut first) = (Vec::new(), 0);
+        for block in &self.blocks {
+            if self.dimension > block.kind.dimension() {
+                all.extend((first..).zip(block.cells().map(<[usize]>::to_vec)));
+            } else {
+                let cell = |face| first + face / block.kind.faces().len();
+                let once = block.faces_of_one_cell(self.node_count()).into_iter();
+                all.extend(once.map(|face| (cell(face), block.face(face).collect())));
+            }
+            first += block.cells().len();
         }
-        let cell = |face| face / self.kind.faces().len();
-        let once = self.faces_of_one_cell().into_iter();
-        once.map(|face| (cell(face), self.face(face).collect())).collect()
+        all
     }
 
     /// The faces of cells that belong to one cell only, whatever the dimension of space: those on the rim of
     /// a membrane, the ends of a string.
     pub(crate) fn outer_faces(&self) -> Vec<Face> {
-        self.faces_of_one_cell().into_iter().map(|face| self.face(face).collect()).collect()
+        let of_block = |block: &Block| -> Vec<Face> {
+            let once = block.faces_of_one_cell(self.node_count()).into_iter();
+            once.map(|face| block.face(face).collect()).collect()
+        };
+        self.blocks.iter().flat_map(of_block).collect()
     }
 
-    /// Their numbers, ascending.
-    fn faces_of_one_cell(&self) -> Vec<usize> {
-        let mut once: Vec<usize> = Vec::new();
-        let (offsets, faces) = self.faces_by_smallest_node();
-        for range in offsets.windows(2) {
-            once.extend(without_match(&faces[range[0]..range[1]], |face| self.face(face)));
-        }
-        once.sort_unstable();
-        once
-    }
-
-    /// The shape of these faces.
-    pub(crate) fn face_kind(&self) -> FaceKind {
-        match (self.dimension > self.kind.dimension(), self.kind.as_face()) {
-            (true, Some(face)) => face,
-            _ => self.kind.face(),
-        }
+    /// The shape of a face of the boundary.
+    pub(crate) fn face_kind(&self, face: &[usize]) -> FaceKind {
+        FaceKind::of(self.dimension, face.len())
     }
 
     pub(super) fn find_boundary_nodes(&self) -> Vec<usize> {
@@ -59,6 +55,19 @@ impl Mesh {
         nodes.sort_unstable();
         nodes.dedup();
         nodes
+    }
+}
+
+impl Block {
+    /// Numbers of the faces that belong to one cell only, ascending; the mesh has `nodes` nodes.
+    fn faces_of_one_cell(&self, nodes: usize) -> Vec<usize> {
+        let mut once: Vec<usize> = Vec::new();
+        let (offsets, faces) = self.faces_by_smallest_node(nodes);
+        for range in offsets.windows(2) {
+            once.extend(without_match(&faces[range[0]..range[1]], |face| self.face(face)));
+        }
+        once.sort_unstable();
+        once
     }
 
     /// Nodes of face `face`; all faces of a cell are counted before those of the next.
@@ -71,10 +80,10 @@ impl Mesh {
     /// All faces, sorted by their smallest node: those of node k are
     /// `faces[offsets[k]..offsets[k + 1]]`. Faces with the same nodes are neighbours then, and
     /// time and memory grow in proportion to the mesh.
-    fn faces_by_smallest_node(&self) -> (Vec<usize>, Vec<usize>) {
-        let count = self.cell_count() * self.kind.faces().len();
+    fn faces_by_smallest_node(&self, nodes: usize) -> (Vec<usize>, Vec<usize>) {
+        let count = self.cells().len() * self.kind.faces().len();
         let smallest = |face| self.face(face).fold(usize::MAX, usize::min);
-        let mut offsets = vec![0; self.node_count() + 1];
+        let mut offsets = vec![0; nodes + 1];
         (0..count).for_each(|face| offsets[smallest(face) + 1] += 1);
         for node in 1..offsets.len() {
             offsets[node] += offsets[node - 1];

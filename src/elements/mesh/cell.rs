@@ -13,9 +13,8 @@ struct Shape {
     nodes: usize,
     /// Whether edges have mid nodes.
     quadratic: bool,
-    /// What the cell itself is as a face, in a space of more dimensions; none if it has to fill space.
-    as_face: Option<FaceKind>,
-    face: FaceKind,
+    /// Whether it has to fill its space: other cells make up strings and membranes, too.
+    fills_space: bool,
     faces: &'static [&'static [usize]],
     /// Empty in two dimensions, where edges and faces are the same.
     edges: &'static [&'static [usize]],
@@ -50,6 +49,26 @@ pub(crate) enum FaceKind {
 }
 
 impl FaceKind {
+    /// The shape of a face of so many nodes on the boundary of a body in a space of this dimension.
+    pub(super) fn of(dimension: usize, nodes: usize) -> Self {
+        match (dimension, nodes) {
+            (_, 1) => Self::Point,
+            (_, 2) => Self::Segment,
+            (2, _) => Self::Segment3,
+            (_, 3) => Self::Triangle,
+            (_, 4) => Self::Quadrilateral,
+            (_, 6) => Self::Triangle6,
+            (_, 7) => Self::Triangle7,
+            (_, 8) => Self::Quadrilateral8,
+            _ => Self::Quadrilateral9,
+        }
+    }
+
+    /// The shape of a face of so many nodes on the rim of a membrane in space, or at the end of a string.
+    pub(crate) fn of_rim(nodes: usize) -> Self {
+        Self::of(2, nodes)
+    }
+
     /// Dimension of the face itself.
     pub(crate) fn dimension(self) -> usize {
         match self {
@@ -112,8 +131,7 @@ cell_kinds! {
         dimension: 1,
         nodes: 2,
         quadratic: false,
-        as_face: Some(FaceKind::Segment),
-        face: FaceKind::Point,
+        fills_space: false,
         faces: &[&[0], &[1]],
         edges: &[&[0, 1]],
         middles: &[],
@@ -128,8 +146,7 @@ cell_kinds! {
         dimension: 2,
         nodes: 3,
         quadratic: false,
-        as_face: Some(FaceKind::Triangle),
-        face: FaceKind::Segment,
+        fills_space: false,
         faces: &[&[0, 1], &[1, 2], &[2, 0]],
         edges: &[],
         middles: &[],
@@ -144,8 +161,7 @@ cell_kinds! {
         dimension: 2,
         nodes: 6,
         quadratic: true,
-        as_face: Some(FaceKind::Triangle6),
-        face: FaceKind::Segment3,
+        fills_space: false,
         faces: &[&[0, 1, 3], &[1, 2, 4], &[2, 0, 5]],
         edges: &[],
         middles: &[],
@@ -160,8 +176,7 @@ cell_kinds! {
         dimension: 2,
         nodes: 7,
         quadratic: true,
-        as_face: None,
-        face: FaceKind::Segment3,
+        fills_space: true,
         faces: &[&[0, 1, 3], &[1, 2, 4], &[2, 0, 5]],
         edges: &[],
         middles: &[&[0, 1, 2]],
@@ -176,8 +191,7 @@ cell_kinds! {
         dimension: 2,
         nodes: 4,
         quadratic: false,
-        as_face: Some(FaceKind::Quadrilateral),
-        face: FaceKind::Segment,
+        fills_space: false,
         faces: &[&[0, 1], &[1, 2], &[2, 3], &[3, 0]],
         edges: &[],
         middles: &[],
@@ -192,8 +206,7 @@ cell_kinds! {
         dimension: 2,
         nodes: 9,
         quadratic: true,
-        as_face: None,
-        face: FaceKind::Segment3,
+        fills_space: true,
         faces: &[&[0, 1, 4], &[1, 2, 5], &[2, 3, 6], &[3, 0, 7]],
         edges: &[],
         middles: &[&[0, 2]],
@@ -208,8 +221,7 @@ cell_kinds! {
         dimension: 3,
         nodes: 4,
         quadratic: false,
-        as_face: None,
-        face: FaceKind::Triangle,
+        fills_space: true,
         faces: &[&[0, 2, 1], &[0, 1, 3], &[1, 2, 3], &[0, 3, 2]],
         edges: &[&[0, 1], &[1, 2], &[2, 0], &[0, 3], &[1, 3], &[2, 3]],
         middles: &[],
@@ -225,8 +237,7 @@ cell_kinds! {
         dimension: 3,
         nodes: 10,
         quadratic: true,
-        as_face: None,
-        face: FaceKind::Triangle6,
+        fills_space: true,
         faces: &[
             &[0, 2, 1, 6, 5, 4],
             &[0, 1, 3, 4, 8, 7],
@@ -247,8 +258,7 @@ cell_kinds! {
         dimension: 3,
         nodes: 15,
         quadratic: true,
-        as_face: None,
-        face: FaceKind::Triangle7,
+        fills_space: true,
         faces: &[
             &[0, 2, 1, 6, 5, 4, 10],
             &[0, 1, 3, 4, 8, 7, 11],
@@ -269,8 +279,7 @@ cell_kinds! {
         dimension: 3,
         nodes: 8,
         quadratic: false,
-        as_face: None,
-        face: FaceKind::Quadrilateral,
+        fills_space: true,
         faces: &[
             &[0, 3, 2, 1],
             &[4, 5, 6, 7],
@@ -306,8 +315,7 @@ cell_kinds! {
         dimension: 3,
         nodes: 20,
         quadratic: true,
-        as_face: None,
-        face: FaceKind::Quadrilateral8,
+        fills_space: true,
         faces: &[
             &[0, 3, 2, 1, 11, 10, 9, 8],
             &[4, 5, 6, 7, 12, 13, 14, 15],
@@ -330,8 +338,7 @@ cell_kinds! {
         dimension: 3,
         nodes: 27,
         quadratic: true,
-        as_face: None,
-        face: FaceKind::Quadrilateral9,
+        fills_space: true,
         faces: &[
             &[0, 3, 2, 1, 11, 10, 9, 8, 24],
             &[4, 5, 6, 7, 12, 13, 14, 15, 25],
@@ -384,14 +391,9 @@ impl CellKind {
         self.shape().faces
     }
 
-    /// The shape of all of its faces.
-    pub(crate) fn face(self) -> FaceKind {
-        self.shape().face
-    }
-
-    /// What the cell itself is as a face: a body of lower dimension than space is all boundary.
-    pub(crate) fn as_face(self) -> Option<FaceKind> {
-        self.shape().as_face
+    /// Whether it has to fill its space: other cells make up strings and membranes, too.
+    pub(crate) fn fills_space(self) -> bool {
+        self.shape().fills_space
     }
 
     /// The edges of the cell as local node numbers (from 0): two corners, and the mid node between

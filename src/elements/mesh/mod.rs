@@ -22,7 +22,8 @@ pub use select::Selection;
 use crate::base::input::{InputError, finite};
 
 /// A finite element mesh in its undeformed shape: cells of one kind, in a space of their dimension or
-/// of a higher one (a string in the plane or in space, a membrane in space).
+/// of a higher one (a string in the plane or in space, a membrane in space). That of several bodies
+/// ([`Body::join`](crate::Body::join)) has those of one body after those of the other.
 ///
 /// Axes are x, y, z in this order. Generators name the sides of a body by them: `left` and `right`
 /// are its ends along x; `bottom` and `top` those along the last axis, y in 2D and z in 3D; `front`
@@ -31,10 +32,23 @@ use crate::base::input::{InputError, finite};
 pub struct Mesh {
     dimension: usize,
     positions: Vec<f64>,
-    kind: CellKind,
-    connectivity: Vec<usize>,
+    /// The cells of each body.
+    blocks: Vec<Block>,
     sets: BTreeMap<String, Vec<usize>>,
     cell_groups: BTreeMap<String, Vec<usize>>,
+}
+
+/// Cells of one kind. Different blocks share no nodes.
+#[derive(Debug, Clone)]
+struct Block {
+    kind: CellKind,
+    connectivity: Vec<usize>,
+}
+
+impl Block {
+    fn cells(&self) -> impl ExactSizeIterator<Item = &[usize]> {
+        self.connectivity.chunks_exact(self.kind.nodes())
+    }
 }
 
 impl Mesh {
@@ -101,7 +115,8 @@ impl Mesh {
     ) -> Self {
         let all = (0..positions.len() / dimension).collect();
         let (sets, cell_groups) = (BTreeMap::from([("all".into(), all)]), BTreeMap::new());
-        let mut mesh = Self { dimension, positions, kind, connectivity, sets, cell_groups };
+        let blocks = vec![Block { kind, connectivity }];
+        let mut mesh = Self { dimension, positions, blocks, sets, cell_groups };
         mesh.sets.insert("boundary".into(), mesh.find_boundary_nodes());
         mesh
     }
@@ -193,7 +208,7 @@ impl Mesh {
         mut self,
         mut map: impl FnMut(&[f64]) -> [f64; D],
     ) -> Result<Self, InputError> {
-        check_dimension(D, self.kind)?;
+        self.blocks.iter().try_for_each(|block| check_dimension(D, block.kind))?;
         let mut moved = Vec::with_capacity(D * self.node_count());
         for (node, from) in self.positions.chunks_exact(self.dimension).enumerate() {
             let to = map(from);
@@ -232,19 +247,60 @@ impl Mesh {
         &self.positions[node * self.dimension..][..self.dimension]
     }
 
-    /// What the cells are.
+    /// What the cells are; those of the first body, in a mesh of several.
     pub fn kind(&self) -> CellKind {
-        self.kind
+        self.blocks[0].kind
     }
 
     /// Number of cells.
     pub fn cell_count(&self) -> usize {
-        self.connectivity.len() / self.kind.nodes()
+        self.blocks.iter().map(|block| block.cells().len()).sum()
     }
 
     /// The cells: their nodes, counted from 0.
-    pub fn cells(&self) -> impl ExactSizeIterator<Item = &[usize]> {
-        self.connectivity.chunks_exact(self.kind.nodes())
+    pub fn cells(&self) -> impl Iterator<Item = &[usize]> {
+        self.blocks.iter().flat_map(Block::cells)
+    }
+
+    /// The cells with their kinds.
+    pub fn cells_with_kinds(&self) -> impl Iterator<Item = (CellKind, &[usize])> {
+        self.blocks.iter().flat_map(|block| block.cells().map(|cell| (block.kind, cell)))
+    }
+
+    /// The meshes of several bodies as one, whose nodes and cells are those of one body after those of the
+    /// other. Node sets and groups of cells have the name of their body before their own: `finger/tip`; those
+    /// of all nodes and cells of a body have its name alone.
+    pub(crate) fn join<'a>(bodies: impl Iterator<Item = (&'a str, &'a Self)>) -> Self {
+        let mut joined = Self {
+            dimension: 0,
+            positions: Vec::new(),
+            blocks: Vec::new(),
+            sets: BTreeMap::new(),
+            cell_groups: BTreeMap::new(),
+        };
+        let mut boundary = Vec::new();
+        for (name, mesh) in bodies {
+            joined.dimension = mesh.dimension;
+            let (first_node, first_cell) = (joined.node_count(), joined.cell_count());
+            let moved = |numbers: &[usize], first| numbers.iter().map(|k| first + k).collect();
+            joined.positions.extend_from_slice(&mesh.positions);
+            joined.blocks.extend(mesh.blocks.iter().map(|block| Block {
+                kind: block.kind,
+                connectivity: moved(&block.connectivity, first_node),
+            }));
+            boundary.extend(mesh.boundary_nodes().iter().map(|node| first_node + node));
+            for (own, nodes) in mesh.sets.iter().filter(|(own, _)| *own != "all") {
+                joined.sets.insert(format!("{name}/{own}"), moved(nodes, first_node));
+            }
+            joined.sets.insert(name.into(), (first_node..joined.node_count()).collect());
+            for (own, cells) in &mesh.cell_groups {
+                joined.cell_groups.insert(format!("{name}/{own}"), moved(cells, first_cell));
+            }
+            joined.cell_groups.insert(name.into(), (first_cell..joined.cell_count()).collect());
+        }
+        joined.sets.insert("all".into(), (0..joined.node_count()).collect());
+        joined.sets.insert("boundary".into(), boundary);
+        joined
     }
 
     /// The named node sets.
@@ -300,7 +356,7 @@ fn twice<'a>(cells: impl Iterator<Item = &'a [usize]>) -> Option<[usize; 2]> {
 
 fn check_dimension(dimension: usize, kind: CellKind) -> Result<(), InputError> {
     let least = kind.dimension();
-    let most = if kind.as_face().is_some() { 3 } else { least };
+    let most = if kind.fills_space() { least } else { 3 };
     if (least..=most).contains(&dimension) {
         return Ok(());
     }

@@ -93,15 +93,17 @@ fn grid(trajectory: &Trajectory, sample: &Sample) -> Result<Vtk, Error> {
     };
     let nodal = trajectory.body().nodal_fields(&sample.u);
     let fields = trajectory.body().cell_fields(&sample.u);
-    let strain = trajectory.body().strain();
-    let stretches: Vec<[f64; 3]> = fields.iter().map(|field| field.stretches(strain)).collect();
+    let body = trajectory.body();
+    let stretches = fields.iter().enumerate();
+    let stretches: Vec<[f64; 3]> =
+        stretches.map(|(cell, field)| field.stretches(body.strain_of(cell))).collect();
     let scalars = |name: &str, value: fn(&CellField) -> f64| {
         scalars(name, fields.iter().map(value).collect())
     };
     let tensors = |name: &str, tensor: fn(&CellField) -> [[f64; 3]; 3]| {
         tensors(name, fields.iter().map(tensor))
     };
-    let kind = match mesh.kind() {
+    let cell_type = |kind: CellKind| match kind {
         CellKind::Segment => CellType::Line,
         CellKind::Triangle => CellType::Triangle,
         CellKind::Triangle6 => CellType::QuadraticTriangle,
@@ -115,10 +117,28 @@ fn grid(trajectory: &Trajectory, sample: &Sample) -> Result<Vtk, Error> {
         CellKind::Hexahedron20 => CellType::QuadraticHexahedron,
         CellKind::Hexahedron27 => CellType::TriquadraticHexahedron,
     };
-    let shown = match mesh.kind() {
+    let shown = |kind: CellKind| match kind {
         CellKind::Tetrahedron15 => 10,
         kind => kind.nodes(),
     };
+    let ends = mesh.cells_with_kinds().scan(0, |end, (kind, _)| {
+        *end += shown(kind) as u64;
+        Some(*end)
+    });
+    let mut of_cells = vec![
+        tensors("strain", |field| field.strain),
+        tensors("stress", |field| field.stress),
+        scalars("von_mises", CellField::von_mises),
+        scalars("strain_energy_density", |field| field.energy_density),
+        scalars("pressure", CellField::pressure),
+        self::scalars("largest_stretch", stretches.iter().map(|s| s[0]).collect()),
+        self::scalars("least_stretch", stretches.iter().map(|s| s[2]).collect()),
+    ];
+    if body.parts().count() > 1 {
+        let parts = body.parts().zip(0_u32..);
+        let numbers = parts.flat_map(|(part, number)| part.cells.map(move |_| f64::from(number)));
+        of_cells.push(self::scalars("body", numbers.collect()));
+    }
     Ok(Vtk {
         version: Version::new_xml(1, 0),
         title: String::new(),
@@ -128,13 +148,13 @@ fn grid(trajectory: &Trajectory, sample: &Sample) -> Result<Vtk, Error> {
             cells: Cells {
                 cell_verts: VertexNumbers::XML {
                     connectivity: mesh
-                        .cells()
-                        .flat_map(|cell| &cell[..shown])
+                        .cells_with_kinds()
+                        .flat_map(|(kind, cell)| &cell[..shown(kind)])
                         .map(|&node| node as u64)
                         .collect(),
-                    offsets: (1..=mesh.cell_count() as u64).map(|k| k * shown as u64).collect(),
+                    offsets: ends.collect(),
                 },
-                types: vec![kind; mesh.cell_count()],
+                types: mesh.cells_with_kinds().map(|(kind, _)| cell_type(kind)).collect(),
             },
             data: Attributes {
                 point: vec![
@@ -145,15 +165,7 @@ fn grid(trajectory: &Trajectory, sample: &Sample) -> Result<Vtk, Error> {
                     self::tensors("stress", nodal.iter().map(|field| field.stress)),
                     self::scalars("von_mises", nodal.iter().map(NodalField::von_mises).collect()),
                 ],
-                cell: vec![
-                    tensors("strain", |field| field.strain),
-                    tensors("stress", |field| field.stress),
-                    scalars("von_mises", CellField::von_mises),
-                    scalars("strain_energy_density", |field| field.energy_density),
-                    scalars("pressure", CellField::pressure),
-                    self::scalars("largest_stretch", stretches.iter().map(|s| s[0]).collect()),
-                    self::scalars("least_stretch", stretches.iter().map(|s| s[2]).collect()),
-                ],
+                cell: of_cells,
             },
         }),
         file_path: None,

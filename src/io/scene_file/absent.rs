@@ -4,12 +4,12 @@
 const ABSENT: [(&[&str], &str); 8] = [
     (
         &["bodies"],
-        "a scene has one body, [body]: its mesh may be in pieces, of materials of their own ([[body.region]]), which do not feel each \
-         other but by springs; a rigid body that stands or follows a path is an [[obstacle]]",
+        "several bodies are a list of tables [[body]], each with a name, a mesh and a material; a rigid body that stands or follows a path \
+         is an [[obstacle]]",
     ),
     (
         &["contact", "contacts", "self_contact", "collision", "collisions", "touch"],
-        "the body does not touch itself, nor do its pieces touch each other: contact is with rigid shapes, which stand or follow a path, \
+        "bodies touch neither themselves nor each other: contact is with rigid shapes, which stand or follow a path, \
          [[obstacle]], among which a phase chooses by contact = [...]",
     ),
     (
@@ -45,6 +45,3 @@ const ABSENT: [(&[&str], &str); 8] = [
 pub(super) fn stand_in(name: &str) -> Option<&'static str> {
     ABSENT.iter().find(|(names, _)| names.contains(&name)).map(|(_, words)| *words)
 }
-
-/// What to use instead of a list of bodies.
-pub(super) const ONE_BODY: &str = ABSENT[0].1;

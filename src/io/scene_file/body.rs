@@ -1,15 +1,13 @@
 //! `[body]`, `[[body.region]]` and `[[point]]`.
 
-use toml::de::DeValue;
-
-use super::absent::ONE_BODY;
 use super::contents::AutoRequest;
 use super::keys::{AUTO, Holds, Key, TableKeys};
 use super::material::{MATERIAL, substance};
 use super::mesh::{self, AutoCells, MESH};
 use super::selection::{CORNERS, corners};
+use super::table::Table;
 use super::value::Value;
-use crate::base::input::positive;
+use crate::base::input::{find, positive};
 use crate::dynamics::error::Error;
 use crate::elements::body::{
     Body, BodyBuilder, CellSelection, Dilatation, Inertia, Strain, Viscosity,
@@ -20,8 +18,12 @@ use crate::scene::timeline::Scene;
 
 pub(super) const BODY: TableKeys = TableKeys::new(
     "[body]",
-    "What moves: a mesh made of a material.",
+    "What moves: a mesh made of a material. A list of several, `[[body]]`, do not feel each other where they touch: \
+     ties, springs and combinations of displacements that are held join them.",
     &[
+        Key::new("name", Holds::Text, "its name among several bodies")
+            .law("It is a node set and a group of cells, and stands before the node sets and groups of the body: `finger/tip`.")
+            .default("`body 1`, `body 2` and so on"),
         Key::new("mesh", Holds::Table(&MESH), "the mesh").required(),
         Key::number("thickness", "the thickness of a body in the plane", "m")
             .default("required in two dimensions"),
@@ -68,6 +70,17 @@ pub(super) const BODY: TableKeys = TableKeys::new(
         .default("points, or what goes with `cells = \"auto\"` and `bubbles`"),
         Key::new("material", Holds::Table(&MATERIAL), "what the body is made of").required(),
         Key::new("region", Holds::Tables(&REGION), "parts with a material of their own"),
+        Key::new("velocity", Holds::Vector, "its velocity at first, in place of that of `[initial]`")
+            .in_unit("m/s")
+            .default("that of `[initial]`"),
+        Key::new(
+            "spin",
+            Holds::OneOrMore(&Holds::Number),
+            "its angular velocity at first about its own centre of mass, on top of that",
+        )
+        .in_unit("rad/s")
+        .law("One number in the plane, counter-clockwise; three in space.")
+        .default("0"),
     ],
     "[body]\n\
      mesh = { kind = \"rectangle\", size = [0.1, 0.02], nodes = [11, 3], cells = \"triangles6\" }\n\
@@ -113,21 +126,51 @@ pub(super) const POINT: TableKeys = TableKeys::new(
         Key::new("name", Holds::Text, "the name of the point").required(),
         Key::new("position", Holds::Vector, "its undeformed position").in_unit("m").required(),
         Key::number("mass", "its mass", "kg").required(),
+        Key::new("body", Holds::Text, "the name of the body that it is a node of")
+            .default("required with several bodies"),
     ],
     "[[point]]\nname = \"hub\"\nposition = [0.05, 0.05]\nmass = 0.001",
 );
 
-/// The body that `value`, the table `[body]`, describes, with the point masses of `points`.
-pub(super) fn body(
+/// The body or bodies that `value`, `[body]` or `[[body]]`, describes, with the point masses of `points`.
+pub(super) fn bodies(
     value: &Value,
     dimension: Option<&Value>,
     points: Option<&Value>,
 ) -> Result<Body, Error> {
-    if let DeValue::Array(_) = value.value {
-        return Err(
-            value.error(format!("expected [body], once; found a list, [[body]]: {ONE_BODY}"))
-        );
+    let points = points.map(|points| points.tables(&POINT)).transpose()?.unwrap_or_default();
+    let tables = value.one_or_more()?;
+    if let [single] = &tables[..] {
+        return body(single, dimension, &points.iter().collect::<Vec<_>>(), false);
     }
+    let mut names = Vec::with_capacity(tables.len());
+    for (number, table) in (1..).zip(&tables) {
+        let name = table.table(&BODY)?.optional("name", Value::string)?;
+        names.push(name.map_or_else(|| format!("body {number}"), str::to_owned));
+    }
+    let owners = points.iter().map(|point| {
+        let help = "expected the name of the body that it is a node of";
+        let owner = point.optional("body", Value::string)?;
+        let owner = owner.ok_or_else(|| point.missing("body", help))?;
+        find(owner, names.iter().map(String::as_str), "body", "bodies")
+            .map_err(|error| point.blame(error))
+    });
+    let owners = owners.collect::<Result<Vec<usize>, Error>>()?;
+    let bodies = tables.iter().enumerate().map(|(number, table)| {
+        let own = points.iter().zip(&owners).filter(|(_, owner)| **owner == number);
+        let own: Vec<&Table> = own.map(|(point, _)| point).collect();
+        body(table, dimension, &own, true)
+    });
+    Body::join(bodies.collect::<Result<Vec<_>, Error>>()?).map_err(|error| value.error(error))
+}
+
+/// The body of a table, with its `points`. One `among_others` is made of its finer mesh at once.
+fn body(
+    value: &Value,
+    dimension: Option<&Value>,
+    points: &[&Table],
+    among_others: bool,
+) -> Result<Body, Error> {
     let table = value.table(&BODY)?;
     let material = table.required("material", |value| substance(value, None))?;
     let plane = table.optional("plane", |value| value.word(&PLANE))?;
@@ -136,8 +179,12 @@ pub(super) fn body(
         true => AutoCells::of_silicone(dimension.map(Value::count).transpose()? == Some(3)),
         false => AutoCells::default(),
     };
-    let mut mesh = table.required("mesh", |value| mesh::mesh(value, dimension, auto))?;
+    let mut mesh = table.required("mesh", |value| {
+        let mesh = mesh::mesh(value, dimension, auto)?;
+        if among_others { mesh::finer(mesh, value) } else { Ok(mesh) }
+    })?;
     let mut body = Body::new(mesh.clone(), material.clone());
+    body = table.added(body, "name", Value::string, BodyBuilder::named)?;
     body = table.added(body, "thickness", Value::number, BodyBuilder::thickness)?;
     body = table.added(body, "area", Value::number, BodyBuilder::area)?;
     body = table.added(body, "strain", |value| value.word(&STRAINS), BodyBuilder::strain)?;
@@ -147,14 +194,17 @@ pub(super) fn body(
         body = body.plane(plane);
     }
     let has_auto_cells = table.required("mesh", mesh::has_auto_cells)?;
-    let (gets_mid_nodes, _) = table.required("mesh", mesh::gets_mid_nodes)?;
+    let (gets_mid_nodes, bubbles) = table.required("mesh", mesh::gets_mid_nodes)?;
     match table.optional("dilatation", |value| value.word(&DILATATION))? {
         // it goes with the cells that are to come: see `on_finer_mesh`
-        Some(_) if gets_mid_nodes => {}
+        Some(_) if gets_mid_nodes && !among_others => {}
         Some(dilatation) => body = body.dilatation(dilatation),
         None if has_auto_cells
             && matches!(mesh.kind(), CellKind::Quadrilateral9 | CellKind::Hexahedron27) =>
         {
+            body = body.dilatation(Dilatation::Linear);
+        }
+        None if among_others && bubbles && is_silicone => {
             body = body.dilatation(Dilatation::Linear);
         }
         None => {}
@@ -162,22 +212,47 @@ pub(super) fn body(
     if let Some(regions) = table.get("region") {
         body = add_regions(body, &regions, &mesh, &material)?;
     }
-    if let Some(points) = points {
-        body = add_points(body, points, &mut mesh)?;
-    }
+    body = add_points(body, points, &mut mesh)?;
     body.build().map_err(|error| table.blame(error))
 }
 
-/// What the table `[body]` leaves to be chosen.
+/// What the bodies leave to be chosen.
 pub(super) fn auto(value: &Value) -> Result<AutoRequest, Error> {
-    let table = value.table(&BODY)?;
-    let strain = table.optional("strain", Value::string)? == Some(AUTO);
-    Ok(AutoRequest { strain, cells: table.required("mesh", mesh::has_auto_cells)? })
+    let mut auto = AutoRequest::default();
+    for value in value.one_or_more()? {
+        let table = value.table(&BODY)?;
+        auto.strain |= table.optional("strain", Value::string)? == Some(AUTO);
+        auto.cells |= table.required("mesh", mesh::has_auto_cells)?;
+    }
+    Ok(auto)
 }
 
-/// The scene on a finer mesh than the one that its node numbers refer to, if the table `[body]` requires
-/// that.
+/// The scene in which the bodies move at first as their tables say.
+pub(super) fn moving(mut scene: Scene, value: &Value) -> Result<Scene, Error> {
+    let names = scene.body().parts().map(|part| part.name.to_owned()).collect::<Vec<_>>();
+    let dimension = scene.body().dimension();
+    for (name, value) in names.into_iter().zip(value.one_or_more()?) {
+        let table = value.table(&BODY)?;
+        if let Some(velocity) = table.optional("velocity", |value| value.vector(dimension))? {
+            let nodes = if scene.body().is_single() { "all" } else { &name };
+            scene = scene.initial_velocity_of(nodes, velocity);
+        }
+        if let Some(spin) = table.optional("spin", Value::one_or_more_numbers)? {
+            scene = scene.spin_of(name, spin);
+        }
+        scene.initial_velocities().map_err(|error| table.blame(error))?;
+    }
+    Ok(scene)
+}
+
+/// The scene on a finer mesh than the one that its node numbers refer to, if the table of a single body
+/// requires that.
 pub(super) fn on_finer_mesh(scene: Scene, value: &Value) -> Result<Scene, Error> {
+    if !scene.body().is_single() {
+        return Ok(scene);
+    }
+    let tables = value.one_or_more()?;
+    let Some(value) = tables.first() else { return Ok(scene) };
     let table = value.table(&BODY)?;
     let scene = table.required("mesh", |value| mesh::on_finer_mesh(scene, value))?;
     let (gets_mid_nodes, bubbles) = table.required("mesh", mesh::gets_mid_nodes)?;
@@ -222,10 +297,10 @@ fn add_regions(
 /// Adds the point masses, to `mesh` too.
 fn add_points(
     mut body: BodyBuilder,
-    points: &Value,
+    points: &[&Table],
     mesh: &mut Mesh,
 ) -> Result<BodyBuilder, Error> {
-    for table in points.tables(&POINT)? {
+    for table in points {
         let name = table.required("name", Value::string)?;
         let position = table.required("position", |value| value.vector(mesh.dimension()))?;
         let mass = table.required("mass", Value::number)?;

@@ -64,9 +64,7 @@ pub(super) fn add_initial(mut scene: Scene, value: &Value) -> Result<Scene, Erro
     })? {
         scene = scene.initial_velocity(move |_| velocity.clone());
     }
-    if let Some(spin) = table.optional("spin", |value| {
-        value.one_or_more()?.iter().map(Value::finite).collect::<Result<Vec<f64>, Error>>()
-    })? {
+    if let Some(spin) = table.optional("spin", Value::one_or_more_numbers)? {
         scene = scene.spin(spin);
     }
     for part in table.tables("nodes", &OF_NODES)? {

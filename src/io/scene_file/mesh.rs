@@ -199,6 +199,26 @@ pub(super) fn on_finer_mesh(scene: Scene, value: &Value) -> Result<Scene, Error>
     }
 }
 
+/// The mesh of one of several bodies, made finer at once if `value` requires that: node numbers are those of the
+/// finer mesh.
+pub(super) fn finer(mut mesh: Mesh, value: &Value) -> Result<Mesh, Error> {
+    let table = value.table(&MESH)?;
+    let blame = |error: InputError| table.blame(error);
+    if let Some(value) = table.get("halved_in") {
+        return Err(value.error("cells are halved in places of a single body only: grade its mesh"));
+    }
+    if table.flag("quadratic")? {
+        mesh = mesh.quadratic().map_err(blame)?;
+    }
+    for _ in 0..table.optional("halved", Value::count)?.unwrap_or(0) {
+        mesh = mesh.halved();
+    }
+    if table.flag("bubbles")? {
+        mesh = mesh.with_bubbles().map_err(blame)?;
+    }
+    Ok(mesh)
+}
+
 fn halved_in(mut scene: Scene, place: &Table) -> Result<Scene, Error> {
     let blame = |error: InputError| place.blame(error);
     let times = place.optional("times", Value::count)?;

@@ -61,6 +61,7 @@ mod source;
 mod study;
 mod surroundings;
 mod table;
+mod tie;
 mod top;
 mod value;
 #[cfg(any(feature = "play", feature = "study"))]

@@ -11,13 +11,24 @@ use crate::elements::mesh::{Mesh, Selection};
 /// of `mesh`.
 pub(super) fn selection(value: &Value, mesh: &Mesh) -> Result<Selection, Error> {
     let selection = match value.value {
-        DeValue::String(name) => {
-            if !mesh.sets().contains_key(&**name) {
+        DeValue::String(name) => match (mesh.sets().contains_key(&**name), one_of(name, mesh)) {
+            (true, _) => Selection::Set(name.to_string()),
+            (false, Some((nodes, number))) => {
+                match number.checked_sub(1).and_then(|k| nodes.get(k)) {
+                    Some(node) => Selection::Numbers(vec![node + 1]),
+                    None => {
+                        return Err(value.unexpected(format!(
+                            "one of the nodes 1 to {} of the set",
+                            nodes.len()
+                        )));
+                    }
+                }
+            }
+            (false, None) => {
                 let known: Vec<&str> = mesh.sets().keys().map(String::as_str).collect();
                 return Err(value.unknown(name, &known));
             }
-            Selection::Set(name.to_string())
-        }
+        },
         DeValue::Integer(_) | DeValue::Array(_) => {
             let numbers = value.one_or_more()?.into_iter().map(number);
             Selection::Numbers(numbers.collect::<Result<_, Error>>()?)
@@ -35,6 +46,12 @@ pub(super) fn selection(value: &Value, mesh: &Mesh) -> Result<Selection, Error> 
         Ok(_) => Ok(selection),
         Err(error) => Err(value.error(error)),
     }
+}
+
+/// The set and the number in a name as `top/3`, one node of a set in its order, from 1.
+fn one_of<'a>(name: &str, mesh: &'a Mesh) -> Option<(&'a [usize], usize)> {
+    let (set, number) = name.rsplit_once('/')?;
+    Some((mesh.sets().get(set)?, number.parse().ok()?))
 }
 
 fn number(value: Value) -> Result<usize, Error> {

@@ -95,11 +95,12 @@ pub(super) const SENSOR: TableKeys = TableKeys::new(
             UNIT,
         ],
     },
-    Kind { word: "centre-of-mass", about: "where the centre of mass is (m)", keys: &[] },
+    Kind { word: "centre-of-mass", about: "where the centre of mass is (m)", keys: &[BODY] },
+    Kind { word: "momentum", about: "the momentum (kg m/s)", keys: &[BODY] },
     Kind {
         word: "rotation",
         about: "the angle by which a body in the plane has turned as a whole, counter-clockwise; it goes on over whole turns",
-        keys: &[UNIT],
+        keys: &[UNIT, BODY],
     },
 ]);
 
@@ -112,6 +113,8 @@ const POINT: Key =
 const SPRING: Key = Key::new("spring", Holds::Text, "the name of the spring").required();
 const CHAMBER: Key = Key::new("chamber", Holds::Text, "the name of the chamber").required();
 const UNIT: Key = Key::new("unit", Holds::Word(|| vec!["rad", "deg"]), "the unit").default("rad");
+const BODY: Key =
+    Key::new("body", Holds::Text, "the name of one of several bodies").default("all together");
 const LINE: Holds = Holds::Array(&Holds::Nodes, 2);
 
 /// A sensor's name, and what it reads in `scene`.
@@ -153,8 +156,9 @@ pub(super) fn sensor(value: &Value, scene: &Scene) -> Result<(String, Reading), 
             Reading::distance(end("from")?, end("to")?)
         }
         "angle" => in_unit(&table, Reading::angle(ends("from")?, ends("to")?))?,
-        "centre-of-mass" => Reading::centre_of_mass(),
-        _ => in_unit(&table, Reading::rotation())?,
+        "centre-of-mass" => of_body(&table, Reading::centre_of_mass())?,
+        "momentum" => of_body(&table, Reading::momentum())?,
+        _ => of_body(&table, in_unit(&table, Reading::rotation())?)?,
     };
     let component = table.optional("component", |value| value.word(&Component::WORDS))?;
     let reading = match component {
@@ -171,6 +175,11 @@ fn in_unit(table: &Table, angle: Reading) -> Result<Reading, Error> {
     let in_degrees =
         table.optional("unit", |value| value.word(&[("rad", false), ("deg", true)]))?;
     Ok(if in_degrees == Some(true) { angle.in_degrees() } else { angle })
+}
+
+/// What is read of the body of the table, or of all.
+fn of_body(table: &Table, reading: Reading) -> Result<Reading, Error> {
+    table.added(reading, "body", Value::string, Reading::of_body)
 }
 
 /// The ends of a line.

@@ -10,6 +10,7 @@ use super::sensor::{SENSOR, sensor};
 use super::settings::{self, OUTPUT, SOLVER, STATICS};
 use super::surroundings::{self, CHAMBER, OBSTACLE, SPRING};
 use super::table::Table;
+use super::tie::{self, TIE};
 use super::value::Value;
 use crate::dynamics::error::Error;
 use crate::scene::timeline::Scene;
@@ -28,9 +29,10 @@ pub(super) const TOP: TableKeys = TableKeys::new(
         Key::new("unusual", Holds::List(&Holds::Text), "quantities that are meant as they are, though they look like wrong units")
             .law("Of `size`, `mass`, `density`, `young`, `wave-speed`, `thickness`, `weight`: they are not [warned of](scene-files.md#warnings).")
             .default("none"),
-        Key::new("body", Holds::Table(&BODY), "what moves").required(),
+        Key::new("body", Holds::Tables(&BODY), "what moves").required(),
         Key::new("point", Holds::Tables(&POINT), "point masses"),
         Key::new("initial", Holds::Table(&INITIAL), "how the body moves at first").default("at rest"),
+        Key::new("tie", Holds::Tables(&TIE), "ties between bodies"),
         Key::new("spring", Holds::Tables(&SPRING), "springs"),
         Key::new("chamber", Holds::Tables(&CHAMBER), "chambers"),
         Key::new("obstacle", Holds::Tables(&OBSTACLE), "obstacles"),
@@ -51,7 +53,7 @@ pub(super) fn scene_file(top: &Table) -> Result<SceneFile, Error> {
     let title = top.optional("title", Value::string)?.unwrap_or_default();
     let (dimension, points) = (top.get("dimension"), top.get("point"));
     let body =
-        top.required("body", |value| body::body(value, dimension.as_ref(), points.as_ref()))?;
+        top.required("body", |value| body::bodies(value, dimension.as_ref(), points.as_ref()))?;
     let mut scene = Scene::new(body);
     if let Some(gravity) = top.get("gravity") {
         let gravity = gravity.vector(scene.body().dimension())?;
@@ -73,7 +75,8 @@ pub(super) fn scene_file(top: &Table) -> Result<SceneFile, Error> {
         Some(Err(_)) => initial,
         None => None,
     };
-    let parts: [(&str, Add); 3] = [
+    let parts: [(&str, Add); 4] = [
+        ("tie", tie::add_tie),
         ("spring", surroundings::add_spring),
         ("chamber", surroundings::add_chamber),
         ("obstacle", surroundings::add_obstacle),
@@ -93,6 +96,7 @@ pub(super) fn scene_file(top: &Table) -> Result<SceneFile, Error> {
     if let Some(initial) = starts_finer {
         scene = initial::add_initial(scene, &initial)?;
     }
+    scene = top.required("body", |body| body::moving(scene, body))?;
     let auto = top.required("body", body::auto)?;
     let settings = top.optional("solver", settings::solver)?.unwrap_or_default();
     let accuracy = top.optional("solver", settings::accuracy)?.unwrap_or_default();

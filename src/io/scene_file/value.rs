@@ -145,6 +145,11 @@ impl<'a> Value<'a> {
         }
     }
 
+    /// A finite number, or a list of them.
+    pub(super) fn one_or_more_numbers(&self) -> Result<Vec<f64>, Error> {
+        self.one_or_more()?.iter().map(Value::finite).collect()
+    }
+
     /// A list of finite numbers.
     pub(super) fn numbers(&self) -> Result<Vec<f64>, Error> {
         self.list_of("finite numbers", Self::finite)

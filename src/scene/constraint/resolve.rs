@@ -20,8 +20,8 @@ const ROUND_OFF: f64 = 1e-14;
 /// # Errors
 /// Unknown nodes, axes that the body does not have, a velocity of the wrong length, numbers that are not
 /// finite, a path through points out of order, constraints that contradict each other.
-pub(crate) fn rows(
-    constraints: &[Constraint],
+pub(crate) fn rows<'a>(
+    constraints: impl Iterator<Item = &'a Constraint>,
     mesh: &Mesh,
     phase: &str,
     start: &PhaseStart,

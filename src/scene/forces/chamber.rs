@@ -13,7 +13,7 @@ use crate::base::input::{InputError, positive};
 use crate::base::sparse::BlockMatrix;
 use crate::elements::body::Body;
 use crate::elements::force::{Force, NodalForces, Tangents};
-use crate::elements::mesh::{Mesh, Selection};
+use crate::elements::mesh::Selection;
 use crate::integrators::ode::Failure;
 
 /// A chamber filled with a gas of given pressure p (Pa), which pushes its walls apart.
@@ -133,9 +133,9 @@ impl Chamber {
             (Walls::Nodes(nodes), 3) => {
                 let surface = Surface::new(body.mesh(), self.faces(body.mesh(), nodes)?);
                 // faces are oriented as seen from outside the body, and so from inside the chamber
-                let sign = match body.mesh().kind().dimension() {
-                    3 => -1.0,
-                    _ => self.surface_sign(body, &surface)?,
+                let sign = match self.fill_space(body, nodes)? {
+                    true => -1.0,
+                    false => self.surface_sign(body, &surface)?,
                 };
                 Geometry::Surface(surface, sign)
             }
@@ -161,12 +161,13 @@ impl Chamber {
 
     /// Checks that closed walls on the boundary of a body that fills its space do not run around the body:
     /// the chamber lies on the side of them that is opposite to the body.
-    pub(crate) fn check_side(&self, mesh: &Mesh, force: &ChamberForce) -> Result<(), InputError> {
+    pub(crate) fn check_side(&self, body: &Body, force: &ChamberForce) -> Result<(), InputError> {
+        let mesh = body.mesh();
         let Walls::Nodes(nodes @ (Selection::Set(_) | Selection::Box { .. })) = &self.walls else {
             return Ok(());
         };
         let is_closed = !self.is_closed_by_line && !self.is_closed_by_lid;
-        if !is_closed || mesh.kind().dimension() != mesh.dimension() {
+        if !is_closed || !self.fill_space(body, nodes)? {
             return Ok(());
         }
         match sides::around_the_body(force, mesh) {
@@ -193,13 +194,13 @@ impl Chamber {
         let by_boundary = || walls::against_boundary(mesh, &edges);
         let sign = match selection {
             // the cells of a string have no sides
-            Selection::Set(_) | Selection::Box { .. } if mesh.kind().dimension() == 2 => {
+            Selection::Set(_) | Selection::Box { .. } if self.fill_space(body, selection)? => {
                 by_boundary()
             }
             _ => by_area.or_else(by_boundary),
         };
         let sign = sign.ok_or_else(|| self.encloses_nothing("area (m^2)", area))?;
-        let height = self.height(body)?;
+        let height = self.height(body, selection)?;
         Ok(Geometry::Polygon(polygon, sign * height))
     }
 
@@ -213,11 +214,19 @@ impl Chamber {
         format!("chamber \"{}\" {key}", self.name)
     }
 
-    fn height(&self, body: &Body) -> Result<f64, InputError> {
-        match (self.thickness, body.mesh().kind().dimension()) {
+    /// Whether the cells at its walls fill the plane or space.
+    fn fill_space(&self, body: &Body, walls: &Selection) -> Result<bool, InputError> {
+        let nodes = body.mesh().select(walls)?;
+        let fills =
+            |node: &usize| body.part_of(*node).body.mesh().kind().dimension() == body.dimension();
+        Ok(nodes.iter().all(fills))
+    }
+
+    fn height(&self, body: &Body, walls: &Selection) -> Result<f64, InputError> {
+        match (self.thickness, self.fill_space(body, walls)?) {
             (Some(thickness), _) => positive(&self.input("thickness"), thickness, "m"),
-            (None, 2) => Ok(body.section()),
-            (None, _) => {
+            (None, true) => Ok(body.part_of(body.mesh().select(walls)?[0]).body.section()),
+            (None, false) => {
                 let help = "the body has no thickness of its own: give that of the chamber (m)";
                 Err(InputError::new(self.input("thickness"), "(missing)", help))
             }
@@ -233,7 +242,7 @@ impl Chamber {
 /// 1 or -1, so that pressure enlarges the area or volume `enclosed`, which is signed; `None` if it is 0 up to
 /// round-off.
 fn orientation(enclosed: f64, body: &Body) -> Option<f64> {
-    let least = 1e-9 * body.mesh().size().powi(body.dimension() as i32);
+    let least = 1e-9 * body.size().powi(body.dimension() as i32);
     (enclosed.abs() > least).then(|| enclosed.signum())
 }
 

@@ -106,7 +106,7 @@ impl Contact {
         });
         let (points, fastest): (Vec<_>, _) = (points.collect(), obstacle.fastest());
         let is_custom = obstacle.shape().is_custom();
-        let coulomb = obstacle.coulomb(body.mesh().size());
+        let coulomb = obstacle.coulomb(body.size());
         let pressing = coulomb.is_some() || !obstacle.has_adhesion();
         let switches = Switches::new(points.len(), pressing, obstacle.has_friction());
         Ok(Self { obstacle, dimension, fastest, is_custom, coulomb, points, switches })

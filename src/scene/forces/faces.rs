@@ -132,64 +132,70 @@ pub(super) fn list(nodes: &[usize]) -> String {
     format!("node(s) {}{more}", numbers.join(", "))
 }
 
-/// Faces that a load acts on.
-pub(super) struct Loaded {
-    pub(super) faces: Vec<Face>,
+/// A face that a load acts on.
+pub(super) struct LoadedFace {
+    pub(super) nodes: Face,
     pub(super) kind: FaceKind,
-    /// Factor from their lengths to areas (m^2); none for a string along its length.
+    /// Factor from its lengths to areas (m^2); none for a string along its length.
     pub(super) section: Option<f64>,
 }
 
-impl Loaded {
-    /// The faces of the boundary between `nodes`. For a body of lower dimension than space they are its cells
-    /// or, where the nodes make up no whole cells, the faces of its cells on its rim.
-    ///
-    /// # Errors
-    /// The nodes that are on none.
-    pub(super) fn between(body: &Body, nodes: &[usize]) -> Result<Self, Vec<usize>> {
-        let (mesh, nodes) = (body.mesh(), nodes.iter().copied().collect());
-        let skin = between(mesh.boundary_faces(), &nodes);
-        let skin = skin.map(|faces| Self { faces, kind: mesh.face_kind(), section: section(body) });
-        if mesh.dimension() == mesh.kind().dimension() {
-            return skin;
-        }
-        let (kind, section) = (mesh.kind().face(), Some(body.section()));
-        skin.or_else(|loose| {
-            let rim = between(mesh.outer_faces(), &nodes);
-            rim.map(|faces| Self { faces, kind, section }).map_err(|_| loose)
-        })
+/// The faces of the boundary between `nodes`. For a body of lower dimension than space they are its cells
+/// or, where the nodes make up no whole cells, the faces of its cells on its rim.
+///
+/// # Errors
+/// The nodes that are on none.
+pub(super) fn loaded_faces(body: &Body, nodes: &[usize]) -> Result<Vec<LoadedFace>, Vec<usize>> {
+    let (mesh, given) = (body.mesh(), nodes.iter().copied().collect());
+    let on_skin = |nodes: Face| {
+        let (kind, section) = (mesh.face_kind(&nodes), section(body, &nodes));
+        LoadedFace { nodes, kind, section }
+    };
+    let skin = between(mesh.boundary_faces(), &given);
+    if body.parts().all(|part| part.body.mesh().kind().dimension() == body.dimension()) {
+        return Ok(skin?.into_iter().map(on_skin).collect());
     }
+    let on_rim = |nodes: Face| {
+        let section = Some(body.part_of(nodes[0]).body.section());
+        LoadedFace { kind: FaceKind::of_rim(nodes.len()), nodes, section }
+    };
+    match skin {
+        Ok(skin) => Ok(skin.into_iter().map(on_skin).collect()),
+        Err(loose) => match between(mesh.outer_faces(), &given) {
+            Ok(rim) => Ok(rim.into_iter().map(on_rim).collect()),
+            Err(_) => Err(loose),
+        },
+    }
+}
 
-    /// The integral of the shape function of each node in the undeformed shape: the length (m) or area (m^2)
-    /// that the node stands for, 1 for a point.
-    fn integrals(&self, mesh: &Mesh) -> BTreeMap<usize, f64> {
-        let points = face_points(self.kind);
-        let mut integrals = BTreeMap::new();
-        for face in &self.faces {
-            let x: Vec<[f64; 3]> = face.iter().map(|&node| natural(mesh, node)).collect();
-            for point in &points {
-                let [along, across] = point.tangents(&x);
-                let measure = match self.kind.dimension() {
-                    0 => 1.0,
-                    1 => norm(&along),
-                    _ => norm(&cross(&along, &across)),
-                };
-                for (&node, value) in face.iter().zip(point.values) {
-                    *integrals.entry(node).or_default() += point.weight * value * measure;
-                }
+/// The integral of the shape function of each node of `faces` in the undeformed shape: the length (m) or area
+/// (m^2) that the node stands for, 1 for a point.
+fn integrals(faces: &[LoadedFace], mesh: &Mesh) -> BTreeMap<usize, f64> {
+    let mut integrals = BTreeMap::new();
+    for LoadedFace { nodes, kind, .. } in faces {
+        let x: Vec<[f64; 3]> = nodes.iter().map(|&node| natural(mesh, node)).collect();
+        for point in face_points(*kind) {
+            let [along, across] = point.tangents(&x);
+            let measure = match kind.dimension() {
+                0 => 1.0,
+                1 => norm(&along),
+                _ => norm(&cross(&along, &across)),
+            };
+            for (&node, value) in nodes.iter().zip(point.values) {
+                *integrals.entry(node).or_default() += point.weight * value * measure;
             }
         }
-        integrals
     }
+    integrals
 }
 
 /// The shares of `nodes` in a force on all of them together, which add up to 1: by the shape functions of the
 /// faces between them, or equal where they make up no whole faces.
 pub(crate) fn shares(body: &Body, nodes: &[usize]) -> Vec<f64> {
-    let Ok(loaded) = Loaded::between(body, nodes) else {
+    let Ok(faces) = loaded_faces(body, nodes) else {
         return vec![1.0 / nodes.len() as f64; nodes.len()];
     };
-    let integrals = loaded.integrals(body.mesh());
+    let integrals = integrals(&faces, body.mesh());
     let whole: f64 = integrals.values().sum();
     nodes.iter().map(|node| integrals[node] / whole).collect()
 }
@@ -199,12 +205,16 @@ pub(crate) fn shares(body: &Body, nodes: &[usize]) -> Vec<f64> {
 /// # Errors
 /// What is wrong with them: nodes on no whole face, a body without a surface.
 pub(crate) fn areas(body: &Body, nodes: &[usize]) -> Result<Vec<f64>, String> {
-    let loaded = Loaded::between(body, nodes).map_err(|loose| on_no_face(&loose))?;
-    let Some(section) = loaded.section else {
-        return Err("a string has no surface but its ends: give the force on each node".into());
-    };
-    let integrals = loaded.integrals(body.mesh());
-    Ok(nodes.iter().map(|node| section * integrals[node]).collect())
+    let faces = loaded_faces(body, nodes).map_err(|loose| on_no_face(&loose))?;
+    let mut sections = BTreeMap::new();
+    for face in &faces {
+        let Some(section) = face.section else {
+            return Err("a string has no surface but its ends: give the force on each node".into());
+        };
+        sections.extend(face.nodes.iter().map(|node| (*node, section)));
+    }
+    let integrals = integrals(&faces, body.mesh());
+    Ok(nodes.iter().map(|node| sections[node] * integrals[node]).collect())
 }
 
 /// The message for nodes that are on no face.

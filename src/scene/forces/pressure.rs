@@ -1,13 +1,15 @@
 //! Pressure on faces of the boundary: a force along the normal of the deformed face.
 
-use super::faces::{FacePoint, Loaded, MOST_NODES, face_points, natural, on_no_face};
+use super::faces::{
+    FacePoint, LoadedFace, MOST_NODES, face_points, loaded_faces, natural, on_no_face,
+};
 use super::signal::{Signal, finite_at};
 use crate::base::input::InputError;
 use crate::base::sparse::BlockMatrix;
 use crate::base::vector::cross;
 use crate::elements::body::Body;
 use crate::elements::force::{Force, NodalForces, Tangents};
-use crate::elements::mesh::Selection;
+use crate::elements::mesh::{FaceKind, Selection};
 use crate::integrators::ode::Failure;
 
 /// Pressure p on faces: f_a = -sum w p N_a n over their quadrature points, with n = x,1 x x,2, the outward
@@ -18,9 +20,8 @@ use crate::integrators::ode::Failure;
 pub(crate) struct FacePressure {
     dimension: usize,
     faces: Vec<PressedFace>,
-    points: Vec<FacePoint>,
-    /// x,2 in the plane.
-    across: Option<[f64; 3]>,
+    /// The quadrature points of each kind of face.
+    points: Vec<(FaceKind, Vec<FacePoint>)>,
     pressure: Signal,
 }
 
@@ -28,6 +29,10 @@ struct PressedFace {
     nodes: Vec<usize>,
     /// Their undeformed positions; components beyond the dimension are 0.
     natural: Vec<[f64; 3]>,
+    /// The number of its kind.
+    kind: usize,
+    /// x,2 in the plane.
+    across: Option<[f64; 3]>,
 }
 
 impl FacePressure {
@@ -44,35 +49,41 @@ impl FacePressure {
         let bad = |problem: String| InputError::new("pressure nodes", selection, problem);
         pressure.validate("pressure")?;
         let nodes = mesh.select(selection)?;
-        let loaded = Loaded::between(body, &nodes).map_err(|loose| bad(on_no_face(&loose)))?;
-        let across = match (mesh.dimension(), loaded.kind.dimension(), loaded.section) {
-            (2, 1, Some(thickness)) => Some([0.0, 0.0, thickness]),
-            (3, 2, _) => None,
-            _ => {
-                let help = "there is no face with a normal between them: give a traction or forces";
-                return Err(bad(help.into()));
-            }
-        };
-        let faces = loaded.faces.into_iter().map(|nodes| {
+        let loaded = loaded_faces(body, &nodes).map_err(|loose| bad(on_no_face(&loose)))?;
+        let (mut faces, mut points) = (Vec::with_capacity(loaded.len()), Vec::new());
+        for LoadedFace { nodes, kind, section } in loaded {
+            let across = match (mesh.dimension(), kind.dimension(), section) {
+                (2, 1, Some(thickness)) => Some([0.0, 0.0, thickness]),
+                (3, 2, _) => None,
+                _ => {
+                    let help =
+                        "there is no face with a normal between them: give a traction or forces";
+                    return Err(bad(help.into()));
+                }
+            };
+            let known = points.iter().position(|(other, _)| *other == kind);
+            let kind = known.unwrap_or_else(|| {
+                points.push((kind, face_points(kind)));
+                points.len() - 1
+            });
             let natural = nodes.iter().map(|&node| natural(mesh, node)).collect();
-            PressedFace { nodes, natural }
-        });
-        let (dimension, points) = (mesh.dimension(), face_points(loaded.kind));
-        Ok(Self { dimension, faces: faces.collect(), points, across, pressure })
+            faces.push(PressedFace { nodes, natural, kind, across });
+        }
+        Ok(Self { dimension: mesh.dimension(), faces, points, pressure })
     }
 
     /// Each quadrature point with its face and the derivatives x,1 and x,2 of the deformed face.
     fn each_point(&self, u: &[f64], mut see: impl FnMut(&[usize], &FacePoint, [[f64; 3]; 2])) {
-        for PressedFace { nodes, natural } in &self.faces {
+        for PressedFace { nodes, natural, kind, across } in &self.faces {
             let mut x = [[0.0; 3]; MOST_NODES];
             for ((x, natural), node) in x.iter_mut().zip(natural).zip(nodes) {
                 *x = *natural;
                 let moved = &u[node * self.dimension..][..self.dimension];
                 x.iter_mut().zip(moved).for_each(|(x, u)| *x += u);
             }
-            for point in &self.points {
+            for point in &self.points[*kind].1 {
                 let [first, second] = point.tangents(&x[..nodes.len()]);
-                see(nodes, point, [first, self.across.unwrap_or(second)]);
+                see(nodes, point, [first, across.unwrap_or(second)]);
             }
         }
     }

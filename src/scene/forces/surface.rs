@@ -71,16 +71,16 @@ pub(crate) fn face_centre(kind: FaceKind, face: &[usize]) -> Option<SurfacePoint
 }
 
 /// Gauss points of the faces of the boundary, which are cut into segments or triangles for this. A membrane
-/// in space is boundary all over; a string has no area: `None`.
+/// in space is boundary all over; a string has no area: `None` if there is one.
 ///
 /// Points inside faces, not nodes: a node at a corner would count the area of faces that do not
 /// touch.
 pub(super) fn gauss_points(body: &Body) -> Option<Vec<SurfacePoint>> {
-    let (mesh, section) = (body.mesh(), section(body)?);
-    let parts = pieces(mesh.face_kind());
+    let mesh = body.mesh();
     let mut points = Vec::new();
     for face in mesh.boundary_faces() {
-        for (part, weight) in parts.clone() {
+        let section = section(body, &face)?;
+        for (part, weight) in pieces(mesh.face_kind(&face)) {
             let corners: Vec<usize> = part.iter().map(|&local| face[local]).collect();
             let area = weight * section * measure(body, &corners);
             let rule: &[&[f64]] = match corners.len() {
@@ -95,11 +95,12 @@ pub(super) fn gauss_points(body: &Body) -> Option<Vec<SurfacePoint>> {
     Some(points)
 }
 
-/// Factor from lengths of the boundary to areas (m^2): the thickness of a body in the plane, the
+/// Factor from lengths of a face of the boundary to areas (m^2): the thickness of a body in the plane, the
 /// cross-section of a bar; 1 in space. A string has no surface: `None`.
-pub(super) fn section(body: &Body) -> Option<f64> {
-    match (body.mesh().kind().dimension(), body.dimension()) {
-        (cell, space) if cell == space => Some(body.section()),
+pub(super) fn section(body: &Body, face: &[usize]) -> Option<f64> {
+    let of_face = body.part_of(face[0]).body;
+    match (of_face.mesh().kind().dimension(), body.dimension()) {
+        (cell, space) if cell == space => Some(of_face.section()),
         (2, 3) => Some(1.0),
         _ => None,
     }

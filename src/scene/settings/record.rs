@@ -149,7 +149,7 @@ pub(crate) struct Scales {
 impl Scales {
     pub(crate) fn of(scene: &Scene) -> Self {
         let body = scene.body();
-        let (size, material) = (body.mesh().size(), body.material());
+        let (size, material) = (body.size(), body.material());
         let sticking = scene.obstacles().iter().filter_map(|obstacle| obstacle.sticks_below(size));
         Self {
             size,

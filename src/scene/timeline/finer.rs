@@ -103,6 +103,7 @@ impl Scene {
                 help,
             ));
         }
+        self.body.single("the same scene on a finer mesh")?;
         let builder = self.body.to_builder();
         let nodes = builder.own_mesh().node_count() << builder.own_mesh().kind().dimension();
         let help = "take coarser cells, or halve them less often";

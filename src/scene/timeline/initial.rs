@@ -89,6 +89,17 @@ impl Scene {
         self
     }
 
+    /// Angular velocity (rad/s) at t = 0 of one of several [bodies](crate::Body::join) about its own centre of mass, in
+    /// addition to all other velocities.
+    pub fn spin_of(
+        mut self,
+        body: impl Into<String>,
+        angular_velocity: impl Into<Vec<f64>>,
+    ) -> Self {
+        self.start.of_bodies.push((body.into(), angular_velocity.into()));
+        self
+    }
+
     /// Displacements at t = 0.
     pub(crate) fn initial_displacements(&self) -> &[f64] {
         &self.start.displacements

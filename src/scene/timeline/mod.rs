@@ -10,6 +10,7 @@ mod loading;
 mod phase;
 mod start;
 mod term;
+mod tie;
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -21,13 +22,15 @@ pub(crate) use phase::ContactWith;
 pub use phase::Phase;
 use start::Start;
 pub use term::Term;
+use tie::Tie;
 
 use crate::base::input::{InputError, find, finite};
 use crate::base::vector::largest;
 use crate::elements::body::Body;
 use crate::elements::force::{Force, Forces, NodalForces};
+use crate::elements::mesh::Selection;
 use crate::integrators::ode::Failure;
-use crate::scene::constraint::{ConstraintRow, PhaseStart, prescribe, rows};
+use crate::scene::constraint::{Constraint, ConstraintRow, PhaseStart, prescribe, rows};
 use crate::scene::forces::{Chamber, Contact, Obstacle, Spring};
 
 /// A body, gravity, springs, chambers, obstacles, and what happens when.
@@ -52,6 +55,7 @@ pub struct Scene {
     gravity: Option<Vec<f64>>,
     springs: Vec<Spring>,
     chambers: Vec<Chamber>,
+    ties: Vec<Tie>,
     obstacles: Vec<Obstacle>,
     /// Other forces.
     forces: Forces,
@@ -73,6 +77,7 @@ impl Scene {
             gravity: None,
             springs: Vec::new(),
             chambers: Vec::new(),
+            ties: Vec::new(),
             obstacles: Vec::new(),
             forces: Forces::new(),
             phases: Vec::new(),
@@ -97,6 +102,35 @@ impl Scene {
     /// Adds a chamber, to be filled by the pressure that phases give it.
     pub fn chamber(mut self, chamber: Chamber) -> Self {
         self.chambers.push(chamber);
+        self
+    }
+
+    /// Glues nodes to another of several [bodies](Body::join): in all phases each moves with the point of the body
+    /// at which it is in the undeformed shape, by the shape functions there.
+    ///
+    /// The meshes need not match. Name the nodes of the finer surface: those of the other one are then free
+    /// between them. A node that touches the body nowhere may be apart from it by a fifth of an edge, as where one
+    /// of two curved surfaces has longer edges; the gap stays as it is.
+    ///
+    /// ```
+    /// use pliant::{Body, Cells, Material, Mesh, Phase, Scene};
+    ///
+    /// let soft = Material { density: 1000.0, young: 1e5, poisson: 0.3, viscosity: 10.0 };
+    /// let stiff = Material { young: 1e7, ..soft };
+    /// let part = |name, x: f64, nodes, material| {
+    ///     let mesh = Mesh::rectangle([0.1, 0.02], nodes, Cells::Rectangles)?.translated(&[x, 0.0])?;
+    ///     Body::new(mesh, material).thickness(0.01).named(name).build()
+    /// };
+    /// let both = Body::join([part("base", 0.0, [11, 3], stiff)?, part("tip", 0.1, [21, 5], soft)?])?;
+    /// let scene = Scene::new(both)
+    ///     .tie("tip/left", "base")
+    ///     .gravity([0.0, -9.8])
+    ///     .phase(Phase::until(0.1).hold("base/left"));
+    /// scene.validate()?;
+    /// # Ok::<(), pliant::Error>(())
+    /// ```
+    pub fn tie(mut self, nodes: impl Into<Selection>, to: impl Into<String>) -> Self {
+        self.ties.push(Tie { nodes: nodes.into(), to: to.into() });
         self
     }
 
@@ -303,7 +337,7 @@ impl Scene {
         unique("chamber", self.chambers.iter().map(Chamber::name))?;
         unique("obstacle", self.obstacles.iter().map(Obstacle::name))?;
         for chamber in &self.chambers {
-            chamber.check_side(self.body.mesh(), &chamber.force(&self.body, Vec::new())?)?;
+            chamber.check_side(&self.body, &chamber.force(&self.body, Vec::new())?)?;
         }
         for obstacle in &self.obstacles {
             Contact::new(&self.body, obstacle)?;
@@ -318,13 +352,27 @@ impl Scene {
         forces.collect()
     }
 
+    /// The constraints of all ties.
+    ///
+    /// # Errors
+    /// Nodes or bodies that do not exist, nodes of the body itself, nodes that are not at it.
+    pub(crate) fn tied(&self) -> Result<Vec<Constraint>, InputError> {
+        let mut constraints = Vec::new();
+        for tie in &self.ties {
+            tie.add_constraints(&self.body, &mut constraints)?;
+        }
+        Ok(constraints)
+    }
+
     /// The rows of the constraints of a phase.
     pub(crate) fn rows(
         &self,
         phase: &Phase,
         start: &PhaseStart,
     ) -> Result<Vec<ConstraintRow>, InputError> {
-        rows(&phase.constraints, self.body.mesh(), &phase.name, start)
+        let tied = self.tied()?;
+        let all = phase.constraints.iter().chain(&tied);
+        rows(all, self.body.mesh(), &phase.name, start)
     }
 }
 

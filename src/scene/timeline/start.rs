@@ -21,6 +21,8 @@ pub(super) struct Start {
     pub(super) spin: Option<Vec<f64>>,
     /// Velocities (m/s) of some nodes, in place of both.
     pub(super) of_nodes: Vec<(Selection, Vec<f64>)>,
+    /// Angular velocities (rad/s) of some bodies about their own centres of mass, added to all of these.
+    pub(super) of_bodies: Vec<(String, Vec<f64>)>,
 }
 
 impl Start {
@@ -33,6 +35,7 @@ impl Start {
             velocities: rest,
             spin: None,
             of_nodes: Vec::new(),
+            of_bodies: Vec::new(),
         }
     }
 
@@ -43,7 +46,7 @@ impl Start {
     /// unknown nodes.
     pub(super) fn velocities(&self, body: &Body) -> Result<Vec<f64>, InputError> {
         let dimension = body.dimension();
-        let Self { positions, displacements, velocities, spin, of_nodes } = self;
+        let Self { positions, displacements, velocities, spin, of_nodes, of_bodies } = self;
         if let Some(positions) = positions {
             check_positions(positions, body)?;
         }
@@ -59,15 +62,7 @@ impl Start {
         }
         let mut v = velocities.clone();
         if let Some(spin) = spin {
-            let omega = angular("spin", spin, dimension)?;
-            let positions = body.mesh().positions().iter();
-            let x: Vec<f64> = positions.zip(displacements).map(|(x, u)| x + u).collect();
-            let centre = body.mass_average(&x);
-            for (v, x) in v.chunks_exact_mut(dimension).zip(x.chunks_exact(dimension)) {
-                let mut arm = [0.0; 3];
-                arm.iter_mut().zip(x.iter().zip(&centre)).for_each(|(arm, (x, c))| *arm = x - c);
-                v.iter_mut().zip(cross(&omega, &arm)).for_each(|(v, turning)| *v += turning);
-            }
+            add_spin(&angular("spin", spin, dimension)?, body, displacements, &mut v);
         }
         for (nodes, velocity) in of_nodes {
             check_vector("initial velocity", velocity, dimension, "m/s")?;
@@ -76,6 +71,25 @@ impl Start {
                 v[node * dimension..][..dimension].copy_from_slice(velocity);
             }
         }
+        for (name, spin) in of_bodies {
+            let part = body.part_named(name, "body of a spin")?;
+            let omega = angular("spin", spin, dimension)?;
+            let dofs = dimension * part.nodes.start..dimension * part.nodes.end;
+            add_spin(&omega, part.body, &displacements[dofs.clone()], &mut v[dofs]);
+        }
         Ok(v)
+    }
+}
+
+/// Adds the velocities of a rotation with the angular velocity `omega` (rad/s) about the centre of mass.
+fn add_spin(omega: &[f64; 3], body: &Body, displacements: &[f64], v: &mut [f64]) {
+    let dimension = body.dimension();
+    let positions = body.mesh().positions().iter();
+    let x: Vec<f64> = positions.zip(displacements).map(|(x, u)| x + u).collect();
+    let centre = body.mass_average(&x);
+    for (v, x) in v.chunks_exact_mut(dimension).zip(x.chunks_exact(dimension)) {
+        let mut arm = [0.0; 3];
+        arm.iter_mut().zip(x.iter().zip(&centre)).for_each(|(arm, (x, c))| *arm = x - c);
+        v.iter_mut().zip(cross(omega, &arm)).for_each(|(v, turning)| *v += turning);
     }
 }

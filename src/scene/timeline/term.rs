@@ -38,7 +38,7 @@ impl Scene {
     pub fn terms(&self) -> Vec<Term> {
         let has_gravity = self.phases.iter().filter_map(|phase| self.gravity_in(phase));
         let has_gravity = has_gravity.flatten().any(|g| *g != 0.0);
-        let is_viscous = self.body.materials().iter().any(|material| material.viscosity > 0.0);
+        let is_viscous = self.body.materials().any(|material| material.viscosity > 0.0);
         let rubs =
             |obstacle: &Obstacle| obstacle.has_friction() || obstacle.has_tangential_damping();
         let rubs = self.obstacles.iter().any(rubs);

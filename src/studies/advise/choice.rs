@@ -224,8 +224,7 @@ impl RicherCells {
     /// Those of a body as it was written; `None` if its cells have them already, or there are none.
     pub(super) fn of(body: &Body) -> Option<Self> {
         let kind = body.mesh().kind();
-        let linear =
-            body.can_lock() && body.materials().iter().any(Material::is_nearly_incompressible);
+        let linear = body.can_lock() && body.materials().any(Material::is_nearly_incompressible);
         match kind {
             CellKind::Triangle | CellKind::Quadrilateral | CellKind::Tetrahedron => {
                 Some(Self { bubbles: linear, linear })

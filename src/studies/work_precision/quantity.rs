@@ -206,7 +206,7 @@ impl Quantity {
             };
             let values: Vec<Vec<f64>> = samples.map(displacement).collect();
             let mut seen = Seen { dimension: d, values, scale: 0.0 };
-            seen.scale = seen.size(|_, _, x| x).mean.max(LEAST_MOTION * body.mesh().size());
+            seen.scale = seen.size(|_, _, x| x).mean.max(LEAST_MOTION * body.size());
             return seen;
         };
         let count = trajectory.sensors().iter().filter(|column| is_own(&column.name)).count();

@@ -44,7 +44,7 @@ fn forces(body: &Body, u: &[f64]) -> Vec<f64> {
 fn energy(body: &Body, u: &[f64]) -> f64 {
     let fields = body.cell_fields(u).into_iter().zip(body.cell_volumes());
     let of_fields: f64 = fields.map(|(field, volume)| field.energy_density * volume).sum();
-    let energy = body.elements.energy(&body.regions, u);
+    let energy = body.continua[0].elements.energy(&body.continua[0].regions, u);
     assert!((of_fields / energy - 1.0).abs() < 1e-12, "{of_fields} {energy}");
     energy
 }

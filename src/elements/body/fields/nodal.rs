@@ -2,8 +2,7 @@
 //! mean weighted by the volumes of the cells (Hinton and Campbell 1974; Hughes, *The Finite Element Method*,
 //! section 4.10).
 
-use super::{Fields, Tensors, von_mises};
-use crate::elements::body::regions::Regions;
+use super::{Tensors, von_mises};
 use crate::elements::mesh::Mesh;
 
 /// Strain and stress at a node, as [`CellField`](crate::CellField) has them for cells.
@@ -27,19 +26,19 @@ impl NodalField {
     }
 }
 
-/// The fields at all of `count` nodes.
-pub(in crate::elements::body) fn nodal_fields<E: Fields + ?Sized>(
-    elements: &E,
-    regions: &Regions,
+/// The fields at all of `count` nodes, of cells with these `volumes`, of which `each_node` passes on what they
+/// have at each of their nodes.
+pub(in crate::elements::body) fn nodal_fields(
     count: usize,
-    u: &[f64],
+    volumes: &[f64],
+    each_node: impl Fn(usize, &mut dyn FnMut(usize, usize, &Tensors)),
 ) -> Vec<NodalField> {
     let mut sums = vec![(0.0, Tensors::default()); count];
-    for (cell, volume) in elements.volumes().into_iter().enumerate() {
-        elements.each_node(regions, u, cell, &mut |node, _, tensors| {
+    for (cell, volume) in volumes.iter().enumerate() {
+        each_node(cell, &mut |node, _, tensors| {
             let (total, sum) = &mut sums[node];
             *total += volume;
-            sum.add(tensors, volume);
+            sum.add(tensors, *volume);
         });
     }
     // a node of no cell has none
@@ -76,15 +75,13 @@ impl Probe {
         Self { cells: shares.collect() }
     }
 
-    pub(in crate::elements::body) fn read<E: Fields + ?Sized>(
+    pub(in crate::elements::body) fn read(
         &self,
-        elements: &E,
-        regions: &Regions,
-        u: &[f64],
+        each_node: impl Fn(usize, &mut dyn FnMut(usize, usize, &Tensors)),
     ) -> NodalField {
         let mut sum = Tensors::default();
         for (cell, shares) in &self.cells {
-            elements.each_node(regions, u, *cell, &mut |_, a, tensors| sum.add(tensors, shares[a]));
+            each_node(*cell, &mut |_, a, tensors| sum.add(tensors, shares[a]));
         }
         NodalField::new(&sum, 1.0)
     }

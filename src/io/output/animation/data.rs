@@ -33,7 +33,7 @@ pub(super) fn gather(trajectory: &Trajectory, name: &str) -> Result<Value, Error
     let (body, mesh) = (scene.body(), scene.body().mesh());
     let points = point_masses(mesh);
     let ends = spring_ends(scene)?;
-    let geometry = Geometry::new(mesh, ends.iter().flatten().copied(), &points);
+    let geometry = Geometry::new(body, ends.iter().flatten().copied(), &points);
     let frames = thinned(trajectory.samples(), bytes_per_frame(trajectory, &geometry));
     let view = (mesh.dimension() < 3).then(|| View::of(trajectory, &frames).corners());
     Ok(json!({
@@ -97,9 +97,9 @@ fn quantities(body: &Body, frames: &[&Sample], geometry: &Geometry) -> Value {
     for sample in frames {
         let fields = body.cell_fields(&sample.u);
         for (quantity, values) in quantities.iter().zip(&mut values) {
-            let of_fields: Vec<f64> =
-                fields.iter().map(|field| (quantity.value)(field, body.strain())).collect();
-            values.extend(geometry.cells.iter().map(|&cell| of_fields[cell] as f32));
+            let value =
+                |&cell: &usize| (quantity.value)(&fields[cell], body.strain_of(cell)) as f32;
+            values.extend(geometry.cells.iter().map(value));
         }
     }
     let packed = quantities.iter().zip(values).map(|(quantity, values)| {
@@ -232,7 +232,7 @@ fn course(scene: &Scene, obstacle: &Obstacle, since: f64) -> Value {
     let [start, velocity] =
         [obstacle.offset(), obstacle.velocity_at(0.0)].map(|x| in_view(&x[..dimension]));
     let mut course = json!({ "since": since, "start": start, "velocity": velocity });
-    let times = obstacle.knots(scene.end(), FOLLOWED * scene.body().mesh().size());
+    let times = obstacle.knots(scene.end(), FOLLOWED * scene.body().size());
     if !times.is_empty() {
         let points = |at: &dyn Fn(f64) -> [f64; 3]| -> Vec<_> {
             times.iter().map(|&t| in_view(&at(t)[..dimension])).collect()
@@ -315,7 +315,7 @@ fn run(trajectory: &Trajectory) -> Value {
     json!({
         "nodes": mesh.node_count(),
         "cells": mesh.cell_count(),
-        "cellName": mesh.kind().name(),
+        "cellName": trajectory.body().cell_names(),
         "method": report.method.to_string(),
         "rtol": format!("{:e}", report.rtol),
         "steps": report.steps(),

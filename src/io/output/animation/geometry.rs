@@ -2,14 +2,15 @@
 
 use serde_json::{Value, json};
 
+use crate::elements::body::Body;
 use crate::elements::mesh::Mesh;
 use crate::io::output::svg::{BAR_WIDTH, around, drawn, through_middle};
 use crate::scene::forces::Joint;
 
 /// The drawn part of a mesh.
 pub(super) struct Geometry {
-    /// How the page draws it.
-    look: &'static str,
+    /// The bodies: name, how the page draws it, number of its faces.
+    bodies: Vec<(String, &'static str, usize)>,
     /// The drawn nodes.
     pub(super) nodes: Vec<usize>,
     /// The points of space that springs are joined to, drawn after the nodes.
@@ -24,14 +25,13 @@ pub(super) struct Geometry {
     places: Vec<Option<usize>>,
     /// Width of a bar as drawn (m).
     width: f64,
-    quadratic: bool,
 }
 
 impl Geometry {
-    /// What is drawn of `mesh`: of a solid its surface, of other bodies all cells, and in addition what
+    /// What is drawn of `body`: of a solid its surface, of other bodies all cells, and in addition what
     /// springs are joined to and the nodes `points`.
     pub(super) fn new(
-        mesh: &Mesh,
+        body: &Body,
         joints: impl Iterator<Item = Joint> + Clone,
         points: &[usize],
     ) -> Self {
@@ -47,14 +47,24 @@ impl Geometry {
                 _ => {}
             }
         }
-        let kind = mesh.kind();
-        let (look, faces) = match (kind.dimension(), mesh.dimension()) {
-            (1, 1) => ("bar", segments(mesh)),
-            (1, _) => ("string", segments(mesh)),
-            (_, 2) => ("area", cells(mesh)),
-            (2, _) => ("membrane", cells(mesh)),
-            _ => ("solid", surface(mesh)),
-        };
+        let mesh = body.mesh();
+        let (mut bodies, mut faces) = (Vec::new(), Vec::new());
+        for part in body.parts() {
+            let own = part.body.mesh();
+            let (look, drawn) = match (own.kind().dimension(), own.dimension()) {
+                (1, 1) => ("bar", segments(own)),
+                (1, _) => ("string", segments(own)),
+                (_, 2) => ("area", cells(own)),
+                (2, _) => ("membrane", cells(own)),
+                _ => ("solid", surface(own)),
+            };
+            bodies.push((part.name.to_owned(), look, drawn.len()));
+            let first = (part.cells.start, part.nodes.start);
+            faces.extend(drawn.into_iter().map(|(cell, mut face)| {
+                face.iter_mut().for_each(|node| *node += first.1);
+                (first.0 + cell, face)
+            }));
+        }
         let mut places = vec![None; mesh.node_count()];
         let mut nodes = Vec::new();
         let drawn = faces.iter().flat_map(|(_, face)| face).copied();
@@ -65,7 +75,7 @@ impl Geometry {
             });
         }
         let mut geometry = Self {
-            look,
+            bodies,
             nodes,
             anchors,
             cells: faces.iter().map(|&(cell, _)| cell).collect(),
@@ -73,11 +83,17 @@ impl Geometry {
             outline: Vec::new(),
             places,
             width: BAR_WIDTH * mesh.size(),
-            quadratic: kind.is_quadratic(),
         };
         geometry.faces = faces.iter().map(|(_, face)| geometry.places(face)).collect();
-        if look == "area" {
-            let edges = mesh.boundary_faces();
+        if mesh.dimension() == 2 {
+            // the faces of a string are its cells
+            let areas = body.parts().filter(|part| part.body.mesh().kind().dimension() == 2);
+            let outlines = areas.flat_map(|part| {
+                let mut edges = part.body.mesh().boundary_faces();
+                edges.iter_mut().flatten().for_each(|node| *node += part.nodes.start);
+                edges
+            });
+            let edges: Vec<_> = outlines.collect();
             let edges = edges.iter().map(|edge| through_middle(edge).collect::<Vec<_>>());
             geometry.outline = edges.map(|edge| geometry.places(&edge)).collect();
         }
@@ -116,14 +132,16 @@ impl Geometry {
     }
 
     pub(super) fn to_json(&self) -> Value {
-        let Self { look, nodes, faces, outline, width, quadratic, .. } = self;
+        let Self { bodies, nodes, faces, outline, width, .. } = self;
+        let bodies = bodies
+            .iter()
+            .map(|(name, look, faces)| json!({ "name": name, "look": look, "faces": faces }));
         json!({
-            "look": look,
+            "bodies": bodies.collect::<Vec<_>>(),
             "nodes": nodes.len(),
             "faces": faces,
             "outline": outline,
             "width": width,
-            "quadratic": quadratic,
         })
     }
 }
@@ -135,12 +153,12 @@ fn segments(mesh: &Mesh) -> Faces {
 }
 
 fn cells(mesh: &Mesh) -> Faces {
-    mesh.cells().map(|cell| around(mesh.kind(), cell).collect()).enumerate().collect()
+    mesh.cells().map(|cell| around(cell).collect()).enumerate().collect()
 }
 
 fn surface(mesh: &Mesh) -> Faces {
     let faces = mesh.boundary_faces_of_cells().into_iter();
-    faces.map(|(cell, face)| (cell, around(mesh.kind(), &face).collect())).collect()
+    faces.map(|(cell, face)| (cell, around(&face).collect())).collect()
 }
 
 /// A vector as the page draws it: upright in one dimension.

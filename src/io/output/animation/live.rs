@@ -40,7 +40,7 @@ impl Picture {
         let mesh = scene.body().mesh();
         let points = data::point_masses(mesh);
         let ends = data::spring_ends(scene)?;
-        let geometry = Geometry::new(mesh, ends.iter().flatten().copied(), &points);
+        let geometry = Geometry::new(scene.body(), ends.iter().flatten().copied(), &points);
         let quantities: Vec<Value> =
             Quantity::all(scene.body().strain()).iter().map(Quantity::to_json).collect();
         let springs = scene.springs().iter().zip(&ends);
@@ -97,7 +97,7 @@ impl Picture {
     pub(crate) fn colours(&self, body: &Body, u: &[f64], quantity: usize) -> Option<Value> {
         let shown = Quantity::all(body.strain()).get(quantity)?;
         let fields = body.cell_fields(u);
-        let value = |&cell: &usize| (shown.value)(&fields[cell], body.strain()) as f32;
+        let value = |&cell: &usize| (shown.value)(&fields[cell], body.strain_of(cell)) as f32;
         let values: Vec<f32> = self.geometry.cells.iter().map(value).collect();
         let (values, scale, _) = shown.packed(&values);
         Some(json!({ "quantity": quantity, "scale": scale, "values": values }))

@@ -14,10 +14,30 @@ use crate::elements::mesh::{CellKind, Mesh};
 use crate::io::output::INK;
 use crate::scene::forces::Joint;
 
-const EDGE: &str = "#35618f";
-const FILL: &str = "#a9cbe8";
+/// The edges of cells and the cells of the first body, of the second, and so on; then over again.
+const PAINTS: [Paint; 6] = [
+    Paint { edge: "#35618f", fill: "#a9cbe8" },
+    Paint { edge: "#9a5b1e", fill: "#f0c896" },
+    Paint { edge: "#3f7a4a", fill: "#b5dcb4" },
+    Paint { edge: "#7a4b8c", fill: "#d9c1e3" },
+    Paint { edge: "#8c4646", fill: "#e8b8b2" },
+    Paint { edge: "#5f6670", fill: "#c9cfd6" },
+];
 /// Thickness of the hatched band along the surface of a half-plane (px).
 const BAND: f64 = 14.0;
+
+/// The colours of a body.
+#[derive(Clone, Copy, PartialEq, Eq)]
+struct Paint {
+    edge: &'static str,
+    fill: &'static str,
+}
+
+impl Paint {
+    fn of_body(number: usize) -> Self {
+        PAINTS[number % PAINTS.len()]
+    }
+}
 
 pub(super) struct Panel<'a> {
     pub(super) number: usize,
@@ -41,13 +61,23 @@ impl Panel<'_> {
         let points = positions(self.trajectory, self.sample);
         let points: Vec<Point> =
             points.iter().map(|&x| self.layout.place(self.number, x)).collect();
-        let mesh = self.trajectory.body().mesh();
-        panel = match (mesh.kind(), mesh.dimension()) {
-            (CellKind::Segment, 1) => panel.add(self.bar(mesh, &points)),
-            (CellKind::Segment, _) => panel.add(string(mesh, &points)),
-            (_, 2) => panel.add(cells(mesh, &points)),
-            _ => panel.add(surface(mesh, &points, &depths(self.trajectory, self.sample))),
-        };
+        let body = self.trajectory.body();
+        let mut faces = Vec::new();
+        for (part, paint) in body.parts().zip((0..).map(Paint::of_body)) {
+            let (mesh, points) = (part.body.mesh(), &points[part.nodes.clone()]);
+            match (mesh.kind(), mesh.dimension()) {
+                (CellKind::Segment, 1) => panel = panel.add(self.bar(mesh, points, paint)),
+                (CellKind::Segment, _) => panel = panel.add(string(mesh, points, paint)),
+                (_, 2) => panel = panel.add(cells(mesh, points, paint)),
+                _ => {
+                    let depths = depths(part.body, part.of(&self.sample.u));
+                    faces.extend(surface(mesh, points, &depths, paint));
+                }
+            }
+        }
+        if !faces.is_empty() {
+            panel = panel.add(surfaces(faces, line_width(body.mesh(), &points)));
+        }
         if !self.trajectory.scene().springs().is_empty() {
             panel = panel.add(self.springs(&points));
         }
@@ -119,31 +149,32 @@ impl Panel<'_> {
     }
 
     /// A one-dimensional body, drawn with a visible width, its nodes as lines across.
-    fn bar(&self, mesh: &Mesh, points: &[Point]) -> Group {
+    fn bar(&self, mesh: &Mesh, points: &[Point], paint: Paint) -> Group {
         let half = self.layout.pixels(BAR_WIDTH * mesh.size()) / 2.0;
         let mut data = Data::default();
         for cell in mesh.cells() {
             let [[x, p], [_, q]] = [points[cell[0]], points[cell[1]]];
             data.polyline(&[[x - half, p], [x + half, p], [x + half, q], [x - half, q]], true);
         }
-        Group::new().add(body("cells", data, 1.2).set("fill", FILL))
+        Group::new().add(body("cells", data, paint.edge, 1.2).set("fill", paint.fill))
     }
 }
 
 /// A one-dimensional body in a plane or in space.
-fn string(mesh: &Mesh, points: &[Point]) -> Group {
+fn string(mesh: &Mesh, points: &[Point], paint: Paint) -> Group {
     let mut data = Data::default();
     for cell in mesh.cells() {
         data.polyline(&[points[cell[0]], points[cell[1]]], false);
     }
-    Group::new().add(body("cells", data, 1.8).set("fill", "none").set("stroke-linecap", "round"))
+    let path = body("cells", data, paint.edge, 1.8);
+    Group::new().add(path.set("fill", "none").set("stroke-linecap", "round"))
 }
 
 /// A body that fills an area of the plane: its cells, and its outline stronger.
-fn cells(mesh: &Mesh, points: &[Point]) -> Group {
+fn cells(mesh: &Mesh, points: &[Point], paint: Paint) -> Group {
     let mut data = Data::default();
     for cell in mesh.cells() {
-        let around = around(mesh.kind(), cell).map(|node| points[node]);
+        let around = around(cell).map(|node| points[node]);
         data.polyline(&around.collect::<Vec<_>>(), true);
     }
     let mut outline = Data::default();
@@ -152,34 +183,51 @@ fn cells(mesh: &Mesh, points: &[Point]) -> Group {
         outline.polyline(&along, false);
     }
     let fine = line_width(mesh, points);
+    let outline = body("outline", outline, paint.edge, 1.5);
     Group::new()
-        .add(body("cells", data, fine).set("fill", FILL).set("fill-opacity", 0.75))
-        .add(body("outline", outline, 1.5).set("fill", "none").set("stroke-linecap", "round"))
+        .add(
+            body("cells", data, paint.edge, fine).set("fill", paint.fill).set("fill-opacity", 0.75),
+        )
+        .add(outline.set("fill", "none").set("stroke-linecap", "round"))
 }
 
-/// A body in space: its surface, drawn from far to near. Of a solid only the faces that look at the viewer
-/// are drawn.
-fn surface(mesh: &Mesh, points: &[Point], depths: &[f64]) -> Group {
+/// The faces of a body in space with their depths. Of a solid only the faces that look at the viewer are drawn.
+fn surface(
+    mesh: &Mesh,
+    points: &[Point],
+    depths: &[f64],
+    paint: Paint,
+) -> Vec<(f64, Vec<Point>, Paint)> {
     let solid = mesh.kind().dimension() == 3;
-    let mut faces: Vec<(f64, Vec<Point>)> = Vec::new();
+    let mut faces = Vec::new();
     for face in mesh.boundary_faces() {
-        let around: Vec<Point> = around(mesh.kind(), &face).map(|node| points[node]).collect();
+        let around: Vec<Point> = around(&face).map(|node| points[node]).collect();
         if !solid || looks_at_viewer(&around) {
             let depth: f64 = face.iter().map(|&node| depths[node]).sum();
-            faces.push((depth / face.len() as f64, around));
+            faces.push((depth / face.len() as f64, around, paint));
         }
     }
-    faces.sort_by(|(a, _), (b, _)| b.total_cmp(a));
+    faces
+}
+
+/// The faces of all bodies in space, drawn from far to near.
+fn surfaces(mut faces: Vec<(f64, Vec<Point>, Paint)>, line_width: f64) -> Group {
+    faces.sort_by(|(a, ..), (b, ..)| b.total_cmp(a));
+    let first = PAINTS[0];
     let mut group = Group::new()
         .set("class", "cells")
-        .set("fill", FILL)
-        .set("stroke", EDGE)
-        .set("stroke-width", format!("{:.2}", line_width(mesh, points)))
+        .set("fill", first.fill)
+        .set("stroke", first.edge)
+        .set("stroke-width", format!("{line_width:.2}"))
         .set("stroke-linejoin", "round");
-    for (_, around) in faces {
+    for (_, around, paint) in faces {
         let mut data = Data::default();
         data.polyline(&around, true);
-        group = group.add(Path::new().set("d", data.0));
+        let mut path = Path::new().set("d", data.0);
+        if paint != first {
+            path = path.set("fill", paint.fill).set("stroke", paint.edge);
+        }
+        group = group.add(path);
     }
     group
 }
@@ -191,9 +239,9 @@ fn looks_at_viewer(polygon: &[Point]) -> bool {
 }
 
 /// The nodes of a face of a solid, or of a two-dimensional cell, in the order in which they stand around it:
-/// each corner, then the mid node of the edge that begins there, in cells of `kind` that have some.
-pub(in crate::io::output) fn around(kind: CellKind, face: &[usize]) -> impl Iterator<Item = usize> {
-    let (corners, middles) = match kind.is_quadratic() {
+/// each corner, then the mid node of the edge that begins there, if it has more than corners.
+pub(in crate::io::output) fn around(face: &[usize]) -> impl Iterator<Item = usize> {
+    let (corners, middles) = match face.len() > 4 {
         true => face.split_at(face.len() / 2),
         false => (face, &face[..0]),
     };
@@ -222,11 +270,11 @@ fn line_width(mesh: &Mesh, points: &[Point]) -> f64 {
     (0.05 * (area / mesh.cell_count() as f64).sqrt()).clamp(0.15, 0.8)
 }
 
-fn body(class: &str, data: Data, stroke_width: f64) -> Path {
+fn body(class: &str, data: Data, edge: &str, stroke_width: f64) -> Path {
     Path::new()
         .set("class", class)
         .set("d", data.0)
-        .set("stroke", EDGE)
+        .set("stroke", edge)
         .set("stroke-width", format!("{stroke_width:.2}"))
         .set("stroke-linejoin", "round")
 }

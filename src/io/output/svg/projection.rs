@@ -1,6 +1,7 @@
 //! How space is seen in the plane of the drawing.
 
 use crate::dynamics::trajectory::{Sample, Trajectory};
+use crate::elements::body::Body;
 
 /// A point in the plane of the drawing: (m) or (px).
 pub(in crate::io::output) type Point = [f64; 2];
@@ -17,9 +18,11 @@ pub(in crate::io::output) fn positions(trajectory: &Trajectory, sample: &Sample)
     displaced(trajectory, sample).chunks_exact(dimension).map(drawn).collect()
 }
 
-/// How far away from the viewer each node of a body in space is (m, from an arbitrary plane).
-pub(super) fn depths(trajectory: &Trajectory, sample: &Sample) -> Vec<f64> {
-    displaced(trajectory, sample).chunks_exact(3).map(|x| along(x, AWAY)).collect()
+/// How far away from the viewer each node of a body in space is (m, from an arbitrary plane) under the
+/// displacements `u` (m).
+pub(super) fn depths(body: &Body, u: &[f64]) -> Vec<f64> {
+    let moved: Vec<f64> = body.mesh().positions().iter().zip(u).map(|(x, u)| x + u).collect();
+    moved.chunks_exact(3).map(|x| along(x, AWAY)).collect()
 }
 
 /// Positions of all nodes (m), dimension coordinates each.

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::Chamber;
 use super::enclosure::Part;
 use crate::base::input::InputError;
-use crate::elements::mesh::{Face, FaceKind, Mesh, Selection};
+use crate::elements::mesh::{CellKind, Face, FaceKind, Mesh, Selection};
 use crate::scene::forces::faces::{between, list, volume_parts};
 
 impl Chamber {
@@ -42,13 +42,11 @@ impl Chamber {
         // the cells of a string are no walls
         faces.retain(|face| face.len() > 2);
         let faces = walls(faces, &nodes).map_err(|problem| self.bad_walls(selection, &problem))?;
-        let is_quadratic = mesh.kind().is_quadratic();
-        let outlines = faces.iter().map(|face| outline(face, is_quadratic));
+        let outlines = faces.iter().map(|face| outline(face, face.len() > 4));
         let lids = self.lids(outlines).map_err(|problem| self.bad_walls(selection, &problem))?;
-        let parts = volume_parts(mesh.face_kind());
         let of_face = |face: &Face| {
-            let part = |&(part, weight): &Part<3>| (part.map(|local| face[local]), weight);
-            parts.iter().map(part).collect::<Vec<_>>()
+            let part = |(part, weight): Part<3>| (part.map(|local| face[local]), weight);
+            volume_parts(mesh.face_kind(face)).into_iter().map(part).collect::<Vec<_>>()
         };
         Ok(faces.iter().flat_map(of_face).chain(lids).collect())
     }
@@ -125,10 +123,13 @@ impl Chamber {
 
 /// The edges of the polygon through `nodes`: curved where it runs along edges of cells with mid nodes.
 fn polygon(mesh: &Mesh, nodes: &[usize]) -> Vec<Face> {
-    let edges = mesh.kind().edges().iter().filter(|edge| edge.len() == 3);
-    let ends_of_middles: BTreeMap<usize, [usize; 2]> = edges
-        .flat_map(|edge| mesh.cells().map(|cell| (cell[edge[2]], [cell[edge[0]], cell[edge[1]]])))
-        .collect();
+    let middles = |(kind, cell): (CellKind, &'_ [usize])| {
+        let curved = kind.edges().iter().filter(|edge| edge.len() == 3);
+        let ends = curved.map(|edge| (cell[edge[2]], [cell[edge[0]], cell[edge[1]]]));
+        ends.collect::<Vec<_>>()
+    };
+    let ends_of_middles: BTreeMap<usize, [usize; 2]> =
+        mesh.cells_with_kinds().flat_map(middles).collect();
     let count = nodes.len();
     let at = |k: usize| nodes[k % count];
     let is_middle = |k: usize| {

@@ -1,6 +1,15 @@
 // Bodies in the plane: bars, strings, areas.
 
-const upright = body.look === "bar";
+/** Number of the body that a face belongs to. */
+const bodyOf = body.bodies.flatMap(({ faces }, number) => Array(faces).fill(number));
+const lookOf = (face) => body.bodies[bodyOf[face]].look;
+
+/** Where no quantity is shown, bodies differ by their colours: six, then over again. */
+function plainColours() {
+  return body.bodies.map((_, number) => paint(number % 6 ? `plain${number % 6}` : "plain"));
+}
+
+const upright = body.bodies.some(({ look }) => look === "bar");
 const MARGIN = { left: 46, right: 12, top: 10, bottom: upright ? 12 : 40 };
 /** Width of a bar as drawn (m): enough to be seen, for a bar has none of its own. */
 const barWidth = upright ? Math.max(body.width, 0.1 * (data.view[1][1] - data.view[0][1])) : 0;
@@ -147,29 +156,30 @@ function drawObstacle(context, layout, obstacle, time, hatch) {
 }
 
 function drawBody(context, layout, points, moment, quantity) {
-  const plain = paint("plain");
+  const plain = plainColours();
   context.lineWidth = 1;
   body.faces.forEach((face, index) => {
     const colour = quantity
       ? rgb(colours[Math.round(valueAt(moment, quantity, index))])
-      : plain;
+      : plain[bodyOf[index]];
     context.beginPath();
     traceFace(context, layout, points, face);
     // the stroke closes the seams that smooth edges leave
     context.fillStyle = context.strokeStyle = colour;
-    if (body.look === "string") drawThread(context, colour);
+    if (lookOf(index) === "string") drawThread(context, colour);
     else {
       context.fill();
       context.stroke();
     }
   });
-  if (body.look === "string") return;
+  if (body.bodies.every(({ look }) => look === "string")) return;
   const spacing = upright ? 20 : spacingOf(points);
   if (spacing > 4) {
     // edges of dark cells are light, those of light cells dark
     for (const light of [true, false]) {
       context.beginPath();
       body.faces.forEach((face, index) => {
+        if (lookOf(index) === "string") return;
         const dark = quantity !== undefined && valueAt(moment, quantity, index) < 150;
         if (dark === light) traceFace(context, layout, points, face);
       });
@@ -225,7 +235,7 @@ function traceFace(context, layout, points, face) {
     return;
   }
   context.moveTo(xs[face[0]], ys[face[0]]);
-  if (body.quadratic) {
+  if (face.length > 4) {
     for (let k = 0; k < face.length; k += 2) {
       traceEdge(context, points, [face[k], face[k + 1], face[(k + 2) % face.length]], false);
     }

@@ -1,5 +1,7 @@
 // Bodies in space, seen from far away (all lines of sight parallel), to be turned by hand.
 
+const allSolid = body.bodies.every(({ look }) => look === "solid");
+
 const LIGHT = [-0.35, -0.55, 0.76];
 const [middle, radius] = ball(data.view);
 
@@ -58,30 +60,31 @@ function drawSpace(sheet, moment, quantity) {
 /** Draws the faces, what is far away first, and returns which nodes are on faces that are seen. */
 function drawSurface(context, eye, points, position, moment, quantity) {
   const { xs, ys } = points;
-  const seen = new Uint8Array(nodeCount).fill(body.look === "solid" ? 0 : 1);
+  const seen = new Uint8Array(nodeCount).fill(allSolid ? 0 : 1);
   const faces = [];
   body.faces.forEach((face, index) => {
-    const corners = body.quadratic ? face.filter((_, k) => k % 2 === 0) : face;
+    const corners = face.length > 4 ? face.filter((_, k) => k % 2 === 0) : face;
     const [a, b] = [corners[0], corners[1]];
     const c = corners[corners.length - 1];
     const turn = (xs[b] - xs[a]) * (ys[c] - ys[a]) - (ys[b] - ys[a]) * (xs[c] - xs[a]);
     // faces of a solid run counter-clockwise as seen from outside; the sheet's y points down
-    if (body.look === "solid" && turn >= 0) return;
+    const solid = lookOf(index) === "solid";
+    if (solid && turn >= 0) return;
     for (const node of face) seen[node] = 1;
     const depth = corners.reduce((sum, node) => sum + eye.depth(position(node)), 0);
-    const bright = brightness(...[a, b, c].map(position));
+    const bright = brightness(solid, ...[a, b, c].map(position));
     faces.push({ face, index, depth: depth / corners.length, bright });
   });
   faces.sort((a, b) => b.depth - a.depth);
-  const spacing = spacingOf(points) * (body.look === "solid" ? Math.SQRT2 : 1);
-  const plain = paint("plain");
+  const spacing = spacingOf(points) * (allSolid ? Math.SQRT2 : 1);
+  const plain = plainColours();
   for (const { face, index, bright } of faces) {
     context.beginPath();
     traceFace(context, eye, points, face);
     const value = quantity && Math.round(valueAt(moment, quantity, index));
-    const colour = quantity ? rgb(colours[value], bright) : plain;
+    const colour = quantity ? rgb(colours[value], bright) : plain[bodyOf[index]];
     context.fillStyle = context.strokeStyle = colour;
-    if (body.look === "string") {
+    if (lookOf(index) === "string") {
       drawThread(context, colour);
       continue;
     }
@@ -94,11 +97,11 @@ function drawSurface(context, eye, points, position, moment, quantity) {
 }
 
 /** A face that looks at the light is a little brighter, either side of it. */
-function brightness(a, b, c) {
+function brightness(solid, a, b, c) {
   const [p, q] = [b, c].map((x) => [x[0] - a[0], x[1] - a[1], x[2] - a[2]]);
   const normal = [p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]];
   const cosine = dot(normal, LIGHT) / (Math.hypot(...normal) * Math.hypot(...LIGHT) || 1);
-  return 0.86 + 0.14 * (body.look === "solid" ? cosine : Math.abs(cosine));
+  return 0.86 + 0.14 * (solid ? cosine : Math.abs(cosine));
 }
 
 /** How to draw an obstacle at `time`, and how far away it is. */

@@ -1,0 +1,44 @@
+//! What is measured on each of several bodies by itself.
+
+use crate::dynamics::report::Indicator;
+use crate::dynamics::trajectory::{Sample, Trajectory};
+use crate::elements::body::{Body, Part};
+
+/// What is measured on the motion of each body by itself.
+pub(super) fn each_body(
+    trajectory: &Trajectory,
+    samples: &[&Sample],
+    measure: impl Fn(&Body, &[&Sample]) -> Vec<Indicator>,
+) -> Vec<Indicator> {
+    let body = trajectory.body();
+    if body.is_single() {
+        return measure(body, samples);
+    }
+    let of_body = |part: Part| {
+        let own = |sample: &&Sample| Sample {
+            u: part.of(&sample.u).to_vec(),
+            v: part.of(&sample.v).to_vec(),
+            ..Sample::clone(sample)
+        };
+        let own: Vec<Sample> = samples.iter().map(own).collect();
+        let own: Vec<&Sample> = own.iter().collect();
+        named(part.name, body, measure(part.body, &own).into_iter())
+    };
+    body.parts().flat_map(of_body).collect()
+}
+
+/// Indicators of a body, with its name in front if it is one of several.
+pub(super) fn named(
+    name: &str,
+    all: &Body,
+    indicators: impl Iterator<Item = Indicator>,
+) -> Vec<Indicator> {
+    let is_single = all.is_single();
+    let told = |mut indicator: Indicator| {
+        if !is_single {
+            indicator.text = format!("body \"{name}\": {}", indicator.text);
+        }
+        indicator
+    };
+    indicators.map(told).collect()
+}
