@@ -1,8 +1,10 @@
 //! What all rooms use and what knows nothing of mechanics: vectors, small tensors, SIMD registers, matrices
-//! over pairs of nodes, formulas of time, roots of functions, the error of an input.
+//! over pairs of nodes, points sorted by place, formulas of time, roots of functions, the error of an input.
 
 #[cfg(feature = "bodies")]
 pub(crate) mod formula;
+#[cfg(feature = "bodies")]
+pub(crate) mod grid;
 pub(crate) mod input;
 pub(crate) mod lane;
 pub(crate) mod root;

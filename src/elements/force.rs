@@ -5,7 +5,7 @@ use std::ops::{Deref, DerefMut};
 use std::sync::Arc;
 
 use crate::base::simd::add;
-use crate::base::sparse::BlockMatrix;
+use crate::base::sparse::{BlockMatrix, NodePattern};
 use crate::base::vector::dot;
 use crate::integrators::ode::Failure;
 
@@ -284,6 +284,19 @@ pub trait Force: Send + Sync {
     /// change of that switch. 0 is always right; the search updates it.
     fn passage(&self, _step: &Step, _tolerance: f64, _clearances: &mut [f64]) -> Option<f64> {
         None
+    }
+
+    /// Whether [`passage`](Self::passage) is to be asked after each step.
+    fn can_be_passed(&self) -> bool {
+        self.switches() > 0
+    }
+
+    /// Pairs of nodes (counted from 0) that the force couples under the displacements `u` (m), or may soon, if it
+    /// couples any there that `pattern` lacks; none otherwise. For a force between nodes that move past each other,
+    /// whose [`couplings`](Self::couplings) would be too many: the Newton matrix gets room for these pairs before
+    /// tangents are evaluated.
+    fn couplings_near(&self, _u: &[f64], _pattern: &NodePattern) -> Vec<[usize; 2]> {
+        Vec::new()
     }
 
     /// Pairs of nodes (counted from 0) that the force couples: u or v of one acts on the other. The tangents

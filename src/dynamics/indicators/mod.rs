@@ -43,7 +43,6 @@ mod coarse;
 mod deformed;
 mod each;
 mod felt;
-mod grid;
 mod mesh;
 mod overlap;
 mod pace;

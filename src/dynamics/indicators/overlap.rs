@@ -1,8 +1,8 @@
 //! Whether a body passes through itself, or pieces of it through each other: no force resists that.
 
-use super::grid::Grid;
 use super::size::cell_sizes;
 use super::skin::{Skin, points};
+use crate::base::grid::Grid;
 use crate::base::input::told;
 use crate::dynamics::report::Indicator;
 use crate::dynamics::trajectory::Sample;

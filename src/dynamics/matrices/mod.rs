@@ -49,10 +49,6 @@ impl Matrices {
             .filter(|&[a, b]| pattern.find(a, b).is_none())
             .collect();
         let (dimension, positions) = (body.dimension(), body.mesh().positions());
-        let dissection = |pattern: &NodePattern| {
-            let is_large = pattern.nodes() >= LARGE;
-            is_large.then(|| nested_dissection(pattern, positions, dimension))
-        };
         let size = body.size();
         let speeds = body.parts().map(|part| part.body.material().wave_speed());
         let scales = [size, speeds.fold(0.0, f64::max)].map(|scale| 0.01 * scale);
@@ -60,38 +56,40 @@ impl Matrices {
             (body.shared_inertia(), body.constant_stiffness(), body.constant_damping());
         let (linear_by_cells, mass_damping) = (body.linear_by_cells(), body.mass_damping());
         let (damps_by_matrix, branches) = (body.damps_by_matrix(), body.branches());
-        if strangers.is_empty() {
-            let dissection = dissection(pattern);
-            return Self {
-                dimension,
-                positions: positions.to_vec(),
-                size,
-                inertia,
-                stiffness,
-                damping,
-                linear_by_cells,
-                mass_damping,
-                damps_by_matrix,
-                branches,
-                scales,
-                dissection,
-            };
-        }
-        let pattern = Arc::new(pattern.with_pairs(&strangers));
-        let moved = |matrix: Arc<BlockMatrix>| Arc::new(matrix.moved_to(&pattern));
-        Self {
+        let matrices = Self {
             dimension,
             positions: positions.to_vec(),
             size,
-            inertia: Arc::new(inertia.moved_to(&pattern)),
-            stiffness: stiffness.map(moved),
-            damping: damping.map(moved),
+            inertia,
+            stiffness,
+            damping,
             linear_by_cells,
             mass_damping,
             damps_by_matrix,
             branches,
             scales,
-            dissection: dissection(&pattern),
+            dissection: None,
+        };
+        if strangers.is_empty() {
+            return Self { dissection: dissection(pattern, positions, dimension), ..matrices };
+        }
+        matrices.with_pairs(&strangers)
+    }
+
+    /// The same matrices with room for some more pairs of nodes.
+    pub(crate) fn with_pairs(&self, pairs: &[[usize; 2]]) -> Self {
+        let pattern = Arc::new(self.pattern().with_pairs(pairs));
+        let moved = |matrix: &Arc<BlockMatrix>| Arc::new(matrix.moved_to(&pattern));
+        Self {
+            positions: self.positions.clone(),
+            inertia: Arc::new(self.inertia.moved_to(&pattern)),
+            stiffness: self.stiffness.as_ref().map(moved),
+            damping: self.damping.as_ref().map(moved),
+            linear_by_cells: self.linear_by_cells.clone(),
+            mass_damping: self.mass_damping.clone(),
+            branches: self.branches.clone(),
+            dissection: dissection(&pattern, &self.positions, self.dimension),
+            ..*self
         }
     }
 
@@ -103,4 +101,9 @@ impl Matrices {
     pub(crate) fn pattern(&self) -> &Arc<NodePattern> {
         self.inertia.pattern()
     }
+}
+
+/// A second order of elimination, where it pays.
+fn dissection(pattern: &NodePattern, positions: &[f64], dimension: usize) -> Option<Vec<usize>> {
+    (pattern.nodes() >= LARGE).then(|| nested_dissection(pattern, positions, dimension))
 }

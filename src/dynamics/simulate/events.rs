@@ -12,7 +12,7 @@ pub(super) enum Met {
     Nothing,
     /// The first contact event, at this time (s).
     Event(f64),
-    /// An obstacle that the step has passed through without a force, at this time (s).
+    /// An obstacle or a surface that the step has passed through without a force, at this time (s).
     Passage(f64),
 }
 
@@ -73,7 +73,7 @@ impl Events {
         tolerance: f64,
         work: &mut [f64],
     ) -> Result<Met, Failed> {
-        if self.clearances.is_empty() {
+        if !stepper.system().can_be_passed() {
             return Ok(Met::Nothing);
         }
         let (system, after) = (stepper.system(), stepper.state());

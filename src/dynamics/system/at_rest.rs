@@ -217,6 +217,7 @@ impl AtRest {
     /// Updates K to `u`. In a linear phase it is constant.
     pub(crate) fn update_tangent(&mut self, fraction: f64, u: &[f64]) {
         self.stand_still(fraction);
+        self.system.make_room(u);
         let NewtonMatrix { stiffness, damping, differences, .. } = &mut self.system.newton;
         let still = &self.still;
         let own = (stiffness.begin(&None), damping.begin(&None));

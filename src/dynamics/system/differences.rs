@@ -105,6 +105,11 @@ impl Differences {
         }
     }
 
+    /// Has the columns of forces be sought anew, on a matrix of another pattern.
+    pub(super) fn forget_patterns(&mut self) {
+        self.forces.clear();
+    }
+
     /// Evaluations of forces so far.
     pub(super) fn evaluations(&self) -> usize {
         self.room.as_ref().map_or(0, |room| room.evaluations)

@@ -65,6 +65,8 @@ use crate::scene::constraint::{ConstraintRow, Prescribed};
 
 /// Equations of one phase, with everything that evaluating and solving them needs.
 pub(crate) struct System {
+    /// The matrices of the scene, and those with room for what is near now.
+    base: Arc<Matrices>,
     matrices: Arc<Matrices>,
     forces: Forces,
     rows: Vec<ConstraintRow>,
@@ -171,7 +173,8 @@ impl System {
             relaxing: vec![0.0; internal],
             relaxed: 0.0,
         };
-        Ok(Self { matrices, forces, rows, alpha, inertia, newton, at, refusal: String::new() })
+        let (base, refusal) = (matrices.clone(), String::new());
+        Ok(Self { base, matrices, forces, rows, alpha, inertia, newton, at, refusal })
     }
 
     /// Number of displacement components.
@@ -273,6 +276,11 @@ impl System {
             force.switch_values(t, u, v, own);
             values = rest;
         }
+    }
+
+    /// Whether [`passage`](Self::passage) is to be asked after each step.
+    pub(crate) fn can_be_passed(&self) -> bool {
+        self.forces.iter().any(|force| force.can_be_passed())
     }
 
     /// A time (s) within a step at which a force acts that is not seen at the ends of the step, if any.

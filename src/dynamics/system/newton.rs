@@ -18,6 +18,8 @@
 //! Of r = c + gamma (v, M^-1 (f + A lambda)) the integrators are given only c + gamma (v, 0): then
 //! M rv is M cv + gamma f, and no iteration solves a system with M.
 
+use std::sync::Arc;
+
 use super::System;
 use super::newton_matrix::{ITERATED, NewtonMatrix, SOLVED_ONCE};
 use super::reduced::nodal_multipliers;
@@ -26,6 +28,9 @@ use crate::base::sparse::BlockMatrix;
 use crate::base::vector::{dot, largest};
 use crate::dynamics::matrices::Matrices;
 use crate::integrators::ode::Failure;
+
+/// Pairs that have room in the Newton matrix though they are no longer near, for each that is.
+const MOST_KEPT: usize = 3;
 
 impl System {
     /// Whether all forces are linear in u and v, so that Kt and D never change.
@@ -51,22 +56,22 @@ impl System {
 
     /// Updates Kt and D to (t, u, v), unless `reuse` allows older ones. Returns whether they are current.
     pub(crate) fn update_tangents(&mut self, t: f64, u: &[f64], v: &[f64], reuse: bool) -> bool {
+        if !self.newton.follows {
+            return true;
+        }
+        if reuse && self.newton.is_set {
+            return false;
+        }
+        self.make_room(u);
         let NewtonMatrix {
             stiffness,
             damping,
             differences,
-            follows,
             is_set,
             is_damped,
             tangent_evaluations,
             ..
         } = &mut self.newton;
-        if !*follows {
-            return true;
-        }
-        if reuse && *is_set {
-            return false;
-        }
         let Matrices { stiffness: k, damping: b, .. } = &*self.matrices;
         if let (Some(stiffness), Some(damping)) = (stiffness.begin(k), damping.begin(b)) {
             for force in &self.forces {
@@ -77,6 +82,25 @@ impl System {
         *is_damped = damping.get().values.iter().any(|&value| value != 0.0);
         *tangent_evaluations += 1;
         true
+    }
+
+    /// Makes room in the Newton matrix for pairs of nodes that have come near each other. Those that were near before
+    /// keep theirs, unless there are many more of them than are near now.
+    pub(super) fn make_room(&mut self, u: &[f64]) {
+        let pattern = self.matrices.pattern();
+        let near = self.forces.iter().flat_map(|force| force.couplings_near(u, pattern));
+        let mut pairs: Vec<[usize; 2]> = near.collect();
+        if pairs.is_empty() {
+            return;
+        }
+        let [of_scene, now] = [&self.base, &self.matrices].map(|of| of.pattern().entries());
+        let matrices = match now - of_scene > MOST_KEPT * pairs.len() {
+            true => &self.base,
+            false => &self.matrices,
+        };
+        pairs.retain(|&[a, b]| matrices.pattern().find(a, b).is_none());
+        self.matrices = Arc::new(matrices.with_pairs(&pairs));
+        self.newton.move_to(&self.matrices, &self.rows);
     }
 
     /// Adds to Kt, just updated, the tangent of Maxwell branches in a step of the parameter `gamma`: the

@@ -30,6 +30,8 @@ pub(super) struct NewtonMatrix {
     pub(super) place: [Vec<f64>; 2],
     pub(super) accuracy: f64,
     pub(super) tangent_evaluations: usize,
+    /// Patterns after the first.
+    pub(super) patterns: usize,
     /// f of the linear system, and its solution xv.
     pub(super) right: Vec<f64>,
     pub(super) xv: Vec<f64>,
@@ -101,6 +103,7 @@ impl NewtonMatrix {
             },
             accuracy: SOLVED_ONCE,
             tangent_evaluations: 0,
+            patterns: 0,
             right: vec![0.0; dofs],
             xv: vec![0.0; dofs],
             demands: vec![0.0; rows.len()],
@@ -108,9 +111,21 @@ impl NewtonMatrix {
         }
     }
 
+    /// Continues with matrices on another pattern, without tangents yet.
+    pub(super) fn move_to(&mut self, matrices: &Matrices, rows: &[ConstraintRow]) {
+        let mut solver = Reduced::new(matrices, rows, Coupling::AllAxes);
+        solver.count_from(&self.solver);
+        self.solver = solver;
+        self.stiffness = Tangent::new(matrices, &matrices.stiffness, self.follows);
+        self.damping = Tangent::new(matrices, &matrices.damping, self.follows);
+        self.differences.forget_patterns();
+        self.is_set = false;
+        self.patterns += 1;
+    }
+
     /// Starts all counts from 0.
     pub(super) fn forget_counts(&mut self) {
-        self.tangent_evaluations = 0;
+        (self.tangent_evaluations, self.patterns) = (0, 0);
         self.solver.forget_counts();
         self.differences.forget_counts();
     }

@@ -238,6 +238,11 @@ impl Reduced {
         self.symmetric.forget_counts();
     }
 
+    /// Continues the counts of another solver.
+    pub(super) fn count_from(&mut self, other: &Self) {
+        self.symmetric.count_from(&other.symmetric);
+    }
+
     /// [What solving has cost](Symmetric::counts).
     pub(super) fn counts(&self) -> [usize; 3] {
         self.symmetric.counts()

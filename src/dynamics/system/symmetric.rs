@@ -142,6 +142,14 @@ impl Symmetric {
         &self.free
     }
 
+    /// Continues the counts of another solver.
+    pub(super) fn count_from(&mut self, other: &Self) {
+        if let (Some(own), Some(other)) = (&mut self.rented, &other.rented) {
+            (own.matrices, own.iterations) = (other.matrices, other.iterations);
+        }
+        self.cholesky.indefinite = other.cholesky.indefinite;
+    }
+
     /// Starts the counts from 0.
     pub(super) fn forget_counts(&mut self) {
         if let Some(rented) = &mut self.rented {

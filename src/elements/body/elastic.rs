@@ -50,6 +50,7 @@ impl Force for Elastic {
 }
 
 /// The forces -K u and -B v, element by element.
+#[derive(Clone)]
 pub(crate) struct LinearByCells {
     bodies: Vec<(Continuum, Terms)>,
 }

@@ -9,10 +9,12 @@ use super::regions::Regions;
 use crate::base::sparse::BlockMatrix;
 
 /// The branches of a body: of each of several bodies that have any, one after the other.
+#[derive(Clone)]
 pub(crate) struct Branches {
     bodies: Vec<OfBody>,
 }
 
+#[derive(Clone)]
 struct OfBody {
     elements: Arc<dyn Elements>,
     regions: Arc<Regions>,

@@ -11,6 +11,51 @@
 //! mu(w) has a continuous slope, and mu(w)/w is a polynomial in w^2 where it sticks, so that it is smooth at
 //! rest. mu_s is reached at v0 and exceeded nowhere.
 
+use crate::base::input::{InputError, not_negative, positive};
+
+/// Friction as users give it.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Friction {
+    /// mu_s and mu_k
+    pub(super) coefficients: Option<[f64; 2]>,
+    /// v0 (m/s)
+    pub(super) sticking_speed: Option<f64>,
+}
+
+impl Friction {
+    /// Checks the numbers; `input` names a key.
+    pub(super) fn validate(&self, input: &impl Fn(&str) -> String) -> Result<(), InputError> {
+        if let Some([at_rest, sliding]) = self.coefficients {
+            not_negative(&input("friction_coefficient"), at_rest, "")?;
+            not_negative(&input("friction_coefficient"), sliding, "")?;
+            if sliding > at_rest {
+                let value = format!("{at_rest} at rest, {sliding} sliding");
+                let help = "the kinetic coefficient must not be above the static one";
+                return Err(InputError::new(input("friction_coefficient"), value, help));
+            }
+        }
+        let Some(speed) = self.sticking_speed else { return Ok(()) };
+        positive(&input("sticking_speed"), speed, "m/s")?;
+        match self.coefficients {
+            Some(_) => Ok(()),
+            None => {
+                let help = "it belongs to friction: give a friction coefficient, too";
+                Err(InputError::new(input("sticking_speed"), speed, help))
+            }
+        }
+    }
+
+    /// Whether what slides is held back.
+    pub(super) fn acts(&self) -> bool {
+        self.coefficients.is_some_and(|[at_rest, _]| at_rest > 0.0)
+    }
+
+    /// The law for a body of `size` (m).
+    pub(super) fn coulomb(&self, size: f64) -> Option<Coulomb> {
+        self.coefficients.map(|of| Coulomb::new(of, self.sticking_speed, size))
+    }
+}
+
 /// Default of v0, in sizes of the body per second (1/s).
 const STICKING_SPEED: f64 = 1e-3;
 
@@ -38,11 +83,7 @@ pub(super) struct Drag {
 
 impl Coulomb {
     /// mu_s and mu_k with v0 as given, or its default for a body of `size` (m).
-    pub(super) fn new(
-        [at_rest, sliding]: [f64; 2],
-        sticking_speed: Option<f64>,
-        size: f64,
-    ) -> Self {
+    fn new([at_rest, sliding]: [f64; 2], sticking_speed: Option<f64>, size: f64) -> Self {
         let sticking_speed = sticking_speed.unwrap_or(STICKING_SPEED * size);
         Self { at_rest, sliding, sticking_speed }
     }

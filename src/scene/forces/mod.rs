@@ -15,6 +15,7 @@ mod spring;
 mod surface;
 #[cfg(test)]
 mod tests;
+mod touch;
 mod travel;
 
 pub use chamber::Chamber;
@@ -37,3 +38,5 @@ pub(crate) use spring::Joint;
 pub use spring::Spring;
 pub(crate) use spring::SpringForce;
 pub(crate) use surface::{SurfacePoint, boundary_nodes, edge_points, face_centre, pieces};
+pub use touch::Touch;
+pub(crate) use touch::TouchForce;

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::friction::Coulomb;
+use super::friction::{Coulomb, Friction};
 use super::shape::{Nearest, Shape};
 use super::travel::{Cubics, Travel, Waypoints};
 #[cfg(feature = "scene-file")]
@@ -57,9 +57,7 @@ pub struct Obstacle {
     stiffness: Stiffness,
     damping: f64,
     tangential_damping: f64,
-    /// mu_s and mu_k
-    friction: Option<[f64; 2]>,
-    sticking_speed: Option<f64>,
+    friction: Friction,
     adhesion: bool,
     travel: Travel,
     /// How far it is from where its travel alone would have brought it (m).
@@ -99,8 +97,7 @@ impl Obstacle {
             stiffness: Stiffness::PerNode(0.0),
             damping: 0.0,
             tangential_damping: 0.0,
-            friction: None,
-            sticking_speed: None,
+            friction: Friction::default(),
             adhesion: false,
             travel: Travel::Uniform(Vec::new()),
             offset: [0.0; 3],
@@ -201,7 +198,7 @@ impl Obstacle {
     /// Coefficients of Coulomb's friction: `at_rest` (mu_s, static) while it sticks, `sliding` (mu_k,
     /// kinetic), not above it, once it slides. See [Friction](Self#friction).
     pub fn friction_coefficients(mut self, at_rest: f64, sliding: f64) -> Self {
-        self.friction = Some([at_rest, sliding]);
+        self.friction.coefficients = Some([at_rest, sliding]);
         self
     }
 
@@ -211,7 +208,7 @@ impl Obstacle {
     /// Default: a thousandth of the size of the body per second. What sticks may creep nearly that fast, so
     /// it should be small against the motions of interest.
     pub fn sticking_speed(mut self, speed: f64) -> Self {
-        self.sticking_speed = Some(speed);
+        self.friction.sticking_speed = Some(speed);
         self
     }
 
@@ -276,30 +273,9 @@ impl Obstacle {
         not_negative(&input(&format!("damping{area}")), self.damping, rate)?;
         let tangential = input(&format!("tangential_damping{area}"));
         not_negative(&tangential, self.tangential_damping, rate)?;
-        self.validate_friction(&input)?;
+        self.friction.validate(&input)?;
         self.travel.validate(dimension, &input)?;
         Ok(Self { shape, ..self.clone() })
-    }
-
-    fn validate_friction(&self, input: &impl Fn(&str) -> String) -> Result<(), InputError> {
-        if let Some([at_rest, sliding]) = self.friction {
-            not_negative(&input("friction_coefficient"), at_rest, "")?;
-            not_negative(&input("friction_coefficient"), sliding, "")?;
-            if sliding > at_rest {
-                let value = format!("{at_rest} at rest, {sliding} sliding");
-                let help = "the kinetic coefficient must not be above the static one";
-                return Err(InputError::new(input("friction_coefficient"), value, help));
-            }
-        }
-        let Some(speed) = self.sticking_speed else { return Ok(()) };
-        positive(&input("sticking_speed"), speed, "m/s")?;
-        match self.friction {
-            Some(_) => Ok(()),
-            None => {
-                let help = "it belongs to friction: give a friction coefficient, too";
-                Err(InputError::new(input("sticking_speed"), speed, help))
-            }
-        }
     }
 
     pub(crate) fn shape(&self) -> &Shape {
@@ -386,12 +362,12 @@ impl Obstacle {
 
     /// The same obstacle without friction and tangential damping.
     pub(crate) fn without_friction(self) -> Self {
-        Self { friction: None, sticking_speed: None, tangential_damping: 0.0, ..self }
+        Self { friction: Friction::default(), tangential_damping: 0.0, ..self }
     }
 
     /// Whether what slides on it is held back by Coulomb's friction.
     pub(crate) fn has_friction(&self) -> bool {
-        self.friction.is_some_and(|[at_rest, _]| at_rest > 0.0)
+        self.friction.acts()
     }
 
     /// The sliding speed (m/s) below which a body of `size` (m) sticks to it; `None` without friction.
@@ -420,7 +396,7 @@ impl Obstacle {
 
     /// Its friction with a body of `size` (m).
     pub(super) fn coulomb(&self, size: f64) -> Option<Coulomb> {
-        self.friction.map(|coefficients| Coulomb::new(coefficients, self.sticking_speed, size))
+        self.friction.coulomb(size)
     }
 
     /// d and its derivatives, with this [`displacement`](Self::displacement).

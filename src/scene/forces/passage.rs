@@ -61,12 +61,12 @@ impl Path {
     }
 
     /// A bound on its length (m).
-    fn length(&self) -> f64 {
+    pub(super) fn length(&self) -> f64 {
         let side = |ends: &[[f64; 3]]| norm(&difference(&ends[1], &ends[0]));
         self.0.windows(2).map(side).sum()
     }
 
-    fn halves(&self) -> [Self; 2] {
+    pub(super) fn halves(&self) -> [Self; 2] {
         let mean = |a: &[f64; 3], b: &[f64; 3]| std::array::from_fn(|i| 0.5 * (a[i] + b[i]));
         let [a, b, c, d] = &self.0;
         let [ab, bc, cd]: [[f64; 3]; 3] = [mean(a, b), mean(b, c), mean(c, d)];

@@ -1,5 +1,7 @@
 //! Points of the boundary of a body, at which contact is felt.
 
+use std::collections::BTreeMap;
+
 use crate::base::vector::{cross, norm};
 use crate::elements::body::Body;
 use crate::elements::mesh::FaceKind;
@@ -76,13 +78,9 @@ pub(crate) fn face_centre(kind: FaceKind, face: &[usize]) -> Option<SurfacePoint
 /// Points inside faces, not nodes: a node at a corner would count the area of faces that do not
 /// touch.
 pub(super) fn gauss_points(body: &Body) -> Option<Vec<SurfacePoint>> {
-    let mesh = body.mesh();
     let mut points = Vec::new();
-    for face in mesh.boundary_faces() {
-        let section = section(body, &face)?;
-        for (part, weight) in pieces(mesh.face_kind(&face)) {
-            let corners: Vec<usize> = part.iter().map(|&local| face[local]).collect();
-            let area = weight * section * measure(body, &corners);
+    for face in body.mesh().boundary_faces() {
+        for (corners, area) in measured_pieces(body, &face)? {
             let rule: &[&[f64]] = match corners.len() {
                 1 => &[&[1.0]],
                 2 => &[&[NEAR, FAR], &[FAR, NEAR]],
@@ -93,6 +91,44 @@ pub(super) fn gauss_points(body: &Body) -> Option<Vec<SurfacePoint>> {
         }
     }
     Some(points)
+}
+
+/// Quadrature points of some `faces` that lie at the nodes and between them, so that nothing sticks out beyond all of
+/// them: Simpson's rule on segments, a rule of degree 3 on triangles. Points in the same place are one. A string has
+/// no area: `None`.
+pub(super) fn closed_points(body: &Body, faces: &[Vec<usize>]) -> Option<Vec<SurfacePoint>> {
+    let mut areas: BTreeMap<Vec<usize>, f64> = BTreeMap::new();
+    for face in faces {
+        for (corners, area) in measured_pieces(body, face)? {
+            let rule: &[(&[usize], f64)] = match corners.len() {
+                1 => &[(&[0], 1.0)],
+                2 => &SIMPSON,
+                _ => &CLOSED_TRIANGLE,
+            };
+            for (at, weight) in rule {
+                let mut nodes: Vec<usize> = at.iter().map(|&k| corners[k]).collect();
+                nodes.sort_unstable();
+                *areas.entry(nodes).or_default() += weight * area;
+            }
+        }
+    }
+    let mean = |(nodes, area): (Vec<usize>, f64)| {
+        point(&nodes, &[1.0 / nodes.len() as f64; 3][..nodes.len()], area)
+    };
+    Some(areas.into_iter().map(mean).collect())
+}
+
+/// The [pieces] of a face by their nodes, with the area (m^2) of each; `None` if it belongs to a string.
+fn measured_pieces<'a>(
+    body: &'a Body,
+    face: &'a [usize],
+) -> Option<impl Iterator<Item = (Vec<usize>, f64)> + 'a> {
+    let section = section(body, face)?;
+    Some(pieces(body.mesh().face_kind(face)).map(move |(part, weight)| {
+        let corners: Vec<usize> = part.iter().map(|&local| face[local]).collect();
+        let area = weight * section * measure(body, &corners);
+        (corners, area)
+    }))
 }
 
 /// Factor from lengths of a face of the boundary to areas (m^2): the thickness of a body in the plane, the
@@ -115,6 +151,18 @@ const TRIANGLE: [&[f64]; 3] = [
     &[1.0 / 6.0, 1.0 / 6.0, 2.0 / 3.0],
 ];
 
+/// Means of the corners with these numbers, and their weights.
+const SIMPSON: [(&[usize], f64); 3] = [(&[0], 1.0 / 6.0), (&[1], 1.0 / 6.0), (&[0, 1], 2.0 / 3.0)];
+const CLOSED_TRIANGLE: [(&[usize], f64); 7] = [
+    (&[0], 1.0 / 20.0),
+    (&[1], 1.0 / 20.0),
+    (&[2], 1.0 / 20.0),
+    (&[0, 1], 2.0 / 15.0),
+    (&[1, 2], 2.0 / 15.0),
+    (&[2, 0], 2.0 / 15.0),
+    (&[0, 1, 2], 9.0 / 20.0),
+];
+
 fn point(nodes: &[usize], shares: &[f64], area: f64) -> SurfacePoint {
     let mut point = SurfacePoint { count: nodes.len(), nodes: [0; 3], shares: [0.0; 3], area };
     point.nodes[..nodes.len()].copy_from_slice(nodes);
@@ -125,7 +173,21 @@ fn point(nodes: &[usize], shares: &[f64], area: f64) -> SurfacePoint {
 /// A face, cut into points, segments or triangles by their local nodes, and the weight of each: a
 /// quadrilateral is cut along both diagonals, and so is the middle of one with mid nodes.
 pub(crate) fn pieces(face: FaceKind) -> impl Iterator<Item = (&'static [usize], f64)> + Clone {
-    let (whole, halves): (&'static [&'static [usize]], &'static [&'static [usize]]) = match face {
+    let (whole, halves) = cuts(face);
+    whole.iter().map(|&part| (part, 1.0)).chain(halves.iter().map(|&part| (part, 0.5)))
+}
+
+/// The same face cut along one diagonal: points, segments or triangles that cover it once.
+pub(super) fn facets(face: FaceKind) -> impl Iterator<Item = &'static [usize]> {
+    let (whole, halves) = cuts(face);
+    whole.iter().chain(&halves[..halves.len() / 2]).copied()
+}
+
+type Cuts = &'static [&'static [usize]];
+
+/// Pieces of a face that are there once, and those of a quadrilateral by one diagonal, then by the other.
+fn cuts(face: FaceKind) -> (Cuts, Cuts) {
+    match face {
         FaceKind::Point => (&[&[0]], &[]),
         FaceKind::Segment => (&[&[0, 1]], &[]),
         FaceKind::Segment3 => (&[&[0, 2], &[2, 1]], &[]),
@@ -152,8 +214,7 @@ pub(crate) fn pieces(face: FaceKind) -> impl Iterator<Item = (&'static [usize], 
             ],
             &[],
         ),
-    };
-    whole.iter().map(|part| (*part, 1.0)).chain(halves.iter().map(|part| (*part, 0.5)))
+    }
 }
 
 /// Length of a segment, area of a triangle, 1 of a point.

@@ -36,6 +36,9 @@ impl Scene {
         for contact in self.contacts(phase)? {
             forces.push(Arc::new(contact));
         }
+        for touch in self.touches()? {
+            forces.push(Arc::new(touch));
+        }
         forces.extend_from_slice(&self.forces);
         Ok(forces)
     }

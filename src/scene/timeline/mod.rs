@@ -31,7 +31,7 @@ use crate::elements::force::{Force, Forces, NodalForces};
 use crate::elements::mesh::Selection;
 use crate::integrators::ode::Failure;
 use crate::scene::constraint::{Constraint, ConstraintRow, PhaseStart, prescribe, rows};
-use crate::scene::forces::{Chamber, Contact, Obstacle, Spring};
+use crate::scene::forces::{Chamber, Contact, Obstacle, Spring, Touch, TouchForce};
 
 /// A body, gravity, springs, chambers, obstacles, and what happens when.
 ///
@@ -56,6 +56,7 @@ pub struct Scene {
     springs: Vec<Spring>,
     chambers: Vec<Chamber>,
     ties: Vec<Tie>,
+    touches: Vec<Touch>,
     obstacles: Vec<Obstacle>,
     /// Other forces.
     forces: Forces,
@@ -78,6 +79,7 @@ impl Scene {
             springs: Vec::new(),
             chambers: Vec::new(),
             ties: Vec::new(),
+            touches: Vec::new(),
             obstacles: Vec::new(),
             forces: Forces::new(),
             phases: Vec::new(),
@@ -131,6 +133,12 @@ impl Scene {
     /// ```
     pub fn tie(mut self, nodes: impl Into<Selection>, to: impl Into<String>) -> Self {
         self.ties.push(Tie { nodes: nodes.into(), to: to.into() });
+        self
+    }
+
+    /// Has bodies touch each other or themselves, in all phases.
+    pub fn touch(mut self, touch: Touch) -> Self {
+        self.touches.push(touch);
         self
     }
 
@@ -336,6 +344,7 @@ impl Scene {
         unique("spring", self.springs.iter().map(Spring::name))?;
         unique("chamber", self.chambers.iter().map(Chamber::name))?;
         unique("obstacle", self.obstacles.iter().map(Obstacle::name))?;
+        unique("touch", self.touches.iter().map(Touch::name))?;
         for chamber in &self.chambers {
             chamber.check_side(&self.body, &chamber.force(&self.body, Vec::new())?)?;
         }
@@ -350,6 +359,12 @@ impl Scene {
             self.forces_in(phase)
         });
         forces.collect()
+    }
+
+    /// The forces between bodies.
+    pub(crate) fn touches(&self) -> Result<Vec<TouchForce>, InputError> {
+        let force = |touch: &Touch| touch.force(&self.body, self.initial_displacements());
+        self.touches.iter().map(force).collect()
     }
 
     /// The constraints of all ties.

@@ -1,7 +1,7 @@
 //! Which of many points lie in a box.
 
 /// Points, sorted into boxes of equal size, about as many boxes as points.
-pub(super) struct Grid<'a> {
+pub(crate) struct Grid<'a> {
     points: &'a [[f64; 3]],
     least: [f64; 3],
     step: f64,
@@ -12,7 +12,7 @@ pub(super) struct Grid<'a> {
 }
 
 impl<'a> Grid<'a> {
-    pub(super) fn new(points: &'a [[f64; 3]]) -> Self {
+    pub(crate) fn new(points: &'a [[f64; 3]]) -> Self {
         let along = |axis: usize| points.iter().map(move |point| point[axis]);
         let least = [0, 1, 2].map(|axis| along(axis).fold(f64::INFINITY, f64::min));
         let most = [0, 1, 2].map(|axis| along(axis).fold(f64::NEG_INFINITY, f64::max));
@@ -59,7 +59,7 @@ impl<'a> Grid<'a> {
     }
 
     /// Calls `see` with each point between the corners `low` and `high`.
-    pub(super) fn each_within(&self, [low, high]: &[[f64; 3]; 2], mut see: impl FnMut(usize)) {
+    pub(crate) fn each_within(&self, [low, high]: &[[f64; 3]; 2], mut see: impl FnMut(usize)) {
         let ([i, j, k], [to_i, to_j, to_k]) = (self.numbers(low), self.numbers(high));
         for k in k..=to_k {
             for j in j..=to_j {

@@ -1,0 +1,27 @@
+//! Contact of bodies with each other and with themselves: points of one surface against the facets of another.
+//!
+//! The energy is an integral over both surfaces. At a quadrature point x of a surface, which stands for the area a,
+//!
+//! ```text
+//! (a/2) sum_i w_i phi(d_i(x))
+//! ```
+//!
+//! with the distances d_i from the facets (segments in the plane, triangles in space), edges and corners of the other
+//! surface, and the [law](law::Law) phi, 0 from the contact distance on. The weights are those of inclusion and
+//! exclusion: 1 for a facet, 1 less the number of its facets for an edge, and what makes the sum 1 for a corner. Where
+//! the surface is flat or convex all terms but that of the nearest point cancel, so that a point which slides over an
+//! edge is pushed as by a smooth surface (M. Li, Z. Ferguson, T. Schneider et al., *Convergent incremental potential
+//! contact*, arXiv 2307.15908 (2023)). Forces are continuous, and have an energy and exact tangents ([`pair`]).
+
+mod crossing;
+mod force;
+mod law;
+mod near;
+mod pair;
+mod spec;
+mod surfaces;
+#[cfg(test)]
+mod tests;
+
+pub(crate) use force::TouchForce;
+pub use spec::Touch;

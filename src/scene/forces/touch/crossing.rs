@@ -1,0 +1,62 @@
+//! Whether a point has passed through a facet between the ends of a step.
+//!
+//! Every node moves along the cubic with its positions and velocities at both ends, and so does the place of the point
+//! relative to each corner of the facet. The distance of the two changes by no more than the longest way of the point
+//! relative to a corner.
+
+use super::pair::Pair;
+use crate::scene::forces::passage::Path;
+
+/// Halvings of a step after which the search ends.
+const HALVINGS: u32 = 20;
+
+/// The ways of a point relative to the corners of a facet.
+#[derive(Clone, Copy)]
+pub(super) struct Ways {
+    paths: [Path; 3],
+    count: usize,
+}
+
+impl Ways {
+    pub(super) fn new(paths: [Path; 3], count: usize) -> Self {
+        Self { paths, count }
+    }
+
+    fn distance(&self, at: impl Fn(&Path) -> &[f64; 3]) -> f64 {
+        let corners: [[f64; 3]; 3] = std::array::from_fn(|k| at(&self.paths[k]).map(|x| -x));
+        Pair::apart(&[0.0; 3], &corners[..self.count]).0
+    }
+
+    /// The distances (m) of the point from the facet at both ends.
+    pub(super) fn ends(&self) -> [f64; 2] {
+        [self.distance(Path::start), self.distance(Path::end)]
+    }
+
+    /// The first place found (from 0 to 1) at which the point is nearer to the facet than `limit` (m), which it is not
+    /// at the ends.
+    pub(super) fn meets(&self, limit: f64) -> Option<f64> {
+        self.search(self.ends(), limit, [0.0, 1.0], 0)
+    }
+
+    fn search(
+        &self,
+        ends: [f64; 2],
+        limit: f64,
+        [from, to]: [f64; 2],
+        halvings: u32,
+    ) -> Option<f64> {
+        let longest = self.paths[..self.count].iter().map(Path::length).fold(0.0, f64::max);
+        if halvings == HALVINGS || ends[0] + ends[1] - longest >= 2.0 * limit {
+            return None;
+        }
+        let halves = self.paths.map(|path| path.halves());
+        let [first, last] =
+            [0, 1].map(|half| Self { paths: halves.map(|halves| halves[half]), ..*self });
+        let (middle, there) = (0.5 * (from + to), last.distance(Path::start));
+        let before = first.search([ends[0], there], limit, [from, middle], halvings + 1);
+        if before.is_some() || there < limit {
+            return before.or(Some(middle));
+        }
+        last.search([there, ends[1]], limit, [middle, to], halvings + 1)
+    }
+}

@@ -1,0 +1,76 @@
+//! Which points and features are near each other.
+
+use super::pair::Pair;
+use super::surfaces::Surfaces;
+use crate::base::grid::Grid;
+
+/// Points and features that were nearer than a certain distance in some state.
+pub(super) struct Near {
+    /// Positions then (m) of the nodes of the surfaces.
+    at: Vec<[f64; 3]>,
+    /// The distance (m).
+    within: f64,
+    pub(super) pairs: Vec<NearPair>,
+}
+
+/// A point and a feature, by their numbers.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct NearPair {
+    pub(super) point: usize,
+    pub(super) feature: usize,
+    pub(super) weight: f64,
+    /// Their distance (m) in that state.
+    pub(super) distance: f64,
+}
+
+impl Near {
+    /// All pairs `within` a distance (m) under the displacements `u` (m), in the order of their numbers.
+    pub(super) fn new(surfaces: &Surfaces, u: &[f64], within: f64) -> Self {
+        let at: Vec<[f64; 3]> =
+            surfaces.nodes.iter().map(|&node| surfaces.node_at(node, u)).collect();
+        let mut pairs = Vec::new();
+        let places: Vec<[f64; 3]> =
+            (0..surfaces.points.len()).map(|point| surfaces.point_at(point, u)).collect();
+        // a state that is no state has no neighbours
+        let is_finite = places.iter().chain(&at).flatten().all(|x| x.is_finite());
+        if is_finite && !places.is_empty() {
+            let grid = Grid::new(&places);
+            for feature in 0..surfaces.features.len() {
+                let corners = surfaces.corners_at(feature, u);
+                let corners = &corners[..surfaces.features[feature].nodes().len()];
+                let least = |i| corners.iter().map(|x| x[i]).fold(f64::INFINITY, f64::min);
+                let most = |i| corners.iter().map(|x| x[i]).fold(f64::NEG_INFINITY, f64::max);
+                let low = [0, 1, 2].map(|i| least(i) - within);
+                let high = [0, 1, 2].map(|i| most(i) + within);
+                grid.each_within(&[low, high], |point| {
+                    let weight = surfaces.weight(point, feature);
+                    if weight == 0.0 {
+                        return;
+                    }
+                    let (distance, _) = Pair::apart(&places[point], corners);
+                    if distance <= within {
+                        pairs.push(NearPair { point, feature, weight, distance });
+                    }
+                });
+            }
+            pairs.sort_unstable_by_key(|pair| (pair.point, pair.feature));
+        }
+        Self { at, within, pairs }
+    }
+
+    /// How much nearer (m) any point and feature may have come since: twice the way of the node that has moved most.
+    pub(super) fn moved(&self, surfaces: &Surfaces, u: &[f64]) -> f64 {
+        let squares = surfaces.nodes.iter().zip(&self.at).map(|(&node, before)| {
+            let x = surfaces.node_at(node, u);
+            (0..3).map(|i| (x[i] - before[i]).powi(2)).sum::<f64>()
+        });
+        // what is no number has moved farther than anything
+        let known = |square: f64| if square.is_finite() { square } else { f64::INFINITY };
+        2.0 * squares.map(known).fold(0.0, f64::max).sqrt()
+    }
+
+    /// Whether the pairs include all that are within `distance` (m) once they may have come `nearer` (m).
+    pub(super) fn covers(&self, distance: f64, nearer: f64) -> bool {
+        distance + nearer <= self.within
+    }
+}

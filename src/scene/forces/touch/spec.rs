@@ -1,0 +1,217 @@
+//! Which bodies touch, and how.
+
+use super::force::TouchForce;
+use super::law::{Kind, Law};
+use super::near::Near;
+use super::surfaces::Surfaces;
+use crate::base::input::{InputError, not_negative, positive};
+use crate::elements::body::Body;
+use crate::scene::forces::friction::Friction;
+
+/// Contact of bodies with each other, or of a body with itself.
+///
+/// Each pair of surfaces closer than the [contact distance](Self::distance) D pushes itself apart, on both sides alike.
+/// With the distance d between them the pressure is
+///
+/// ```text
+/// barrier:  k (D - d)^2 (D + 2 d)/(3 d^2)       spring:  k (D - d)
+/// ```
+///
+/// per area of the undeformed surfaces. The barrier, which is the default, grows without bound as d goes to 0, so that
+/// surfaces never pass through each other, and sets in smoothly. A step that would lead through a surface between its
+/// ends is taken again in parts. The spring is softer: what presses more than k D passes through, which the overlap
+/// [indicator](crate::Indicator) of a run tells.
+///
+/// Damping adds the pressure -c d' times the curvature of the energy over k, so that it sets in as smoothly; surfaces
+/// that part are not held back. Friction is that of [obstacles](crate::Obstacle#friction), with the sliding velocity
+/// between the surfaces.
+///
+/// ```
+/// use pliant::{Body, Cells, Material, Mesh, Phase, Sampling, Scene, Settings, Touch};
+///
+/// let soft = Material { density: 1000.0, young: 1e5, poisson: 0.3, viscosity: 0.0 };
+/// let block = |name, x: f64| {
+///     let mesh = Mesh::rectangle([0.1, 0.05], [5, 3], Cells::Triangles)?.translated(&[x, 0.0])?;
+///     Body::new(mesh, soft).thickness(0.01).named(name).build()
+/// };
+/// let bodies = Body::join([block("left", 0.0)?, block("right", 0.12)?])?;
+/// let scene = Scene::new(bodies)
+///     .touch(Touch::all().distance(2e-3))
+///     .initial_velocity(|x| vec![if x[0] < 0.11 { 0.5 } else { 0.0 }, 0.0])
+///     .phase(Phase::until(0.2));
+/// let motion = scene.simulate(&Settings::default(), &Sampling::every(0.1))?;
+/// # Ok::<(), pliant::Error>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct Touch {
+    name: String,
+    bodies: Vec<String>,
+    kind: Kind,
+    stiffness: Option<f64>,
+    distance: Option<f64>,
+    damping: f64,
+    friction: Friction,
+}
+
+/// Default of D, over the mean side of facets, and over the size of bodies in one dimension.
+const DISTANCE: f64 = 0.1;
+const DISTANCE_OF_BARS: f64 = 0.01;
+/// Default of k D over Young's modulus.
+const BARRIER: f64 = 0.1;
+const SPRING: f64 = 1.0;
+/// How near bodies may begin, over D.
+const LEAST: f64 = 1e-3;
+
+impl Touch {
+    /// All bodies of a scene touch each other, and each of them itself.
+    pub fn all() -> Self {
+        Self {
+            name: "touch".into(),
+            bodies: Vec::new(),
+            kind: Kind::Barrier,
+            stiffness: None,
+            distance: None,
+            damping: 0.0,
+            friction: Friction::default(),
+        }
+    }
+
+    /// The bodies with these names touch each other; a single one touches itself.
+    pub fn between(bodies: impl IntoIterator<Item = impl Into<String>>) -> Self {
+        Self { bodies: bodies.into_iter().map(Into::into).collect(), ..Self::all() }
+    }
+
+    /// Its name (default: "touch"), for sensors and messages.
+    pub fn named(mut self, name: impl Into<String>) -> Self {
+        self.name = name.into();
+        self
+    }
+
+    /// The pressure grows in proportion to D - d, and surfaces may be pressed through each other.
+    pub fn spring(mut self) -> Self {
+        self.kind = Kind::Spring;
+        self
+    }
+
+    /// Stiffness k (N/m^3), above 0. Default: a tenth of the least of Young's moduli over D; all of it for a
+    /// [`spring`](Self::spring).
+    pub fn stiffness_density(mut self, stiffness: f64) -> Self {
+        self.stiffness = Some(stiffness);
+        self
+    }
+
+    /// The distance D (m) from which on nothing acts, above 0: bodies come to rest at a part of it from each other.
+    /// Default: a tenth of the mean edge of the surfaces; of bars in one dimension, a hundredth of their size.
+    pub fn distance(mut self, distance: f64) -> Self {
+        self.distance = Some(distance);
+        self
+    }
+
+    /// Damping c (N s/m^3) of the normal motion, 0 or above (default: 0).
+    pub fn damping_density(mut self, damping: f64) -> Self {
+        self.damping = damping;
+        self
+    }
+
+    /// Coefficient mu of Coulomb's friction, static and kinetic, 0 or above (default: no friction).
+    pub fn friction_coefficient(self, coefficient: f64) -> Self {
+        self.friction_coefficients(coefficient, coefficient)
+    }
+
+    /// Coefficients of Coulomb's friction: `at_rest` (mu_s, static) while it sticks, `sliding` (mu_k, kinetic), not
+    /// above it, once it slides.
+    pub fn friction_coefficients(mut self, at_rest: f64, sliding: f64) -> Self {
+        self.friction.coefficients = Some([at_rest, sliding]);
+        self
+    }
+
+    /// The sliding speed v0 (m/s) below which friction sticks, above 0; with friction coefficients only. Default: a
+    /// thousandth of the size of the bodies per second.
+    pub fn sticking_speed(mut self, speed: f64) -> Self {
+        self.friction.sticking_speed = Some(speed);
+        self
+    }
+
+    /// Its name.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Its forces on the bodies of a scene that begins with the displacements `u` (m).
+    ///
+    /// # Errors
+    /// Names that are not there, numbers that make no sense, bodies without a surface or that lie on each other.
+    pub(crate) fn force(&self, body: &Body, u: &[f64]) -> Result<TouchForce, InputError> {
+        let input = |key: &str| format!("touch \"{}\" {key}", self.name);
+        let parts: Vec<_> = body.parts().collect();
+        let mut numbers = Vec::new();
+        for name in &self.bodies {
+            let nodes = body.part_named(name, &input("bodies"))?.nodes;
+            numbers.extend(parts.iter().position(|part| part.nodes == nodes));
+        }
+        if self.bodies.is_empty() {
+            numbers.extend(0..parts.len());
+        }
+        numbers.sort_unstable();
+        numbers.dedup();
+        let itself = self.bodies.is_empty() || numbers.len() == 1;
+        let mut surfaces = Surfaces::new(body, &numbers, itself).ok_or_else(|| {
+            let help = "a string has no surface: name the other bodies";
+            InputError::new(input("bodies"), "a string among them", help)
+        })?;
+        let side = match surfaces.mean_side() {
+            0.0 => DISTANCE_OF_BARS * body.size(),
+            side => DISTANCE * side,
+        };
+        let distance = self.distance.unwrap_or(side);
+        positive(&input("distance"), distance, "m")?;
+        let young = numbers.iter().map(|&number| parts[number].body.material().young);
+        let hard = match self.kind {
+            Kind::Barrier => BARRIER,
+            Kind::Spring => SPRING,
+        };
+        let stiffness =
+            self.stiffness.unwrap_or_else(|| hard * young.fold(f64::INFINITY, f64::min) / distance);
+        positive(&input("stiffness_density"), stiffness, "N/m^3")?;
+        not_negative(&input("damping_density"), self.damping, "N s/m^3")?;
+        self.friction.validate(&input)?;
+        if itself {
+            let rest = vec![0.0; body.dofs()];
+            let near = Near::new(&surfaces, &rest, 2.0 * distance).pairs;
+            let is_left_out = |point: usize, feature: usize| {
+                surfaces.is_itself(point, feature) && surfaces.is_facet(feature)
+            };
+            let pairs = near.iter().filter(|near| is_left_out(near.point, near.feature));
+            let pairs: Vec<[usize; 2]> = pairs.map(|near| [near.point, near.feature]).collect();
+            surfaces.leave_out(&pairs);
+        }
+        let law = Law { kind: self.kind, stiffness, damping: self.damping, distance };
+        let coulomb = self.friction.coulomb(body.size());
+        let margin = distance.max(2.0 * side);
+        let force = TouchForce::new(self.name.clone(), surfaces, law, coulomb, margin, u);
+        self.check_start(body, &force, u)?;
+        Ok(force)
+    }
+
+    fn check_start(&self, body: &Body, force: &TouchForce, u: &[f64]) -> Result<(), InputError> {
+        let Some((apart, nodes)) = force.nearest(u) else { return Ok(()) };
+        let least = LEAST * force.law.distance;
+        if apart >= least {
+            return Ok(());
+        }
+        let names = nodes.map(|node| body.part_of(node).name.to_owned());
+        let help = format!(
+            "surfaces that touch must begin at least {least:.1e} m apart (at node {} of \"{}\" and node {} of \"{}\"): move the bodies \
+             apart, tie them, or leave them out of the touch",
+            nodes[0] + 1,
+            names[0],
+            nodes[1] + 1,
+            names[1]
+        );
+        Err(InputError::new(
+            format!("touch \"{}\" distance at the start", self.name),
+            format!("{apart:.1e} m"),
+            help,
+        ))
+    }
+}

@@ -1,0 +1,239 @@
+//! The surfaces of bodies: quadrature points, and facets with their edges and corners.
+
+use std::collections::BTreeMap;
+
+use crate::elements::body::Body;
+use crate::scene::forces::surface::{SurfacePoint, closed_points, facets};
+
+/// The surfaces of some bodies.
+pub(super) struct Surfaces {
+    pub(super) dimension: usize,
+    /// Undeformed positions of all nodes (m).
+    natural: Vec<f64>,
+    /// The nodes of the surfaces, ascending.
+    pub(super) nodes: Vec<usize>,
+    pub(super) points: Vec<Point>,
+    /// Facets first.
+    pub(super) features: Vec<Feature>,
+    /// Whether a body touches itself.
+    pub(super) itself: bool,
+}
+
+/// A quadrature point.
+pub(super) struct Point {
+    pub(super) on: SurfacePoint,
+    body: usize,
+    /// Facets of its own body that it does not feel, ascending: its neighbours.
+    unfelt: Vec<usize>,
+}
+
+/// A facet, an edge or a corner.
+pub(super) struct Feature {
+    nodes: [usize; 3],
+    count: usize,
+    body: usize,
+    /// The facets that it belongs to, and for a corner its edges.
+    facets: Vec<usize>,
+    edges: Vec<usize>,
+    /// Its weight to points that feel all facets.
+    weight: f64,
+}
+
+impl Feature {
+    pub(super) fn nodes(&self) -> &[usize] {
+        &self.nodes[..self.count]
+    }
+}
+
+impl Surfaces {
+    /// The surfaces of the bodies with these numbers; `None` for a string, which has no surface.
+    pub(super) fn new(body: &Body, bodies: &[usize], itself: bool) -> Option<Self> {
+        let dimension = body.dimension();
+        let mut surfaces = Self {
+            dimension,
+            natural: body.mesh().positions().to_vec(),
+            nodes: Vec::new(),
+            points: Vec::new(),
+            features: Vec::new(),
+            itself,
+        };
+        let parts: Vec<_> = body.parts().map(|part| part.nodes).collect();
+        let faces = body.mesh().boundary_faces();
+        for &number in bodies {
+            let own: Vec<Vec<usize>> =
+                faces.iter().filter(|face| parts[number].contains(&face[0])).cloned().collect();
+            let points = closed_points(body, &own)?.into_iter();
+            surfaces.points.extend(points.map(|on| Point { on, body: number, unfelt: Vec::new() }));
+            for face in &own {
+                for facet in facets(body.mesh().face_kind(face)) {
+                    let nodes: Vec<usize> = facet.iter().map(|&local| face[local]).collect();
+                    surfaces.features.push(Feature::new(&nodes, number));
+                }
+            }
+            surfaces.nodes.extend(own.concat());
+        }
+        surfaces.nodes.sort_unstable();
+        surfaces.nodes.dedup();
+        surfaces.add_edges_and_corners();
+        Some(surfaces)
+    }
+
+    fn add_edges_and_corners(&mut self) {
+        let mut edges: BTreeMap<Vec<usize>, Vec<usize>> = BTreeMap::new();
+        let mut corners: BTreeMap<usize, [Vec<usize>; 2]> = BTreeMap::new();
+        for (number, facet) in self.features.iter_mut().enumerate() {
+            facet.facets.push(number);
+            let nodes = facet.nodes();
+            if nodes.len() < 2 {
+                continue;
+            }
+            for (k, &node) in nodes.iter().enumerate() {
+                corners.entry(node).or_default()[0].push(number);
+                let next = nodes[(k + 1) % nodes.len()];
+                if nodes.len() == 3 {
+                    edges.entry(vec![node.min(next), node.max(next)]).or_default().push(number);
+                }
+            }
+        }
+        let body = |surfaces: &Self, facet: usize| surfaces.features[facet].body;
+        for (nodes, facets) in edges {
+            let number = self.features.len();
+            for node in &nodes {
+                corners.entry(*node).or_default()[1].push(number);
+            }
+            let edge = Feature { facets, ..Feature::new(&nodes, 0) };
+            let body = body(self, edge.facets[0]);
+            self.features.push(Feature { body, ..edge });
+        }
+        for (node, [facets, edges]) in corners {
+            let body = body(self, facets[0]);
+            self.features.push(Feature { facets, edges, ..Feature::new(&[node], body) });
+        }
+        for number in 0..self.features.len() {
+            self.features[number].weight = self.weight_among(number, |_| true);
+        }
+    }
+
+    /// Has points not feel the facets of their own body that share a node with a facet they lie on, and the `pairs` of
+    /// a point and a facet.
+    pub(super) fn leave_out(&mut self, pairs: &[[usize; 2]]) {
+        let mut facets_at: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+        for (number, feature) in self.features.iter().enumerate() {
+            if feature.facets == [number] {
+                for &node in feature.nodes() {
+                    facets_at.entry(node).or_default().push(number);
+                }
+            }
+        }
+        for point in &mut self.points {
+            let nodes: Vec<usize> = point.on.nodes().map(|(node, _)| node).collect();
+            let own = facets_at[&nodes[0]].iter().filter(|&&facet| {
+                let facet = self.features[facet].nodes();
+                nodes.iter().all(|node| facet.contains(node))
+            });
+            let around = own.flat_map(|&facet| self.features[facet].nodes());
+            point.unfelt = around.flat_map(|node| &facets_at[node]).copied().collect();
+        }
+        for &[point, facet] in pairs {
+            self.points[point].unfelt.push(facet);
+        }
+        for point in &mut self.points {
+            point.unfelt.sort_unstable();
+            point.unfelt.dedup();
+        }
+    }
+
+    /// The weight of a feature for points of other bodies.
+    #[cfg(test)]
+    pub(super) fn weight_for_others(&self, feature: usize) -> f64 {
+        self.features[feature].weight
+    }
+
+    /// The weight of a feature for a point; 0 if the point does not feel it.
+    pub(super) fn weight(&self, point: usize, feature: usize) -> f64 {
+        let (point, on) = (&self.points[point], &self.features[feature]);
+        if point.body != on.body {
+            return on.weight;
+        }
+        if !self.itself {
+            return 0.0;
+        }
+        let is_felt = |facet: usize| point.unfelt.binary_search(&facet).is_err();
+        self.weight_among(feature, is_felt)
+    }
+
+    /// The weight of a feature on the surface of the facets that `is_felt` tells.
+    fn weight_among(&self, feature: usize, is_felt: impl Fn(usize) -> bool) -> f64 {
+        let facets = |feature: usize| {
+            self.features[feature].facets.iter().filter(|&&facet| is_felt(facet)).count() as f64
+        };
+        let own = facets(feature);
+        if own == 0.0 || self.is_facet(feature) {
+            return own;
+        }
+        let of_edges = self.features[feature].edges.iter().map(|&edge| facets(edge));
+        let shared: f64 = of_edges.filter(|&facets| facets > 0.0).map(|facets| facets - 1.0).sum();
+        1.0 - own + shared
+    }
+
+    /// Whether a feature is a facet, not an edge or a corner of one.
+    pub(super) fn is_facet(&self, feature: usize) -> bool {
+        self.features[feature].facets == [feature]
+    }
+
+    /// Whether a point and a feature are of the same body.
+    pub(super) fn is_itself(&self, point: usize, feature: usize) -> bool {
+        self.points[point].body == self.features[feature].body
+    }
+
+    /// Mean length (m) of the sides of the facets; 0 without any.
+    pub(super) fn mean_side(&self) -> f64 {
+        let side = |(k, facet): (usize, &Feature)| {
+            let nodes = facet.nodes();
+            let is_side = nodes.len() > 1 && facet.facets == [k];
+            is_side.then(|| {
+                let [a, b] = [nodes[0], nodes[1]].map(|node| self.at_rest(node));
+                crate::base::vector::norm(&std::array::from_fn::<f64, 3, _>(|i| b[i] - a[i]))
+            })
+        };
+        let sides: Vec<f64> = self.features.iter().enumerate().filter_map(side).collect();
+        sides.iter().sum::<f64>() / sides.len().max(1) as f64
+    }
+
+    fn at_rest(&self, node: usize) -> [f64; 3] {
+        let x = &self.natural[node * self.dimension..][..self.dimension];
+        std::array::from_fn(|i| x.get(i).copied().unwrap_or(0.0))
+    }
+
+    /// Where a node is under the displacements `u` (m).
+    pub(super) fn node_at(&self, node: usize, u: &[f64]) -> [f64; 3] {
+        let mut x = self.at_rest(node);
+        let of_node = &u[node * self.dimension..][..self.dimension];
+        x.iter_mut().zip(of_node).for_each(|(x, u)| *x += u);
+        x
+    }
+
+    /// Where a point is under the displacements `u` (m).
+    pub(super) fn point_at(&self, point: usize, u: &[f64]) -> [f64; 3] {
+        let on = &self.points[point].on;
+        let (rest, moved) = (on.at(&self.natural, self.dimension), on.at(u, self.dimension));
+        std::array::from_fn(|i| rest[i] + moved[i])
+    }
+
+    /// Where the corners of a feature are under the displacements `u` (m); those beyond its count are 0.
+    pub(super) fn corners_at(&self, feature: usize, u: &[f64]) -> [[f64; 3]; 3] {
+        let mut corners = [[0.0; 3]; 3];
+        let nodes = self.features[feature].nodes().iter();
+        corners.iter_mut().zip(nodes).for_each(|(corner, &node)| *corner = self.node_at(node, u));
+        corners
+    }
+}
+
+impl Feature {
+    fn new(of: &[usize], body: usize) -> Self {
+        let mut nodes = [0; 3];
+        nodes[..of.len()].copy_from_slice(of);
+        let (facets, edges) = (Vec::new(), Vec::new());
+        Self { nodes, count: of.len(), body, facets, edges, weight: 0.0 }
+    }
+}

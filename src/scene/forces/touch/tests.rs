@@ -1,0 +1,160 @@
+use std::sync::Arc;
+
+use super::Touch;
+use super::force::TouchForce;
+use super::pair::Pair;
+use super::surfaces::Surfaces;
+use crate::base::sparse::BlockMatrix;
+use crate::base::vector::{dot, largest, noise, norm};
+use crate::elements::body::Body;
+use crate::elements::force::{Force, NodalForces};
+use crate::elements::material::Material;
+use crate::elements::mesh::{Cells, Mesh, SolidCells};
+
+const SOFT: Material = Material { density: 1000.0, young: 1e5, poisson: 0.3, viscosity: 0.0 };
+
+/// Two blocks in the plane or in space, 1 mm apart, of cells that do not match.
+fn blocks(dimension: usize) -> Body {
+    let mesh = |at: f64, divisions: usize| {
+        let n = divisions;
+        let mesh = match dimension {
+            2 => Mesh::rectangle([0.1, 0.05], [2 * n + 1, n + 1], Cells::Triangles6),
+            _ => Mesh::cuboid([0.1, 0.05, 0.08], [n + 1, n + 1, n], SolidCells::Hexahedra),
+        };
+        let place = [0.01 * n as f64, at, 0.007 * n as f64];
+        mesh.unwrap().translated(&place[..dimension]).unwrap()
+    };
+    let body = |mesh: Mesh, name: &str| {
+        let body = Body::new(mesh, SOFT).named(name);
+        if dimension == 2 { body.thickness(0.01) } else { body }.build().unwrap()
+    };
+    Body::join([body(mesh(0.0, 2), "lower"), body(mesh(0.051, 3), "upper")]).unwrap()
+}
+
+fn forces_at(force: &TouchForce, u: &[f64], v: &[f64]) -> NodalForces {
+    let mut forces = NodalForces::zeros(u.len());
+    force.add_forces(0.0, u, v, &mut forces).unwrap();
+    forces
+}
+
+fn total(force: &TouchForce, u: &[f64], v: &[f64]) -> Vec<f64> {
+    let forces = forces_at(force, u, v);
+    forces.conservative.iter().zip(&*forces.dissipative).map(|(a, b)| a + b).collect()
+}
+
+/// Forces are the slope of the energy, and tangents that of the forces, damping and friction included, for both laws
+/// in two and three dimensions: against central differences, in rough states in which corners, edges and facets act.
+#[test]
+fn forces_and_tangents_are_derivatives() {
+    for dimension in [2, 3] {
+        let body = blocks(dimension);
+        let dofs = body.dofs();
+        let touch =
+            Touch::all().distance(8e-3).damping_density(1e4).friction_coefficients(0.5, 0.3);
+        for touch in [touch.clone(), touch.spring()] {
+            let touch = touch.sticking_speed(0.3);
+            let u: Vec<f64> = noise(dofs, 7).iter().map(|x| 4e-4 * x).collect();
+            let v: Vec<f64> = noise(dofs, 3).iter().map(|x| 0.2 * x).collect();
+            let force = touch.force(&body, &u).unwrap();
+            let conservative = forces_at(&force, &u, &v).conservative;
+            assert!(norm(&conservative) > 0.1, "{dimension}: nothing touches");
+            let pattern = body.inertia().pattern();
+            let near = force.couplings_near(&u, pattern);
+            let pattern = Arc::new(pattern.with_pairs(&near));
+            assert!(force.couplings_near(&u, &pattern).is_empty());
+            let [mut stiffness, mut damping] =
+                [0, 1].map(|_| BlockMatrix::zeros(&pattern, dimension));
+            force.add_tangents(0.0, &u, &v, &mut stiffness, &mut damping);
+            for seed in 0..6 {
+                let direction = noise(dofs, 20 + seed);
+                let h = 1e-8;
+                let moved = |at: &[f64], by: f64| -> Vec<f64> {
+                    at.iter().zip(&direction).map(|(x, d)| x + by * d).collect()
+                };
+                let [ahead, behind] = [h, -h].map(|by| moved(&u, by));
+                let energy = |u: &[f64]| force.potential(0.0, u);
+                let slope = (energy(&ahead) - energy(&behind)) / (2.0 * h);
+                let exact = -dot(&conservative, &direction);
+                assert!((slope - exact).abs() < 2e-6 * norm(&conservative), "{slope} {exact}");
+
+                let difference = |a: Vec<f64>, b: Vec<f64>, by: f64| -> Vec<f64> {
+                    a.iter().zip(b).map(|(a, b)| (a - b) / (2.0 * by)).collect()
+                };
+                let check = |found: Vec<f64>, tangent: &BlockMatrix, tolerance: f64, what: &str| {
+                    let mut exact = vec![0.0; dofs];
+                    tangent.add_product(-1.0, &direction, &mut exact);
+                    let off: Vec<f64> = found.iter().zip(&exact).map(|(a, b)| a - b).collect();
+                    let part = largest(&off) / largest(&exact);
+                    assert!(part < tolerance, "{what} in {dimension} D is off by {part:e}");
+                };
+                let by_u = difference(total(&force, &ahead, &v), total(&force, &behind, &v), h);
+                check(by_u, &stiffness, 2e-5, "stiffness");
+                let h = 1e-6;
+                let [ahead, behind] = [h, -h].map(|by| moved(&v, by));
+                let by_v = difference(total(&force, &u, &ahead), total(&force, &u, &behind), h);
+                check(by_v, &damping, 1e-6, "damping");
+            }
+        }
+    }
+}
+
+/// What one body exerts on the other comes back, whatever rubs; and friction and damping take energy away.
+#[test]
+fn momentum_is_exchanged_and_energy_lost() {
+    for dimension in [2, 3] {
+        let body = blocks(dimension);
+        let touch = Touch::all().distance(8e-3).damping_density(1e4).friction_coefficient(0.5);
+        let u: Vec<f64> = noise(body.dofs(), 5).iter().map(|x| 4e-4 * x).collect();
+        let v: Vec<f64> = noise(body.dofs(), 4).iter().map(|x| 0.2 * x).collect();
+        let force = touch.force(&body, &u).unwrap();
+        let forces = forces_at(&force, &u, &v);
+        assert!(dot(&forces.dissipative, &v) < 0.0);
+        for part in [&forces.conservative, &forces.dissipative] {
+            for axis in 0..dimension {
+                let along = part.iter().skip(axis).step_by(dimension);
+                let (sum, size) =
+                    along.fold((0.0, 0.0), |(sum, size), f| (sum + f, size + f.abs()));
+                assert!(sum.abs() < 1e-13 * size, "{sum} of {size}");
+            }
+        }
+    }
+}
+
+/// The weights of facets, edges and corners cancel all but the nearest place of a convex surface, whatever the mesh:
+/// points around a block feel its distance.
+#[test]
+fn a_convex_surface_is_felt_once() {
+    for dimension in [2, 3] {
+        let body = blocks(dimension);
+        let surfaces = Surfaces::new(&body, &[0], false).unwrap();
+        let still = vec![0.0; body.dofs()];
+        let (from, to, reach) = ([0.02, 0.0, 0.014], [0.12, 0.05, 0.094], 0.02);
+        let mut count = 0;
+        for unit in noise(1500, 8).chunks_exact(3) {
+            let mut x = [0.0; 3];
+            for i in 0..dimension {
+                x[i] = 0.5 * (from[i] + to[i]) + 0.8 * unit[i] * (to[i] - from[i]);
+            }
+            let out: [f64; 3] = std::array::from_fn(|i| {
+                if i < dimension { x[i] - x[i].clamp(from[i], to[i]) } else { 0.0 }
+            });
+            let distance = norm(&out);
+            if distance == 0.0 || distance >= reach {
+                continue;
+            }
+            count += 1;
+            let felt: f64 = (0..surfaces.features.len())
+                .map(|feature| {
+                    let corners = surfaces.corners_at(feature, &still);
+                    let of = surfaces.features[feature].nodes().len();
+                    let (d, _) = Pair::apart(&x, &corners[..of]);
+                    let weight = surfaces.weight_for_others(feature);
+                    weight * (reach - d).max(0.0).powi(2)
+                })
+                .sum();
+            let exact = (reach - distance).powi(2);
+            assert!((felt - exact).abs() < 1e-13 * reach * reach, "{x:?}: {felt} {exact}");
+        }
+        assert!(count > 50, "{count}");
+    }
+}
