@@ -38,6 +38,7 @@ mod square_press;
 mod start;
 mod sticking;
 mod threads;
+mod touching;
 mod tunnelling;
 mod turning;
 mod varying;

@@ -79,6 +79,11 @@ impl Reading {
             What::ContactForce(obstacle, nodes) => {
                 contact_force(scene, obstacle.clone(), nodes.clone())?
             }
+            What::TouchForce(touch, nodes) => self.force_of_touch(scene, touch, nodes.as_ref())?,
+            What::Gap(touch) => {
+                let touch = scene.touch_force(touch, "touch")?;
+                Box::new(move |view, _| Value::Number(touch.gap(view.displacements())))
+            }
             What::SpringPull(spring) => {
                 scene.spring_number(spring, "spring")?;
                 number(spring, |view, spring| view.spring_pull(spring))
@@ -219,6 +224,32 @@ fn field(
     Ok(Box::new(move |view, _| {
         Value::Tensor(tensor(&view.body().probed(&probe, view.displacements())))
     }))
+}
+
+impl Reading {
+    /// Force of bodies that touch on the body that is read, or on some nodes.
+    fn force_of_touch(
+        &self,
+        scene: &Scene,
+        touch: &str,
+        nodes: Option<&Selection>,
+    ) -> Result<Gauge, InputError> {
+        let force = scene.touch_force(touch, "touch")?;
+        let body = scene.body();
+        let nodes = match (nodes, &self.body) {
+            (Some(nodes), _) => body.mesh().select(nodes)?,
+            (None, Some(name)) => body.part_named(name, "body")?.nodes.collect(),
+            (None, None) => {
+                let help = "all forces of a touch together are 0: name the body or the nodes on which they act";
+                return Err(InputError::new("body", "missing", help));
+            }
+        };
+        let mut is_read = vec![false; body.mesh().node_count()];
+        nodes.into_iter().for_each(|node| is_read[node] = true);
+        Ok(Box::new(move |view, _| {
+            Value::Vector(force.force(view.displacements(), view.velocities(), &is_read))
+        }))
+    }
 }
 
 /// Force of an obstacle on all nodes or some. The contact is that of the scene unless commands have changed

@@ -29,6 +29,10 @@ pub(super) enum What {
     ConstraintMoment(Selection, Lever),
     /// Of an obstacle, on all nodes or these.
     ContactForce(String, Option<Selection>),
+    /// Of a touch, on these nodes or on the body that is read.
+    TouchForce(String, Option<Selection>),
+    /// Of a touch.
+    Gap(String),
     SpringPull(String),
     SpringLength(String),
     Pressure(String),
@@ -173,6 +177,25 @@ impl Reading {
         What::ContactForce(obstacle.into(), Some(nodes.into())).into()
     }
 
+    /// Force (N) of bodies that [touch](crate::Touch) on one [of them](Self::of_body) or [on](Self::on) some nodes.
+    pub fn touch_force(touch: impl Into<String>) -> Self {
+        What::TouchForce(touch.into(), None).into()
+    }
+
+    /// The least distance (m) of the surfaces of bodies that [touch](crate::Touch), up to that from which on nothing
+    /// acts.
+    pub fn gap(touch: impl Into<String>) -> Self {
+        What::Gap(touch.into()).into()
+    }
+
+    /// The part of a contact force that acts on some nodes.
+    pub fn on(mut self, nodes: impl Into<Selection>) -> Self {
+        if let What::ContactForce(_, on) | What::TouchForce(_, on) = &mut self.what {
+            *on = Some(nodes.into());
+        }
+        self
+    }
+
     /// Force with which a spring pulls its ends together (N): see [`View::spring_pull`](crate::View::spring_pull).
     pub fn spring_pull(spring: impl Into<String>) -> Self {
         What::SpringPull(spring.into()).into()
@@ -250,7 +273,7 @@ impl Reading {
         What::Momentum.into()
     }
 
-    /// Of one of several bodies: its centre of mass, its rotation, its momentum. Default: of all together.
+    /// Of one of several bodies: its centre of mass, its rotation, its momentum, the force of a touch on it. Default: of all together.
     pub fn of_body(mut self, name: impl Into<String>) -> Self {
         self.body = Some(name.into());
         self
@@ -275,7 +298,9 @@ impl Reading {
             What::SpringLength(_) | What::Distance(_) => "m",
             What::Velocity(_) => "m/s",
             What::Momentum => "kg m/s",
-            What::ConstraintForce(_) | What::ContactForce(..) | What::SpringPull(_) => "N",
+            What::ConstraintForce(_) | What::ContactForce(..) => "N",
+            What::TouchForce(..) | What::SpringPull(_) => "N",
+            What::Gap(_) => "m",
             What::ConstraintMoment(..) => "N m",
             What::Pressure(_) | What::Stress(_) => "Pa",
             What::ChamberVolume(_) => "m^3",
@@ -309,10 +334,12 @@ impl Reading {
             let help = format!("angles and rotations alone have it, this is in {}", self.unit());
             return Err(InputError::new("unit", format!("\"{DEGREES}\""), help));
         }
-        let is_of_bodies =
-            matches!(self.what, What::CentreOfMass | What::Rotation | What::Momentum);
+        let is_of_bodies = matches!(
+            self.what,
+            What::CentreOfMass | What::Rotation | What::Momentum | What::TouchForce(..)
+        );
         if let Some(name) = self.body.as_ref().filter(|_| !is_of_bodies) {
-            let help = "the centre of mass, the rotation and the momentum alone are read of a body: name its nodes instead";
+            let help = "the centre of mass, the rotation, the momentum and the force of a touch alone are read of a body: name its nodes instead";
             return Err(InputError::new("body", format!("\"{name}\""), help));
         }
         // the components that are columns by default, and one more that must be requested
@@ -324,7 +351,7 @@ impl Reading {
             (What::Strain(_), 2) => (&[XX, YY, ZZ, XY], None),
             (What::Strain(_), _) => (&[XX, YY, ZZ, XY, YZ, XZ], None),
             (What::Position(_) | What::Displacement(_) | What::Velocity(_), _)
-            | (What::ConstraintForce(_) | What::ContactForce(..), _)
+            | (What::ConstraintForce(_) | What::ContactForce(..) | What::TouchForce(..), _)
             | (What::CentreOfMass | What::Momentum, _) => (&[X, Y, Z][..dimension], Some(Norm)),
             (What::ConstraintMoment(_, Lever { axis: None, .. }), 3) => (&[X, Y, Z], Some(Norm)),
             _ => (&[], None),

@@ -56,11 +56,21 @@ impl Identity {
             ("obstacles", of_text(scene.obstacles())),
             ("other forces", of_text(scene.other_forces())),
         ];
+        let mut parts: Vec<(String, String)> =
+            parts.map(|(name, hash)| (name.into(), text(hash))).into();
+        // as in files that were written before there were several bodies
+        let [ties, touches] = [of_text(&scene.ties()), of_text(&scene.touches())].map(text);
+        if !scene.ties().is_empty() {
+            parts.push(("ties".into(), ties));
+        }
+        if !scene.touches().is_empty() {
+            parts.push(("touches".into(), touches));
+        }
         Self {
             nodes: mesh.node_count(),
             cells: mesh.cell_count(),
             dimension: mesh.dimension(),
-            parts: parts.map(|(name, hash)| (name.into(), text(hash))).into(),
+            parts,
             phases: scene.phases().iter().map(PhaseIdentity::of).collect(),
         }
     }

@@ -8,8 +8,8 @@ const ABSENT: [(&[&str], &str); 8] = [
          is an [[obstacle]]",
     ),
     (
-        &["contact", "contacts", "self_contact", "collision", "collisions", "touch"],
-        "bodies touch neither themselves nor each other: contact is with rigid shapes, which stand or follow a path, \
+        &["contact", "contacts", "self_contact", "collision", "collisions"],
+        "contact of bodies with each other and with themselves is [[touch]]; rigid shapes, which stand or follow a path, are each an \
          [[obstacle]], among which a phase chooses by contact = [...]",
     ),
     (

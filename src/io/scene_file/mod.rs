@@ -63,6 +63,7 @@ mod surroundings;
 mod table;
 mod tie;
 mod top;
+mod touch;
 mod value;
 #[cfg(any(feature = "play", feature = "study"))]
 mod written;

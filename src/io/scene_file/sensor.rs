@@ -47,13 +47,21 @@ pub(super) const SENSOR: TableKeys = TableKeys::new(
     },
     Kind {
         word: "contact-force",
-        about: "the force of an obstacle on the body (N)",
+        about: "the force of an obstacle, or of bodies that touch, on a body (N)",
         keys: &[
-            Key::new("obstacle", Holds::Text, "the name of the obstacle").required(),
+            Key::new("obstacle", Holds::Text, "the name of the obstacle").default("`touch`"),
+            Key::new("touch", Holds::Text, "the name of the contact of bodies").default("`obstacle`"),
             Key::new("nodes", Holds::Nodes, "the nodes on which it acts").default("all").law(
-                "Those of one finger, say: the forces on both sides of what is gripped cancel each other.",
+                "Those of one finger, say: the forces on both sides of what is gripped cancel each other. A `touch` needs \
+                 `nodes` or `body`, as all of its forces together are 0.",
             ),
+            Key::new("body", Holds::Text, "the body on which a `touch` acts").default("`nodes`"),
         ],
+    },
+    Kind {
+        word: "gap",
+        about: "the least distance of the surfaces of bodies that touch, up to that from which on nothing acts (m)",
+        keys: &[Key::new("touch", Holds::Text, "the name of the contact").required()],
     },
     Kind {
         word: "spring-pull",
@@ -139,12 +147,15 @@ pub(super) fn sensor(value: &Value, scene: &Scene) -> Result<(String, Reading), 
             }
         }
         "contact-force" => {
-            let obstacle = named("obstacle")?;
-            match table.optional("nodes", |value| selection(value, mesh))? {
-                Some(nodes) => Reading::contact_force_on(obstacle, nodes),
-                None => Reading::contact_force(obstacle),
+            let nodes = table.optional("nodes", |value| selection(value, mesh))?;
+            match (table.optional("touch", Value::string)?, nodes) {
+                (Some(touch), Some(nodes)) => Reading::touch_force(touch).on(nodes),
+                (Some(touch), None) => Reading::touch_force(touch).of_body(named("body")?),
+                (None, Some(nodes)) => Reading::contact_force_on(named("obstacle")?, nodes),
+                (None, None) => Reading::contact_force(named("obstacle")?),
             }
         }
+        "gap" => Reading::gap(named("touch")?),
         "spring-pull" => Reading::spring_pull(named("spring")?),
         "spring-length" => Reading::spring_length(named("spring")?),
         "pressure" => Reading::pressure(named("chamber")?),

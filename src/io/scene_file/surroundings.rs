@@ -205,7 +205,7 @@ const WAY: TableKeys = TableKeys::new(
 )
 .one_of(&[&["times", "displacements"], &["displacement"]]);
 
-const COEFFICIENTS: TableKeys = TableKeys::new(
+pub(super) const COEFFICIENTS: TableKeys = TableKeys::new(
     "friction_coefficient",
     "Two coefficients of friction.",
     &[
@@ -326,7 +326,15 @@ fn way(obstacle: Obstacle, table: &Table, dimension: usize) -> Result<Obstacle, 
 fn friction(obstacle: Obstacle, table: &Table) -> Result<Obstacle, Error> {
     let damping = Obstacle::tangential_damping;
     let mut obstacle = table.added(obstacle, "tangential_damping", Value::number, damping)?;
-    let coefficients = table.optional("friction_coefficient", |value| {
+    if let Some([at_rest, sliding]) = coefficients(table)? {
+        obstacle = obstacle.friction_coefficients(at_rest, sliding);
+    }
+    table.added(obstacle, "sticking_speed", Value::number, Obstacle::sticking_speed)
+}
+
+/// The static and the kinetic coefficient of friction of `table`, if it has any.
+pub(super) fn coefficients(table: &Table) -> Result<Option<[f64; 2]>, Error> {
+    table.optional("friction_coefficient", |value| {
         if value.entries().is_none() {
             let mu = value.number();
             let mu = mu.map_err(|_| value.unexpected("a number or { static, kinetic }"))?;
@@ -335,15 +343,11 @@ fn friction(obstacle: Obstacle, table: &Table) -> Result<Obstacle, Error> {
         let table = value.table(&COEFFICIENTS)?;
         let coefficient = |key| table.required(key, Value::number);
         Ok([coefficient("static")?, coefficient("kinetic")?])
-    })?;
-    if let Some([at_rest, sliding]) = coefficients {
-        obstacle = obstacle.friction_coefficients(at_rest, sliding);
-    }
-    table.added(obstacle, "sticking_speed", Value::number, Obstacle::sticking_speed)
+    })
 }
 
 /// Checks that nothing else of its kind has the `name` of what `table` describes.
-fn unique<'a>(
+pub(super) fn unique<'a>(
     table: &Table,
     name: &str,
     mut others: impl Iterator<Item = &'a str>,

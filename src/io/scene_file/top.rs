@@ -11,6 +11,7 @@ use super::settings::{self, OUTPUT, SOLVER, STATICS};
 use super::surroundings::{self, CHAMBER, OBSTACLE, SPRING};
 use super::table::Table;
 use super::tie::{self, TIE};
+use super::touch::{self, TOUCH};
 use super::value::Value;
 use crate::dynamics::error::Error;
 use crate::scene::timeline::Scene;
@@ -33,6 +34,7 @@ pub(super) const TOP: TableKeys = TableKeys::new(
         Key::new("point", Holds::Tables(&POINT), "point masses"),
         Key::new("initial", Holds::Table(&INITIAL), "how the body moves at first").default("at rest"),
         Key::new("tie", Holds::Tables(&TIE), "ties between bodies"),
+        Key::new("touch", Holds::Tables(&TOUCH), "contact of bodies with each other and themselves"),
         Key::new("spring", Holds::Tables(&SPRING), "springs"),
         Key::new("chamber", Holds::Tables(&CHAMBER), "chambers"),
         Key::new("obstacle", Holds::Tables(&OBSTACLE), "obstacles"),
@@ -75,8 +77,9 @@ pub(super) fn scene_file(top: &Table) -> Result<SceneFile, Error> {
         Some(Err(_)) => initial,
         None => None,
     };
-    let parts: [(&str, Add); 4] = [
+    let parts: [(&str, Add); 5] = [
         ("tie", tie::add_tie),
+        ("touch", touch::add_touch),
         ("spring", surroundings::add_spring),
         ("chamber", surroundings::add_chamber),
         ("obstacle", surroundings::add_obstacle),

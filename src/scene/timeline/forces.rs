@@ -36,8 +36,8 @@ impl Scene {
         for contact in self.contacts(phase)? {
             forces.push(Arc::new(contact));
         }
-        for touch in self.touches()? {
-            forces.push(Arc::new(touch));
+        for touch in self.touches() {
+            forces.push(Arc::new(touch.force(&self.body, self.initial_displacements())?));
         }
         forces.extend_from_slice(&self.forces);
         Ok(forces)

@@ -361,10 +361,21 @@ impl Scene {
         forces.collect()
     }
 
-    /// The forces between bodies.
-    pub(crate) fn touches(&self) -> Result<Vec<TouchForce>, InputError> {
-        let force = |touch: &Touch| touch.force(&self.body, self.initial_displacements());
-        self.touches.iter().map(force).collect()
+    /// What is glued.
+    #[cfg(feature = "checkpoint")]
+    pub(crate) fn ties(&self) -> &[Tie] {
+        &self.ties
+    }
+
+    /// How bodies touch.
+    pub(crate) fn touches(&self) -> &[Touch] {
+        &self.touches
+    }
+
+    /// The forces of the touch `name`; `input` is where that was given.
+    pub(crate) fn touch_force(&self, name: &str, input: &str) -> Result<TouchForce, InputError> {
+        let number = find(name, self.touches.iter().map(Touch::name), input, "touches")?;
+        self.touches[number].force(&self.body, self.initial_displacements())
     }
 
     /// The constraints of all ties.

@@ -10,7 +10,7 @@ use crate::scene::forces::pieces;
 
 /// Nodes that move with the points of another body at which they are.
 #[derive(Debug, Clone)]
-pub(super) struct Tie {
+pub(crate) struct Tie {
     pub(super) nodes: Selection,
     pub(super) to: String,
 }

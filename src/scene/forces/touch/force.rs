@@ -127,7 +127,12 @@ impl TouchForce {
         ))
     }
 
-    /// The force that acts on each node (N) at (t, u, v): that of surfaces on the nodes that `is_read` names.
+    /// The least distance (m) of the surfaces, up to that from which on nothing acts.
+    pub(crate) fn gap(&self, u: &[f64]) -> f64 {
+        self.nearest(u).map_or(self.law.distance, |(gap, _)| gap)
+    }
+
+    /// The force (N) on the nodes that `is_read` names together.
     pub(crate) fn force(&self, u: &[f64], v: &[f64], is_read: &[bool]) -> [f64; 3] {
         let mut total = [0.0; 3];
         self.each(u, |pair, share| {
@@ -143,7 +148,7 @@ impl TouchForce {
     }
 
     /// The least distance (m) of any point from a feature that it feels, if one acts, and the nodes of both.
-    pub(crate) fn nearest(&self, u: &[f64]) -> Option<(f64, [usize; 2])> {
+    pub(super) fn nearest(&self, u: &[f64]) -> Option<(f64, [usize; 2])> {
         let mut nearest: Option<(f64, [usize; 2])> = None;
         self.each(u, |pair, _| {
             if nearest.is_none_or(|(least, _)| pair.distance < least) {

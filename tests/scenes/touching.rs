@@ -1,0 +1,217 @@
+//! Bodies that touch each other, and themselves.
+
+use pliant::body::BodyBuilder;
+use pliant::simulate::{Component, Reading};
+use pliant::{
+    Axis, Body, Cells, Material, Mesh, Method, Phase, Sampling, Scene, Settings, SolidCells,
+    Statics, Touch, Trajectory,
+};
+
+const SOFT: Material = Material { density: 1000.0, young: 1e5, poisson: 0.3, viscosity: 0.0 };
+
+fn block(name: &str, at: [f64; 2], size: [f64; 2], nodes: [usize; 2], cells: Cells) -> BodyBuilder {
+    let mesh = Mesh::rectangle(size, nodes, cells).unwrap().translated(&at).unwrap();
+    Body::new(mesh, SOFT).thickness(0.01).named(name)
+}
+
+fn joined(bodies: impl IntoIterator<Item = BodyBuilder>) -> Body {
+    Body::join(bodies.into_iter().map(|body| body.build().unwrap())).unwrap()
+}
+
+fn run(scene: &Scene, settings: &Settings, step: f64) -> Trajectory {
+    scene.simulate(settings, &Sampling::every(step)).unwrap()
+}
+
+fn momentum(motion: &Trajectory, sample: usize, part: usize, axis: usize) -> f64 {
+    let part = motion.body().parts().nth(part).unwrap();
+    let d = part.body.dimension();
+    let masses = part.body.nodal_masses();
+    let v = part.of(&motion.samples()[sample].v);
+    masses.iter().zip(v.chunks_exact(d)).map(|(mass, v)| mass * v[axis]).sum()
+}
+
+/// Two squares with meshes that do not match, one of them thrown at the other one off its centre.
+fn collision(touch: Touch) -> Scene {
+    let left = block("left", [0.0, 0.0], [0.1, 0.1], [5, 5], Cells::Triangles);
+    let right = block("right", [0.12, 0.03], [0.1, 0.1], [4, 4], Cells::Rectangles);
+    Scene::new(joined([left, right]))
+        .touch(touch)
+        .initial_velocity(|x| vec![if x[0] < 0.11 { 1.0 } else { 0.0 }, 0.0])
+        .phase(Phase::until(0.06))
+}
+
+/// All methods agree on a collision with friction and damping, momentum is kept to round-off, and the energy balance
+/// within their tolerances. The reference is BDF at rtol 1e-9.
+#[test]
+fn a_collision_by_all_methods() {
+    let touch = Touch::all().distance(3e-3).damping_density(3e3).friction_coefficient(0.3);
+    let scene = collision(touch.sticking_speed(0.02));
+    let of = |method, rtol| {
+        let settings = Settings { method, rtol, ..Settings::default() };
+        run(&scene, &settings, 0.03)
+    };
+    let exact = of(Method::CvodeBdf, 1e-9);
+    let pushed = momentum(&exact, 2, 1, 0);
+    assert!(pushed > 0.05, "{pushed} kg m/s were handed on");
+    for (method, rtol, tolerance) in [
+        (Method::CvodeBdf, 1e-6, 3e-5),
+        (Method::Arkode, 1e-6, 3e-5),
+        (Method::Ida, 1e-6, 3e-5),
+        (Method::Rk, 1e-6, 3e-5),
+        (Method::Rosenbrock, 1e-6, 3e-5),
+        (Method::Auto, 1e-6, 3e-5),
+    ] {
+        let motion = of(method, rtol);
+        let off = motion.last().u.iter().zip(&exact.last().u).map(|(a, b)| (a - b).abs());
+        let off = off.fold(0.0, f64::max);
+        println!(
+            "{method}: {off:.2e} m, {} steps, balance {:.1e}",
+            motion.report().steps(),
+            motion.report().energy_error
+        );
+        assert!(off < tolerance, "{method} is {off} m off");
+        for sample in 1..3 {
+            for axis in 0..2 {
+                let sum = |at| momentum(&motion, at, 0, axis) + momentum(&motion, at, 1, axis);
+                assert!((sum(sample) - sum(0)).abs() < 1e-12, "{method}: momentum");
+            }
+        }
+    }
+}
+
+/// Two equal bars that collide exchange their velocities, and touch for the time that a wave takes to the far end and
+/// back, 2 L/c (Saint-Venant): the nearer, the shorter and the harder the contact, the nearer.
+#[test]
+fn two_bars_exchange_their_velocities() {
+    const LENGTH: f64 = 0.1;
+    let bar = |name: &str, at: f64| {
+        let mesh = Mesh::bar(LENGTH, 41).unwrap().translated(&[at]).unwrap();
+        let material = Material { poisson: 0.0, ..SOFT };
+        Body::new(mesh, material).area(1e-4).named(name).build().unwrap()
+    };
+    let distance = 5e-4;
+    let bodies = Body::join([bar("left", 0.0), bar("right", LENGTH + distance)]).unwrap();
+    let touch = Touch::all().distance(distance).stiffness_density(2e9);
+    let scene = Scene::new(bodies)
+        .touch(touch)
+        .initial_velocity(|x| vec![if x[0] <= LENGTH { 0.1 } else { 0.0 }])
+        .phase(Phase::until(0.04));
+    let settings = Settings { rtol: 1e-7, ..Settings::default() };
+    let sampling = Sampling::every(1e-4)
+        .read("push", Reading::touch_force("touch").of_body("right").component(Component::X));
+    let motion = scene.simulate(&settings, &sampling).unwrap();
+    let mass = 1000.0 * 1e-4 * LENGTH;
+    let last = motion.samples().len() - 1;
+    let [left, right] = [0, 1].map(|part| momentum(&motion, last, part, 0) / mass);
+    println!("left {left}, right {right}");
+    // what is missing vibrates within the bars
+    assert!(left.abs() < 2e-3 && (right - 0.1).abs() < 2e-3, "{left} {right}");
+    let pushes: Vec<f64> = motion.samples().iter().map(|sample| sample.sensors[0]).collect();
+    let touching =
+        pushes.iter().filter(|push| **push > 0.05 * pushes.iter().copied().fold(0.0, f64::max));
+    let time = 1e-4 * touching.count() as f64;
+    let wave = 2.0 * LENGTH / (SOFT.young / SOFT.density).sqrt();
+    println!("touching for {time} s, wave {wave} s");
+    assert!((time / wave - 1.0).abs() < 0.05, "{time} s instead of {wave} s");
+}
+
+/// A block on a block that is held carries its own weight: forces between them, on the lower one and of what holds it.
+/// In motion it comes to rest there.
+#[test]
+fn a_block_rests_on_a_block() {
+    let lower = block("lower", [0.0, 0.0], [0.1, 0.03], [7, 3], Cells::Triangles);
+    let upper = block("upper", [0.02, 0.031], [0.05, 0.04], [5, 4], Cells::Rectangles);
+    let scene = Scene::new(joined([lower, upper]))
+        .touch(Touch::between(["lower", "upper"]).distance(2e-3))
+        .gravity([0.0, -9.8])
+        // a body that rests on another one can slide
+        .phase(Phase::until(1.0).hold("lower/bottom").hold_axes("upper/top", [Axis::X]));
+    let found = scene.equilibrium(&Statics::default()).unwrap();
+    let weight = 9.8 * 1000.0 * 0.05 * 0.04 * 0.01;
+    let motion = found.trajectory();
+    let both = weight + 9.8 * 1000.0 * 0.1 * 0.03 * 0.01;
+    let held = motion.constraint_force(found.sample(), "lower/bottom").unwrap();
+    assert!((held[1] - both).abs() < 1e-6 * both, "{held:?} for {both}");
+}
+
+/// A ball of gelatine thrown at a thin plate as fast as one may, so that a step leads through it: it does not pass.
+#[test]
+fn nothing_is_passed_through() {
+    let plate = || block("plate", [0.05, -0.05], [0.004, 0.15], [2, 16], Cells::Rectangles);
+    let bullet = || block("bullet", [0.0, 0.0], [0.02, 0.02], [3, 3], Cells::Triangles);
+    for speed in [3.0, 30.0] {
+        let scene = Scene::new(joined([plate(), bullet()]))
+            .touch(Touch::all().distance(1e-3))
+            .initial_velocity(|x| vec![if x[0] < 0.03 { speed } else { 0.0 }, 0.0])
+            .phase(Phase::until(0.06 / speed).hold("plate/bottom"));
+        for method in [Method::CvodeBdf, Method::Arkode] {
+            let motion =
+                run(&scene, &Settings { method, rtol: 1e-3, ..Settings::default() }, 0.06 / speed);
+            let indicators = motion.indicators();
+            let overlap = indicators.iter().find(|indicator| indicator.name == "overlap").unwrap();
+            assert!(overlap.value == 0.0, "{overlap:?}");
+            println!("{method} {speed}: {} steps", motion.report().steps());
+        }
+    }
+}
+
+/// Blocks in space press each other.
+#[test]
+fn cubes_in_space_collide() {
+    let cube = |name: &str, at: [f64; 3], nodes: [usize; 3], cells| {
+        let mesh = Mesh::cuboid([0.1, 0.1, 0.1], nodes, cells).unwrap().translated(&at).unwrap();
+        Body::new(mesh, SOFT).named(name)
+    };
+    let left = cube("left", [0.0, 0.0, 0.0], [3, 3, 3], SolidCells::Tetrahedra);
+    let right = cube("right", [0.12, 0.03, 0.04], [3, 4, 3], SolidCells::Hexahedra);
+    let scene = Scene::new(joined([left, right]))
+        .touch(Touch::all().distance(5e-3).friction_coefficient(0.2))
+        .initial_velocity(|x| vec![if x[0] < 0.11 { 1.0 } else { 0.0 }, 0.0, 0.0])
+        .phase(Phase::until(0.06));
+    let motion = run(&scene, &Settings { rtol: 1e-5, ..Settings::default() }, 0.03);
+    let pushed = momentum(&motion, 2, 1, 0);
+    assert!(pushed > 0.4, "{pushed}");
+    for axis in 0..3 {
+        let sum = |at| momentum(&motion, at, 0, axis) + momentum(&motion, at, 1, axis);
+        assert!((sum(2) - sum(0)).abs() < 1e-11, "{} {}", sum(2), sum(0));
+    }
+}
+
+/// A strip that is rolled up touches itself: its ends do not pass through each other, which the indicator of overlaps
+/// confirms, and without the contact they do.
+#[test]
+fn a_body_touches_itself() {
+    // a hairpin whose legs are pressed together
+    let scene = |touches: bool| {
+        let mesh = Mesh::rectangle([0.2, 0.004], [41, 2], Cells::Rectangles).unwrap();
+        let bend = |x: &[f64]| {
+            let (s, z) = (x[0], x[1]);
+            let (leg, radius) = (0.08, 0.04 / std::f64::consts::PI);
+            match s {
+                s if s < leg => [s, z - radius],
+                s if s <= leg + 0.04 => {
+                    let angle = (s - leg) / radius;
+                    let r = radius - z;
+                    [leg + r * angle.sin(), -r * angle.cos()]
+                }
+                _ => [2.0 * leg + 0.04 - s, radius - z],
+            }
+        };
+        let mesh = mesh.mapped(bend).unwrap();
+        let body =
+            Body::new(mesh, Material { viscosity: 300.0, ..SOFT }).thickness(0.01).build().unwrap();
+        let mut scene =
+            Scene::new(body).phase(Phase::until(0.2).hold([1]).load_total([41], [0.0, -0.05]));
+        if touches {
+            scene = scene.touch(Touch::all());
+        }
+        run(&scene, &Settings::default(), 0.02)
+    };
+    let value = |motion: &Trajectory| {
+        let indicators = motion.indicators();
+        indicators.iter().find(|indicator| indicator.name == "overlap").unwrap().value
+    };
+    let [free, touching] = [false, true].map(scene);
+    println!("overlap {} {}", value(&free), value(&touching));
+    assert!(value(&free) > 1e-4 && value(&touching) == 0.0);
+}
