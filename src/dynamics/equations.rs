@@ -106,7 +106,8 @@ impl Equations {
         self.system.forces(t, u, v, f)
     }
 
-    /// -df/du (N/m) and -df/dv (N s/m). They need not be symmetric.
+    /// -df/du (N/m) and -df/dv (N s/m). They need not be symmetric. Where bodies touch, their pattern changes as other
+    /// nodes come near each other, and that of [`inertia`](Self::inertia) with it.
     pub fn tangents(&mut self, t: f64, u: &[f64], v: &[f64]) -> [&BlockMatrix; 2] {
         self.system.update_tangents(t, u, v, false);
         self.system.tangents().into()

@@ -348,6 +348,8 @@ pub struct Counts {
     pub error_test_failures: usize,
     /// Newton iterations that did not converge (`rk`: steps refused by the right-hand side).
     pub convergence_failures: usize,
+    /// Symbolic factorizations of the Newton matrix after the first, where bodies that touch couple other nodes.
+    pub pattern_changes: usize,
     /// Contact events that were located.
     pub contact_events: usize,
     /// Size of the last step (s).
@@ -369,6 +371,7 @@ impl Counts {
         self.linear_iterations += further.linear_iterations;
         self.error_test_failures += further.error_test_failures;
         self.convergence_failures += further.convergence_failures;
+        self.pattern_changes += further.pattern_changes;
         self.contact_events += further.contact_events;
         (self.last_step, self.last_order) = (further.last_step, further.last_order);
         self.notice = self.notice.take().or(further.notice);

@@ -155,6 +155,25 @@ fn nothing_is_passed_through() {
     }
 }
 
+/// Glued bodies do not push each other apart where they are glued, though all bodies of the scene touch: a beam of two
+/// halves sags as without contact.
+#[test]
+fn what_is_glued_does_not_touch() {
+    let sag = |touches: bool| {
+        let arm = block("arm", [0.0, 0.0], [0.1, 0.02], [11, 3], Cells::Triangles);
+        let hand = block("hand", [0.1, 0.0], [0.1, 0.02], [9, 4], Cells::Triangles);
+        let mut scene = Scene::new(joined([arm, hand]))
+            .tie("hand/left", "arm")
+            .gravity([0.0, -1.0])
+            .phase(Phase::until(1.0).hold("arm/left"));
+        if touches {
+            scene = scene.touch(Touch::all());
+        }
+        scene.equilibrium(&Statics::default()).unwrap().displacements().to_vec()
+    };
+    assert_eq!(sag(true), sag(false));
+}
+
 /// Blocks in space press each other.
 #[test]
 fn cubes_in_space_collide() {

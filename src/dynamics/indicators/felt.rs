@@ -54,11 +54,15 @@ pub(super) fn friction(trajectory: &Trajectory, samples: &[&Sample]) -> Option<I
 /// Forces (N) of obstacles on nodes, with their friction and without.
 fn forces(trajectory: &Trajectory, sample: &Sample) -> Result<[Vec<f64>; 2], InputError> {
     let scene = trajectory.scene();
-    let smooth = trajectory.phase_of(sample)?.contacts(scene.obstacles())?.into_iter();
-    let smooth =
-        smooth.map(|obstacle| Contact::new(scene.body(), &obstacle.clone().without_friction()));
+    let rough = scene.contacts(trajectory.phase_of(sample)?)?;
+    let smooth = rough
+        .iter()
+        .map(|contact| Contact::new(scene.body(), &contact.obstacle().clone().without_friction()));
     let smooth = smooth.collect::<Result<Vec<_>, _>>()?;
-    Ok([trajectory.contact_forces(sample)?, trajectory.forces_of(&smooth, sample)?])
+    let of = |contacts: &[Contact]| {
+        trajectory.forces_of(contacts.iter().map(|contact| contact as _), sample)
+    };
+    Ok([of(&rough)?, of(&smooth)?])
 }
 
 /// How deep nodes are in obstacles, relative to the distance that nodes travel.

@@ -195,7 +195,7 @@ pub(crate) fn largest_turn(trajectory: &Trajectory) -> f64 {
 /// Whether the body passes through itself.
 fn overlaps(trajectory: &Trajectory) -> Option<Indicator> {
     let samples = spread(trajectory, MOST_SAMPLES_FOR_OVERLAPS, MOST_CELLS_FOR_OVERLAPS);
-    overlap::overlap(trajectory.body(), &samples)
+    overlap::overlap(trajectory.scene(), &samples)
 }
 
 /// Deformations that cells cannot represent.

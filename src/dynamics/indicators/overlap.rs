@@ -1,4 +1,4 @@
-//! Whether a body passes through itself, or pieces of it through each other: no force resists that.
+//! Whether a body passes through itself, or pieces of it through each other.
 
 use super::size::cell_sizes;
 use super::skin::{Skin, points};
@@ -10,6 +10,7 @@ use crate::elements::basis::shares_in;
 use crate::elements::body::{Body, Part};
 use crate::elements::mesh::CellKind;
 use crate::scene::forces::SurfacePoint;
+use crate::scene::timeline::Scene;
 
 /// How deep a point of the boundary may be within a cell of another part of the body, relative to the size of
 /// the cell: faces that slide along each other, as those of a slit do, are no smoother than that where cells
@@ -181,7 +182,8 @@ fn count(entries: &[Entry]) -> String {
 
 /// A body that passes through itself, or pieces of it that pass through each other, at any of the `samples`. Points that lie in
 /// other cells already in the undeformed shape do not count.
-pub(super) fn overlap(body: &Body, samples: &[&Sample]) -> Option<Indicator> {
+pub(super) fn overlap(scene: &Scene, samples: &[&Sample]) -> Option<Indicator> {
+    let (body, touches) = (scene.body(), !scene.touches().is_empty());
     let mut overlaps = Overlaps::new(body)?;
     let mut is_drawn = vec![false; overlaps.points.len()];
     for entry in overlaps.entries(&vec![0.0; body.dofs()]) {
@@ -227,15 +229,23 @@ pub(super) fn overlap(body: &Body, samples: &[&Sample]) -> Option<Indicator> {
                 }
             }
         };
+        let help = match touches {
+            false => {
+                "Neither feels the other, so the motion is wrong from there on: let them touch ([[touch]]), load them less, or end the \
+                      scene before"
+            }
+            true => {
+                "The springs between them are too soft, or they do not touch each other: raise the stiffness_density, or take a \
+                     barrier"
+            }
+        };
         let since = if first == sample.time {
             String::new()
         } else {
             format!(" from t = {} s on", told(first))
         };
         format!(
-            "{what}{since}: at t = {at} s {}, the deepest of them node {} with {}. Bodies feel obstacles alone, neither themselves \
-             nor each other, so the motion is wrong from there on: load the body less, end the scene before, or let a rigid \
-             obstacle that stands or moves along a path stand for what is touched",
+            "{what}{since}: at t = {at} s {}, the deepest of them node {} with {}. {help}",
             count(entries),
             node + 1,
             overlaps.names(deepest)

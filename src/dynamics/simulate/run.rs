@@ -94,6 +94,10 @@ impl Run {
             let help = format!("bodies with Maxwell branches are for {}", takes.join(", "));
             return Err(InputError::new("method", settings.method, help).into());
         }
+        if settings.method == Method::IdaKlu && !scene.touches().is_empty() {
+            let help = "its Jacobian has a fixed pattern, and bodies that touch couple ever other nodes: take ida";
+            return Err(InputError::new("method", settings.method, help).into());
+        }
         let mut state = [u, &v, &[0.0; ENERGIES], &system.relaxed(u)].concat();
         begin_to_move(settings, phase, &mut system, &mut state);
         let mut first = records::sample(0, &mut system, 0.0, &state)

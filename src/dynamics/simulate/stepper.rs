@@ -106,6 +106,7 @@ impl<I: Integrator<System: Form> + Send> Stepper for I {
             linear_iterations,
             error_test_failures: s.error_test_failures as usize,
             convergence_failures: (s.nonlinear_failures + s.refused_steps) as usize,
+            pattern_changes: system.pattern_changes(),
             contact_events: 0,
             last_step: s.last_step,
             last_order: s.last_order,
@@ -119,8 +120,8 @@ fn compression(indefinite: usize) -> Option<String> {
     (indefinite > 0).then(|| {
         format!(
             "{indefinite} Newton matrices were not positive definite, which costs time: at states that were tried and given \
-             up, or because friction falls with the speed, or because the body is pressed together until it may buckle \
-             or collapse; if it is, see whether it ought to"
+             up, or because friction falls with the speed, or because a body is pressed together, alone or by another one, until it may \
+             buckle or collapse; if it is, see whether it ought to"
         )
     })
 }

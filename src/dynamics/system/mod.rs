@@ -224,6 +224,11 @@ impl System {
         self.newton.solver.counts()
     }
 
+    /// Number of patterns of the Newton matrix after the first.
+    pub(crate) fn pattern_changes(&self) -> usize {
+        self.newton.patterns
+    }
+
     /// Number of evaluations for the tangents of forces that do not compute them.
     pub(crate) fn difference_evaluations(&self) -> usize {
         self.newton.difference_evaluations()

@@ -6,11 +6,11 @@ use crate::elements::force::{Force, NodalForces};
 use crate::elements::mesh::Selection;
 use crate::integrators::ode::Failure;
 use crate::scene::constraint::PhaseStart;
-use crate::scene::forces::Contact;
 use crate::scene::timeline::Phase;
 
 impl Trajectory {
-    /// Forces (N) of all obstacles on the nodes, dimension components per node; 0 where there is no contact.
+    /// Forces (N) of all obstacles, and of bodies that touch, on the nodes, dimension components per node; 0 where there
+    /// is no contact.
     ///
     /// A stiffness per area acts between the nodes: its forces are distributed to them.
     ///
@@ -18,18 +18,21 @@ impl Trajectory {
     /// A sample that is not of this trajectory; a distance function of your own that has changed since the
     /// run and is now undefined.
     pub fn contact_forces(&self, sample: &Sample) -> Result<Vec<f64>, InputError> {
-        self.forces_of(&self.scene.contacts(self.phase_of(sample)?)?, sample)
+        let obstacles = self.scene.contacts(self.phase_of(sample)?)?;
+        let touches = self.scene.touch_forces()?;
+        let touches = touches.iter().map(|touch| touch as &dyn Force);
+        self.forces_of(obstacles.iter().map(|contact| contact as _).chain(touches), sample)
     }
 
-    /// The same for `contacts` alone.
+    /// The sum (N) of some forces on the nodes.
     pub(crate) fn forces_of<'a>(
         &self,
-        contacts: impl IntoIterator<Item = &'a Contact>,
+        forces_of_it: impl IntoIterator<Item = &'a dyn Force>,
         sample: &Sample,
     ) -> Result<Vec<f64>, InputError> {
         let mut forces = NodalForces::zeros(self.body().dofs());
-        for contact in contacts {
-            let added = contact.add_forces(sample.time, &sample.u, &sample.v, &mut forces);
+        for force in forces_of_it {
+            let added = force.add_forces(sample.time, &sample.u, &sample.v, &mut forces);
             added.map_err(|failure| refused(sample, failure))?;
         }
         let mut total = vec![0.0; self.body().dofs()];

@@ -135,6 +135,8 @@ table! {
         "factorizations", "", "factorizations of the Newton matrix" => counts.factorizations;
         "linear_iterations", "", "iterations in the place of factorizations, on large solids"
             => counts.linear_iterations;
+        "pattern_changes", "", "symbolic factorizations after the first, where bodies that touch couple other nodes"
+            => counts.pattern_changes;
         "error_test_failures", "", "steps repeated as their error was too large" => counts.error_test_failures;
         "convergence_failures", "", "Newton iterations that did not converge" => counts.convergence_failures;
     }

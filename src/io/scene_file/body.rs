@@ -18,8 +18,8 @@ use crate::scene::timeline::Scene;
 
 pub(super) const BODY: TableKeys = TableKeys::new(
     "[body]",
-    "What moves: a mesh made of a material. A list of several, `[[body]]`, do not feel each other where they touch: \
-     ties, springs and combinations of displacements that are held join them.",
+    "What moves: a mesh made of a material. A list of several, `[[body]]`, feel each other where they touch by \
+     `[[touch]]`; ties, springs and combinations of displacements that are held join them.",
     &[
         Key::new("name", Holds::Text, "its name among several bodies")
             .law("It is a node set and a group of cells, and stands before the node sets and groups of the body: `finger/tip`.")

@@ -62,7 +62,6 @@ pub(super) fn add_touch(scene: Scene, value: &Value) -> Result<Scene, Error> {
     }
     touch = table.added(touch, "sticking_speed", Value::number, Touch::sticking_speed)?;
     unique(table, touch.name(), scene.touches().iter().map(Touch::name))?;
-    let force = touch.force(scene.body(), scene.initial_displacements());
-    force.map_err(|error| table.blame(error))?;
+    scene.force_of(&touch).map_err(|error| table.blame(error))?;
     Ok(scene.touch(touch))
 }

@@ -36,8 +36,8 @@ impl Scene {
         for contact in self.contacts(phase)? {
             forces.push(Arc::new(contact));
         }
-        for touch in self.touches() {
-            forces.push(Arc::new(touch.force(&self.body, self.initial_displacements())?));
+        for touch in self.touch_forces()? {
+            forces.push(Arc::new(touch));
         }
         forces.extend_from_slice(&self.forces);
         Ok(forces)

@@ -372,10 +372,24 @@ impl Scene {
         &self.touches
     }
 
+    /// The forces of all touches.
+    pub(crate) fn touch_forces(&self) -> Result<Vec<TouchForce>, InputError> {
+        self.touches.iter().map(|touch| self.force_of(touch)).collect()
+    }
+
     /// The forces of the touch `name`; `input` is where that was given.
     pub(crate) fn touch_force(&self, name: &str, input: &str) -> Result<TouchForce, InputError> {
         let number = find(name, self.touches.iter().map(Touch::name), input, "touches")?;
-        self.touches[number].force(&self.body, self.initial_displacements())
+        self.force_of(&self.touches[number])
+    }
+
+    /// The forces of a touch of bodies of the scene.
+    pub(crate) fn force_of(&self, touch: &Touch) -> Result<TouchForce, InputError> {
+        let mut glued = Vec::new();
+        for tie in &self.ties {
+            glued.extend(tie.bodies(&self.body)?);
+        }
+        touch.force(&self.body, &glued, self.initial_displacements())
     }
 
     /// The constraints of all ties.

@@ -22,6 +22,23 @@ const MOST_APART: f64 = 0.2;
 const NO_SHARE: f64 = 1e-12;
 
 impl Tie {
+    /// The numbers of the bodies that it joins, pair by pair.
+    ///
+    /// # Errors
+    /// Nodes or a body that do not exist.
+    pub(super) fn bodies(&self, body: &Body) -> Result<Vec<[usize; 2]>, InputError> {
+        let to = body.part_named(&self.to, "body of a tie")?;
+        let number = |node: usize| body.parts().position(|part| part.nodes.contains(&node));
+        let nodes = body.mesh().select(&self.nodes)?;
+        let mut pairs: Vec<[usize; 2]> = nodes
+            .into_iter()
+            .filter_map(|node| Some([number(node)?, number(to.nodes.start)?]))
+            .collect();
+        pairs.sort_unstable();
+        pairs.dedup();
+        Ok(pairs)
+    }
+
     /// Adds its rows.
     ///
     /// # Errors

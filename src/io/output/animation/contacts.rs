@@ -8,21 +8,40 @@ use crate::base::vector::norm;
 use crate::dynamics::error::Error;
 use crate::dynamics::trajectory::{Sample, Trajectory};
 use crate::io::output::svg::displaced;
+use crate::scene::forces::Obstacle;
 
-/// Of each obstacle that touches the body in one of `frames`, sample by sample: the resultant of its forces
-/// (N), and its centre of pressure (m), the mean position of the nodes weighted by the sizes of their forces.
+/// Of each obstacle that touches a body in one of `frames`, and of all that touch each of several bodies, sample by
+/// sample: the resultant of its forces (N), and its centre of pressure (m), the mean position of the nodes weighted by
+/// the sizes of their forces.
 pub(super) fn resultants(trajectory: &Trajectory, frames: &[&Sample]) -> Result<Value, Error> {
     let scene = trajectory.scene();
     let d = scene.body().dimension();
-    let mut tracks = vec![(Vec::new(), Vec::new()); scene.obstacles().len()];
+    let touches = scene.touch_forces()?;
+    let bodies: Vec<_> = match touches.is_empty() {
+        true => Vec::new(),
+        false => scene.body().parts().map(|part| part.nodes).collect(),
+    };
+    let everywhere = 0..scene.body().mesh().node_count();
+    let mut tracks = vec![(Vec::new(), Vec::new()); scene.obstacles().len() + bodies.len()];
     for sample in frames {
         let acting = scene.contacts(trajectory.phase_of(sample)?)?;
         let x = displaced(trajectory, sample);
-        for (obstacle, (at, forces)) in scene.obstacles().iter().zip(&mut tracks) {
+        let of_obstacle = |obstacle: &Obstacle| {
             let of_it = acting.iter().filter(|acting| acting.obstacle().name() == obstacle.name());
+            trajectory.forces_of(of_it.map(|acting| acting as _), sample)
+        };
+        let mut of_all = Vec::new();
+        for obstacle in scene.obstacles() {
+            of_all.push((of_obstacle(obstacle)?, everywhere.clone()));
+        }
+        if !bodies.is_empty() {
+            let nodal = trajectory.forces_of(touches.iter().map(|touch| touch as _), sample)?;
+            of_all.extend(bodies.iter().map(|nodes| (nodal.clone(), nodes.clone())));
+        }
+        for ((nodal, nodes), (at, forces)) in of_all.into_iter().zip(&mut tracks) {
             let (mut force, mut centre, mut total) = ([0.0; 3], [0.0; 3], 0.0);
-            let nodal = trajectory.forces_of(of_it, sample)?;
-            for (f, x) in nodal.chunks(d).zip(x.chunks(d)) {
+            let of_nodes = d * nodes.start..d * nodes.end;
+            for (f, x) in nodal[of_nodes.clone()].chunks(d).zip(x[of_nodes].chunks(d)) {
                 let size = norm(f);
                 total += size;
                 for axis in 0..d {

@@ -2,7 +2,7 @@
 
 use super::force::TouchForce;
 use super::law::{Kind, Law};
-use super::near::Near;
+use super::near::{Near, NearPair};
 use super::surfaces::Surfaces;
 use crate::base::input::{InputError, not_negative, positive};
 use crate::elements::body::Body;
@@ -137,11 +137,17 @@ impl Touch {
         &self.name
     }
 
-    /// Its forces on the bodies of a scene that begins with the displacements `u` (m).
+    /// Its forces on the bodies of a scene that begins with the displacements `u` (m), with the numbers of those that are
+    /// `glued` to each other: they do not touch where they are near each other undeformed.
     ///
     /// # Errors
     /// Names that are not there, numbers that make no sense, bodies without a surface or that lie on each other.
-    pub(crate) fn force(&self, body: &Body, u: &[f64]) -> Result<TouchForce, InputError> {
+    pub(crate) fn force(
+        &self,
+        body: &Body,
+        glued: &[[usize; 2]],
+        u: &[f64],
+    ) -> Result<TouchForce, InputError> {
         let input = |key: &str| format!("touch \"{}\" {key}", self.name);
         let parts: Vec<_> = body.parts().collect();
         let mut numbers = Vec::new();
@@ -175,14 +181,16 @@ impl Touch {
         positive(&input("stiffness_density"), stiffness, "N/m^3")?;
         not_negative(&input("damping_density"), self.damping, "N s/m^3")?;
         self.friction.validate(&input)?;
-        if itself {
+        if itself || !glued.is_empty() {
             let rest = vec![0.0; body.dofs()];
-            let near = Near::new(&surfaces, &rest, 2.0 * distance).pairs;
-            let is_left_out = |point: usize, feature: usize| {
-                surfaces.is_itself(point, feature) && surfaces.is_facet(feature)
+            let near = Near::new(&surfaces, &rest, 2.0 * distance).pairs.into_iter();
+            let is_left_out = |near: &NearPair| {
+                let [a, b] = surfaces.bodies(near.point, near.feature);
+                let is_joined = a == b || glued.contains(&[a, b]) || glued.contains(&[b, a]);
+                is_joined && surfaces.is_facet(near.feature)
             };
-            let pairs = near.iter().filter(|near| is_left_out(near.point, near.feature));
-            let pairs: Vec<[usize; 2]> = pairs.map(|near| [near.point, near.feature]).collect();
+            let pairs = near.filter(is_left_out).map(|near| [near.point, near.feature]);
+            let pairs: Vec<[usize; 2]> = pairs.collect();
             surfaces.leave_out(&pairs);
         }
         let law = Law { kind: self.kind, stiffness, damping: self.damping, distance };

@@ -23,7 +23,7 @@ pub(super) struct Surfaces {
 pub(super) struct Point {
     pub(super) on: SurfacePoint,
     body: usize,
-    /// Facets of its own body that it does not feel, ascending: its neighbours.
+    /// Facets that it does not feel, ascending: its neighbours on its own body, and on those it is glued to.
     unfelt: Vec<usize>,
 }
 
@@ -114,7 +114,7 @@ impl Surfaces {
         }
     }
 
-    /// Has points not feel the facets of their own body that share a node with a facet they lie on, and the `pairs` of
+    /// Has points not feel the facets that share a node with a facet they lie on, and the `pairs` of
     /// a point and a facet.
     pub(super) fn leave_out(&mut self, pairs: &[[usize; 2]]) {
         let mut facets_at: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
@@ -151,12 +151,12 @@ impl Surfaces {
 
     /// The weight of a feature for a point; 0 if the point does not feel it.
     pub(super) fn weight(&self, point: usize, feature: usize) -> f64 {
-        let (point, on) = (&self.points[point], &self.features[feature]);
-        if point.body != on.body {
-            return on.weight;
-        }
-        if !self.itself {
+        if self.is_itself(point, feature) && !self.itself {
             return 0.0;
+        }
+        let point = &self.points[point];
+        if point.unfelt.is_empty() {
+            return self.features[feature].weight;
         }
         let is_felt = |facet: usize| point.unfelt.binary_search(&facet).is_err();
         self.weight_among(feature, is_felt)
@@ -182,8 +182,13 @@ impl Surfaces {
     }
 
     /// Whether a point and a feature are of the same body.
-    pub(super) fn is_itself(&self, point: usize, feature: usize) -> bool {
+    fn is_itself(&self, point: usize, feature: usize) -> bool {
         self.points[point].body == self.features[feature].body
+    }
+
+    /// The numbers of the bodies of a point and of a feature.
+    pub(super) fn bodies(&self, point: usize, feature: usize) -> [usize; 2] {
+        [self.points[point].body, self.features[feature].body]
     }
 
     /// Mean length (m) of the sides of the facets; 0 without any.

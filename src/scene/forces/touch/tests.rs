@@ -55,7 +55,7 @@ fn forces_and_tangents_are_derivatives() {
             let touch = touch.sticking_speed(0.3);
             let u: Vec<f64> = noise(dofs, 7).iter().map(|x| 4e-4 * x).collect();
             let v: Vec<f64> = noise(dofs, 3).iter().map(|x| 0.2 * x).collect();
-            let force = touch.force(&body, &u).unwrap();
+            let force = touch.force(&body, &[], &u).unwrap();
             let conservative = forces_at(&force, &u, &v).conservative;
             assert!(norm(&conservative) > 0.1, "{dimension}: nothing touches");
             let pattern = body.inertia().pattern();
@@ -106,7 +106,7 @@ fn momentum_is_exchanged_and_energy_lost() {
         let touch = Touch::all().distance(8e-3).damping_density(1e4).friction_coefficient(0.5);
         let u: Vec<f64> = noise(body.dofs(), 5).iter().map(|x| 4e-4 * x).collect();
         let v: Vec<f64> = noise(body.dofs(), 4).iter().map(|x| 0.2 * x).collect();
-        let force = touch.force(&body, &u).unwrap();
+        let force = touch.force(&body, &[], &u).unwrap();
         let forces = forces_at(&force, &u, &v);
         assert!(dot(&forces.dissipative, &v) < 0.0);
         for part in [&forces.conservative, &forces.dissipative] {
