@@ -39,8 +39,8 @@ def body(
     velocity: Vector | None = None,
     spin: float | Sequence[float] | None = None,
 ) -> dict:
-    r"""What moves: a mesh made of a material. A list of several, `[[body]]`, do not feel each other where they touch:
-    ties, springs and combinations of displacements that are held join them.
+    r"""What moves: a mesh made of a material. A list of several, `[[body]]`, feel each other where they touch by
+    `[[touch]]`; ties, springs and combinations of displacements that are held join them.
 
     Parameters
     ----------
@@ -898,6 +898,73 @@ def tie(
     )
 
 
+def touch(
+    *,
+    name: str | None = None,
+    bodies: Sequence[str] | None = None,
+    law: Literal["barrier", "spring"] | None = None,
+    stiffness_density: float | None = None,
+    distance: float | None = None,
+    damping_density: float | None = None,
+    friction_coefficient: float | dict | None = None,
+    sticking_speed: float | None = None,
+) -> dict:
+    r"""Contact of bodies with each other and with themselves: surfaces nearer than `distance` D push each other apart, by
+    the pressure k (D - d)^2 (D + 2 d)/(3 d^2) of a barrier at the distance d, which nothing passes, or by k (D - d)
+    of a spring.
+
+    Parameters
+    ----------
+    name
+        the name of the contact, for sensors. Default: touch.
+    bodies
+        the bodies that touch each other; a single one touches itself. Default: all, and each of them itself.
+    law
+        how the pressure grows. Default: barrier.
+    stiffness_density
+        the stiffness k per area (N/m^3). Default: a tenth of the least Young's modulus over D; all of it for a
+        spring.
+    distance
+        the distance D from which on nothing acts (m). Default: a tenth of the mean edge of the surfaces.
+    damping_density
+        the damping along the normal, per area (N s/m^3). Default: 0.
+    friction_coefficient
+        Coulomb's coefficient of friction, or both of them (no unit). Default: 0.
+    sticking_speed
+        the speed below which friction sticks (m/s). Default: a thousandth of the size of the bodies per second.
+    """
+    return _table(
+        name=name,
+        bodies=bodies,
+        law=law,
+        stiffness_density=stiffness_density,
+        distance=distance,
+        damping_density=damping_density,
+        friction_coefficient=friction_coefficient,
+        sticking_speed=sticking_speed,
+    )
+
+
+def friction_coefficient(
+    *,
+    static: float,
+    kinetic: float,
+) -> dict:
+    r"""Two coefficients of friction.
+
+    Parameters
+    ----------
+    static
+        the friction coefficient at rest (no unit). Required.
+    kinetic
+        the friction coefficient of what slides (no unit). Required.
+    """
+    return _table(
+        static=static,
+        kinetic=kinetic,
+    )
+
+
 def spring(
     *,
     ends: Sequence[Nodes | dict],
@@ -1384,26 +1451,6 @@ def obstacle_parts_capsule(
         from_=from_,
         to=to,
         radius=radius,
-    )
-
-
-def friction_coefficient(
-    *,
-    static: float,
-    kinetic: float,
-) -> dict:
-    r"""Two coefficients of friction.
-
-    Parameters
-    ----------
-    static
-        the friction coefficient at rest (no unit). Required.
-    kinetic
-        the friction coefficient of what slides (no unit). Required.
-    """
-    return _table(
-        static=static,
-        kinetic=kinetic,
     )
 
 
@@ -1956,31 +2003,66 @@ def sensor_constraint_moment(
 def sensor_contact_force(
     *,
     name: str,
-    obstacle: str,
     component: Literal["x", "y", "z", "norm", "xx", "yy", "zz", "xy", "yz", "xz", "von-mises"] | None = None,
+    obstacle: str | None = None,
+    touch: str | None = None,
     nodes: Nodes | None = None,
+    body: str | None = None,
 ) -> dict:
-    r"""Sensor of the kind "contact-force": the force of an obstacle on the body (N).
+    r"""Sensor of the kind "contact-force": the force of an obstacle, or of bodies that touch, on a body (N).
 
     Parameters
     ----------
     name
         the name of the sensor. Required.
-    obstacle
-        the name of the obstacle. Required.
     component
         one component alone. Default: all, each a column. Vectors have `x`, `y`, `z` and their length `norm`; tensors
         `xx` and so on; stress has `von-mises` besides.
+    obstacle
+        the name of the obstacle. Default: `touch`.
+    touch
+        the name of the contact of bodies. Default: `obstacle`.
     nodes
         the nodes on which it acts. Default: all. Those of one finger, say: the forces on both sides of what is
-        gripped cancel each other.
+        gripped cancel each other. A `touch` needs `nodes` or `body`, as all of its forces together are 0.
+    body
+        the body on which a `touch` acts. Default: `nodes`.
     """
     return _table(
         kind="contact-force",
         name=name,
-        obstacle=obstacle,
         component=component,
+        obstacle=obstacle,
+        touch=touch,
         nodes=nodes,
+        body=body,
+    )
+
+
+def sensor_gap(
+    *,
+    name: str,
+    touch: str,
+    component: Literal["x", "y", "z", "norm", "xx", "yy", "zz", "xy", "yz", "xz", "von-mises"] | None = None,
+) -> dict:
+    r"""Sensor of the kind "gap": the least distance of the surfaces of bodies that touch, up to that from which on
+    nothing acts (m).
+
+    Parameters
+    ----------
+    name
+        the name of the sensor. Required.
+    touch
+        the name of the contact. Required.
+    component
+        one component alone. Default: all, each a column. Vectors have `x`, `y`, `z` and their length `norm`; tensors
+        `xx` and so on; stress has `von-mises` besides.
+    """
+    return _table(
+        kind="gap",
+        name=name,
+        touch=touch,
+        component=component,
     )
 
 
@@ -2504,6 +2586,7 @@ __all__ = [
     "sensor_contact_force",
     "sensor_displacement",
     "sensor_distance",
+    "sensor_gap",
     "sensor_momentum",
     "sensor_position",
     "sensor_pressure",
@@ -2521,4 +2604,5 @@ __all__ = [
     "symmetry",
     "terms",
     "tie",
+    "touch",
 ]
