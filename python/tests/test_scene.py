@@ -110,6 +110,31 @@ def test_several_bodies():
         motion.mesh  # noqa: B018
 
 
+def test_bodies_that_touch():
+    """What is thrown hands on its momentum: contact forces, a sensor of the gap, and what each body feels."""
+    soft = {"density": 1000.0, "young": 1e5, "poisson": 0.3, "viscosity": 10.0}
+    square = {"kind": "rectangle", "size": [0.1, 0.1], "nodes": [3, 3], "cells": "triangles"}
+    right = {**square, "origin": [0.11, 0.02]}
+    scene = pliant.Scene(
+        body=[
+            {"name": "left", "mesh": square, "thickness": 0.01, "material": soft, "velocity": [1.0, 0.0]},
+            {"name": "right", "mesh": right, "thickness": 0.01, "material": soft},
+        ],
+        touch=words.touch(name="both", distance=2e-3),
+        phase={"until": 0.03},
+        sensor=[
+            words.sensor_gap(name="gap", touch="both"),
+            words.sensor_contact_force(name="push", touch="both", body="right", component="x"),
+        ],
+    )
+    motion = scene.run()
+    assert motion.sensors["gap"].min() < 2e-3
+    assert motion.sensors["push"].max() > 1.0
+    nodes = motion.bodies["right"]
+    pushed = motion.contact_forces[:, nodes, 0].sum(axis=1)
+    assert np.allclose(pushed, motion.sensors["push"], rtol=0, atol=1e-9)
+
+
 def test_regions_of_a_listed_mesh():
     mesh = pliant.Scene(BEAM).mesh
     half = np.flatnonzero(mesh.nodes[mesh.cells].mean(axis=1)[:, 0] > 0.05)

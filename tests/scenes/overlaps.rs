@@ -118,7 +118,7 @@ fn pieces_that_fly_through_each_other() {
         assert!((told.value - 0.005).abs() < 1e-6, "{told}");
         assert!(
             told.text.starts_with(
-                "pieces of the body pass through each other from t = 0.011 s on: at t = 0.015 s"
+                "a piece of the body passes through another one from t = 0.011 s on: at t = 0.015 s"
             ),
             "{told}"
         );

@@ -44,7 +44,7 @@ mod deformed;
 mod each;
 mod felt;
 mod mesh;
-mod overlap;
+pub(crate) mod overlap;
 mod pace;
 mod points;
 mod rigid;

@@ -3,7 +3,7 @@
 use super::size::cell_sizes;
 use super::skin::{Skin, points};
 use crate::base::grid::Grid;
-use crate::base::input::told;
+use crate::base::input::{InputError, told};
 use crate::dynamics::report::Indicator;
 use crate::dynamics::trajectory::Sample;
 use crate::elements::basis::shares_in;
@@ -129,6 +129,23 @@ impl<'a> Overlaps<'a> {
         )
     }
 
+    /// What passes through what.
+    fn who(&self, entry: &Entry) -> [String; 2] {
+        let pieces = self.body.inertia().pattern().pieces();
+        let nodes = [self.node(entry), self.cells[entry.cell].1[0]];
+        let [part, other] = nodes.map(|node| self.body.part_of(node));
+        let named = |part: &Part| match self.body.is_single() {
+            true => "the body".to_owned(),
+            false => format!("body \"{}\"", part.name),
+        };
+        let [own, whole] = nodes.map(|node| pieces[node]);
+        match (part.nodes == other.nodes, own == whole) {
+            (false, _) => [named(&part), named(&other)],
+            (true, true) => [named(&part), "itself".into()],
+            (true, false) => [format!("a piece of {}", named(&part)), "another one".into()],
+        }
+    }
+
     fn node(&self, entry: &Entry) -> usize {
         let shares = self.points[entry.point].nodes();
         shares.max_by(|a, b| a.1.total_cmp(&b.1)).map_or(0, |(node, _)| node)
@@ -180,6 +197,30 @@ fn count(entries: &[Entry]) -> String {
     format!("{} place(s) of its boundary lie within other cells", points.len())
 }
 
+/// Checks that nothing that touches begins within something else.
+///
+/// # Errors
+/// Bodies that overlap at the start, or a body that overlaps itself.
+pub(crate) fn check_start(scene: &Scene) -> Result<(), InputError> {
+    if scene.touches().is_empty() {
+        return Ok(());
+    }
+    let Some(mut overlaps) = Overlaps::new(scene.body()) else { return Ok(()) };
+    let entries = overlaps.entries(scene.initial_displacements());
+    let deepest = Overlaps::deepest(&entries).filter(Entry::is_beyond);
+    let Some(deepest) = &deepest else { return Ok(()) };
+    let [one, other] = overlaps.who(deepest);
+    Err(InputError::new(
+        "start of what touches",
+        format!(
+            "{one} within {other}: node {} with {}",
+            overlaps.node(deepest) + 1,
+            overlaps.names(deepest)
+        ),
+        "surfaces push each other apart from outside: move the bodies apart, or leave out the touch",
+    ))
+}
+
 /// A body that passes through itself, or pieces of it that pass through each other, at any of the `samples`. Points that lie in
 /// other cells already in the undeformed shape do not count.
 pub(super) fn overlap(scene: &Scene, samples: &[&Sample]) -> Option<Indicator> {
@@ -214,21 +255,7 @@ pub(super) fn overlap(scene: &Scene, samples: &[&Sample]) -> Option<Indicator> {
             return within();
         };
         let (node, at) = (overlaps.node(deepest), told(sample.time));
-        let pieces = body.inertia().pattern().pieces();
-        let nodes = [node, overlaps.cells[deepest.cell].1[0]];
-        let what = match (nodes.map(|node| pieces[node]), nodes.map(|node| body.part_of(node))) {
-            (_, [own, other]) if own.nodes != other.nodes => {
-                format!("body \"{}\" passes through body \"{}\"", own.name, other.name)
-            }
-            ([own, other], [part, _]) => {
-                let name =
-                    if body.is_single() { "the body" } else { &format!("body \"{}\"", part.name) };
-                match own == other {
-                    true => format!("{name} passes through itself"),
-                    false => format!("pieces of {name} pass through each other"),
-                }
-            }
-        };
+        let [one, other] = overlaps.who(deepest);
         let help = match touches {
             false => {
                 "Neither feels the other, so the motion is wrong from there on: let them touch ([[touch]]), load them less, or end the \
@@ -245,7 +272,7 @@ pub(super) fn overlap(scene: &Scene, samples: &[&Sample]) -> Option<Indicator> {
             format!(" from t = {} s on", told(first))
         };
         format!(
-            "{what}{since}: at t = {at} s {}, the deepest of them node {} with {}. {help}",
+            "{one} passes through {other}{since}: at t = {at} s {}, the deepest of them node {} with {}. {help}",
             count(entries),
             node + 1,
             overlaps.names(deepest)

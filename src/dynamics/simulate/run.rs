@@ -94,6 +94,7 @@ impl Run {
             let help = format!("bodies with Maxwell branches are for {}", takes.join(", "));
             return Err(InputError::new("method", settings.method, help).into());
         }
+        indicators::overlap::check_start(scene)?;
         if settings.method == Method::IdaKlu && !scene.touches().is_empty() {
             let help = "its Jacobian has a fixed pattern, and bodies that touch couple ever other nodes: take ida";
             return Err(InputError::new("method", settings.method, help).into());

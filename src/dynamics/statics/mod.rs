@@ -86,6 +86,7 @@ impl Scene {
     /// The phase of that `number` (from 0) at rest.
     pub(crate) fn at_rest_in(&self, number: usize) -> Result<AtRest, InputError> {
         let mut forces = self.forces()?;
+        indicators::overlap::check_start(self)?;
         let matrices = self.matrices(&forces);
         let phase = &self.phases()[number]; // `forces` makes sure that there is one
         let (time, u) = self.left_by_phases_before(number)?;

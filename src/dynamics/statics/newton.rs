@@ -90,6 +90,9 @@ const NEAR: f64 = 0.5;
 /// free, or held by rows of several nodes), and the largest.
 const SHIFTS: [f64; 2] = [1e-10, 1e3];
 
+/// Why a step is not taken.
+const PASSED: &str = "surfaces that touch would pass through each other: take more load_steps";
+
 impl<'a> Search<'a> {
     /// From the undeformed shape of a `body`.
     pub(super) fn new(mut rest: AtRest, statics: &'a Statics, body: &'a Body, hold: Hold) -> Self {
@@ -197,7 +200,11 @@ impl<'a> Search<'a> {
             }
             if lacking > 1e-12 * self.size && iteration < 2 {
                 // the constraints are met first, even if the energy rises
+                self.work.copy_from_slice(&self.u);
                 self.u.iter_mut().zip(&self.x).for_each(|(u, x)| *u += x);
+                if self.rest.passage(&self.work, &self.u).is_some() {
+                    return Err(self.stuck(PASSED.into()));
+                }
                 self.evaluate()?;
                 continue;
             }
@@ -303,6 +310,11 @@ impl<'a> Search<'a> {
         for _ in 0..40 {
             self.work.copy_from_slice(&self.u);
             self.work.iter_mut().zip(&self.x).for_each(|(u, x)| *u += factor * x);
+            if let Some(part) = self.rest.passage(&self.u, &self.work) {
+                refused = Some(PASSED.to_owned());
+                factor *= part.clamp(0.1, 0.9);
+                continue;
+            }
             let shorter = match self.rest.evaluate(self.tried, &self.work, &mut self.trial) {
                 Ok(()) => {
                     let rise = self.trial.energy_since(&self.at, factor, &self.x);

@@ -22,7 +22,7 @@ use crate::base::input::InputError;
 use crate::base::sparse::{BlockMatrix, NodeMatrix};
 use crate::base::vector::{dot, largest};
 use crate::dynamics::system::Energy;
-use crate::elements::force::{Force, NodalForces, Reservoir};
+use crate::elements::force::{Force, NodalForces, Reservoir, Step};
 use crate::integrators::ode::Failure;
 use crate::scene::constraint::{ConstraintRow, Prescribed};
 
@@ -201,6 +201,18 @@ impl AtRest {
             }
         }
         Ok(())
+    }
+
+    /// The part of the straight way from displacements `u` to `to` on which surfaces that touch come much nearer to each
+    /// other than at both of its ends, if they do: they would pass through each other.
+    pub(crate) fn passage(&self, u: &[f64], to: &[f64]) -> Option<f64> {
+        if !self.system.can_be_passed() {
+            return None;
+        }
+        let way: Vec<f64> = u.iter().zip(to).map(|(u, to)| to - u).collect();
+        let step = Step { times: [0.0, 1.0], u: [u, to], v: [&way, &way] };
+        let surfaces = self.system.forces.iter().filter(|force| force.switches() == 0);
+        surfaces.filter_map(|force| force.passage(&step, 0.0, &mut [])).reduce(f64::min)
     }
 
     /// Gives the nodes the velocity of each obstacle at a fraction of its path.

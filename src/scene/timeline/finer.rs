@@ -9,7 +9,7 @@ use crate::elements::basis::Finer;
 use crate::elements::body::{Body, BodyBuilder};
 use crate::elements::mesh::{BYTES_PER_NODE, Mesh, Selection};
 use crate::scene::constraint::Constrained;
-use crate::scene::forces::Obstacle;
+use crate::scene::forces::{Obstacle, Touch};
 
 impl Scene {
     /// The same scene with its body built differently: of another material, with another measure of strain,
@@ -131,6 +131,8 @@ impl Scene {
         let share = count(&coarse) / count(&finer.mesh);
         let shared = |obstacle: &Obstacle| obstacle.clone().shared_out(share);
         scene.obstacles = self.obstacles.iter().map(shared).collect();
+        let as_here = |touch: &Touch| Ok(touch.clone().with_numbers_of(&self.force_of(touch)?));
+        scene.touches = self.touches.iter().map(as_here).collect::<Result<_, InputError>>()?;
         for phase in &mut scene.phases {
             change.phase(phase)?;
             phase.redirected = phase.redirected.iter().map(shared).collect();

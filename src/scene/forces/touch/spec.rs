@@ -5,7 +5,7 @@ use super::law::{Kind, Law};
 use super::near::{Near, NearPair};
 use super::surfaces::Surfaces;
 use crate::base::input::{InputError, not_negative, positive};
-use crate::elements::body::Body;
+use crate::elements::body::{Body, Part};
 use crate::scene::forces::friction::Friction;
 
 /// Contact of bodies with each other, or of a body with itself.
@@ -137,6 +137,12 @@ impl Touch {
         &self.name
     }
 
+    /// The same touch with the numbers that it has on `body` by default, for a body with a finer mesh.
+    pub(crate) fn with_numbers_of(mut self, force: &TouchForce) -> Self {
+        (self.distance, self.stiffness) = (Some(force.law.distance), Some(force.law.stiffness));
+        self
+    }
+
     /// Its forces on the bodies of a scene that begins with the displacements `u` (m), with the numbers of those that are
     /// `glued` to each other: they do not touch where they are near each other undeformed.
     ///
@@ -165,19 +171,8 @@ impl Touch {
             let help = "a string has no surface: name the other bodies";
             InputError::new(input("bodies"), "a string among them", help)
         })?;
-        let side = match surfaces.mean_side() {
-            0.0 => DISTANCE_OF_BARS * body.size(),
-            side => DISTANCE * side,
-        };
-        let distance = self.distance.unwrap_or(side);
+        let (side, [distance, stiffness]) = self.numbers(&surfaces, &parts, &numbers);
         positive(&input("distance"), distance, "m")?;
-        let young = numbers.iter().map(|&number| parts[number].body.material().young);
-        let hard = match self.kind {
-            Kind::Barrier => BARRIER,
-            Kind::Spring => SPRING,
-        };
-        let stiffness =
-            self.stiffness.unwrap_or_else(|| hard * young.fold(f64::INFINITY, f64::min) / distance);
         positive(&input("stiffness_density"), stiffness, "N/m^3")?;
         not_negative(&input("damping_density"), self.damping, "N s/m^3")?;
         self.friction.validate(&input)?;
@@ -199,6 +194,22 @@ impl Touch {
         let force = TouchForce::new(self.name.clone(), surfaces, law, coulomb, margin, u);
         self.check_start(body, &force, u)?;
         Ok(force)
+    }
+
+    /// The default of D (m), and D and k (N/m^3) as they are given or by default.
+    fn numbers(&self, surfaces: &Surfaces, parts: &[Part], numbers: &[usize]) -> (f64, [f64; 2]) {
+        let side = match surfaces.mean_side() {
+            0.0 => DISTANCE_OF_BARS * parts.iter().map(|part| part.body.size()).fold(0.0, f64::max),
+            side => DISTANCE * side,
+        };
+        let distance = self.distance.unwrap_or(side);
+        let young = numbers.iter().map(|&number| parts[number].body.material().young);
+        let hard = match self.kind {
+            Kind::Barrier => BARRIER,
+            Kind::Spring => SPRING,
+        };
+        let default = || hard * young.fold(f64::INFINITY, f64::min) / distance;
+        (side, [distance, self.stiffness.unwrap_or_else(default)])
     }
 
     fn check_start(&self, body: &Body, force: &TouchForce, u: &[f64]) -> Result<(), InputError> {
