@@ -80,7 +80,7 @@ fn strips_wound_into_themselves() {
             let warning =
                 warnings.iter().find(|text| text.contains("the body passes through itself"));
             let warning = warning.unwrap_or_else(|| panic!("{kind:?} {pitch}: {warnings:?}"));
-            assert!(warning.contains("t = 0 s") && warning.contains("obstacle"), "{warning}");
+            assert!(warning.contains("t = 0 s") && warning.contains("[[touch]]"), "{warning}");
         }
     }
 }
