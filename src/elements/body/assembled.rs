@@ -35,8 +35,10 @@ use crate::integrators::ode::Failure;
 /// ```
 ///
 /// Several bodies of one scene are [joined](Self::join) into one, whose nodes and cells are those of one body
-/// after those of the other. What holds of a body then holds of all of them together; what each is made of,
-/// say its [`parts`](Self::parts).
+/// after those of the other. What holds of a body then holds of all of them together. What each is made of, and
+/// by what measure of strain and so on, has to be asked of each of its [`parts`](Self::parts): [`material`](Self::material),
+/// [`strain`](Self::strain), [`viscosity`](Self::viscosity), [`dilatation`](Self::dilatation) and
+/// [`inertia_kind`](Self::inertia_kind) of several bodies are those of the first.
 #[derive(Clone)]
 pub struct Body {
     pub(super) mesh: Mesh,

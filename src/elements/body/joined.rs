@@ -173,6 +173,16 @@ impl Body {
         self.parts().map(|part| part.body.mesh.size()).fold(0.0, f64::max)
     }
 
+    /// The largest Young's modulus of a body (Pa), apart from its regions.
+    pub(crate) fn largest_young(&self) -> f64 {
+        self.continua.iter().map(|own| own.material.young).fold(0.0, f64::max)
+    }
+
+    /// The largest speed of waves in a body (m/s), apart from its regions.
+    pub(crate) fn largest_wave_speed(&self) -> f64 {
+        self.continua.iter().map(|own| own.material.wave_speed()).fold(0.0, f64::max)
+    }
+
     /// Whether it is one body by itself.
     pub(crate) fn is_single(&self) -> bool {
         self.joined.is_empty()
