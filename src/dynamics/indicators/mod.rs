@@ -191,7 +191,7 @@ pub(crate) fn doom(indicators: &[Indicator]) -> Option<&str> {
 #[cfg(feature = "scene-file")]
 pub(crate) fn largest_turn(trajectory: &Trajectory, part: &Part) -> f64 {
     let samples = looked_at(trajectory).into_iter();
-    strain::largest_turn(part.body, samples.map(|sample| part.of(&sample.u)))
+    strain::largest_turn(part.body, samples.map(|sample| &sample.u[part.dofs()]))
 }
 
 /// Whether the body passes through itself.

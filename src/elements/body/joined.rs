@@ -32,10 +32,10 @@ pub struct Part<'a> {
 }
 
 impl Part<'_> {
-    /// Its part of a vector of all bodies, with `dimension` components per node.
-    pub fn of<'x>(&self, vector: &'x [f64]) -> &'x [f64] {
+    /// Its part of vectors of all bodies, such as displacements: places of numbers, `dimension` per node.
+    pub fn dofs(&self) -> Range<usize> {
         let d = self.body.dimension();
-        &vector[d * self.nodes.start..d * self.nodes.end]
+        d * self.nodes.start..d * self.nodes.end
     }
 }
 
@@ -57,8 +57,9 @@ impl Body {
     /// let both = Body::join([square("left", 0.0)?, square("right", 0.2)?])?;
     /// assert!((both.mass() - 0.2).abs() < 1e-12); // kg
     /// assert_eq!(both.mesh().sets()["right/bottom"], [16, 17, 18, 19]);
+    /// let u = vec![0.0; both.dofs()];
     /// let centres: Vec<f64> =
-    ///     both.parts().map(|part| part.body.centre_of_mass(part.of(&[0.0; 2 * 32]))[0]).collect();
+    ///     both.parts().map(|part| part.body.centre_of_mass(&u[part.dofs()])[0]).collect();
     /// assert!((centres[1] - 0.25).abs() < 1e-12);
     /// # Ok::<(), pliant::Error>(())
     /// ```
@@ -300,7 +301,7 @@ mod tests {
         let (u, v) = (noise(joined.dofs(), 1e-3, 1.0), noise(joined.dofs(), 0.1, 2.0));
         let parts: Vec<Part> = joined.parts().collect();
         assert_eq!(parts.len(), bodies.len());
-        let own: Vec<_> = parts.iter().map(|p| all(p.body, p.of(&u), p.of(&v))).collect();
+        let own: Vec<_> = parts.iter().map(|p| all(p.body, &u[p.dofs()], &v[p.dofs()])).collect();
         let (forces, [stiffness, damping], energy) = all(&joined, &u, &v);
         let dofs: Vec<usize> = bodies.iter().map(Body::dofs).collect();
         let [mut at, mut rates] = [[0, joined.dofs()], [2 * joined.dofs(), 0]];
@@ -322,9 +323,9 @@ mod tests {
         assert!((sum - energy).abs() < 1e-14 * sum && sum > 0.0, "{sum} {energy}");
         let masses: Vec<f64> = bodies.iter().flat_map(Body::nodal_masses).collect();
         assert_eq!(joined.nodal_masses(), masses);
-        let fields: Vec<_> = parts.iter().flat_map(|p| p.body.cell_fields(p.of(&u))).collect();
+        let fields: Vec<_> = parts.iter().flat_map(|p| p.body.cell_fields(&u[p.dofs()])).collect();
         assert_eq!(joined.cell_fields(&u), fields);
-        let fields: Vec<_> = parts.iter().flat_map(|p| p.body.nodal_fields(p.of(&u))).collect();
+        let fields: Vec<_> = parts.iter().flat_map(|p| p.body.nodal_fields(&u[p.dofs()])).collect();
         assert_eq!(joined.nodal_fields(&u), fields);
         let faces: usize = parts.iter().map(|p| p.body.mesh().boundary_faces().len()).sum();
         assert_eq!(joined.mesh().boundary_faces().len(), faces);
