@@ -24,6 +24,19 @@ pub(super) struct FacePoint {
     pub(super) weight: f64,
 }
 
+/// The number of a kind of face among those `seen`; what all faces of a new one share is computed by `make`.
+pub(super) fn number_of<T>(
+    kind: FaceKind,
+    seen: &mut Vec<(FaceKind, T)>,
+    make: impl FnOnce(FaceKind) -> T,
+) -> usize {
+    let known = seen.iter().position(|(other, _)| *other == kind);
+    known.unwrap_or_else(|| {
+        seen.push((kind, make(kind)));
+        seen.len() - 1
+    })
+}
+
 /// The quadrature points of all faces of a kind. They integrate the normal times a shape function exactly.
 pub(super) fn face_points(kind: FaceKind) -> Vec<FacePoint> {
     match kind {
@@ -171,10 +184,11 @@ pub(super) fn loaded_faces(body: &Body, nodes: &[usize]) -> Result<Vec<LoadedFac
 /// The integral of the shape function of each node of `faces` in the undeformed shape: the length (m) or area
 /// (m^2) that the node stands for, 1 for a point.
 fn integrals(faces: &[LoadedFace], mesh: &Mesh) -> BTreeMap<usize, f64> {
-    let mut integrals = BTreeMap::new();
+    let (mut integrals, mut points) = (BTreeMap::new(), Vec::new());
     for LoadedFace { nodes, kind, .. } in faces {
         let x: Vec<[f64; 3]> = nodes.iter().map(|&node| natural(mesh, node)).collect();
-        for point in face_points(*kind) {
+        let number = number_of(*kind, &mut points, face_points);
+        for point in &points[number].1 {
             let [along, across] = point.tangents(&x);
             let measure = match kind.dimension() {
                 0 => 1.0,
