@@ -22,7 +22,7 @@ pub(crate) use phase::ContactWith;
 pub use phase::Phase;
 use start::Start;
 pub use term::Term;
-use tie::Tie;
+use tie::tied;
 
 use crate::base::input::{InputError, find, finite};
 use crate::base::vector::largest;
@@ -55,7 +55,8 @@ pub struct Scene {
     gravity: Option<Vec<f64>>,
     springs: Vec<Spring>,
     chambers: Vec<Chamber>,
-    ties: Vec<Tie>,
+    /// The constraints of each tie, found once: its nodes are those of this mesh.
+    ties: Vec<Result<Arc<[Constraint]>, InputError>>,
     obstacles: Vec<Obstacle>,
     /// Other forces.
     forces: Forces,
@@ -130,7 +131,7 @@ impl Scene {
     /// # Ok::<(), pliant::Error>(())
     /// ```
     pub fn tie(mut self, nodes: impl Into<Selection>, to: impl Into<String>) -> Self {
-        self.ties.push(Tie { nodes: nodes.into(), to: to.into() });
+        self.ties.push(tied(&self.body, &nodes.into(), &to.into()));
         self
     }
 
@@ -356,10 +357,10 @@ impl Scene {
     ///
     /// # Errors
     /// Nodes or bodies that do not exist, nodes of the body itself, nodes that are not at it.
-    pub(crate) fn tied(&self) -> Result<Vec<Constraint>, InputError> {
+    pub(crate) fn tied(&self) -> Result<Vec<&Constraint>, InputError> {
         let mut constraints = Vec::new();
         for tie in &self.ties {
-            tie.add_constraints(&self.body, &mut constraints)?;
+            constraints.extend(tie.as_ref().map_err(Clone::clone)?.iter());
         }
         Ok(constraints)
     }
@@ -371,7 +372,7 @@ impl Scene {
         start: &PhaseStart,
     ) -> Result<Vec<ConstraintRow>, InputError> {
         let tied = self.tied()?;
-        let all = phase.constraints.iter().chain(&tied);
+        let all = phase.constraints.iter().chain(tied);
         rows(all, self.body.mesh(), &phase.name, start)
     }
 }

@@ -1,5 +1,7 @@
 //! Ties: nodes of one body glued to another body.
 
+use std::sync::Arc;
+
 use crate::base::input::InputError;
 use crate::base::vector::norm;
 use crate::elements::basis::closest;
@@ -8,53 +10,43 @@ use crate::elements::mesh::Selection;
 use crate::scene::constraint::{Axis, Constrained, Constraint, Motion};
 use crate::scene::forces::pieces;
 
-/// Nodes that move with the points of another body at which they are.
-#[derive(Debug, Clone)]
-pub(super) struct Tie {
-    pub(super) nodes: Selection,
-    pub(super) to: String,
-}
-
 /// How far a node may be from the body that it is glued to, over the length of the edges there: the straight edges of
 /// cells leave gaps along a curve.
 const MOST_APART: f64 = 0.2;
 /// Shares of nodes below this are round-off.
 const NO_SHARE: f64 = 1e-12;
 
-impl Tie {
-    /// Adds its rows.
-    ///
-    /// # Errors
-    /// Nodes or a body that do not exist, nodes of the body itself, nodes that are not at it.
-    pub(super) fn add_constraints(
-        &self,
-        body: &Body,
-        constraints: &mut Vec<Constraint>,
-    ) -> Result<(), InputError> {
-        let to = body.part_named(&self.to, "body of a tie")?;
-        let target = Target::new(&to);
-        for node in body.mesh().select(&self.nodes)? {
-            if to.nodes.contains(&node) {
-                let help = format!(
-                    "it is a node of body \"{}\" itself: name those of another body",
-                    to.name
-                );
-                return Err(InputError::new("node of a tie", node + 1, help));
-            }
-            let shares = target.shares_at(node, body.mesh().position(node))?;
-            // rows of the same two nodes are the same, whichever of them was named
-            let is_first = shares.iter().all(|(other, _)| node < to.nodes.start + other);
-            let sign = if is_first { 1.0 } else { -1.0 };
-            for &axis in Axis::all(body.dimension()) {
-                let others = shares
-                    .iter()
-                    .map(|(other, share)| (to.nodes.start + other + 1, axis, -sign * share));
-                let terms = [(node + 1, axis, sign)].into_iter().chain(others).collect();
-                constraints.push(Constraint { what: Constrained::Row(terms), how: Motion::Hold });
-            }
+/// The constraints by which `nodes` move with the points of the body with the name `to` at which they are.
+///
+/// # Errors
+/// Nodes or a body that do not exist, nodes of the body itself, nodes that are not at it.
+pub(super) fn tied(
+    body: &Body,
+    nodes: &Selection,
+    to: &str,
+) -> Result<Arc<[Constraint]>, InputError> {
+    let to = body.part_named(to, "body of a tie")?;
+    let target = Target::new(&to);
+    let mut constraints = Vec::new();
+    for node in body.mesh().select(nodes)? {
+        if to.nodes.contains(&node) {
+            let help =
+                format!("it is a node of body \"{}\" itself: name those of another body", to.name);
+            return Err(InputError::new("node of a tie", node + 1, help));
         }
-        Ok(())
+        let shares = target.shares_at(node, body.mesh().position(node))?;
+        // rows of the same two nodes are the same, whichever of them was named
+        let is_first = shares.iter().all(|(other, _)| node < to.nodes.start + other);
+        let sign = if is_first { 1.0 } else { -1.0 };
+        for &axis in Axis::all(body.dimension()) {
+            let others = shares
+                .iter()
+                .map(|(other, share)| (to.nodes.start + other + 1, axis, -sign * share));
+            let terms = [(node + 1, axis, sign)].into_iter().chain(others).collect();
+            constraints.push(Constraint { what: Constrained::Row(terms), how: Motion::Hold });
+        }
     }
+    Ok(constraints.into())
 }
 
 /// A body that nodes are glued to.
