@@ -239,3 +239,41 @@ pub(super) fn on_no_face(loose: &[usize]) -> String {
         list(loose)
     )
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::elements::mesh::{Cells, SolidCells};
+    use crate::scene::forces::surface::gauss_points;
+    use crate::studies::samples::SQUARE_MATERIAL;
+
+    fn plate(name: &str, thickness: f64, into_space: bool) -> Body {
+        let mut mesh = Mesh::rectangle([0.2, 0.1], [3, 2], Cells::Triangles).unwrap();
+        if into_space {
+            mesh = mesh.mapped(|x| [x[0], x[1], 1.0]).unwrap();
+        }
+        Body::new(mesh, SQUARE_MATERIAL).thickness(thickness).named(name).build().unwrap()
+    }
+
+    /// A face has the thickness of its own body, on the rim of a membrane beside a solid, too.
+    #[test]
+    fn areas_are_those_of_the_body_of_a_face() {
+        let solid = Mesh::cuboid([0.1; 3], [2; 3], SolidCells::Hexahedra).unwrap();
+        let solid = Body::new(solid, SQUARE_MATERIAL).named("solid").build().unwrap();
+        let in_a_plane = Body::join([plate("thin", 0.01, false), plate("thick", 0.05, false)]);
+        let in_space = Body::join([solid, plate("membrane", 0.02, true)]).unwrap();
+        let in_a_plane = in_a_plane.unwrap();
+        for (body, nodes, area) in [
+            (&in_a_plane, "thin/right", 0.1 * 0.01),
+            (&in_a_plane, "thick/right", 0.1 * 0.05),
+            (&in_space, "solid/right", 0.1 * 0.1),
+            (&in_space, "membrane/right", 0.1 * 0.02),
+        ] {
+            let nodes = body.mesh().select(&nodes.into()).unwrap();
+            let whole: f64 = areas(body, &nodes).unwrap().iter().sum();
+            assert!((whole - area).abs() < 1e-15, "{nodes:?}: {whole} {area}");
+        }
+        let felt: f64 = gauss_points(&in_a_plane).unwrap().iter().map(|point| point.area).sum();
+        assert!((felt - 0.6 * (0.01 + 0.05)).abs() < 1e-15, "{felt}");
+    }
+}

@@ -192,7 +192,9 @@ mod tests {
     #[test]
     fn scales_of_several_bodies_are_the_largest() {
         let body = |young: f64, density: f64, name: &str| {
+            // apart from each other
             let mesh = Mesh::rectangle([0.1, 0.1], [2, 2], Cells::Triangles).unwrap();
+            let mesh = mesh.translated(&[density, 0.0]).unwrap();
             let material = Material { density, young, poisson: 0.3, viscosity: 0.0 };
             Body::new(mesh, material).thickness(0.01).named(name).build().unwrap()
         };
@@ -204,6 +206,7 @@ mod tests {
         for bodies in [[&soft, &fast, &stiff], [&stiff, &soft, &fast], [&fast, &stiff, &soft]] {
             let scales = of(Body::join(bodies.map(Clone::clone)).unwrap());
             assert_eq!([scales.wave_speed, scales.young], [speed, young]);
+            assert!((scales.size - 0.02_f64.sqrt()).abs() < 1e-9, "{}", scales.size);
             let settings = Settings::default();
             let tolerances = settings.tolerances_by(&scales);
             assert_eq!(tolerances.velocity, 0.01 * settings.rtol * speed);

@@ -4,20 +4,22 @@ use super::*;
 use crate::elements::body::tests::noise;
 use crate::elements::body::{BodyBuilder, Dilatation, Inertia};
 use crate::elements::force::{Force, NodalForces};
-use crate::elements::material::{Law, Substance};
+use crate::elements::material::{Fibres, Law, Substance};
 use crate::elements::mesh::{Cells, SolidCells};
 use crate::studies::samples::SQUARE_MATERIAL;
 
 fn square(cells: Cells, material: impl Into<Substance>) -> BodyBuilder {
     let mesh = Mesh::rectangle([0.3, 0.2], [5, 4], cells).unwrap();
+    let mesh = mesh.name_cells("corner", [2]).unwrap();
     Body::new(mesh, material).thickness(0.02)
 }
 
-/// Bodies of other cells, laws, strains and kinds of damping.
+/// Bodies of other cells, laws, strains and kinds of damping, one with fibres and a point mass.
 fn in_a_plane() -> [Body; 4] {
     let linear = Substance::from(SQUARE_MATERIAL);
     let rubber = Substance::from(SQUARE_MATERIAL).law(Law::NeoHookean).maxwell(0.7, 0.2);
-    let damped = Substance { mass_damping: 3.0, ..SQUARE_MATERIAL.into() };
+    let fibres = Fibres::along([2.0, 1.0], 3e6);
+    let damped = Substance { mass_damping: 3.0, ..SQUARE_MATERIAL.fibres(fibres) };
     let string = Mesh::bar(0.5, 6).unwrap().mapped(|x| [x[0], 1.0]).unwrap();
     [
         square(Cells::Triangles, linear).strain(Strain::Cauchy).named("linear").build(),
@@ -26,7 +28,10 @@ fn in_a_plane() -> [Body; 4] {
             .region(crate::CellSelection::Numbers(vec![2, 3]), SQUARE_MATERIAL)
             .named("rubber")
             .build(),
-        square(Cells::Triangles6, damped).inertia(Inertia::Lumped).build(),
+        square(Cells::Triangles6, damped)
+            .inertia(Inertia::Lumped)
+            .point_mass("hub", [0.1, 0.3], 0.2)
+            .build(),
         Body::new(string, SQUARE_MATERIAL.maxwell(1.0, 0.1)).area(1e-4).build(),
     ]
     .map(Result::unwrap)
@@ -41,6 +46,11 @@ fn all(body: &Body, u: &[f64], v: &[f64]) -> (Vec<f64>, [BlockMatrix; 2], f64) {
         elastic.add_forces(0.0, u, v, &mut forces).unwrap();
         elastic.add_tangents(0.0, u, v, &mut stiffness, &mut damping);
         energy += elastic.potential(0.0, u);
+    }
+    if let Some(fibres) = body.reinforcement() {
+        fibres.add_forces(0.0, u, v, &mut forces).unwrap();
+        fibres.add_tangents(0.0, u, v, &mut stiffness, &mut damping);
+        energy += fibres.potential(0.0, u);
     }
     if let Some(constant) = body.constant_stiffness() {
         constant.add_product(-1.0, u, &mut forces.conservative);
@@ -62,6 +72,13 @@ fn all(body: &Body, u: &[f64], v: &[f64]) -> (Vec<f64>, [BlockMatrix; 2], f64) {
     }
     let forces = [forces.conservative.to_vec(), forces.dissipative.to_vec(), rates].concat();
     (forces, [stiffness, damping], energy)
+}
+
+/// The part of the damping by mass, on the pattern of the body.
+fn by_mass(body: &Body) -> Vec<f64> {
+    let mut matrix = BlockMatrix::zeros(body.inertia().pattern(), body.dimension());
+    body.mass_damping().iter().for_each(|own| matrix.add_on_all_axes(own));
+    matrix.values
 }
 
 /// What several bodies have together is what each has by itself, to the last bit (energies: to the round-off of
@@ -91,16 +108,30 @@ fn are_those_of_each(bodies: &[Body]) {
     assert!(both(0).eq(&stiffness.values) && both(1).eq(&damping.values));
     let sum: f64 = own.iter().map(|(.., energy)| energy).sum();
     assert!((sum - energy).abs() < 1e-14 * sum && sum > 0.0, "{sum} {energy}");
+    for k in [0, 1] {
+        let own = bodies.iter().flat_map(|body| body.connection_matrices()[k].values.clone());
+        assert_eq!(joined.connection_matrices()[k].values, own.collect::<Vec<_>>());
+    }
+    assert_eq!(by_mass(&joined), bodies.iter().flat_map(by_mass).collect::<Vec<_>>());
     let masses: Vec<f64> = bodies.iter().flat_map(Body::nodal_masses).collect();
     assert_eq!(joined.nodal_masses(), masses);
     let fields: Vec<_> = parts.iter().flat_map(|p| p.body.cell_fields(&u[p.dofs()])).collect();
     assert_eq!(joined.cell_fields(&u), fields);
     let fields: Vec<_> = parts.iter().flat_map(|p| p.body.nodal_fields(&u[p.dofs()])).collect();
     assert_eq!(joined.nodal_fields(&u), fields);
+    let folded = noise(joined.dofs(), 0.2, 3.0);
+    let inverted = parts.iter().flat_map(|p| {
+        let own = p.body.inverted_cells(&folded[p.dofs()]);
+        own.into_iter().map(|cell| p.cells.start + cell)
+    });
+    let inverted: Vec<usize> = inverted.collect();
+    assert!(inverted.last().is_some_and(|last| *last > parts[0].cells.end), "{inverted:?}");
+    assert_eq!(joined.inverted_cells(&folded), inverted);
     let faces: usize = parts.iter().map(|p| p.body.mesh().boundary_faces().len()).sum();
     assert_eq!(joined.mesh().boundary_faces().len(), faces);
     let again = joined.to_builder().build().unwrap();
     assert_eq!(all(&again, &u, &v).0, forces);
+    assert!(again.parts().map(|part| part.name).eq(parts.iter().map(|part| part.name)));
 }
 
 #[test]
@@ -140,6 +171,13 @@ fn selections_know_the_bodies() {
     assert_eq!(mesh.select(&"rubber/bottom".into()).unwrap(), moved);
     assert_eq!(mesh.select(&"linear".into()).unwrap(), (0..first).collect::<Vec<_>>());
     assert_eq!(mesh.cell_groups()["body 4"].len(), 5);
+    let second = in_a_plane()[0].mesh().cell_count() + 1;
+    assert_eq!(mesh.cell_groups()["rubber/corner"], [second]);
+    let boundary = joined.parts().flat_map(|part| {
+        let own = part.body.mesh().boundary_nodes().iter();
+        own.map(move |node| part.nodes.start + node)
+    });
+    assert_eq!(mesh.boundary_nodes(), boundary.collect::<Vec<_>>());
     assert_eq!(joined.part_of(first).name, "rubber");
     assert_eq!(joined.part_of(first - 1).name, "linear");
     let point = joined.shares_at(&[0.45, 1.0]).unwrap();
