@@ -112,3 +112,34 @@ fn vtk_files_name_the_kind_of_cell() {
         assert_eq!(piece.points.len(), 3 * mesh.node_count());
     }
 }
+
+/// Of several bodies each cell has the number of its body, and stretches by its own measure of strain.
+#[test]
+fn vtk_files_tell_bodies_apart() {
+    let body = |strain: Strain, x: f64| {
+        let mesh = Mesh::rectangle([0.04, 0.02], [2, 2], Cells::Rectangles).unwrap();
+        let mesh = mesh.translated(&[x, 0.0]).unwrap();
+        Body::new(mesh, RUBBER).thickness(0.01).strain(strain).build().unwrap()
+    };
+    let both = Body::join([body(Strain::Cauchy, 0.0), body(Strain::Green, 0.1)]).unwrap();
+    // twice as long, and as high as before
+    let stretched = |x: &[f64]| vec![if x[0] < 0.05 { x[0] } else { x[0] - 0.1 }, 0.0];
+    let scene = Scene::new(both).initial_displacement(stretched).phase(Phase::until(1e-6));
+    let motion = scene.simulate(&Settings::default(), &Sampling::phase_ends()).unwrap();
+    let directory = tempfile::tempdir().unwrap();
+    write_vtk(&motion, directory.path(), "both").unwrap();
+    let grid = vtkio::Vtk::import(directory.path().join("both_0000.vtu")).unwrap();
+    let vtkio::model::DataSet::UnstructuredGrid { pieces, .. } = grid.data else { panic!() };
+    let piece = pieces.into_iter().next().unwrap().into_loaded_piece_data(None).unwrap();
+    let of_cells = |wanted: &str| {
+        let arrays = piece.data.cell.iter().filter_map(|attribute| match attribute {
+            vtkio::model::Attribute::DataArray(array) => Some(array),
+            _ => None,
+        });
+        let mut arrays = arrays.filter(|array| array.name == wanted);
+        let array = arrays.next().unwrap();
+        array.data.clone().into_vec::<f64>().unwrap()
+    };
+    assert_eq!(of_cells("body"), [0.0, 1.0]);
+    assert!(of_cells("largest_stretch").iter().all(|stretch| (stretch - 2.0).abs() < 1e-9));
+}

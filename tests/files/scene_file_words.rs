@@ -434,3 +434,28 @@ fn what_is_left_to_be_chosen_is_said() {
     );
     assert_eq!(run(&text("green", "triangles6"), "spin = 0.5").chosen, [""; 0]);
 }
+
+/// Of several bodies the report tells of those that leave it open, whichever comes first, and how far they turn by
+/// themselves.
+#[test]
+fn what_each_body_leaves_to_be_chosen_is_said() {
+    let body = |name: &str, strain: &str, cells: &str, spin: f64| {
+        format!(
+            "[[body]]\nname = \"{name}\"\nthickness = 0.01\nstrain = \"{strain}\"\nspin = {spin}\n\
+             mesh = {{ kind = \"rectangle\", size = [0.1, 0.02], nodes = [6, 2], cells = \"{cells}\" }}\n\
+             material = {{ density = 1000.0, young = 1e6, poisson = 0.3, viscosity = 100.0 }}\n"
+        )
+    };
+    let bodies = [
+        body("linear", "cauchy", "triangles", 0.1),
+        body("still", "auto", "rectangles", 0.01),
+        body("turning", "green", "auto", 0.5),
+    ];
+    let file = parse(&(bodies.concat() + "[[phase]]\nuntil = 0.4\n"));
+    let mut motion = file.scene.simulate(&file.settings, &Sampling::every(0.1)).unwrap();
+    file.explain(&mut motion);
+    let [strain, cells] = &motion.report().chosen[..] else { panic!("{:?}", motion.report()) };
+    assert!(strain.starts_with("strain of body \"still\": Green"), "{strain}");
+    assert!(strain.contains("Cauchy strain would do"), "{strain}");
+    assert!(cells.starts_with("cells of body \"turning\": triangles of 6 nodes"), "{cells}");
+}

@@ -47,7 +47,7 @@ fn apart(method: Method, bodies: [Body; 2], tolerance: f64) {
     for (sample, together) in both.samples().iter().enumerate() {
         for (alone, part) in each.iter().zip(&parts) {
             let u = &alone.samples()[sample].u;
-            let far = u.iter().zip(part.of(&together.u)).map(|(a, b)| (a - b).abs());
+            let far = u.iter().zip(&together.u[part.dofs()]).map(|(a, b)| (a - b).abs());
             let far = far.fold(0.0, f64::max);
             assert!(far <= tolerance, "{method}: body {} is {far} m off", part.name);
         }
@@ -82,7 +82,9 @@ fn two_tied_halves_are_one_beam() {
     let hung = |body: Body, clamp: &str| {
         Scene::new(body).gravity([0.0, -2.0]).phase(Phase::until(0.2).hold(clamp))
     };
-    let [whole, tied] = [hung(whole, "left"), hung(halves, "base/left").tie("tip/left", "base")];
+    // nodes at the same place may be named from both sides
+    let tied = hung(halves, "base/left").tie("tip/left", "base").tie("base/right", "tip");
+    let whole = hung(whole, "left");
     let end = |motion: &Trajectory, nodes: &str| {
         let node = motion.body().mesh().sets()[nodes][2];
         [motion.last().u[2 * node], motion.last().u[2 * node + 1]]
@@ -154,6 +156,24 @@ fn bodies_on_a_spring_exchange_momentum() {
     assert!(last[4].abs() > 0.01 && last[6].abs() > 1.0, "{last:?}");
 }
 
+/// What is measured on the motion of each body is told of that body.
+#[test]
+fn each_body_is_measured_by_itself() {
+    let square = |name: &str, x: f64| {
+        let body = block([x, 0.0], [0.1, 0.1], [4, 4], Cells::Triangles).named(name);
+        body.strain(Strain::Cauchy).build().unwrap()
+    };
+    let scene = Scene::new(Body::join([square("still", 0.0), square("turning", 0.5)]).unwrap())
+        .spin_of("turning", [5.0])
+        .phase(Phase::until(0.02));
+    let motion = run(&scene, &Settings::default());
+    let turns = motion.report().indicators.iter().filter(|measured| measured.name == "turn");
+    let [still, turning] = turns.collect::<Vec<_>>()[..] else { panic!("a turn of each body") };
+    assert!(still.text.starts_with("body \"still\": ") && still.value < 1e-6, "{still}");
+    assert!(turning.text.starts_with("body \"turning\": "), "{turning}");
+    assert!((turning.value - 0.1_f64.to_degrees()).abs() < 0.1, "{turning}");
+}
+
 /// Bodies do not feel each other yet: a run in which one passes through another says so.
 #[test]
 fn bodies_that_pass_through_each_other_are_told() {
@@ -217,8 +237,17 @@ fn files_have_several_bodies() {
     assert_eq!(mesh.sets()["hand/tip"], [parts[1].nodes.end - 1]);
     let start = file.scene.clone().ended_at(1e-4).simulate(&file.settings, &Sampling::phase_ends());
     let start = start.unwrap().samples()[0].clone();
-    let [x, y] = parts[2].body.mean_velocity(parts[2].of(&start.v))[..] else { panic!() };
+    let [x, y] = parts[2].body.mean_velocity(&start.v[parts[2].dofs()])[..] else { panic!() };
     assert!((x + 0.3).abs() < 1e-12 && y.abs() < 1e-12);
+    assert!(start.v[parts[0].dofs()].iter().all(|v| *v == 0.0), "the arm is at rest");
+    for (finer, to) in [
+        ("quadratic = true", "bubbles = true, origin = [0.1, 0.0] }\ndilatation = \"linear\"\n#"),
+        ("poisson = 0.4, viscosity = 20.0", "poisson = 0.48, viscosity = 20.0"),
+    ] {
+        let text = text.replace(finer, to).replace("quadratic = true", "bubbles = true");
+        let hand = parse(&text).unwrap().scene.body().parts().nth(1).unwrap().body.dilatation();
+        assert_eq!(hand, Dilatation::Linear, "{to}");
+    }
     for (from, to, told) in [
         (
             "name = \"weight\"\nmesh",
@@ -228,6 +257,7 @@ fn files_have_several_bodies() {
         ("mass = 0.01\nbody = \"hand\"", "mass = 0.01", "expected the name of the body"),
         ("mass = 0.01\nbody = \"hand\"", "mass = 0.01\nbody = \"foot\"", "\"foot\""),
         ("to = \"arm\"", "to = \"leg\"", "body of a tie = \"leg\""),
+        ("quadratic = true", "halved_in = [{ nodes = \"left\" }]", "places of a single body only"),
         ("nodes = \"hand/left\"", "nodes = \"hand/right\"", "distance of tied node"),
         ("body = \"weight\"", "body = \"leg\"", "body of sensor \"weight\" = \"leg\""),
         ("nodes = \"arm/left\"", "nodes = \"left\"", "\"left\""),

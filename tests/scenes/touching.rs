@@ -26,7 +26,7 @@ fn momentum(motion: &Trajectory, sample: usize, part: usize, axis: usize) -> f64
     let part = motion.body().parts().nth(part).unwrap();
     let d = part.body.dimension();
     let masses = part.body.nodal_masses();
-    let v = part.of(&motion.samples()[sample].v);
+    let v = &motion.samples()[sample].v[part.dofs()];
     masses.iter().zip(v.chunks_exact(d)).map(|(mass, v)| mass * v[axis]).sum()
 }
 

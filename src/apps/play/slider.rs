@@ -4,6 +4,7 @@ use serde_json::{Value, json};
 
 use crate::dynamics::error::Error;
 use crate::dynamics::simulate::Simulation;
+use crate::elements::body::{Body, Part};
 use crate::elements::mesh::Selection;
 use crate::scene::forces::Signal;
 use crate::scene::timeline::{Load, LoadKind, Phase, Scene};
@@ -37,10 +38,7 @@ const FEW: usize = 6;
 impl Slider {
     /// The sliders of a scene.
     pub(super) fn all(scene: &Scene) -> Vec<Self> {
-        let young = scene.body().material().young;
-        let pressure = USUAL * young;
-        // what a spring of the stiffness of the body needs for half of that strain is a usual force
-        let force = USUAL * young * scene.body().volume() / scene.body().size();
+        let [force, pressure] = usual(scene.body());
         let chambers = scene.chambers().iter().map(|chamber| {
             let target = Target::Pressure(chamber.name().to_owned());
             let range = [target.largest_in(scene), pressure];
@@ -157,6 +155,17 @@ impl Target {
     }
 }
 
+/// A usual force (N), and a usual pressure or traction (Pa): of several bodies those that the softest one stands.
+fn usual(body: &Body) -> [f64; 2] {
+    let of_part = |Part { body, .. }: Part| {
+        let young = body.material().young;
+        // what a spring of the stiffness of the body needs for half of that strain is a usual force
+        [USUAL * young * body.volume() / body.size(), USUAL * young]
+    };
+    let least = |[a, b]: [f64; 2], [c, d]: [f64; 2]| [a.min(c), b.min(d)];
+    body.parts().map(of_part).fold([f64::INFINITY; 2], least)
+}
+
 /// The loads that `phase` has for a selection; the sum of them acts.
 fn loads_in<'a>(phase: &'a Phase, nodes: &'a Selection) -> impl Iterator<Item = &'a Load> {
     phase.loads.iter().filter(move |(other, _)| other == nodes).map(|(_, load)| load)
@@ -196,4 +205,29 @@ fn round_up(x: f64) -> f64 {
     let unit = 10_f64.powf(x.abs().log10().floor());
     // 2.0000001 of them count as 2
     (x.abs() / unit - 1e-6).ceil() * unit
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::elements::material::Material;
+    use crate::elements::mesh::{Cells, Mesh};
+
+    /// What the softest of several bodies stands, whichever comes first.
+    #[test]
+    fn usual_values_are_those_of_the_softest_body() {
+        let body = |young: f64, name: &str| {
+            let mesh = Mesh::rectangle([0.3, 0.4], [2, 2], Cells::Triangles).unwrap();
+            let material = Material { density: 1000.0, young, poisson: 0.3, viscosity: 0.0 };
+            Body::new(mesh, material).thickness(0.1).named(name).build().unwrap()
+        };
+        let (soft, stiff) = (body(1e5, "soft"), body(1e9, "stiff"));
+        let [force, pressure] = usual(&soft);
+        // 5 % of the modulus; on 0.012 m^3 that are 0.5 m across
+        assert!((pressure - 5e3).abs() < 1e-9 && (force - 120.0).abs() < 1e-9);
+        for bodies in [[&soft, &stiff], [&stiff, &soft]] {
+            let both = Body::join(bodies.map(Clone::clone)).unwrap();
+            assert_eq!(usual(&both), [force, pressure]);
+        }
+    }
 }

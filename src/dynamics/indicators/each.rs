@@ -16,8 +16,8 @@ pub(super) fn each_body(
     }
     let of_body = |part: Part| {
         let own = |sample: &&Sample| Sample {
-            u: part.of(&sample.u).to_vec(),
-            v: part.of(&sample.v).to_vec(),
+            u: sample.u[part.dofs()].to_vec(),
+            v: sample.v[part.dofs()].to_vec(),
             ..Sample::clone(sample)
         };
         let own: Vec<Sample> = samples.iter().map(own).collect();

@@ -186,10 +186,11 @@ pub(crate) fn doom(indicators: &[Indicator]) -> Option<&str> {
     indicators.iter().find(is_doom).map(|told| told.text.as_str())
 }
 
-/// The largest angle (rad) by which a cell turns.
+/// The largest angle (rad) by which a cell of a body turns.
 #[cfg(feature = "scene-file")]
-pub(crate) fn largest_turn(trajectory: &Trajectory) -> f64 {
-    strain::largest_turn(trajectory.body(), &looked_at(trajectory))
+pub(crate) fn largest_turn(trajectory: &Trajectory, part: &Part) -> f64 {
+    let samples = looked_at(trajectory).into_iter();
+    strain::largest_turn(part.body, samples.map(|sample| &sample.u[part.dofs()]))
 }
 
 /// Whether the body passes through itself.

@@ -29,3 +29,23 @@ pub(super) fn least_cell_sizes(body: &Body) -> Vec<f64> {
     }
     sizes
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::elements::mesh::{Cells, Mesh};
+    use crate::studies::samples::SQUARE_MATERIAL;
+
+    /// Sizes in a plane do not depend on the thickness, which bodies have of their own.
+    #[test]
+    fn sizes_are_those_of_squares_in_each_body() {
+        let body = |thickness: f64, cells: Cells| {
+            let mesh = Mesh::rectangle([0.2, 0.1], [3, 2], cells).unwrap();
+            Body::new(mesh, SQUARE_MATERIAL).thickness(thickness).build().unwrap()
+        };
+        let both = Body::join([body(0.01, Cells::Triangles), body(0.04, Cells::Rectangles)]);
+        let sizes = cell_sizes(&both.unwrap());
+        assert!(sizes.iter().all(|size| (size - 0.1).abs() < 1e-15), "{sizes:?}");
+        assert_eq!(sizes.len(), 6);
+    }
+}

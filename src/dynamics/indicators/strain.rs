@@ -14,7 +14,7 @@ pub(super) fn turning(body: &Body, samples: &[&Sample]) -> Option<Indicator> {
     if body.strain() != Strain::Cauchy {
         return None;
     }
-    let most = largest_turn(body, samples);
+    let most = largest_turn(body, samples.iter().map(|sample| &sample.u[..]));
     let false_strain = |angle: f64| 100.0 * (1.0 - angle.cos());
     let told = format!(
         "cells turn by up to {:.1} degrees, which Cauchy strain takes for a strain of {:.1} % (limit: \
@@ -28,9 +28,9 @@ pub(super) fn turning(body: &Body, samples: &[&Sample]) -> Option<Indicator> {
     Some(Indicator::trusted("turn", value, [0.0, MOST_TURN], || told.clone(), beyond))
 }
 
-/// The largest angle (rad) by which a cell turns.
-pub(super) fn largest_turn(body: &Body, samples: &[&Sample]) -> f64 {
-    samples.iter().flat_map(|sample| body.cell_rotations(&sample.u)).fold(0.0, f64::max)
+/// The largest angle (rad) by which a cell turns under any of the `displacements` (m).
+pub(super) fn largest_turn<'a>(body: &Body, displacements: impl Iterator<Item = &'a [f64]>) -> f64 {
+    displacements.flat_map(|u| body.cell_rotations(u)).fold(0.0, f64::max)
 }
 
 /// Cells that are turned inside out, which linear forces do not resist.

@@ -50,8 +50,7 @@ impl Matrices {
             .collect();
         let (dimension, positions) = (body.dimension(), body.mesh().positions());
         let size = body.size();
-        let speeds = body.parts().map(|part| part.body.material().wave_speed());
-        let scales = [size, speeds.fold(0.0, f64::max)].map(|scale| 0.01 * scale);
+        let scales = [size, body.largest_wave_speed()].map(|scale| 0.01 * scale);
         let (inertia, stiffness, damping) =
             (body.shared_inertia(), body.constant_stiffness(), body.constant_damping());
         let (linear_by_cells, mass_damping) = (body.linear_by_cells(), body.mass_damping());

@@ -111,10 +111,10 @@ impl Reading {
                 Box::new(move |view, _| Value::Number(angle(view)))
             }
             What::CentreOfMass => self.of_part(scene, |part, view| {
-                part.body.centre_of_mass(part.of(view.displacements()))
+                part.body.centre_of_mass(&view.displacements()[part.dofs()])
             })?,
             What::Momentum => self.of_part(scene, |part, view| {
-                let mean = part.body.mean_velocity(part.of(view.velocities()));
+                let mean = part.body.mean_velocity(&view.velocities()[part.dofs()]);
                 mean.into_iter().map(|v| part.body.mass() * v).collect()
             })?,
         })
@@ -163,7 +163,7 @@ impl Reading {
         let arms = part(scene.body(), first_node).body.arms();
         Ok(Arc::new(move |view| {
             let part = part(view.body(), first_node);
-            in_turn * part.body.rotation_by(&arms, part.of(view.displacements()))
+            in_turn * part.body.rotation_by(&arms, &view.displacements()[part.dofs()])
         }))
     }
 }

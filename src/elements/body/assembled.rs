@@ -35,8 +35,10 @@ use crate::integrators::ode::Failure;
 /// ```
 ///
 /// Several bodies of one scene are [joined](Self::join) into one, whose nodes and cells are those of one body
-/// after those of the other. What holds of a body then holds of all of them together; what each is made of,
-/// say its [`parts`](Self::parts).
+/// after those of the other. What holds of a body then holds of all of them together. What each is made of, and
+/// by what measure of strain and so on, has to be asked of each of its [`parts`](Self::parts): [`material`](Self::material),
+/// [`strain`](Self::strain), [`viscosity`](Self::viscosity), [`dilatation`](Self::dilatation) and
+/// [`inertia_kind`](Self::inertia_kind) of several bodies are those of the first.
 #[derive(Clone)]
 pub struct Body {
     pub(super) mesh: Mesh,
@@ -284,8 +286,7 @@ impl Body {
     /// Calls `see` with the number of each node of a cell, its number among the nodes of the cell, and the
     /// tensors there.
     fn each_node(&self, u: &[f64], cell: usize, see: &mut dyn FnMut(usize, usize, &Tensors)) {
-        let body = self.continua.partition_point(|continuum| continuum.cells.end <= cell);
-        let Continuum { elements, regions, cells, .. } = &self.continua[body];
+        let Continuum { elements, regions, cells, .. } = self.continuum_of(cell);
         elements.each_node(regions, u, cell - cells.start, see);
     }
 
@@ -352,58 +353,6 @@ impl Body {
         self.inertia.clone()
     }
 
-    /// The constant part of K, if it is not 0: that of the bodies whose elastic force is -K u.
-    pub(crate) fn constant_stiffness(&self) -> Option<Arc<BlockMatrix>> {
-        if self.continua.iter().all(Continuum::is_linear) {
-            return Some(self.stiffness.clone());
-        }
-        self.join_some(|body| body.constant_stiffness())
-    }
-
-    /// The part of B that is constant, if it is not 0: all of it if viscosity is natural, a M otherwise.
-    pub(crate) fn constant_damping(&self) -> Option<Arc<BlockMatrix>> {
-        if !self.joined.is_empty() {
-            return self.join_some(|body| body.constant_damping());
-        }
-        if self.has_natural_viscosity() {
-            return Some(self.damping.clone());
-        }
-        self.mass_damping.as_ref().map(|by_mass| {
-            let mut matrix = BlockMatrix::zeros(self.damping.pattern(), self.dimension());
-            matrix.add_on_all_axes(by_mass);
-            Arc::new(matrix)
-        })
-    }
-
-    /// The matrices that some of the joined bodies have, as one.
-    fn join_some(
-        &self,
-        matrix: impl Fn(&Self) -> Option<Arc<BlockMatrix>>,
-    ) -> Option<Arc<BlockMatrix>> {
-        let all: Vec<_> = self.joined.iter().map(|part| (&part.body, matrix(&part.body))).collect();
-        let parts = all.iter().map(|(body, of)| of.as_deref().ok_or(&**body.inertia.pattern()));
-        let is_some = all.iter().any(|(_, of)| of.is_some());
-        is_some.then(|| {
-            let pattern = self.stiffness.pattern();
-            Arc::new(BlockMatrix::join(pattern, self.dimension(), parts))
-        })
-    }
-
-    /// Whether a viscous force is that of a constant matrix, and not 0.
-    fn has_natural_viscosity(&self) -> bool {
-        self.continua.iter().any(Continuum::has_natural_viscosity)
-    }
-
-    /// The part a M of B, if it is not 0.
-    pub(crate) fn mass_damping(&self) -> Option<Arc<NodeMatrix>> {
-        self.mass_damping.clone()
-    }
-
-    /// Whether -B v costs least by the matrix of all constant damping.
-    pub(crate) fn damps_by_matrix(&self) -> bool {
-        self.has_natural_viscosity() && !self.is_linear_by_cells()
-    }
-
     /// The forces of its fibres, if it has any.
     pub(crate) fn reinforcement(&self) -> Option<Reinforcement> {
         let fibres = self.continua.iter().map(|continuum| &continuum.fibres);
@@ -414,72 +363,5 @@ impl Body {
     /// The Maxwell branches, if there are any.
     pub(crate) fn branches(&self) -> Option<Branches> {
         Branches::of(self.continua.iter())
-    }
-
-    /// Total mass (kg).
-    pub fn mass(&self) -> f64 {
-        self.inertia.values.iter().sum()
-    }
-
-    /// Mass that moves with each node (kg): the row sums of m. Unless inertia is lumped, those of corners of
-    /// quadratic cells may be 0 or below.
-    pub fn nodal_masses(&self) -> Vec<f64> {
-        let pattern = self.inertia.pattern();
-        let row_sum = |row| pattern.row(row).map(|(entry, _)| self.inertia.values[entry]).sum();
-        (0..pattern.nodes()).map(row_sum).collect()
-    }
-
-    /// Mean of `x` (dimension components per node), weighted by mass.
-    pub(crate) fn mass_average(&self, x: &[f64]) -> Vec<f64> {
-        let (dimension, mass) = (self.dimension(), self.mass());
-        let mut average = vec![0.0; dimension];
-        for (nodal_mass, x) in self.nodal_masses().iter().zip(x.chunks_exact(dimension)) {
-            average.iter_mut().zip(x).for_each(|(a, x)| *a += nodal_mass * x / mass);
-        }
-        average
-    }
-
-    /// Centre of mass (m) under the displacements `u` (m).
-    pub fn centre_of_mass(&self, u: &[f64]) -> Vec<f64> {
-        let natural = self.mass_average(self.mesh.positions()).into_iter();
-        natural.zip(self.mass_average(u)).map(|(x, u)| x + u).collect()
-    }
-
-    /// Velocity (m/s) of the centre of mass, where nodes have the velocities `v` (m/s).
-    pub fn mean_velocity(&self, v: &[f64]) -> Vec<f64> {
-        self.mass_average(v)
-    }
-
-    /// Angle (rad, counter-clockwise) by which a body in the plane has turned as a whole under the
-    /// displacements `u` (m): that of the rotation which, in the mean over its mass, brings the undeformed
-    /// shape nearest to the present one. `None` in other dimensions.
-    pub(crate) fn rotation(&self, u: &[f64]) -> Option<f64> {
-        if self.dimension() != 2 {
-            return None;
-        }
-        Some(self.rotation_by(&self.arms(), u))
-    }
-
-    /// The mass of each node of a body in the plane, times its natural position relative to the centre of
-    /// mass (kg m). They add up to 0.
-    pub(crate) fn arms(&self) -> Vec<[f64; 2]> {
-        let positions = self.mesh().positions();
-        let centre = self.mass_average(positions);
-        let masses = self.nodal_masses();
-        let arm = |(mass, x): (&f64, &[f64])| [0, 1].map(|i| mass * (x[i] - centre[i]));
-        masses.iter().zip(positions.chunks_exact(2)).map(arm).collect()
-    }
-
-    /// The [`rotation`](Self::rotation) of a body in the plane, by its `arms`.
-    pub(crate) fn rotation_by(&self, arms: &[[f64; 2]], u: &[f64]) -> f64 {
-        let nodes = self.mesh().positions().chunks_exact(2).zip(u.chunks_exact(2));
-        let (mut along, mut across) = (0.0, 0.0);
-        for ([a, b], (x, u)) in arms.iter().zip(nodes) {
-            // relative to any point: the arms add up to 0
-            let [x, y] = [x[0] + u[0], x[1] + u[1]];
-            along += a * x + b * y;
-            across += a * y - b * x;
-        }
-        across.atan2(along)
     }
 }

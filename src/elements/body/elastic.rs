@@ -90,8 +90,11 @@ impl Body {
     /// K has some 7 blocks in a mesh of triangles, and 15 in one of tetrahedra, which are added up one after
     /// the other.
     pub(crate) fn linear_by_cells(&self) -> Option<LinearByCells> {
+        if !self.is_linear_by_cells() {
+            return None;
+        }
         let bodies = self.with_terms(Continuum::linear_terms);
-        (self.is_linear_by_cells() && !bodies.is_empty()).then_some(LinearByCells { bodies })
+        (!bodies.is_empty()).then_some(LinearByCells { bodies })
     }
 
     /// Whether linear forces are less work cell by cell: for all bodies, as matrices are those of all.
@@ -99,12 +102,13 @@ impl Body {
         let is_simple = |continuum: &Continuum| {
             matches!(continuum.kind, CellKind::Triangle | CellKind::Tetrahedron)
         };
-        self.with_terms(Continuum::linear_terms).iter().all(|(continuum, _)| is_simple(continuum))
+        self.continua.iter().all(|own| is_simple(own) || !own.linear_terms().are_any())
     }
 
     /// The bodies that have any of the terms.
     fn with_terms(&self, terms: fn(&Continuum) -> Terms) -> Vec<(Continuum, Terms)> {
-        let all = self.continua.iter().map(|continuum| (continuum.clone(), terms(continuum)));
-        all.filter(|(_, terms)| terms.elastic || terms.viscous).collect()
+        let all = self.continua.iter().map(|continuum| (continuum, terms(continuum)));
+        let some = all.filter(|(_, terms)| terms.are_any());
+        some.map(|(continuum, terms)| (continuum.clone(), terms)).collect()
     }
 }

@@ -38,6 +38,12 @@ pub(super) struct Terms {
     pub(super) viscous: bool,
 }
 
+impl Terms {
+    pub(super) fn are_any(self) -> bool {
+        self.elastic || self.viscous
+    }
+}
+
 /// Elements as forces.
 pub(super) trait Forces {
     /// Adds the elastic forces to the conservative ones and those of objective viscosity to the

@@ -59,8 +59,9 @@ impl Identity {
         let mut parts: Vec<(String, String)> =
             parts.map(|(name, hash)| (name.into(), text(hash))).into();
         // as in files that were written before there were several bodies
-        let [ties, touches] = [of_text(&scene.ties()), of_text(&scene.touches())].map(text);
-        if !scene.ties().is_empty() {
+        let tied = scene.tied().unwrap_or_default();
+        let [ties, touches] = [of_text(&tied), of_text(&scene.touches())].map(text);
+        if !tied.is_empty() {
             parts.push(("ties".into(), ties));
         }
         if !scene.touches().is_empty() {

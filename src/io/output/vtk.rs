@@ -134,7 +134,7 @@ fn grid(trajectory: &Trajectory, sample: &Sample) -> Result<Vtk, Error> {
         self::scalars("largest_stretch", stretches.iter().map(|s| s[0]).collect()),
         self::scalars("least_stretch", stretches.iter().map(|s| s[2]).collect()),
     ];
-    if body.parts().count() > 1 {
+    if !body.is_single() {
         let parts = body.parts().zip(0_u32..);
         let numbers = parts.flat_map(|(part, number)| part.cells.map(move |_| f64::from(number)));
         of_cells.push(self::scalars("body", numbers.collect()));

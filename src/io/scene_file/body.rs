@@ -217,14 +217,13 @@ fn body(
 }
 
 /// What the bodies leave to be chosen.
-pub(super) fn auto(value: &Value) -> Result<AutoRequest, Error> {
-    let mut auto = AutoRequest::default();
-    for value in value.one_or_more()? {
+pub(super) fn auto(value: &Value) -> Result<Vec<AutoRequest>, Error> {
+    let of_body = |value: &Value| {
         let table = value.table(&BODY)?;
-        auto.strain |= table.optional("strain", Value::string)? == Some(AUTO);
-        auto.cells |= table.required("mesh", mesh::has_auto_cells)?;
-    }
-    Ok(auto)
+        let strain = table.optional("strain", Value::string)? == Some(AUTO);
+        Ok(AutoRequest { strain, cells: table.required("mesh", mesh::has_auto_cells)? })
+    };
+    value.one_or_more()?.iter().map(of_body).collect()
 }
 
 /// The scene in which the bodies move at first as their tables say.

@@ -20,8 +20,8 @@ pub struct SceneFile {
     pub settings: Settings,
     /// How accurate its motion has to be.
     pub accuracy: AccuracyRequest,
-    /// What is left to be chosen.
-    pub auto: AutoRequest,
+    /// What is left to be chosen of each body.
+    pub auto: Vec<AutoRequest>,
     /// How its equilibrium is sought.
     pub statics: StaticsRequest,
     /// What is to be written.
@@ -39,7 +39,7 @@ pub struct AccuracyRequest {
     pub quantity: Option<String>,
 }
 
-/// What a scene file leaves to be chosen, by the word `auto`.
+/// What a scene file leaves to be chosen of a body, by the word `auto`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct AutoRequest {
     /// The measure of strain: Green's.

@@ -181,42 +181,42 @@ pub(super) fn mesh(
 /// The scene on a finer mesh, if `value` requires one.
 pub(super) fn on_finer_mesh(scene: Scene, value: &Value) -> Result<Scene, Error> {
     let table = value.table(&MESH)?;
-    let blame = |error: InputError| table.blame(error);
-    let mut scene = match table.flag("quadratic")? {
-        true => scene.quadratic().map_err(blame)?,
-        false => scene,
-    };
-    let times = table.optional("halved", Value::count)?.unwrap_or(0);
-    for _ in 0..times {
-        scene = scene.halved().map_err(blame)?;
-    }
-    for place in table.tables("halved_in", &HALVED_IN)? {
-        scene = halved_in(scene, &place)?;
-    }
-    match table.flag("bubbles")? {
-        true => scene.with_bubbles().map_err(blame),
-        false => Ok(scene),
-    }
+    let steps = [Scene::quadratic, Scene::halved, Scene::with_bubbles];
+    made_finer(scene, &table, steps, |scene| {
+        table.tables("halved_in", &HALVED_IN)?.iter().try_fold(scene, halved_in)
+    })
 }
 
 /// The mesh of one of several bodies, made finer at once if `value` requires that: node numbers are those of the
 /// finer mesh.
-pub(super) fn finer(mut mesh: Mesh, value: &Value) -> Result<Mesh, Error> {
+pub(super) fn finer(mesh: Mesh, value: &Value) -> Result<Mesh, Error> {
     let table = value.table(&MESH)?;
-    let blame = |error: InputError| table.blame(error);
     if let Some(value) = table.get("halved_in") {
         return Err(value.error("cells are halved in places of a single body only: grade its mesh"));
     }
+    let steps = [Mesh::quadratic, |mesh: &Mesh| Ok(mesh.halved()), Mesh::with_bubbles];
+    made_finer(mesh, &table, steps, Ok)
+}
+
+/// A step to a finer mesh, or to a scene on it.
+type Step<T> = fn(&T) -> Result<T, InputError>;
+
+/// A mesh, or a scene, as `quadratic`, `halved`, `halved_in` and `bubbles` of `table` require, in this order.
+fn made_finer<T>(
+    mut coarse: T,
+    table: &Table,
+    [quadratic, halved, with_bubbles]: [Step<T>; 3],
+    halved_in: impl FnOnce(T) -> Result<T, Error>,
+) -> Result<T, Error> {
+    let blame = |error: InputError| table.blame(error);
     if table.flag("quadratic")? {
-        mesh = mesh.quadratic().map_err(blame)?;
+        coarse = quadratic(&coarse).map_err(blame)?;
     }
     for _ in 0..table.optional("halved", Value::count)?.unwrap_or(0) {
-        mesh = mesh.halved();
+        coarse = halved(&coarse).map_err(blame)?;
     }
-    if table.flag("bubbles")? {
-        mesh = mesh.with_bubbles().map_err(blame)?;
-    }
-    Ok(mesh)
+    let finer = halved_in(coarse)?;
+    if table.flag("bubbles")? { with_bubbles(&finer).map_err(blame) } else { Ok(finer) }
 }
 
 fn halved_in(mut scene: Scene, place: &Table) -> Result<Scene, Error> {

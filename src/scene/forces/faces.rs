@@ -24,6 +24,19 @@ pub(super) struct FacePoint {
     pub(super) weight: f64,
 }
 
+/// The number of a kind of face among those `seen`; what all faces of a new one share is computed by `make`.
+pub(super) fn number_of<T>(
+    kind: FaceKind,
+    seen: &mut Vec<(FaceKind, T)>,
+    make: impl FnOnce(FaceKind) -> T,
+) -> usize {
+    let known = seen.iter().position(|(other, _)| *other == kind);
+    known.unwrap_or_else(|| {
+        seen.push((kind, make(kind)));
+        seen.len() - 1
+    })
+}
+
 /// The quadrature points of all faces of a kind. They integrate the normal times a shape function exactly.
 pub(super) fn face_points(kind: FaceKind) -> Vec<FacePoint> {
     match kind {
@@ -171,10 +184,11 @@ pub(super) fn loaded_faces(body: &Body, nodes: &[usize]) -> Result<Vec<LoadedFac
 /// The integral of the shape function of each node of `faces` in the undeformed shape: the length (m) or area
 /// (m^2) that the node stands for, 1 for a point.
 fn integrals(faces: &[LoadedFace], mesh: &Mesh) -> BTreeMap<usize, f64> {
-    let mut integrals = BTreeMap::new();
+    let (mut integrals, mut points) = (BTreeMap::new(), Vec::new());
     for LoadedFace { nodes, kind, .. } in faces {
         let x: Vec<[f64; 3]> = nodes.iter().map(|&node| natural(mesh, node)).collect();
-        for point in face_points(*kind) {
+        let number = number_of(*kind, &mut points, face_points);
+        for point in &points[number].1 {
             let [along, across] = point.tangents(&x);
             let measure = match kind.dimension() {
                 0 => 1.0,
@@ -224,4 +238,42 @@ pub(super) fn on_no_face(loose: &[usize]) -> String {
          give forces on nodes",
         list(loose)
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::elements::mesh::{Cells, SolidCells};
+    use crate::scene::forces::surface::gauss_points;
+    use crate::studies::samples::SQUARE_MATERIAL;
+
+    fn plate(name: &str, thickness: f64, into_space: bool) -> Body {
+        let mut mesh = Mesh::rectangle([0.2, 0.1], [3, 2], Cells::Triangles).unwrap();
+        if into_space {
+            mesh = mesh.mapped(|x| [x[0], x[1], 1.0]).unwrap();
+        }
+        Body::new(mesh, SQUARE_MATERIAL).thickness(thickness).named(name).build().unwrap()
+    }
+
+    /// A face has the thickness of its own body, on the rim of a membrane beside a solid, too.
+    #[test]
+    fn areas_are_those_of_the_body_of_a_face() {
+        let solid = Mesh::cuboid([0.1; 3], [2; 3], SolidCells::Hexahedra).unwrap();
+        let solid = Body::new(solid, SQUARE_MATERIAL).named("solid").build().unwrap();
+        let in_a_plane = Body::join([plate("thin", 0.01, false), plate("thick", 0.05, false)]);
+        let in_space = Body::join([solid, plate("membrane", 0.02, true)]).unwrap();
+        let in_a_plane = in_a_plane.unwrap();
+        for (body, nodes, area) in [
+            (&in_a_plane, "thin/right", 0.1 * 0.01),
+            (&in_a_plane, "thick/right", 0.1 * 0.05),
+            (&in_space, "solid/right", 0.1 * 0.1),
+            (&in_space, "membrane/right", 0.1 * 0.02),
+        ] {
+            let nodes = body.mesh().select(&nodes.into()).unwrap();
+            let whole: f64 = areas(body, &nodes).unwrap().iter().sum();
+            assert!((whole - area).abs() < 1e-15, "{nodes:?}: {whole} {area}");
+        }
+        let felt: f64 = gauss_points(&in_a_plane).unwrap().iter().map(|point| point.area).sum();
+        assert!((felt - 0.6 * (0.01 + 0.05)).abs() < 1e-15, "{felt}");
+    }
 }

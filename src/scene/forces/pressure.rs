@@ -1,7 +1,7 @@
 //! Pressure on faces of the boundary: a force along the normal of the deformed face.
 
 use super::faces::{
-    FacePoint, LoadedFace, MOST_NODES, face_points, loaded_faces, natural, on_no_face,
+    FacePoint, LoadedFace, MOST_NODES, face_points, loaded_faces, natural, number_of, on_no_face,
 };
 use super::signal::{Signal, finite_at};
 use crate::base::input::InputError;
@@ -61,11 +61,7 @@ impl FacePressure {
                     return Err(bad(help.into()));
                 }
             };
-            let known = points.iter().position(|(other, _)| *other == kind);
-            let kind = known.unwrap_or_else(|| {
-                points.push((kind, face_points(kind)));
-                points.len() - 1
-            });
+            let kind = number_of(kind, &mut points, face_points);
             let natural = nodes.iter().map(|&node| natural(mesh, node)).collect();
             faces.push(PressedFace { nodes, natural, kind, across });
         }

@@ -16,13 +16,13 @@ pub struct Settings {
     /// large. [`Method::Auto`] gives the method that it chooses a part of the tolerances, mostly a fifth or
     /// less, so that the motion is about as precise as `rtol` says. Default: 1e-5.
     pub rtol: f64,
-    /// Absolute tolerance of displacements (m). Default: rtol times a hundredth of the body's size,
-    /// so that smaller displacements count as that large.
+    /// Absolute tolerance of displacements (m). Default: rtol times a hundredth of the size of the body, the
+    /// largest of several, so that smaller displacements count as that large.
     pub atol_position: Option<f64>,
     /// Absolute tolerance of velocities (m/s).
     ///
-    /// Default: rtol times a hundredth of the speed of waves in the body, which corresponds to that of
-    /// displacements in a vibration; but at most 1/400 of the
+    /// Default: rtol times a hundredth of the speed of waves in the body, the fastest of several, which
+    /// corresponds to that of displacements in a vibration; but at most 1/400 of the
     /// [sticking speed](crate::Obstacle::sticking_speed) of an obstacle with friction, as with more a step
     /// does not notice what breaks loose.
     pub atol_velocity: Option<f64>,
@@ -149,13 +149,13 @@ pub(crate) struct Scales {
 impl Scales {
     pub(crate) fn of(scene: &Scene) -> Self {
         let body = scene.body();
-        let (size, material) = (body.size(), body.material());
+        let size = body.size();
         let sticking = scene.obstacles().iter().filter_map(|obstacle| obstacle.sticks_below(size));
         Self {
             size,
-            young: material.young,
+            young: body.largest_young(),
             volume: body.volume(),
-            wave_speed: material.wave_speed(),
+            wave_speed: body.largest_wave_speed(),
             sticking_speed: sticking.fold(f64::INFINITY, f64::min),
         }
     }
@@ -179,4 +179,37 @@ pub struct AbsoluteTolerances {
     pub(crate) force: f64,
     /// Multipliers of positions in the form of index 2 (kg m/s).
     pub(crate) momentum: f64,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::elements::body::Body;
+    use crate::elements::material::Material;
+    use crate::elements::mesh::{Cells, Mesh};
+
+    /// Whichever of several bodies comes first, the stiffest and the fastest are the scales, as if each were alone.
+    #[test]
+    fn scales_of_several_bodies_are_the_largest() {
+        let body = |young: f64, density: f64, name: &str| {
+            // apart from each other
+            let mesh = Mesh::rectangle([0.1, 0.1], [2, 2], Cells::Triangles).unwrap();
+            let mesh = mesh.translated(&[density, 0.0]).unwrap();
+            let material = Material { density, young, poisson: 0.3, viscosity: 0.0 };
+            Body::new(mesh, material).thickness(0.01).named(name).build().unwrap()
+        };
+        let [soft, fast, stiff] =
+            [body(1e5, 1000.0, "soft"), body(1e7, 10.0, "fast"), body(1e8, 1e4, "stiff")];
+        let of = |body: Body| Scales::of(&Scene::new(body));
+        let (speed, young) = (of(fast.clone()).wave_speed, of(stiff.clone()).young);
+        assert_eq!([speed, young], [1e3, 1e8]);
+        for bodies in [[&soft, &fast, &stiff], [&stiff, &soft, &fast], [&fast, &stiff, &soft]] {
+            let scales = of(Body::join(bodies.map(Clone::clone)).unwrap());
+            assert_eq!([scales.wave_speed, scales.young], [speed, young]);
+            assert!((scales.size - 0.02_f64.sqrt()).abs() < 1e-9, "{}", scales.size);
+            let settings = Settings::default();
+            let tolerances = settings.tolerances_by(&scales);
+            assert_eq!(tolerances.velocity, 0.01 * settings.rtol * speed);
+        }
+    }
 }

@@ -22,7 +22,7 @@ pub(crate) use phase::ContactWith;
 pub use phase::Phase;
 use start::Start;
 pub use term::Term;
-use tie::Tie;
+use tie::tied;
 
 use crate::base::input::{InputError, find, finite};
 use crate::base::vector::largest;
@@ -30,7 +30,9 @@ use crate::elements::body::Body;
 use crate::elements::force::{Force, Forces, NodalForces};
 use crate::elements::mesh::Selection;
 use crate::integrators::ode::Failure;
-use crate::scene::constraint::{Constraint, ConstraintRow, PhaseStart, prescribe, rows};
+use crate::scene::constraint::{
+    Constrained, Constraint, ConstraintRow, PhaseStart, prescribe, rows,
+};
 use crate::scene::forces::{Chamber, Contact, Obstacle, Spring, Touch, TouchForce};
 
 /// A body, gravity, springs, chambers, obstacles, and what happens when.
@@ -55,7 +57,8 @@ pub struct Scene {
     gravity: Option<Vec<f64>>,
     springs: Vec<Spring>,
     chambers: Vec<Chamber>,
-    ties: Vec<Tie>,
+    /// The constraints of each tie, found once: its nodes are those of this mesh.
+    ties: Vec<Result<Arc<[Constraint]>, InputError>>,
     touches: Vec<Touch>,
     obstacles: Vec<Obstacle>,
     /// Other forces.
@@ -132,7 +135,7 @@ impl Scene {
     /// # Ok::<(), pliant::Error>(())
     /// ```
     pub fn tie(mut self, nodes: impl Into<Selection>, to: impl Into<String>) -> Self {
-        self.ties.push(Tie { nodes: nodes.into(), to: to.into() });
+        self.ties.push(tied(&self.body, &nodes.into(), &to.into()));
         self
     }
 
@@ -361,12 +364,6 @@ impl Scene {
         forces.collect()
     }
 
-    /// What is glued.
-    #[cfg(feature = "checkpoint")]
-    pub(crate) fn ties(&self) -> &[Tie] {
-        &self.ties
-    }
-
     /// How bodies touch.
     pub(crate) fn touches(&self) -> &[Touch] {
         &self.touches
@@ -385,10 +382,16 @@ impl Scene {
 
     /// The forces of a touch of bodies of the scene.
     pub(crate) fn force_of(&self, touch: &Touch) -> Result<TouchForce, InputError> {
+        let number = |node: usize| self.body.parts().position(|part| part.nodes.contains(&node));
         let mut glued = Vec::new();
-        for tie in &self.ties {
-            glued.extend(tie.bodies(&self.body)?);
+        for constraint in self.tied()? {
+            if let Constrained::Row(terms) = &constraint.what {
+                let mut bodies = terms.iter().filter_map(|&(node, ..)| number(node - 1));
+                glued.extend(bodies.next().zip(bodies.next()).map(<[usize; 2]>::from));
+            }
         }
+        glued.sort_unstable();
+        glued.dedup();
         touch.force(&self.body, &glued, self.initial_displacements())
     }
 
@@ -396,10 +399,10 @@ impl Scene {
     ///
     /// # Errors
     /// Nodes or bodies that do not exist, nodes of the body itself, nodes that are not at it.
-    pub(crate) fn tied(&self) -> Result<Vec<Constraint>, InputError> {
+    pub(crate) fn tied(&self) -> Result<Vec<&Constraint>, InputError> {
         let mut constraints = Vec::new();
         for tie in &self.ties {
-            tie.add_constraints(&self.body, &mut constraints)?;
+            constraints.extend(tie.as_ref().map_err(Clone::clone)?.iter());
         }
         Ok(constraints)
     }
@@ -411,7 +414,7 @@ impl Scene {
         start: &PhaseStart,
     ) -> Result<Vec<ConstraintRow>, InputError> {
         let tied = self.tied()?;
-        let all = phase.constraints.iter().chain(&tied);
+        let all = phase.constraints.iter().chain(tied);
         rows(all, self.body.mesh(), &phase.name, start)
     }
 }

@@ -74,8 +74,7 @@ impl Start {
         for (name, spin) in of_bodies {
             let part = body.part_named(name, "body of a spin")?;
             let omega = angular("spin", spin, dimension)?;
-            let dofs = dimension * part.nodes.start..dimension * part.nodes.end;
-            add_spin(&omega, part.body, &displacements[dofs.clone()], &mut v[dofs]);
+            add_spin(&omega, part.body, &displacements[part.dofs()], &mut v[part.dofs()]);
         }
         Ok(v)
     }

@@ -1,5 +1,7 @@
 //! Ties: nodes of one body glued to another body.
 
+use std::sync::Arc;
+
 use crate::base::input::InputError;
 use crate::base::vector::norm;
 use crate::elements::basis::closest;
@@ -8,70 +10,43 @@ use crate::elements::mesh::Selection;
 use crate::scene::constraint::{Axis, Constrained, Constraint, Motion};
 use crate::scene::forces::pieces;
 
-/// Nodes that move with the points of another body at which they are.
-#[derive(Debug, Clone)]
-pub(crate) struct Tie {
-    pub(super) nodes: Selection,
-    pub(super) to: String,
-}
-
 /// How far a node may be from the body that it is glued to, over the length of the edges there: the straight edges of
 /// cells leave gaps along a curve.
 const MOST_APART: f64 = 0.2;
 /// Shares of nodes below this are round-off.
 const NO_SHARE: f64 = 1e-12;
 
-impl Tie {
-    /// The numbers of the bodies that it joins, pair by pair.
-    ///
-    /// # Errors
-    /// Nodes or a body that do not exist.
-    pub(super) fn bodies(&self, body: &Body) -> Result<Vec<[usize; 2]>, InputError> {
-        let to = body.part_named(&self.to, "body of a tie")?;
-        let number = |node: usize| body.parts().position(|part| part.nodes.contains(&node));
-        let nodes = body.mesh().select(&self.nodes)?;
-        let mut pairs: Vec<[usize; 2]> = nodes
-            .into_iter()
-            .filter_map(|node| Some([number(node)?, number(to.nodes.start)?]))
-            .collect();
-        pairs.sort_unstable();
-        pairs.dedup();
-        Ok(pairs)
-    }
-
-    /// Adds its rows.
-    ///
-    /// # Errors
-    /// Nodes or a body that do not exist, nodes of the body itself, nodes that are not at it.
-    pub(super) fn add_constraints(
-        &self,
-        body: &Body,
-        constraints: &mut Vec<Constraint>,
-    ) -> Result<(), InputError> {
-        let to = body.part_named(&self.to, "body of a tie")?;
-        let target = Target::new(&to);
-        for node in body.mesh().select(&self.nodes)? {
-            if to.nodes.contains(&node) {
-                let help = format!(
-                    "it is a node of body \"{}\" itself: name those of another body",
-                    to.name
-                );
-                return Err(InputError::new("node of a tie", node + 1, help));
-            }
-            let shares = target.shares_at(node, body.mesh().position(node))?;
-            // rows of the same two nodes are the same, whichever of them was named
-            let is_first = shares.iter().all(|(other, _)| node < to.nodes.start + other);
-            let sign = if is_first { 1.0 } else { -1.0 };
-            for &axis in Axis::all(body.dimension()) {
-                let others = shares
-                    .iter()
-                    .map(|(other, share)| (to.nodes.start + other + 1, axis, -sign * share));
-                let terms = [(node + 1, axis, sign)].into_iter().chain(others).collect();
-                constraints.push(Constraint { what: Constrained::Row(terms), how: Motion::Hold });
-            }
+/// The constraints by which `nodes` move with the points of the body with the name `to` at which they are.
+///
+/// # Errors
+/// Nodes or a body that do not exist, nodes of the body itself, nodes that are not at it.
+pub(super) fn tied(
+    body: &Body,
+    nodes: &Selection,
+    to: &str,
+) -> Result<Arc<[Constraint]>, InputError> {
+    let to = body.part_named(to, "body of a tie")?;
+    let target = Target::new(&to);
+    let mut constraints = Vec::new();
+    for node in body.mesh().select(nodes)? {
+        if to.nodes.contains(&node) {
+            let help =
+                format!("it is a node of body \"{}\" itself: name those of another body", to.name);
+            return Err(InputError::new("node of a tie", node + 1, help));
         }
-        Ok(())
+        let shares = target.shares_at(node, body.mesh().position(node))?;
+        // rows of the same two nodes are the same, whichever of them was named
+        let is_first = shares.iter().all(|(other, _)| node < to.nodes.start + other);
+        let sign = if is_first { 1.0 } else { -1.0 };
+        for &axis in Axis::all(body.dimension()) {
+            let others = shares
+                .iter()
+                .map(|(other, share)| (to.nodes.start + other + 1, axis, -sign * share));
+            let terms = [(node + 1, axis, sign)].into_iter().chain(others).collect();
+            constraints.push(Constraint { what: Constrained::Row(terms), how: Motion::Hold });
+        }
     }
+    Ok(constraints.into())
 }
 
 /// A body that nodes are glued to.
@@ -94,9 +69,8 @@ impl<'a> Target<'a> {
 
     /// The nodes of the body with their shares in the point where `node`, at `x` (m), is glued.
     fn shares_at(&self, node: usize, x: &[f64]) -> Result<Vec<(usize, f64)>, InputError> {
-        let is_some = |share: &(usize, f64)| share.1.abs() > NO_SHARE;
         if let Ok(shares) = self.part.body.shares_at(x) {
-            return Ok(shares.into_iter().filter(is_some).collect());
+            return Ok(without_round_off(shares.into_iter()));
         }
         let x: [f64; 3] = std::array::from_fn(|i| x.get(i).copied().unwrap_or(0.0));
         let placed = self.facets.iter().map(|facet| {
@@ -110,7 +84,7 @@ impl<'a> Target<'a> {
         let nearest = placed.min_by(|(a, ..), (b, ..)| a.total_cmp(b));
         match nearest {
             Some((gap, facet, shares, edge)) if gap <= MOST_APART * edge => {
-                Ok(facet.iter().copied().zip(shares).filter(is_some).collect())
+                Ok(without_round_off(facet.iter().copied().zip(shares)))
             }
             nearest => {
                 let (gap, edge) =
@@ -136,6 +110,15 @@ impl<'a> Target<'a> {
     }
 }
 
+/// The shares that are not 0. A node by itself has all, so that its row is the same from whichever side it was named.
+fn without_round_off(shares: impl Iterator<Item = (usize, f64)>) -> Vec<(usize, f64)> {
+    let some: Vec<_> = shares.filter(|(_, share)| share.abs() > NO_SHARE).collect();
+    match some[..] {
+        [(node, _)] => vec![(node, 1.0)],
+        _ => some,
+    }
+}
+
 /// The longest edge between corners (m).
 fn longest(corners: &[[f64; 3]]) -> f64 {
     let next = corners.iter().cycle().skip(1);
@@ -144,4 +127,58 @@ fn longest(corners: &[[f64; 3]]) -> f64 {
         .zip(next)
         .map(|(a, b)| norm(&std::array::from_fn::<f64, 3, _>(|i| b[i] - a[i])));
     lengths.fold(0.0, f64::max)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::elements::mesh::{Cells, Mesh};
+    use crate::studies::samples::SQUARE_MATERIAL;
+
+    /// A quadratic cell, and a row of nodes that is `gap` (m) away from its right side.
+    fn bodies(gap: f64) -> Body {
+        let body = |name: &str, x: f64, nodes: [usize; 2], cells: Cells| {
+            let mesh = Mesh::rectangle([0.1, 0.1], nodes, cells).unwrap().translated(&[x, 0.0]);
+            Body::new(mesh.unwrap(), SQUARE_MATERIAL).thickness(0.01).named(name).build().unwrap()
+        };
+        let tip = body("tip", 0.1 + gap, [2, 5], Cells::Rectangles);
+        Body::join([body("base", 0.0, [2, 2], Cells::Rectangles9), tip]).unwrap()
+    }
+
+    /// The nodes that a node at height `y` (m) of the row is glued to: their heights, with their shares.
+    fn glued(gap: f64, y: f64) -> Vec<(f64, f64)> {
+        let body = bodies(gap);
+        let constraints = tied(&body, &"tip/left".into(), "base").unwrap();
+        let rows = constraints.iter().map(|constraint| match &constraint.what {
+            Constrained::Row(terms) => terms,
+            _ => panic!("{constraint:?}"),
+        });
+        let height = |node: usize| body.mesh().position(node - 1)[1];
+        let mut rows = rows.filter(|terms| (height(terms[0].0) - y).abs() < 1e-12);
+        let terms = rows.next().unwrap();
+        let others = terms[1..].iter();
+        let mut glued: Vec<_> =
+            others.map(|(n, _, share)| (height(*n), -share / terms[0].2)).collect();
+        glued.sort_by(|(a, _), (b, _)| a.total_cmp(b));
+        glued
+    }
+
+    fn is_close(a: &[(f64, f64)], b: &[(f64, f64)]) -> bool {
+        let apart = |((x, p), (y, q)): (&(f64, f64), &(f64, f64))| (x - y).abs().max((p - q).abs());
+        a.len() == b.len() && a.iter().zip(b).map(apart).all(|apart| apart < 1e-9)
+    }
+
+    /// Quadratic edges carry nodes by their shape functions, N = (1 - s)(1 - 2s), s(2s - 1), 4s(1 - s) at s = 3/4.
+    #[test]
+    fn nodes_on_a_quadratic_edge_follow_its_curve() {
+        let found = glued(0.0, 0.075);
+        assert!(is_close(&found, &[(0.0, -0.125), (0.05, 0.75), (0.1, 0.375)]), "{found:?}");
+    }
+
+    /// Across a gap it is the nearest piece of the boundary, cut into straight ones.
+    #[test]
+    fn nodes_across_a_gap_follow_the_nearest_piece() {
+        let found = glued(0.004, 0.075);
+        assert!(is_close(&found, &[(0.05, 0.5), (0.1, 0.5)]), "{found:?}");
+    }
 }

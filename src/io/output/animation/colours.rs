@@ -3,7 +3,7 @@
 use serde_json::{Value, json};
 
 use super::pack;
-use crate::elements::body::{CellField, Strain};
+use crate::elements::body::{Body, CellField, Strain};
 
 /// Part of the values of cells that the scale of colours covers.
 const PERCENTILE: f64 = 0.99;
@@ -14,11 +14,11 @@ pub(super) struct Quantity {
     unit: &'static str,
     /// Whether its scale of colours is symmetric about 0, instead of beginning at 0.
     signed: bool,
-    /// How it is computed, with the body's measure of strain.
+    /// How it is computed, with the cell's measure of strain.
     pub(super) value: fn(&CellField, Strain) -> f64,
 }
 
-/// The stretches, which are not shown with Cauchy's strain, come last.
+/// The stretches, which are not shown where all strains are Cauchy's, come last.
 static QUANTITIES: [Quantity; 5] = [
     Quantity {
         name: "Von Mises stress",
@@ -48,11 +48,11 @@ static QUANTITIES: [Quantity; 5] = [
 ];
 
 impl Quantity {
-    /// Those of a body with this measure of strain.
-    pub(super) fn all(strain: Strain) -> &'static [Self] {
-        match strain {
-            Strain::Cauchy => &QUANTITIES[..3],
-            Strain::Green => &QUANTITIES,
+    /// Those that are shown of a body, or of several.
+    pub(super) fn of(body: &Body) -> &'static [Self] {
+        match body.parts().all(|part| part.body.strain() == Strain::Cauchy) {
+            true => &QUANTITIES[..3],
+            false => &QUANTITIES,
         }
     }
 
@@ -91,4 +91,27 @@ fn round_up(x: f64) -> f64 {
     // a number of the list times the unit, but for rounding
     let enough = |step: &f64| step * unit >= x * (1.0 - 1e-9);
     unit * steps.into_iter().find(enough).unwrap_or(10.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::elements::mesh::{Cells, Mesh};
+    use crate::studies::samples::SQUARE_MATERIAL;
+
+    /// Stretches are shown if any of several bodies has Green's strain, whichever comes first.
+    #[test]
+    fn quantities_are_those_of_all_bodies() {
+        let body = |strain: Strain| {
+            let mesh = Mesh::rectangle([0.1, 0.1], [2, 2], Cells::Triangles).unwrap();
+            Body::new(mesh, SQUARE_MATERIAL).thickness(0.01).strain(strain).build().unwrap()
+        };
+        let (cauchy, green) = (Strain::Cauchy, Strain::Green);
+        for (strains, count) in
+            [([cauchy, cauchy], 3), ([cauchy, green], 5), ([green, cauchy], 5), ([green, green], 5)]
+        {
+            let both = Body::join(strains.map(body)).unwrap();
+            assert_eq!(Quantity::of(&both).len(), count, "{strains:?}");
+        }
+    }
 }

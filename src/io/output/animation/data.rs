@@ -70,7 +70,7 @@ fn bytes_per_frame(trajectory: &Trajectory, geometry: &Geometry) -> usize {
     // a place and a force of each
     let contacts = 2 * axes * trajectory.scene().obstacles().len();
     let singles = size_of::<f32>() * (sensors + contacts);
-    let quantities = Quantity::all(trajectory.body().strain()).len();
+    let quantities = Quantity::of(trajectory.body()).len();
     2 * axes * geometry.count() + quantities * geometry.cells.len() + singles
 }
 
@@ -91,7 +91,7 @@ fn motion(trajectory: &Trajectory, frames: &[&Sample], geometry: &Geometry) -> V
 
 /// The values of each quantity in the cell of each face, sample by sample.
 fn quantities(body: &Body, frames: &[&Sample], geometry: &Geometry) -> Value {
-    let quantities = Quantity::all(body.strain());
+    let quantities = Quantity::of(body);
     let mut values =
         vec![Vec::with_capacity(frames.len() * geometry.cells.len()); quantities.len()];
     for sample in frames {

@@ -42,7 +42,7 @@ impl Picture {
         let ends = data::spring_ends(scene)?;
         let geometry = Geometry::new(scene.body(), ends.iter().flatten().copied(), &points);
         let quantities: Vec<Value> =
-            Quantity::all(scene.body().strain()).iter().map(Quantity::to_json).collect();
+            Quantity::of(scene.body()).iter().map(Quantity::to_json).collect();
         let springs = scene.springs().iter().zip(&ends);
         let springs = springs
             .map(|(spring, ends)| json!({ "name": spring.name(), "ends": geometry.ends(ends) }));
@@ -95,7 +95,7 @@ impl Picture {
     /// The values of a quantity in the cell of each face, and the end of their scale; `None` for a number
     /// that no quantity has.
     pub(crate) fn colours(&self, body: &Body, u: &[f64], quantity: usize) -> Option<Value> {
-        let shown = Quantity::all(body.strain()).get(quantity)?;
+        let shown = Quantity::of(body).get(quantity)?;
         let fields = body.cell_fields(u);
         let value = |&cell: &usize| (shown.value)(&fields[cell], body.strain_of(cell)) as f32;
         let values: Vec<f32> = self.geometry.cells.iter().map(value).collect();

@@ -70,7 +70,7 @@ impl Panel<'_> {
                 (CellKind::Segment, _) => panel = panel.add(string(mesh, points, paint)),
                 (_, 2) => panel = panel.add(cells(mesh, points, paint)),
                 _ => {
-                    let depths = depths(part.body, part.of(&self.sample.u));
+                    let depths = depths(part.body, &self.sample.u[part.dofs()]);
                     faces.extend(surface(mesh, points, &depths, paint));
                 }
             }

@@ -235,3 +235,18 @@ fn walls_that_enclose_nothing() {
         says(&problem(&body(mesh), "all"), &[]);
     }
 }
+
+/// A chamber is as thick as the body of its walls.
+#[test]
+fn the_thickness_is_that_of_the_body_of_the_walls() {
+    let square = |name: &str, thickness: f64| {
+        let mesh = Mesh::rectangle([0.2, 0.1], [2, 2], Cells::Triangles).unwrap();
+        Body::new(mesh, SQUARE_MATERIAL).thickness(thickness).named(name).build().unwrap()
+    };
+    let both = Body::join([square("thin", 0.01), square("thick", 0.03)]).unwrap();
+    for (walls, thickness) in [([1, 2, 4, 3], 0.01), ([5, 6, 8, 7], 0.03)] {
+        let force = Chamber::within("air", walls).force(&both, Vec::new()).unwrap();
+        let volume = force.volume(&vec![0.0; both.dofs()]);
+        assert!((volume - 0.02 * thickness).abs() < 1e-15, "{volume}");
+    }
+}

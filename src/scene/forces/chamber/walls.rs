@@ -6,7 +6,7 @@ use super::Chamber;
 use super::enclosure::Part;
 use crate::base::input::InputError;
 use crate::elements::mesh::{CellKind, Face, FaceKind, Mesh, Selection};
-use crate::scene::forces::faces::{between, list, volume_parts};
+use crate::scene::forces::faces::{between, list, number_of, volume_parts};
 
 impl Chamber {
     /// The edges of closed polygons: their ends and, of curved ones, the node in their middle.
@@ -44,11 +44,14 @@ impl Chamber {
         let faces = walls(faces, &nodes).map_err(|problem| self.bad_walls(selection, &problem))?;
         let outlines = faces.iter().map(|face| outline(face, face.len() > 4));
         let lids = self.lids(outlines).map_err(|problem| self.bad_walls(selection, &problem))?;
-        let of_face = |face: &Face| {
-            let part = |(part, weight): Part<3>| (part.map(|local| face[local]), weight);
-            volume_parts(mesh.face_kind(face)).into_iter().map(part).collect::<Vec<_>>()
-        };
-        Ok(faces.iter().flat_map(of_face).chain(lids).collect())
+        let (mut all, mut by_kind) = (Vec::new(), Vec::new());
+        for face in &faces {
+            let kind = number_of(mesh.face_kind(face), &mut by_kind, volume_parts::<3>);
+            let part = |&(part, weight): &Part<3>| (part.map(|local| face[local]), weight);
+            all.extend(by_kind[kind].1.iter().map(part));
+        }
+        all.extend(lids);
+        Ok(all)
     }
 
     /// The triangles of a surface, and those of lids.

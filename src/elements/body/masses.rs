@@ -1,0 +1,72 @@
+//! Masses of nodes, and means over them: the centre of mass, the rotation.
+
+use super::assembled::Body;
+
+impl Body {
+    /// Total mass (kg).
+    pub fn mass(&self) -> f64 {
+        self.inertia.values.iter().sum()
+    }
+
+    /// Mass that moves with each node (kg): the row sums of m. Unless inertia is lumped, those of corners of
+    /// quadratic cells may be 0 or below.
+    pub fn nodal_masses(&self) -> Vec<f64> {
+        let pattern = self.inertia.pattern();
+        let row_sum = |row| pattern.row(row).map(|(entry, _)| self.inertia.values[entry]).sum();
+        (0..pattern.nodes()).map(row_sum).collect()
+    }
+
+    /// Mean of `x` (dimension components per node), weighted by mass.
+    pub(crate) fn mass_average(&self, x: &[f64]) -> Vec<f64> {
+        let (dimension, mass) = (self.dimension(), self.mass());
+        let mut average = vec![0.0; dimension];
+        for (nodal_mass, x) in self.nodal_masses().iter().zip(x.chunks_exact(dimension)) {
+            average.iter_mut().zip(x).for_each(|(a, x)| *a += nodal_mass * x / mass);
+        }
+        average
+    }
+
+    /// Centre of mass (m) under the displacements `u` (m).
+    pub fn centre_of_mass(&self, u: &[f64]) -> Vec<f64> {
+        let natural = self.mass_average(self.mesh.positions()).into_iter();
+        natural.zip(self.mass_average(u)).map(|(x, u)| x + u).collect()
+    }
+
+    /// Velocity (m/s) of the centre of mass, where nodes have the velocities `v` (m/s).
+    pub fn mean_velocity(&self, v: &[f64]) -> Vec<f64> {
+        self.mass_average(v)
+    }
+
+    /// Angle (rad, counter-clockwise) by which a body in the plane has turned as a whole under the
+    /// displacements `u` (m): that of the rotation which, in the mean over its mass, brings the undeformed
+    /// shape nearest to the present one. `None` in other dimensions.
+    pub(crate) fn rotation(&self, u: &[f64]) -> Option<f64> {
+        if self.dimension() != 2 {
+            return None;
+        }
+        Some(self.rotation_by(&self.arms(), u))
+    }
+
+    /// The mass of each node of a body in the plane, times its natural position relative to the centre of
+    /// mass (kg m). They add up to 0.
+    pub(crate) fn arms(&self) -> Vec<[f64; 2]> {
+        let positions = self.mesh().positions();
+        let centre = self.mass_average(positions);
+        let masses = self.nodal_masses();
+        let arm = |(mass, x): (&f64, &[f64])| [0, 1].map(|i| mass * (x[i] - centre[i]));
+        masses.iter().zip(positions.chunks_exact(2)).map(arm).collect()
+    }
+
+    /// The [`rotation`](Self::rotation) of a body in the plane, by its `arms`.
+    pub(crate) fn rotation_by(&self, arms: &[[f64; 2]], u: &[f64]) -> f64 {
+        let nodes = self.mesh().positions().chunks_exact(2).zip(u.chunks_exact(2));
+        let (mut along, mut across) = (0.0, 0.0);
+        for ([a, b], (x, u)) in arms.iter().zip(nodes) {
+            // relative to any point: the arms add up to 0
+            let [x, y] = [x[0] + u[0], x[1] + u[1]];
+            along += a * x + b * y;
+            across += a * y - b * x;
+        }
+        across.atan2(along)
+    }
+}
