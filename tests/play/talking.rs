@@ -2,6 +2,7 @@
 
 use std::path::Path;
 use std::thread;
+use std::time::{Duration, Instant};
 
 use pliant::play::Player;
 use pliant::{Sampling, Scene, SceneFile, Settings};
@@ -87,13 +88,17 @@ fn the_end_that_was_played_is_saved() -> Outcome {
 /// A page that vanishes without a word, as a machine that sleeps does, leaves no scene playing: its browser is asked.
 #[test]
 fn a_page_that_vanished_stops_the_scene() -> Outcome {
-    let address = served(|_| {})?;
+    let file = SceneFile::parse(BEAM, Path::new(PATH))?;
+    let player = Player::new(&file.scene, &file.settings, "", 0)?;
+    let player = player.quiet(Duration::from_secs(2));
+    let address = player.address();
+    thread::spawn(move || player.serve());
     let mut vanished = Client::at(&address)?;
     // it would take hundreds of seconds
     vanished.order(json!({ "do": "speed", "value": 2e-4 }))?;
     vanished.order(json!({ "do": "play" }))?;
     // its connection stays open, and answers nothing; one page more would keep the scene playing
-    std::thread::sleep(std::time::Duration::from_secs(24));
+    thread::sleep(Duration::from_secs(8));
     let mut client = Client::at(&address)?;
     let frame = client.look()?;
     assert_eq!((&frame["playing"], &frame["atEnd"]), (&json!(false), &json!(false)));
@@ -308,11 +313,11 @@ fn pages_come_and_go() -> Outcome {
     while client.look()?["time"] == 0.0 {}
     drop(client);
     let mut client = Client::at(&address)?;
-    let deadline = std::time::Instant::now() + std::time::Duration::from_secs(30);
+    let deadline = Instant::now() + Duration::from_secs(30);
     while client.look()?["playing"] == true {
-        assert!(std::time::Instant::now() < deadline);
+        assert!(Instant::now() < deadline);
         // it is known that a page is gone as soon as the connection is
-        std::thread::sleep(std::time::Duration::from_millis(10));
+        thread::sleep(Duration::from_millis(10));
         drop(std::mem::replace(&mut client, Client::at(&address)?));
     }
     assert!(client.look()?["time"].as_f64() > Some(0.0));

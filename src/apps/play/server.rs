@@ -36,7 +36,7 @@ const MOST: usize = 32;
 const LONGEST: usize = 64 * 1024;
 /// How long a browser may take to accept an answer.
 const PATIENCE: Duration = Duration::from_secs(20);
-/// How long a page may be silent until it is pinged, and how long it may take to answer the ping.
+/// What [`Player::quiet`] is unless set.
 const QUIET: Duration = Duration::from_secs(10);
 /// Pause after a connection that could not be accepted.
 const RECOVERY: Duration = Duration::from_millis(50);
@@ -61,12 +61,14 @@ pub struct Player {
     /// What the page shows from the start.
     data: Value,
     session: Session,
+    quiet: Duration,
 }
 
 /// What the connections share.
 struct House {
     door: Door,
     page: String,
+    quiet: Duration,
     requests: Sender<Request>,
     connections: Arc<AtomicUsize>,
     /// Pages that are open.
@@ -120,7 +122,7 @@ impl Player {
         let listener = listener.map_err(|error| no_port(port, &error))?;
         let port = listener.local_addr().map_err(|error| no_port(port, &error))?.port();
         data["title"] = title.into();
-        Ok(Self { listener, door: Door::new(port)?, data, session })
+        Ok(Self { listener, door: Door::new(port)?, data, session, quiet: QUIET })
     }
 
     /// Shows what the sensors of `sampling` read over time, below the energies. They are read as often as the
@@ -144,6 +146,13 @@ impl Player {
         self
     }
 
+    /// How long a page may be silent until its browser is asked whether it is still there, and how long the browser
+    /// may take to answer: 10 s unless set, more than 0. A scene that no page shows any more stops.
+    pub fn quiet(mut self, longest: Duration) -> Self {
+        self.quiet = longest;
+        self
+    }
+
     /// The address of the page. Whoever knows it controls the simulation.
     pub fn address(&self) -> String {
         self.door.address()
@@ -154,7 +163,7 @@ impl Player {
     /// # Errors
     /// A thread that the system cannot start.
     pub fn serve(self) -> Result<(), Error> {
-        let Self { listener, door, data, session } = self;
+        let Self { listener, door, data, session, quiet } = self;
         let page = Picture::page(PAGE, STYLE, SCRIPTS, &data);
         let (requests, inbox) = channel();
         let simulation = thread::Builder::new().name("simulation".into());
@@ -164,6 +173,7 @@ impl Player {
         let house = Arc::new(House {
             door,
             page,
+            quiet,
             requests,
             connections: Arc::default(),
             pages: Arc::default(),
@@ -224,7 +234,7 @@ impl House {
         let ready = stream
             .write_all(accepted.as_bytes())
             .and_then(|()| stream.set_nodelay(true))
-            .and_then(|()| stream.set_read_timeout(Some(QUIET)));
+            .and_then(|()| stream.set_read_timeout(Some(self.quiet)));
         if ready.is_err() {
             return;
         }

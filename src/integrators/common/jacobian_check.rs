@@ -49,6 +49,18 @@ pub(crate) struct Point<'a> {
     pub(crate) cj: f64,
 }
 
+/// What a check asks for.
+pub(crate) enum Wanted<'a> {
+    /// The product of the Jacobian with a vector.
+    Product(&'a [f64]),
+    /// The equations at a state and time derivative.
+    Equations([&'a [f64]; 2]),
+}
+
+/// Writes what is wanted, and returns `false` where it has no value. (`dyn`, as the check would else be compiled once
+/// more for each type of system.)
+pub(crate) type Compute<'a> = dyn FnMut(Wanted<'_>, &mut [f64]) -> bool + 'a;
+
 /// Shifts relative to the sizes of the unknowns.
 const SHIFTS: [f64; 3] = [1e-3, 1e-5, 1e-7];
 /// Largest difference allowed between product and quotient, relative to the larger of both.
@@ -88,37 +100,34 @@ impl JacobianCheck {
 
     /// What is wrong with the Jacobian that `method` supplied at the point.
     ///
-    /// `multiply` writes its product with a vector, and `evaluate` the equations at a state and time
-    /// derivative; both return `false` where they have no value. The result is `None` where differences
-    /// cannot show an error: next to a jump or a kink, or where they do not converge.
-    pub(crate) fn find<S>(
+    /// The result is `None` where differences cannot show an error: next to a jump or a kink, or where they do
+    /// not converge.
+    pub(crate) fn find(
         &mut self,
-        system: &mut S,
         method: &'static str,
         point: Point<'_>,
-        mut multiply: impl FnMut(&mut S, &[f64], &mut [f64]) -> bool,
-        mut evaluate: impl FnMut(&mut S, [&[f64]; 2], &mut [f64]) -> bool,
+        compute: &mut Compute<'_>,
     ) -> Option<Cause> {
         let Point { y, yp, cj } = point;
         let [moved, moved_slope] = &mut self.moved;
         moved.copy_from_slice(y);
         moved_slope.clear();
         moved_slope.extend_from_slice(yp);
-        if !evaluate(system, [y, yp], &mut self.base) {
+        if !compute(Wanted::Equations([y, yp]), &mut self.base) {
             return None;
         }
-        let mut at = |system: &mut S,
-                      [moved, slope]: &mut [Vec<f64>; 2],
-                      v: &[f64],
-                      shift: f64,
-                      out: &mut [f64]| {
+        let at = |compute: &mut Compute<'_>,
+                  [moved, slope]: &mut [Vec<f64>; 2],
+                  v: &[f64],
+                  shift: f64,
+                  out: &mut [f64]| {
             for (i, (v, y)) in v.iter().zip(y).enumerate() {
                 moved[i] = y + shift * v;
                 if let Some(slope) = slope.get_mut(i) {
                     *slope = yp[i] + cj * shift * v;
                 }
             }
-            evaluate(system, [moved, slope], out) && out.iter().all(|x| x.is_finite())
+            compute(Wanted::Equations([moved, slope]), out) && out.iter().all(|x| x.is_finite())
         };
         let seed = self.random;
         self.terms.fill(0.0);
@@ -126,7 +135,7 @@ impl JacobianCheck {
             self.random = seed;
             self.choose_direction(y, half);
             let product = &mut self.products[half];
-            if !multiply(system, &self.direction, product) {
+            if !compute(Wanted::Product(&self.direction), product) {
                 return None;
             }
             let sizes = self.terms.iter_mut().zip(product);
@@ -139,7 +148,7 @@ impl JacobianCheck {
             if self.direction.iter().all(|v| *v == 0.0) {
                 continue;
             }
-            let Some((row, difference)) = self.wrong_row(system, half, &mut at) else { continue };
+            let Some((row, difference)) = self.wrong_row(compute, half, at) else { continue };
             let mut cause = (0.0, None, self.products[half][row], difference);
             let unknowns = if y.len() <= MOST_UNKNOWNS { y } else { &[] };
             for (j, &own) in unknowns.iter().enumerate() {
@@ -148,8 +157,8 @@ impl JacobianCheck {
                 self.direction[j] = size;
                 let Self { direction, moved, products, ahead, .. } = self;
                 let product = &mut products[half];
-                if !multiply(system, direction, product)
-                    || !at(system, moved, direction, SHIFTS[1], ahead)
+                if !compute(Wanted::Product(direction), product)
+                    || !at(compute, moved, direction, SHIFTS[1], ahead)
                 {
                     continue;
                 }
@@ -185,17 +194,17 @@ impl JacobianCheck {
 
     /// A row of the product that differences along the direction refute, and their value: the quotients of
     /// two shifts agree with each other, but not with the product.
-    fn wrong_row<S>(
+    fn wrong_row(
         &mut self,
-        system: &mut S,
+        compute: &mut Compute<'_>,
         half: usize,
-        at: &mut impl FnMut(&mut S, &mut [Vec<f64>; 2], &[f64], f64, &mut [f64]) -> bool,
+        at: impl Fn(&mut Compute<'_>, &mut [Vec<f64>; 2], &[f64], f64, &mut [f64]) -> bool,
     ) -> Option<(usize, f64)> {
         let Self { direction, moved, products, terms, base, ahead, behind, rows, .. } = self;
         let product = &products[half];
         rows.fill(RowState::Open);
         for shift in SHIFTS {
-            if !at(system, moved, direction, shift, ahead) {
+            if !at(compute, moved, direction, shift, ahead) {
                 continue;
             }
             for (i, row) in rows.iter_mut().enumerate() {
@@ -208,7 +217,7 @@ impl JacobianCheck {
                 return None;
             }
             // the Jacobian may be that of the other side of a kink
-            if !at(system, moved, direction, -shift, behind) {
+            if !at(compute, moved, direction, -shift, behind) {
                 continue;
             }
             for (i, row) in rows.iter_mut().enumerate().filter(|(_, row)| **row != RowState::Right)

@@ -22,7 +22,7 @@ pub use error::{Callback, Cause, Error, IntegrationError};
 pub use explicit_options::ExplicitOptions;
 pub(crate) use explicit_options::{check_stop_time, check_target};
 pub use integrator::{Integrator, Reached};
-pub(crate) use jacobian_check::{JacobianCheck, Point};
+pub(crate) use jacobian_check::{JacobianCheck, Point, Wanted};
 pub(crate) use march::{March, StepMethod, not_finite};
 pub use one_step::OneStep;
 pub(crate) use options::{

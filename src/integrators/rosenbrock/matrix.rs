@@ -144,7 +144,7 @@ impl Dense {
             return system.dense_jacobian(t, y, slope, matrix).map(|()| 0);
         };
         let before = differences.evaluations;
-        differences.of_rhs(y, slope, values, |y, ydot| call::rhs(system, t, y, ydot))?;
+        differences.of_rhs(y, slope, values, &mut |y, ydot| call::rhs(system, t, y, ydot))?;
         Ok(differences.evaluations - before)
     }
 

@@ -2,7 +2,9 @@
 
 use super::matrix::Matrix;
 use super::solver::{LinearlyImplicit, interpolate};
-use crate::integrators::common::{Callback, Cause, Error, March, Point, StepMethod, not_finite};
+use crate::integrators::common::{
+    Callback, Cause, Error, March, Point, StepMethod, Wanted, not_finite,
+};
 use crate::integrators::ode::{Ode, call};
 
 impl LinearlyImplicit {
@@ -88,14 +90,13 @@ impl LinearlyImplicit {
             return None;
         }
         let March { system, t, y, .. } = march;
-        let multiply = |_: &mut S, v: &[f64], out: &mut [f64]| {
-            matrix.multiply(v, out);
-            true
-        };
-        let evaluate = |system: &mut S, [y, _]: [&[f64]; 2], out: &mut [f64]| {
-            call::rhs(system, *t, y, out).is_ok()
-        };
-        check.find(system, method, Point { y, yp: &[], cj: 0.0 }, multiply, evaluate)
+        check.find(method, Point { y, yp: &[], cj: 0.0 }, &mut |wanted, out| match wanted {
+            Wanted::Product(v) => {
+                matrix.multiply(v, out);
+                true
+            }
+            Wanted::Equations([y, _]) => call::rhs(system, *t, y, out).is_ok(),
+        })
     }
 
     /// df/dt at (t, y), as a difference quotient within the step.

@@ -24,7 +24,7 @@ use super::{
     signs::Violation,
 };
 use crate::integrators::{
-    common::{Callback, Cause, Error, JacobianCheck, Point},
+    common::{Callback, Cause, Error, JacobianCheck, Point, Wanted},
     ode::{Entries, Failure},
 };
 
@@ -284,18 +284,15 @@ impl<S> Host<S> {
         let mut wrong = None;
         let mut outcome = 0;
         if check.is_due() {
-            let multiply = |system: &mut S, v: &[f64], out: &mut [f64]| match &shape {
-                Some(shape) => {
-                    shape.multiply(values, v, out);
-                    true
-                }
-                None => times(system, v, out).is_ok(),
-            };
-            let evaluate = |system: &mut S, [y, yp]: [&[f64]; 2], out: &mut [f64]| {
-                evaluate(system, [y, yp], out).is_ok()
-            };
             outcome = self.guard(Callback::Jacobian, t, |system| {
-                wrong = check.find(system, method, point, multiply, evaluate);
+                wrong = check.find(method, point, &mut |wanted, out| match (wanted, &shape) {
+                    (Wanted::Product(v), Some(shape)) => {
+                        shape.multiply(values, v, out);
+                        true
+                    }
+                    (Wanted::Product(v), None) => times(system, v, out).is_ok(),
+                    (Wanted::Equations(at), _) => evaluate(system, at, out).is_ok(),
+                });
                 Ok(())
             });
         }

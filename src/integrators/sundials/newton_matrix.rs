@@ -70,7 +70,7 @@ impl NewtonMatrix {
         };
         let before = differences.evaluations;
         let values = self.jacobian.values_mut();
-        differences.of_rhs(y, slope, values, |y, ydot| call::rhs(system, t, y, ydot))?;
+        differences.of_rhs(y, slope, values, &mut |y, ydot| call::rhs(system, t, y, ydot))?;
         Ok(differences.evaluations - before)
     }
 

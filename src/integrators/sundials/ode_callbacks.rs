@@ -167,7 +167,7 @@ pub(super) fn evaluate_jacobian<S: Ode>(
             entries.jacobian(system, t, y, ydot)
         });
     };
-    let outcome = differences.of_rhs(y, ydot, values, |y, ydot| {
+    let outcome = differences.of_rhs(y, ydot, values, &mut |y, ydot| {
         let evaluate = |system: &mut S, ydot: &mut [f64]| call::rhs(system, t, y, ydot);
         match host.guard_output(Callback::Rhs, t, ydot, evaluate) {
             0 => Ok(()),

@@ -71,16 +71,67 @@ use crate::integrators::{
 ///
 /// User guide: chapter "Using IDAS for Adjoint Sensitivity Analysis".
 pub struct DaeAdjoint<S, F> {
-    system: AdjointDae<S, F>,
+    system: S,
+    functional: F,
+    runs: Runs,
+}
+
+/// What is done with a system and its functional. They come as trait objects: what integrates them is compiled once, and
+/// not for each type.
+struct Runs {
     /// Time, state and its time derivative.
     start: (f64, Vec<f64>, Vec<f64>),
     forward: IdaOptions,
     options: AdjointOptions,
 }
 
+type Equations<'a> = AdjointDae<Borrowed<'a, dyn Dae + 'a>, Borrowed<'a, dyn Functional + 'a>>;
+
+impl Runs {
+    fn equations<'a>(
+        &self,
+        system: &'a mut (dyn Dae + 'a),
+        functional: &'a mut (dyn Functional + 'a),
+    ) -> Result<Equations<'a>, Error> {
+        let (t0, y0, yp0) = &self.start;
+        let (system, functional) = (Borrowed(system), Borrowed(functional));
+        let forward = self.forward.for_adjoint(y0)?;
+        let mut equations = AdjointDae::new(system, functional, y0.len(), forward)?;
+        equations.start((*t0, y0, yp0))?;
+        Ok(equations)
+    }
+
+    /// For one run.
+    fn session<'e, 'a>(
+        &self,
+        equations: &'e mut Equations<'a>,
+    ) -> Result<Session<IdaKind, Borrowed<'e, Equations<'a>>>, Error> {
+        let (t0, y0, yp0) = &self.start;
+        Session::of_ida(Borrowed(equations), *t0, (y0, yp0), &self.forward)
+    }
+
+    /// Finds inputs that cannot be used.
+    fn check(&self, system: &mut dyn Dae, functional: &mut dyn Functional) -> Result<(), Error> {
+        self.session(&mut self.equations(system, functional)?)?;
+        Ok(())
+    }
+
+    fn gradient(
+        &self,
+        system: &mut dyn Dae,
+        functional: &mut dyn Functional,
+        t: f64,
+    ) -> Result<Gradient, Error> {
+        let mut equations = self.equations(system, functional)?;
+        let mut session = self.session(&mut equations)?;
+        session.consistent_start(InitialCondition::Algebraic, t)?;
+        session.gradient(t, &self.options)
+    }
+}
+
 impl<S, F> fmt::Debug for DaeAdjoint<S, F> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("DaeAdjoint").field("start", &self.start).finish_non_exhaustive()
+        f.debug_struct("DaeAdjoint").field("start", &self.runs.start).finish_non_exhaustive()
     }
 }
 
@@ -117,13 +168,10 @@ impl<S: Dae, F: Functional> DaeAdjoint<S, F> {
             let help = "an adjoint gradient does not stop at events: leave them out";
             return Err(Error::input("root_count", system.root_count(), help));
         }
-        let equations = forward.for_adjoint(y0)?;
-        let system = AdjointDae::new(system, functional, y0.len(), equations)?;
         let start = (t0, y0.to_vec(), yp0.to_vec());
-        let (forward, options) = (forward.clone(), options.clone());
-        let mut adjoint = Self { system, start, forward, options };
-        // finds other inputs that cannot be used
-        adjoint.session()?;
+        let runs = Runs { start, forward: forward.clone(), options: options.clone() };
+        let mut adjoint = Self { system, functional, runs };
+        adjoint.runs.check(&mut adjoint.system, &mut adjoint.functional)?;
         Ok(adjoint)
     }
 
@@ -139,7 +187,7 @@ impl<S: Dae, F: Functional> DaeAdjoint<S, F> {
     /// A panic of the system or the functional passes through.
     pub fn gradient(&mut self, t: f64) -> Result<Gradient, Error> {
         check_time("end time", t)?;
-        let t0 = self.start.0;
+        let t0 = self.runs.start.0;
         if t <= t0 {
             let help = format!(
                 "it is later than the start, {t0:?}: IDAS has no way back from an earlier time, for which the equations \
@@ -147,27 +195,17 @@ impl<S: Dae, F: Functional> DaeAdjoint<S, F> {
             );
             return Err(Error::input("end time", t, help));
         }
-        let options = self.options.clone();
-        let mut session = self.session()?;
-        session.consistent_start(InitialCondition::Algebraic, t)?;
-        session.gradient(t, &options)
-    }
-
-    /// For one run.
-    fn session(&mut self) -> Result<Session<IdaKind, Borrowed<'_, AdjointDae<S, F>>>, Error> {
-        let (t0, y0, yp0) = &self.start;
-        self.system.start((*t0, y0, yp0))?;
-        Session::of_ida(Borrowed(&mut self.system), *t0, (y0, yp0), &self.forward)
+        self.runs.gradient(&mut self.system, &mut self.functional, t)
     }
 
     /// The system.
     #[must_use]
     pub fn system(&self) -> &S {
-        &self.system.equations.system
+        &self.system
     }
 
     /// The system, to change its parameters; the next [`gradient`](Self::gradient) uses them.
     pub fn system_mut(&mut self) -> &mut S {
-        &mut self.system.equations.system
+        &mut self.system
     }
 }

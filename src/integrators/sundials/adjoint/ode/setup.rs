@@ -3,6 +3,7 @@
 use std::fmt;
 
 use super::system::AdjointSystem;
+use crate::base::input::InputError;
 use crate::integrators::{
     common::{Error, check_start, check_time},
     ode::{Borrowed, Functional, Ode},
@@ -62,15 +63,59 @@ use crate::integrators::{
 ///
 /// User guide: chapter "Using CVODES for Adjoint Sensitivity Analysis".
 pub struct Adjoint<S, F> {
-    system: AdjointSystem<S, F>,
+    system: S,
+    functional: F,
+    runs: Runs,
+}
+
+/// What is done with a system and its functional. They come as trait objects: what integrates them is compiled once, and
+/// not for each type.
+struct Runs {
     start: (f64, Vec<f64>),
     forward: CvodeOptions,
     options: AdjointOptions,
 }
 
+type Equations<'a> = AdjointSystem<Borrowed<'a, dyn Ode + 'a>, Borrowed<'a, dyn Functional + 'a>>;
+
+impl Runs {
+    fn equations<'a>(
+        &self,
+        system: &'a mut (dyn Ode + 'a),
+        functional: &'a mut (dyn Functional + 'a),
+    ) -> Result<Equations<'a>, InputError> {
+        let (system, functional, n) = (Borrowed(system), Borrowed(functional), self.start.1.len());
+        let forward = self.forward.for_adjoint(&self.start.1)?;
+        AdjointSystem::new(system, functional, n, forward, &self.options)
+    }
+
+    /// For one run.
+    fn session<'e, 'a>(
+        &self,
+        equations: &'e mut Equations<'a>,
+    ) -> Result<Session<CvodeKind, Borrowed<'e, Equations<'a>>>, Error> {
+        Session::of_cvode(Borrowed(equations), self.start.0, &self.start.1, &self.forward)
+    }
+
+    /// Finds inputs that cannot be used.
+    fn check(&self, system: &mut dyn Ode, functional: &mut dyn Functional) -> Result<(), Error> {
+        self.session(&mut self.equations(system, functional)?)?;
+        Ok(())
+    }
+
+    fn gradient(
+        &self,
+        system: &mut dyn Ode,
+        functional: &mut dyn Functional,
+        t: f64,
+    ) -> Result<Gradient, Error> {
+        self.session(&mut self.equations(system, functional)?)?.gradient(t, &self.options)
+    }
+}
+
 impl<S, F> fmt::Debug for Adjoint<S, F> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Adjoint").field("start", &self.start).finish_non_exhaustive()
+        f.debug_struct("Adjoint").field("start", &self.runs.start).finish_non_exhaustive()
     }
 }
 
@@ -95,12 +140,10 @@ impl<S: Ode, F: Functional> Adjoint<S, F> {
             let help = "an adjoint gradient does not stop at events: leave them out";
             return Err(Error::input("root_count", system.root_count(), help));
         }
-        let equations = forward.for_adjoint(y0)?;
-        let system = AdjointSystem::new(system, functional, y0.len(), equations, options)?;
         let (start, forward, options) = ((t0, y0.to_vec()), forward.clone(), options.clone());
-        let mut adjoint = Self { system, start, forward, options };
-        // finds other inputs that cannot be used
-        adjoint.session()?;
+        let runs = Runs { start, forward, options };
+        let mut adjoint = Self { system, functional, runs };
+        adjoint.runs.check(&mut adjoint.system, &mut adjoint.functional)?;
         Ok(adjoint)
     }
 
@@ -116,28 +159,20 @@ impl<S: Ode, F: Functional> Adjoint<S, F> {
     /// A panic of the system or the functional passes through.
     pub fn gradient(&mut self, t: f64) -> Result<Gradient, Error> {
         check_time("end time", t)?;
-        if t == self.start.0 {
+        if t == self.runs.start.0 {
             return Err(Error::input("end time", t, "it is another than the start"));
         }
-        let options = self.options.clone();
-        self.session()?.gradient(t, &options)
-    }
-
-    /// For one run.
-    fn session(&mut self) -> Result<Session<CvodeKind, Borrowed<'_, AdjointSystem<S, F>>>, Error> {
-        self.system.equations.forget();
-        let (t0, y0) = &self.start;
-        Session::of_cvode(Borrowed(&mut self.system), *t0, y0, &self.forward)
+        self.runs.gradient(&mut self.system, &mut self.functional, t)
     }
 
     /// The system.
     #[must_use]
     pub fn system(&self) -> &S {
-        &self.system.equations.system
+        &self.system
     }
 
     /// The system, to change its parameters; the next [`gradient`](Self::gradient) uses them.
     pub fn system_mut(&mut self) -> &mut S {
-        &mut self.system.equations.system
+        &mut self.system
     }
 }
