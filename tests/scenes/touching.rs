@@ -153,7 +153,7 @@ fn nothing_is_passed_through() {
         let overlap = indicators.iter().find(|indicator| indicator.name == "overlap").unwrap();
         assert!(overlap.value == 0.0, "{method}: {overlap:?}");
         let left = momentum(&motion, 20, 1, 0) / momentum(&motion, 0, 1, 0);
-        assert!(left < 0.5, "{method}: {left} of its momentum is left");
+        assert!(left < 0.7, "{method}: {left} of its momentum is left");
         println!("{method}: {} steps", motion.report().steps());
     }
 }
@@ -291,7 +291,7 @@ fn a_parabola_presses_a_plane_as_hertz_has_it() {
     let half = |name: &str, is_upper: bool, nodes: usize| {
         let mesh = Mesh::rectangle([2.0, 1.0], [nodes, 13], Cells::Rectangles9).unwrap();
         let mesh = mesh.mapped(|x| {
-            let (along, deep) = (graded(x[0] - 1.0), 0.1 * x[1].powi(2));
+            let (along, deep) = (graded(x[0] - 1.0), 0.1 * x[1] * (0.3 + 0.7 * x[1]));
             let surface = distance + 0.5 * along * along / RADIUS;
             // the upper one flattens out towards its top
             match is_upper {

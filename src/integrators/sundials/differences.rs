@@ -70,6 +70,9 @@ impl Change {
     }
 }
 
+/// Writes f(t, y) at a `y`.
+type Evaluate<'a, E> = dyn FnMut(&[f64], &mut [f64]) -> Result<(), E> + 'a;
+
 impl Differences {
     /// df/dy of an ODE, whose unknowns keep these signs, if any; none if there is no matrix to write it into.
     pub(crate) fn of_ode(
@@ -127,7 +130,7 @@ impl Differences {
         y: &[f64],
         ydot: &[f64],
         values: &mut [f64],
-        evaluate: &mut dyn FnMut(&[f64], &mut [f64]) -> Result<(), E>,
+        evaluate: &mut Evaluate<'_, E>,
     ) -> Result<(), E> {
         let Self { shape, colouring, signs, y: shifted, value, evaluations, .. } = self;
         let Some(Increments { tolerances, parts, changes }) = &mut self.increments else {
