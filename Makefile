@@ -29,21 +29,24 @@ export PYO3_BUILD_EXTENSION_MODULE := 1
 # What is only read, by clippy and rustdoc, is not optimized, and is read once for both.
 READ := --config profile.dev.opt-level=0
 
+# Examples are checked by clippy; these have tests of their own.
+TESTED := --example gallery --example integrators
+
 # Unit tests are short: to optimize them, which compiles the library once more, would take longer than to run them as they are.
-# Examples are checked by clippy; the two that are named have tests of their own. What the tests run beside themselves, a browser
-# and Python, is fetched while clippy computes. Tests run in two halves at once: the last test of a program leaves no core idle.
+# What the tests run beside themselves, a browser and Python, is fetched while clippy computes. Where a compiler, rustdoc, Python or
+# the last test of a program takes one core, another job has the other: unit tests, which are compiled first, run while the next
+# ones are compiled, and those run in two halves beside all that comes last.
+test: export RUSTC_WORKSPACE_WRAPPER := $(CURDIR)/scripts/rustc
 test: ## Every check: format, lints, tests, documentation and its examples
 	@scripts/setup.sh
 	cargo fmt --all --check
 	{ scripts/setup.sh chromium python3-venv && scripts/python.sh environment; } & \
 		cargo clippy --workspace --all-targets $(FEATURES) $(READ) -- -D warnings && wait $$!
-	cargo test -p pliant $(FEATURES) --lib --config profile.dev.package.pliant.opt-level=0
-	cargo test $(BOTH) --bins --test '*' --example gallery --example integrators --no-run
-	cargo test $(BOTH) --test 's*' & \
-		cargo test $(BOTH) --bins --test '[!s]*' --example gallery --example integrators && wait $$!
-	cargo test $(BOTH) --doc
-	RUSTDOCFLAGS=-Dwarnings cargo doc $(BOTH) --no-deps $(READ)
-	scripts/python.sh test $(BOTH)
+	cargo test -p pliant $(FEATURES) --lib --config profile.dev.package.pliant.opt-level=0 & \
+		sleep 2; cargo test $(BOTH) --test '*' $(TESTED) --no-run && wait $$!
+	cargo test $(BOTH) --test 's*' & some=$$!; cargo test $(BOTH) --test '[!s]*' $(TESTED) & others=$$!; \
+		cargo test $(BOTH) --doc && RUSTDOCFLAGS=-Dwarnings cargo doc $(BOTH) --no-deps $(READ) && \
+		scripts/python.sh test $(BOTH) && wait $$some && wait $$others
 
 python: ## The wheel of the Python module, made, installed into an environment of its own, and tested there
 	@scripts/setup.sh python3-venv

@@ -25,6 +25,9 @@ pub(crate) struct Differences {
     pub(crate) evaluations: u64,
 }
 
+/// Writes the function at a state. (`dyn`: what calls it is compiled once, not for each type of system.)
+type Evaluate<'a, E> = dyn FnMut(&[f64], &mut [f64]) -> Result<(), E> + 'a;
+
 /// How far the unknowns of an ODE are shifted.
 struct Increments {
     tolerances: Tolerances,
@@ -123,8 +126,7 @@ impl Differences {
     /// Increments are fractions of the size of each unknown, in the direction in which it moves. They adapt
     /// to the change of the function: so large that it is not lost in rounding, and no larger than needed
     /// (D. E. Salane, "Adaptive routines for forming Jacobians numerically", Sandia report SAND86-1319, 1986).
-    /// A colour with a column whose change was lost takes a second evaluation. (`dyn`: compiled once, not for each
-    /// type of system.)
+    /// A colour with a column whose change was lost takes a second evaluation.
     pub(crate) fn of_rhs<E>(
         &mut self,
         y: &[f64],
