@@ -73,9 +73,6 @@ impl Change {
     }
 }
 
-/// Writes f(t, y) at a `y`.
-type Evaluate<'a, E> = dyn FnMut(&[f64], &mut [f64]) -> Result<(), E> + 'a;
-
 impl Differences {
     /// df/dy of an ODE, whose unknowns keep these signs, if any; none if there is no matrix to write it into.
     pub(crate) fn of_ode(
