@@ -86,8 +86,8 @@ fn a_cable_bends_a_beam_to_an_arc() {
 fn tables_that_are_not_there_say_what_stands_in() {
     let scene = blocks("toml")[0];
     for (name, words) in [
-        ("contact", &["neither themselves nor each other", "[[obstacle]]"][..]),
-        ("self_contact", &["neither themselves"]),
+        ("contact", &["[[touch]]", "[[obstacle]]"][..]),
+        ("self_contact", &["with themselves is [[touch]]"]),
         ("bodies", &["[[body]]", "[[obstacle]]"]),
         ("rigid", &["no rigid bodies", "[[obstacle]]"]),
         ("cable", &["no cables with friction", "chain of [[spring]] without stiffness"]),

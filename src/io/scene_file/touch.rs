@@ -37,7 +37,7 @@ pub(super) const TOUCH: TableKeys = TableKeys::new(
         Key::number("sticking_speed", "the speed below which friction sticks", "m/s")
             .default("a thousandth of the size of the bodies per second"),
     ],
-    "[[touch]]\nbodies = [\"finger\", \"fruit\"]\ndistance = 5.0e-4\nfriction_coefficient = 0.6",
+    "[[touch]]\ndistance = 5.0e-4\nfriction_coefficient = 0.6",
 );
 
 /// The scene with the contact that `value` describes.

@@ -186,9 +186,9 @@ impl TouchForce {
         match self.law.kind {
             // the force where it is entered is still small
             _ if least >= acts_from => Some(0.9 * acts_from),
-            Kind::Barrier => Some(0.5 * least),
-            // a soft spring may be passed through where it acts
-            Kind::Spring => None,
+            // a soft spring may be passed through where it has acted
+            Kind::Spring if least < 0.5 * acts_from => None,
+            _ => Some(0.5 * least),
         }
     }
 }
