@@ -14,7 +14,7 @@ use clap::Parser;
 use common::finish;
 use pliant::output::Snapshots;
 use pliant::{
-    Body, Cells, Error, Material, Mesh, Obstacle, Phase, Sampling, Scene, Settings, Touch,
+    Body, Cells, Error, Law, Material, Mesh, Obstacle, Phase, Sampling, Scene, Settings, Touch,
 };
 
 /// A table of heaps: steps, time and changes of the pattern with contact, and time without.
@@ -80,7 +80,10 @@ fn heap(rings: usize, touches: bool) -> Result<Scene, Error> {
         let aside = if row % 2 == 0 { 0.0 } else { 0.006 };
         let place = [0.026 + 0.045 * column as f64 + aside, 0.03 + 0.045 * row as f64];
         let mesh = Mesh::ring(0.014, 0.02, [16, 2], Cells::Crossed)?.translated(&place)?;
-        Body::new(mesh, soft).thickness(0.02).named(format!("{number}")).build()
+        Body::new(mesh, soft.law(Law::NeoHookean))
+            .thickness(0.02)
+            .named(format!("{number}"))
+            .build()
     };
     let bodies = (0..rings).map(ring).collect::<Result<Vec<_>, _>>()?;
     let wall = |name: &str, point: [f64; 2], normal: [f64; 2]| {

@@ -94,28 +94,32 @@ pub(super) fn gauss_points(body: &Body) -> Option<Vec<SurfacePoint>> {
 }
 
 /// Quadrature points of some `faces` that lie at the nodes and between them, so that nothing sticks out beyond all of
-/// them: Simpson's rule on segments, a rule of degree 3 on triangles. Points in the same place are one. A string has
-/// no area: `None`.
+/// them: Simpson's rule on both halves of segments, a rule of degree 3 on triangles. Points in the same place are one.
+/// A string has no area: `None`.
 pub(super) fn closed_points(body: &Body, faces: &[Vec<usize>]) -> Option<Vec<SurfacePoint>> {
-    let mut areas: BTreeMap<Vec<usize>, f64> = BTreeMap::new();
+    // by the nodes and the bits of their shares
+    let mut areas: BTreeMap<Vec<(usize, u64)>, f64> = BTreeMap::new();
     for face in faces {
         for (corners, area) in measured_pieces(body, face)? {
-            let rule: &[(&[usize], f64)] = match corners.len() {
-                1 => &[(&[0], 1.0)],
-                2 => &SIMPSON,
+            let rule: &[(&[(usize, f64)], f64)] = match corners.len() {
+                1 => &[(&[(0, 1.0)], 1.0)],
+                2 => &HALVED_SIMPSON,
                 _ => &CLOSED_TRIANGLE,
             };
             for (at, weight) in rule {
-                let mut nodes: Vec<usize> = at.iter().map(|&k| corners[k]).collect();
-                nodes.sort_unstable();
-                *areas.entry(nodes).or_default() += weight * area;
+                let place = at.iter().map(|&(corner, share)| (corners[corner], share.to_bits()));
+                let mut place: Vec<(usize, u64)> = place.collect();
+                place.sort_unstable();
+                *areas.entry(place).or_default() += weight * area;
             }
         }
     }
-    let mean = |(nodes, area): (Vec<usize>, f64)| {
-        point(&nodes, &[1.0 / nodes.len() as f64; 3][..nodes.len()], area)
+    let at = |(place, area): (Vec<(usize, u64)>, f64)| {
+        let (nodes, bits): (Vec<usize>, Vec<u64>) = place.into_iter().unzip();
+        let shares: Vec<f64> = bits.into_iter().map(f64::from_bits).collect();
+        point(&nodes, &shares, area)
     };
-    Some(areas.into_iter().map(mean).collect())
+    Some(areas.into_iter().map(at).collect())
 }
 
 /// The [pieces] of a face by their nodes, with the area (m^2) of each; `None` if it belongs to a string.
@@ -151,16 +155,23 @@ const TRIANGLE: [&[f64]; 3] = [
     &[1.0 / 6.0, 1.0 / 6.0, 2.0 / 3.0],
 ];
 
-/// Means of the corners with these numbers, and their weights.
-const SIMPSON: [(&[usize], f64); 3] = [(&[0], 1.0 / 6.0), (&[1], 1.0 / 6.0), (&[0, 1], 2.0 / 3.0)];
-const CLOSED_TRIANGLE: [(&[usize], f64); 7] = [
-    (&[0], 1.0 / 20.0),
-    (&[1], 1.0 / 20.0),
-    (&[2], 1.0 / 20.0),
-    (&[0, 1], 2.0 / 15.0),
-    (&[1, 2], 2.0 / 15.0),
-    (&[2, 0], 2.0 / 15.0),
-    (&[0, 1, 2], 9.0 / 20.0),
+/// Corners of a segment and of a triangle with their shares in quadrature points, and the weights of these.
+const HALVED_SIMPSON: [(&[(usize, f64)], f64); 5] = [
+    (&[(0, 1.0)], 1.0 / 12.0),
+    (&[(0, 0.75), (1, 0.25)], 1.0 / 3.0),
+    (&[(0, 0.5), (1, 0.5)], 1.0 / 6.0),
+    (&[(0, 0.25), (1, 0.75)], 1.0 / 3.0),
+    (&[(1, 1.0)], 1.0 / 12.0),
+];
+const THIRD: f64 = 1.0 / 3.0;
+const CLOSED_TRIANGLE: [(&[(usize, f64)], f64); 7] = [
+    (&[(0, 1.0)], 1.0 / 20.0),
+    (&[(1, 1.0)], 1.0 / 20.0),
+    (&[(2, 1.0)], 1.0 / 20.0),
+    (&[(0, 0.5), (1, 0.5)], 2.0 / 15.0),
+    (&[(1, 0.5), (2, 0.5)], 2.0 / 15.0),
+    (&[(2, 0.5), (0, 0.5)], 2.0 / 15.0),
+    (&[(0, THIRD), (1, THIRD), (2, THIRD)], 9.0 / 20.0),
 ];
 
 fn point(nodes: &[usize], shares: &[f64], area: f64) -> SurfacePoint {
