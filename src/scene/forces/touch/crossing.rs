@@ -9,6 +9,8 @@ use crate::scene::forces::passage::Path;
 
 /// Halvings of a step after which the search ends.
 const HALVINGS: u32 = 20;
+/// What is not nearer than this part of the limit is let be: along a way at the limit itself the search would not end.
+const NEARLY: f64 = 0.9;
 
 /// The ways of a point relative to the corners of a facet.
 #[derive(Clone, Copy)]
@@ -32,31 +34,34 @@ impl Ways {
         [self.distance(Path::start), self.distance(Path::end)]
     }
 
-    /// The first place found (from 0 to 1) at which the point is nearer to the facet than `limit` (m), which it is not
-    /// at the ends.
-    pub(super) fn meets(&self, limit: f64) -> Option<f64> {
-        self.search(self.ends(), limit, [0.0, 1.0], 0)
+    /// The first place found (from 0 up to `last`) at which the point is nearer to the facet than `limit` (m), which it is
+    /// not at the ends.
+    pub(super) fn meets(&self, limit: f64, last: f64) -> Option<f64> {
+        self.search(self.ends(), [limit, last], [0.0, 1.0], 0)
     }
 
     fn search(
         &self,
         ends: [f64; 2],
-        limit: f64,
+        [limit, last]: [f64; 2],
         [from, to]: [f64; 2],
         halvings: u32,
     ) -> Option<f64> {
         let longest = self.paths[..self.count].iter().map(Path::length).fold(0.0, f64::max);
-        if halvings == HALVINGS || ends[0] + ends[1] - longest >= 2.0 * limit {
+        if halvings == HALVINGS
+            || from >= last
+            || 0.5 * (ends[0] + ends[1] - longest) >= NEARLY * limit
+        {
             return None;
         }
         let halves = self.paths.map(|path| path.halves());
-        let [first, last] =
+        let [first, second] =
             [0, 1].map(|half| Self { paths: halves.map(|halves| halves[half]), ..*self });
-        let (middle, there) = (0.5 * (from + to), last.distance(Path::start));
-        let before = first.search([ends[0], there], limit, [from, middle], halvings + 1);
+        let (middle, there) = (0.5 * (from + to), second.distance(Path::start));
+        let before = first.search([ends[0], there], [limit, last], [from, middle], halvings + 1);
         if before.is_some() || there < limit {
             return before.or(Some(middle));
         }
-        last.search([there, ends[1]], limit, [middle, to], halvings + 1)
+        second.search([there, ends[1]], [limit, last], [middle, to], halvings + 1)
     }
 }

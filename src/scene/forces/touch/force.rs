@@ -26,6 +26,9 @@ pub(crate) struct TouchForce {
     near: Mutex<Arc<Near>>,
 }
 
+/// Part of its distance to which a point may come near a facet within one step.
+const ONTO: f64 = 0.02;
+
 /// What acts between a point and a feature.
 struct Action {
     /// Weight times area (m^2): the share of the energy per area.
@@ -180,10 +183,14 @@ impl TouchForce {
         Ways::new(paths, of.len())
     }
 
-    /// The distance (m) below which a step must not lead unseen, for these distances at its ends.
-    fn limit(&self, ends: [f64; 2]) -> Option<f64> {
-        let (least, acts_from) = (ends[0].min(ends[1]), self.law.distance);
+    /// The distance (m) below which a step must not lead unseen, for these distances at its ends. A step that ends on
+    /// the surface itself is none that can be continued.
+    fn limit(&self, [before, after]: [f64; 2]) -> Option<f64> {
+        let (least, acts_from) = (before.min(after), self.law.distance);
         match self.law.kind {
+            Kind::Barrier if after < ONTO * before.min(acts_from) => {
+                Some(0.5 * before.min(acts_from))
+            }
             // the force where it is entered is still small
             _ if least >= acts_from => Some(0.9 * acts_from),
             // a soft spring may be passed through where it has acted
@@ -319,20 +326,18 @@ impl Force for TouchForce {
             near = Arc::new(Near::new(&self.surfaces, step.u[0], acts_from + nearer));
             moved = 0.0;
         }
-        let mut first: Option<f64> = None;
+        let mut first = None;
         for near in &near.pairs {
             let is_far = near.distance - moved - nearer >= acts_from;
             if is_far || !self.surfaces.is_facet(near.feature) {
                 continue;
             }
             let ways = self.ways(near, step);
-            let found = self.limit(ways.ends()).and_then(|limit| ways.meets(limit));
-            if let Some(part) = found {
-                let t = start + part * (end - start);
-                first = Some(first.map_or(t, |first| first.min(t)));
-            }
+            let found =
+                self.limit(ways.ends()).and_then(|limit| ways.meets(limit, first.unwrap_or(1.0)));
+            first = found.or(first);
         }
-        first
+        first.map(|part| start + part * (end - start))
     }
 
     fn couplings_near(&self, u: &[f64], pattern: &NodePattern) -> Vec<[usize; 2]> {
