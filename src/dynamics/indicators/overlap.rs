@@ -258,7 +258,7 @@ pub(super) fn overlap(scene: &Scene, samples: &[&Sample]) -> Option<Indicator> {
         let [one, other] = overlaps.who(deepest);
         let help = match touches {
             false => {
-                "Neither feels the other, so the motion is wrong from there on: let them touch ([[touch]]), load them less, or end the \
+                "Nothing keeps them apart, so the motion is wrong from there on: let them touch ([[touch]]), load them less, or end the \
                       scene before"
             }
             true => {
