@@ -1,10 +1,12 @@
 //! Bodies that touch each other, and themselves.
 
+use std::path::Path;
+
 use pliant::body::BodyBuilder;
 use pliant::simulate::{Component, Reading};
 use pliant::{
-    Axis, Body, Cells, Law, Material, Mesh, Method, Phase, Sampling, Scene, Settings, SolidCells,
-    Statics, Touch, Trajectory,
+    Axis, Body, Cells, Law, Material, Mesh, Method, Phase, Sampling, Scene, SceneFile, Settings,
+    SolidCells, Statics, Touch, Trajectory,
 };
 
 const SOFT: Material = Material { density: 1000.0, young: 1e5, poisson: 0.3, viscosity: 0.0 };
@@ -341,4 +343,21 @@ fn an_even_pressure_passes_through() {
     let worst = off.fold(0.0, f64::max);
     println!("patch test: {worst}");
     assert!(worst < 0.035, "{worst}");
+}
+
+/// The ring of the scenes presses on its table, folds onto itself without passing through it, and comes off again.
+#[test]
+fn a_ring_bounces_off_a_soft_table() {
+    const TEXT: &str = include_str!("../../scenes/ring-on-table.toml");
+    let file = SceneFile::parse(TEXT, Path::new("ring-on-table.toml")).unwrap();
+    let settings = Settings { rtol: 1e-3, ..file.settings.clone() };
+    let scene = file.scene.clone().ended_at(0.32);
+    let motion = scene.simulate(&settings, &file.output.sampling()).unwrap();
+    let pushes: Vec<f64> = motion.samples().iter().map(|sample| sample.sensors[0]).collect();
+    let most = pushes.iter().copied().fold(0.0, f64::min);
+    assert!(most < -1.0, "{pushes:?}");
+    assert!(pushes[0] == 0.0 && pushes[pushes.len() - 1] == 0.0, "{pushes:?}");
+    let overlap = motion.indicators();
+    let overlap = overlap.iter().find(|indicator| indicator.name == "overlap").unwrap();
+    assert!(overlap.value == 0.0, "{overlap:?}");
 }
