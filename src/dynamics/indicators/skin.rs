@@ -3,11 +3,13 @@
 use std::collections::BTreeMap;
 
 use super::size::block_volumes;
-use crate::base::vector::norm;
+use crate::base::vector::{difference, norm};
 use crate::elements::basis::closest;
 use crate::elements::body::{Body, Part};
 use crate::elements::mesh::{CellKind, Mesh};
-use crate::scene::forces::{SurfacePoint, boundary_nodes, edge_points, face_centre, pieces};
+use crate::scene::forces::{
+    SurfacePoint, boundary_nodes, edge_points, face_centre, pieces, weighted,
+};
 
 /// An edge is divided into at most this many parts.
 const MOST_PARTS: usize = 20;
@@ -52,7 +54,7 @@ impl<'a> Skin<'a> {
     /// undeformed shape, within the same piece of the body.
     pub(super) fn depth(&mut self, shares: &[(usize, f64)], now: &[f64]) -> f64 {
         let (mesh, pattern) = (self.body.mesh(), self.body.inertia().pattern());
-        let x = mean(mesh.positions(), mesh.dimension(), shares.iter().copied());
+        let x = weighted(shares.iter().copied(), mesh.positions(), mesh.dimension());
         self.searches += 1;
         let mut open: Vec<usize> = shares.iter().map(|(node, _)| *node).collect();
         open.iter().for_each(|&node| self.seen[node] = self.searches);
@@ -68,7 +70,8 @@ impl<'a> Skin<'a> {
                     nodes.iter().map(|&node| position(mesh, node)).collect();
                 let places = closest(&corners, &x);
                 let place = nodes.iter().copied().zip(places);
-                let away = distance(&mean(mesh.positions(), mesh.dimension(), place.clone()), &x);
+                let away =
+                    distance(&weighted(place.clone(), mesh.positions(), mesh.dimension()), &x);
                 if away < least {
                     (least, nearest) = (away, place.collect());
                 }
@@ -81,8 +84,8 @@ impl<'a> Skin<'a> {
                 }
             }
         }
-        let there = mean(now, mesh.dimension(), nearest.into_iter());
-        distance(&mean(now, mesh.dimension(), shares.iter().copied()), &there)
+        let there = weighted(nearest.into_iter(), now, mesh.dimension());
+        distance(&weighted(shares.iter().copied(), now, mesh.dimension()), &there)
     }
 }
 
@@ -133,25 +136,7 @@ fn distance(a: &[f64; 3], b: &[f64; 3]) -> f64 {
     norm(&difference(a, b))
 }
 
-fn difference(a: &[f64; 3], b: &[f64; 3]) -> [f64; 3] {
-    std::array::from_fn(|i| a[i] - b[i])
-}
-
 /// Natural position of a node; components beyond the dimension are 0.
 fn position(mesh: &Mesh, node: usize) -> [f64; 3] {
-    mean(mesh.positions(), mesh.dimension(), [(node, 1.0)].into_iter())
-}
-
-/// The point with these shares of nodes that are at `positions`.
-fn mean(
-    positions: &[f64],
-    dimension: usize,
-    shares: impl Iterator<Item = (usize, f64)>,
-) -> [f64; 3] {
-    let mut x = [0.0; 3];
-    for (node, share) in shares {
-        let of_node = &positions[node * dimension..][..dimension];
-        x.iter_mut().zip(of_node).for_each(|(x, y)| *x += share * y);
-    }
-    x
+    weighted([(node, 1.0)].into_iter(), mesh.positions(), mesh.dimension())
 }

@@ -14,6 +14,8 @@ mod dual;
 #[cfg(test)]
 mod tests;
 
+use std::sync::Arc;
+
 use super::System;
 use super::newton_matrix::NewtonMatrix;
 use super::reduced::nodal_multipliers;
@@ -206,12 +208,12 @@ impl AtRest {
     /// The part of the straight way from displacements `u` to `to` on which surfaces that touch come much nearer to each
     /// other than at both of its ends, if they do: they would pass through each other.
     pub(crate) fn passage(&self, u: &[f64], to: &[f64]) -> Option<f64> {
-        if !self.system.can_be_passed() {
-            return None;
-        }
+        // obstacles, which have switches, push back from any depth
+        let is_surface = |force: &&Arc<dyn Force>| force.can_be_passed() && force.switches() == 0;
+        let mut surfaces = self.system.forces.iter().filter(is_surface).peekable();
+        surfaces.peek()?;
         let way: Vec<f64> = u.iter().zip(to).map(|(u, to)| to - u).collect();
         let step = Step { times: [0.0, 1.0], u: [u, to], v: [&way, &way] };
-        let surfaces = self.system.forces.iter().filter(|force| force.switches() == 0);
         surfaces.filter_map(|force| force.passage(&step, 0.0, &mut [])).reduce(f64::min)
     }
 

@@ -1,6 +1,6 @@
 //! The point of a segment or triangle that is nearest to another one.
 
-use crate::base::vector::{dot, norm};
+use crate::base::vector::{difference, dot, norm};
 
 /// Barycentric coordinates, by the `corners` of a point, segment or triangle, of its point that is nearest to
 /// `x`.
@@ -41,10 +41,6 @@ pub(crate) fn closest(corners: &[[f64; 3]], x: &[f64; 3]) -> [f64; 3] {
 
 fn distance(a: &[f64; 3], b: &[f64; 3]) -> f64 {
     norm(&difference(a, b))
-}
-
-fn difference(a: &[f64; 3], b: &[f64; 3]) -> [f64; 3] {
-    std::array::from_fn(|i| a[i] - b[i])
 }
 
 #[cfg(test)]

@@ -84,13 +84,7 @@ pub(super) const OBSTACLE: TableKeys = TableKeys::new(
         Key::number("damping", "the damping along the normal", "N s/m").default("0"),
         Key::number("tangential_damping", "a force against sliding in proportion to its speed", "N s/m")
             .default("0"),
-        Key::new(
-            "friction_coefficient",
-            Holds::Either(&[Holds::Number, Holds::Table(&COEFFICIENTS)]),
-            "Coulomb's coefficient of friction, or both of them",
-        )
-        .in_unit("1")
-        .default("0"),
+        FRICTION_COEFFICIENT,
         Key::number("sticking_speed", "the speed below which friction sticks", "m/s")
             .default("a thousandth of the size of the body per second"),
         Key::new("adhesion", Holds::Flag, "whether damping may pull at a body that leaves")
@@ -205,7 +199,15 @@ const WAY: TableKeys = TableKeys::new(
 )
 .one_of(&[&["times", "displacements"], &["displacement"]]);
 
-pub(super) const COEFFICIENTS: TableKeys = TableKeys::new(
+pub(super) const FRICTION_COEFFICIENT: Key = Key::new(
+    "friction_coefficient",
+    Holds::Either(&[Holds::Number, Holds::Table(&COEFFICIENTS)]),
+    "Coulomb's coefficient of friction, or both of them",
+)
+.in_unit("1")
+.default("0");
+
+const COEFFICIENTS: TableKeys = TableKeys::new(
     "friction_coefficient",
     "Two coefficients of friction.",
     &[

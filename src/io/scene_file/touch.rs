@@ -1,7 +1,7 @@
 //! `[[touch]]`.
 
 use super::keys::{Holds, Key, TableKeys};
-use super::surroundings::{COEFFICIENTS, coefficients, unique};
+use super::surroundings::{FRICTION_COEFFICIENT, coefficients, unique};
 use super::value::Value;
 use crate::dynamics::error::Error;
 use crate::scene::forces::Touch;
@@ -27,13 +27,7 @@ pub(super) const TOUCH: TableKeys = TableKeys::new(
             .default("a tenth of the mean edge of the surfaces"),
         Key::number("damping_density", "the damping along the normal, per area", "N s/m^3")
             .default("0"),
-        Key::new(
-            "friction_coefficient",
-            Holds::Either(&[Holds::Number, Holds::Table(&COEFFICIENTS)]),
-            "Coulomb's coefficient of friction, or both of them",
-        )
-        .in_unit("1")
-        .default("0"),
+        FRICTION_COEFFICIENT,
         Key::number("sticking_speed", "the speed below which friction sticks", "m/s")
             .default("a thousandth of the size of the bodies per second"),
     ],

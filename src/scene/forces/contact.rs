@@ -8,14 +8,14 @@ use switches::Switches;
 
 use super::friction::{Coulomb, Drag};
 use super::obstacle::{Law, Obstacle};
-use super::passage::{Path, deepest, difference};
+use super::passage::{Path, deepest};
 use super::shape::Nearest;
 use super::signal::finite_at;
 use super::surface::{SurfacePoint, boundary_nodes, gauss_points};
 use super::travel::Cubics;
 use crate::base::input::InputError;
 use crate::base::sparse::BlockMatrix;
-use crate::base::vector::{dot, norm};
+use crate::base::vector::{difference, dot, norm};
 use crate::elements::body::Body;
 use crate::elements::force::{Force, NodalForces, Reservoir, Step, Tangents};
 use crate::integrators::ode::Failure;

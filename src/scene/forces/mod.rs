@@ -37,6 +37,8 @@ pub(crate) use signal::{Live, TimeTable, VectorSignal};
 pub(crate) use spring::Joint;
 pub use spring::Spring;
 pub(crate) use spring::SpringForce;
-pub(crate) use surface::{SurfacePoint, boundary_nodes, edge_points, face_centre, pieces};
+pub(crate) use surface::{
+    SurfacePoint, boundary_nodes, edge_points, face_centre, pieces, weighted,
+};
 pub use touch::Touch;
 pub(crate) use touch::TouchForce;

@@ -8,7 +8,7 @@
 //! convex shape is a convex function, and so also stays above its tangent plane at either end.
 
 use super::shape::{Kind, Shape};
-use crate::base::vector::{dot, norm};
+use crate::base::vector::{difference, dot, norm};
 
 /// Halvings of a path after which the search ends.
 const HALVINGS: u32 = 10;
@@ -129,10 +129,6 @@ impl Search {
         self.piece(shape, &halves[0], [from, middle], halvings + 1);
         self.piece(shape, &halves[1], [middle, to], halvings + 1);
     }
-}
-
-pub(super) fn difference(a: &[f64; 3], b: &[f64; 3]) -> [f64; 3] {
-    std::array::from_fn(|i| a[i] - b[i])
 }
 
 #[cfg(test)]

@@ -25,13 +25,22 @@ impl SurfacePoint {
 
     /// Its position or velocity in a field of `dimension` components per node; 0 beyond them.
     pub(crate) fn at(&self, field: &[f64], dimension: usize) -> [f64; 3] {
-        let mut x = [0.0; 3];
-        for (node, share) in self.nodes() {
-            let of_node = &field[node * dimension..][..dimension];
-            x.iter_mut().zip(of_node).for_each(|(x, y)| *x += share * y);
-        }
-        x
+        weighted(self.nodes(), field, dimension)
     }
+}
+
+/// The sum of a `field` of `dimension` components per node over nodes with their shares; 0 beyond the dimension.
+pub(crate) fn weighted(
+    shares: impl Iterator<Item = (usize, f64)>,
+    field: &[f64],
+    dimension: usize,
+) -> [f64; 3] {
+    let mut sum = [0.0; 3];
+    for (node, share) in shares {
+        let of_node = &field[node * dimension..][..dimension];
+        sum.iter_mut().zip(of_node).for_each(|(sum, x)| *sum += share * x);
+    }
+    sum
 }
 
 /// Each boundary node by itself.

@@ -2,10 +2,10 @@
 
 use std::sync::Arc;
 
-use super::passage::{Path, difference};
+use super::passage::Path;
 use crate::base::formula::Formula;
 use crate::base::input::{InputError, finite};
-use crate::base::vector::norm;
+use crate::base::vector::{difference, norm};
 use crate::scene::constraint::{Prescribed, Spline};
 
 /// Most parts into which an interval of time is cut to find cubics that agree with a formula.

@@ -74,7 +74,7 @@ impl TouchForce {
         Self { name, surfaces, law, coulomb, margin, near: Mutex::new(Arc::new(near)) }
     }
 
-    /// Pairs that include all within `distance` (m) under the displacements `u` (m), and how much nearer (m) they may
+    /// Pairs that include all that act under the displacements `u` (m), and how much nearer (m) they may
     /// have come since they were found.
     fn near(&self, u: &[f64]) -> (Arc<Near>, f64) {
         let mut known = self.near.lock().unwrap_or_else(PoisonError::into_inner);
@@ -111,7 +111,7 @@ impl TouchForce {
 
     /// What acts in a pair with the velocities `v` (m/s).
     fn action(&self, pair: &Pair, share: f64, v: &[f64]) -> Action {
-        let velocity = pair.velocity(v, self.surfaces.dimension);
+        let velocity = pair.velocity(&pair.shares, v, self.surfaces.dimension);
         let rate = dot(&pair.normal, &velocity);
         let sliding: [f64; 3] = std::array::from_fn(|i| velocity[i] - rate * pair.normal[i]);
         let pressure = self.law.pressure(pair.distance);
@@ -122,7 +122,7 @@ impl TouchForce {
         Action { share, velocity, rate, sliding, elastic, damping, drag, presses }
     }
 
-    /// Names of what touches, for messages.
+    /// Why a state is refused in which surfaces lie on each other.
     fn passed(&self) -> Failure {
         let name = &self.name;
         Failure::Recoverable(format!(
@@ -248,15 +248,16 @@ impl Force for TouchForce {
             let stiffening = share * law.damping_time() * law.third(pair.distance);
             let braking = action.braking(&pair.normal);
             let brakes = action.damping != 0.0 || action.drag.is_some();
+            let moving = pair.moving();
             for n in 0..pair.count {
                 for j in 0..d {
                     let (mut by_u, mut by_v) = ([[0.0; 3]; MOST], [[0.0; 3]; MOST]);
                     for (m, by_u) in by_u.iter_mut().enumerate().take(pair.count) {
-                        *by_u = std::array::from_fn(|i| pair.second(slopes, [m, i], [n, j]));
+                        *by_u = std::array::from_fn(|i| moving.second(slopes, [m, i], [n, j]));
                     }
                     if brakes {
-                        let change = pair.change([n, j]);
-                        let carried = pair.velocity_with(&change.shares, v, d);
+                        let change = moving.change([n, j]);
+                        let carried = pair.velocity(&change.shares, v, d);
                         let elastic = -action.share * curvature * change.distance;
                         let of_u = [elastic, stiffening * change.distance];
                         let by_place = changed(&action, &pair, &carried, &change.normal, of_u);

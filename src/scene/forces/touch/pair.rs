@@ -9,8 +9,9 @@
 //! d2E/dz_m dz_n = c_m c_n I - E_am G^-1_ab E_bn^T
 //! ```
 
-use crate::base::vector::{dot, norm};
+use crate::base::vector::{difference, dot, norm};
 use crate::elements::basis::closest;
+use crate::scene::forces::surface::weighted;
 
 /// Most nodes of a pair: three of a point and three of a triangle.
 pub(super) const MOST: usize = 6;
@@ -25,13 +26,19 @@ pub(super) struct Pair {
     /// The unit normal r/|r|, and |r| (m).
     pub(super) normal: [f64; 3],
     pub(super) distance: f64,
-    /// c_m,a
+    /// r (m), r_a and c_m,a; the number of the coordinates xi.
+    offset: [f64; 3],
+    along: [[f64; 3]; 2],
     slopes: [[f64; 2]; MOST],
+    free: usize,
+}
+
+/// How the nearest place of a pair moves, for the derivatives of its forces.
+pub(super) struct Moving<'a> {
+    pair: &'a Pair,
     /// E_am, and G^-1 E_m.
     turns: [[[f64; 3]; 2]; MOST],
     moves: [[[f64; 3]; 2]; MOST],
-    /// r_a
-    along: [[f64; 3]; 2],
 }
 
 /// What changes with one component of one node.
@@ -66,17 +73,17 @@ impl Pair {
             shares: [0.0; MOST],
             normal: r.map(|r| r / distance),
             distance,
-            slopes: [[0.0; 2]; MOST],
-            turns: [[[0.0; 3]; 2]; MOST],
-            moves: [[[0.0; 3]; 2]; MOST],
+            offset: r,
             along: [[0.0; 3]; 2],
+            slopes: [[0.0; 2]; MOST],
+            free: 0,
         };
         for (node, share) in point {
             (pair.nodes[pair.count], pair.shares[pair.count]) = (node, share);
             pair.count += 1;
         }
         // the place moves on the part of the feature whose corners have a share in it
-        let (mut free, mut first) = (0, None);
+        let mut first = None;
         for (k, &node) in of.iter().enumerate().filter(|(k, _)| shares[*k] != 0.0) {
             let m = pair.count;
             (pair.nodes[m], pair.shares[m]) = (node, -shares[k]);
@@ -84,14 +91,20 @@ impl Pair {
             match first {
                 None => first = Some((m, k)),
                 Some((origin, from)) => {
-                    (pair.slopes[m][free], pair.slopes[origin][free]) = (-1.0, 1.0);
-                    pair.along[free] = std::array::from_fn(|i| corners[from][i] - corners[k][i]);
-                    free += 1;
+                    let a = pair.free;
+                    (pair.slopes[m][a], pair.slopes[origin][a]) = (-1.0, 1.0);
+                    pair.along[a] = difference(&corners[from], &corners[k]);
+                    pair.free += 1;
                 }
             }
         }
-        let along = pair.along;
-        let inverse = match free {
+        pair
+    }
+
+    /// How its nearest place moves.
+    pub(super) fn moving(&self) -> Moving<'_> {
+        let (along, r) = (&self.along, &self.offset);
+        let inverse = match self.free {
             0 => [[0.0; 2]; 2],
             1 => [[1.0 / dot(&along[0], &along[0]), 0.0], [0.0; 2]],
             _ => {
@@ -100,35 +113,30 @@ impl Pair {
                 [[bb / whole, -ab / whole], [-ab / whole, aa / whole]]
             }
         };
-        for m in 0..pair.count {
+        let mut moving =
+            Moving { pair: self, turns: [[[0.0; 3]; 2]; MOST], moves: [[[0.0; 3]; 2]; MOST] };
+        for m in 0..self.count {
             // those beyond `free` are 0
-            let (share, slopes) = (pair.shares[m], pair.slopes[m]);
+            let (share, slopes) = (self.shares[m], self.slopes[m]);
             let turns: [[f64; 3]; 2] = std::array::from_fn(|a| {
                 std::array::from_fn(|i| share * along[a][i] + slopes[a] * r[i])
             });
-            pair.moves[m] = inverse
+            moving.moves[m] = inverse
                 .map(|of| std::array::from_fn(|i| of[0] * turns[0][i] + of[1] * turns[1][i]));
-            pair.turns[m] = turns;
+            moving.turns[m] = turns;
         }
-        pair
+        moving
     }
 
-    /// sum_m c_m v_m: the velocity (m/s) of the point relative to the nearest place, for velocities `v` with
-    /// `dimension` components per node.
-    pub(super) fn velocity(&self, v: &[f64], dimension: usize) -> [f64; 3] {
-        weighted(&self.nodes[..self.count], &self.shares, v, dimension)
+    /// sum_m c_m v_m for the `shares` c_m: with its own the velocity (m/s) of the point relative to the nearest place.
+    /// `v` has `dimension` components per node.
+    pub(super) fn velocity(&self, shares: &[f64; MOST], v: &[f64], dimension: usize) -> [f64; 3] {
+        let nodes = self.nodes[..self.count].iter().copied();
+        weighted(nodes.zip(shares.iter().copied()), v, dimension)
     }
+}
 
-    /// The same with other shares.
-    pub(super) fn velocity_with(
-        &self,
-        shares: &[f64; MOST],
-        v: &[f64],
-        dimension: usize,
-    ) -> [f64; 3] {
-        weighted(&self.nodes[..self.count], shares, v, dimension)
-    }
-
+impl Moving<'_> {
     /// The second derivative of an energy with the first two derivatives `slope` and `curvature` by the distance, by
     /// component `i` of node `m` and component `j` of node `n`.
     pub(super) fn second(
@@ -137,23 +145,23 @@ impl Pair {
         [m, i]: [usize; 2],
         [n, j]: [usize; 2],
     ) -> f64 {
-        let across = self.normal[i] * self.normal[j];
-        let both = self.shares[m] * self.shares[n];
+        let across = self.pair.normal[i] * self.pair.normal[j];
+        let both = self.pair.shares[m] * self.pair.shares[n];
         let turning: f64 = (0..2).map(|a| self.turns[m][a][i] * self.moves[n][a][j]).sum();
         let bent = both * (f64::from(i == j) - across) - turning;
-        curvature * both * across + slope / self.distance * bent
+        curvature * both * across + slope / self.pair.distance * bent
     }
 
     /// What changes with component `j` of node `n`.
     pub(super) fn change(&self, [n, j]: [usize; 2]) -> Change {
         let places: [f64; 2] = std::array::from_fn(|a| -self.moves[n][a][j]);
-        let distance = self.shares[n] * self.normal[j];
+        let distance = self.pair.shares[n] * self.pair.normal[j];
         let normal = std::array::from_fn(|i| {
-            let own = if i == j { self.shares[n] } else { 0.0 };
-            let r = own + self.along[0][i] * places[0] + self.along[1][i] * places[1];
-            (r - self.normal[i] * distance) / self.distance
+            let own = if i == j { self.pair.shares[n] } else { 0.0 };
+            let r = own + self.pair.along[0][i] * places[0] + self.pair.along[1][i] * places[1];
+            (r - self.pair.normal[i] * distance) / self.pair.distance
         });
-        let slopes = &self.slopes;
+        let slopes = &self.pair.slopes;
         let shares = std::array::from_fn(|m| slopes[m][0] * places[0] + slopes[m][1] * places[1]);
         Change { distance, normal, shares }
     }
@@ -163,13 +171,4 @@ fn offset(x: &[f64; 3], corners: &[[f64; 3]], shares: &[f64; 3]) -> [f64; 3] {
     std::array::from_fn(|i| {
         x[i] - corners.iter().zip(shares).map(|(corner, share)| share * corner[i]).sum::<f64>()
     })
-}
-
-fn weighted(nodes: &[usize], shares: &[f64], field: &[f64], dimension: usize) -> [f64; 3] {
-    let mut sum = [0.0; 3];
-    for (&node, share) in nodes.iter().zip(shares) {
-        let of_node = &field[node * dimension..][..dimension];
-        sum.iter_mut().zip(of_node).for_each(|(sum, x)| *sum += share * x);
-    }
-    sum
 }

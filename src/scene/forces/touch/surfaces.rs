@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use crate::base::vector::{difference, norm};
 use crate::elements::body::Body;
 use crate::scene::forces::surface::{SurfacePoint, closed_points, facets};
 
@@ -119,7 +120,7 @@ impl Surfaces {
     pub(super) fn leave_out(&mut self, pairs: &[[usize; 2]]) {
         let mut facets_at: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
         for (number, feature) in self.features.iter().enumerate() {
-            if feature.facets == [number] {
+            if self.is_facet(number) {
                 for &node in feature.nodes() {
                     facets_at.entry(node).or_default().push(number);
                 }
@@ -143,15 +144,10 @@ impl Surfaces {
         }
     }
 
-    /// The weight of a feature for points of other bodies.
-    #[cfg(test)]
-    pub(super) fn weight_for_others(&self, feature: usize) -> f64 {
-        self.features[feature].weight
-    }
-
     /// The weight of a feature for a point; 0 if the point does not feel it.
     pub(super) fn weight(&self, point: usize, feature: usize) -> f64 {
-        if self.is_itself(point, feature) && !self.itself {
+        let [of_point, of_feature] = self.bodies(point, feature);
+        if of_point == of_feature && !self.itself {
             return 0.0;
         }
         let point = &self.points[point];
@@ -181,11 +177,6 @@ impl Surfaces {
         self.features[feature].facets == [feature]
     }
 
-    /// Whether a point and a feature are of the same body.
-    fn is_itself(&self, point: usize, feature: usize) -> bool {
-        self.points[point].body == self.features[feature].body
-    }
-
     /// The numbers of the bodies of a point and of a feature.
     pub(super) fn bodies(&self, point: usize, feature: usize) -> [usize; 2] {
         [self.points[point].body, self.features[feature].body]
@@ -193,15 +184,12 @@ impl Surfaces {
 
     /// Mean length (m) of the sides of the facets; 0 without any.
     pub(super) fn mean_side(&self) -> f64 {
-        let side = |(k, facet): (usize, &Feature)| {
-            let nodes = facet.nodes();
-            let is_side = nodes.len() > 1 && facet.facets == [k];
-            is_side.then(|| {
-                let [a, b] = [nodes[0], nodes[1]].map(|node| self.at_rest(node));
-                crate::base::vector::norm(&std::array::from_fn::<f64, 3, _>(|i| b[i] - a[i]))
-            })
+        let side = |facet: usize| match *self.features[facet].nodes() {
+            [a, b, ..] => Some(norm(&difference(&self.at_rest(b), &self.at_rest(a)))),
+            _ => None,
         };
-        let sides: Vec<f64> = self.features.iter().enumerate().filter_map(side).collect();
+        let facets = (0..self.features.len()).filter(|&feature| self.is_facet(feature));
+        let sides: Vec<f64> = facets.filter_map(side).collect();
         sides.iter().sum::<f64>() / sides.len().max(1) as f64
     }
 

@@ -126,9 +126,11 @@ fn momentum_is_exchanged_and_energy_lost() {
 fn a_convex_surface_is_felt_once() {
     for dimension in [2, 3] {
         let body = blocks(dimension);
-        let surfaces = Surfaces::new(&body, &[0], false).unwrap();
+        let surfaces = Surfaces::new(&body, &[0, 1], false).unwrap();
         let still = vec![0.0; body.dofs()];
         let (from, to, reach) = ([0.02, 0.0, 0.014], [0.12, 0.05, 0.094], 0.02);
+        let of_other = |&point: &usize| surfaces.bodies(point, 0)[0] == 1;
+        let stranger = (0..surfaces.points.len()).find(of_other).unwrap();
         let mut count = 0;
         for unit in noise(1500, 8).chunks_exact(3) {
             let mut x = [0.0; 3];
@@ -144,11 +146,12 @@ fn a_convex_surface_is_felt_once() {
             }
             count += 1;
             let felt: f64 = (0..surfaces.features.len())
+                .filter(|&feature| surfaces.bodies(stranger, feature)[1] == 0)
                 .map(|feature| {
                     let corners = surfaces.corners_at(feature, &still);
                     let of = surfaces.features[feature].nodes().len();
                     let (d, _) = Pair::apart(&x, &corners[..of]);
-                    let weight = surfaces.weight_for_others(feature);
+                    let weight = surfaces.weight(stranger, feature);
                     weight * (reach - d).max(0.0).powi(2)
                 })
                 .sum();
