@@ -42,7 +42,7 @@ test: ## Every check: format, lints, tests, documentation and its examples
 	cargo fmt --all --check
 	{ scripts/setup.sh chromium python3-venv && scripts/python.sh environment; } & \
 		cargo clippy --workspace --all-targets $(FEATURES) $(READ) -- -D warnings && wait $$!
-	cargo test -p pliant $(FEATURES) --lib --config profile.dev.package.pliant.opt-level=0 & \
+	cargo test $(BOTH) --lib --config profile.dev.package.pliant.opt-level=0 & \
 		sleep 2; cargo test $(BOTH) --test '*' $(TESTED) --no-run && wait $$!
 	cargo test $(BOTH) --test 's*' & some=$$!; cargo test $(BOTH) --test '[!s]*' $(TESTED) & others=$$!; \
 		cargo test $(BOTH) --doc && RUSTDOCFLAGS=-Dwarnings cargo doc $(BOTH) --no-deps $(READ) && \

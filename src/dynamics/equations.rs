@@ -38,7 +38,7 @@ impl Scene {
     ///
     /// # Errors
     /// As [`validate`](Self::validate); a phase that the scene does not have; displacements of
-    /// the wrong number; constraints that tie several components together; Maxwell branches.
+    /// the wrong number; constraints that tie several components together; Maxwell branches; rigid pieces.
     pub fn equations(&self, phase: usize, u: &[f64]) -> Result<Equations, InputError> {
         let forces = self.forces()?;
         let matrices = self.matrices(&forces);
@@ -58,6 +58,11 @@ impl Scene {
         if matrices.branches.is_some() {
             let help = "equations are given for bodies without Maxwell branches: leave them out";
             return Err(InputError::new("material.branches", "some", help));
+        }
+        if matrices.rigid.is_some() {
+            let help =
+                "equations are given for nodes that move by themselves: leave rigid pieces out";
+            return Err(InputError::new("material.rigid", true, help));
         }
         let time = phase.checked_sub(1).map_or(0.0, |before| self.phases()[before].end());
         // positions follow b(t) exactly here, so that no stabilization is needed

@@ -291,6 +291,12 @@ pub trait Force: Send + Sync {
         self.switches() > 0
     }
 
+    /// Whether it only keeps rigid pieces in their shape, as their edges do where they are constraints.
+    #[doc(hidden)]
+    fn keeps_rigid(&self) -> bool {
+        false
+    }
+
     /// Pairs of nodes (counted from 0) that the force couples under the displacements `u` (m), or may soon, if it
     /// couples any there that `pattern` lacks; none otherwise. For a force between nodes that move past each other,
     /// whose [`couplings`](Self::couplings) would be too many: the Newton matrix gets room for these pairs before

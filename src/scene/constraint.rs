@@ -18,7 +18,7 @@ use std::sync::Arc;
 pub use axis::Axis;
 pub use prescribed::{Path, Prescribed};
 pub(crate) use resolve::rows;
-pub(crate) use row::{ConstraintRow, prescribe};
+pub(crate) use row::{ConstraintRow, independent_terms, prescribe};
 pub(crate) use spline::Spline;
 pub(crate) use start::PhaseStart;
 pub(crate) use turn::{Turn, angular};

@@ -71,7 +71,14 @@ fn part_of(Part { name, body, .. }: &Part) -> Result<(), Failure> {
     let strain = format!("{:?}", body.strain()).to_lowercase();
     let viscosity = format!("{:?}", body.viscosity()).to_lowercase();
     let name = if name.is_empty() { String::new() } else { format!("\"{name}\": ") };
-    line("body", &format!("{name}{size:.4} m across, {mass:.4} kg, {dofs} displacements"))?;
+    let unknown = match body.independent_dofs() {
+        own if own < dofs => format!(", {own} of them independent"),
+        _ => String::new(),
+    };
+    line(
+        "body",
+        &format!("{name}{size:.4} m across, {mass:.4} kg, {dofs} displacements{unknown}"),
+    )?;
     let dilatation = match body.dilatation() {
         Dilatation::AtPoints => "",
         Dilatation::Mean => ", mean dilatation",
@@ -85,7 +92,13 @@ fn part_of(Part { name, body, .. }: &Part) -> Result<(), Failure> {
 }
 
 fn made_of(substance: &Substance, strain: Strain) -> String {
-    let Substance { material, law, mass_damping, branches, fibres } = substance;
+    let Substance { material, law, mass_damping, branches, fibres, is_rigid } = substance;
+    if *is_rigid {
+        return format!(
+            "rigid, {} kg/m^3, E {:.4e} Pa keeps its shape",
+            material.density, material.young
+        );
+    }
     let law = match (law, strain) {
         (Some(law), _) => law.name(),
         (None, Strain::Cauchy) => "linear elasticity",

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use dissection::nested_dissection;
 
 use crate::base::sparse::{BlockMatrix, NodeMatrix, NodePattern};
-use crate::elements::body::{Body, Branches, LinearByCells};
+use crate::elements::body::{Body, Branches, LinearByCells, RigidPieces};
 use crate::elements::force::Force;
 
 /// Inertia and the constant parts of the tangents. What is `None` is not needed.
@@ -35,6 +35,8 @@ pub(crate) struct Matrices {
     /// The nodes in an order of elimination that may leave less fill than minimum degree, on meshes
     /// that are large enough for that to matter.
     pub(crate) dissection: Option<Vec<usize>>,
+    /// Nodes that move with others.
+    pub(crate) rigid: Option<Arc<RigidPieces>>,
 }
 
 /// Number of nodes from which a second order of elimination is worth computing.
@@ -68,16 +70,21 @@ impl Matrices {
             branches,
             scales,
             dissection: None,
+            rigid: body.rigid_pieces().cloned(),
         };
-        if strangers.is_empty() {
+        if strangers.is_empty() && matrices.rigid.is_none() {
             return Self { dissection: dissection(pattern, positions, dimension), ..matrices };
         }
         matrices.with_pairs(&strangers)
     }
 
-    /// The same matrices with room for some more pairs of nodes.
+    /// The same matrices with room for some more pairs of nodes, and for the nodes by which those move.
     pub(crate) fn with_pairs(&self, pairs: &[[usize; 2]]) -> Self {
-        let pattern = Arc::new(self.pattern().with_pairs(pairs));
+        let mut pattern = self.pattern().with_pairs(pairs);
+        if let Some(rigid) = &self.rigid {
+            pattern = pattern.with_pairs(&rigid.couplings(&pattern));
+        }
+        let pattern = Arc::new(pattern);
         let moved = |matrix: &Arc<BlockMatrix>| Arc::new(matrix.moved_to(&pattern));
         Self {
             positions: self.positions.clone(),
@@ -87,6 +94,7 @@ impl Matrices {
             linear_by_cells: self.linear_by_cells.clone(),
             mass_damping: self.mass_damping.clone(),
             branches: self.branches.clone(),
+            rigid: self.rigid.clone(),
             dissection: dissection(&pattern, &self.positions, self.dimension),
             ..*self
         }
@@ -95,6 +103,11 @@ impl Matrices {
     /// Number of displacement components.
     pub(crate) fn dofs(&self) -> usize {
         self.pattern().nodes() * self.dimension
+    }
+
+    /// Moves nodal forces of rigid pieces to the nodes of their frames, where they do the same work.
+    pub(crate) fn gather(&self, f: &mut [f64]) {
+        self.rigid.iter().for_each(|rigid| rigid.gather(f));
     }
 
     pub(crate) fn pattern(&self) -> &Arc<NodePattern> {

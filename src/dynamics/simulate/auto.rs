@@ -107,7 +107,7 @@ impl Plan {
         let n = system.dofs();
         let spectrum = system.spectrum(t, &state[..n], &state[n..2 * n]);
         let (method, creeps, reason) = choose(&spectrum, asked.rtol);
-        let alpha = if system.rows().is_empty() { 0.0 } else { asked.alpha };
+        let alpha = if system.is_constrained() { asked.alpha } else { 0.0 };
         let (part, max_order) = match asked.max_order {
             None if creeps && asked.rtol >= COARSE => (1.0, Some(3)),
             order => (part(method, asked.rtol), order),

@@ -95,7 +95,7 @@ pub(super) fn begin_to_move(
 ) {
     let v = State::of(state, system.dofs()).v;
     let violates = |row: &ConstraintRow| row.apply(v) != row.prescribed(0.0).velocity;
-    if largest(v) > 0.0 && system.rows().iter().any(violates) {
+    if largest(v) > 0.0 && (system.rows().iter().any(violates) || system.distorts(v)) {
         project_now(system, 0.0, state);
     } else {
         project(settings, phase, system, 0.0, state);
@@ -105,6 +105,6 @@ pub(super) fn begin_to_move(
 fn project_now(system: &mut System, time: f64, state: &mut [f64]) {
     let StateMut { u, v, supplied, .. } = StateMut::of(state, system.dofs());
     let before = system.energy(time, u, v, &[]).kinetic;
-    system.project(time, v);
+    system.project(time, u, v);
     *supplied += system.energy(time, u, v, &[]).kinetic - before;
 }

@@ -95,10 +95,7 @@ impl Run {
             return Err(InputError::new("method", settings.method, help).into());
         }
         indicators::overlap::check_start(scene)?;
-        if settings.method == Method::IdaKlu && !scene.touches().is_empty() {
-            let help = "its Jacobian has a fixed pattern, and bodies that touch couple ever other nodes: take ida";
-            return Err(InputError::new("method", settings.method, help).into());
-        }
+        check_method(scene, settings.method)?;
         let mut state = [u, &v, &[0.0; ENERGIES], &system.relaxed(u)].concat();
         begin_to_move(settings, phase, &mut system, &mut state);
         let mut first = records::sample(0, &mut system, 0.0, &state)
@@ -410,9 +407,26 @@ impl Run {
     }
 }
 
-/// The strain energy (J) of a body, the softest of several, under strains of a thousandth.
+/// The strain energy (J) of a body, the softest of several, under strains of a thousandth; 0 if all are rigid.
 fn least_energy(body: &Body) -> f64 {
-    let energies =
-        body.parts().map(|Part { body, .. }| 1e-6 * body.material().young * body.volume());
-    energies.fold(f64::INFINITY, f64::min)
+    let energy = |Part { body, .. }: Part| 1e-6 * body.material().young * body.volume();
+    let soft = body.parts().filter(|part| !part.body.substances().all(|made_of| made_of.is_rigid));
+    soft.map(energy).reduce(f64::min).unwrap_or(0.0)
+}
+
+/// # Errors
+/// A method that has no equations for what is in the scene.
+fn check_method(scene: &Scene, method: Method) -> Result<(), InputError> {
+    let help = match method {
+        Method::Ida | Method::IdaKlu | Method::IdaIndexTwo | Method::CentralDifference
+            if scene.body().rigid_pieces().is_some() =>
+        {
+            "the edges of rigid pieces are constraints for cvode-bdf, cvode-adams, arkode, rosenbrock and rk: take one of them, or auto"
+        }
+        Method::IdaKlu if !scene.touches().is_empty() => {
+            "its Jacobian has a fixed pattern, and bodies that touch couple ever other nodes: take ida"
+        }
+        _ => return Ok(()),
+    };
+    Err(InputError::new("method", method, help))
 }

@@ -103,7 +103,8 @@ impl ForceBalance {
 impl AtRest {
     /// # Errors
     /// A path of a constraint that gives no finite displacement at `time` (s).
-    pub(crate) fn new(system: System, time: f64, phase: &str) -> Result<Self, InputError> {
+    pub(crate) fn new(mut system: System, time: f64, phase: &str) -> Result<Self, InputError> {
+        system.release_edges();
         let lost = |prescribed: Prescribed| !prescribed.displacement.is_finite();
         if let Some(row) = system.rows.iter().find(|row| lost(row.prescribed(time))) {
             return Err(InputError::new(
@@ -316,6 +317,7 @@ impl AtRest {
         for (row, mu) in self.system.rows.iter().zip(mu) {
             row.terms.iter().for_each(|&(dof, c)| work[dof] += c * mu);
         }
+        self.system.matrices.gather(work);
         largest(work)
     }
 

@@ -22,6 +22,7 @@ mod at_rest;
 mod cholesky;
 mod dae;
 mod differences;
+mod edges;
 mod form;
 mod gradients;
 mod guide;
@@ -45,6 +46,7 @@ use std::sync::Arc;
 
 pub(crate) use at_rest::{AtRest, ForceBalance};
 pub(crate) use dae::{DaeForm, Index};
+use edges::Edges;
 pub(crate) use form::Form;
 use newton_matrix::NewtonMatrix;
 use reduced::{EXACT, Reduced, nodal_multipliers};
@@ -55,7 +57,7 @@ pub use summary::PhaseSummary;
 
 use crate::base::input::InputError;
 use crate::base::sparse::NodeMatrix;
-use crate::base::vector::dot;
+use crate::base::vector::{dot, largest};
 use crate::dynamics::matrices::Matrices;
 use crate::dynamics::state;
 use crate::elements::body::Branches;
@@ -63,16 +65,25 @@ use crate::elements::force::{Forces, NodalForces, Reservoir, Step};
 use crate::integrators::ode::Failure;
 use crate::scene::constraint::{ConstraintRow, Prescribed};
 
+/// What is round-off in the velocities of a rigid piece, relative to the largest.
+const ROUND_OFF: f64 = 1e-12;
+
 /// Equations of one phase, with everything that evaluating and solving them needs.
 pub(crate) struct System {
     /// The matrices of the scene, and those with room for what is near now.
     base: Arc<Matrices>,
     matrices: Arc<Matrices>,
     forces: Forces,
+    /// Those that keep rigid pieces in their shape, which their edges do here.
+    of_rigid: Forces,
     rows: Vec<ConstraintRow>,
     /// Stabilization rate alpha (1/s).
     alpha: f64,
     inertia: Reduced,
+    /// What keeps rigid pieces in their shape.
+    edges: Edges,
+    /// As they were where the tangents are from.
+    linear_edges: Edges,
     newton: NewtonMatrix,
     at: Evaluation,
     /// Why a force was undefined, the last time that one was.
@@ -141,13 +152,23 @@ impl System {
         phase: &str,
     ) -> Result<Self, InputError> {
         let (dimension, dofs) = (matrices.dimension, matrices.dofs());
-        let coupling = match matrices.inertia.is_diagonal() {
+        let coupling = match matrices.inertia.is_diagonal() && matrices.rigid.is_none() {
             true => Coupling::Diagonal,
             false => Coupling::SameAxis,
         };
-        let mut inertia = Reduced::new(&matrices, &rows, coupling);
+        let mut edges = Edges::new(matrices.rigid.as_deref(), &matrices.positions, dimension);
+        let mut inertia = Reduced::new(&matrices, &rows, &edges.list, coupling);
         let values = &matrices.inertia.values;
-        if inertia.begin(EXACT, |source| values[source.entry()]).is_err() {
+        let mut begun = inertia.begin(EXACT, |source| values[source.entry()]);
+        if let (Some(solver), Ok(())) = (&mut inertia.edges, &begun) {
+            let is_kept = solver.independent(&edges);
+            if is_kept.contains(&false) {
+                edges = edges.retained(&is_kept);
+                inertia = Reduced::new(&matrices, &rows, &edges.list, coupling);
+                begun = inertia.begin(EXACT, |source| values[source.entry()]);
+            }
+        }
+        if begun.is_err() {
             return Err(match inertia.dependent_row() {
                 Some(row) => InputError::new(
                     format!("constraints of phase \"{phase}\""),
@@ -161,7 +182,7 @@ impl System {
                 ),
             });
         }
-        let newton = NewtonMatrix::new(&matrices, &rows, follows(&matrices, &forces));
+        let newton = NewtonMatrix::new(&matrices, &rows, &edges.list, follows(&matrices, &forces));
         let internal = matrices.branches.as_ref().map_or(0, Branches::unknowns);
         let at = Evaluation {
             nodal: NodalForces::zeros(dofs),
@@ -174,7 +195,22 @@ impl System {
             relaxed: 0.0,
         };
         let (base, refusal) = (matrices.clone(), String::new());
-        Ok(Self { base, matrices, forces, rows, alpha, inertia, newton, at, refusal })
+        let (of_rigid, forces) = parted(forces);
+        let linear_edges = edges.clone();
+        Ok(Self {
+            base,
+            matrices,
+            forces,
+            of_rigid,
+            rows,
+            alpha,
+            inertia,
+            edges,
+            linear_edges,
+            newton,
+            at,
+            refusal,
+        })
     }
 
     /// Number of displacement components.
@@ -188,7 +224,7 @@ impl System {
         if follows(&self.matrices, &forces) != self.newton.follows {
             return false;
         }
-        self.forces = forces;
+        (self.of_rigid, self.forces) = parted(forces);
         self.forget_tangents();
         true
     }
@@ -246,9 +282,17 @@ impl System {
         Ok(&self.at.multipliers)
     }
 
+    /// Whether rigid pieces do not allow the velocities `v` (m/s).
+    pub(crate) fn distorts(&self, v: &[f64]) -> bool {
+        let off = self.matrices.rigid.as_ref().map_or(0.0, |rigid| rigid.distortion(v));
+        off > ROUND_OFF * largest(v)
+    }
+
     /// The velocities nearest to `v`, in the sense of kinetic energy, that the constraints allow
-    /// at time `t`.
-    pub(crate) fn project(&mut self, t: f64, v: &mut [f64]) {
+    /// at time `t` and the displacements `u`.
+    pub(crate) fn project(&mut self, t: f64, u: &[f64], v: &mut [f64]) {
+        self.edges.move_to(self.alpha, u, v);
+        self.turn_inertia(false);
         self.at.total.fill(0.0);
         let Matrices { inertia, dimension, .. } = &*self.matrices;
         inertia.add_product(*dimension, 1.0, v, &mut self.at.total);
@@ -325,7 +369,7 @@ impl System {
     /// Largest |A^T u - b| (m).
     pub(crate) fn drift(&self, t: f64, u: &[f64]) -> f64 {
         let drift = |row: &ConstraintRow| (row.apply(u) - row.prescribed(t).displacement).abs();
-        self.rows.iter().map(drift).fold(0.0, f64::max)
+        self.rows.iter().map(drift).fold(self.edges.drift(u), f64::max)
     }
 
     /// Kinetic and potential energies of a state; dissipated and supplied are left at 0. Without `internal` strains
@@ -361,13 +405,63 @@ impl System {
     fn evaluate(&mut self, t: f64, u: &[f64], v: &[f64], internal: &[f64]) -> Result<(), Failure> {
         self.evaluate_forces(t, u, v, internal)?;
         self.evaluate_rows(t, u, v)?;
+        self.turn_inertia(true);
         let Evaluation { total, demands, acceleration, multipliers, .. } = &mut self.at;
         self.inertia.solve(&self.rows, total, demands, acceleration, multipliers);
         let Matrices { inertia, dimension, .. } = &*self.matrices;
         nodal_multipliers(&self.rows, multipliers, |dof| {
             inertia.row_product(*dimension, dof, acceleration) - total[dof]
         });
+        if let Some(solver) = &self.inertia.edges {
+            self.edges.multipliers.copy_from_slice(&solver.multipliers);
+            self.edges.accelerate(&self.at.acceleration);
+        }
         Ok(())
+    }
+
+    /// Has solutions with M follow the edges of rigid pieces as they are now, and what is demanded of them, or else
+    /// nothing.
+    fn turn_inertia(&mut self, is_demanded: bool) {
+        let Some(solver) = &mut self.inertia.edges else { return };
+        match is_demanded {
+            true => solver.demands.copy_from_slice(&self.edges.demands),
+            false => solver.demands.fill(0.0),
+        }
+        solver.turn(&self.edges, None);
+    }
+
+    /// Whether rigid pieces enter Newton's linear systems as they were where the matrix is from: where each system is
+    /// solved once.
+    fn has_fixed_edges(&self) -> bool {
+        !self.edges.list.is_empty() && !self.newton.iterates()
+    }
+
+    /// Takes the state (t, u, v) for that in which rigid pieces enter the Newton matrix.
+    fn linearize_edges(
+        &mut self,
+        t: f64,
+        u: &[f64],
+        v: &[f64],
+        internal: &[f64],
+    ) -> Result<(), Failure> {
+        if !self.edges.list.is_empty() {
+            self.evaluate(t, u, v, internal)?;
+            self.linear_edges.copy_from(&self.edges);
+        }
+        Ok(())
+    }
+
+    /// Leaves the shape of rigid pieces to their elasticity.
+    fn release_edges(&mut self) {
+        self.forces.append(&mut self.of_rigid);
+        self.edges = Edges::default();
+        self.inertia.edges = None;
+        self.newton.solver.edges = None;
+    }
+
+    /// Whether constraints are stabilized, those of rigid pieces included.
+    pub(crate) fn is_constrained(&self) -> bool {
+        !self.rows.is_empty() || !self.edges.list.is_empty()
     }
 
     fn evaluate_forces(
@@ -425,6 +519,7 @@ impl System {
                 - 2.0 * alpha * (rate - velocity)
                 - alpha * alpha * (position - displacement);
         }
+        self.edges.move_to(alpha, u, v);
         Ok(())
     }
 
@@ -466,7 +561,14 @@ impl System {
     }
 }
 
+/// The forces that only keep rigid pieces in their shape, and all others.
+fn parted(forces: Forces) -> (Forces, Forces) {
+    forces.into_iter().partition(|force| force.keeps_rigid())
+}
+
 /// Whether the Newton matrix depends on more than M, K and B: on the state, or on the step in another way.
 fn follows(matrices: &Matrices, forces: &Forces) -> bool {
-    matrices.branches.is_some() || forces.iter().any(|force| force.is_nonlinear())
+    matrices.branches.is_some()
+        || matrices.rigid.is_some()
+        || forces.iter().any(|force| force.is_nonlinear())
 }

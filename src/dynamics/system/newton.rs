@@ -78,6 +78,9 @@ impl System {
                 differences.add_tangents(force, t, [u, v], [stiffness, damping]);
             }
         }
+        if let Some(stiffness) = stiffness.own() {
+            self.linear_edges.add_tangents(stiffness);
+        }
         *is_set = true;
         *is_damped = damping.get().values.iter().any(|&value| value != 0.0);
         *tangent_evaluations += 1;
@@ -100,7 +103,7 @@ impl System {
         };
         pairs.retain(|&[a, b]| matrices.pattern().find(a, b).is_none());
         self.matrices = Arc::new(matrices.with_pairs(&pairs));
-        self.newton.move_to(&self.matrices, &self.rows);
+        self.newton.move_to(&self.matrices, &self.rows, &self.edges.list);
     }
 
     /// Adds to Kt, just updated, the tangent of Maxwell branches in a step of the parameter `gamma`: the
@@ -131,10 +134,11 @@ impl System {
             let damped = if *is_damped { part(damping) } else { 0.0 };
             mass + gamma * (damped + gamma * part(stiffness))
         });
-        if factorized.is_ok() {
-            return Ok(());
+        let factorized = factorized.or_else(|_| self.newton.solver.factorize_indefinite());
+        if let (Ok(()), Some(solver)) = (&factorized, &mut self.newton.solver.edges) {
+            solver.turn(&self.linear_edges, Some([gamma, self.alpha]));
         }
-        self.newton.solver.factorize_indefinite().map_err(|_| {
+        factorized.map_err(|_| {
             Failure::Recoverable(
                 "the Newton matrix is singular (a body that is about to buckle or to collapse)"
                     .into(),
@@ -147,7 +151,7 @@ impl System {
     /// nodal rows.
     fn solve_newton(&mut self, ru: &mut [f64]) {
         let gamma = self.newton.gamma;
-        let NewtonMatrix { solver, stiffness, damping, right, xv, demands, mu, .. } =
+        let NewtonMatrix { solver, stiffness, damping, right, xv, demands, mu, stray, .. } =
             &mut self.newton;
         let (stiffness, damping) = (stiffness.get(), damping.get());
         solver.solve(&self.rows, right, demands, xv, mu);
@@ -156,6 +160,7 @@ impl System {
             let damped = damping.row_product(dof, xv) + gamma * stiffness.row_product(dof, xv);
             inertia.row_product(dimension, dof, xv) + gamma * damped - right[dof]
         });
+        xv.iter_mut().zip(stray).for_each(|(x, stray)| *x += *stray);
         ru.iter_mut().zip(&*xv).for_each(|(x, xv)| *x += gamma * xv);
     }
 
@@ -193,6 +198,20 @@ impl System {
             stiffness.get().add_product(-*gamma, ru, right);
         }
         self.stabilize_demands(ru);
+        let is_fixed = self.has_fixed_edges();
+        let NewtonMatrix { solver, stray, gamma, .. } = &mut self.newton;
+        if let Some(solver) = &mut solver.edges {
+            // iterations converge faster, and to the same, with edges as they are at the trial point
+            let edges = if is_fixed { &self.linear_edges } else { &self.edges };
+            let factors = [*gamma, self.alpha, share];
+            edges.newton_demands(factors, [ru, rv], &mut solver.demands);
+            if !is_fixed {
+                solver.turn(edges, Some([*gamma, self.alpha]));
+            }
+        }
+        if let Some(rigid) = &self.matrices.rigid {
+            rigid.stray(rv, stray);
+        }
         self.solve_newton(ru);
         rv.copy_from_slice(&self.newton.xv);
     }

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::differences::Differences;
+use super::edges::Edge;
 use super::reduced::Reduced;
 use super::source::Coupling;
 use crate::base::sparse::BlockMatrix;
@@ -38,6 +39,8 @@ pub(super) struct NewtonMatrix {
     /// d of the linear system, and its multipliers mu.
     pub(super) demands: Vec<f64>,
     pub(super) mu: Vec<f64>,
+    /// By how much velocities differ from those of rigid pieces; empty without any. No force acts on it.
+    pub(super) stray: Vec<f64>,
 }
 
 /// Kt or D.
@@ -86,10 +89,15 @@ impl Tangent {
 }
 
 impl NewtonMatrix {
-    pub(super) fn new(matrices: &Matrices, rows: &[ConstraintRow], follows: bool) -> Self {
+    pub(super) fn new(
+        matrices: &Matrices,
+        rows: &[ConstraintRow],
+        edges: &[Edge],
+        follows: bool,
+    ) -> Self {
         let dofs = matrices.dofs();
         Self {
-            solver: Reduced::new(matrices, rows, Coupling::AllAxes),
+            solver: Reduced::new(matrices, rows, edges, Coupling::AllAxes),
             stiffness: Tangent::new(matrices, &matrices.stiffness, follows),
             damping: Tangent::new(matrices, &matrices.damping, follows),
             differences: Differences::new(matrices.scales),
@@ -108,12 +116,13 @@ impl NewtonMatrix {
             xv: vec![0.0; dofs],
             demands: vec![0.0; rows.len()],
             mu: vec![0.0; rows.len()],
+            stray: vec![0.0; if matrices.rigid.is_some() { dofs } else { 0 }],
         }
     }
 
     /// Continues with matrices on another pattern, without tangents yet.
-    pub(super) fn move_to(&mut self, matrices: &Matrices, rows: &[ConstraintRow]) {
-        let mut solver = Reduced::new(matrices, rows, Coupling::AllAxes);
+    pub(super) fn move_to(&mut self, matrices: &Matrices, rows: &[ConstraintRow], edges: &[Edge]) {
+        let mut solver = Reduced::new(matrices, rows, edges, Coupling::AllAxes);
         solver.count_from(&self.solver);
         self.solver = solver;
         self.stiffness = Tangent::new(matrices, &matrices.stiffness, self.follows);
@@ -121,6 +130,11 @@ impl NewtonMatrix {
         self.differences.forget_patterns();
         self.is_set = false;
         self.patterns += 1;
+    }
+
+    /// Whether the residuals of its systems are evaluated again and solutions corrected.
+    pub(super) fn iterates(&self) -> bool {
+        self.accuracy == ITERATED
     }
 
     /// Starts all counts from 0.

@@ -30,6 +30,7 @@ impl Ode for System {
         reuse: bool,
     ) -> Result<bool, Failure> {
         let State { u, v, others, .. } = State::of(y, self.dofs());
+        self.linearize_edges(t, u, v, others)?;
         // what Maxwell branches add depends on gamma
         let current = self.update_tangents(t, u, v, reuse && others.is_empty());
         self.add_branch_tangents(gamma, u, others);
@@ -38,8 +39,11 @@ impl Ode for System {
     }
 
     /// Leaves the accelerations to [`newton_solve`](Self::newton_solve), and with them the
-    /// power of the constraints.
+    /// power of the constraints; but where rigid pieces turn and there is no iteration that would follow them.
     fn newton_rhs(&mut self, t: f64, y: &[f64], ydot: &mut [f64]) -> Result<(), Failure> {
+        if self.has_fixed_edges() {
+            return self.rhs(t, y, ydot);
+        }
         let State { u, v, others, .. } = State::of(y, self.dofs());
         self.evaluate_forces(t, u, v, others)?;
         self.evaluate_rows(t, u, v)?;
@@ -54,7 +58,8 @@ impl Ode for System {
 
     fn newton_solve(&mut self, gamma: f64, r: &mut [f64]) -> Result<(), Failure> {
         let r = StateMut::of(r, self.dofs());
-        self.solve_newton_ode(gamma, r.u, r.v, r.others);
+        let share = if self.has_fixed_edges() { 0.0 } else { gamma };
+        self.solve_newton_ode(share, r.u, r.v, r.others);
         let (dissipated, supplied) = self.power_changes();
         let relaxed = self.solve_branches(r.u, r.others);
         *r.dissipated += self.gamma() * (dissipated + relaxed);

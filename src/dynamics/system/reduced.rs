@@ -3,7 +3,8 @@
 //!
 //! Nodal rows of A^T are eliminated: their components of x are known at once, and what remains is a Cholesky
 //! solve with the free part of X. General rows, of which there are few, are satisfied by a Schur complement
-//! of the size of their number.
+//! of the size of their number. Nodes of rigid pieces (`elements/body/rigid.rs`) that move with others, x = W q, are
+//! eliminated as well: what is factorized is W^T X W.
 //!
 //! X may be singular without the general rows: oblique planes of symmetry may be all that holds a body. So
 //! where X itself is factorized, springs with the stiffness rho of its diagonal are added along the rows g of
@@ -12,6 +13,8 @@
 
 #[cfg(test)]
 mod tests;
+
+use std::sync::Arc;
 
 use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
 use faer::linalg::cholesky::llt::factor::{
@@ -22,11 +25,14 @@ use faer::sparse::SymbolicSparseColMat;
 use faer::{Mat, MatMut, Par, Spec};
 
 use super::cholesky::Indefinite;
+use super::edges::{Edge, EdgeSolver};
 use super::gradients::Gradients;
 use super::source::{Coupling, EntrySource};
 use super::symmetric::Symmetric;
+use crate::base::sparse::NodePattern;
 use crate::dynamics::matrices::Matrices;
-use crate::scene::constraint::ConstraintRow;
+use crate::elements::body::RigidPieces;
+use crate::scene::constraint::{ConstraintRow, independent_terms};
 
 /// Residual, relative to the right-hand side, that is round-off.
 pub(super) const EXACT: f64 = 1e-13;
@@ -35,15 +41,20 @@ pub(super) const EXACT: f64 = 1e-13;
 pub(super) struct Reduced {
     /// The free part of X.
     symmetric: Symmetric,
-    /// Entries of X between a free row (position in `free`) and a fixed column (dof).
-    border: Vec<(usize, usize, EntrySource)>,
+    /// Entries of X between a free row (position in `free`) and a fixed column (dof), with their share.
+    border: Vec<(usize, usize, EntrySource, f64)>,
     border_values: Vec<f64>,
+    rigid: Option<Arc<RigidPieces>>,
+    /// The edges of frames, where they are constraints.
+    pub(super) edges: Option<EdgeSolver>,
     general: GeneralRows,
     springs: Vec<Spring>,
     /// Entries of the free part, and what the springs add to them.
     stiffening: Vec<(usize, f64)>,
     /// Right-hand side and solution at the free degrees of freedom.
     work: Vec<f64>,
+    /// The right-hand side, moved from nodes of rigid pieces to their frames.
+    gathered: Vec<f64>,
 }
 
 /// A spring along a general row of a single node.
@@ -57,49 +68,69 @@ struct Spring {
 }
 
 impl Reduced {
-    pub(super) fn new(matrices: &Matrices, rows: &[ConstraintRow], coupling: Coupling) -> Self {
+    pub(super) fn new(
+        matrices: &Matrices,
+        rows: &[ConstraintRow],
+        edges: &[Edge],
+        coupling: Coupling,
+    ) -> Self {
         let (pattern, dimension) = (matrices.pattern(), matrices.dimension);
         let dofs = pattern.nodes() * dimension;
-        let mut position: Vec<Option<usize>> = vec![Some(0); dofs];
+        let rigid = matrices.rigid.clone();
+        let is_dependent =
+            |node: usize| rigid.as_ref().is_some_and(|rigid| rigid.is_dependent(node));
+        let mut position: Vec<Option<usize>> =
+            (0..dofs).map(|dof| (!is_dependent(dof / dimension)).then_some(0)).collect();
         rows.iter().filter_map(ConstraintRow::nodal).for_each(|(dof, _)| position[dof] = None);
         let free: Vec<usize> = (0..dofs).filter(|&dof| position[dof].is_some()).collect();
         free.iter().enumerate().for_each(|(at, &dof)| position[dof] = Some(at));
 
-        let (mut offsets, mut row_indices) = (vec![0], Vec::new());
+        let (mut offsets, mut row_indices) = (vec![0; free.len() + 1], Vec::new());
         let (mut sources, mut border) = (Vec::new(), Vec::new());
-        for column in 0..dofs {
-            for (entry, node) in pattern.row(column / dimension) {
-                for axis in 0..dimension {
-                    let axes = [column % dimension, axis];
-                    let is_coupled = match coupling {
-                        Coupling::Diagonal => node * dimension + axis == column,
-                        Coupling::SameAxis => axes[0] == axes[1],
-                        Coupling::AllAxes => true,
-                    };
-                    if !is_coupled {
-                        continue;
-                    }
-                    // X is symmetric: entry (column, row) stands for (row, column).
-                    let source = EntrySource::new(entry, pattern.transposed(entry), axes);
-                    match (position[node * dimension + axis], position[column]) {
-                        (Some(row), Some(column)) if row >= column => {
-                            row_indices.push(row);
-                            sources.push(source);
-                        }
-                        (Some(row), None) => border.push((row, column, source)),
-                        _ => {}
-                    }
+        each_source(pattern, dimension, coupling, |source, [row, column]| {
+            // what nodes that move with others add follows below
+            if is_dependent(row / dimension) || is_dependent(column / dimension) {
+                return;
+            }
+            match (position[row], position[column]) {
+                (Some(row), Some(column)) if row >= column => {
+                    row_indices.push(row);
+                    sources.push(source);
+                    offsets[column + 1] = sources.len();
                 }
+                (Some(row), None) => border.push((row, column, source, 1.0)),
+                _ => {}
             }
-            if position[column].is_some() {
-                offsets.push(row_indices.len());
-            }
-        }
-        let general = GeneralRows::new(rows, &position);
+        });
+        let general = GeneralRows::new(rows, &position, rigid.as_deref(), dimension);
         let entry = |row: usize, column: usize| {
             let [start, end] = [offsets[column], offsets[column + 1]];
             (start..end).find(|&at| row_indices[at] == row)
         };
+        let mut carried = Vec::new();
+        if let Some(rigid) = &rigid {
+            let shares = |dof: usize| {
+                let shares = rigid.shares(dof / dimension);
+                shares.map(move |(node, w)| (node * dimension + dof % dimension, w))
+            };
+            each_source(pattern, dimension, coupling, |source, [row, column]| {
+                if ![row, column].into_iter().any(|dof| is_dependent(dof / dimension)) {
+                    return;
+                }
+                for (row, of_row) in shares(row) {
+                    for (column, of_column) in shares(column) {
+                        let share = of_row * of_column;
+                        match (position[row], position[column]) {
+                            (Some(row), Some(column)) if row >= column => {
+                                carried.extend(entry(row, column).map(|at| (at, source, share)));
+                            }
+                            (Some(row), None) => border.push((row, column, source, share)),
+                            _ => {}
+                        }
+                    }
+                }
+            });
+        }
         let spring = |number: usize| {
             let general: &GeneralRow = &general.rows[number];
             rows[general.number].node(dimension)?;
@@ -137,14 +168,21 @@ impl Reduced {
         let dissection = matrices.dissection.as_ref().filter(|_| coupling != Coupling::Diagonal);
         let order = dissection.map(of_nodes);
         let gradients = || Gradients::new(matrices, rows, coupling);
+        let edges = (!edges.is_empty()).then(|| {
+            let sizes = [free.len(), general.rows.len()];
+            EdgeSolver::new(edges, dimension, |dof| position[dof], sizes)
+        });
         Self {
             border_values: vec![0.0; border.len()],
             general,
             stiffening: Vec::with_capacity(springs.iter().map(|spring| spring.entries.len()).sum()),
             springs,
             work: vec![0.0; free.len()],
-            symmetric: Symmetric::new(free, sources, lower, order, gradients),
+            gathered: vec![0.0; if rigid.is_some() { dofs } else { 0 }],
+            symmetric: Symmetric::new(free, sources, carried, lower, order, gradients),
             border,
+            rigid,
+            edges,
         }
     }
 
@@ -161,7 +199,7 @@ impl Reduced {
         self.assemble_border(&value);
         self.general.rows.iter_mut().for_each(|row| row.spring = 0.0);
         self.symmetric.begin(accuracy, value)?;
-        self.general.factorize(&mut self.symmetric)
+        self.eliminate()
     }
 
     /// Factorizes X, positive definite where the general rows of single nodes hold, whose entries `value`
@@ -178,20 +216,37 @@ impl Reduced {
             self.stiffening.extend(entries.iter().map(|&(at, product)| (at, stiffness * product)));
         }
         self.symmetric.factorize(value, &self.stiffening)?;
-        self.general.factorize(&mut self.symmetric)
+        self.eliminate()
     }
 
     /// Factorizes the X last given, which has turned out not to be positive definite.
     pub(super) fn factorize_indefinite(&mut self) -> Result<(), Indefinite> {
         self.symmetric.factorize_indefinite()?;
-        self.general.factorize(&mut self.symmetric)
+        self.eliminate()
+    }
+
+    /// Prepares what the general rows and the edges need of the X in force.
+    fn eliminate(&mut self) -> Result<(), Indefinite> {
+        self.general.factorize(&mut self.symmetric)?;
+        let Some(edges) = &mut self.edges else { return Ok(()) };
+        for column in 0..edges.frames.len() {
+            let z = edges.z.col_as_slice_mut(column);
+            z.fill(0.0);
+            z[edges.frames[column]] = 1.0;
+            self.symmetric.solve(z);
+            self.general.right.fill(0.0);
+            self.general.correct(z);
+            edges.of_rows.col_as_slice_mut(column).copy_from_slice(&self.general.right);
+        }
+        edges.divide();
+        Ok(())
     }
 
     fn assemble_border(&mut self, value: impl Fn(EntrySource) -> f64) {
         self.border_values
             .iter_mut()
             .zip(&self.border)
-            .for_each(|(x, &(_, _, source))| *x = value(source));
+            .for_each(|(x, &(_, _, source, share))| *x = share * value(source));
     }
 
     /// Solves X x - A mu = f, A^T x = d. `d` has one number per row of the constraints. `mu` gets
@@ -211,12 +266,24 @@ impl Reduced {
             }
         }
         self.work.iter_mut().zip(self.symmetric.free()).for_each(|(work, &dof)| *work = f[dof]);
-        for (&(row, column, _), value) in self.border.iter().zip(&self.border_values) {
+        if let Some(rigid) = &self.rigid {
+            self.gathered.copy_from_slice(f);
+            rigid.gather(&mut self.gathered);
+            let free = self.symmetric.free();
+            self.work.iter_mut().zip(free).for_each(|(work, &dof)| *work = self.gathered[dof]);
+        }
+        for (&(row, column, ..), value) in self.border.iter().zip(&self.border_values) {
             self.work[row] -= value * x[column];
         }
         self.symmetric.solve(&mut self.work);
         self.general.solve(rows, d, x, &mut self.work, mu);
+        if let Some(edges) = &mut self.edges {
+            edges.correct(&mut self.work, self.general.rows.iter().map(|row| row.number), mu);
+        }
         self.work.iter().zip(self.symmetric.free()).for_each(|(work, &dof)| x[dof] = *work);
+        if let Some(rigid) = &self.rigid {
+            rigid.carry(x);
+        }
     }
 
     /// Has iterations tried before a factor, up to so many more than solves with the factor would cost,
@@ -275,16 +342,22 @@ struct GeneralRow {
 }
 
 impl GeneralRows {
-    fn new(rows: &[ConstraintRow], position: &[Option<usize>]) -> Self {
+    fn new(
+        rows: &[ConstraintRow],
+        position: &[Option<usize>],
+        rigid: Option<&RigidPieces>,
+        dimension: usize,
+    ) -> Self {
         let general = rows.iter().enumerate().filter(|(_, row)| row.nodal().is_none());
         let rows: Vec<GeneralRow> = general
             .map(|(number, row)| {
+                let terms = independent_terms(&row.terms, rigid, dimension);
                 let split = |&(dof, c): &(usize, f64)| position[dof].map(|at| (at, c));
                 let is_fixed = |&&(dof, _): &&(usize, f64)| position[dof].is_none();
                 GeneralRow {
                     number,
-                    free: row.terms.iter().filter_map(split).collect(),
-                    fixed: row.terms.iter().filter(is_fixed).copied().collect(),
+                    free: terms.iter().filter_map(split).collect(),
+                    fixed: terms.iter().filter(is_fixed).copied().collect(),
                     spring: 0.0,
                 }
             })
@@ -353,8 +426,22 @@ impl GeneralRows {
         debug_assert_eq!(all.len(), d.len());
         for (right, row) in self.right.iter_mut().zip(&self.rows) {
             let fixed: f64 = row.fixed.iter().map(|&(dof, c)| c * x[dof]).sum();
-            let free: f64 = row.free.iter().map(|&(at, c)| c * free[at]).sum();
-            *right = d[row.number] - fixed - free;
+            *right = d[row.number] - fixed;
+        }
+        self.correct(free);
+        for (multiplier, row) in self.right.iter().zip(&self.rows) {
+            let fixed: f64 = row.fixed.iter().map(|&(dof, c)| c * x[dof]).sum();
+            mu[row.number] = *multiplier - row.spring * (d[row.number] - fixed);
+        }
+    }
+
+    /// Corrects `free` = X^-1 f so that the rows have the values `right`, which becomes their multipliers.
+    fn correct(&mut self, free: &mut [f64]) {
+        if self.rows.is_empty() {
+            return;
+        }
+        for (right, row) in self.right.iter_mut().zip(&self.rows) {
+            *right -= row.free.iter().map(|&(at, c)| c * free[at]).sum::<f64>();
         }
         let count = self.rows.len();
         solve_in_place(
@@ -363,11 +450,35 @@ impl GeneralRows {
             Par::Seq,
             MemStack::new(&mut self.memory),
         );
-        for (k, (multiplier, row)) in self.right.iter().zip(&self.rows).enumerate() {
-            let fixed: f64 = row.fixed.iter().map(|&(dof, c)| c * x[dof]).sum();
-            mu[row.number] = *multiplier - row.spring * (d[row.number] - fixed);
+        for (k, multiplier) in self.right.iter().enumerate() {
             let column = self.inverse_g.col_as_slice(k);
             free.iter_mut().zip(column).for_each(|(x, g)| *x += g * multiplier);
+        }
+    }
+}
+
+/// Visits all entries of X, with their rows and columns.
+fn each_source(
+    pattern: &NodePattern,
+    dimension: usize,
+    coupling: Coupling,
+    mut visit: impl FnMut(EntrySource, [usize; 2]),
+) {
+    for column in 0..pattern.nodes() * dimension {
+        for (entry, node) in pattern.row(column / dimension) {
+            for axis in 0..dimension {
+                let axes = [column % dimension, axis];
+                let is_coupled = match coupling {
+                    Coupling::Diagonal => node == column / dimension && axes[0] == axes[1],
+                    Coupling::SameAxis => axes[0] == axes[1],
+                    Coupling::AllAxes => true,
+                };
+                if is_coupled {
+                    // X is symmetric: entry (column, row) stands for (row, column).
+                    let source = EntrySource::new(entry, pattern.transposed(entry), axes);
+                    visit(source, [node * dimension + axis, column]);
+                }
+            }
         }
     }
 }

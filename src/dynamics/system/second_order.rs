@@ -89,9 +89,9 @@ impl System {
         Ok(())
     }
 
-    /// Whether M is diagonal.
+    /// Whether M is diagonal, and each node moves by itself.
     pub(crate) fn is_lumped(&self) -> bool {
-        self.matrices.inertia.is_diagonal()
+        self.matrices.inertia.is_diagonal() && self.matrices.rigid.is_none()
     }
 
     /// What a row prescribes at time `t`.

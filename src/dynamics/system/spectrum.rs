@@ -73,6 +73,8 @@ impl System {
     pub(crate) fn spectrum(&mut self, t: f64, u: &[f64], v: &[f64]) -> Spectrum {
         self.update_tangents(t, u, v, false);
         self.add_branch_tangents(0.0, u, &[]);
+        self.edges.move_to(self.alpha, u, v);
+        self.turn_inertia(false);
         let highest = self.highest(|system| system.tangents().0);
         let damping_rate = self.highest(|system| system.tangents().1);
         let mut spectrum = Spectrum {
@@ -153,7 +155,8 @@ impl System {
         if highest == 0.0 {
             return None;
         }
-        let mut solver = Reduced::new(&self.matrices, &self.rows, Coupling::AllAxes);
+        let mut solver =
+            Reduced::new(&self.matrices, &self.rows, &self.edges.list, Coupling::AllAxes);
         let mut shift = SHIFT * highest;
         // Kt may have become indefinite by compression
         while !self.shift(&mut solver, shift) {
@@ -213,7 +216,11 @@ impl System {
     /// Factorizes Kt + `shift` M in `solver`. Returns whether it is positive definite.
     fn shift(&self, solver: &mut Reduced, shift: f64) -> bool {
         let (inertia, stiffness) = (&self.matrices.inertia, self.tangents().0);
-        solver.factorize(|source| shifted(inertia, stiffness, shift, source)).is_ok()
+        let factorized = solver.factorize(|source| shifted(inertia, stiffness, shift, source));
+        if let (Ok(()), Some(edges)) = (&factorized, &mut solver.edges) {
+            edges.turn(&self.edges, None);
+        }
+        factorized.is_ok()
     }
 
     /// Makes `basis` orthonormal by M, one vector after the other, and orthogonal to `others`, which are

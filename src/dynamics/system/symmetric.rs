@@ -26,6 +26,8 @@ pub(super) struct Symmetric {
     free: Vec<usize>,
     /// Sources of the entries of the lower triangle.
     sources: Vec<EntrySource>,
+    /// What nodes that move with others add to entries, with their shares.
+    carried: Vec<(usize, EntrySource, f64)>,
     values: Vec<f64>,
     cholesky: Cholesky,
     /// None where a factor is cheap.
@@ -56,6 +58,7 @@ impl Symmetric {
     pub(super) fn new(
         free: Vec<usize>,
         sources: Vec<EntrySource>,
+        carried: Vec<(usize, EntrySource, f64)>,
         pattern: SymbolicSparseColMat<usize>,
         order: Option<Vec<usize>>,
         gradients: impl FnOnce() -> Gradients,
@@ -66,9 +69,9 @@ impl Symmetric {
         let iteration = (4 * values.len() + 12 * free.len()) as f64;
         let rent = cholesky.work() / DENSE_SPEED / iteration;
         let saved = 4.0 * cholesky.entries() as f64 / iteration;
-        let pays = rent >= WORTH_ITERATING;
+        let pays = rent >= WORTH_ITERATING && carried.is_empty();
         let rented = pays.then(|| Rented::new(gradients(), rent, saved));
-        Self { free, sources, values, cholesky, rented }
+        Self { free, sources, carried, values, cholesky, rented }
     }
 
     /// Has iterations tried before a factor, up to so many more than solves with the factor would cost.
@@ -99,6 +102,9 @@ impl Symmetric {
     ) -> Result<(), Indefinite> {
         self.rented.iter_mut().for_each(|rented| rented.is_open = false);
         self.values.iter_mut().zip(&self.sources).for_each(|(x, &source)| *x = value(source));
+        for &(at, source, share) in &self.carried {
+            self.values[at] += share * value(source);
+        }
         more.iter().for_each(|&(at, more)| self.values[at] += more);
         self.cholesky.factorize(&self.values)
     }

@@ -12,6 +12,7 @@ use super::inertia::Inertia;
 use super::recipe::Recipe;
 use super::reinforcement::Reinforcement;
 use super::relaxing::Branches;
+use super::rigid::RigidPieces;
 use crate::base::input::{InputError, finite};
 use crate::base::sparse::{BlockMatrix, NodeMatrix};
 use crate::elements::basis::shares_at;
@@ -51,6 +52,7 @@ pub struct Body {
     pub(super) damping: Arc<BlockMatrix>,
     /// The part a M of the damping, if there is one.
     pub(super) mass_damping: Option<Arc<NodeMatrix>>,
+    pub(super) rigid: Option<Arc<RigidPieces>>,
 }
 
 /// A body among those that it is joined with.
@@ -133,6 +135,24 @@ impl Body {
             let regions = continuum.recipe.regions.iter().map(|(_, substance)| substance);
             std::iter::once(&continuum.recipe.material).chain(regions)
         })
+    }
+
+    /// Its rigid pieces, if it has any.
+    pub(crate) fn rigid_pieces(&self) -> Option<&Arc<RigidPieces>> {
+        self.rigid.as_ref()
+    }
+
+    /// Number of displacement components that move by themselves: all but those of nodes of
+    /// [rigid](crate::Material::rigid) pieces that move with others.
+    pub fn independent_dofs(&self) -> usize {
+        let dependent = self.rigid.as_ref().map_or(0, |rigid| rigid.dependent_nodes());
+        self.dofs() - self.dimension() * dependent
+    }
+
+    /// Whether a cell (counted from 0) is rigid.
+    pub(super) fn is_rigid_cell(&self, cell: usize) -> bool {
+        let Continuum { regions, cells, .. } = self.continuum_of(cell);
+        regions.of(cell - cells.start).is_rigid
     }
 
     /// Number of regions that were given.

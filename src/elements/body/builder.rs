@@ -11,6 +11,7 @@ use super::joined::Part;
 use super::recipe::Recipe;
 use super::regions::{CellSelection, Laws, Regions};
 use super::reinforcement::{add_at_rest, families};
+use super::rigid::RigidPieces;
 use crate::base::input::{InputError, positive};
 use crate::base::sparse::{BlockMatrix, NodeMatrix, NodePattern};
 use crate::elements::basis::Finer;
@@ -202,7 +203,9 @@ impl Body {
             stiffness: Arc::new(stiffness),
             damping: Arc::new(damping),
             mass_damping,
+            rigid: None,
         };
+        let body = Self { rigid: RigidPieces::of(&body).map(Arc::new), ..body };
         // not the nodal masses: those of quadratic cells are 0 and below at corners
         let mut nodes = 0..body.mesh.node_count();
         match nodes.find(|&node| body.inertia.get(node, node) == 0.0) {

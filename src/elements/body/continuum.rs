@@ -44,6 +44,12 @@ impl Continuum {
         }
     }
 
+    /// The same with the stiffness of its rigid pieces alone, or of all but them, if there is any.
+    pub(super) fn part(&self, is_rigid: bool) -> Option<Self> {
+        let regions = self.regions.part(is_rigid, self.kind.dimension(), self.plane)?;
+        Some(Self { regions: Arc::new(regions), ..self.clone() })
+    }
+
     /// Whether the elastic force is -K u.
     pub(super) fn is_linear(&self) -> bool {
         self.strain == Strain::Cauchy

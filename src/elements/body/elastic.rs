@@ -11,6 +11,8 @@ use crate::integrators::ode::Failure;
 /// Elastic forces, forces of objective viscosity, or both.
 pub(crate) struct Elastic {
     bodies: Vec<(Continuum, Terms)>,
+    /// Whether they are those of the rigid pieces.
+    is_of_rigid: bool,
 }
 
 impl Force for Elastic {
@@ -47,6 +49,10 @@ impl Force for Elastic {
     fn reservoir(&self) -> Reservoir {
         Reservoir::Strain
     }
+
+    fn keeps_rigid(&self) -> bool {
+        self.is_of_rigid
+    }
 }
 
 /// The forces -K u and -B v, element by element.
@@ -80,10 +86,14 @@ fn energy(bodies: &[(Continuum, Terms)], u: &[f64]) -> f64 {
 }
 
 impl Body {
-    /// The elastic and viscous forces that have no constant matrix.
-    pub(crate) fn elastic(&self) -> Option<Elastic> {
+    /// The elastic and viscous forces that have no constant matrix: of what is soft, and of the rigid pieces.
+    pub(crate) fn elastic(&self) -> impl Iterator<Item = Elastic> {
         let bodies = self.with_terms(Continuum::nonlinear_terms);
-        (!bodies.is_empty()).then_some(Elastic { bodies })
+        let of = move |is_of_rigid: bool| {
+            let part = |(own, terms): &(Continuum, Terms)| Some((own.part(is_of_rigid)?, *terms));
+            Elastic { bodies: bodies.iter().filter_map(part).collect(), is_of_rigid }
+        };
+        [false, true].into_iter().map(of).filter(|elastic| !elastic.bodies.is_empty())
     }
 
     /// The forces -K u and -B v element by element, where that is less work than with the matrices: a row of

@@ -10,6 +10,7 @@ use std::sync::Arc;
 use super::assembled::{Body, Joined};
 use super::continuum::Continuum;
 use super::elements::{Offset, too_many};
+use super::rigid::RigidPieces;
 use crate::base::input::{InputError, find};
 use crate::base::sparse::{BlockMatrix, NodeMatrix};
 use crate::elements::material::Strain;
@@ -116,7 +117,7 @@ impl Body {
             Arc::new(NodeMatrix::join(all.iter().map(|own| &**own)))
         });
         let inertia = Arc::new(inertia);
-        Ok(Self {
+        let body = Self {
             mesh,
             continua,
             joined: joined.into(),
@@ -124,7 +125,9 @@ impl Body {
             stiffness,
             damping,
             mass_damping,
-        })
+            rigid: None,
+        };
+        Ok(Self { rigid: RigidPieces::of(&body).map(Arc::new), ..body })
     }
 
     /// The bodies that were joined, or the body itself.

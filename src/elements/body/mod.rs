@@ -26,6 +26,7 @@ mod recovery;
 mod regions;
 mod reinforcement;
 mod relaxing;
+mod rigid;
 mod tangents;
 #[cfg(test)]
 mod tests;
@@ -42,5 +43,6 @@ pub use joined::Part;
 pub use polynomial::{Coefficients, GreenPolynomial};
 pub use regions::CellSelection;
 pub(crate) use relaxing::Branches;
+pub(crate) use rigid::RigidPieces;
 
 pub use crate::elements::material::{Strain, Viscosity};

@@ -105,6 +105,7 @@ pub(super) struct Laws {
     pub(super) hooke: Hooke,
     pub(super) viscous: ObjectiveViscosity,
     pub(super) branches: Vec<Relaxing>,
+    pub(super) is_rigid: bool,
 }
 
 impl Laws {
@@ -135,7 +136,11 @@ impl Regions {
     ) -> Result<Self, InputError> {
         let laws = |substance: &Substance| -> Result<Laws, InputError> {
             substance.validate()?;
-            let Substance { material, law, mass_damping, branches, fibres } = substance;
+            let Substance { material, law, mass_damping, branches, fibres, is_rigid } = substance;
+            if *is_rigid && strain == Strain::Cauchy {
+                let help = "rigid pieces turn, which Cauchy strain takes for a strain: measure strain by Green's";
+                return Err(InputError::new("material.rigid", true, help));
+            }
             if let (Some(law), Strain::Cauchy) = (law, strain) {
                 let help = "Cauchy strain is linear elasticity and takes no other law: leave one of the two out";
                 return Err(InputError::new("material.law", format!("{law:?}"), help));
@@ -157,6 +162,7 @@ impl Regions {
                     .iter()
                     .map(|branch| Relaxing::new(branch, material, strain, dimension, plane))
                     .collect(),
+                is_rigid: *is_rigid,
             })
         };
         let mut all =
@@ -206,6 +212,23 @@ impl Regions {
             start = run.end;
             (!run.is_empty()).then(|| (run.clone(), self.of(run.start)))
         })
+    }
+
+    /// The same with the stiffness of what is rigid alone, or of all but that, if there is any.
+    pub(super) fn part(&self, is_rigid: bool, dimension: usize, plane: Plane) -> Option<Self> {
+        if self.laws.iter().all(|laws| laws.is_rigid != is_rigid) {
+            return None;
+        }
+        let zero = Lame { lambda: 0.0, mu: 0.0 };
+        let without = |laws: &Laws| Laws {
+            elastic: Elastic::new(Strain::Green, None, zero, dimension, plane),
+            viscous: ObjectiveViscosity(Hooke::new(zero, dimension, plane)),
+            ..laws.clone()
+        };
+        let part = |laws: &Laws| {
+            if laws.is_rigid == is_rigid { laws.clone() } else { without(laws) }
+        };
+        Some(Self { laws: self.laws.iter().map(part).collect(), ..self.clone() })
     }
 
     /// Whether any of them is viscous.

@@ -1,6 +1,8 @@
 //! What a body, or a region of it, is made of: a material, its law at large strains, its damping, branches
 //! and fibres.
 
+use std::fmt;
+
 use super::{Fibres, Material, MaxwellBranch, laws::Law};
 use crate::base::input::{InputError, not_negative};
 
@@ -18,7 +20,7 @@ use crate::base::input::{InputError, not_negative};
 /// assert!((body.mass() - 0.0963).abs() < 1e-12); // kg
 /// # Ok::<(), pliant::Error>(())
 /// ```
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Clone, PartialEq)]
 pub struct Substance {
     /// Density, moduli at small strains, viscosity.
     pub material: Material,
@@ -30,11 +32,35 @@ pub struct Substance {
     pub branches: Vec<MaxwellBranch>,
     /// Families of fibres in it.
     pub fibres: Vec<Fibres>,
+    /// Whether what is made of it is [rigid](Material::rigid).
+    pub is_rigid: bool,
+}
+
+impl fmt::Debug for Substance {
+    /// What is not rigid is written as before there were rigid pieces: this is a part of what identifies a scene.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { material, law, mass_damping, branches, fibres, is_rigid } = self;
+        let mut fields = f.debug_struct("Substance");
+        fields.field("material", material).field("law", law);
+        fields.field("mass_damping", mass_damping);
+        fields.field("branches", branches).field("fibres", fibres);
+        if *is_rigid {
+            fields.field("is_rigid", is_rigid);
+        }
+        fields.finish()
+    }
 }
 
 impl From<Material> for Substance {
     fn from(material: Material) -> Self {
-        Self { material, law: None, mass_damping: 0.0, branches: Vec::new(), fibres: Vec::new() }
+        Self {
+            material,
+            law: None,
+            mass_damping: 0.0,
+            branches: Vec::new(),
+            fibres: Vec::new(),
+            is_rigid: false,
+        }
     }
 }
 
@@ -71,6 +97,31 @@ impl Material {
     pub fn yielding(self, share: f64, time: f64, yield_stress: f64) -> Substance {
         Substance::from(self).yielding(share, time, yield_stress)
     }
+
+    /// What rigid bodies, and rigid regions of soft ones, are made of, with the `density` (kg/m^3).
+    ///
+    /// The cells of a connected rigid piece give its shape and its inertia; its nodes move as those of a
+    /// triangle (in space a tetrahedron) do. Beside its rigid motions such a piece has one strain, the same
+    /// everywhere, which its Young's modulus resists: [`RIGID_YOUNG`](Self::RIGID_YOUNG), or what is set in its
+    /// place. It must be far above the pressure on the piece and above rho v^2 at the speed v of its turning.
+    /// Larger ones cost implicit methods nothing where it moves straight on, and steps where it turns fast.
+    ///
+    /// ```
+    /// use pliant::{Body, Cells, Material, Mesh};
+    ///
+    /// let mesh = Mesh::rectangle([0.05, 0.05], [3, 3], Cells::Rectangles)?;
+    /// let stone = Body::new(mesh, Material::rigid(2500.0)).thickness(0.01).build()?;
+    /// assert!((stone.mass() - 0.0625).abs() < 1e-12); // kg
+    /// # Ok::<(), pliant::Error>(())
+    /// ```
+    pub fn rigid(density: f64) -> Substance {
+        let young = Self::RIGID_YOUNG;
+        let substance = Substance::from(Self { density, young, poisson: 0.0, viscosity: 0.0 });
+        Substance { is_rigid: true, ..substance }
+    }
+
+    /// Young's modulus (Pa) with which [rigid](Self::rigid) pieces keep their shape.
+    pub const RIGID_YOUNG: f64 = 1e8;
 
     /// The material with the shear modulus `shear` and the bulk modulus `bulk` (Pa), as used by laws of
     /// rubber: the shear modulus is 2 (c1 + c2) in Mooney-Rivlin's law, 2 c1 in Yeoh's.

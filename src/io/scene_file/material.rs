@@ -12,6 +12,10 @@ pub(super) const MATERIAL: TableKeys = TableKeys::new(
      viscosity from `viscosity` and `poisson` in the same way.",
     &[
         Key::number("density", "the density", "kg/m^3").default(OF_BODY),
+        Key::new("rigid", Holds::Flag, "whether what is made of it is rigid")
+            .law("The nodes of each connected piece then move as those of a triangle (in space a tetrahedron), whose shape `young` keeps: by \
+                  default 1e8 Pa. `poisson` and `viscosity` are 0, and there is no law.")
+            .default("false; in a region, as the body"),
         Key::number("young", "Young's modulus at small strains", "Pa")
             .law("It follows from the constants of a law that has them.")
             .default(OF_BODY),
@@ -134,6 +138,15 @@ struct Constants {
 /// What the table `value` describes; keys that are missing are those of `base`, if there is one.
 pub(super) fn substance(value: &Value, base: Option<&Substance>) -> Result<Substance, Error> {
     let table = value.table(&MATERIAL)?;
+    let is_rigid = table.optional("rigid", Value::flag)?;
+    let is_rigid = is_rigid.unwrap_or(base.is_some_and(|base| base.is_rigid));
+    let of_body = base.map(|base| base.material.density);
+    // a rigid piece takes nothing over from what is not rigid but its density, nor the other way round
+    let stiff = is_rigid.then(|| Material::rigid(f64::NAN));
+    let base = match base {
+        Some(base) if base.is_rigid == is_rigid => Some(base),
+        _ => stiff.as_ref(),
+    };
     let number = |key: &str, base: Option<f64>| match base {
         Some(base) => Ok(table.optional(key, Value::number)?.unwrap_or(base)),
         None => table.required(key, Value::number),
@@ -148,7 +161,7 @@ pub(super) fn substance(value: &Value, base: Option<&Substance>) -> Result<Subst
             return Err(value.error(format!("it follows from {by}: leave one of them out")));
         }
     }
-    let density = number("density", known.map(|m| m.density))?;
+    let density = number("density", of_body)?;
     let viscosity = number("viscosity", known.map(|m| m.viscosity))?;
     let material = match (shear, bulk) {
         (Some(shear), Some(bulk)) => Material::of_moduli(density, shear, bulk, viscosity),
@@ -181,7 +194,7 @@ pub(super) fn substance(value: &Value, base: Option<&Substance>) -> Result<Subst
         value.tables(&FIBRES)?.iter().map(fibres).collect::<Result<Vec<_>, Error>>()
     })?;
     let fibres = families.or(base.map(|base| base.fibres.clone())).unwrap_or_default();
-    let substance = Substance { material, law, mass_damping, branches, fibres };
+    let substance = Substance { material, law, mass_damping, branches, fibres, is_rigid };
     substance.validate().map_err(|error| table.blame(error))?;
     Ok(substance)
 }

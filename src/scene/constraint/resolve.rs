@@ -4,12 +4,13 @@ use std::collections::BTreeMap;
 use std::ptr;
 
 use super::prescribed::Prescribed;
-use super::row::{ConstraintRow, RowMotion};
+use super::row::{ConstraintRow, RowMotion, independent_terms};
 use super::start::PhaseStart;
 use super::turn::Turning;
 use super::{Axes, Axis, Constrained, Constraint, Motion};
 use crate::base::input::{InputError, finite};
-use crate::base::vector::norm;
+use crate::base::vector::{dot, norm};
+use crate::elements::body::{Body, RigidPieces};
 use crate::elements::mesh::Mesh;
 
 /// Components of a unit vector below this are round-off of a cosine.
@@ -22,11 +23,11 @@ const ROUND_OFF: f64 = 1e-14;
 /// finite, a path through points out of order, constraints that contradict each other.
 pub(crate) fn rows<'a>(
     constraints: impl Iterator<Item = &'a Constraint>,
-    mesh: &Mesh,
+    body: &Body,
     phase: &str,
     start: &PhaseStart,
 ) -> Result<Vec<ConstraintRow>, InputError> {
-    let dimension = mesh.dimension();
+    let (mesh, dimension) = (body.mesh(), body.dimension());
     let mut rows: Vec<ConstraintRow> = Vec::new();
     for Constraint { what, how } in constraints {
         match how {
@@ -67,7 +68,14 @@ pub(crate) fn rows<'a>(
     for row in &rows {
         check_path(row, phase, dimension, start.time)?;
     }
-    without_repetitions(rows, dimension, phase)
+    let Some(rigid) = body.rigid_pieces() else {
+        return without_repetitions(rows, dimension, phase);
+    };
+    for row in &mut rows {
+        row.is_of_rigid = row.terms.iter().any(|(dof, _)| rigid.contains(dof / dimension));
+    }
+    let rows = without_repetitions(rows, dimension, phase)?;
+    without_rigid_repetitions(rows, rigid, dimension, phase, start.time)
 }
 
 fn row(
@@ -90,7 +98,7 @@ fn row(
         Motion::Formula(formula) => RowMotion::Formula(formula.clone()),
         Motion::Turn(turn) => RowMotion::Turning(Turning::new(turn, terms[0].0, mesh, start)),
     };
-    ConstraintRow { terms, motion }
+    ConstraintRow { terms, motion, is_of_rigid: false }
 }
 
 fn check_axes(axes: &[Axis], dimension: usize) -> Result<(), InputError> {
@@ -191,9 +199,9 @@ fn without_repetitions(
     };
     // keyed by the degrees of freedom and, for general rows, the coefficients
     let mut known: BTreeMap<Vec<(usize, u64)>, &ConstraintRow> = BTreeMap::new();
-    let key = |row: &ConstraintRow| match row.nodal() {
-        Some((dof, _)) => vec![(dof, 0)],
-        None => row.terms.iter().map(|&(dof, x)| (dof, x.to_bits())).collect(),
+    let key = |row: &ConstraintRow| match row.terms[..] {
+        [(dof, _)] => vec![(dof, 0)],
+        _ => row.terms.iter().map(|&(dof, x)| (dof, x.to_bits())).collect(),
     };
     let mut is_kept = Vec::with_capacity(rows.len());
     for row in &rows {
@@ -203,10 +211,10 @@ fn without_repetitions(
             return Err(contradiction(row, &first.motion.label(), &row.motion.label()));
         }
     }
-    for (row, is_kept) in rows.iter().zip(&mut is_kept).filter(|(row, _)| row.nodal().is_none()) {
+    for (row, is_kept) in rows.iter().zip(&mut is_kept).filter(|(row, _)| row.terms.len() > 1) {
         let of_term = |&(dof, x): &(usize, f64)| {
-            let nodal = known.get(&vec![(dof, 0)])?;
-            Some(x * nodal.constant_velocity()? / nodal.nodal()?.1)
+            let single = known.get(&vec![(dof, 0)])?;
+            Some(x * single.constant_velocity()? / single.terms[0].1)
         };
         let velocities = row.terms.iter().map(of_term).collect::<Option<Vec<f64>>>();
         let (Some(velocities), Some(own)) = (velocities, row.constant_velocity()) else { continue };
@@ -219,4 +227,73 @@ fn without_repetitions(
     }
     let kept = rows.iter().zip(is_kept).filter(|(_, is_kept)| *is_kept);
     Ok(kept.map(|(row, _)| row.clone()).collect())
+}
+
+/// Parts of a row below this, relative to the row, follow from other rows.
+const NOTHING_NEW: f64 = 1e-9;
+/// Times (s) after the start of a phase at which motions of the nodes of a rigid piece are compared.
+const LOOKS: [f64; 4] = [0.0, 0.013, 0.37, 2.9];
+
+/// The rows without those that others imply because nodes of a rigid piece move together: where a whole edge of it is
+/// held, two of its nodes hold the others.
+///
+/// # Errors
+/// Nodes of a rigid piece that are moved in different ways.
+fn without_rigid_repetitions(
+    rows: Vec<ConstraintRow>,
+    rigid: &RigidPieces,
+    dimension: usize,
+    phase: &str,
+    time: f64,
+) -> Result<Vec<ConstraintRow>, InputError> {
+    let of_row = |row: &ConstraintRow| independent_terms(&row.terms, Some(rigid), dimension);
+    let of_rigid = rows.iter().filter(|row| row.is_of_rigid).flat_map(of_row);
+    let mut places: Vec<usize> = of_rigid.map(|(dof, _)| dof).collect();
+    places.sort_unstable();
+    places.dedup();
+    // directions that are orthonormal, with what those rows prescribe together
+    let mut known: Vec<(Vec<f64>, [f64; 2 * LOOKS.len()])> = Vec::new();
+    let mut kept = Vec::with_capacity(rows.len());
+    for row in rows {
+        let mut rest = vec![0.0; places.len()];
+        let terms = of_row(&row);
+        let place = |dof: &usize| places.binary_search(dof).ok();
+        let is_beside =
+            !row.is_of_rigid && row.nodal().is_none_or(|(dof, _)| place(&dof).is_none());
+        if is_beside {
+            kept.push(row);
+            continue;
+        }
+        for (dof, c) in terms {
+            place(&dof).into_iter().for_each(|place| rest[place] = c);
+        }
+        let size = norm(&rest);
+        let mut motion = [0.0; 2 * LOOKS.len()];
+        for (at, after) in motion.chunks_exact_mut(2).zip(LOOKS) {
+            let Prescribed { displacement, velocity, .. } = row.prescribed(time + after);
+            at.copy_from_slice(&[displacement, velocity]);
+        }
+        let mut largest = motion.iter().fold(0.0_f64, |most, b| most.max(b.abs()));
+        for _ in 0..2 {
+            for (direction, own) in &known {
+                let part = dot(direction, &rest);
+                rest.iter_mut().zip(direction).for_each(|(x, e)| *x -= part * e);
+                for (b, own) in motion.iter_mut().zip(own) {
+                    largest = largest.max((part * own).abs());
+                    *b -= part * own;
+                }
+            }
+        }
+        let left = norm(&rest);
+        if left > NOTHING_NEW * size {
+            rest.iter_mut().for_each(|x| *x /= left);
+            known.push((rest, motion.map(|b| b / left)));
+            kept.push(row);
+        } else if motion.iter().any(|b| b.abs() > NOTHING_NEW * largest) {
+            let input = format!("constraint on {} in phase \"{phase}\"", row.label(dimension));
+            let help = "the other nodes of its rigid piece, which are held or moved, too, take it elsewhere: leave one of them out";
+            return Err(InputError::new(input, row.motion.label(), help));
+        }
+    }
+    Ok(kept)
 }

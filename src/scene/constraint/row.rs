@@ -1,5 +1,6 @@
 //! One row of the constraints.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use super::axis::Axis;
@@ -7,13 +8,16 @@ use super::prescribed::{Path, Prescribed};
 use super::spline::Spline;
 use super::turn::Turning;
 use crate::base::formula::Formula;
+use crate::elements::body::RigidPieces;
 
 /// One row of A^T with its b(t), resolved for one phase.
 #[derive(Clone)]
 pub(crate) struct ConstraintRow {
-    /// Degrees of freedom, ascending, and coefficients; a single term makes a nodal row.
+    /// Degrees of freedom, ascending, and coefficients; a single term makes a nodal row, or one of a rigid piece.
     pub(crate) terms: Vec<(usize, f64)>,
     pub(super) motion: RowMotion,
+    /// Whether a node in it belongs to a rigid piece, and so moves with others.
+    pub(super) is_of_rigid: bool,
 }
 
 #[derive(Clone)]
@@ -108,10 +112,11 @@ impl ConstraintRow {
         self.terms.iter().map(|&(dof, coefficient)| coefficient * x[dof]).sum()
     }
 
-    /// The degree of freedom of a nodal row and its coefficient.
+    /// The degree of freedom of a nodal row and its coefficient. A row of a node that moves with others is a
+    /// general one.
     pub(crate) fn nodal(&self) -> Option<(usize, f64)> {
         match self.terms[..] {
-            [term] => Some(term),
+            [term] if !self.is_of_rigid => Some(term),
             _ => None,
         }
     }
@@ -131,6 +136,23 @@ impl ConstraintRow {
         };
         self.terms.iter().map(name).collect::<Vec<_>>().join(" + ")
     }
+}
+
+/// The terms of a row by independent degrees of freedom alone, ascending: those of nodes that move with others are
+/// shared out.
+pub(crate) fn independent_terms(
+    terms: &[(usize, f64)],
+    rigid: Option<&RigidPieces>,
+    dimension: usize,
+) -> Vec<(usize, f64)> {
+    let Some(rigid) = rigid else { return terms.to_vec() };
+    let mut sums = BTreeMap::new();
+    for &(dof, c) in terms {
+        for (node, share) in rigid.shares(dof / dimension) {
+            *sums.entry(node * dimension + dof % dimension).or_insert(0.0) += c * share;
+        }
+    }
+    sums.into_iter().collect()
 }
 
 /// Moves the nodes that `rows` prescribe to their prescribed positions at time `t`, so that a constraint that

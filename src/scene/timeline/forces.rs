@@ -16,7 +16,7 @@ impl Scene {
     pub(crate) fn forces_in(&self, phase: &Phase) -> Result<Forces, InputError> {
         let dimension = self.body.dimension();
         let mut forces = Forces::new();
-        if let Some(elastic) = self.body.elastic() {
+        for elastic in self.body.elastic() {
             forces.push(Arc::new(elastic));
         }
         if let Some(reinforcement) = self.body.reinforcement() {

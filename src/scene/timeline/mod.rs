@@ -415,7 +415,7 @@ impl Scene {
     ) -> Result<Vec<ConstraintRow>, InputError> {
         let tied = self.tied()?;
         let all = phase.constraints.iter().chain(tied);
-        rows(all, self.body.mesh(), &phase.name, start)
+        rows(all, &self.body, &phase.name, start)
     }
 }
 

@@ -44,7 +44,7 @@ fn compare(scene: &Scene, coupling: Coupling, [mass, stiffness]: [f64; 2]) -> bo
     let natural = vec![0.0; n];
     let rows: Vec<ConstraintRow> =
         scene.rows(&scene.phases()[0], &PhaseStart { time: 0.0, u: &natural }).unwrap();
-    let mut reduced = Reduced::new(&matrices, &rows, coupling);
+    let mut reduced = Reduced::new(&matrices, &rows, &[], coupling);
     let value = |source: EntrySource| {
         let (entry, transposed, axes) = (source.entry(), source.transposed(), source.axes());
         let own = if axes[0] == axes[1] { mass * matrices.inertia.values[entry] } else { 0.0 };
@@ -92,7 +92,7 @@ fn compare(scene: &Scene, coupling: Coupling, [mass, stiffness]: [f64; 2]) -> bo
 
     // and by iterations, in place of a factor or before it
     for iterations in [1e4, 2.0] {
-        let new = Reduced::new(&matrices, &rows, coupling);
+        let new = Reduced::new(&matrices, &rows, &[], coupling);
         let mut iterating = new.rent(&matrices, &rows, coupling, iterations);
         for _ in 0..2 {
             if iterating.begin(EXACT, value).is_err() {
@@ -151,7 +151,7 @@ fn rows_that_follow_from_others_are_found() {
         let natural = vec![0.0; scene.body().dofs()];
         let start = PhaseStart { time: 0.0, u: &natural };
         let rows = scene.rows(&scene.phases()[0], &start).unwrap();
-        let mut reduced = Reduced::new(&matrices, &rows, Coupling::SameAxis);
+        let mut reduced = Reduced::new(&matrices, &rows, &[], Coupling::SameAxis);
         assert!(reduced.factorize(|source| matrices.inertia.values[source.entry()]).is_err());
         assert_eq!(reduced.dependent_row(), Some(expected));
     }
@@ -178,10 +178,10 @@ fn iterations_meet_directions_of_negative_curvature() {
         solver.solve(&rows, &f, &vec![0.0; rows.len()], &mut x, &mut mu);
         (x, solver.counts())
     };
-    let mut direct = Reduced::new(&matrices, &rows, Coupling::AllAxes);
+    let mut direct = Reduced::new(&matrices, &rows, &[], Coupling::AllAxes);
     assert!(direct.factorize(value).is_err());
     direct.factorize_indefinite().unwrap();
-    let mut iterating = Reduced::new(&matrices, &rows, Coupling::AllAxes).rent(
+    let mut iterating = Reduced::new(&matrices, &rows, &[], Coupling::AllAxes).rent(
         &matrices,
         &rows,
         Coupling::AllAxes,

@@ -1,0 +1,221 @@
+//! Rigid pieces: nodes that move as those of a frame do.
+//!
+//! The displacements of the nodes of a rigid piece are affine functions of their undeformed positions x, and so
+//! weighted means of those of d + 1 nodes of it, its frame:
+//!
+//! ```text
+//! u_i = sum_a w_ia u_a,   sum_a w_ia = 1,   sum_a w_ia x_a = x_i
+//! ```
+//!
+//! What is left beside rigid motion is one strain, the same everywhere, which the elasticity of the piece
+//! resists (L. Lan, D. M. Kaufman, M. Li, C. Jiang, Y. Yang, "Affine body dynamics", ACM Trans. Graph. 41
+//! (2022) 67). M is constant, there are no multipliers, and momenta are conserved as in any elastic body.
+
+use std::collections::BTreeSet;
+
+use nalgebra::{DMatrix, DVector};
+
+use super::Body;
+use super::joined::Part;
+use crate::base::sparse::NodePattern;
+use crate::base::vector::{dot, norm};
+
+/// Shares below this are round-off.
+const NO_SHARE: f64 = 1e-13;
+
+/// The nodes of all rigid pieces.
+#[derive(Debug, Default)]
+pub(crate) struct RigidPieces {
+    dimension: usize,
+    /// Whether a node belongs to a piece, and the number of it among the dependent ones.
+    kinds: Vec<Kind>,
+    dependent: Vec<Dependent>,
+    /// The nodes of each frame.
+    frames: Vec<Vec<usize>>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+enum Kind {
+    #[default]
+    Free,
+    Frame,
+    Dependent(usize),
+}
+
+/// A node that moves with those of a frame.
+#[derive(Debug)]
+struct Dependent {
+    node: usize,
+    /// Nodes of the frame with their shares.
+    shares: Vec<(usize, f64)>,
+}
+
+/// The nodes of each connected piece of the rigid cells of a body, counted from 0 among those of all.
+fn connected(part: &Part) -> Vec<Vec<usize>> {
+    if !part.body.substances().any(|substance| substance.is_rigid) {
+        return Vec::new();
+    }
+    let mesh = part.body.mesh();
+    let rigid = mesh.cells().enumerate().filter(|(cell, _)| part.body.is_rigid_cell(*cell));
+    let cells: Vec<&[usize]> = rigid.map(|(_, nodes)| nodes).collect();
+    let pattern = NodePattern::new(mesh.node_count(), cells.iter().copied());
+    let pieces = pattern.pieces();
+    let mut nodes = vec![BTreeSet::new(); pieces.iter().max().map_or(0, |last| last + 1)];
+    for &node in cells.into_iter().flatten() {
+        nodes[pieces[node]].insert(part.nodes.start + node);
+    }
+    nodes.into_iter().filter(|nodes| !nodes.is_empty()).map(Vec::from_iter).collect()
+}
+
+impl RigidPieces {
+    /// Those of a body, if it has any.
+    pub(super) fn of(body: &Body) -> Option<Self> {
+        let kinds = vec![Kind::Free; body.mesh().node_count()];
+        let mut pieces =
+            Self { dimension: body.dimension(), kinds, dependent: Vec::new(), frames: Vec::new() };
+        for part in body.parts() {
+            for nodes in connected(&part) {
+                pieces.add(body, &nodes);
+            }
+        }
+        pieces.kinds.contains(&Kind::Frame).then_some(pieces)
+    }
+
+    fn add(&mut self, body: &Body, nodes: &[usize]) {
+        let frame = frame(body, nodes);
+        let d = self.dimension;
+        let origin = body.mesh().position(frame[0]);
+        let arm = |node: usize, i: usize| body.mesh().position(node)[i] - origin[i];
+        let edges = DMatrix::from_fn(d, d, |i, a| arm(frame[a + 1], i)).lu();
+        frame.iter().for_each(|&node| self.kinds[node] = Kind::Frame);
+        for &node in nodes.iter().filter(|node| !frame.contains(node)) {
+            // cells have a volume, so that the edges are no multiples of each other
+            let place = edges.solve(&DVector::from_fn(d, |i, _| arm(node, i)));
+            let place = place.unwrap_or_else(|| DVector::zeros(d));
+            let shares = std::iter::once(1.0 - place.sum()).chain(place.iter().copied());
+            let shares = frame.iter().copied().zip(shares).filter(|(_, w)| w.abs() > NO_SHARE);
+            self.kinds[node] = Kind::Dependent(self.dependent.len());
+            self.dependent.push(Dependent { node, shares: shares.collect() });
+        }
+        self.frames.push(frame);
+    }
+
+    /// The nodes of each frame, which move by themselves.
+    pub(crate) fn frames(&self) -> &[Vec<usize>] {
+        &self.frames
+    }
+
+    /// Number of nodes that move with others.
+    pub(crate) fn dependent_nodes(&self) -> usize {
+        self.dependent.len()
+    }
+
+    /// Whether a node belongs to a rigid piece.
+    pub(crate) fn contains(&self, node: usize) -> bool {
+        self.kinds[node] != Kind::Free
+    }
+
+    /// Whether a node moves with those of a frame.
+    pub(crate) fn is_dependent(&self, node: usize) -> bool {
+        matches!(self.kinds[node], Kind::Dependent(_))
+    }
+
+    /// The nodes by which a node moves, with their shares: itself if it is independent.
+    pub(crate) fn shares(&self, node: usize) -> impl Iterator<Item = (usize, f64)> + Clone {
+        let (own, others) = match self.kinds[node] {
+            Kind::Dependent(number) => (None, &self.dependent[number].shares[..]),
+            _ => (Some((node, 1.0)), &[][..]),
+        };
+        own.into_iter().chain(others.iter().copied())
+    }
+
+    /// Moves dependent nodes as their frames move in `x`, of displacements or velocities.
+    pub(crate) fn carry(&self, x: &mut [f64]) {
+        let d = self.dimension;
+        for Dependent { node, shares } in &self.dependent {
+            for axis in 0..d {
+                x[node * d + axis] = shares.iter().map(|(a, w)| w * x[a * d + axis]).sum();
+            }
+        }
+    }
+
+    /// Writes by how much `x`, displacements or velocities, differ from those of rigid pieces that move as their frames
+    /// do.
+    pub(crate) fn stray(&self, x: &[f64], stray: &mut [f64]) {
+        stray.copy_from_slice(x);
+        self.carry(stray);
+        stray.iter_mut().zip(x).for_each(|(stray, x)| *stray = x - *stray);
+    }
+
+    /// How far `x`, displacements or velocities, are from those of rigid pieces that move as their frames do: the
+    /// largest component.
+    pub(crate) fn distortion(&self, x: &[f64]) -> f64 {
+        let mut carried = x.to_vec();
+        self.carry(&mut carried);
+        carried.iter().zip(x).fold(0.0, |most, (a, b)| most.max((a - b).abs()))
+    }
+
+    /// Moves nodal forces `f` from dependent nodes to their frames, where they do the same work.
+    pub(crate) fn gather(&self, f: &mut [f64]) {
+        let d = self.dimension;
+        for Dependent { node, shares } in &self.dependent {
+            for axis in 0..d {
+                let force = std::mem::take(&mut f[node * d + axis]);
+                shares.iter().for_each(|(a, w)| f[a * d + axis] += w * force);
+            }
+        }
+    }
+
+    /// The pairs of nodes that are coupled where dependent nodes are coupled by `pattern`, as far as it lacks
+    /// them.
+    pub(crate) fn couplings(&self, pattern: &NodePattern) -> Vec<[usize; 2]> {
+        let mut pairs = BTreeSet::new();
+        for Dependent { node, .. } in &self.dependent {
+            for (_, other) in pattern.row(*node) {
+                for (a, _) in self.shares(*node) {
+                    for (b, _) in self.shares(other).filter(|(b, _)| pattern.find(a, *b).is_none())
+                    {
+                        pairs.insert([a.min(b), a.max(b)]);
+                    }
+                }
+            }
+        }
+        pairs.into_iter().collect()
+    }
+}
+
+/// d + 1 of the nodes that span a large simplex, so that no node has large shares: each is the farthest from what those
+/// before it span.
+fn frame(body: &Body, nodes: &[usize]) -> Vec<usize> {
+    let (mesh, d) = (body.mesh(), body.dimension());
+    let mut centre = vec![0.0; d];
+    for &node in nodes {
+        let x = mesh.position(node);
+        centre.iter_mut().zip(x).for_each(|(sum, x)| *sum += x / nodes.len() as f64);
+    }
+    let from = |node: usize, origin: &[f64]| -> Vec<f64> {
+        mesh.position(node).iter().zip(origin).map(|(x, o)| x - o).collect()
+    };
+    let mut frame: Vec<usize> = Vec::with_capacity(d + 1);
+    let mut directions: Vec<Vec<f64>> = Vec::new();
+    while frame.len() <= d {
+        let origin = frame.first().map_or(&centre[..], |&first| mesh.position(first));
+        let beside = |node: usize| {
+            let mut arm = from(node, origin);
+            for direction in &directions {
+                let part = dot(direction, &arm);
+                arm.iter_mut().zip(direction).for_each(|(x, e)| *x -= part * e);
+            }
+            arm
+        };
+        let far = |&&a: &&usize, &&b: &&usize| norm(&beside(a)).total_cmp(&norm(&beside(b)));
+        let Some(&next) = nodes.iter().max_by(far) else { break };
+        if !frame.is_empty() {
+            let arm = beside(next);
+            let length = norm(&arm);
+            directions.push(arm.into_iter().map(|x| x / length).collect());
+        }
+        frame.push(next);
+    }
+    frame
+}
