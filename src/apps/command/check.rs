@@ -95,7 +95,7 @@ fn made_of(substance: &Substance, strain: Strain) -> String {
     let Substance { material, law, mass_damping, branches, fibres, is_rigid } = substance;
     if *is_rigid {
         return format!(
-            "rigid, {} kg/m^3, E {:.4e} Pa keeps its shape",
+            "rigid, {} kg/m^3; E {:.4e} Pa in equilibria",
             material.density, material.young
         );
     }

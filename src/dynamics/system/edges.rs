@@ -112,6 +112,15 @@ impl Edges {
         }
     }
 
+    /// Whether one of them changes its length faster than by `least` times the difference of velocities of its nodes.
+    pub(super) fn stretches(&self, least: f64) -> bool {
+        let along = |(x, rate): (&[f64; 3], &[f64; 3])| {
+            let size = dot(x, x).sqrt() * dot(rate, rate).sqrt();
+            dot(x, rate).abs() > least * size
+        };
+        self.arms.iter().zip(&self.rates).any(along)
+    }
+
     /// Takes the accelerations `a` (m/s^2).
     pub(super) fn accelerate(&mut self, a: &[f64]) {
         for (k, Edge { nodes, .. }) in self.list.iter().enumerate() {

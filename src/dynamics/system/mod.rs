@@ -65,6 +65,9 @@ use crate::elements::force::{Forces, NodalForces, Reservoir, Step};
 use crate::integrators::ode::Failure;
 use crate::scene::constraint::{ConstraintRow, Prescribed};
 
+/// What is round-off in the rate of an edge, relative to those of its nodes.
+const TORN: f64 = 1e-9;
+
 /// What is round-off in the velocities of a rigid piece, relative to the largest.
 const ROUND_OFF: f64 = 1e-12;
 
@@ -82,6 +85,8 @@ pub(crate) struct System {
     inertia: Reduced,
     /// What keeps rigid pieces in their shape.
     edges: Edges,
+    /// All edges, with those that constraints keep already.
+    all_edges: Edges,
     /// As they were where the tangents are from.
     linear_edges: Edges,
     newton: NewtonMatrix,
@@ -157,6 +162,7 @@ impl System {
             false => Coupling::SameAxis,
         };
         let mut edges = Edges::new(matrices.rigid.as_deref(), &matrices.positions, dimension);
+        let all_edges = edges.clone();
         let mut inertia = Reduced::new(&matrices, &rows, &edges.list, coupling);
         let values = &matrices.inertia.values;
         let mut begun = inertia.begin(EXACT, |source| values[source.entry()]);
@@ -206,6 +212,7 @@ impl System {
             alpha,
             inertia,
             edges,
+            all_edges,
             linear_edges,
             newton,
             at,
@@ -369,7 +376,7 @@ impl System {
     /// Largest |A^T u - b| (m).
     pub(crate) fn drift(&self, t: f64, u: &[f64]) -> f64 {
         let drift = |row: &ConstraintRow| (row.apply(u) - row.prescribed(t).displacement).abs();
-        self.rows.iter().map(drift).fold(self.edges.drift(u), f64::max)
+        self.rows.iter().map(drift).fold(self.all_edges.drift(u), f64::max)
     }
 
     /// Kinetic and potential energies of a state; dissipated and supplied are left at 0. Without `internal` strains
@@ -417,6 +424,17 @@ impl System {
             self.edges.accelerate(&self.at.acceleration);
         }
         Ok(())
+    }
+
+    /// Whether the constraints ask the nodes of a rigid piece to leave each other at time `t` and the displacements `u`.
+    pub(super) fn tears_apart(&mut self, t: f64, u: &[f64]) -> bool {
+        if self.all_edges.list.len() == self.edges.list.len() {
+            return false;
+        }
+        let mut v = vec![0.0; self.dofs()];
+        self.project(t, u, &mut v);
+        self.all_edges.move_to(0.0, u, &v);
+        self.all_edges.stretches(TORN)
     }
 
     /// Has solutions with M follow the edges of rigid pieces as they are now, and what is demanded of them, or else

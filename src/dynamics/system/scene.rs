@@ -25,7 +25,14 @@ impl Scene {
         start: &PhaseStart,
         alpha: f64,
     ) -> Result<System, InputError> {
-        System::new(matrices.clone(), forces, self.rows(phase, start)?, alpha, &phase.name)
+        let rows = self.rows(phase, start)?;
+        let mut system = System::new(matrices.clone(), forces, rows, alpha, &phase.name)?;
+        if system.tears_apart(start.time, start.u) {
+            let input = format!("constraints of phase \"{}\"", phase.name);
+            let help = "a rigid piece keeps its shape: move it as a whole, or fewer of its nodes";
+            return Err(InputError::new(input, "moving nodes of a rigid piece apart", help));
+        }
+        Ok(system)
     }
 
     /// How fast the body can move in each phase, in its undeformed shape and at rest.

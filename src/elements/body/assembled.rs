@@ -152,7 +152,7 @@ impl Body {
     /// Whether a cell (counted from 0) is rigid.
     pub(super) fn is_rigid_cell(&self, cell: usize) -> bool {
         let Continuum { regions, cells, .. } = self.continuum_of(cell);
-        regions.of(cell - cells.start).is_rigid
+        regions.of(cell - cells.start).of_rigid.is_some()
     }
 
     /// Number of regions that were given.

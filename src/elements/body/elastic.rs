@@ -90,8 +90,9 @@ impl Body {
     pub(crate) fn elastic(&self) -> impl Iterator<Item = Elastic> {
         let bodies = self.with_terms(Continuum::nonlinear_terms);
         let of = move |is_of_rigid: bool| {
-            let part = |(own, terms): &(Continuum, Terms)| Some((own.part(is_of_rigid)?, *terms));
-            Elastic { bodies: bodies.iter().filter_map(part).collect(), is_of_rigid }
+            let part = if is_of_rigid { Continuum::rigid } else { Continuum::soft };
+            let of_body = |(own, terms): &(Continuum, Terms)| Some((part(own)?, *terms));
+            Elastic { bodies: bodies.iter().filter_map(of_body).collect(), is_of_rigid }
         };
         [false, true].into_iter().map(of).filter(|elastic| !elastic.bodies.is_empty())
     }

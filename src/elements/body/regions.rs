@@ -105,7 +105,8 @@ pub(super) struct Laws {
     pub(super) hooke: Hooke,
     pub(super) viscous: ObjectiveViscosity,
     pub(super) branches: Vec<Relaxing>,
-    pub(super) is_rigid: bool,
+    /// What keeps a rigid piece in its shape where its edges do not; all of the above have no stiffness then.
+    pub(super) of_rigid: Option<Elastic>,
 }
 
 impl Laws {
@@ -137,6 +138,10 @@ impl Regions {
         let laws = |substance: &Substance| -> Result<Laws, InputError> {
             substance.validate()?;
             let Substance { material, law, mass_damping, branches, fibres, is_rigid } = substance;
+            if *is_rigid && !(branches.is_empty() && fibres.is_empty()) {
+                let help = "what is rigid has no branches and no fibres: leave them out";
+                return Err(InputError::new("material.rigid", true, help));
+            }
             if *is_rigid && strain == Strain::Cauchy {
                 let help = "rigid pieces turn, which Cauchy strain takes for a strain: measure strain by Green's";
                 return Err(InputError::new("material.rigid", true, help));
@@ -152,17 +157,25 @@ impl Regions {
             }
             let dimension = mesh.kind().dimension();
             let hooke = |lame: Lame| Hooke::new(lame, dimension, plane);
+            let elastic = Elastic::new(strain, *law, material.elastic(), dimension, plane);
+            let [lame, viscous] = match is_rigid {
+                true => [Lame { lambda: 0.0, mu: 0.0 }; 2],
+                false => [material.elastic(), material.viscous()],
+            };
             Ok(Laws {
                 density: material.density,
                 mass_damping: *mass_damping,
-                elastic: Elastic::new(strain, *law, material.elastic(), dimension, plane),
-                hooke: hooke(material.elastic()),
-                viscous: ObjectiveViscosity(hooke(material.viscous())),
+                elastic: match is_rigid {
+                    true => Elastic::new(strain, None, lame, dimension, plane),
+                    false => elastic.clone(),
+                },
+                hooke: hooke(lame),
+                viscous: ObjectiveViscosity(hooke(viscous)),
                 branches: branches
                     .iter()
                     .map(|branch| Relaxing::new(branch, material, strain, dimension, plane))
                     .collect(),
-                is_rigid: *is_rigid,
+                of_rigid: is_rigid.then_some(elastic),
             })
         };
         let mut all =
@@ -214,21 +227,23 @@ impl Regions {
         })
     }
 
-    /// The same with the stiffness of what is rigid alone, or of all but that, if there is any.
-    pub(super) fn part(&self, is_rigid: bool, dimension: usize, plane: Plane) -> Option<Self> {
-        if self.laws.iter().all(|laws| laws.is_rigid != is_rigid) {
-            return None;
-        }
+    /// Whether all of them are rigid, and none.
+    pub(super) fn are_rigid(&self) -> [bool; 2] {
+        let mut rigid = self.laws.iter().map(|laws| laws.of_rigid.is_some());
+        [rigid.clone().all(|is_rigid| is_rigid), !rigid.any(|is_rigid| is_rigid)]
+    }
+
+    /// The same with the stiffness of the rigid pieces alone.
+    pub(super) fn of_rigid(&self, dimension: usize, plane: Plane) -> Self {
         let zero = Lame { lambda: 0.0, mu: 0.0 };
-        let without = |laws: &Laws| Laws {
-            elastic: Elastic::new(Strain::Green, None, zero, dimension, plane),
-            viscous: ObjectiveViscosity(Hooke::new(zero, dimension, plane)),
+        let none = Elastic::new(Strain::Green, None, zero, dimension, plane);
+        let viscous = ObjectiveViscosity(Hooke::new(zero, dimension, plane));
+        let of_rigid = |laws: &Laws| Laws {
+            elastic: laws.of_rigid.clone().unwrap_or(none.clone()),
+            viscous: viscous.clone(),
             ..laws.clone()
         };
-        let part = |laws: &Laws| {
-            if laws.is_rigid == is_rigid { laws.clone() } else { without(laws) }
-        };
-        Some(Self { laws: self.laws.iter().map(part).collect(), ..self.clone() })
+        Self { laws: self.laws.iter().map(of_rigid).collect(), ..self.clone() }
     }
 
     /// Whether any of them is viscous.
