@@ -540,6 +540,7 @@ def halved_in(
 def material(
     *,
     density: float | None = None,
+    rigid: bool | None = None,
     young: float | None = None,
     poisson: float | None = None,
     viscosity: float | None = None,
@@ -555,6 +556,10 @@ def material(
     ----------
     density
         the density (kg/m^3). Default: required; in a region, that of the body.
+    rigid
+        whether what is made of it is rigid. Default: false; in a region, as the body. The mesh then gives its shape
+        and inertia, and it moves by 3 degrees of freedom (6 in space). Only `density` is needed; in equilibria
+        `young`, by default 1e8 Pa, keeps its shape.
     young
         Young's modulus at small strains (Pa). Default: required; in a region, that of the body. It follows from the
         constants of a law that has them.
@@ -577,6 +582,7 @@ def material(
     """
     return _table(
         density=density,
+        rigid=rigid,
         young=young,
         poisson=poisson,
         viscosity=viscosity,

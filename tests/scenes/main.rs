@@ -27,6 +27,7 @@ mod planes;
 mod random_scenes;
 mod readings;
 mod relaxing;
+mod rigid;
 mod ring;
 mod rubber_motion;
 mod sensors;

@@ -167,7 +167,8 @@ impl Reduced {
         // a diagonal matrix has no fill in any order
         let dissection = matrices.dissection.as_ref().filter(|_| coupling != Coupling::Diagonal);
         let order = dissection.map(of_nodes);
-        let gradients = || Gradients::new(matrices, rows, coupling);
+        // they know nothing of nodes that move with others
+        let gradients = rigid.is_none().then_some(|| Gradients::new(matrices, rows, coupling));
         let edges = (!edges.is_empty()).then(|| {
             let sizes = [free.len(), general.rows.len()];
             EdgeSolver::new(edges, dimension, |dof| position[dof], sizes)

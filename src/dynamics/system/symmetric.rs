@@ -61,7 +61,7 @@ impl Symmetric {
         carried: Vec<(usize, EntrySource, f64)>,
         pattern: SymbolicSparseColMat<usize>,
         order: Option<Vec<usize>>,
-        gradients: impl FnOnce() -> Gradients,
+        gradients: Option<impl FnOnce() -> Gradients>,
     ) -> Self {
         let values = vec![0.0; sources.len()];
         let cholesky = Cholesky::new(pattern, order);
@@ -69,8 +69,8 @@ impl Symmetric {
         let iteration = (4 * values.len() + 12 * free.len()) as f64;
         let rent = cholesky.work() / DENSE_SPEED / iteration;
         let saved = 4.0 * cholesky.entries() as f64 / iteration;
-        let pays = rent >= WORTH_ITERATING && carried.is_empty();
-        let rented = pays.then(|| Rented::new(gradients(), rent, saved));
+        let gradients = gradients.filter(|_| rent >= WORTH_ITERATING);
+        let rented = gradients.map(|gradients| Rented::new(gradients(), rent, saved));
         Self { free, sources, carried, values, cholesky, rented }
     }
 

@@ -7,9 +7,9 @@
 //! u_i = sum_a w_ia u_a,   sum_a w_ia = 1,   sum_a w_ia x_a = x_i
 //! ```
 //!
-//! What is left beside rigid motion is one strain, the same everywhere, which the elasticity of the piece
-//! resists (L. Lan, D. M. Kaufman, M. Li, C. Jiang, Y. Yang, "Affine body dynamics", ACM Trans. Graph. 41
-//! (2022) 67). M is constant, there are no multipliers, and momenta are conserved as in any elastic body.
+//! M is constant with them (natural coordinates). What is left beside rigid motion is one strain, the same
+//! everywhere. The edges of the frame keep it at 0, as constraints of the motion
+//! (`dynamics/system/edges.rs`), and in equilibria the elasticity of the piece keeps it small.
 
 use std::collections::BTreeSet;
 

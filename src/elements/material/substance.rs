@@ -100,11 +100,12 @@ impl Material {
 
     /// What rigid bodies, and rigid regions of soft ones, are made of, with the `density` (kg/m^3).
     ///
-    /// The cells of a connected rigid piece give its shape and its inertia; its nodes move as those of a
-    /// triangle (in space a tetrahedron) do. Beside its rigid motions such a piece has one strain, the same
-    /// everywhere, which its Young's modulus resists: [`RIGID_YOUNG`](Self::RIGID_YOUNG), or what is set in its
-    /// place. It must be far above the pressure on the piece and above rho v^2 at the speed v of its turning.
-    /// Larger ones cost implicit methods nothing where it moves straight on, and steps where it turns fast.
+    /// The cells of a connected rigid piece give its shape and its inertia. Its nodes move as those of a triangle (in
+    /// space a tetrahedron) do, whose edges keep their lengths, so that it has 3 (6) degrees of freedom. Nothing
+    /// is stressed in it. In an [equilibrium](crate::Scene::equilibrium) its elasticity keeps its shape instead, by
+    /// Young's modulus: [`RIGID_YOUNG`](Self::RIGID_YOUNG), or what is set in its place. Rigid pieces are for
+    /// the methods `cvode-bdf`, `cvode-adams`, `arkode`, `rosenbrock` and `rk`, from which `auto` chooses, and for Green's
+    /// strain.
     ///
     /// ```
     /// use pliant::{Body, Cells, Material, Mesh};
@@ -120,7 +121,7 @@ impl Material {
         Substance { is_rigid: true, ..substance }
     }
 
-    /// Young's modulus (Pa) with which [rigid](Self::rigid) pieces keep their shape.
+    /// Young's modulus (Pa) with which [rigid](Self::rigid) pieces keep their shape in equilibria.
     pub const RIGID_YOUNG: f64 = 1e8;
 
     /// The material with the shear modulus `shear` and the bulk modulus `bulk` (Pa), as used by laws of

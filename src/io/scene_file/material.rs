@@ -13,8 +13,8 @@ pub(super) const MATERIAL: TableKeys = TableKeys::new(
     &[
         Key::number("density", "the density", "kg/m^3").default(OF_BODY),
         Key::new("rigid", Holds::Flag, "whether what is made of it is rigid")
-            .law("The nodes of each connected piece then move as those of a triangle (in space a tetrahedron), whose shape `young` keeps: by \
-                  default 1e8 Pa. `poisson` and `viscosity` are 0, and there is no law.")
+            .law("The mesh then gives its shape and inertia, and it moves by 3 degrees of freedom (6 in space). Only `density` is needed; \
+                  in equilibria `young`, by default 1e8 Pa, keeps its shape.")
             .default("false; in a region, as the body"),
         Key::number("young", "Young's modulus at small strains", "Pa")
             .law("It follows from the constants of a law that has them.")

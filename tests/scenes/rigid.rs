@@ -1,0 +1,239 @@
+//! Rigid bodies, and rigid parts of soft ones, against the equations of rigid bodies.
+
+use pliant::body::BodyBuilder;
+use pliant::solve::{Options, Problem, solve};
+use pliant::{
+    Body, Cells, Material, Mesh, Method, Phase, Sampling, Scene, Settings, SolidCells, Statics,
+    Strain, Touch, Trajectory,
+};
+
+/// The methods that have equations for rigid bodies.
+const METHODS: [Method; 6] = [
+    Method::CvodeBdf,
+    Method::CvodeAdams,
+    Method::Arkode,
+    Method::Rosenbrock,
+    Method::Rk,
+    Method::Auto,
+];
+
+/// The numbers that the equations y' = f(y) lead to, by the integrators alone.
+fn led(start: &[f64], time: f64, f: impl Fn(&[f64], &mut [f64]) + Send + 'static) -> Vec<f64> {
+    let rates = move |_: f64, y: &[f64], rates: &mut [f64]| {
+        f(y, rates);
+        Ok(())
+    };
+    let problem = Problem::ode(rates, start.to_vec());
+    let method = pliant::solve::Method::DormandPrince;
+    let solution = solve(problem, method, (0.0, time), &Options::new(1e-12, 1e-14)).unwrap();
+    solution.at(time).unwrap()
+}
+
+fn run(scene: &Scene, method: Method, rtol: f64) -> Trajectory {
+    let settings = Settings { method, rtol, ..Settings::default() };
+    scene.simulate(&settings, &Sampling::phase_ends()).unwrap()
+}
+
+/// A bar of 10 cm whose middle line begins at `x`, 1 cm high.
+fn bar(name: &str, x: f64) -> BodyBuilder {
+    let mesh = Mesh::rectangle([0.1, 0.01], [5, 3], Cells::Triangles).unwrap();
+    let mesh = mesh.translated(&[x, -0.005]).unwrap();
+    Body::new(mesh, Material::rigid(2000.0)).thickness(0.01).named(name)
+}
+
+/// A box turns freely near its middle axis, where its motion is unstable. Euler's equations say where each of its nodes goes.
+#[test]
+fn an_asymmetric_top() {
+    const SIZE: [f64; 3] = [0.03, 0.02, 0.01];
+    const TIME: f64 = 0.5;
+    let mesh = Mesh::cuboid(SIZE, [4, 3, 2], SolidCells::Hexahedra).unwrap();
+    let body = Body::new(mesh, Material::rigid(2000.0)).build().unwrap();
+    assert_eq!((body.dofs(), body.independent_dofs()), (72, 12));
+    let spin = [1.0, 20.0, 2.0];
+    let scene = Scene::new(body).spin(spin).phase(Phase::until(TIME));
+    let squares = SIZE.map(|a| a * a);
+    let inertia = [squares[1] + squares[2], squares[2] + squares[0], squares[0] + squares[1]];
+    // the rows of the rotation R, and the angular velocity w in the axes of the box: R' = R [w x]
+    let euler = move |y: &[f64], rates: &mut [f64]| {
+        let w = &y[9..];
+        for row in 0..3 {
+            for i in 0..3 {
+                let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+                rates[3 * row + i] = y[3 * row + j] * w[k] - y[3 * row + k] * w[j];
+            }
+        }
+        for i in 0..3 {
+            let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+            rates[9 + i] = (inertia[j] - inertia[k]) * w[j] * w[k] / inertia[i];
+        }
+    };
+    let start = [&[1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0][..], &spin].concat();
+    let turned = led(&start, TIME, euler);
+    for (method, tolerance) in METHODS.into_iter().zip(TOP) {
+        let motion = run(&scene, method, 1e-8);
+        let mesh = motion.body().mesh();
+        let mut off = 0.0_f64;
+        for (node, u) in motion.last().u.chunks_exact(3).enumerate() {
+            let arm: Vec<f64> =
+                mesh.position(node).iter().zip(SIZE).map(|(x, size)| x - size / 2.0).collect();
+            for axis in 0..3 {
+                let place: f64 = (0..3).map(|i| turned[3 * axis + i] * arm[i]).sum();
+                off = off.max((u[axis] + arm[axis] - place).abs());
+            }
+        }
+        let report = motion.report();
+        println!(
+            "{method}: {off:.2e} m, {} steps, balance {:.1e}",
+            report.steps(),
+            report.energy_error
+        );
+        assert!(off < tolerance, "{method} is {off} m off");
+    }
+}
+const TOP: [f64; 6] = [2e-7, 1e-8, 3e-7, 4e-9, 1e-9, 1e-8];
+
+/// Two bars, one on a pin and one hinged to its end: both turn as the equations of Lagrange say.
+#[test]
+fn a_double_pendulum() {
+    const TIME: f64 = 0.5;
+    const G: f64 = 9.8;
+    let bodies = Body::join([bar("upper", 0.0), bar("lower", 0.1)].map(|bar| bar.build().unwrap()));
+    let scene = Scene::new(bodies.unwrap())
+        .gravity([0.0, -G])
+        .tie([15 + 6], "upper")
+        .phase(Phase::until(TIME).hold([6]));
+    let mass = 2000.0 * 0.1 * 0.01 * 0.01;
+    let (l, r) = (0.1_f64, 0.05_f64);
+    let inertia = mass * (l * l + 0.01 * 0.01) / 12.0 + mass * r * r;
+    let lagrange = move |y: &[f64], rates: &mut [f64]| {
+        let [a, b, va, vb] = [y[0], y[1], y[2], y[3]];
+        let (coupling, sine) = (mass * l * r * (a - b).cos(), mass * l * r * (a - b).sin());
+        let upper = -sine * vb * vb - mass * G * (r + l) * a.cos();
+        let lower = sine * va * va - mass * G * r * b.cos();
+        let first = inertia + mass * l * l;
+        let determinant = first * inertia - coupling * coupling;
+        rates[0] = va;
+        rates[1] = vb;
+        rates[2] = (inertia * upper - coupling * lower) / determinant;
+        rates[3] = (first * lower - coupling * upper) / determinant;
+    };
+    let turned = led(&[0.0; 4], TIME, lagrange);
+    for (method, tolerance) in METHODS.into_iter().zip(PENDULUM) {
+        let motion = run(&scene, method, 1e-8);
+        let u = &motion.last().u;
+        let mut off = 0.0_f64;
+        for (number, angle) in turned[..2].iter().enumerate() {
+            let [start, end] = [5, 9].map(|node| 2 * (15 * number + node));
+            let along = [0.1 + u[end] - u[start], u[end + 1] - u[start + 1]];
+            off = off.max((along[0] - 0.1 * angle.cos()).hypot(along[1] - 0.1 * angle.sin()));
+        }
+        let report = motion.report();
+        println!(
+            "{method}: {off:.2e} m, {} steps, drift {:.1e}",
+            report.steps(),
+            report.constraint_drift
+        );
+        assert!(off < tolerance, "{method} is {off} m off");
+    }
+}
+const PENDULUM: [f64; 6] = [2e-7, 2e-7, 1e-6, 6e-9, 3e-10, 2e-7];
+
+/// Rigid squares of one mass that meet head on exchange their velocities, whatever stands between them.
+#[test]
+fn rigid_squares_exchange_their_velocities() {
+    let square = |name: &str, x: f64, cells: Cells| {
+        let mesh = Mesh::rectangle([0.02, 0.02], [4, 4], cells).unwrap();
+        let mesh = mesh.translated(&[x, 0.0]).unwrap();
+        Body::new(mesh, Material::rigid(2000.0)).thickness(0.01).named(name).build().unwrap()
+    };
+    let left = square("left", 0.0, Cells::Rectangles);
+    let bodies = Body::join([left, square("right", 0.03, Cells::Triangles)]).unwrap();
+    let scene = Scene::new(bodies)
+        .touch(Touch::all().distance(2e-3).stiffness_density(1e8))
+        .initial_velocity(|x| vec![if x[0] < 0.025 { 0.5 } else { 0.0 }, 0.0])
+        .phase(Phase::until(0.05));
+    for method in METHODS {
+        let motion = run(&scene, method, 1e-8);
+        let off = |node: usize, speed: f64| {
+            let [along, across] = [0, 1].map(|axis| motion.last().v[2 * node + axis]);
+            (along - speed).abs().max(across.abs())
+        };
+        let off = (0..32).map(|node| off(node, if node < 16 { 0.0 } else { 0.5 }));
+        let off = off.fold(0.0, f64::max);
+        println!("{method}: {off:.2e} m/s, {} steps", motion.report().steps());
+        assert!(off < 3e-6, "{method} is {off} m/s off");
+    }
+}
+
+/// A beam with an insert of its own material times 100 and 1000 comes near one with a rigid insert, in proportion to the
+/// flexibility of the insert.
+#[test]
+fn a_rigid_insert_is_the_limit_of_stiff_ones() {
+    let soft = Material { density: 1000.0, young: 1e6, poisson: 0.3, viscosity: 0.0 };
+    let frequency = |insert: pliant::Substance| {
+        let mesh = Mesh::rectangle([0.1, 0.01], [21, 3], Cells::Rectangles9).unwrap();
+        let cells = pliant::body::CellSelection::inside([0.04, 0.0], [0.06, 0.01]);
+        let body = Body::new(mesh, soft).thickness(0.01).region(cells, insert).build().unwrap();
+        let scene = Scene::new(body).phase(Phase::until(1.0).hold("left"));
+        scene.spectrum().unwrap()[0].lowest_frequency.unwrap()
+    };
+    let rigid = frequency(Material::rigid(5000.0));
+    let off = [1e8, 1e9].map(|young| {
+        let stiff = Material { density: 5000.0, young, poisson: 0.0, viscosity: 0.0 };
+        frequency(stiff.into()) / rigid - 1.0
+    });
+    println!("lowest frequency {rigid} rad/s, off by {off:?}");
+    assert!(off[0] < 0.0 && off[0] > -5e-4, "{off:?}");
+    assert!((off[0] / off[1] - 10.0).abs() < 0.05, "{off:?}");
+}
+
+/// A rigid bar is held by its whole left side: as many rows act as it has degrees of freedom, and they carry its weight, at
+/// rest and in motion.
+#[test]
+fn a_held_side_carries_the_weight() {
+    let scene = Scene::new(bar("bar", 0.0).build().unwrap())
+        .gravity([0.0, -9.8])
+        .phase(Phase::until(0.1).hold("left"));
+    let weight = 9.8 * scene.body().mass();
+    let still = scene.equilibrium(&Statics::default()).unwrap();
+    let moving = run(&scene, Method::CvodeBdf, 1e-6);
+    assert_eq!(scene.summary().unwrap()[0].constraints, 4);
+    for motion in [still.trajectory(), &moving] {
+        let forces = motion.constraint_forces(motion.last()).unwrap();
+        let sum = |axis: usize| forces.iter().skip(axis).step_by(2).sum::<f64>();
+        let moment: f64 = (0..15)
+            .map(|node| {
+                let x = motion.body().mesh().position(node);
+                x[0] * forces[2 * node + 1] - x[1] * forces[2 * node]
+            })
+            .sum();
+        println!("{} {} {moment}", sum(0), sum(1));
+        assert!(sum(0).abs() < 1e-6 * weight && (sum(1) / weight - 1.0).abs() < 1e-6);
+        assert!((moment / (0.05 * weight) - 1.0).abs() < 1e-4, "{moment}");
+    }
+    assert!(moving.last().u.iter().all(|u| u.abs() < 1e-9), "{:?}", moving.last().u);
+}
+
+/// What a rigid body cannot do is told before anything is computed.
+#[test]
+fn impossible_rigid_bodies() {
+    let error = |scene: Scene, method| {
+        let settings = Settings { method, ..Settings::default() };
+        scene.simulate(&settings, &Sampling::phase_ends()).unwrap_err().to_string()
+    };
+    let scene = || Scene::new(bar("bar", 0.0).build().unwrap());
+    let free = || Phase::until(0.1);
+    let cauchy = bar("bar", 0.0).strain(Strain::Cauchy).build().unwrap_err().to_string();
+    assert!(cauchy.contains("measure strain by Green's"), "{cauchy}");
+    let told = error(scene().phase(free()), Method::Ida);
+    assert!(told.contains("method = ida") && told.contains("cvode-bdf"), "{told}");
+    let torn = free().move_nodes("left", [-0.1, 0.0]).move_nodes("right", [0.1, 0.0]);
+    let told = error(scene().phase(torn), Method::Auto);
+    assert!(told.contains("apart") && told.contains("keeps its shape"), "{told}");
+    let sheared = free().hold("left").move_nodes([10], [0.1, 0.0]);
+    let told = error(scene().phase(sheared), Method::Auto);
+    assert!(told.contains("rigid piece"), "{told}");
+    let bent = scene().initial_displacement(|x| vec![0.0, x[0] * x[0]]).phase(free());
+    let told = error(bent, Method::Auto);
+    assert!(told.contains("initial displacement") && told.contains("shape"), "{told}");
+}
