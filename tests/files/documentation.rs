@@ -32,14 +32,13 @@ fn fingers_of_silicone_do_not_lock() {
 
 #[test]
 fn all_scenes_are_run() {
-    let [first, second, third, fourth, fifth, sensors] = blocks("toml")[..] else {
-        panic!("six blocks")
+    let [first, second, third, fourth, fifth, sixth, sensors] = blocks("toml")[..] else {
+        panic!("seven blocks")
     };
-    assert_eq!([fourth, fifth], [GLUED_ARM, GRIPPER]);
-    for text in
-        [first.to_owned() + sensors, second.into(), third.into(), fourth.into(), fifth.into()]
-    {
-        let file = SceneFile::parse(&text, Path::new("scene.toml")).unwrap();
+    assert_eq!([fourth, fifth, sixth], [GLUED_ARM, GRIPPER, WHEEL]);
+    let with_sensors = first.to_owned() + sensors;
+    for text in [&with_sensors, second, third, fourth, fifth, sixth] {
+        let file = SceneFile::parse(text, Path::new("scene.toml")).unwrap();
         let motion = file.scene.simulate(&file.settings, &file.output.sampling()).unwrap();
         assert_eq!(motion.last().time, file.scene.end());
         assert_eq!(motion.report().warnings(), Vec::<String>::new(), "{}", file.title);
@@ -56,6 +55,7 @@ fn a_misspelt_key_gets_the_message_of_the_page() {
 const LIMITS: &str = include_str!("../../docs/limits.md");
 const GLUED_ARM: &str = include_str!("../../scenes/glued-arm.toml");
 const GRIPPER: &str = include_str!("../../scenes/gripper.toml");
+const WHEEL: &str = include_str!("../../scenes/wheel-over-stones.toml");
 const CABLE: &str = include_str!("../../scenes/cable.toml");
 
 /// A cable under the tension T at the distance e from the axis bends a beam as the moment T e does: to the angle T e L/(E I) at its end,

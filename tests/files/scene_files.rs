@@ -183,6 +183,7 @@ fn all_scenes_are_run() {
         "cable",
         "glued-arm",
         "gripper",
+        "wheel-over-stones",
         // where contact is tested
         "ring-on-table",
     ];

@@ -311,10 +311,10 @@ impl EdgeSolver {
         let [c, d] = self.ends[column];
         let [a, b] = self.places[row];
         let mut sum = 0.0;
-        for i in 0..self.dimension {
+        for (i, r) in r.iter().enumerate().take(self.dimension) {
             for (j, g) in g.iter().enumerate().take(self.dimension) {
                 let z = |at: usize| self.z[(at, c + j)] - self.z[(at, d + j)];
-                sum += r[i] * (z(a + i) - z(b + i)) * g;
+                sum += r * (z(a + i) - z(b + i)) * g;
             }
         }
         sum

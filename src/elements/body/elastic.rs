@@ -86,15 +86,21 @@ fn energy(bodies: &[(Continuum, Terms)], u: &[f64]) -> f64 {
 }
 
 impl Body {
-    /// The elastic and viscous forces that have no constant matrix: of what is soft, and of the rigid pieces.
-    pub(crate) fn elastic(&self) -> impl Iterator<Item = Elastic> {
-        let bodies = self.with_terms(Continuum::nonlinear_terms);
-        let of = move |is_of_rigid: bool| {
-            let part = if is_of_rigid { Continuum::rigid } else { Continuum::soft };
-            let of_body = |(own, terms): &(Continuum, Terms)| Some((part(own)?, *terms));
-            Elastic { bodies: bodies.iter().filter_map(of_body).collect(), is_of_rigid }
-        };
-        [false, true].into_iter().map(of).filter(|elastic| !elastic.bodies.is_empty())
+    /// The elastic and viscous forces that have no constant matrix, without those of rigid pieces.
+    pub(crate) fn elastic(&self) -> Option<Elastic> {
+        self.elastic_of(false)
+    }
+
+    /// Those that keep rigid pieces in their shape.
+    pub(crate) fn elastic_of_rigid(&self) -> Option<Elastic> {
+        self.elastic_of(true)
+    }
+
+    fn elastic_of(&self, is_of_rigid: bool) -> Option<Elastic> {
+        let part = if is_of_rigid { Continuum::rigid } else { Continuum::soft };
+        let bodies = self.with_terms(Continuum::nonlinear_terms).into_iter();
+        let bodies: Vec<_> = bodies.filter_map(|(own, terms)| Some((part(&own)?, terms))).collect();
+        (!bodies.is_empty()).then_some(Elastic { bodies, is_of_rigid })
     }
 
     /// The forces -K u and -B v element by element, where that is less work than with the matrices: a row of

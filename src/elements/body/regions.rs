@@ -167,7 +167,7 @@ impl Regions {
                 mass_damping: *mass_damping,
                 elastic: match is_rigid {
                     true => Elastic::new(strain, None, lame, dimension, plane),
-                    false => elastic.clone(),
+                    false => elastic,
                 },
                 hooke: hooke(lame),
                 viscous: ObjectiveViscosity(hooke(viscous)),
@@ -238,11 +238,8 @@ impl Regions {
         let zero = Lame { lambda: 0.0, mu: 0.0 };
         let none = Elastic::new(Strain::Green, None, zero, dimension, plane);
         let viscous = ObjectiveViscosity(Hooke::new(zero, dimension, plane));
-        let of_rigid = |laws: &Laws| Laws {
-            elastic: laws.of_rigid.clone().unwrap_or(none.clone()),
-            viscous: viscous.clone(),
-            ..laws.clone()
-        };
+        let of_rigid =
+            |laws: &Laws| Laws { elastic: laws.of_rigid.unwrap_or(none), viscous, ..laws.clone() };
         Self { laws: self.laws.iter().map(of_rigid).collect(), ..self.clone() }
     }
 

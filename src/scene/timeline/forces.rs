@@ -16,7 +16,7 @@ impl Scene {
     pub(crate) fn forces_in(&self, phase: &Phase) -> Result<Forces, InputError> {
         let dimension = self.body.dimension();
         let mut forces = Forces::new();
-        for elastic in self.body.elastic() {
+        for elastic in self.body.elastic().into_iter().chain(self.body.elastic_of_rigid()) {
             forces.push(Arc::new(elastic));
         }
         if let Some(reinforcement) = self.body.reinforcement() {
