@@ -89,9 +89,9 @@ fn tables_that_are_not_there_say_what_stands_in() {
         ("contact", &["[[touch]]", "[[obstacle]]"][..]),
         ("self_contact", &["with themselves is [[touch]]"]),
         ("bodies", &["[[body]]", "[[obstacle]]"]),
-        ("rigid", &["no rigid bodies", "[[obstacle]]"]),
+        ("rigid", &["rigid = true", "[[obstacle]]"]),
         ("cable", &["no cables with friction", "chain of [[spring]] without stiffness"]),
-        ("joint", &["no joints", "hold_combination"]),
+        ("joint", &["is a hinge", "hold_combination"]),
         ("gas", &["no gas", "[[chamber]]"]),
         ("friction", &["friction_coefficient in [[obstacle]]"]),
     ] {

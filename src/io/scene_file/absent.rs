@@ -4,8 +4,8 @@
 const ABSENT: [(&[&str], &str); 8] = [
     (
         &["bodies"],
-        "several bodies are a list of tables [[body]], each with a name, a mesh and a material; a rigid body that stands or follows a path \
-         is an [[obstacle]]",
+        "several bodies are a list of tables [[body]], each with a name, a mesh and a material; one of a material with \
+         rigid = true is rigid; a rigid shape that stands or follows a path is an [[obstacle]]",
     ),
     (
         &["contact", "contacts", "self_contact", "collision", "collisions"],
@@ -18,8 +18,8 @@ const ABSENT: [(&[&str], &str); 8] = [
     ),
     (
         &["rigid", "rigid_body", "rigid_bodies", "wall", "floor", "ground", "gripper", "tool"],
-        "there are no rigid bodies that forces move: a rigid shape that stands or follows a path is an [[obstacle]], nodes that move \
-         together are held, moved or turned by a phase (hold, move, path, rotate), and a part with a large young is nearly rigid",
+        "a rigid body that forces move is a [[body]] with rigid = true in its material, and a rigid part of a soft one a [[body.region]] with that; a \
+         rigid shape that stands or follows a path is an [[obstacle]]; nodes are held, moved or turned by a phase (hold, move, path, rotate)",
     ),
     (
         &["cable", "cables", "rope", "tendon", "tendons", "string", "wire"],
@@ -28,8 +28,9 @@ const ABSENT: [(&[&str], &str); 8] = [
     ),
     (
         &["joint", "joints", "hinge", "bearing", "constraint", "constraints"],
-        "there are no joints: a phase holds, moves and turns nodes (hold, axes, move, path, rotate, symmetry), ties displacements of nodes by \
-         hold_combination, and two nodes may have a stiff [[spring]] between them; a node that alone is held is a hinge",
+        "a node that alone is held in a phase (hold), or tied to another body ([[tie]]), is a hinge, in space a ball joint, and nodes along a line are a \
+         hinge about it; a phase also moves and turns nodes (axes, move, path, rotate, symmetry) and ties displacements by \
+         hold_combination, and two nodes may have a stiff [[spring]] between them; there are no motors and no stops",
     ),
     (
         &["gas", "fluid", "air", "water", "pressure", "pump"],
