@@ -451,7 +451,7 @@ impl System {
     /// Whether rigid pieces enter Newton's linear systems as they were where the matrix is from: where each system is
     /// solved once.
     fn has_fixed_edges(&self) -> bool {
-        !self.edges.list.is_empty() && !self.newton.iterates()
+        self.has_edges() && !self.newton.iterates()
     }
 
     /// Takes the state (t, u, v) for that in which rigid pieces enter the Newton matrix.
@@ -462,7 +462,7 @@ impl System {
         v: &[f64],
         internal: &[f64],
     ) -> Result<(), Failure> {
-        if !self.edges.list.is_empty() {
+        if self.has_edges() {
             self.evaluate(t, u, v, internal)?;
             self.linear_edges.copy_from(&self.edges);
         }
@@ -477,9 +477,14 @@ impl System {
         self.newton.solver.edges = None;
     }
 
+    /// Whether rigid pieces move in it.
+    pub(crate) fn has_edges(&self) -> bool {
+        !self.edges.list.is_empty()
+    }
+
     /// Whether constraints are stabilized, those of rigid pieces included.
     pub(crate) fn is_constrained(&self) -> bool {
-        !self.rows.is_empty() || !self.edges.list.is_empty()
+        !self.rows.is_empty() || self.has_edges()
     }
 
     fn evaluate_forces(
