@@ -135,6 +135,19 @@ def test_bodies_that_touch():
     assert np.allclose(pushed, motion.sensors["push"], rtol=0, atol=1e-9)
 
 
+def test_a_rigid_body_keeps_its_shape():
+    bar = words.body(
+        mesh=words.mesh_rectangle(size=[0.1, 0.01], nodes=[5, 2], cells="triangles"),
+        thickness=0.01,
+        material=words.material(density=2000.0, rigid=True),
+    )
+    pinned = pliant.Scene(gravity=[0.0, -9.8], body=bar, phase=dict(until=0.3, hold=dict(nodes=[1])), output=dict(step=0.1))
+    x = pinned.run(rtol=1e-8).positions
+    apart = np.linalg.norm(x[:, :, None] - x[:, None, :], axis=-1)
+    assert np.ptp(apart, axis=0).max() < 1e-8
+    assert np.linalg.norm(x[-1] - x[0], axis=-1).max() > 0.1
+
+
 def test_regions_of_a_listed_mesh():
     mesh = pliant.Scene(BEAM).mesh
     half = np.flatnonzero(mesh.nodes[mesh.cells].mean(axis=1)[:, 0] > 0.05)

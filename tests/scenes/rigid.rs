@@ -217,6 +217,43 @@ fn a_held_side_carries_the_weight() {
     assert!(moving.last().u.iter().all(|u| u.abs() < 1e-9), "{:?}", moving.last().u);
 }
 
+/// A run goes on from a checkpoint in a file bit by bit as it goes on from memory, with a hinge and a contact in action.
+#[test]
+fn checkpoints_keep_rigid_bodies() {
+    let stone = Mesh::rectangle([0.02, 0.02], [3, 3], Cells::Triangles).unwrap();
+    let stone = stone.translated(&[0.04, -0.03]).unwrap();
+    let stone = Body::new(stone, Material::rigid(2500.0)).thickness(0.01).named("stone");
+    let bodies = Body::join([bar("bar", 0.0), stone].map(|body| body.build().unwrap()));
+    let scene = Scene::new(bodies.unwrap())
+        .gravity([0.0, -9.8])
+        .touch(Touch::all().distance(1e-3).stiffness_density(1e9).friction_coefficient(0.5))
+        .obstacle(
+            pliant::Obstacle::half_plane([0.0, -0.032], [0.0, 1.0]).stiffness(1e4).damping(10.0),
+        )
+        .phase(Phase::until(0.2).hold([6]));
+    let settings = Settings { rtol: 1e-5, ..Settings::default() };
+    let mut first = scene.start(&settings).unwrap();
+    first.advance_to(0.06).unwrap();
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("kept.json");
+    let kept = first.checkpoint();
+    kept.write(&path).unwrap();
+    first.restore(&kept).unwrap();
+    first.advance_to(0.12).unwrap();
+    let mut second = scene.start(&settings).unwrap();
+    let read = second.read_checkpoint(&path).unwrap();
+    second.restore(&read).unwrap();
+    second.advance_to(0.12).unwrap();
+    assert_eq!(first.view().displacements(), second.view().displacements());
+    assert!(first.view().displacements()[2 * 9 + 1] < -1e-3);
+    // another stone is another scene
+    let other = Scene::new(bar("bar", 0.0).build().unwrap())
+        .phase(Phase::until(0.2).hold([6]))
+        .start(&settings)
+        .unwrap();
+    assert!(other.read_checkpoint(&path).is_err());
+}
+
 /// What a rigid body cannot do is told before anything is computed.
 #[test]
 fn impossible_rigid_bodies() {
@@ -236,6 +273,11 @@ fn impossible_rigid_bodies() {
     let sheared = free().hold("left").move_nodes([10], [0.1, 0.0]);
     let told = error(scene().phase(sheared), Method::Auto);
     assert!(told.contains("rigid piece"), "{told}");
+    let mut running = scene().phase(free()).start(&Settings::default()).unwrap();
+    let told = running.change_state(|u, _| u[3] += 1e-3).unwrap_err().to_string();
+    assert!(told.contains("displacements") && told.contains("rigid"), "{told}");
+    let told = running.change_state(|_, v| v[3] += 1.0).unwrap_err().to_string();
+    assert!(told.contains("velocities") && told.contains("rigid"), "{told}");
     let bent = scene().initial_displacement(|x| vec![0.0, x[0] * x[0]]).phase(free());
     let told = error(bent, Method::Auto);
     assert!(told.contains("initial displacement") && told.contains("shape"), "{told}");

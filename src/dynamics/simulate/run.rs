@@ -95,7 +95,9 @@ impl Run {
             return Err(InputError::new("method", settings.method, help).into());
         }
         indicators::overlap::check_start(scene)?;
-        check_method(scene, settings.method)?;
+        if let Some(why) = settings.method.why_not(scene) {
+            return Err(InputError::new("method", settings.method, why).into());
+        }
         let mut state = [u, &v, &[0.0; ENERGIES], &system.relaxed(u)].concat();
         begin_to_move(settings, phase, &mut system, &mut state);
         let mut first = records::sample(0, &mut system, 0.0, &state)
@@ -412,21 +414,4 @@ fn least_energy(body: &Body) -> f64 {
     let energy = |Part { body, .. }: Part| 1e-6 * body.material().young * body.volume();
     let soft = body.parts().filter(|part| !part.body.substances().all(|made_of| made_of.is_rigid));
     soft.map(energy).reduce(f64::min).unwrap_or(0.0)
-}
-
-/// # Errors
-/// A method that has no equations for what is in the scene.
-fn check_method(scene: &Scene, method: Method) -> Result<(), InputError> {
-    let help = match method {
-        Method::Ida | Method::IdaKlu | Method::IdaIndexTwo | Method::CentralDifference
-            if scene.body().rigid_pieces().is_some() =>
-        {
-            "the edges of rigid pieces are constraints for cvode-bdf, cvode-adams, arkode, rosenbrock and rk: take one of them, or auto"
-        }
-        Method::IdaKlu if !scene.touches().is_empty() => {
-            "its Jacobian has a fixed pattern, and bodies that touch couple ever other nodes: take ida"
-        }
-        _ => return Ok(()),
-    };
-    Err(InputError::new("method", method, help))
 }

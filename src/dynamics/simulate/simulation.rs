@@ -13,6 +13,7 @@ use super::sensor::Sensors;
 use super::view::{Gauges, View};
 use super::watch::{Arrival, WatchedEvent};
 use crate::base::input::{InputError, finite, positive};
+use crate::base::vector::largest;
 use crate::dynamics::error::{Error, Panicked, guarded};
 use crate::dynamics::report::Report;
 use crate::dynamics::state::{State, StateMut};
@@ -308,7 +309,8 @@ impl Simulation {
     /// The change of the energies counts as supplied from outside.
     ///
     /// # Errors
-    /// Numbers that are not finite: the state stays as it was. A scene that has ended.
+    /// Numbers that are not finite, or that rigid pieces do not allow: the state stays as it was. A scene that has
+    /// ended.
     pub fn change_state(
         &mut self,
         change: impl FnOnce(&mut [f64], &mut [f64]),
@@ -319,6 +321,12 @@ impl Simulation {
         let parts = StateMut::of(&mut state, self.run.scene.body().dofs());
         guarded(|| change(parts.u, parts.v))?;
         finite("state", &state)?;
+        let body = self.run.scene.body();
+        if let Some(rigid) = body.rigid_pieces() {
+            let State { u, v, .. } = State::of(&state, body.dofs());
+            rigid.check("displacements", u, "m", body.size())?;
+            rigid.check("velocities", v, "m/s", largest(v))?;
+        }
         let after = self.run.energy(self.time, &state).balance();
         *StateMut::of(&mut state, self.run.scene.body().dofs()).supplied += after - before;
         self.run.set_state(self.time, &state)?;

@@ -17,11 +17,15 @@ use nalgebra::{DMatrix, DVector};
 
 use super::Body;
 use super::joined::Part;
+use crate::base::input::InputError;
 use crate::base::sparse::NodePattern;
 use crate::base::vector::{dot, norm};
 
 /// Shares below this are round-off.
 const NO_SHARE: f64 = 1e-13;
+
+/// What is round-off in the shape of a rigid piece, over the size of the bodies.
+const MOST_DISTORTED: f64 = 1e-9;
 
 /// The nodes of all rigid pieces.
 #[derive(Debug, Default)]
@@ -153,6 +157,22 @@ impl RigidPieces {
         let mut carried = x.to_vec();
         self.carry(&mut carried);
         carried.iter().zip(x).fold(0.0, |most, (a, b)| most.max((a - b).abs()))
+    }
+
+    /// Refuses displacements (m) or velocities (m/s) that are not of this kind; `scale` is a typical size of them.
+    pub(crate) fn check(
+        &self,
+        input: &str,
+        x: &[f64],
+        unit: &str,
+        scale: f64,
+    ) -> Result<(), InputError> {
+        let off = self.distortion(x);
+        if off <= MOST_DISTORTED * scale {
+            return Ok(());
+        }
+        let help = "rigid pieces keep their shape: move each as a whole";
+        Err(InputError::new(input, format!("{off:.3e} {unit} off in a rigid piece"), help))
     }
 
     /// Moves nodal forces `f` from dependent nodes to their frames, where they do the same work.

@@ -5,6 +5,7 @@ use std::ops::RangeInclusive;
 use std::str::FromStr;
 
 use crate::base::input::InputError;
+use crate::scene::timeline::Scene;
 
 /// An integration method.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -74,6 +75,23 @@ impl Method {
             Self::Rosenbrock => "rosenbrock",
             Self::Rk => "rk",
             Self::CentralDifference => "central-difference",
+        }
+    }
+
+    /// Why it has no equations for what is in a scene, if it has none.
+    pub(crate) fn why_not(self, scene: &Scene) -> Option<&'static str> {
+        match self {
+            Self::Ida | Self::IdaKlu | Self::IdaIndexTwo | Self::CentralDifference
+                if scene.body().rigid_pieces().is_some() =>
+            {
+                Some(
+                    "the edges of rigid pieces are constraints for cvode-bdf, cvode-adams, arkode, rosenbrock and rk: take one of them, or auto",
+                )
+            }
+            Self::IdaKlu if !scene.touches().is_empty() => Some(
+                "its Jacobian has a fixed pattern, and bodies that touch couple ever other nodes: take ida",
+            ),
+            _ => None,
         }
     }
 

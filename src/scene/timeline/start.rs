@@ -8,9 +8,6 @@ use crate::elements::body::Body;
 use crate::elements::mesh::Selection;
 use crate::scene::constraint::angular;
 
-/// What is round-off in the shape of a rigid piece, over the size of the bodies.
-const MOST_DISTORTED: f64 = 1e-9;
-
 /// The start as the user of a scene gives it.
 #[derive(Debug, Clone)]
 pub(super) struct Start {
@@ -63,12 +60,8 @@ impl Start {
             }
             finite(name, vector)?;
         }
-        if let Some(off) = body.rigid_pieces().map(|rigid| rigid.distortion(displacements))
-            && off > MOST_DISTORTED * body.size()
-        {
-            let help = "rigid pieces start in their shape, moved or turned as a whole";
-            let value = format!("{off:.3e} m off in a rigid piece");
-            return Err(InputError::new("initial displacement", value, help));
+        if let Some(rigid) = body.rigid_pieces() {
+            rigid.check("initial displacement", displacements, "m", body.size())?;
         }
         let mut v = velocities.clone();
         if let Some(spin) = spin {

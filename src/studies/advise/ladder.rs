@@ -130,6 +130,8 @@ impl Search<'_> {
     fn law(&mut self, firm: Solved, found: &mut Found) -> Result<Solved, Stop> {
         let strain = match firm.choice.strain {
             Strain::Cauchy => Strain::Green,
+            // rigid pieces turn
+            Strain::Green if self.scene.body().rigid_pieces().is_some() => return Ok(firm),
             Strain::Green => Strain::Cauchy,
         };
         let Some(other) = self.run(&Choice { strain, ..firm.choice.clone() })? else {
@@ -311,8 +313,10 @@ impl Search<'_> {
         let mut ways = implicit.map(|method| (method, enough.inertia)).to_vec();
         let lumped_is_enough =
             found.inertia.is_some_and(|error| error <= OF_LAW * found.left(accuracy));
-        if lumped_is_enough || enough.inertia == Inertia::Lumped {
-            ways.push((Method::CentralDifference, Inertia::Lumped));
+        let central = Method::CentralDifference;
+        let can_be_central = central.why_not(&self.scene).is_none();
+        if can_be_central && (lumped_is_enough || enough.inertia == Inertia::Lumped) {
+            ways.push((central, Inertia::Lumped));
         }
         let mut fastest: Option<Solved> = None;
         for (method, inertia) in ways {
