@@ -1,6 +1,6 @@
 //! Rigid and soft balls that fall into a box, in space.
 //!
-//! `cargo run --release --example pile -- --most 30`
+//! `cargo run --release --example pile -- --most 8`
 //!
 //! What to look for: no ball passes through another one, and a rigid ball costs far fewer unknowns than a soft one of the same
 //! mesh, but not fewer contacts. `out/pile` has pictures.
@@ -13,15 +13,15 @@ use clap::Parser;
 use common::finish;
 use pliant::output::Snapshots;
 use pliant::{
-    Body, Error, Law, Material, Mesh, Obstacle, Phase, Sampling, Scene, Settings, SolidCells,
-    Substance, Touch,
+    Body, ContactEvents, Error, Law, Material, Mesh, Obstacle, Phase, Sampling, Scene, Settings,
+    SolidCells, Substance, Touch,
 };
 
 /// A table of piles of balls: unknowns, steps, time, energy balance.
 #[derive(Parser)]
 struct Arguments {
     /// Balls of the largest pile
-    #[arg(long, default_value_t = 12)]
+    #[arg(long, default_value_t = 4)]
     most: usize,
     /// Directory for the pictures
     #[arg(long, default_value = "out")]
@@ -37,10 +37,12 @@ fn run(arguments: &Arguments) -> Result<(), Error> {
         "{:>6} {:>6} {:>12} {:>7} {:>9} {:>9} {:>14} {:>9}",
         "balls", "", "independent", "steps", "patterns", "time (s)", "per step (ms)", "overlaps"
     );
-    let settings = Settings { rtol: 1e-3, ..Settings::default() };
+    // so many points come to the walls that locating each would take longer than smaller steps do
+    let contact_events = ContactEvents::StepOver;
+    let settings = Settings { rtol: 1e-3, contact_events, ..Settings::default() };
     let soft = Material { density: 1000.0, young: 5e4, poisson: 0.3, viscosity: 30.0 };
     let kinds = [("rigid", Material::rigid(1000.0)), ("soft", soft.law(Law::NeoHookean))];
-    for balls in [4, 12, 30].into_iter().filter(|&balls| balls <= arguments.most) {
+    for balls in [4, 8, 16].into_iter().filter(|&balls| balls <= arguments.most) {
         for (kind, substance) in &kinds {
             let scene = pile(balls, substance)?;
             let independent = scene.body().independent_dofs();
@@ -67,14 +69,14 @@ fn run(arguments: &Arguments) -> Result<(), Error> {
     Ok(())
 }
 
-/// Balls of 4 cm, four to a layer, above a box that is as wide as two.
+/// Balls of 4 cm, two to a layer, above a box that is a little wider.
 fn pile(balls: usize, substance: &Substance) -> Result<Scene, Error> {
     let ball = |number: usize| {
-        let (place, layer) = (number % 4, number / 4);
+        let (place, layer) = (number % 2, number / 2);
         let aside = if layer % 2 == 0 { 0.0 } else { 0.004 };
         let centre = [
-            0.024 + 0.044 * (place % 2) as f64 + aside,
-            0.024 + 0.044 * (place / 2) as f64 + 0.5 * aside,
+            0.024 + 0.044 * place as f64 + aside,
+            0.024 + 0.5 * aside,
             0.024 + 0.045 * layer as f64,
         ];
         // a cube whose points move along their rays, so that its faces become a sphere
@@ -95,7 +97,7 @@ fn pile(balls: usize, substance: &Substance) -> Result<Scene, Error> {
         ("left", [0.0; 3], [1.0, 0.0, 0.0]),
         ("right", [0.1, 0.0, 0.0], [-1.0, 0.0, 0.0]),
         ("front", [0.0; 3], [0.0, 1.0, 0.0]),
-        ("back", [0.0, 0.1, 0.0], [0.0, -1.0, 0.0]),
+        ("back", [0.0, 0.06, 0.0], [0.0, -1.0, 0.0]),
     ] {
         let wall = Obstacle::half_plane(point, normal).named(name);
         scene = scene.obstacle(wall.stiffness_density(1e7).damping(1e4));
