@@ -19,7 +19,7 @@ demo: setup ## The jumping square and a scene file by the command: tables here, 
 
 # Kernels for AVX-512 are compiled where they can run.
 AVX512 := $(shell grep -qsw avx512f /proc/cpuinfo && echo ,pliant/avx512)
-FEATURES := --no-default-features --features pliant/cli,pliant/play$(AVX512)
+FEATURES := --no-default-features --features pliant/cli,pliant/play,pliant/shared$(AVX512)
 # The library and the Python module: crates that both need are compiled once, with the features of both.
 BOTH := -p pliant -p pliant-python $(FEATURES)
 
@@ -42,7 +42,7 @@ test: ## Every check: format, lints, tests, documentation and its examples
 	cargo fmt --all --check
 	{ scripts/setup.sh chromium python3-venv && scripts/python.sh environment; } & \
 		cargo clippy --workspace --all-targets $(FEATURES) $(READ) -- -D warnings && wait $$!
-	cargo test $(BOTH) --lib --config profile.dev.package.pliant.opt-level=0 & \
+	cargo test -p pliant $(FEATURES) --lib --config profile.dev.package.pliant.opt-level=0 & \
 		sleep 2; cargo test $(BOTH) --test '*' $(TESTED) --no-run && wait $$!
 	cargo test $(BOTH) --test 's*' & some=$$!; cargo test $(BOTH) --test '[!s]*' $(TESTED) & others=$$!; \
 		cargo test $(BOTH) --doc && RUSTDOCFLAGS=-Dwarnings cargo doc $(BOTH) --no-deps $(READ) && \
