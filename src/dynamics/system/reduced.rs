@@ -25,7 +25,8 @@ use faer::sparse::SymbolicSparseColMat;
 use faer::{Mat, MatMut, Par, Spec};
 
 use super::cholesky::Indefinite;
-use super::edges::{Edge, EdgeSolver};
+use super::edge_solver::EdgeSolver;
+use super::edges::Edge;
 use super::gradients::Gradients;
 use super::source::{Coupling, EntrySource};
 use super::symmetric::Symmetric;

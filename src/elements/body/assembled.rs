@@ -149,10 +149,14 @@ impl Body {
         self.dofs() - self.dimension() * dependent
     }
 
-    /// Whether a cell (counted from 0) is rigid.
-    pub(super) fn is_rigid_cell(&self, cell: usize) -> bool {
-        let Continuum { regions, cells, .. } = self.continuum_of(cell);
-        regions.of(cell - cells.start).of_rigid.is_some()
+    /// The numbers of its rigid cells (from 0).
+    pub(super) fn rigid_cells(&self) -> Vec<usize> {
+        let of_body = |Continuum { regions, cells, .. }: &Continuum| {
+            let first = cells.start;
+            let rigid = cells.clone().filter(|cell| regions.of(cell - first).of_rigid.is_some());
+            rigid.collect::<Vec<_>>()
+        };
+        self.continua.iter().flat_map(of_body).collect()
     }
 
     /// Number of regions that were given.

@@ -205,7 +205,8 @@ impl Body {
             mass_damping,
             rigid: None,
         };
-        let body = Self { rigid: RigidPieces::of(&body).map(Arc::new), ..body };
+        let body =
+            Self { rigid: RigidPieces::of(&body.mesh, &body.rigid_cells()).map(Arc::new), ..body };
         // not the nodal masses: those of quadratic cells are 0 and below at corners
         let mut nodes = 0..body.mesh.node_count();
         match nodes.find(|&node| body.inertia.get(node, node) == 0.0) {

@@ -127,7 +127,7 @@ impl Body {
             mass_damping,
             rigid: None,
         };
-        Ok(Self { rigid: RigidPieces::of(&body).map(Arc::new), ..body })
+        Ok(Self { rigid: RigidPieces::of(&body.mesh, &body.rigid_cells()).map(Arc::new), ..body })
     }
 
     /// The bodies that were joined, or the body itself.

@@ -15,11 +15,10 @@ use std::collections::BTreeSet;
 
 use nalgebra::{DMatrix, DVector};
 
-use super::Body;
-use super::joined::Part;
 use crate::base::input::InputError;
 use crate::base::sparse::NodePattern;
 use crate::base::vector::{dot, norm};
+use crate::elements::mesh::Mesh;
 
 /// Shares below this are round-off.
 const NO_SHARE: f64 = 1e-13;
@@ -54,42 +53,38 @@ struct Dependent {
     shares: Vec<(usize, f64)>,
 }
 
-/// The nodes of each connected piece of the rigid cells of a body, counted from 0 among those of all.
-fn connected(part: &Part) -> Vec<Vec<usize>> {
-    if !part.body.substances().any(|substance| substance.is_rigid) {
-        return Vec::new();
-    }
-    let mesh = part.body.mesh();
-    let rigid = mesh.cells().enumerate().filter(|(cell, _)| part.body.is_rigid_cell(*cell));
-    let cells: Vec<&[usize]> = rigid.map(|(_, nodes)| nodes).collect();
-    let pattern = NodePattern::new(mesh.node_count(), cells.iter().copied());
-    let pieces = pattern.pieces();
+/// The nodes of each connected piece of some cells.
+fn connected(mesh: &Mesh, cells: &[usize]) -> Vec<Vec<usize>> {
+    let mut is_rigid = vec![false; mesh.cell_count()];
+    cells.iter().for_each(|&cell| is_rigid[cell] = true);
+    let rigid = mesh.cells().zip(is_rigid).filter(|(_, is_rigid)| *is_rigid);
+    let cells: Vec<&[usize]> = rigid.map(|(nodes, _)| nodes).collect();
+    let pieces = NodePattern::new(mesh.node_count(), cells.iter().copied()).pieces();
     let mut nodes = vec![BTreeSet::new(); pieces.iter().max().map_or(0, |last| last + 1)];
     for &node in cells.into_iter().flatten() {
-        nodes[pieces[node]].insert(part.nodes.start + node);
+        nodes[pieces[node]].insert(node);
     }
     nodes.into_iter().filter(|nodes| !nodes.is_empty()).map(Vec::from_iter).collect()
 }
 
 impl RigidPieces {
-    /// Those of a body, if it has any.
-    pub(super) fn of(body: &Body) -> Option<Self> {
-        let kinds = vec![Kind::Free; body.mesh().node_count()];
-        let mut pieces =
-            Self { dimension: body.dimension(), kinds, dependent: Vec::new(), frames: Vec::new() };
-        for part in body.parts() {
-            for nodes in connected(&part) {
-                pieces.add(body, &nodes);
-            }
+    /// Those that the rigid `cells` (numbers from 0) of a mesh make, if there are any.
+    pub(super) fn of(mesh: &Mesh, cells: &[usize]) -> Option<Self> {
+        if cells.is_empty() {
+            return None;
         }
-        pieces.kinds.contains(&Kind::Frame).then_some(pieces)
+        let kinds = vec![Kind::Free; mesh.node_count()];
+        let dimension = mesh.dimension();
+        let mut pieces = Self { dimension, kinds, dependent: Vec::new(), frames: Vec::new() };
+        connected(mesh, cells).iter().for_each(|nodes| pieces.add(mesh, nodes));
+        Some(pieces)
     }
 
-    fn add(&mut self, body: &Body, nodes: &[usize]) {
-        let frame = frame(body, nodes);
+    fn add(&mut self, mesh: &Mesh, nodes: &[usize]) {
+        let frame = frame(mesh, nodes);
         let d = self.dimension;
-        let origin = body.mesh().position(frame[0]);
-        let arm = |node: usize, i: usize| body.mesh().position(node)[i] - origin[i];
+        let origin = mesh.position(frame[0]);
+        let arm = |node: usize, i: usize| mesh.position(node)[i] - origin[i];
         let edges = DMatrix::from_fn(d, d, |i, a| arm(frame[a + 1], i)).lu();
         frame.iter().for_each(|&node| self.kinds[node] = Kind::Frame);
         for &node in nodes.iter().filter(|node| !frame.contains(node)) {
@@ -206,8 +201,8 @@ impl RigidPieces {
 
 /// d + 1 of the nodes that span a large simplex, so that no node has large shares: each is the farthest from what those
 /// before it span.
-fn frame(body: &Body, nodes: &[usize]) -> Vec<usize> {
-    let (mesh, d) = (body.mesh(), body.dimension());
+fn frame(mesh: &Mesh, nodes: &[usize]) -> Vec<usize> {
+    let d = mesh.dimension();
     let mut centre = vec![0.0; d];
     for &node in nodes {
         let x = mesh.position(node);

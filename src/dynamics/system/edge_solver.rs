@@ -1,0 +1,271 @@
+//! Linear systems under the constraints of [edges](super::edges).
+//!
+//! The row G of an edge follows the motion, so that it cannot be eliminated once and for all. With Z = X^-1 E, E the
+//! degrees of freedom of the frames, the multipliers are the solution of the small system
+//!
+//! ```text
+//! (R Z G^T) multipliers = demands
+//! ```
+//!
+//! piece by piece where pieces do not feel each other through X. R is G itself with X = M and, with the Newton matrix of
+//! a step of gamma, the derivative of the stabilized constraint,
+//!
+//! ```text
+//! R = (1 + alpha gamma)^2 x + 2 gamma (1 + alpha gamma) x' + gamma^2 x''
+//! ```
+
+use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
+use faer::linalg::lu::partial_pivoting::factor::{lu_in_place, lu_in_place_scratch};
+use faer::linalg::lu::partial_pivoting::solve::{solve_in_place, solve_in_place_scratch};
+use faer::perm::PermRef;
+use faer::{Mat, MatMut, Par, Spec};
+
+use super::edges::{Edge, Edges};
+use crate::base::vector::dot;
+
+/// What solves systems with X under the constraints of edges.
+pub(super) struct EdgeSolver {
+    dimension: usize,
+    /// For each edge the first columns of Z of its nodes, and its degrees of freedom among the free ones.
+    ends: Vec<[usize; 2]>,
+    places: Vec<[usize; 2]>,
+    /// Z, one column per degree of freedom of a frame, and its part that the general rows hold.
+    pub(super) frames: Vec<usize>,
+    pub(super) z: Mat<f64>,
+    pub(super) of_rows: Mat<f64>,
+    pieces: Vec<Piece>,
+    rows: Vec<[f64; 3]>,
+    columns: Vec<[f64; 3]>,
+    /// What R x is to be, and the multipliers that make it so.
+    pub(super) demands: Vec<f64>,
+    pub(super) multipliers: Vec<f64>,
+    /// G^T multipliers at the frames.
+    pull: Vec<f64>,
+}
+
+/// Edges that feel each other through X, with their factorized small matrix.
+struct Piece {
+    edges: Vec<usize>,
+    lu: Mat<f64>,
+    forward: Vec<usize>,
+    backward: Vec<usize>,
+    right: Vec<f64>,
+    memory: MemBuffer,
+}
+
+impl Piece {
+    fn new(edges: Vec<usize>) -> Self {
+        let count = edges.len();
+        let memory = MemBuffer::new(StackReq::any_of(&[
+            lu_in_place_scratch::<usize, f64>(count, count, Par::Seq, Spec::default()),
+            solve_in_place_scratch::<usize, f64>(count, 1, Par::Seq),
+        ]));
+        Self {
+            edges,
+            lu: Mat::zeros(count, count),
+            forward: vec![0; count],
+            backward: vec![0; count],
+            right: vec![0.0; count],
+            memory,
+        }
+    }
+}
+
+impl EdgeSolver {
+    /// For edges between nodes whose degrees of freedom are at the given `position` among the free ones; `general` is
+    /// the number of general rows.
+    pub(super) fn new(
+        edges: &[Edge],
+        dimension: usize,
+        position: impl Fn(usize) -> Option<usize>,
+        [free, general]: [usize; 2],
+    ) -> Self {
+        let mut nodes: Vec<usize> = edges.iter().flat_map(|edge| edge.nodes).collect();
+        nodes.sort_unstable();
+        nodes.dedup();
+        // no component of a frame is fixed by itself: rows of rigid pieces are general ones
+        let place = |node: usize| position(node * dimension).unwrap_or_default();
+        let frames: Vec<usize> = nodes
+            .iter()
+            .flat_map(|&node| (0..dimension).map(move |axis| place(node) + axis))
+            .collect();
+        let column = |node: usize| nodes.binary_search(&node).unwrap_or_default() * dimension;
+        let count = frames.len();
+        Self {
+            dimension,
+            ends: edges.iter().map(|edge| edge.nodes.map(column)).collect(),
+            places: edges.iter().map(|edge| edge.nodes.map(place)).collect(),
+            z: Mat::zeros(free, count),
+            of_rows: Mat::zeros(general, count),
+            frames,
+            pieces: Vec::new(),
+            rows: vec![[0.0; 3]; edges.len()],
+            columns: vec![[0.0; 3]; edges.len()],
+            demands: vec![0.0; edges.len()],
+            multipliers: vec![0.0; edges.len()],
+            pull: vec![0.0; count],
+        }
+    }
+
+    /// Finds which edges feel each other, once Z is set.
+    pub(super) fn divide(&mut self) {
+        let feels = |a: usize, b: usize| {
+            self.ends[a].into_iter().any(|a| {
+                let row = self.frames[a];
+                self.ends[b].into_iter().any(|b| {
+                    let d = self.dimension;
+                    (0..d).any(|i| (0..d).any(|j| self.z[(row + i, b + j)] != 0.0))
+                })
+            })
+        };
+        let mut open: Vec<usize> = (0..self.ends.len()).collect();
+        let mut pieces = Vec::new();
+        while let Some(first) = open.pop() {
+            let mut edges = vec![first];
+            let mut at = 0;
+            while at < edges.len() {
+                let (near, far): (Vec<usize>, Vec<usize>) =
+                    open.iter().partition(|&&other| feels(edges[at], other));
+                edges.extend(near);
+                open = far;
+                at += 1;
+            }
+            edges.sort_unstable();
+            pieces.push(edges);
+        }
+        let is_same = self.pieces.len() == pieces.len()
+            && self.pieces.iter().zip(&pieces).all(|(piece, edges)| piece.edges == *edges);
+        if !is_same {
+            self.pieces = pieces.into_iter().map(Piece::new).collect();
+        }
+    }
+
+    /// R Z G^T of two edges.
+    fn entry(&self, row: usize, column: usize) -> f64 {
+        let (r, g) = (&self.rows[row], &self.columns[column]);
+        let [c, d] = self.ends[column];
+        let [a, b] = self.places[row];
+        let mut sum = 0.0;
+        for (i, r) in r.iter().enumerate().take(self.dimension) {
+            for (j, g) in g.iter().enumerate().take(self.dimension) {
+                let z = |at: usize| self.z[(at, c + j)] - self.z[(at, d + j)];
+                sum += r * (z(a + i) - z(b + i)) * g;
+            }
+        }
+        sum
+    }
+
+    /// Sets R and G.
+    pub(super) fn turn(&mut self, edges: &Edges, step: Option<[f64; 2]>) {
+        self.columns.copy_from_slice(&edges.arms);
+        match step {
+            Some([gamma, alpha]) => edges.rows(gamma, alpha, &mut self.rows),
+            None => self.rows.copy_from_slice(&edges.arms),
+        }
+        let mut pieces = std::mem::take(&mut self.pieces);
+        for Piece { edges, lu, forward, backward, memory, .. } in &mut pieces {
+            for (i, &row) in edges.iter().enumerate() {
+                for (j, &column) in edges.iter().enumerate() {
+                    lu[(i, j)] = self.entry(row, column);
+                }
+            }
+            let stack = MemStack::new(memory);
+            lu_in_place(lu.as_mut(), forward, backward, Par::Seq, stack, Spec::default());
+        }
+        self.pieces = pieces;
+    }
+
+    /// Which edges do not follow from the constraints of the general rows and the edges before them.
+    pub(super) fn independent(&mut self, edges: &Edges) -> Vec<bool> {
+        self.columns.copy_from_slice(&edges.arms);
+        self.rows.copy_from_slice(&edges.arms);
+        let mut is_kept = vec![false; self.ends.len()];
+        for Piece { edges, .. } in &self.pieces {
+            // Cholesky's factorization, row by row, of those that have a pivot
+            let mut factor: Vec<(usize, Vec<f64>)> = Vec::new();
+            for &edge in edges {
+                let mut row: Vec<f64> = Vec::new();
+                for (other, of_other) in &factor {
+                    let known: f64 = row.iter().zip(of_other).map(|(a, b)| a * b).sum();
+                    let pivot = of_other[row.len()];
+                    row.push((self.entry(edge, *other) - known) / pivot);
+                }
+                let whole = self.entry(edge, edge);
+                let left = whole - dot(&row, &row);
+                // relative to what the edge would have by itself: if its nodes are held, round-off is all there is
+                is_kept[edge] = left > LOST * whole && whole > LOST * self.largest(edge);
+                if is_kept[edge] {
+                    row.push(left.sqrt());
+                    factor.push((edge, row));
+                }
+            }
+        }
+        is_kept
+    }
+
+    /// The scale of the entry of an edge: that of its nodes by themselves, which are light.
+    fn largest(&self, edge: usize) -> f64 {
+        let square = dot(&self.columns[edge], &self.columns[edge]);
+        let all = self.frames.iter().enumerate().map(|(column, &at)| self.z[(at, column)].abs());
+        square * all.fold(0.0, f64::max)
+    }
+
+    /// Corrects the solution `x` = X^-1 f, and the multipliers `mu` of the general rows `numbers`, by the multipliers that
+    /// the demands require.
+    pub(super) fn correct(
+        &mut self,
+        x: &mut [f64],
+        numbers: impl Iterator<Item = usize>,
+        mu: &mut [f64],
+    ) {
+        let Self {
+            dimension: d,
+            ends,
+            places,
+            z,
+            of_rows,
+            pieces,
+            rows,
+            columns,
+            demands,
+            multipliers,
+            pull,
+            ..
+        } = self;
+        pull.fill(0.0);
+        for Piece { edges, lu, forward, backward, right, memory } in pieces {
+            for (right, &k) in right.iter_mut().zip(&*edges) {
+                let ([a, b], r) = (places[k], &rows[k]);
+                let along: f64 = (0..*d).map(|i| r[i] * (x[a + i] - x[b + i])).sum();
+                *right = demands[k] - along;
+            }
+            let count = right.len();
+            solve_in_place(
+                lu.as_ref(),
+                lu.as_ref(),
+                PermRef::new_checked(forward, backward, count),
+                MatMut::from_column_major_slice_mut(right, count, 1),
+                Par::Seq,
+                MemStack::new(memory),
+            );
+            for (multiplier, &k) in right.iter().zip(&*edges) {
+                multipliers[k] = *multiplier;
+                let ([a, b], g) = (ends[k], &columns[k]);
+                for i in 0..*d {
+                    pull[a + i] += multiplier * g[i];
+                    pull[b + i] -= multiplier * g[i];
+                }
+            }
+        }
+        for (column, pull) in pull.iter().enumerate().filter(|(_, pull)| **pull != 0.0) {
+            x.iter_mut().zip(z.col_as_slice(column)).for_each(|(x, z)| *x += pull * z);
+        }
+        for (row, number) in numbers.enumerate() {
+            mu[number] +=
+                pull.iter().enumerate().map(|(k, pull)| pull * of_rows[(row, k)]).sum::<f64>();
+        }
+    }
+}
+
+/// Pivots below this, relative to the diagonal, are round-off.
+const LOST: f64 = 1e-10;
