@@ -11,7 +11,7 @@ mod common;
 use std::time::Instant;
 
 use clap::Parser;
-use common::finish;
+use common::{finish, patterns_and_overlaps};
 use pliant::output::Snapshots;
 use pliant::{
     Body, Cells, Error, Law, Material, Mesh, Obstacle, Phase, Sampling, Scene, Settings, Touch,
@@ -55,15 +55,14 @@ fn run(arguments: &Arguments) -> Result<(), Error> {
         let (seconds, motion) = timed(true)?;
         let (alone, free) = timed(false)?;
         let report = motion.report();
-        let changes: usize = report.phases.iter().map(|phase| phase.counts.pattern_changes).sum();
-        let overlaps = motion.indicators().iter().any(|of| of.name == "overlap" && of.value > 0.0);
+        let (changes, overlaps) = patterns_and_overlaps(&motion);
         println!(
             "{rings:>6} {:>9} {:>7} {changes:>9} {seconds:>10.2} {:>14.2} {:>22.2} {:>9}",
             report.states,
             report.steps(),
             1e3 * seconds / report.steps() as f64,
             1e3 * alone / free.report().steps() as f64,
-            if overlaps { "yes" } else { "none" },
+            overlaps,
         );
         let file = arguments.out.join("heap").join(format!("{rings}.svg"));
         Snapshots::at([0.0, 0.2, 0.4, 0.6]).title(format!("{rings} rings")).write(&motion, file)?;

@@ -10,7 +10,7 @@ mod common;
 use std::time::Instant;
 
 use clap::Parser;
-use common::finish;
+use common::{finish, patterns_and_overlaps};
 use pliant::output::Snapshots;
 use pliant::{
     Body, ContactEvents, Error, Law, Material, Mesh, Obstacle, Phase, Sampling, Scene, Settings,
@@ -50,15 +50,12 @@ fn run(arguments: &Arguments) -> Result<(), Error> {
             let motion = scene.simulate(&settings, &Sampling::every(0.05))?;
             let seconds = clock.elapsed().as_secs_f64();
             let report = motion.report();
-            let changes: usize =
-                report.phases.iter().map(|phase| phase.counts.pattern_changes).sum();
-            let overlaps =
-                motion.indicators().iter().any(|of| of.name == "overlap" && of.value > 0.0);
+            let (changes, overlaps) = patterns_and_overlaps(&motion);
             println!(
                 "{balls:>6} {kind:>6} {independent:>12} {:>7} {changes:>9} {seconds:>9.2} {:>14.2} {:>9}",
                 report.steps(),
                 1e3 * seconds / report.steps() as f64,
-                if overlaps { "yes" } else { "none" },
+                overlaps,
             );
             let file = arguments.out.join("pile").join(format!("{balls}-{kind}.svg"));
             let title = format!("{balls} {kind} balls");

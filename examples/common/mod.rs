@@ -4,7 +4,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use pliant::{Error, Method, Settings};
+use pliant::{Error, Method, Settings, Trajectory};
 
 /// Arguments of every example.
 #[derive(Args)]
@@ -37,4 +37,11 @@ pub fn finish(result: Result<(), Error>) {
         eprintln!("{error}");
         std::process::exit(1);
     }
+}
+
+/// The number of patterns that the Newton matrix had after the first, and whether bodies overlap.
+pub fn patterns_and_overlaps(motion: &Trajectory) -> (usize, &'static str) {
+    let phases = motion.report().phases.iter();
+    let overlaps = motion.indicators().iter().any(|of| of.name == "overlap" && of.value > 0.0);
+    (phases.map(|phase| phase.counts.pattern_changes).sum(), if overlaps { "yes" } else { "none" })
 }

@@ -158,9 +158,7 @@ impl Dae for DaeForm {
             kinematic.fill(0.0);
             matrices.inertia.add_product(matrices.dimension, 1.0, &self.mismatch, kinematic);
             subtract_pull(eta, kinematic);
-            matrices.gather(kinematic);
         }
-        matrices.gather(dynamic);
         *residual.dissipated = rates.dissipated - dissipated;
         *residual.supplied = rates.supplied - supplied;
         let (of_rates, of_positions) = residual.others.split_at_mut(rows.len());

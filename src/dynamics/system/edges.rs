@@ -12,15 +12,29 @@
 //! with a multiplier that presses with x at both nodes. `edge_solver.rs` finds the multipliers.
 
 use crate::base::sparse::BlockMatrix;
-use crate::base::vector::{difference, dot};
+use crate::base::vector::{dot, norm};
 use crate::elements::body::RigidPieces;
 
 /// An edge of a frame between two nodes.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Edge {
     pub(super) nodes: [usize; 2],
-    /// Its length squared (m^2).
-    square: f64,
+    /// Itself in the undeformed body (m).
+    natural: [f64; 3],
+}
+
+impl Edge {
+    /// Itself under the displacements `u` (m).
+    fn at(&self, u: &[f64], dimension: usize) -> [f64; 3] {
+        let apart = difference_at(self.nodes, dimension, u);
+        std::array::from_fn(|i| self.natural[i] + apart[i])
+    }
+}
+
+/// The difference of a vector, `dimension` components per node, at two nodes.
+fn difference_at([a, b]: [usize; 2], dimension: usize, values: &[f64]) -> [f64; 3] {
+    let apart = |axis: usize| values[a * dimension + axis] - values[b * dimension + axis];
+    std::array::from_fn(|axis| if axis < dimension { apart(axis) } else { 0.0 })
 }
 
 /// All edges in a state, with what the stabilization requires of them.
@@ -28,8 +42,6 @@ pub(super) struct Edge {
 pub(super) struct Edges {
     pub(super) list: Vec<Edge>,
     dimension: usize,
-    /// Undeformed positions (m).
-    positions: Vec<f64>,
     /// x, x', x'' of each.
     pub(super) arms: Vec<[f64; 3]>,
     rates: Vec<[f64; 3]>,
@@ -46,35 +58,32 @@ impl Edges {
         let mut list = Vec::new();
         for frame in rigid.frames() {
             for (k, &a) in frame.iter().enumerate() {
-                list.extend(frame[..k].iter().map(|&b| Edge { nodes: [a, b], square: 0.0 }));
+                list.extend(frame[..k].iter().map(|&b| Edge {
+                    nodes: [a, b],
+                    natural: difference_at([a, b], dimension, positions),
+                }));
             }
         }
-        let mut edges = Self { dimension, positions: positions.to_vec(), ..Self::of(list) };
-        let rest = vec![0.0; positions.len()];
-        edges.move_to(0.0, &rest, &rest);
-        let squares: Vec<f64> = edges.arms.iter().map(|x| dot(x, x)).collect();
-        edges.list.iter_mut().zip(squares).for_each(|(edge, square)| edge.square = square);
-        edges
+        Self::of(list, dimension)
     }
 
-    fn of(list: Vec<Edge>) -> Self {
+    fn of(list: Vec<Edge>, dimension: usize) -> Self {
         let none = vec![[0.0; 3]; list.len()];
         Self {
-            arms: none.clone(),
+            dimension,
+            arms: list.iter().map(|edge| edge.natural).collect(),
             rates: none.clone(),
             accelerations: none,
             demands: vec![0.0; list.len()],
             multipliers: vec![0.0; list.len()],
             list,
-            ..Self::default()
         }
     }
 
     /// The edges of which `is_kept` is true.
     pub(super) fn retained(&self, is_kept: &[bool]) -> Self {
         let list = self.list.iter().zip(is_kept).filter(|(_, is_kept)| **is_kept);
-        let list = list.map(|(edge, _)| *edge).collect();
-        Self { dimension: self.dimension, positions: self.positions.clone(), ..Self::of(list) }
+        Self::of(list.map(|(edge, _)| *edge).collect(), self.dimension)
     }
 
     /// Becomes the same as the `other` ones of the same list.
@@ -87,12 +96,10 @@ impl Edges {
 
     /// Moves on to displacements `u` (m) and velocities `v` (m/s), with the stabilization rate `alpha` (1/s).
     pub(super) fn move_to(&mut self, alpha: f64, u: &[f64], v: &[f64]) {
-        for (k, Edge { nodes, square }) in self.list.iter().enumerate() {
-            let [x, rate] = [
-                self.along(*nodes, |dof| self.positions[dof] + u[dof]),
-                self.along(*nodes, |dof| v[dof]),
-            ];
-            let off = 0.5 * (dot(&x, &x) - square);
+        for (k, edge) in self.list.iter().enumerate() {
+            let (x, rate) =
+                (edge.at(u, self.dimension), difference_at(edge.nodes, self.dimension, v));
+            let off = 0.5 * (dot(&x, &x) - dot(&edge.natural, &edge.natural));
             self.demands[k] =
                 -dot(&rate, &rate) - 2.0 * alpha * dot(&x, &rate) - alpha * alpha * off;
             (self.arms[k], self.rates[k]) = (x, rate);
@@ -102,7 +109,7 @@ impl Edges {
     /// Whether one of them changes its length faster than by `least` times the difference of velocities of its nodes.
     pub(super) fn stretches(&self, least: f64) -> bool {
         let along = |(x, rate): (&[f64; 3], &[f64; 3])| {
-            let size = dot(x, x).sqrt() * dot(rate, rate).sqrt();
+            let size = norm(x) * norm(rate);
             dot(x, rate).abs() > least * size
         };
         self.arms.iter().zip(&self.rates).any(along)
@@ -111,17 +118,8 @@ impl Edges {
     /// Takes the accelerations `a` (m/s^2).
     pub(super) fn accelerate(&mut self, a: &[f64]) {
         for (k, Edge { nodes, .. }) in self.list.iter().enumerate() {
-            self.accelerations[k] = self.along(*nodes, |dof| a[dof]);
+            self.accelerations[k] = difference_at(*nodes, self.dimension, a);
         }
-    }
-
-    /// The difference of a vector at two nodes.
-    fn along(&self, [a, b]: [usize; 2], value: impl Fn(usize) -> f64) -> [f64; 3] {
-        let d = self.dimension;
-        let at = |node: usize| {
-            std::array::from_fn(|axis| if axis < d { value(node * d + axis) } else { 0.0 })
-        };
-        difference(&at(a), &at(b))
     }
 
     /// The rows R of a step of the parameter `gamma`.
@@ -146,7 +144,7 @@ impl Edges {
         demands: &mut [f64],
     ) {
         for (k, Edge { nodes, .. }) in self.list.iter().enumerate() {
-            let [su, sv] = [ru, rv].map(|r| self.along(*nodes, |dof| r[dof]));
+            let [su, sv] = [ru, rv].map(|r| difference_at(*nodes, self.dimension, r));
             let (x, rate, acceleration) = (&self.arms[k], &self.rates[k], &self.accelerations[k]);
             let lag =
                 dot(acceleration, &su) + 2.0 * alpha * dot(rate, &su) + alpha * alpha * dot(x, &su);
@@ -167,10 +165,7 @@ impl Edges {
 
     /// Largest difference of the length of an edge from what it was (m).
     pub(super) fn drift(&self, u: &[f64]) -> f64 {
-        let drift = |Edge { nodes, square }: &Edge| {
-            let x = self.along(*nodes, |dof| self.positions[dof] + u[dof]);
-            (dot(&x, &x).sqrt() - square.sqrt()).abs()
-        };
+        let drift = |edge: &Edge| (norm(&edge.at(u, self.dimension)) - norm(&edge.natural)).abs();
         self.list.iter().map(drift).fold(0.0, f64::max)
     }
 }

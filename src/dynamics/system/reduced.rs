@@ -267,13 +267,15 @@ impl Reduced {
                 x[dof] = d / coefficient;
             }
         }
+        let f = match &self.rigid {
+            None => f,
+            Some(rigid) => {
+                self.gathered.copy_from_slice(f);
+                rigid.gather(&mut self.gathered);
+                &self.gathered
+            }
+        };
         self.work.iter_mut().zip(self.symmetric.free()).for_each(|(work, &dof)| *work = f[dof]);
-        if let Some(rigid) = &self.rigid {
-            self.gathered.copy_from_slice(f);
-            rigid.gather(&mut self.gathered);
-            let free = self.symmetric.free();
-            self.work.iter_mut().zip(free).for_each(|(work, &dof)| *work = self.gathered[dof]);
-        }
         for (&(row, column, ..), value) in self.border.iter().zip(&self.border_values) {
             self.work[row] -= value * x[column];
         }

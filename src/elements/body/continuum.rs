@@ -46,15 +46,13 @@ impl Continuum {
 
     /// The same without its rigid pieces, if there is anything else.
     pub(super) fn soft(&self) -> Option<Self> {
-        let [are_all, _] = self.regions.are_rigid();
-        (!are_all).then(|| self.clone())
+        self.regions.are_any(false).then(|| self.clone())
     }
 
     /// The same with the stiffness of its rigid pieces alone, if it has any.
     pub(super) fn rigid(&self) -> Option<Self> {
-        let [_, are_none] = self.regions.are_rigid();
         let of_rigid = || self.regions.of_rigid(self.kind.dimension(), self.plane);
-        (!are_none).then(|| Self { regions: Arc::new(of_rigid()), ..self.clone() })
+        self.regions.are_any(true).then(|| Self { regions: Arc::new(of_rigid()), ..self.clone() })
     }
 
     /// Whether the elastic force is -K u.

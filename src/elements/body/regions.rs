@@ -227,10 +227,9 @@ impl Regions {
         })
     }
 
-    /// Whether all of them are rigid, and none.
-    pub(super) fn are_rigid(&self) -> [bool; 2] {
-        let mut rigid = self.laws.iter().map(|laws| laws.of_rigid.is_some());
-        [rigid.clone().all(|is_rigid| is_rigid), !rigid.any(|is_rigid| is_rigid)]
+    /// Whether any of them is rigid, or any is not.
+    pub(super) fn are_any(&self, rigid: bool) -> bool {
+        self.laws.iter().any(|laws| laws.of_rigid.is_some() == rigid)
     }
 
     /// The same with the stiffness of the rigid pieces alone.

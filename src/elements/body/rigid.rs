@@ -17,7 +17,7 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::base::input::InputError;
 use crate::base::sparse::NodePattern;
-use crate::base::vector::{dot, norm};
+use crate::base::vector::{dot, largest, norm};
 use crate::elements::mesh::Mesh;
 
 /// Shares below this are round-off.
@@ -27,7 +27,7 @@ const NO_SHARE: f64 = 1e-13;
 const MOST_DISTORTED: f64 = 1e-9;
 
 /// The nodes of all rigid pieces.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(crate) struct RigidPieces {
     dimension: usize,
     /// Whether a node belongs to a piece, and the number of it among the dependent ones.
@@ -37,9 +37,8 @@ pub(crate) struct RigidPieces {
     frames: Vec<Vec<usize>>,
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Kind {
-    #[default]
     Free,
     Frame,
     Dependent(usize),
@@ -149,9 +148,9 @@ impl RigidPieces {
     /// How far `x`, displacements or velocities, are from those of rigid pieces that move as their frames do: the
     /// largest component.
     pub(crate) fn distortion(&self, x: &[f64]) -> f64 {
-        let mut carried = x.to_vec();
-        self.carry(&mut carried);
-        carried.iter().zip(x).fold(0.0, |most, (a, b)| most.max((a - b).abs()))
+        let mut stray = vec![0.0; x.len()];
+        self.stray(x, &mut stray);
+        largest(&stray)
     }
 
     /// Refuses displacements (m) or velocities (m/s) that are not of this kind; `scale` is a typical size of them.
