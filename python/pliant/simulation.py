@@ -161,7 +161,7 @@ class Simulation:
         self._simulation.set_pressure(chamber, pressure)
 
     def actuate(self, spring: str, force: float) -> None:
-        """Sets the force (N) of the actuator of a spring."""
+        """Sets the force (N) of the actuator of a spring, the tension (N) of a cable, or the length (m) that a winch has drawn in."""
         self._simulation.actuate(spring, force)
 
     def load(self, nodes: Nodes, force: Sequence[float]) -> None:

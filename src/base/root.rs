@@ -95,7 +95,8 @@ impl Illinois {
         self.widest = 0.5 * self.widest.min(2.0_f64.powi(BEHIND) * distance);
         let near_g = self.weight * near.g;
         let secant = near_g / (near_g - far.g);
-        let part = if distance > self.widest || secant.is_nan() {
+        let is_known = near.g.is_finite() && far.g.is_finite();
+        let part = if distance > self.widest || !is_known || secant.is_nan() {
             0.5
         } else {
             // a point at an end would tell nothing new

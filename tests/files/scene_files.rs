@@ -182,6 +182,7 @@ fn all_scenes_are_run() {
         // where documentation is run
         "cable",
         "glued-arm",
+        "tendon-finger",
         "gripper",
         "wheel-over-stones",
         // where contact is tested

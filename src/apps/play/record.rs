@@ -115,7 +115,7 @@ impl Record {
                 changes.push(change);
             }
         }
-        let text = rewritten(text, scene.body().dimension(), &changes).map_err(cannot)?;
+        let text = rewritten(text, scene, &changes).map_err(cannot)?;
         SceneFile::parse(&text, path).map_err(|error| cannot(error.to_string()))?;
         let name = file_name(path);
         Ok(format!(

@@ -1,4 +1,4 @@
-//! What sliders set: pressures of chambers, forces of actuators, loads.
+//! What sliders set: pressures of chambers, forces of actuators, cables, loads.
 
 use serde_json::{Value, json};
 
@@ -14,7 +14,7 @@ use crate::scene::timeline::{Load, LoadKind, Phase, Scene};
 pub(super) enum Target {
     /// The pressure of a chamber (Pa).
     Pressure(String),
-    /// The force of the actuator of a spring (N).
+    /// The force of the actuator of a spring, or the tension of a cable (N), or the length that a winch has drawn in (m).
     Actuation(String),
     /// A component, counted from 0, of the load of a kind on some nodes (N or N/m^2).
     Load(Selection, LoadKind, usize),
@@ -27,6 +27,7 @@ pub(super) struct Slider {
     most: f64,
     /// What it is, for the page.
     what: String,
+    unit: &'static str,
 }
 
 /// Pressure (in Young's moduli) and strain that give a useful range of a slider where the scene has no
@@ -42,12 +43,17 @@ impl Slider {
         let chambers = scene.chambers().iter().map(|chamber| {
             let target = Target::Pressure(chamber.name().to_owned());
             let range = [target.largest_in(scene), pressure];
-            Self::new(target, "pressure".into(), range)
+            Self::new(target, "pressure".into(), range, "Pa")
         });
         let springs = scene.springs().iter().map(|spring| {
             let target = Target::Actuation(spring.name().to_owned());
-            let range = [target.largest_in(scene), force];
-            Self::new(target, "actuator".into(), range)
+            let (what, usual, unit) = match (spring.is_winch(), spring.is_cable()) {
+                (true, _) => ("drawn in", USUAL * scene.body().size(), "m"),
+                (_, true) => ("tension", force, "N"),
+                _ => ("actuator", force, "N"),
+            };
+            let range = [target.largest_in(scene), usual];
+            Self::new(target, what.into(), range, unit)
         });
         let mut loaded: Vec<&Selection> = Vec::new();
         for (nodes, _) in scene.phases().iter().flat_map(|phase| &phase.loads) {
@@ -80,15 +86,16 @@ impl Slider {
         let largest = targets.clone().map(|target| target.largest_in(scene)).fold(0.0, f64::max);
         let slider = |(target, axis)| {
             let what = format!("{name} {axis}{of_what}");
-            Self::new(target, what, [largest, usual])
+            let unit = if kind == LoadKind::Traction { "Pa" } else { "N" };
+            Self::new(target, what, [largest, usual], unit)
         };
         targets.zip(["x", "y", "z"]).map(slider).collect()
     }
 
     /// A slider up to twice the largest value of the scene, or up to `usual` if the scene has none.
-    fn new(target: Target, what: String, [largest, usual]: [f64; 2]) -> Self {
+    fn new(target: Target, what: String, [largest, usual]: [f64; 2], unit: &'static str) -> Self {
         let most = round_up(if largest > 0.0 { 2.0 * largest } else { usual });
-        Self { target, most, what }
+        Self { target, most, what, unit }
     }
 
     /// The value in force, as it is shown.
@@ -101,13 +108,11 @@ impl Slider {
     }
 
     pub(super) fn to_json(&self) -> Value {
-        let (name, unit) = match &self.target {
-            Target::Pressure(chamber) => (chamber.clone(), "Pa"),
-            Target::Actuation(spring) => (spring.clone(), "N"),
-            Target::Load(nodes, LoadKind::Traction, _) => (name_of(nodes), "Pa"),
-            Target::Load(nodes, ..) => (name_of(nodes), "N"),
+        let name = match &self.target {
+            Target::Pressure(name) | Target::Actuation(name) => name.clone(),
+            Target::Load(nodes, ..) => name_of(nodes),
         };
-        json!({ "name": name, "what": self.what, "unit": unit, "most": self.most })
+        json!({ "name": name, "what": self.what, "unit": self.unit, "most": self.most })
     }
 }
 

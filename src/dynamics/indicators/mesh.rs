@@ -5,7 +5,6 @@ use std::collections::BTreeMap;
 use super::each::named;
 use crate::dynamics::report::Indicator;
 use crate::elements::body::{Body, Dilatation, Part};
-use crate::elements::force::Force;
 use crate::elements::material::NEARLY_INCOMPRESSIBLE;
 use crate::elements::mesh::CellKind;
 use crate::scene::constraint::PhaseStart;
@@ -149,7 +148,7 @@ fn pieces_of(pieces: &[usize], first_node: usize) -> Option<Indicator> {
 /// Pairs of nodes that are joined, but not by cells.
 fn joints(scene: &Scene) -> Vec<[usize; 2]> {
     let body = scene.body();
-    let springs = scene.springs().iter().filter_map(|spring| spring.force(body.mesh()).ok());
+    let springs = scene.springs().iter().filter_map(|spring| spring.gauge(body.mesh()).ok());
     let mut joints: Vec<[usize; 2]> = springs.flat_map(|spring| spring.couplings()).collect();
     joints.extend(scene.other_forces().iter().flat_map(|force| force.couplings()));
     let start = PhaseStart { time: 0.0, u: scene.initial_displacements() };

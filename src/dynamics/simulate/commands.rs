@@ -37,7 +37,7 @@ impl Simulation {
     }
 
     /// Sets the force (N) of the actuator of a spring, in place of the present one; a positive one extends
-    /// the spring.
+    /// the spring. Of a [cable](crate::Spring::cable) it is the tension, and of one on a winch the length (m) that is drawn in.
     ///
     /// # Errors
     /// A name that no spring has; numbers that are not finite.

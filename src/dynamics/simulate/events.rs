@@ -1,5 +1,7 @@
 //! Contact events: where a node touches an obstacle or leaves it, slips or sticks.
 
+use std::ops::Range;
+
 use super::stepper::{Failed, Stepper};
 use crate::base::root::{Point, bracket};
 use crate::dynamics::report::SlipEvent;
@@ -25,6 +27,10 @@ pub(super) enum Met {
 pub(super) struct Events {
     on: Vec<bool>,
     values: Vec<f64>,
+    /// The values where a switch was last found to change.
+    changed: Vec<f64>,
+    /// Of each switch that changes in a step, |value| at its start; 0 of the others.
+    scales: Vec<f64>,
     /// How far the body can move before a switch can change (see
     /// [`crate::elements::force::Force::passage`]).
     clearances: Vec<f64>,
@@ -50,7 +56,9 @@ impl Events {
         refill(&mut self.clearances, system.switches(), 0.0);
         let count = if located { self.clearances.len() } else { 0 };
         refill(&mut self.on, count, false);
-        refill(&mut self.values, count, 0.0);
+        for values in [&mut self.values, &mut self.changed, &mut self.scales] {
+            refill(values, count, 0.0);
+        }
         system.hold_switches(None);
         self.set(system, t, state);
         self.slips.retain(|slip| slip.time <= t);
@@ -92,28 +100,50 @@ impl Events {
             }
         }
         match event {
-            Some(event) => Ok(Met::Event(self.locate(stepper, start, event, work)?)),
+            Some(event) => Ok(Met::Event(self.locate(stepper, before, [start, event], work)?)),
             None => Ok(Met::Nothing),
         }
     }
 
-    /// The first event between `start` (s), where no switch has changed, and `end` (s), where at least one
-    /// has, by bisection: values are of several units, and may jump.
+    /// The first event between `start` (s) with the state `before`, where no switch has changed, and `end` (s), where at
+    /// least one has. Forces of which no switch changes are left out of the search.
     fn locate(
         &mut self,
         stepper: &mut dyn Stepper,
-        start: f64,
-        end: f64,
+        before: &[f64],
+        [start, end]: [f64; 2],
         work: &mut [f64],
     ) -> Result<f64, Failed> {
-        let sign = |changed: bool| if changed { f64::NEG_INFINITY } else { f64::INFINITY };
-        let [before, after] =
-            [(start, false), (end, true)].map(|(t, changed)| Point { t, g: sign(changed) });
-        let (_, after) = bracket(before, after, PRECISION * (end - start), &mut |t| {
+        self.evaluate(stepper.system(), start, before, |_| true);
+        for (k, scale) in self.scales.iter_mut().enumerate() {
+            let changes = self.on[k] != is_on(self.changed[k]);
+            *scale = if changes { self.values[k].abs().max(f64::MIN_POSITIVE) } else { 0.0 };
+        }
+        let scales = std::mem::take(&mut self.scales);
+        let near = Point { t: start, g: 1.0 };
+        let far = Point { t: end, g: self.advance(&scales, &self.changed) };
+        let met = bracket(near, far, PRECISION * (end - start), &mut |t| {
             stepper.interpolate(t, work)?;
-            Ok::<_, Failed>(sign(self.change(stepper.system(), t, work)))
-        })?;
-        Ok(after.t)
+            let changes = |own: Range<usize>| scales[own].iter().any(|&scale| scale > 0.0);
+            self.evaluate(stepper.system(), t, work, changes);
+            Ok::<_, Failed>(self.advance(&scales, &self.values))
+        });
+        self.scales = scales;
+        Ok(met?.1.t)
+    }
+
+    /// How far the first of the changing switches is from its change: 1 at the start of the step, below 0 behind the
+    /// change.
+    fn advance(&self, scales: &[f64], values: &[f64]) -> f64 {
+        let mut first = f64::INFINITY;
+        for ((&on, &value), &scale) in self.on.iter().zip(values).zip(scales) {
+            if scale > 0.0 {
+                // a value of 0 has a side, too
+                let size = (value.abs() / scale).max(f64::MIN_POSITIVE);
+                first = first.min(if on == is_on(value) { size } else { -size });
+            }
+        }
+        first
     }
 
     /// Continues after an event at time `t` in `state`, at the end of a step of size `step` (s).
@@ -128,6 +158,8 @@ impl Events {
             system.hold_switches(None);
             self.on.clear();
             self.values.clear();
+            self.changed.clear();
+            self.scales.clear();
         }
     }
 
@@ -153,8 +185,12 @@ impl Events {
         if self.on.is_empty() {
             return false;
         }
-        self.evaluate(system, t, state);
-        self.on.iter().zip(&self.values).any(|(&on, &value)| on != (value <= 0.0))
+        self.evaluate(system, t, state, |_| true);
+        let changes = self.on.iter().zip(&self.values).any(|(&on, &value)| on != is_on(value));
+        if changes {
+            self.changed.copy_from_slice(&self.values);
+        }
+        changes
     }
 
     /// Sets the switches by their values at time `t` in `state`.
@@ -163,15 +199,26 @@ impl Events {
             return;
         }
         system.hold_switches(None);
-        self.evaluate(system, t, state);
-        self.on.iter_mut().zip(&self.values).for_each(|(on, &value)| *on = value <= 0.0);
+        self.evaluate(system, t, state, |_| true);
+        self.on.iter_mut().zip(&self.values).for_each(|(on, &value)| *on = is_on(value));
         system.hold_switches(Some(&self.on));
     }
 
-    fn evaluate(&mut self, system: &System, t: f64, state: &[f64]) {
+    /// Evaluates the switches of all forces of which `is_wanted` says so by their numbers.
+    fn evaluate(
+        &mut self,
+        system: &System,
+        t: f64,
+        state: &[f64],
+        is_wanted: impl Fn(Range<usize>) -> bool,
+    ) {
         let State { u, v, .. } = State::of(state, system.dofs());
-        system.switch_values(t, u, v, &mut self.values);
+        system.switch_values(t, u, v, &mut self.values, is_wanted);
     }
+}
+
+fn is_on(value: f64) -> bool {
+    value <= 0.0
 }
 
 fn refill<T: Clone>(list: &mut Vec<T>, length: usize, value: T) {

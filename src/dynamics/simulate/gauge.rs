@@ -88,6 +88,10 @@ impl Reading {
                 scene.spring_number(spring, "spring")?;
                 number(spring, |view, spring| view.spring_pull(spring))
             }
+            What::TensionAtEnd(cable) => {
+                scene.spring_number(cable, "cable")?;
+                number(cable, |view, cable| Ok(view.spring_pulls(cable)?[1]))
+            }
             What::SpringLength(spring) => {
                 scene.spring_number(spring, "spring")?;
                 number(spring, |view, spring| view.spring_length(spring))

@@ -35,6 +35,7 @@ pub(super) enum What {
     Gap(String),
     SpringPull(String),
     SpringLength(String),
+    TensionAtEnd(String),
     Pressure(String),
     ChamberVolume(String),
     Stress(Place),
@@ -201,7 +202,13 @@ impl Reading {
         What::SpringPull(spring.into()).into()
     }
 
-    /// Length of a spring (m).
+    /// Tension of a cable at its last place (N), which friction along its path makes another one than its
+    /// [pull](Self::spring_pull) at the drive.
+    pub fn tension_at_end(cable: impl Into<String>) -> Self {
+        What::TensionAtEnd(cable.into()).into()
+    }
+
+    /// Length of a spring (m), or of the path of a cable.
     pub fn spring_length(spring: impl Into<String>) -> Self {
         What::SpringLength(spring.into()).into()
     }
@@ -299,7 +306,7 @@ impl Reading {
             What::Velocity(_) => "m/s",
             What::Momentum => "kg m/s",
             What::ConstraintForce(_) | What::ContactForce(..) => "N",
-            What::TouchForce(..) | What::SpringPull(_) => "N",
+            What::TouchForce(..) | What::SpringPull(_) | What::TensionAtEnd(_) => "N",
             What::Gap(_) => "m",
             What::ConstraintMoment(..) => "N m",
             What::Pressure(_) | What::Stress(_) => "Pa",

@@ -8,7 +8,7 @@ use crate::dynamics::state::State;
 use crate::elements::body::{Body, CellField};
 use crate::elements::force::{Force, Forces, NodalForces};
 use crate::elements::mesh::Selection;
-use crate::scene::forces::{ChamberForce, Contact, SpringForce};
+use crate::scene::forces::{ChamberForce, Contact, Signal, SpringGauge};
 use crate::scene::timeline::{LoadKind, Phase, Scene};
 
 /// The motion of a [`Simulation`](super::Simulation) or at a [sample](crate::Sampling::sensor), without copies.
@@ -23,7 +23,7 @@ pub struct View<'a> {
 /// The forces by which chambers and springs are measured, in the order of the scene.
 pub(super) struct Gauges {
     chambers: Vec<Arc<ChamberForce>>,
-    springs: Vec<SpringForce>,
+    springs: Vec<SpringGauge>,
 }
 
 impl Gauges {
@@ -31,7 +31,7 @@ impl Gauges {
         let body = scene.body();
         let chambers = scene.chambers().iter();
         let chambers = chambers.map(|chamber| chamber.force(body, Vec::new()).map(Arc::new));
-        let springs = scene.springs().iter().map(|spring| spring.force(body.mesh()));
+        let springs = scene.springs().iter().map(|spring| spring.gauge(body.mesh()));
         Ok(Self {
             chambers: chambers.collect::<Result<_, _>>()?,
             springs: springs.collect::<Result<_, _>>()?,
@@ -127,17 +127,22 @@ impl<'a> View<'a> {
         Ok(pressures.map(|(_, pressure)| pressure.at(self.time)).sum())
     }
 
-    /// Force of the actuator of a spring (N), above 0 where it extends the spring.
+    /// Force of the actuator of a spring (N), above 0 where it extends the spring; of a cable its tension, of a winch the
+    /// length (m) that it has drawn in.
     ///
     /// # Errors
     /// A name that no spring has.
     pub fn actuation(&self, spring: &str) -> Result<f64, InputError> {
         self.scene.spring_number(spring, "spring")?;
-        let actuations = self.phase.actuations.iter();
-        let of_spring = actuations.flat_map(|(names, force)| {
-            names.iter().filter(|name| *name == spring).map(|_| force.at(self.time))
-        });
-        Ok(of_spring.sum())
+        Ok(self.actuation_with_rate(spring)[0])
+    }
+
+    fn actuation_with_rate(&self, spring: &str) -> [f64; 2] {
+        let named = |(names, _): &&(Vec<String>, Signal)| names.iter().any(|name| name == spring);
+        let signals = self.phase.actuations.iter().filter(named);
+        signals.fold([0.0; 2], |[value, rate], (_, signal)| {
+            [value + signal.at(self.time), rate + signal.rate(self.time)]
+        })
     }
 
     /// Force (N) on each of the nodes of `selection`, as the mean over them, one component per dimension.
@@ -165,9 +170,17 @@ impl<'a> View<'a> {
     /// # Errors
     /// A name that no spring has.
     pub fn spring_pull(&self, spring: &str) -> Result<f64, InputError> {
+        Ok(self.spring_pulls(spring)?[0])
+    }
+
+    /// Tension (N) of a cable at its first place, where it is driven, and at its last; they differ by friction.
+    ///
+    /// # Errors
+    /// A name that no spring has.
+    pub fn spring_pulls(&self, spring: &str) -> Result<[f64; 2], InputError> {
         let number = self.scene.spring_number(spring, "spring")?;
-        let pull = self.gauges.springs[number].pull(self.state.u, self.state.v);
-        Ok(pull - self.actuation(spring)?)
+        let State { u, v, .. } = self.state;
+        Ok(self.gauges.springs[number].pulls(u, v, self.actuation_with_rate(spring)))
     }
 
     /// Force (N) of an obstacle on the body, one component per dimension; 0 where it does not act.

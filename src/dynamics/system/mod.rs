@@ -44,6 +44,7 @@ mod symmetric;
 #[cfg(test)]
 mod tests;
 
+use std::ops::Range;
 use std::sync::Arc;
 
 pub(crate) use at_rest::{AtRest, ForceBalance};
@@ -315,12 +316,22 @@ impl System {
         self.forces.iter().map(|force| force.switches()).sum()
     }
 
-    /// Writes the values of the switches.
-    pub(crate) fn switch_values(&self, t: f64, u: &[f64], v: &[f64], mut values: &mut [f64]) {
+    /// Writes the values of the switches of each force of which `is_wanted` says so by their numbers.
+    pub(crate) fn switch_values(
+        &self,
+        t: f64,
+        u: &[f64],
+        v: &[f64],
+        values: &mut [f64],
+        is_wanted: impl Fn(Range<usize>) -> bool,
+    ) {
+        let mut start = 0;
         for force in &self.forces {
-            let (own, rest) = values.split_at_mut(force.switches());
-            force.switch_values(t, u, v, own);
-            values = rest;
+            let own = start..start + force.switches();
+            start = own.end;
+            if is_wanted(own.clone()) {
+                force.switch_values(t, u, v, &mut values[own]);
+            }
         }
     }
 

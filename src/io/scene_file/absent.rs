@@ -22,9 +22,8 @@ const ABSENT: [(&[&str], &str); 8] = [
          rigid shape that stands or follows a path is an [[obstacle]]; nodes are held, moved or turned by a phase (hold, move, path, rotate)",
     ),
     (
-        &["cable", "cables", "rope", "tendon", "tendons", "string", "wire"],
-        "there are no cables with friction: one of constant tension along nodes is a chain of [[spring]] without stiffness, all under one \
-         actuate = { springs = [...], force = -T } of a phase; an elastic one between two nodes is one [[spring]]",
+        &["cables", "rope", "tendon", "tendons", "string", "wire", "winch"],
+        "a cable is a [[cable]] along a path of nodes and points, driven by a tension or by a winch (winch = true) through actuate of a phase",
     ),
     (
         &["joint", "joints", "hinge", "bearing", "constraint", "constraints"],

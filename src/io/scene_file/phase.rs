@@ -208,7 +208,23 @@ fn pressure_on(phase: Phase, table: &Table, scene: &Scene) -> Result<Phase, Erro
 fn actuate(phase: Phase, table: &Table, scene: &Scene) -> Result<Phase, Error> {
     let known: Vec<&str> = scene.springs().iter().map(|spring| spring.name()).collect();
     let springs = table.required("springs", |value| names(value, &known))?;
-    Ok(phase.actuate(springs, course(table, "force", "forces")?))
+    let is_length = ["length", "lengths"].into_iter().any(|key| table.get(key).is_some());
+    let is_winch = |name: &String| {
+        scene.springs().iter().any(|spring| spring.name() == name && spring.is_winch())
+    };
+    if let Some(name) = springs.iter().find(|name| is_winch(name) != is_length) {
+        let help = match is_length {
+            true => "it has no winch: give a force (or winch = true in its [[cable]])",
+            false => "its winch draws in a length: give length or lengths",
+        };
+        return Err(table.blame(InputError::new(
+            "actuation of spring",
+            format!("\"{name}\""),
+            help,
+        )));
+    }
+    let keys = if is_length { ["length", "lengths"] } else { ["force", "forces"] };
+    Ok(phase.actuate(springs, course(table, keys[0], keys[1])?))
 }
 
 fn contact(phase: Phase, value: &Value, scene: &Scene) -> Result<Phase, Error> {

@@ -21,7 +21,7 @@ pub(super) const PHASE: TableKeys = TableKeys::new(
         part(&LOAD, "forces on nodes, tractions on faces"),
         part(&PRESSURE, "pressures in chambers"),
         part(&PRESSURE_ON, "pressures on faces"),
-        part(&ACTUATE, "forces in springs"),
+        part(&ACTUATE, "forces in springs and cables"),
         Key::new(
             "contact",
             Holds::Either(&[Holds::Flag, Holds::OneOrMore(&Holds::Text)]),
@@ -208,14 +208,16 @@ pub(super) const PRESSURE_ON: TableKeys = TableKeys::new(
 
 pub(super) const ACTUATE: TableKeys = TableKeys::new(
     "actuate",
-    "Forces of the actuators in springs. Those of a table are interpolated linearly, and \
-     are constant before and after.",
+    "Forces of the actuators in springs, tensions of cables, and lengths that winches have drawn in. Those of a table are \
+     interpolated linearly, and are constant before and after.",
     &[
-        Key::new("springs", Holds::OneOrMore(&Holds::Text), "names of springs").required(),
-        Key::new("force", Holds::Changing, "the force, positive if it extends").in_unit("N"),
+        Key::new("springs", Holds::OneOrMore(&Holds::Text), "names of springs and cables").required(),
+        Key::new("force", Holds::Changing, "the force: of a spring positive if it extends, of a cable if it pulls").in_unit("N"),
+        Key::new("length", Holds::Changing, "of a winch: the length that it has drawn in").in_unit("m"),
         TIMES,
         Key::new("forces", Holds::List(&Holds::Number), "forces at these times").in_unit("N"),
+        Key::new("lengths", Holds::List(&Holds::Number), "lengths at these times").in_unit("m"),
     ],
     "actuate = [{ springs = \"down\", times = [0.2, 0.3], forces = [0.0, -0.8] }]",
 )
-.one_of(&[&["force"], &["times", "forces"]]);
+.one_of(&[&["force"], &["length"], &["times", "forces"], &["times", "lengths"]]);

@@ -10,7 +10,7 @@ use super::set_value::quoted;
 use super::written::insertion;
 use crate::elements::mesh::Selection;
 use crate::scene::forces::{Signal, SignalKind, VectorSignal};
-use crate::scene::timeline::{Load, Phase};
+use crate::scene::timeline::{Load, Phase, Scene};
 
 /// A phase whose signals differ from those in the file.
 pub(crate) struct Rewritten {
@@ -26,13 +26,13 @@ pub(crate) struct Rewritten {
 const ELSEWHERE: &str =
     "write the lists of each phase as pressure = [...], actuate = [...], load = [...]";
 
-/// The `text` of a scene file, in a space of `dimension`, with other signals in the phases `changes`.
+/// The `text` of the file of a `scene` with other signals in the phases `changes`.
 ///
 /// # Errors
 /// A text in which there is no place for them.
 pub(crate) fn rewritten(
     text: &str,
-    dimension: usize,
+    scene: &Scene,
     changes: &[Rewritten],
 ) -> Result<String, String> {
     let document = DeTable::parse(text).map_err(|error| error.message().to_owned())?;
@@ -56,8 +56,8 @@ pub(crate) fn rewritten(
             }
             let list = match key {
                 "pressure" => pressures(phase),
-                "actuate" => actuations(phase),
-                _ => loads(phase, dimension),
+                "actuate" => actuations(phase, scene),
+                _ => loads(phase, scene.body().dimension()),
             };
             let edit = match table.get(key) {
                 Some(value) if text.get(value.span()).is_some_and(is_list) => (value.span(), list),
@@ -97,11 +97,16 @@ fn pressures(phase: &Phase) -> String {
     list(phase.pressures.iter().map(entry))
 }
 
-fn actuations(phase: &Phase) -> String {
+fn actuations(phase: &Phase, scene: &Scene) -> String {
     let entry = |(springs, force): &(Vec<String>, Signal)| {
+        let is_winch = scene
+            .springs()
+            .iter()
+            .any(|spring| spring.is_winch() && springs.iter().any(|name| name == spring.name()));
+        let keys = if is_winch { ["length", "lengths"] } else { ["force", "forces"] };
         let springs: Vec<String> = springs.iter().map(|spring| quoted(spring)).collect();
         let springs = springs.join(", ");
-        format!("{{ springs = [{springs}], {} }}", course(force, ["force", "forces"]))
+        format!("{{ springs = [{springs}], {} }}", course(force, keys))
     };
     list(phase.actuations.iter().map(entry))
 }
@@ -152,9 +157,11 @@ fn course(signal: &Signal, [one, many]: [&str; 2]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::studies::samples::square_jump;
 
     #[test]
     fn nothing_else_changes() {
+        let scene = square_jump(4).unwrap();
         let text = "title = \"a\"\n[[phase]] # one\nuntil = 1.0 # s\nhold = []\n\n[[phase]]\nuntil = 2.0\n\
                     pressure = { chamber = \"air\", value = 1 } # Pa\n";
         let change = |number, phase| Rewritten { number, phase, keys: ["pressure"].into() };
@@ -166,11 +173,11 @@ mod tests {
                         pressure = [\n    { chamber = \"air\", value = 3.0 },\n]\n\
                         hold = []\n\n[[phase]]\nuntil = 2.0\npressure = [\n    \
                         { chamber = \"a\\\"b\", times = [0.5, 1.5], values = [0.0, 2.0] },\n] # Pa\n";
-        assert_eq!(rewritten(text, 2, &changes).unwrap(), expected);
+        assert_eq!(rewritten(text, &scene, &changes).unwrap(), expected);
         let inline = "phase = [{ until = 1.0, contact = false }]";
         let expected = "phase = [{ until = 1.0, pressure = [\n    { chamber = \"air\", value = 3.0 },\n], \
                         contact = false }]";
-        assert_eq!(rewritten(inline, 2, &changes[1..]).unwrap(), expected);
+        assert_eq!(rewritten(inline, &scene, &changes[1..]).unwrap(), expected);
         let corners = Selection::Box { min: vec![0.0, 1e-9], max: vec![1.0, f64::INFINITY] };
         let loaded = Phase::until(1.0)
             .load("right", [1.0, 0.5])
@@ -181,13 +188,13 @@ mod tests {
                         { nodes = [3, 4], total = [0.0, -2.0] },\n    \
                         { nodes = { box = [[0.0, 1e-9], [1.0, inf]] }, times = [0.0, 0.5], \
                         forces = [[0.0, 0.0], [1.0, 0.25]] },\n], contact = false }]";
-        assert_eq!(rewritten(inline, 2, &[change]).unwrap(), expected);
+        assert_eq!(rewritten(inline, &scene, &[change]).unwrap(), expected);
         for nested in [
             "[[phase]]\nuntil = 1.0\n[[phase.pressure]]\nchamber = \"air\"\nvalue = 1.0\n",
             "[[phase]]\nuntil = 1.0\n[phase.pressure]\nchamber = \"air\"\nvalue = 1.0\n",
             "[[phase]]\nuntil = 1.0\npressure.chamber = \"air\"\npressure.value = 1.0\n",
         ] {
-            let error = rewritten(nested, 2, &changes[1..]).unwrap_err();
+            let error = rewritten(nested, &scene, &changes[1..]).unwrap_err();
             assert!(error.contains("pressure = [...]"), "{error}");
         }
     }

@@ -65,10 +65,19 @@ pub(super) const SENSOR: TableKeys = TableKeys::new(
     },
     Kind {
         word: "spring-pull",
-        about: "the force with which a spring and its actuator pull its ends together (N)",
+        about: "the force with which a spring and its actuator pull its ends together, or the tension of a cable at its first place (N)",
         keys: &[SPRING],
     },
-    Kind { word: "spring-length", about: "the length of a spring (m)", keys: &[SPRING] },
+    Kind {
+        word: "tension-at-end",
+        about: "the tension of a cable at its last place, from which friction along its path takes its part (N)",
+        keys: &[Key::new("cable", Holds::Text, "the name of the cable").required()],
+    },
+    Kind {
+        word: "spring-length",
+        about: "the length of a spring, or of the path of a cable (m)",
+        keys: &[SPRING],
+    },
     Kind { word: "pressure", about: "the pressure in a chamber (Pa)", keys: &[CHAMBER] },
     Kind {
         word: "volume",
@@ -118,7 +127,7 @@ const POINT: Key =
     Key::new("point", Holds::Vector, "the undeformed position of a point of the body")
         .in_unit("m")
         .default("`nodes`");
-const SPRING: Key = Key::new("spring", Holds::Text, "the name of the spring").required();
+const SPRING: Key = Key::new("spring", Holds::Text, "the name of the spring or cable").required();
 const CHAMBER: Key = Key::new("chamber", Holds::Text, "the name of the chamber").required();
 const UNIT: Key = Key::new("unit", Holds::Word(|| vec!["rad", "deg"]), "the unit").default("rad");
 const BODY: Key =
@@ -157,6 +166,7 @@ pub(super) fn sensor(value: &Value, scene: &Scene) -> Result<(String, Reading), 
         }
         "gap" => Reading::gap(named("touch")?),
         "spring-pull" => Reading::spring_pull(named("spring")?),
+        "tension-at-end" => Reading::tension_at_end(named("cable")?),
         "spring-length" => Reading::spring_length(named("spring")?),
         "pressure" => Reading::pressure(named("chamber")?),
         "volume" => Reading::chamber_volume(named("chamber")?),

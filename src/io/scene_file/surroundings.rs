@@ -1,4 +1,4 @@
-//! `[[spring]]`, `[[chamber]]` and `[[obstacle]]`.
+//! `[[spring]]`, `[[cable]]`, `[[chamber]]` and `[[obstacle]]`.
 
 use super::keys::{Holds, Key, Kind, TableKeys};
 use super::selection::selection;
@@ -6,7 +6,7 @@ use super::table::Table;
 use super::value::Value;
 use crate::base::input::InputError;
 use crate::dynamics::error::Error;
-use crate::scene::forces::{Chamber, Contact, Obstacle, Shape, Spring};
+use crate::scene::forces::{Chamber, Contact, Guide, Obstacle, Shape, Spring};
 use crate::scene::timeline::Scene;
 
 pub(super) const SPRING: TableKeys = TableKeys::new(
@@ -25,6 +25,32 @@ pub(super) const SPRING: TableKeys = TableKeys::new(
         Key::number("damping", "the damping", "N s/m").default("0"),
     ],
     "[[spring]]\nname = \"down\"\nends = [1, 3]\nstiffness = 20.0\nlength = 0.04",
+);
+
+pub(super) const CABLE: TableKeys = TableKeys::new(
+    "[[cable]]",
+    "A cable (tendon) along a path, straight from place to place and free to slide around those between its ends. It only pulls, by one \
+     tension along all of its path if there is no friction. It acts in all phases; `actuate` in a phase drives it, at its first place.",
+    &[
+        Key::new("name", Holds::Text, "the name of the cable").default("spring 1, spring 2, ..."),
+        Key::new(
+            "path",
+            Holds::List(&Holds::Either(&[Holds::Nodes, Holds::Table(&END)])),
+            "nodes, by number, name or box, and points of space, in order",
+        )
+        .law("Those of a set or a box follow each other by their distance from the place before them, or from the first of them.")
+        .required(),
+        Key::number("stiffness", "the stiffness", "N/m").law("With the modulus E and the section A it is E A / length.").default("0"),
+        Key::number("length", "the natural length", "m").default("that of the path at the start"),
+        Key::number("damping", "the damping", "N s/m")
+            .law("That of a motor whose tension falls from f at rest to 0 at the speed v is f/v.")
+            .default("0"),
+        Key::new("winch", Holds::Flag, "whether `actuate` gives the length that is drawn in, not the tension").default("false"),
+        FRICTION_COEFFICIENT,
+        Key::number("sticking_speed", "the speed below which it creeps instead of sticking", "m/s")
+            .default("0.001 times its length per second"),
+    ],
+    "[[cable]]\nname = \"tendon\"\npath = [{ point = [0.0, 0.1] }, \"top\"]\nfriction_coefficient = 0.1",
 );
 
 const END: TableKeys = TableKeys::new(
@@ -235,14 +261,47 @@ pub(super) fn add_spring(scene: Scene, value: &Value) -> Result<Scene, Error> {
             (Some(_), Some(_)) => return Err(value.unexpected("one node at least")),
         };
         let spring = spring.named(name);
-        spring.force(body.mesh()).map_err(|error| value.error(error))?;
+        spring.gauge(body.mesh()).map_err(|error| value.error(error))?;
         Ok(spring)
     })?;
     spring = table.added(spring, "stiffness", Value::number, Spring::stiffness)?;
     spring = table.added(spring, "length", Value::number, Spring::length)?;
     spring = table.added(spring, "damping", Value::number, Spring::damping)?;
-    spring.force(body.mesh()).map_err(|error| table.blame(error))?;
+    spring.gauge(body.mesh()).map_err(|error| table.blame(error))?;
     Ok(scene.spring(spring))
+}
+
+/// The scene with the cable that `value` describes.
+pub(super) fn add_cable(scene: Scene, value: &Value) -> Result<Scene, Error> {
+    let table = &value.table(&CABLE)?;
+    let body = scene.body();
+    let name = table.optional("name", Value::string)?;
+    let name = name.map_or_else(|| format!("spring {}", scene.springs().len() + 1), Into::into);
+    unique(table, &name, scene.springs().iter().map(Spring::name))?;
+    let mut cable = table.required("path", |value| {
+        let place = |place: &Value| {
+            Ok::<_, Error>(match anchor(place, body.dimension())? {
+                Some(point) => Guide::point(point),
+                None => Guide::nodes(selection(place, body.mesh())?),
+            })
+        };
+        let path = value.list()?.iter().map(place).collect::<Result<Vec<_>, _>>()?;
+        let cable = Spring::cable(path).named(name);
+        cable.gauge(body.mesh()).map_err(|error| value.error(error))?;
+        Ok(cable)
+    })?;
+    cable = table.added(cable, "stiffness", Value::number, Spring::stiffness)?;
+    cable = table.added(cable, "length", Value::number, Spring::length)?;
+    cable = table.added(cable, "damping", Value::number, Spring::damping)?;
+    if table.flag("winch")? {
+        cable = cable.winch();
+    }
+    if let Some([at_rest, sliding]) = coefficients(table)? {
+        cable = cable.friction_coefficients(at_rest, sliding);
+    }
+    cable = table.added(cable, "sticking_speed", Value::number, Spring::sticking_speed)?;
+    cable.gauge(body.mesh()).map_err(|error| table.blame(error))?;
+    Ok(scene.spring(cable))
 }
 
 /// The point of space at an end of a spring, if that end is not a node.

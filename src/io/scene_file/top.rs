@@ -8,7 +8,7 @@ use super::phase;
 use super::phase_keys::PHASE;
 use super::sensor::{SENSOR, sensor};
 use super::settings::{self, OUTPUT, SOLVER, STATICS};
-use super::surroundings::{self, CHAMBER, OBSTACLE, SPRING};
+use super::surroundings::{self, CABLE, CHAMBER, OBSTACLE, SPRING};
 use super::table::Table;
 use super::tie::{self, TIE};
 use super::touch::{self, TOUCH};
@@ -36,6 +36,7 @@ pub(super) const TOP: TableKeys = TableKeys::new(
         Key::new("tie", Holds::Tables(&TIE), "ties between bodies"),
         Key::new("touch", Holds::Tables(&TOUCH), "contact of bodies with each other and themselves"),
         Key::new("spring", Holds::Tables(&SPRING), "springs"),
+        Key::new("cable", Holds::Tables(&CABLE), "cables"),
         Key::new("chamber", Holds::Tables(&CHAMBER), "chambers"),
         Key::new("obstacle", Holds::Tables(&OBSTACLE), "obstacles"),
         Key::new("phase", Holds::Tables(&PHASE), "the phases, one after the other").required(),
@@ -77,10 +78,11 @@ pub(super) fn scene_file(top: &Table) -> Result<SceneFile, Error> {
         Some(Err(_)) => initial,
         None => None,
     };
-    let parts: [(&str, Add); 5] = [
+    let parts: [(&str, Add); 6] = [
         ("tie", tie::add_tie),
         ("touch", touch::add_touch),
         ("spring", surroundings::add_spring),
+        ("cable", surroundings::add_cable),
         ("chamber", surroundings::add_chamber),
         ("obstacle", surroundings::add_obstacle),
     ];

@@ -35,8 +35,8 @@ pub(crate) use signal::SignalKind;
 pub(crate) use signal::{Live, TimeTable, VectorSignal};
 #[cfg(feature = "output")]
 pub(crate) use spring::Joint;
-pub use spring::Spring;
-pub(crate) use spring::SpringForce;
+pub(crate) use spring::SpringGauge;
+pub use spring::{Guide, Spring};
 pub(crate) use surface::{
     SurfacePoint, boundary_nodes, edge_points, face_centre, pieces, weighted,
 };

@@ -37,6 +37,18 @@ impl TimeTable {
         }
     }
 
+    /// The rate of one component at time `t`; at a kink that of the line behind it.
+    fn rate(&self, t: f64, component: usize) -> f64 {
+        match self.times.partition_point(|&time| time <= t) {
+            0 => 0.0,
+            next if next == self.times.len() => 0.0,
+            next => {
+                let change = self.values[next][component] - self.values[next - 1][component];
+                change / (self.times[next] - self.times[next - 1])
+            }
+        }
+    }
+
     /// Checks that there are vectors of `dimension` at ascending times.
     fn validate(&self, input: &str, dimension: usize) -> Result<(), InputError> {
         let Self { times, values } = self;
@@ -169,6 +181,19 @@ impl Signal {
             SignalKind::TimeTable(table) => table.at(t, 0),
             SignalKind::Formula(formula) => formula.at(t).0[0],
             SignalKind::Live(live) => live.at(0),
+        }
+    }
+
+    /// Its rate at time `t` (s); of a function by the difference of two values.
+    pub(crate) fn rate(&self, t: f64) -> f64 {
+        match &self.0 {
+            SignalKind::Constant(_) | SignalKind::Live(_) => 0.0,
+            SignalKind::Function { function, .. } => {
+                let apart = f64::EPSILON.cbrt() * t.abs().max(1e-3);
+                (function(t + apart) - function(t - apart)) / (2.0 * apart)
+            }
+            SignalKind::TimeTable(table) => table.rate(t, 0),
+            SignalKind::Formula(formula) => formula.at(t).0[1],
         }
     }
 

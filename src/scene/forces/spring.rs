@@ -1,21 +1,25 @@
-//! Springs between two nodes, or a node and a point of space, with damping and an actuator.
+//! Springs between two nodes, or a node and a point of space, with damping and an actuator; cables, which run around places
+//! in between and only pull.
+
+mod cable;
+mod force;
+mod path;
+#[cfg(test)]
+mod tests;
+
+use std::sync::Arc;
+
+use cable::{Cable, CableForce};
+use force::{Actuator, Elastic};
+use path::{COLLAPSED, Path};
 
 use super::faces::natural;
-use super::signal::{self, Signal, finite_at};
+use super::friction::Friction;
+use super::signal::Signal;
 use crate::base::input::{InputError, finite, not_negative, positive};
-use crate::base::sparse::BlockMatrix;
-use crate::base::vector::{dot, norm};
-use crate::elements::force::{Force, NodalForces, Reservoir, Tangents};
+use crate::base::vector::norm;
+use crate::elements::force::Force;
 use crate::elements::mesh::{Mesh, Selection};
-use crate::integrators::ode::Failure;
-
-/// A spring that is shorter than this fraction of its natural length after a step has collapsed:
-/// its direction, and with it the force, is about to flip.
-const COLLAPSED: f64 = 0.01;
-
-/// Below this fraction of its natural length the direction of a spring is round-off. At trial points of a
-/// step it may be shorter than [`COLLAPSED`], so that steps are not made smaller to keep away from that.
-const NO_DIRECTION: f64 = 1e-9;
 
 /// A spring between two nodes, or between a node and a fixed point of space.
 ///
@@ -47,17 +51,40 @@ const NO_DIRECTION: f64 = 1e-9;
 #[derive(Debug, Clone)]
 pub struct Spring {
     name: String,
-    ends: [End; 2],
+    path: Vec<Guide>,
+    kind: Kind,
     stiffness: f64,
     length: Option<f64>,
     damping: f64,
 }
 
-/// What a spring is joined to, as it is given.
+#[derive(Debug, Clone, Copy)]
+enum Kind {
+    Spring,
+    Cable { is_winch: bool, friction: Friction },
+}
+
+/// A place on the path of a [cable](Spring::cable): nodes that it is led by, or a fixed point of space.
 #[derive(Debug, Clone)]
-enum End {
-    Node(Selection),
+pub struct Guide(Place);
+
+#[derive(Debug, Clone)]
+enum Place {
+    Nodes(Selection),
     Point(Vec<f64>),
+}
+
+impl Guide {
+    /// Nodes of the body: numbers in their order, those of a set or a box by their distance from the place before them, or
+    /// from the first of them.
+    pub fn nodes(nodes: impl Into<Selection>) -> Self {
+        Self(Place::Nodes(nodes.into()))
+    }
+
+    /// A `point` of space (m), which stays where it is.
+    pub fn point(point: impl Into<Vec<f64>>) -> Self {
+        Self(Place::Point(point.into()))
+    }
 }
 
 /// What a spring is joined to in a mesh.
@@ -72,24 +99,95 @@ pub(crate) enum Joint {
 impl Spring {
     /// The nodes that it is joined to.
     pub(crate) fn selections(&self) -> impl Iterator<Item = &Selection> {
-        self.ends.iter().filter_map(|end| match end {
-            End::Node(nodes) => Some(nodes),
-            End::Point(_) => None,
+        self.path.iter().filter_map(|guide| match &guide.0 {
+            Place::Nodes(nodes) => Some(nodes),
+            Place::Point(_) => None,
         })
     }
 
     /// A spring from the node that `first` selects to the one that `second` selects.
     pub fn between(first: impl Into<Selection>, second: impl Into<Selection>) -> Self {
-        Self::new([End::Node(first.into()), End::Node(second.into())])
+        Self::new(vec![Guide::nodes(first), Guide::nodes(second)], Kind::Spring)
     }
 
     /// A spring from the node that `node` selects to a `point` of space (m), which stays where it is.
     pub fn anchored(node: impl Into<Selection>, point: impl Into<Vec<f64>>) -> Self {
-        Self::new([End::Node(node.into()), End::Point(point.into())])
+        Self::new(vec![Guide::nodes(node), Guide::point(point)], Kind::Spring)
     }
 
-    fn new(ends: [End; 2]) -> Self {
-        Self { name: String::new(), ends, stiffness: 0.0, length: None, damping: 0.0 }
+    /// A cable (tendon) along a path: straight from place to place, free to slide around those between its ends. It only
+    /// pulls, with one tension along all of the path if there is no [friction](Self::friction_coefficient).
+    ///
+    /// With the length l of the path, natural length L (default: that of the path in the undeformed shape),
+    /// stiffness k and damping c its tension is
+    ///
+    /// max(0, k max(0, l - L) + f + c l')
+    ///
+    /// with the tension f (N) that [`Phase::actuate`](crate::Phase::actuate) gives it, above 0 (below 0 counts as 0); 0 where neither
+    /// stretch nor f keeps it taut. A drive whose tension falls with its speed, from f at rest to 0 at the speed v
+    /// (a motor), is a damping of f/v.
+    ///
+    /// ```
+    /// use pliant::{Body, Cells, Guide, Material, Mesh, Phase, Sampling, Scene, Settings, Spring};
+    ///
+    /// let mesh = Mesh::rectangle([0.1, 0.01], [11, 2], Cells::Rectangles)?;
+    /// let rubber = Material { density: 1000.0, young: 1e6, poisson: 0.3, viscosity: 1e4 };
+    /// let body = Body::new(mesh, rubber).thickness(0.01).build()?;
+    /// let tendon = Spring::cable([Guide::point([0.0, 0.01]), Guide::nodes("top")]).named("tendon");
+    /// let pull = Phase::until(0.2).hold("left").actuate(["tendon"], 0.05);
+    /// let scene = Scene::new(body).spring(tendon).phase(pull);
+    /// let trajectory = scene.simulate(&Settings::default(), &Sampling::every(0.1))?;
+    /// assert!(trajectory.last().u[2 * 10 + 1] > 0.005); // the tip is pulled up
+    /// # Ok::<(), pliant::Error>(())
+    /// ```
+    pub fn cable(path: impl IntoIterator<Item = Guide>) -> Self {
+        let kind = Kind::Cable { is_winch: false, friction: Friction::default() };
+        Self::new(path.into_iter().collect(), kind)
+    }
+
+    /// Lets a winch at the first place drive a [cable](Self::cable): [`Phase::actuate`](crate::Phase::actuate) gives the length w (m)
+    /// that it has drawn in, and the tension is
+    ///
+    /// max(0, k (l - L + w) + c (l' + w'))
+    ///
+    /// and 0 where the cable is slack. It needs a stiffness. What its cable stores counts as supplied by the winch.
+    pub fn winch(mut self) -> Self {
+        if let Kind::Cable { is_winch, .. } = &mut self.kind {
+            *is_winch = true;
+        }
+        self
+    }
+
+    /// Coefficient mu of Coulomb's friction of a [cable](Self::cable) around the places between its ends, static and kinetic, 0 or
+    /// above (default: no friction).
+    ///
+    /// Where the cable turns by the angle theta and slides towards its drive, the first place, the tension behind is smaller
+    /// by exp(-mu theta), and greater where it slides the other way. Below the [sticking speed](Self::sticking_speed) it creeps, as
+    /// on [obstacles](crate::Obstacle#friction). At rest (statics) there is none.
+    pub fn friction_coefficient(self, coefficient: f64) -> Self {
+        self.friction_coefficients(coefficient, coefficient)
+    }
+
+    /// Coefficients of friction of a cable: `at_rest` (static), and `sliding` (kinetic), not above it.
+    pub fn friction_coefficients(self, at_rest: f64, sliding: f64) -> Self {
+        self.rubbing(|friction| friction.coefficients = Some([at_rest, sliding]))
+    }
+
+    /// The speed (m/s) below which a cable with friction creeps instead of sticking, above 0. Default: 0.001 times its natural
+    /// length per second.
+    pub fn sticking_speed(self, speed: f64) -> Self {
+        self.rubbing(|friction| friction.sticking_speed = Some(speed))
+    }
+
+    fn rubbing(mut self, change: impl FnOnce(&mut Friction)) -> Self {
+        if let Kind::Cable { friction, .. } = &mut self.kind {
+            change(friction);
+        }
+        self
+    }
+
+    fn new(path: Vec<Guide>, kind: Kind) -> Self {
+        Self { name: String::new(), path, kind, stiffness: 0.0, length: None, damping: 0.0 }
     }
 
     /// Name of the spring (default: "spring 1", "spring 2", ... in the order of the scene).
@@ -104,7 +202,7 @@ impl Spring {
         self
     }
 
-    /// Natural length L (m), above 0. Default: the distance of its nodes in the undeformed shape.
+    /// Natural length L (m), above 0. Default: that in the undeformed shape.
     pub fn length(mut self, length: f64) -> Self {
         self.length = Some(length);
         self
@@ -121,87 +219,191 @@ impl Spring {
         &self.name
     }
 
+    /// Whether it is a cable, whose actuation is a tension or a length that is drawn in.
+    pub(crate) fn is_cable(&self) -> bool {
+        matches!(self.kind, Kind::Cable { .. })
+    }
+
+    /// Whether it is a cable on a winch, whose actuation is the length (m) that is drawn in.
+    pub(crate) fn is_winch(&self) -> bool {
+        matches!(self.kind, Kind::Cable { is_winch: true, .. })
+    }
+
     pub(crate) fn or_named(self, name: String) -> Self {
         if self.name.is_empty() { self.named(name) } else { self }
+    }
+
+    /// What the spring is joined to, or what a cable runs along, in order.
+    ///
+    /// # Errors
+    /// Ends of a spring that are not one node each; less than two places; a point with a wrong number of coordinates.
+    pub(crate) fn joints(&self, mesh: &Mesh) -> Result<Vec<Joint>, InputError> {
+        let mut joints: Vec<Joint> = Vec::new();
+        for (number, Guide(place)) in (1..).zip(&self.path) {
+            let input = |key: &str| match (self.is_cable(), number) {
+                (true, _) => self.input(&format!("place {number}")),
+                (_, 1) => self.input(&format!("first {key}")),
+                _ => self.input(&format!("second {key}")),
+            };
+            match place {
+                Place::Nodes(selection) => {
+                    let mut nodes = mesh.select(selection)?;
+                    if !self.is_cable() && nodes.len() != 1 {
+                        let help = format!("it selects {} nodes: an end is one node", nodes.len());
+                        return Err(InputError::new(input("end"), selection, help));
+                    }
+                    // numbers are in the order in which they are given
+                    if !matches!(selection, Selection::Numbers(_)) {
+                        let before = joints.last().copied().unwrap_or(Joint::Node(nodes[0]));
+                        let before = before.place(mesh);
+                        let far = |node: usize| distance(&before, &natural(mesh, node));
+                        nodes.sort_by(|a, b| far(*a).total_cmp(&far(*b)));
+                    }
+                    joints.extend(nodes.into_iter().map(Joint::Node));
+                }
+                Place::Point(point) if point.len() == mesh.dimension() => {
+                    finite(&input("end"), point)?;
+                    let at = std::array::from_fn(|i| point.get(i).copied().unwrap_or(0.0));
+                    joints.push(Joint::Point(at));
+                }
+                Place::Point(point) => {
+                    let help = format!("it needs {} coordinates (m)", mesh.dimension());
+                    return Err(InputError::new(input("end"), format!("{point:?}"), help));
+                }
+            }
+        }
+        match joints.len() {
+            0 | 1 => {
+                let help = "a cable runs from one place to another: name two at least";
+                Err(InputError::new(self.input("number of places"), joints.len(), help))
+            }
+            _ => Ok(joints),
+        }
+    }
+
+    fn input(&self, key: &str) -> String {
+        format!("{} \"{}\" {key}", if self.is_cable() { "cable" } else { "spring" }, self.name)
     }
 
     /// Where the spring runs.
     ///
     /// # Errors
-    /// Ends that are not one node each, or are the same; numbers out of range.
-    fn line(&self, mesh: &Mesh) -> Result<Line, InputError> {
+    /// As [`joints`](Self::joints); places that follow each other and are the same; numbers out of range.
+    fn checked(&self, mesh: &Mesh) -> Result<Path, InputError> {
         let input = |key: &str| self.input(key);
         let joints = self.joints(mesh)?;
         not_negative(&input("stiffness"), self.stiffness, "N/m")?;
         not_negative(&input("damping"), self.damping, "N s/m")?;
-        let [first, second] = joints.map(|joint| joint.place(mesh));
-        let natural: [f64; 3] = std::array::from_fn(|i| second[i] - first[i]);
-        let distance = norm(&natural);
+        let places: Vec<[f64; 3]> = joints.iter().map(|joint| joint.place(mesh)).collect();
+        let along = |pair: &[[f64; 3]]| std::array::from_fn(|i| pair[1][i] - pair[0][i]);
+        let lines: Vec<[f64; 3]> = places.windows(2).map(along).collect();
+        let lengths = || lines.iter().map(|line| norm(line));
+        let whole = lengths().sum::<f64>();
         let length = match self.length {
             Some(length) => positive(&input("length"), length, "m")?,
-            None => distance,
+            None => whole,
         };
-        if distance <= COLLAPSED * length {
+        let least = lengths().fold(f64::INFINITY, f64::min);
+        let (key, scale) = match lines.len() {
+            1 => ("distance of its ends", length),
+            _ => ("least distance of places that follow each other", whole / lines.len() as f64),
+        };
+        if least <= COLLAPSED * scale {
             let help =
-                "its ends are in the same place, so that it has no direction: move them apart";
-            return Err(InputError::new(
-                input("distance of its ends"),
-                format!("{distance} m"),
-                help,
-            ));
+                "they are in the same place, so that it has no direction there: move them apart";
+            return Err(InputError::new(input(key), format!("{least} m"), help));
         }
-        let (name, dimension, nodes) =
-            (self.name.clone(), mesh.dimension(), joints.map(Joint::node));
-        Ok(Line { name, dimension, nodes, natural, length })
+        if joints.iter().all(|joint| joint.node().is_none()) {
+            let help = "none of them is a node, so that it moves nothing: name one at least";
+            return Err(InputError::new(input("places"), format!("{joints:?}"), help));
+        }
+        Ok(Path {
+            name: self.name.clone(),
+            dimension: mesh.dimension(),
+            nodes: joints.into_iter().map(Joint::node).collect(),
+            natural: lines,
+            length,
+        })
     }
 
-    /// What the spring is joined to.
-    ///
-    /// # Errors
-    /// Ends that are not one node each; a point with a wrong number of coordinates.
-    pub(crate) fn joints(&self, mesh: &Mesh) -> Result<[Joint; 2], InputError> {
-        let joint = |which: &str, end: &End| match end {
-            End::Node(selection) => match mesh.select(selection)?[..] {
-                [node] => Ok(Joint::Node(node)),
-                ref nodes => Err(InputError::new(
-                    self.input(which),
-                    selection,
-                    format!("it selects {} nodes: an end is one node", nodes.len()),
-                )),
-            },
-            End::Point(point) if point.len() == mesh.dimension() => {
-                finite(&self.input(which), point)?;
-                Ok(Joint::Point(std::array::from_fn(|i| point.get(i).copied().unwrap_or(0.0))))
-            }
-            End::Point(point) => {
-                let help = format!("it needs {} coordinates (m)", mesh.dimension());
-                Err(InputError::new(self.input(which), format!("{point:?}"), help))
-            }
+    /// The law of the spring without what drives it.
+    fn law(&self, mesh: &Mesh) -> Result<Law, InputError> {
+        let path = self.checked(mesh)?;
+        let (stiffness, damping) = (self.stiffness, self.damping);
+        let Kind::Cable { is_winch, friction } = self.kind else {
+            return Ok(Law::Spring(Elastic { path, stiffness, damping }));
         };
-        Ok([joint("first end", &self.ends[0])?, joint("second end", &self.ends[1])?])
+        friction.validate(&|key| self.input(key))?;
+        if is_winch && stiffness == 0.0 {
+            let help = "a winch stretches its cable: give it a stiffness (E A / L)";
+            return Err(InputError::new(self.input("stiffness"), "0 N/m", help));
+        }
+        let friction = if friction.acts() { friction.coulomb(path.length) } else { None };
+        Ok(Law::Cable(Cable { path, stiffness, damping, is_winch, friction }))
     }
 
-    fn input(&self, key: &str) -> String {
-        format!("spring \"{}\" {key}", self.name)
-    }
-
-    /// The force of the spring, without that of its actuator.
+    /// What measures the spring.
     ///
     /// # Errors
-    /// Ends that are not one node each, or are the same; numbers out of range.
-    pub(crate) fn force(&self, mesh: &Mesh) -> Result<SpringForce, InputError> {
-        let line = self.line(mesh)?;
-        Ok(SpringForce { line, stiffness: self.stiffness, damping: self.damping })
+    /// As [`joints`](Self::joints); places that follow each other and are the same; numbers out of range.
+    pub(crate) fn gauge(&self, mesh: &Mesh) -> Result<SpringGauge, InputError> {
+        self.law(mesh).map(SpringGauge)
     }
 
-    /// The force of its actuator, the sum of the signals `force` (N). It is kept apart from that of the
-    /// spring itself, as it is a load, which statics applies in steps.
+    /// The forces of the spring, driven by the sum of the signals `actuation`.
     ///
     /// # Errors
-    /// As [`force`](Self::force).
-    pub(crate) fn actuator(&self, mesh: &Mesh, force: Vec<Signal>) -> Result<Actuator, InputError> {
-        Ok(Actuator { line: self.line(mesh)?, force })
+    /// As [`gauge`](Self::gauge).
+    pub(crate) fn forces(
+        &self,
+        mesh: &Mesh,
+        actuation: Vec<Signal>,
+    ) -> Result<Vec<Arc<dyn Force>>, InputError> {
+        Ok(match self.law(mesh)? {
+            Law::Cable(cable) => vec![Arc::new(CableForce { cable, drive: actuation })],
+            Law::Spring(elastic) if actuation.is_empty() => vec![Arc::new(elastic)],
+            Law::Spring(elastic) => {
+                let actuator = Actuator { path: elastic.path.clone(), force: actuation };
+                vec![Arc::new(elastic), Arc::new(actuator)]
+            }
+        })
     }
+}
+
+enum Law {
+    Spring(Elastic),
+    Cable(Cable),
+}
+
+/// The law by which a spring is measured.
+pub(crate) struct SpringGauge(Law);
+
+impl SpringGauge {
+    /// Length (m) under the displacements `u`.
+    pub(crate) fn length(&self, u: &[f64]) -> f64 {
+        let (Law::Spring(Elastic { path, .. }) | Law::Cable(Cable { path, .. })) = &self.0;
+        path.length(u)
+    }
+
+    /// The forces with which the first and the last line of its path pull (N), under an actuation with its rate.
+    pub(crate) fn pulls(&self, u: &[f64], v: &[f64], actuation: [f64; 2]) -> [f64; 2] {
+        match &self.0 {
+            Law::Spring(elastic) => [elastic.pull(u, v) - actuation[0]; 2],
+            Law::Cable(cable) => {
+                [cable.tension_at_drive(u, v, actuation), cable.tension_at_end(u, v, actuation)]
+            }
+        }
+    }
+
+    /// Pairs of nodes that it joins.
+    pub(crate) fn couplings(&self) -> Vec<[usize; 2]> {
+        let (Law::Spring(Elastic { path, .. }) | Law::Cable(Cable { path, .. })) = &self.0;
+        path.couplings(false)
+    }
+}
+
+fn distance(a: &[f64; 3], b: &[f64; 3]) -> f64 {
+    norm(&std::array::from_fn::<f64, 3, _>(|i| a[i] - b[i]))
 }
 
 impl Joint {
@@ -218,232 +420,5 @@ impl Joint {
             Self::Node(node) => natural(mesh, node),
             Self::Point(point) => point,
         }
-    }
-}
-
-/// The straight line between the ends of a spring.
-struct Line {
-    name: String,
-    dimension: usize,
-    /// Its ends; none where that is a point of space.
-    nodes: [Option<usize>; 2],
-    /// From the first end to the second in the undeformed shape.
-    natural: [f64; 3],
-    /// L
-    length: f64,
-}
-
-/// The forces of one spring.
-pub(crate) struct SpringForce {
-    line: Line,
-    stiffness: f64,
-    damping: f64,
-}
-
-impl SpringForce {
-    /// Length (m) under the displacements `u`.
-    pub(crate) fn length(&self, u: &[f64]) -> f64 {
-        self.line.length(u).0
-    }
-
-    /// The force that pulls its ends together (N), without that of its actuator.
-    pub(crate) fn pull(&self, u: &[f64], v: &[f64]) -> f64 {
-        let Stretch { length, rate, .. } = self.line.stretch(u, v);
-        self.stiffness * (length - self.line.length) + self.damping * rate
-    }
-}
-
-/// The force of an actuator along a spring.
-pub(crate) struct Actuator {
-    line: Line,
-    force: Vec<Signal>,
-}
-
-/// A spring at one instant; components beyond the dimension are 0.
-#[derive(Clone, Copy)]
-struct Stretch {
-    length: f64,
-    /// Unit vector e from the first end to the second.
-    direction: [f64; 3],
-    /// l'
-    rate: f64,
-    /// e', the transverse velocity divided by the length.
-    turning: [f64; 3],
-}
-
-impl Line {
-    /// Difference of `x` between the two ends; it is 0 at a point of space.
-    fn difference(&self, x: &[f64]) -> [f64; 3] {
-        let d = self.dimension;
-        let [first, second] =
-            self.nodes.map(|node| node.map_or(&[0.0; 3][..d], |node| &x[node * d..][..d]));
-        std::array::from_fn(|i| if i < d { second[i] - first[i] } else { 0.0 })
-    }
-
-    /// The nodes that the line joins, if it joins two.
-    fn couplings(&self) -> Vec<[usize; 2]> {
-        match self.nodes {
-            [Some(first), Some(second)] => vec![[first, second]],
-            _ => Vec::new(),
-        }
-    }
-
-    fn length(&self, u: &[f64]) -> (f64, [f64; 3]) {
-        let moved = self.difference(u);
-        let along: [f64; 3] = std::array::from_fn(|i| self.natural[i] + moved[i]);
-        (norm(&along), along)
-    }
-
-    fn collapsed(&self, t: f64, how: &str) -> Failure {
-        Failure::Recoverable(format!(
-            "spring \"{}\" has collapsed at t = {t} s: {how}, its natural length is {} m. Without a length it \
-             has no direction: pull it with less force, or make it stiffer",
-            self.name, self.length
-        ))
-    }
-
-    /// # Errors
-    /// No length, and so no direction.
-    fn check_length(&self, t: f64, length: f64) -> Result<(), Failure> {
-        match length <= NO_DIRECTION * self.length {
-            true => Err(self.collapsed(t, "it has no length")),
-            false => Ok(()),
-        }
-    }
-
-    fn stretch(&self, u: &[f64], v: &[f64]) -> Stretch {
-        let (length, along) = self.length(u);
-        let direction = along.map(|x| x / length);
-        let velocity = self.difference(v);
-        let rate = dot(&direction, &velocity);
-        let turning = std::array::from_fn(|i| (velocity[i] - rate * direction[i]) / length);
-        Stretch { length, direction, rate, turning }
-    }
-
-    /// Adds a force `along` the line (N), which pushes its ends apart.
-    fn add(&self, along: f64, direction: &[f64; 3], nodal: &mut [f64]) {
-        for (node, sign) in self.nodes.into_iter().zip([-1.0, 1.0]) {
-            let Some(node) = node else { continue };
-            for i in 0..self.dimension {
-                nodal[node * self.dimension + i] += sign * along * direction[i];
-            }
-        }
-    }
-
-    /// Adds the tangent `entry` of the second node by its own displacement.
-    fn add_tangent(&self, matrix: &mut BlockMatrix, entry: impl Fn(usize, usize) -> f64) {
-        let d = self.dimension;
-        for row in self.nodes.into_iter().flatten() {
-            for column in self.nodes.into_iter().flatten() {
-                let sign = if row == column { 1.0 } else { -1.0 };
-                let Some(block) = matrix.block_mut(row, column) else { continue };
-                for (k, x) in block.iter_mut().enumerate() {
-                    *x += sign * entry(k / d, k % d);
-                }
-            }
-        }
-    }
-}
-
-impl Stretch {
-    /// Tangent of a constant force `along` the line, which turns with the line.
-    fn turn(&self, along: f64, i: usize, j: usize) -> f64 {
-        let e = &self.direction;
-        -along / self.length * (f64::from(i == j) - e[i] * e[j])
-    }
-}
-
-impl Force for SpringForce {
-    fn add_forces(
-        &self,
-        t: f64,
-        u: &[f64],
-        v: &[f64],
-        forces: &mut NodalForces,
-    ) -> Result<(), Failure> {
-        let Stretch { length, direction, rate, .. } = self.line.stretch(u, v);
-        self.line.check_length(t, length)?;
-        let elastic = -self.stiffness * (length - self.line.length);
-        self.line.add(elastic, &direction, &mut forces.conservative);
-        self.line.add(-self.damping * rate, &direction, &mut forces.dissipative);
-        Ok(())
-    }
-
-    /// A spring that turns by more than a right angle in one step has passed through a length of 0.
-    fn check_step(&self, t: f64, before: &[f64], after: &[f64]) -> Result<(), Failure> {
-        let (length, along) = self.line.length(after);
-        if length <= COLLAPSED * self.line.length {
-            return Err(self.line.collapsed(t, &format!("it is {length:.1e} m long")));
-        }
-        if dot(&self.line.length(before).1, &along) <= 0.0 {
-            return Err(self.line.collapsed(t, "its ends have passed each other within one step"));
-        }
-        Ok(())
-    }
-
-    /// With T the force along the spring, -df/du of the second node by its own displacement is
-    /// k e e^T + c e e'^T - (T/l) (I - e e^T), and -df/dv is c e e^T.
-    fn add_tangents(
-        &self,
-        _t: f64,
-        u: &[f64],
-        v: &[f64],
-        stiffness: &mut BlockMatrix,
-        damping: &mut BlockMatrix,
-    ) -> Tangents {
-        let stretch = self.line.stretch(u, v);
-        let Stretch { length, direction: e, rate, turning } = stretch;
-        let along = -self.stiffness * (length - self.line.length) - self.damping * rate;
-        self.line.add_tangent(stiffness, |i, j| {
-            e[i] * (self.stiffness * e[j] + self.damping * turning[j]) + stretch.turn(along, i, j)
-        });
-        self.line.add_tangent(damping, |i, j| self.damping * e[i] * e[j]);
-        Tangents::Added
-    }
-
-    fn potential(&self, _t: f64, u: &[f64]) -> f64 {
-        0.5 * self.stiffness * (self.line.length(u).0 - self.line.length).powi(2)
-    }
-
-    fn reservoir(&self) -> Reservoir {
-        Reservoir::Springs
-    }
-
-    fn couplings(&self) -> Vec<[usize; 2]> {
-        self.line.couplings()
-    }
-}
-
-impl Force for Actuator {
-    fn add_forces(
-        &self,
-        t: f64,
-        u: &[f64],
-        v: &[f64],
-        forces: &mut NodalForces,
-    ) -> Result<(), Failure> {
-        let Stretch { length, direction, .. } = self.line.stretch(u, v);
-        self.line.check_length(t, length)?;
-        let force = signal::sum(&self.force, t);
-        finite_at(t, format_args!("the actuation of spring \"{}\"", self.line.name), force)?;
-        self.line.add(force, &direction, &mut forces.applied);
-        Ok(())
-    }
-
-    fn add_tangents(
-        &self,
-        t: f64,
-        u: &[f64],
-        v: &[f64],
-        stiffness: &mut BlockMatrix,
-        _damping: &mut BlockMatrix,
-    ) -> Tangents {
-        let (stretch, force) = (self.line.stretch(u, v), signal::sum(&self.force, t));
-        self.line.add_tangent(stiffness, |i, j| stretch.turn(force, i, j));
-        Tangents::Added
-    }
-
-    fn couplings(&self) -> Vec<[usize; 2]> {
-        self.line.couplings()
     }
 }

@@ -11,7 +11,7 @@ use crate::elements::mesh::{CellKind, Cells, Mesh, SolidCells};
 use crate::studies::samples::SQUARE_MATERIAL;
 
 /// Numbers between -`size` and `size` without a pattern.
-fn noise(length: usize, size: f64, seed: f64) -> Vec<f64> {
+pub(super) fn noise(length: usize, size: f64, seed: f64) -> Vec<f64> {
     (0..length)
         .map(|i| size * (12.9898 * (i as f64 + seed)).sin().mul_add(43.758, 0.3).sin())
         .collect()
@@ -23,7 +23,7 @@ fn moved(x: &[f64], j: usize, by: f64) -> Vec<f64> {
     x
 }
 
-fn nodal_forces(force: &dyn Force, t: f64, u: &[f64], v: &[f64]) -> NodalForces {
+pub(super) fn nodal_forces(force: &dyn Force, t: f64, u: &[f64], v: &[f64]) -> NodalForces {
     let mut forces = NodalForces::zeros(u.len());
     force.add_forces(t, u, v, &mut forces).unwrap();
     forces
@@ -34,7 +34,7 @@ fn nodal_forces(force: &dyn Force, t: f64, u: &[f64], v: &[f64]) -> NodalForces 
 /// force changes over a length l, and by round-off, 1e-16 f/h. Returns its largest tangent.
 /// Its tangents may couple the nodes of `cells` and those that it says it couples.
 #[track_caller]
-fn check(
+pub(super) fn check(
     force: &dyn Force,
     (dimension, cells): (usize, &[&[usize]]),
     t: f64,
@@ -73,7 +73,7 @@ fn check(
 }
 
 /// Two cells along a skew line; in any space.
-fn bar(dimension: usize) -> Mesh {
+pub(super) fn bar(dimension: usize) -> Mesh {
     let direction = [0.8, 0.3, -0.5];
     let positions = (0..3).flat_map(|k| (0..dimension).map(move |i| f64::from(k) * direction[i]));
     Mesh::new(dimension, positions.collect(), CellKind::Segment, vec![0, 1, 1, 2]).unwrap()
@@ -84,21 +84,21 @@ fn springs() {
     for dimension in 1..=3 {
         let mesh = bar(dimension);
         let spring = Spring::between([3], [1]).named("s").stiffness(20.0).length(1.2).damping(3.0);
-        let force = spring.force(&mesh).unwrap();
         let actuation = vec![Signal::constant(-2.0), Signal::function(|t| 5.0 * t)];
-        let actuator = spring.actuator(&mesh, actuation).unwrap();
+        let forces = spring.forces(&mesh, actuation).unwrap();
+        let [force, actuator] = &forces[..] else { panic!("{}", forces.len()) };
         let point = [-0.3, 0.1, 0.4][..dimension].to_vec();
         let anchored = Spring::anchored([3], point).stiffness(20.0).length(1.2).damping(3.0);
-        let anchored = anchored.force(&mesh).unwrap();
+        let anchored = &anchored.forces(&mesh, Vec::new()).unwrap()[0];
         assert_eq!(anchored.couplings(), Vec::<[usize; 2]>::new());
         for seed in [1.0, 2.0, 3.0] {
             let n = 3 * dimension;
             let (u, v) = (noise(n, 0.3, seed), noise(n, 2.0, 10.0 * seed));
-            assert!(check(&anchored, (dimension, &[]), 0.7, &u, &v, 1e-8) > 0.0);
-            assert!(check(&force, (dimension, &[]), 0.7, &u, &v, 1e-8) > 0.0);
-            check(&actuator, (dimension, &[]), 0.7, &u, &v, 1e-8);
+            assert!(check(&**anchored, (dimension, &[]), 0.7, &u, &v, 1e-8) > 0.0);
+            assert!(check(&**force, (dimension, &[]), 0.7, &u, &v, 1e-8) > 0.0);
+            check(&**actuator, (dimension, &[]), 0.7, &u, &v, 1e-8);
             // nodes off the spring have no force, and action equals reaction
-            let mut forces = nodal_forces(&force, 0.7, &u, &v);
+            let mut forces = nodal_forces(&**force, 0.7, &u, &v);
             actuator.add_forces(0.7, &u, &v, &mut forces).unwrap();
             for part in [&forces.conservative, &forces.dissipative, &forces.applied] {
                 for i in 0..dimension {
@@ -115,11 +115,11 @@ fn springs() {
 #[test]
 fn a_spring_pulls_its_second_end_back() {
     let spring = Spring::between([1], [3]).stiffness(20.0).length(1.5).damping(3.0);
-    let force = spring.force(&bar(1)).unwrap();
+    let forces = spring.forces(&bar(1), vec![Signal::constant(0.25)]).unwrap();
+    let [force, actuator] = &forces[..] else { panic!("{}", forces.len()) };
     // from 1.6 m to 1.7 m, at 2 m/s
     let (u, v) = ([0.1, 0.0, 0.2], [1.0, 0.0, 3.0]);
-    let mut forces = nodal_forces(&force, 0.0, &u, &v);
-    let actuator = spring.actuator(&bar(1), vec![Signal::constant(0.25)]).unwrap();
+    let mut forces = nodal_forces(&**force, 0.0, &u, &v);
     actuator.add_forces(0.0, &u, &v, &mut forces).unwrap();
     for (part, expected) in
         [(forces.conservative, -4.0), (forces.dissipative, -6.0), (forces.applied, 0.25)]

@@ -147,10 +147,7 @@ impl Scene {
 
     fn add_springs(&self, phase: &Phase, forces: &mut Forces) -> Result<(), InputError> {
         for (spring, actuation) in self.springs.iter().zip(self.actuation_signals(phase)?) {
-            forces.push(Arc::new(spring.force(self.body.mesh())?));
-            if !actuation.is_empty() {
-                forces.push(Arc::new(spring.actuator(self.body.mesh(), actuation)?));
-            }
+            forces.extend(spring.forces(self.body.mesh(), actuation)?);
         }
         Ok(())
     }

@@ -202,7 +202,8 @@ impl Phase {
     }
 
     /// An actuation force (N) in each of the named springs, a number or any other [`Signal`]; a positive one
-    /// extends it. Forces on the same spring add up.
+    /// extends it. Forces on the same spring add up. Of a [cable](crate::Spring::cable) it is the tension, and of one on a winch
+    /// the length (m) that is drawn in.
     pub fn actuate<N: Into<String>>(
         self,
         springs: impl IntoIterator<Item = N>,

@@ -275,18 +275,18 @@ fn add_shape(shape: &Shape, courses: &Value, shapes: &mut Vec<Value>) {
     }
 }
 
-/// What each spring joins.
-pub(super) fn spring_ends(scene: &Scene) -> Result<Vec<[Joint; 2]>, Error> {
+/// What each spring joins, or runs along.
+pub(super) fn spring_ends(scene: &Scene) -> Result<Vec<Vec<Joint>>, Error> {
     let mesh = scene.body().mesh();
     scene.springs().iter().map(|spring| Ok(spring.joints(mesh)?)).collect()
 }
 
-/// Names and ends of the springs, and the forces of their actuators at each sample.
+/// Names and ends of the springs, and what drives them at each sample.
 fn springs(
     trajectory: &Trajectory,
     frames: &[&Sample],
     geometry: &Geometry,
-    ends: &[[Joint; 2]],
+    ends: &[Vec<Joint>],
 ) -> Result<Value, Error> {
     let scene = trajectory.scene();
     let forces =
@@ -296,6 +296,7 @@ fn springs(
         json!({
             "name": spring.name(),
             "ends": geometry.ends(ends),
+            "isCable": spring.is_cable(),
             "forces": pack::singles(forces.iter().map(|forces| forces[number])),
         })
     });

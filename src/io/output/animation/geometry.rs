@@ -105,8 +105,8 @@ impl Geometry {
         nodes.iter().filter_map(|&node| self.places[node]).collect()
     }
 
-    /// The places of what a spring joins.
-    pub(super) fn ends(&self, joints: &[Joint; 2]) -> Vec<usize> {
+    /// The places of what a spring joins, or of what a cable runs along.
+    pub(super) fn ends(&self, joints: &[Joint]) -> Vec<usize> {
         let place = |joint: &Joint| match joint {
             Joint::Node(node) => self.places[*node],
             Joint::Point(x) => {

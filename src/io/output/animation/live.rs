@@ -45,7 +45,7 @@ impl Picture {
             Quantity::of(scene.body()).iter().map(Quantity::to_json).collect();
         let springs = scene.springs().iter().zip(&ends);
         let springs = springs
-            .map(|(spring, ends)| json!({ "name": spring.name(), "ends": geometry.ends(ends) }));
+            .map(|(spring, ends)| json!({ "name": spring.name(), "ends": geometry.ends(ends), "isCable": spring.is_cable() }));
         let fixed = json!({
             "axes": axes(mesh),
             "phases": data::phases(scene, &geometry)?,

@@ -132,17 +132,17 @@ impl Panel<'_> {
         points.iter().map(|&x| self.layout.place(self.number, x)).collect()
     }
 
-    /// The springs, as straight lines.
+    /// The springs and cables, as straight lines.
     fn springs(&self, points: &[Point]) -> Path {
         let mesh = self.trajectory.body().mesh();
         let mut data = Data::default();
         for spring in self.trajectory.scene().springs() {
             let Ok(joints) = spring.joints(mesh) else { continue };
-            let ends = joints.map(|joint| match joint {
+            let place = |joint| match joint {
                 Joint::Node(node) => points[node],
                 Joint::Point(x) => self.layout.place(self.number, drawn(&x[..mesh.dimension()])),
-            });
-            data.polyline(&ends, false);
+            };
+            data.polyline(&joints.into_iter().map(place).collect::<Vec<_>>(), false);
         }
         let path = Path::new().set("class", "springs").set("d", data.0).set("fill", "none");
         path.set("stroke", "#8a5a2b").set("stroke-width", 1.2)

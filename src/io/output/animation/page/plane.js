@@ -258,13 +258,19 @@ function traceEdge(context, { xs, ys }, edge, starts) {
   context.quadraticCurveTo(control(xs), control(ys), xs[to], ys[to]);
 }
 
-/** Springs as zigzag lines, in colour while their actuators pull or push. */
+/** Springs as zigzag lines and cables as straight ones, in colour while their actuators pull or push. */
 function drawSprings(context, { xs, ys }, moment) {
   const TURNS = 11;
   context.lineWidth = 1.6;
   for (const spring of springs) {
     const force = actuationAt(moment, spring);
-    context.strokeStyle = paint(force < 0 ? "pull" : force > 0 ? "push" : "spring");
+    context.strokeStyle = paint(driven(spring, force));
+    if (spring.isCable) {
+      context.beginPath();
+      for (const place of spring.ends) context.lineTo(xs[place], ys[place]);
+      context.stroke();
+      continue;
+    }
     const [a, b] = spring.ends;
     const [dx, dy] = [xs[b] - xs[a], ys[b] - ys[a]];
     const length = Math.hypot(dx, dy) || 1;
@@ -279,6 +285,12 @@ function drawSprings(context, { xs, ys }, moment) {
     context.lineTo(xs[b], ys[b]);
     context.stroke();
   }
+}
+
+/** The colour of a spring or a cable that is driven by a force. */
+function driven(spring, force) {
+  if (force === 0) return "spring";
+  return force > 0 === spring.isCable ? "pull" : "push";
 }
 
 /** Held nodes, moved nodes and point masses, those that `shows` lets through. */

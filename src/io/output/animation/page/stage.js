@@ -39,14 +39,16 @@ function showKey() {
   const dot = (colour, radius) => `<circle cx="11" cy="6" r="${radius}" fill="var(--${colour})"/>`;
   const zigzag = (colour) =>
     `<path d="M0 6h4l2-4 3 8 4-8 3 8 2-4h4" fill="none" stroke="var(--${colour})" stroke-width="1.6"/>`;
-  const forces = springs.flatMap((spring) => [...spring.forces]);
+  const line = (colour) => `<path d="M0 6h22" fill="none" stroke="var(--${colour})" stroke-width="1.6"/>`;
+  const drives = springs.flatMap((spring) => [...spring.forces].map((force) => driven(spring, force)));
   const entries = [
     [phases.some((phase) => phase.held.length), dot("ink", 4), "held"],
     [phases.some((phase) => phase.moved.length), dot("moved", 4.5), "moved"],
     [data.points.length, dot("ink", 6), "point mass"],
-    [springs.length, zigzag("spring"), "spring"],
-    [forces.some((force) => force < 0), zigzag("pull"), "actuator pulls"],
-    [forces.some((force) => force > 0), zigzag("push"), "actuator pushes"],
+    [springs.some((spring) => !spring.isCable), zigzag("spring"), "spring"],
+    [springs.some((spring) => spring.isCable), line("spring"), "cable"],
+    [drives.includes("pull"), line("pull"), "actuator pulls"],
+    [drives.includes("push"), line("push"), "actuator pushes"],
   ];
   const key = figure.querySelector(".key");
   for (const [, sign, meaning] of entries.filter(([exists]) => exists)) {
