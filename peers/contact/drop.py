@@ -243,7 +243,7 @@ def runs():
 def main():
     distance = lambda a, b: 1e3 * np.sqrt(((a - b) ** 2).sum(-1).mean())
     references = {law: toolkit(law, 5e-5, REFERENCE_STEP, 1e14) for law in LAWS}
-    others = {law: toolkit(law, 2e-4, 2 * REFERENCE_STEP, 1e12) for law in LAWS}
+    others = {law: toolkit(law, 2e-4, 2 * REFERENCE_STEP, 1e7 * YOUNG) for law in LAWS}
     for law, reference in references.items():
         print(f"reference, {law}: {distance(reference.x, others[law].x):.2f} mm from one of D = 0.2 mm; motion {distance(reference.x, START):.1f} mm; "
               f"energy {reference.energy[-1] - reference.energy[0]:+.1e} J")

@@ -9,7 +9,7 @@ import sys
 import ipctk
 import numpy as np
 
-from bodies import Mesh, Run, Surfaces, body, grid, random_turn
+from bodies import Run, Surfaces, body, grid, random_turn
 
 SOFT = "{ density = 1000.0, young = 1.0e5, poisson = 0.3, viscosity = 0.0 }"
 # shares of the corners of a facet in its quadrature points, and their weights
