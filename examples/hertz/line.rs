@@ -82,8 +82,8 @@ impl Pressing {
 
     /// The upper block pressed down.
     pub fn pressed(&self) -> Result<Equilibrium, Error> {
-        let approach = self.approach * HEIGHT * ((2.0 * SIZE / ABOUT).ln() - 0.3);
-        let approach = approach + 0.7 * self.distance * HEIGHT;
+        let far = (2.0 * SIZE / ABOUT).ln();
+        let approach = HEIGHT * (self.approach * far - 0.3 * self.approach + 0.7 * self.distance);
         let phase = Phase::until(1.0).hold_axes("upper/top", [Axis::X]).move_axis(
             "upper/top",
             Axis::Y,

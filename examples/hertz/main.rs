@@ -87,7 +87,7 @@ fn run(arguments: &Arguments) -> Result<(), Error> {
         println!(
             "\nLine contact with friction of 0.5. Errors in %, of shear stresses in % of mu p0"
         );
-        println!("{:>9} {:>9} {:>9} {:>9} {:>7}", "Q/(mu P)", "c/a", "c", "shear", "steps");
+        println!("{:>9} {:>9} {:>9} {:>9} {:>7}", "Q/(mu P)", "c/a", "off", "shear", "steps");
         for way in [3e-5, 6e-5] {
             let found = shear::drawn(&Pressing { approach: 2.0, ..usual }, 0.5, way)?;
             let [sticking, exact] = found.sticking;
