@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use pliant::mesh::CellKind;
 use pliant::{
     Body, Cells, Indicator, Material, Mesh, Method, Phase, Sampling, Scene, Settings, SolidCells,
-    Strain, Trajectory, Verdict,
+    Strain, Touch, Trajectory, Verdict,
 };
 
 const SOFT: Material = Material { density: 1000.0, young: 5e4, poisson: 0.3, viscosity: 0.0 };
@@ -225,4 +225,35 @@ fn bodies_of_one_dimension() {
     let string = Mesh::bar(0.1, 5).unwrap().mapped(|x| [x[0], 0.0]).unwrap();
     let indicators = begun(string, <[f64]>::to_vec).report().indicators.clone();
     assert!(!indicators.iter().any(|indicator| indicator.name.contains("overlap")));
+}
+
+/// What passes through what is told with what helps there: a touch where there is none between them, harder springs.
+#[test]
+fn help_goes_by_what_touches() {
+    let soft = Material { density: 1000.0, young: 1e4, poisson: 0.3, viscosity: 0.0 };
+    let block = |name: &str, x: f64| {
+        let mesh = Mesh::rectangle([0.04, 0.04], [3, 3], Cells::Triangles).unwrap();
+        let mesh = mesh.translated(&[x, 0.0]).unwrap();
+        Body::new(mesh, soft).thickness(0.01).named(name).build().unwrap()
+    };
+    let help = |touch: Touch| {
+        let bodies = [block("left", 0.0), block("right", 0.05), block("far", 1.0)];
+        let scene = Scene::new(Body::join(bodies).unwrap())
+            .initial_velocity(|x| vec![if x[0] < 0.045 { 1.0 } else { 0.0 }, 0.0])
+            .touch(touch)
+            .phase(Phase::until(0.025));
+        let told = overlap(&scene.simulate(&Settings::default(), &Sampling::every(5e-3)).unwrap());
+        assert_eq!(told.verdict, Verdict::Doubtful, "{told}");
+        println!("{told}");
+        told.text
+    };
+    let springs = help(Touch::all().spring().stiffness_density(1e3));
+    assert!(springs.contains("raise the stiffness_density"), "{springs}");
+    for touch in [Touch::between(["left", "far"]), Touch::between(["left"])] {
+        let apart = help(touch);
+        assert!(
+            apart.contains("Nothing keeps them apart") && apart.contains("[[touch]]"),
+            "{apart}"
+        );
+    }
 }

@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use pliant::{
-    ContactEvents, Method, Phase, Sampling, Scene, Settings, SlipEvent, Spring, Trajectory,
+    ContactEvents, Method, Phase, Sampling, Scene, Settings, SlipEvent, Spring, Touch, Trajectory,
 };
 
 use super::friction::{G, assert_balanced, block, plane, stick_slip, tied_block};
@@ -145,6 +145,12 @@ fn tolerances_see_what_breaks_loose() {
     let smooth = Scene::new(tied_block())
         .obstacle(plane(0.0).sticking_speed(1e-9).friction_coefficient(0.0));
     assert_eq!(velocity(Settings::default(), &smooth), by_waves);
+    let touching = |mu: f64| {
+        let touch = Touch::all().friction_coefficient(mu).sticking_speed(1e-4);
+        Scene::new(tied_block()).touch(touch)
+    };
+    assert!((velocity(Settings::default(), &touching(0.5)) - 2.5e-7).abs() < 1e-20);
+    assert_eq!(velocity(Settings::default(), &touching(0.0)), by_waves);
 }
 
 /// A simulation that goes back to before an event finds it once more, at the same time to the last digit.

@@ -9,7 +9,7 @@ use crate::dynamics::trajectory::Sample;
 use crate::elements::basis::shares_in;
 use crate::elements::body::{Body, Part};
 use crate::elements::mesh::CellKind;
-use crate::scene::forces::SurfacePoint;
+use crate::scene::forces::{SurfacePoint, Touch};
 use crate::scene::timeline::Scene;
 
 /// How deep a point of the boundary may be within a cell of another part of the body, relative to the size of
@@ -132,8 +132,8 @@ impl<'a> Overlaps<'a> {
     /// What passes through what.
     fn who(&self, entry: &Entry) -> [String; 2] {
         let pieces = self.body.inertia().pattern().pieces();
-        let nodes = [self.node(entry), self.cells[entry.cell].1[0]];
-        let [part, other] = nodes.map(|node| self.body.part_of(node));
+        let nodes = self.nodes(entry);
+        let [part, other] = self.bodies(entry);
         let named = |part: &Part| match self.body.is_single() {
             true => "the body".to_owned(),
             false => format!("body \"{}\"", part.name),
@@ -144,6 +144,16 @@ impl<'a> Overlaps<'a> {
             (true, true) => [named(&part), "itself".into()],
             (true, false) => [format!("a piece of {}", named(&part)), "another one".into()],
         }
+    }
+
+    /// The bodies of a point and of the cell that it is in.
+    fn bodies(&self, entry: &Entry) -> [Part<'a>; 2] {
+        self.nodes(entry).map(|node| self.body.part_of(node))
+    }
+
+    /// A node of the point, and one of the cell.
+    fn nodes(&self, entry: &Entry) -> [usize; 2] {
+        [self.node(entry), self.cells[entry.cell].1[0]]
     }
 
     fn node(&self, entry: &Entry) -> usize {
@@ -224,7 +234,7 @@ pub(crate) fn check_start(scene: &Scene) -> Result<(), InputError> {
 /// A body that passes through itself, or pieces of it that pass through each other, at any of the `samples`. Points that lie in
 /// other cells already in the undeformed shape do not count.
 pub(super) fn overlap(scene: &Scene, samples: &[&Sample]) -> Option<Indicator> {
-    let (body, touches) = (scene.body(), !scene.touches().is_empty());
+    let body = scene.body();
     let mut overlaps = Overlaps::new(body)?;
     let mut is_drawn = vec![false; overlaps.points.len()];
     for entry in overlaps.entries(&vec![0.0; body.dofs()]) {
@@ -256,14 +266,19 @@ pub(super) fn overlap(scene: &Scene, samples: &[&Sample]) -> Option<Indicator> {
         };
         let (node, at) = (overlaps.node(deepest), told(sample.time));
         let [one, other] = overlaps.who(deepest);
-        let help = match touches {
-            false => {
+        let names = overlaps.bodies(deepest).map(|part| part.name);
+        let between = scene.touches().iter().filter(|touch| touch.is_between(names));
+        let help = match between.map(Touch::is_barrier).max() {
+            None => {
                 "Nothing keeps them apart, so the motion is wrong from there on: let them touch ([[touch]]), load them less, or end the \
                       scene before"
             }
-            true => {
-                "The springs between them are too soft, or they do not touch each other: raise the stiffness_density, or take a \
-                     barrier"
+            Some(false) => {
+                "The springs between them are too soft: raise the stiffness_density, or take a barrier"
+            }
+            Some(true) => {
+                "Kept apart are points of their surfaces, which are straight (in space, flat) between nodes: take finer cells, or a \
+                     larger distance"
             }
         };
         let since = if first == sample.time {

@@ -247,8 +247,8 @@ fn orientation(enclosed: f64, body: &Body) -> Option<f64> {
 }
 
 /// What a volume below 0 means.
-pub(crate) const TURNED: &str = "its walls have passed through each other, which they do not feel. Draw less out of it, make \
-                                 its walls stiffer, or hold them apart by springs between them";
+pub(crate) const TURNED: &str = "its walls have passed through each other, which they do not feel. Let them touch ([[touch]]), \
+                                 draw less out of it, or make its walls stiffer";
 
 /// The force of one chamber.
 pub(crate) struct ChamberForce {

@@ -23,8 +23,8 @@ pub struct Settings {
     ///
     /// Default: rtol times a hundredth of the speed of waves in the body, the fastest of several, which
     /// corresponds to that of displacements in a vibration; but at most 1/400 of the
-    /// [sticking speed](crate::Obstacle::sticking_speed) of an obstacle with friction, as with more a step
-    /// does not notice what breaks loose.
+    /// [sticking speed](crate::Obstacle::sticking_speed) of an obstacle or a touch with friction, as with more a
+    /// step does not notice what breaks loose.
     pub atol_velocity: Option<f64>,
     /// Rate alpha (1/s) at which errors of the constraints decay, above 0. Default: 1e3. Larger means less
     /// drift; it costs implicit methods and central differences nothing, but limits the steps of `rk` to
@@ -142,7 +142,7 @@ pub(crate) struct Scales {
     young: f64,
     volume: f64,
     wave_speed: f64,
-    /// The smallest of all obstacles; infinite without friction.
+    /// The smallest of all obstacles and touches; infinite without friction.
     sticking_speed: f64,
 }
 
@@ -150,13 +150,14 @@ impl Scales {
     pub(crate) fn of(scene: &Scene) -> Self {
         let body = scene.body();
         let size = body.size();
-        let sticking = scene.obstacles().iter().filter_map(|obstacle| obstacle.sticks_below(size));
+        let obstacles = scene.obstacles().iter().filter_map(|obstacle| obstacle.sticks_below(size));
+        let touches = scene.touches().iter().filter_map(|touch| touch.sticks_below(size));
         Self {
             size,
             young: body.largest_young(),
             volume: body.volume(),
             wave_speed: body.largest_wave_speed(),
-            sticking_speed: sticking.fold(f64::INFINITY, f64::min),
+            sticking_speed: obstacles.chain(touches).fold(f64::INFINITY, f64::min),
         }
     }
 }

@@ -137,6 +137,25 @@ impl Touch {
         &self.name
     }
 
+    /// v0 (m/s) on bodies of `size` (m); `None` without friction.
+    pub(crate) fn sticks_below(&self, size: f64) -> Option<f64> {
+        let coulomb = self.friction.coulomb(size).filter(|_| self.friction.acts());
+        coulomb.map(|coulomb| coulomb.sticking_speed)
+    }
+
+    /// Whether the bodies with these names feel each other, or, if they are one, itself.
+    pub(crate) fn is_between(&self, names: [&str; 2]) -> bool {
+        let has = |name: &str| self.bodies.iter().any(|body| body == name);
+        let itself = names[0] == names[1];
+        self.bodies.is_empty()
+            || names.iter().all(|name| has(name)) && (!itself || self.bodies.len() == 1)
+    }
+
+    /// Whether its pressure grows without bound.
+    pub(crate) fn is_barrier(&self) -> bool {
+        self.kind == Kind::Barrier
+    }
+
     /// The same touch with the numbers that it has on `body` by default, for a body with a finer mesh.
     pub(crate) fn with_numbers_of(mut self, force: &TouchForce) -> Self {
         (self.distance, self.stiffness) = (Some(force.law.distance), Some(force.law.stiffness));
