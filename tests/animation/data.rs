@@ -8,7 +8,7 @@ use base64::engine::general_purpose::STANDARD;
 use pliant::samples::{beam_jump, square_jump};
 use pliant::{
     Body, CellField, Cells, Mesh, Obstacle, Phase, Sample, Sampling, Scene, Settings, Spring,
-    Strain,
+    Strain, Touch,
 };
 use serde_json::Value;
 
@@ -258,6 +258,31 @@ fn arrows_start_at_the_centre_of_pressure() -> Outcome {
         }
     }
     assert!(touching > 3, "{touching} samples");
+    Ok(())
+}
+
+/// What a body exerts on itself cancels, up to round-off that is no arrow.
+#[test]
+fn what_touches_itself_has_no_arrow() -> Outcome {
+    let piece =
+        |x: f64| Mesh::rectangle([0.02, 0.02], [3, 3], Cells::Triangles)?.translated(&[x, 0.0]);
+    let pieces = [piece(0.0)?, piece(0.021)?];
+    let positions = pieces.iter().flat_map(|piece| piece.positions().iter().copied()).collect();
+    let cells =
+        [0, 9].into_iter().flat_map(|k| pieces[0].cells().flatten().map(move |node| node + k));
+    let mesh = Mesh::new(2, positions, pieces[0].kind(), cells.collect())?;
+    let scene = Scene::new(Body::new(mesh, RUBBER).thickness(0.01).build()?)
+        .touch(Touch::all().distance(2e-4))
+        .initial_velocity(|x| vec![if x[0] < 0.0205 { 0.5 } else { -0.5 }, 0.0])
+        .phase(Phase::until(4e-3));
+    let trajectory = scene.simulate(&Settings::default(), &Sampling::every(2e-4))?;
+    let mut most = 0.0_f64;
+    for sample in trajectory.samples() {
+        most = trajectory.contact_forces(sample)?.into_iter().fold(most, f64::max);
+    }
+    assert!(most > 0.01, "{most} N");
+    let data = data(&page(&trajectory, "")?)?;
+    assert_eq!(data["contacts"].as_array().ok_or("no list")?.len(), 0);
     Ok(())
 }
 

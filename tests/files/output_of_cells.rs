@@ -69,6 +69,23 @@ fn pictures_show_all_cells_or_their_surface() {
     }
 }
 
+/// Marks of nodes that a solid hides are left out: of the 4 x 3 nodes that are held at its bottom two edges are seen, of those that
+/// are moved all 12 at its top.
+#[test]
+fn marks_behind_a_solid_are_hidden() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("cuboid.svg");
+    let mesh = Mesh::cuboid([0.04, 0.02, 0.03], [4, 3, 5], SolidCells::Hexahedra).unwrap();
+    Snapshots::at([0.0]).write(&pulled(mesh), &path).unwrap();
+    let text = fs::read_to_string(&path).unwrap();
+    let document = roxmltree::Document::parse(&text).unwrap();
+    let panel = document.descendants().find(|node| node.attribute("class") == Some("panel"));
+    let dots = panel.unwrap().descendants().filter(|node| node.has_tag_name("circle"));
+    let radii: Vec<&str> = dots.map(|dot| dot.attribute("r").unwrap()).collect();
+    let count = |radius| radii.iter().filter(|r| **r == radius).count();
+    assert_eq!([count("3.2"), count("3.8")], [6, 12], "{radii:?}");
+}
+
 /// Mid nodes are drawn between the corners that they lie between.
 #[test]
 fn quadratic_triangles_are_drawn_through_their_mid_nodes() {

@@ -10,6 +10,9 @@ use crate::dynamics::trajectory::{Sample, Trajectory};
 use crate::io::output::svg::displaced;
 use crate::scene::forces::Obstacle;
 
+/// What is left, over the sizes of all forces, of those that cancel each other.
+const ROUND_OFF: f64 = 1e-10;
+
 /// Of each obstacle that touches a body in one of `frames`, and of all that touch each of several bodies, sample by
 /// sample: the resultant of its forces (N), and its centre of pressure (m), the mean position of the nodes weighted by
 /// the sizes of their forces.
@@ -48,6 +51,10 @@ pub(super) fn resultants(trajectory: &Trajectory, frames: &[&Sample]) -> Result<
                     force[axis] += f[axis];
                     centre[axis] += size * x[axis];
                 }
+            }
+            if norm(&force) <= ROUND_OFF * total {
+                // as of a body that touches itself
+                force = [0.0; 3];
             }
             if total > 0.0 {
                 centre = centre.map(|part| part / total);

@@ -113,7 +113,7 @@ impl Picture {
 fn absent(scene: &Scene) -> Vec<&'static str> {
     let has = [
         ("gravity", scene.phases().iter().any(|phase| scene.gravity_in(phase).is_some())),
-        ("contact", !scene.obstacles().is_empty()),
+        ("contact", !scene.obstacles().is_empty() || !scene.touches().is_empty()),
         ("springs", !scene.springs().is_empty()),
     ];
     has.iter().filter(|(_, has)| !has).map(|(name, _)| *name).collect()

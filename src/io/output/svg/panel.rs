@@ -1,6 +1,6 @@
 //! One panel: the body at one time.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
 
 use svg::node::element::{Group, Path};
@@ -62,7 +62,7 @@ impl Panel<'_> {
         let points: Vec<Point> =
             points.iter().map(|&x| self.layout.place(self.number, x)).collect();
         let body = self.trajectory.body();
-        let mut faces = Vec::new();
+        let (mut faces, mut hidden) = (Vec::new(), BTreeSet::new());
         for (part, paint) in body.parts().zip((0..).map(Paint::of_body)) {
             let (mesh, points) = (part.body.mesh(), &points[part.nodes.clone()]);
             match (mesh.kind(), mesh.dimension()) {
@@ -72,6 +72,7 @@ impl Panel<'_> {
                 _ => {
                     let depths = depths(part.body, &self.sample.u[part.dofs()]);
                     faces.extend(surface(mesh, points, &depths, paint));
+                    hidden.extend(behind(mesh, points).map(|node| part.nodes.start + node));
                 }
             }
         }
@@ -81,7 +82,7 @@ impl Panel<'_> {
         if !self.trajectory.scene().springs().is_empty() {
             panel = panel.add(self.springs(&points));
         }
-        for (&node, mark) in self.marks {
+        for (&node, mark) in self.marks.iter().filter(|(node, _)| !hidden.contains(*node)) {
             panel = panel.add(mark.draw(points[node][0], points[node][1]));
         }
         let [x, y] = self.layout.caption(self.number);
@@ -208,6 +209,17 @@ fn surface(
         }
     }
     faces
+}
+
+/// The nodes on the boundary of a solid that are on no face that looks at the viewer.
+fn behind(mesh: &Mesh, points: &[Point]) -> impl Iterator<Item = usize> + use<> {
+    let (mut behind, mut seen) = (BTreeSet::new(), BTreeSet::new());
+    for face in mesh.boundary_faces() {
+        let polygon: Vec<Point> = around(&face).map(|node| points[node]).collect();
+        let is_seen = mesh.kind().dimension() < 3 || looks_at_viewer(&polygon);
+        if is_seen { &mut seen } else { &mut behind }.extend(face.iter().copied());
+    }
+    behind.into_iter().filter(move |node| !seen.contains(node))
 }
 
 /// The faces of all bodies in space, drawn from far to near.
