@@ -169,6 +169,23 @@ fn scenes_of_the_page() {
     }
 }
 
+/// Scenes of contact that take seconds and more to their ends.
+const LONG: &[&str] = &["ball-in-hand", "ball-in-hand-3d", "bellows", "heap", "two-squares"];
+
+/// They begin, and nothing is to be warned of before.
+#[test]
+fn long_scenes_begin() {
+    for name in LONG {
+        let mut file = SceneFile::read(path(&format!("scenes/{name}.toml"))).unwrap();
+        assert_eq!(file.scene.warnings(), Vec::<String>::new(), "{name}");
+        file.settings.max_steps = 20;
+        let (trajectory, error) = run(&file);
+        let error = error.expect("more steps than these");
+        assert!(error.contains("as many as max_steps allows"), "{name}: {error}");
+        assert!(trajectory.last().time > 0.0, "{name}");
+    }
+}
+
 /// No scene file is left out above.
 #[test]
 fn all_scenes_are_run() {
@@ -194,7 +211,8 @@ fn all_scenes_are_run() {
             continue;
         }
         let name = file.file_stem().unwrap().to_str().unwrap();
-        assert!(MOTIONS.contains(&name) || other.contains(&name), "{name}");
+        let is_run = [MOTIONS, &other, LONG].iter().any(|names| names.contains(&name));
+        assert!(is_run, "{name}");
     }
 }
 
