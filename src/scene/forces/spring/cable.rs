@@ -179,7 +179,7 @@ const STRAIGHT: f64 = 1e-3;
 
 /// How the path turns from one line to the next.
 struct Bend {
-    /// (theta^2 + s^2)^(1/2) - s, with the angle theta and the angle s of what counts as straight.
+    /// theta^2/(theta^2 + s^2)^(1/2), with the angle theta and the angle s of what counts as straight.
     angle: f64,
     /// Its derivatives by the vectors along the two lines.
     by_lines: [[f64; 3]; 2],
@@ -194,12 +194,13 @@ impl Bend {
         let smooth = theta.hypot(STRAIGHT);
         // d theta = -d(a.b)/sin(theta)
         let ratio = if theta < 1e-6 { 1.0 } else { theta / theta.sin() };
-        let (slope, cosine) = (-ratio / smooth, dot(a, b));
+        let slope = -ratio * (theta * theta + 2.0 * STRAIGHT * STRAIGHT) / smooth.powi(3);
+        let cosine = dot(a, b);
         let by_lines = [
             std::array::from_fn(|i| slope * (b[i] - cosine * a[i]) / before.length),
             std::array::from_fn(|i| slope * (a[i] - cosine * b[i]) / behind.length),
         ];
-        Self { angle: smooth - STRAIGHT, by_lines }
+        Self { angle: theta * theta / smooth, by_lines }
     }
 
     /// Its derivative by the place `q`, where it is at the place `k` between the lines.

@@ -60,6 +60,8 @@ fn a_cable_rubs_around_its_places() {
     let cable = Spring::cable(around).friction_coefficients(0.4, 0.3).sticking_speed(1e-3);
     let force = &cable.forces(&mesh, vec![Signal::constant(2.0)]).unwrap()[0];
     let u = [0.0; 8];
+    // a right angle is 3e-7 rad smaller where straight lines are smoothed
+    let off = 5e-7;
     for (speed, friction) in [(0.1, 0.3), (-0.1, -0.3), (1e-3, 0.4), (0.0, 0.0)] {
         // the far end, node 4, moves towards the place that the cable turns around
         let v = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -speed];
@@ -67,11 +69,11 @@ fn a_cable_rubs_around_its_places() {
         force.add_forces(0.0, &u, &v, &mut forces).unwrap();
         let behind = 2.0 * (-friction * std::f64::consts::FRAC_PI_2).exp();
         let total = |i: usize| forces.applied[i] + forces.dissipative[i];
-        assert!((total(0) - 2.0).abs() < 1e-12 && (total(7) + behind).abs() < 1e-12, "{speed}");
+        assert!((total(0) - 2.0).abs() < 1e-12 && (total(7) + behind).abs() < off, "{speed}");
         let (heat, supplied) = forces.powers(&v);
         assert!((supplied - 2.0 * speed).abs() < 1e-12 && heat >= 0.0);
-        assert!((heat - (supplied - behind * speed)).abs() < 1e-12, "{heat}");
+        assert!((heat - (supplied - behind * speed)).abs() < off, "{heat}");
         let [first, last] = cable.gauge(&mesh).unwrap().pulls(&u, &v, [2.0, 0.0]);
-        assert!((first - 2.0).abs() < 1e-12 && (last - behind).abs() < 1e-12);
+        assert!((first - 2.0).abs() < 1e-12 && (last - behind).abs() < off);
     }
 }
