@@ -51,8 +51,18 @@ class Motion:
 
     @cached_property
     def contact_forces(self):
-        """Forces of obstacles on the nodes (N): [sample, node, axis]."""
+        """Forces of obstacles, and of bodies that touch, on the nodes (N): [sample, node, axis]."""
         return self._motion.contact_forces()
+
+    @cached_property
+    def contact_pressures(self):
+        """Contact pressures at the nodes (Pa): [sample, node]."""
+        return self._motion.contact_pressures()
+
+    @cached_property
+    def contact_status(self):
+        """0 at nodes where nothing touches, 1 where it sticks, 2 where it slides: [sample, node]."""
+        return self._motion.contact_status()
 
     @cached_property
     def reactions(self):
@@ -188,6 +198,8 @@ class Motion:
             "contact_force": (self.contact_forces, "N"),
         }
         data = {name: (("time", "node", "axis"), array, {"units": unit}) for name, (array, unit) in vectors.items()}
+        data["contact_pressure"] = (("time", "node"), self.contact_pressures, {"units": "Pa"})
+        data["contact_status"] = (("time", "node"), self.contact_status)
         data.update({f"energy_{name}": ("time", values, {"units": "J"}) for name, values in self.energies.items()})
         data.update({name: ("time", values, {"units": self.units[name]}) for name, values in self.sensors.items()})
         nodes = np.arange(1, self.positions.shape[1] + 1)

@@ -2030,12 +2030,94 @@ def sensor_contact_force(
         the name of the contact of bodies. Default: `obstacle`.
     nodes
         the nodes on which it acts. Default: all. Those of one finger, say: the forces on both sides of what is
-        gripped cancel each other. A `touch` needs `nodes` or `body`, as all of its forces together are 0.
+        gripped cancel each other. A `touch` needs `nodes` or `body`, as it acts on both sides alike: all of its
+        forces together are 0.
     body
         the body on which a `touch` acts. Default: `nodes`.
     """
     return _table(
         kind="contact-force",
+        name=name,
+        component=component,
+        obstacle=obstacle,
+        touch=touch,
+        nodes=nodes,
+        body=body,
+    )
+
+
+def sensor_contact_area(
+    *,
+    name: str,
+    component: Literal["x", "y", "z", "norm", "xx", "yy", "zz", "xy", "yz", "xz", "von-mises"] | None = None,
+    obstacle: str | None = None,
+    touch: str | None = None,
+    nodes: Nodes | None = None,
+    body: str | None = None,
+) -> dict:
+    r"""Sensor of the kind "contact-area": the area of the surface of a body that an obstacle, or another body, touches:
+    in the plane a length times the thickness (m^2).
+
+    Parameters
+    ----------
+    name
+        the name of the sensor. Required.
+    component
+        one component alone. Default: all, each a column. Vectors have `x`, `y`, `z` and their length `norm`; tensors
+        `xx` and so on; stress has `von-mises` besides.
+    obstacle
+        the name of the obstacle. Default: `touch`.
+    touch
+        the name of the contact of bodies. Default: `obstacle`.
+    nodes
+        the nodes on which it acts. Default: all. Those of one finger, say: the forces on both sides of what is
+        gripped cancel each other. A `touch` needs `nodes` or `body`, as it acts on both sides alike: all of its
+        forces together are 0.
+    body
+        the body on which a `touch` acts. Default: `nodes`.
+    """
+    return _table(
+        kind="contact-area",
+        name=name,
+        component=component,
+        obstacle=obstacle,
+        touch=touch,
+        nodes=nodes,
+        body=body,
+    )
+
+
+def sensor_contact_pressure(
+    *,
+    name: str,
+    component: Literal["x", "y", "z", "norm", "xx", "yy", "zz", "xy", "yz", "xz", "von-mises"] | None = None,
+    obstacle: str | None = None,
+    touch: str | None = None,
+    nodes: Nodes | None = None,
+    body: str | None = None,
+) -> dict:
+    r"""Sensor of the kind "contact-pressure": the largest contact pressure at any of the nodes (Pa).
+
+    Parameters
+    ----------
+    name
+        the name of the sensor. Required.
+    component
+        one component alone. Default: all, each a column. Vectors have `x`, `y`, `z` and their length `norm`; tensors
+        `xx` and so on; stress has `von-mises` besides.
+    obstacle
+        the name of the obstacle. Default: `touch`.
+    touch
+        the name of the contact of bodies. Default: `obstacle`.
+    nodes
+        the nodes on which it acts. Default: all. Those of one finger, say: the forces on both sides of what is
+        gripped cancel each other. A `touch` needs `nodes` or `body`, as it acts on both sides alike: all of its
+        forces together are 0.
+    body
+        the body on which a `touch` acts. Default: `nodes`.
+    """
+    return _table(
+        kind="contact-pressure",
         name=name,
         component=component,
         obstacle=obstacle,
@@ -2589,7 +2671,9 @@ __all__ = [
     "sensor_centre_of_mass",
     "sensor_constraint_force",
     "sensor_constraint_moment",
+    "sensor_contact_area",
     "sensor_contact_force",
+    "sensor_contact_pressure",
     "sensor_displacement",
     "sensor_distance",
     "sensor_gap",

@@ -2,9 +2,9 @@
 
 use std::path::PathBuf;
 
-use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods};
+use numpy::{Element, PyArray1, PyArray2, PyArray3, PyArrayMethods};
 use pliant::output::{Snapshots, report, write_animation, write_csv, write_report, write_vtk};
-use pliant::{CellField, Sample, Trajectory};
+use pliant::{CellField, NodalContact, Sample, Trajectory};
 use pyo3::prelude::*;
 
 use crate::arrays::{of_nodes, rows};
@@ -41,6 +41,21 @@ impl Motion {
         let fields = self.trajectory.body().cell_fields(&self.sample(sample)?.u);
         let numbers: Vec<f64> = fields.iter().flat_map(|field| tensor(field).concat()).collect();
         PyArray1::from_vec(py, numbers).reshape([fields.len(), 3, 3])
+    }
+
+    /// A number of the contact at the nodes: [sample, node].
+    fn contacts<'py, T: Element>(
+        &self,
+        py: Python<'py>,
+        number: fn(&NodalContact) -> T,
+    ) -> PyResult<Bound<'py, PyArray2<T>>> {
+        let mut numbers = Vec::new();
+        for sample in self.samples() {
+            let nodal = self.trajectory.nodal_contacts(sample).map_err(raised)?;
+            numbers.extend(nodal.iter().map(number));
+        }
+        let nodes = self.trajectory.body().mesh().node_count();
+        PyArray1::from_vec(py, numbers).reshape([self.samples().len(), nodes])
     }
 
     fn sample(&self, number: usize) -> PyResult<&Sample> {
@@ -83,6 +98,16 @@ impl Motion {
     fn contact_forces<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray3<f64>>> {
         let forces = |sample: &Sample| self.trajectory.contact_forces(sample).map_err(raised);
         of_nodes(py, self.samples(), self.dimension(), forces)
+    }
+
+    /// Contact pressure (Pa) at the nodes: [sample, node].
+    fn contact_pressures<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        self.contacts(py, NodalContact::pressure)
+    }
+
+    /// 0 at nodes where nothing touches, 1 where it sticks, 2 where it slides: [sample, node].
+    fn contact_status<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<u8>>> {
+        self.contacts(py, |nodal| nodal.status().number())
     }
 
     fn constraint_forces<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray3<f64>>> {

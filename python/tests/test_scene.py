@@ -125,6 +125,8 @@ def test_bodies_that_touch():
         sensor=[
             words.sensor_gap(name="gap", touch="both"),
             words.sensor_contact_force(name="push", touch="both", body="right", component="x"),
+            words.sensor_contact_area(name="area", touch="both", body="right"),
+            words.sensor_contact_pressure(name="pressure", touch="both", body="right"),
         ],
     )
     motion = scene.run(sampling=np.linspace(0.0, 0.03, 16)[1:])
@@ -133,6 +135,14 @@ def test_bodies_that_touch():
     nodes = motion.bodies["right"]
     pushed = motion.contact_forces[:, nodes, 0].sum(axis=1)
     assert np.allclose(pushed, motion.sensors["push"], rtol=0, atol=1e-9)
+    pressures = motion.contact_pressures
+    assert pressures.shape == motion.contact_status.shape == motion.positions.shape[:2]
+    # the order of sums may differ
+    assert np.allclose(pressures[:, nodes].max(axis=1), motion.sensors["pressure"], rtol=1e-9, atol=0)
+    # without friction what touches slides
+    assert (pressures > 0).any() and (motion.contact_status[pressures > 0] == 2).all()
+    # half of each side, at most, is beside the other: 0.08 of 0.1 m
+    assert 0 < motion.sensors["area"].max() < 0.1 * 0.01
 
 
 def test_a_rigid_body_keeps_its_shape():

@@ -4,14 +4,14 @@ mod forces;
 
 use std::error::Error;
 use std::fmt;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use crate::base::input::{InputError, told};
 use crate::dynamics::report::Report;
 use crate::dynamics::system::Energy;
 use crate::elements::body::Body;
 use crate::scene::settings::Method;
-use crate::scene::timeline::{BodyState, Phase, Scene};
+use crate::scene::timeline::{BodyState, ContactReader, Phase, Scene};
 
 /// The state of a scene at one time.
 #[derive(Debug, Clone, PartialEq)]
@@ -89,6 +89,8 @@ pub struct Trajectory {
     /// The least and the largest reading of each sensor, also between samples; empty unless requested.
     pub(crate) peaks: Vec<[f64; 2]>,
     pub(crate) report: Report,
+    /// What reads contact, once that was asked for.
+    contact: OnceLock<Arc<ContactReader>>,
 }
 
 /// Short: errors hold trajectories, and a program that ends with one prints it.
@@ -107,6 +109,7 @@ impl Trajectory {
             sensors: Vec::new(),
             peaks: Vec::new(),
             report,
+            contact: OnceLock::new(),
         };
         trajectory.push(first);
         trajectory
@@ -232,8 +235,8 @@ impl Trajectory {
         let first = self.samples.partition_point(|sample| sample.time < time);
         let samples = self.samples[first.min(self.samples.len() - 1)..].to_vec();
         let (scene, sensors) = (self.scene.clone(), self.sensors.clone());
-        let peaks = self.peaks.clone();
-        Self { scene, samples, sensors, peaks, report: self.report.clone() }
+        let (peaks, contact) = (self.peaks.clone(), self.contact.clone());
+        Self { scene, samples, sensors, peaks, report: self.report.clone(), contact }
     }
 
     /// The scene that was run.

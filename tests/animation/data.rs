@@ -7,8 +7,8 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use pliant::samples::{beam_jump, square_jump};
 use pliant::{
-    Body, CellField, Cells, Mesh, Obstacle, Phase, Sample, Sampling, Scene, Settings, Spring,
-    Strain, Touch,
+    Body, CellField, Cells, Mesh, NodalContact, Obstacle, Phase, Sample, Sampling, Scene, Settings,
+    Spring, Strain, Touch,
 };
 use serde_json::Value;
 
@@ -99,8 +99,9 @@ fn the_data_are_those_of_the_samples() -> Outcome {
     ];
     let told = data["quantities"].as_array().ok_or("no list")?;
     // Cauchy's strain knows nothing of stretches
-    assert_eq!(told.len(), if strain == Strain::Cauchy { 3 } else { 5 });
-    for (quantity, value) in told.iter().zip(quantities) {
+    let shown = if strain == Strain::Cauchy { 3 } else { 5 };
+    assert_eq!(told.len(), shown + 2);
+    for (quantity, value) in told[..shown].iter().zip(quantities) {
         let value = |field: &CellField| value(field, strain);
         let signed = quantity["name"] == "Pressure";
         assert_eq!(quantity["signed"], signed);
@@ -119,6 +120,39 @@ fn the_data_are_those_of_the_samples() -> Outcome {
         let peak = fields.iter().map(|field| value(field).abs()).fold(0.0, f64::max);
         let told = quantity["peak"].as_f64().ok_or("no peak")?;
         assert!((told / peak - 1.0).abs() < 1e-6, "{told} is not {peak}");
+    }
+    Ok(())
+}
+
+/// A face that is not in touch has no contact pressure, and others have the largest of their nodes; so has what
+/// sticks.
+#[test]
+fn colours_of_contact_are_those_of_the_nodes() -> Outcome {
+    type Number = fn(&NodalContact) -> f64;
+    let trajectory = square()?;
+    let data = data(&page(&trajectory, "")?)?;
+    let told = data["quantities"].as_array().ok_or("no list")?;
+    let of_contact: [(&str, Number); 2] = [
+        ("Contact pressure", NodalContact::pressure),
+        ("Contact, 1 sticks, 2 slides", |nodal| nodal.status().number().into()),
+    ];
+    for (name, value) in of_contact {
+        let quantity = told.iter().find(|quantity| quantity["name"] == name).ok_or(name)?;
+        let (scale, bytes) =
+            (quantity["scale"].as_f64().ok_or(name)?, decoded(&quantity["values"])?);
+        let mut bytes = bytes.into_iter();
+        let mut touched = 0;
+        for sample in trajectory.samples() {
+            let nodal = trajectory.nodal_contacts(sample)?;
+            for cell in trajectory.body().mesh().cells() {
+                let largest = cell.iter().map(|&node| value(&nodal[node])).fold(0.0, f64::max);
+                let found = f64::from(bytes.next().ok_or("too few")?) / 255.0;
+                let expected = (largest / scale).min(1.0);
+                assert!((found - expected).abs() < 0.501 / 255.0, "{name}: {found} {expected}");
+                touched += usize::from(largest > 0.0);
+            }
+        }
+        assert!(touched > 10 && bytes.next().is_none(), "{name}: {touched} faces in touch");
     }
     Ok(())
 }
@@ -346,7 +380,7 @@ fn files_stay_small() -> Outcome {
     let scene = square_jump(10)?;
     let jump = page(&scene.simulate(&Settings::default(), &Sampling::every(0.005))?, "")?;
     let size = fs::metadata(&jump.path)?.len();
-    assert!(size < 500_000, "{size} bytes for 301 samples of 100 nodes");
+    assert!(size < 650_000, "{size} bytes for 301 samples of 100 nodes");
     assert_eq!(data(&jump)?["times"].as_array().map(Vec::len), Some(301));
 
     let long = beam_jump()?.simulate(&Settings::default(), &Sampling::every(5e-4))?;

@@ -6,8 +6,8 @@ use std::path::Path;
 
 use pliant::output::{Chart, GrowingTable, Snapshots, write_csv, write_energies, write_vtk};
 use pliant::{
-    Body, CellField, Cells, Material, Mesh, NodalField, Obstacle, Phase, Sampling, Scene, Settings,
-    Shape, SolidCells, Strain, Trajectory,
+    Body, CellField, Cells, Material, Mesh, NodalContact, NodalField, Obstacle, Phase, Sampling,
+    Scene, Settings, Shape, SolidCells, Strain, Trajectory,
 };
 use vtkio::model::{
     Attribute, CellType, DataSet, Piece, UnstructuredGridPiece, VertexNumbers, Vtk,
@@ -377,7 +377,16 @@ fn vtk_files_hold_mesh_motion_and_forces() -> Outcome {
             let nodal = trajectory.body().nodal_fields(&sample.u);
             let mut of_points = piece.data.point;
             let von_mises = nodal.iter().map(NodalField::von_mises).collect();
-            check_arrays(of_points.split_off(5), 1, &[("von_mises", von_mises)])?;
+            let contacts = trajectory.nodal_contacts(sample)?;
+            let expected_scalars = [
+                ("von_mises", von_mises),
+                ("contact_pressure", contacts.iter().map(NodalContact::pressure).collect()),
+                (
+                    "contact_status",
+                    contacts.iter().map(|nodal| nodal.status().number().into()).collect(),
+                ),
+            ];
+            check_arrays(of_points.split_off(5), 1, &expected_scalars)?;
             let stress = nodal.iter().flat_map(|field| six(field.stress)).collect();
             check_arrays(of_points.split_off(4), 6, &[("stress", stress)])?;
             check_arrays(of_points, 3, &expected)?;

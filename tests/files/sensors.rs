@@ -50,6 +50,11 @@ fn every_kind_reads_what_the_api_reads() -> Result<(), Error> {
             r#"kind = "contact-force", obstacle = "floor", nodes = [1, 2]"#,
             Reading::contact_force_on("floor", [1, 2]),
         ),
+        (r#"kind = "contact-area", obstacle = "floor""#, Reading::contact_area("floor")),
+        (
+            r#"kind = "contact-pressure", obstacle = "floor", nodes = [1, 2]"#,
+            Reading::contact_pressure("floor").on([1, 2]),
+        ),
         (r#"kind = "spring-pull", spring = "tendon""#, Reading::spring_pull("tendon")),
         (r#"kind = "spring-length", spring = "tendon""#, Reading::spring_length("tendon")),
         (r#"kind = "pressure", chamber = "inside""#, Reading::pressure("inside")),
@@ -87,7 +92,7 @@ fn every_kind_reads_what_the_api_reads() -> Result<(), Error> {
     }
     let motion = file.scene.simulate(&file.settings, &file.output.sampling())?;
     // vectors of two and tensors of four components
-    let columns = [2, 1, 2, 1, 2, 2, 1, 1, 1, 1, 1, 4, 4, 4, 1, 1, 1, 1, 1];
+    let columns = [2, 1, 2, 1, 2, 2, 1, 1, 1, 1, 1, 1, 1, 4, 4, 4, 1, 1, 1, 1, 1];
     assert_eq!(motion.sensors().len(), columns.iter().sum::<usize>());
     assert!(motion.last().sensors.iter().all(|number| number.is_finite()));
     assert!(parse("")?.output.sensors.is_empty());

@@ -13,6 +13,7 @@ mod checkpoint_refused;
 mod compression;
 mod contact;
 mod contact_events;
+mod contact_fields;
 mod contact_truths;
 mod damping;
 mod driving;

@@ -43,7 +43,7 @@ pub(super) fn of(present: &Present, colours: Option<usize>, since: Option<f64>) 
         "atEnd": at_end,
         "trouble": trouble,
         "places": picture.places(body.mesh(), u),
-        "colours": colours.and_then(|quantity| picture.colours(body, u, quantity)),
+        "colours": colours.and_then(|quantity| picture.colours(&view, quantity)),
         "past": past.after(since),
         "sliders": values.collect::<Vec<_>>(),
         "actuations": actuations.collect::<Vec<_>>(),

@@ -68,8 +68,8 @@ impl Reading {
             What::ConstraintForce(_) => true,
             What::ConstraintMoment(..) => false,
             What::Velocity(_) | What::Momentum => false,
-            What::TouchForce(..) | What::Gap(_) | What::TensionAtEnd(_) => false,
-            What::ContactForce(..) | What::Rotation | What::Pressure(_) => false,
+            What::Contact(..) | What::Gap(_) | What::TensionAtEnd(_) => false,
+            What::Rotation | What::Pressure(_) => false,
             What::SpringPull(_) | What::SpringLength(_) | What::Stress(_) | What::Strain(_) => {
                 false
             }

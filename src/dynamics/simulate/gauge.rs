@@ -3,7 +3,8 @@
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
-use super::reading::{Component, Lever, Place, Reading, What};
+use super::contact_gauge::ContactGauge;
+use super::reading::{Component, Lever, OfContact, Place, Reading, What};
 use super::view::{View, mean};
 use crate::base::input::{InputError, finite};
 use crate::base::vector::{cross, dot, norm};
@@ -11,8 +12,7 @@ use crate::dynamics::trajectory::Sample;
 use crate::elements::body::{Body, NodalField, Part, von_mises};
 use crate::elements::mesh::Selection;
 use crate::scene::constraint::{ConstraintRow, PhaseStart};
-use crate::scene::forces::Contact;
-use crate::scene::timeline::{Phase, Scene};
+use crate::scene::timeline::Scene;
 
 /// The value of a quantity at one time; components beyond the dimension are 0.
 pub(super) enum Value {
@@ -76,10 +76,21 @@ impl Reading {
                 Box::new(move |view, sample| Value::Vector(sum(view, sample)))
             }
             What::ConstraintMoment(nodes, lever) => moment(scene, select(nodes)?, lever)?,
-            What::ContactForce(obstacle, nodes) => {
-                contact_force(scene, obstacle.clone(), nodes.clone())?
+            What::Contact(of, by, nodes) => {
+                let of_body = self.body.as_deref();
+                let contact = ContactGauge::new(scene, by, nodes.as_ref(), of_body)?;
+                match of {
+                    OfContact::Force => {
+                        Box::new(move |view, at| Value::Vector(contact.force(view, at)))
+                    }
+                    OfContact::Area => {
+                        Box::new(move |view, at| Value::Number(contact.area(view, at)))
+                    }
+                    OfContact::Pressure => {
+                        Box::new(move |view, at| Value::Number(contact.pressure(view, at)))
+                    }
+                }
             }
-            What::TouchForce(touch, nodes) => self.force_of_touch(scene, touch, nodes.as_ref())?,
             What::Gap(touch) => {
                 let touch = scene.touch_force(touch, "touch")?;
                 Box::new(move |view, _| Value::Number(touch.gap(view.displacements())))
@@ -227,72 +238,6 @@ fn field(
     let probe = body.probe(&weights);
     Ok(Box::new(move |view, _| {
         Value::Tensor(tensor(&view.body().probed(&probe, view.displacements())))
-    }))
-}
-
-impl Reading {
-    /// Force of bodies that touch on the body that is read, or on some nodes.
-    fn force_of_touch(
-        &self,
-        scene: &Scene,
-        touch: &str,
-        nodes: Option<&Selection>,
-    ) -> Result<Gauge, InputError> {
-        let force = scene.touch_force(touch, "touch")?;
-        let body = scene.body();
-        let nodes = match (nodes, &self.body) {
-            (Some(nodes), _) => body.mesh().select(nodes)?,
-            (None, Some(name)) => body.part_named(name, "body")?.nodes.collect(),
-            (None, None) => {
-                let help = "all forces of a touch together are 0: name the body or the nodes on which they act";
-                return Err(InputError::new("body", "missing", help));
-            }
-        };
-        let mut is_read = vec![false; body.mesh().node_count()];
-        nodes.into_iter().for_each(|node| is_read[node] = true);
-        Ok(Box::new(move |view, _| {
-            Value::Vector(force.force(view.displacements(), view.velocities(), &is_read))
-        }))
-    }
-}
-
-/// Force of an obstacle on all nodes or some. The contact is that of the scene unless commands have changed
-/// the phase.
-fn contact_force(
-    scene: &Scene,
-    obstacle: String,
-    nodes: Option<Selection>,
-) -> Result<Gauge, InputError> {
-    let number = scene.obstacle_number(&obstacle, "obstacle")?;
-    let contact = Contact::new(scene.body(), &scene.obstacles()[number])?;
-    let acts = |phase: &Phase| {
-        let acting = phase.contacts(scene.obstacles())?;
-        Ok(acting.iter().filter(|acting| acting.name() == obstacle).count() as f64)
-    };
-    let times: Vec<f64> = scene.phases().iter().map(acts).collect::<Result<_, InputError>>()?;
-    let d = scene.body().dimension();
-    let mut is_read = None;
-    if let Some(nodes) = &nodes {
-        let is_read = is_read.insert(vec![false; scene.body().mesh().node_count()]);
-        scene.body().mesh().select(nodes)?.into_iter().for_each(|node| is_read[node] = true);
-    }
-    Ok(Box::new(move |view, sample| {
-        let force = match (&sample.commanded.0, times.get(sample.phase)) {
-            (None, Some(0.0)) => Some([0.0; 3]),
-            (None, Some(times)) => {
-                let (t, u, v) = (sample.time, view.displacements(), view.velocities());
-                let force = contact.force(t, u, v, is_read.as_deref());
-                force.ok().map(|force| force.map(|force| times * force))
-            }
-            _ => {
-                let force = match &nodes {
-                    Some(nodes) => view.contact_force_on(&obstacle, nodes.clone()),
-                    None => view.contact_force(&obstacle),
-                };
-                force.ok().map(|force| std::array::from_fn(|i| if i < d { force[i] } else { 0.0 }))
-            }
-        };
-        Value::Vector(force.unwrap_or([f64::NAN; 3]))
     }))
 }
 

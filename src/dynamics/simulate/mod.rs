@@ -8,6 +8,7 @@ mod checkpoint;
 #[cfg(feature = "checkpoint")]
 mod checkpoint_parts;
 mod commands;
+mod contact_gauge;
 #[cfg(feature = "study")]
 mod derivative;
 mod events;

@@ -27,10 +27,8 @@ pub(super) enum What {
     Velocity(Selection),
     ConstraintForce(Selection),
     ConstraintMoment(Selection, Lever),
-    /// Of an obstacle, on all nodes or these.
-    ContactForce(String, Option<Selection>),
-    /// Of a touch, on these nodes or on the body that is read.
-    TouchForce(String, Option<Selection>),
+    /// Of an obstacle on all nodes, of a touch on the body that is read, of both on these nodes.
+    Contact(OfContact, By, Option<Selection>),
     /// Of a touch.
     Gap(String),
     SpringPull(String),
@@ -45,6 +43,23 @@ pub(super) enum What {
     CentreOfMass,
     Momentum,
     Rotation,
+}
+
+/// What is read of a contact.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum OfContact {
+    Force,
+    /// Of what is in touch.
+    Area,
+    /// The largest one.
+    Pressure,
+}
+
+/// What exerts a contact: an obstacle, or bodies that touch.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum By {
+    Obstacle(String),
+    Touch(String),
 }
 
 /// The point and axis of a moment.
@@ -169,18 +184,42 @@ impl Reading {
 
     /// Force of an obstacle on the body (N).
     pub fn contact_force(obstacle: impl Into<String>) -> Self {
-        What::ContactForce(obstacle.into(), None).into()
+        What::Contact(OfContact::Force, By::Obstacle(obstacle.into()), None).into()
     }
 
     /// Force of an obstacle on some nodes together (N), such as of one finger of a gripper whose forces on
     /// the body cancel each other: see [`View::contact_force_on`](crate::View::contact_force_on).
     pub fn contact_force_on(obstacle: impl Into<String>, nodes: impl Into<Selection>) -> Self {
-        What::ContactForce(obstacle.into(), Some(nodes.into())).into()
+        Self::contact_force(obstacle).on(nodes)
     }
 
     /// Force (N) of bodies that [touch](crate::Touch) on one [of them](Self::of_body) or [on](Self::on) some nodes.
     pub fn touch_force(touch: impl Into<String>) -> Self {
-        What::TouchForce(touch.into(), None).into()
+        What::Contact(OfContact::Force, By::Touch(touch.into()), None).into()
+    }
+
+    /// Area (m^2) of the surface that an obstacle touches, of all bodies or [on](Self::on) some nodes: see
+    /// [`NodalContact::area`](crate::NodalContact::area). A string has none.
+    pub fn contact_area(obstacle: impl Into<String>) -> Self {
+        What::Contact(OfContact::Area, By::Obstacle(obstacle.into()), None).into()
+    }
+
+    /// Area (m^2) of the surface of one [of several bodies](Self::of_body), or [on](Self::on) some nodes, that others
+    /// [touch](crate::Touch).
+    pub fn touch_area(touch: impl Into<String>) -> Self {
+        What::Contact(OfContact::Area, By::Touch(touch.into()), None).into()
+    }
+
+    /// The largest contact pressure (Pa) of an obstacle at any node, or [at](Self::on) some of them: see
+    /// [`NodalContact::pressure`](crate::NodalContact::pressure).
+    pub fn contact_pressure(obstacle: impl Into<String>) -> Self {
+        What::Contact(OfContact::Pressure, By::Obstacle(obstacle.into()), None).into()
+    }
+
+    /// The largest contact pressure (Pa) of bodies that [touch](crate::Touch) at any node of one
+    /// [of them](Self::of_body), or [at](Self::on) some nodes.
+    pub fn touch_pressure(touch: impl Into<String>) -> Self {
+        What::Contact(OfContact::Pressure, By::Touch(touch.into()), None).into()
     }
 
     /// The least distance (m) of the surfaces of bodies that [touch](crate::Touch), up to that from which on nothing
@@ -189,9 +228,10 @@ impl Reading {
         What::Gap(touch.into()).into()
     }
 
-    /// The part of a contact force that acts on some nodes.
+    /// The part of a contact force, or of an area in touch, that belongs to some nodes; the largest contact pressure at
+    /// these.
     pub fn on(mut self, nodes: impl Into<Selection>) -> Self {
-        if let What::ContactForce(_, on) | What::TouchForce(_, on) = &mut self.what {
+        if let What::Contact(_, _, on) = &mut self.what {
             *on = Some(nodes.into());
         }
         self
@@ -280,7 +320,7 @@ impl Reading {
         What::Momentum.into()
     }
 
-    /// Of one of several bodies: its centre of mass, its rotation, its momentum, the force of a touch on it. Default: of all together.
+    /// Of one of several bodies: its centre of mass, its rotation, its momentum, what a touch does to it. Default: of all together.
     pub fn of_body(mut self, name: impl Into<String>) -> Self {
         self.body = Some(name.into());
         self
@@ -305,8 +345,10 @@ impl Reading {
             What::SpringLength(_) | What::Distance(_) => "m",
             What::Velocity(_) => "m/s",
             What::Momentum => "kg m/s",
-            What::ConstraintForce(_) | What::ContactForce(..) => "N",
-            What::TouchForce(..) | What::SpringPull(_) | What::TensionAtEnd(_) => "N",
+            What::ConstraintForce(_) | What::Contact(OfContact::Force, ..) => "N",
+            What::SpringPull(_) | What::TensionAtEnd(_) => "N",
+            What::Contact(OfContact::Area, ..) => "m^2",
+            What::Contact(OfContact::Pressure, ..) => "Pa",
             What::Gap(_) => "m",
             What::ConstraintMoment(..) => "N m",
             What::Pressure(_) | What::Stress(_) => "Pa",
@@ -343,10 +385,13 @@ impl Reading {
         }
         let is_of_bodies = matches!(
             self.what,
-            What::CentreOfMass | What::Rotation | What::Momentum | What::TouchForce(..)
+            What::CentreOfMass
+                | What::Rotation
+                | What::Momentum
+                | What::Contact(_, By::Touch(_), _)
         );
         if let Some(name) = self.body.as_ref().filter(|_| !is_of_bodies) {
-            let help = "the centre of mass, the rotation, the momentum and the force of a touch alone are read of a body: name its nodes instead";
+            let help = "the centre of mass, the rotation, the momentum and what a touch does are all that is read of a body: name its nodes instead";
             return Err(InputError::new("body", format!("\"{name}\""), help));
         }
         // the components that are columns by default, and one more that must be requested
@@ -358,7 +403,7 @@ impl Reading {
             (What::Strain(_), 2) => (&[XX, YY, ZZ, XY], None),
             (What::Strain(_), _) => (&[XX, YY, ZZ, XY, YZ, XZ], None),
             (What::Position(_) | What::Displacement(_) | What::Velocity(_), _)
-            | (What::ConstraintForce(_) | What::ContactForce(..) | What::TouchForce(..), _)
+            | (What::ConstraintForce(_) | What::Contact(OfContact::Force, ..), _)
             | (What::CentreOfMass | What::Momentum, _) => (&[X, Y, Z][..dimension], Some(Norm)),
             (What::ConstraintMoment(_, Lever { axis: None, .. }), 3) => (&[X, Y, Z], Some(Norm)),
             _ => (&[], None),

@@ -8,8 +8,8 @@ use crate::dynamics::state::State;
 use crate::elements::body::{Body, CellField};
 use crate::elements::force::{Force, Forces, NodalForces};
 use crate::elements::mesh::Selection;
-use crate::scene::forces::{ChamberForce, Contact, Signal, SpringGauge};
-use crate::scene::timeline::{LoadKind, Phase, Scene};
+use crate::scene::forces::{ChamberForce, Contact, NodalContact, Signal, SpringGauge};
+use crate::scene::timeline::{ContactReader, LoadKind, Phase, Scene};
 
 /// The motion of a [`Simulation`](super::Simulation) or at a [sample](crate::Sampling::sensor), without copies.
 pub struct View<'a> {
@@ -208,6 +208,12 @@ impl<'a> View<'a> {
         let (forces, d) = (self.contact_forces(obstacle)?, self.body().dimension());
         let along = |axis| nodes.iter().map(|node| forces[node * d + axis]).sum();
         Ok((0..d).map(along).collect())
+    }
+
+    /// What contact does at each node; `None` where it is undefined.
+    pub(crate) fn nodal_contacts(&self, reader: &ContactReader) -> Option<Vec<NodalContact>> {
+        let obstacles = self.scene.contacts(self.phase).ok()?;
+        reader.read(&obstacles, self.time, [self.state.u, self.state.v]).ok()
     }
 
     /// The forces of an obstacle (N) on all nodes, dimension components each.

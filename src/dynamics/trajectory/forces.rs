@@ -1,12 +1,15 @@
 //! Forces that are not stored in a sample but follow from it.
 
+use std::sync::Arc;
+
 use super::{Sample, Trajectory};
 use crate::base::input::InputError;
 use crate::elements::force::{Force, NodalForces};
 use crate::elements::mesh::Selection;
 use crate::integrators::ode::Failure;
 use crate::scene::constraint::PhaseStart;
-use crate::scene::timeline::Phase;
+use crate::scene::forces::{NodalContact, TouchForce};
+use crate::scene::timeline::{ContactReader, Phase};
 
 impl Trajectory {
     /// Forces (N) of all obstacles, and of bodies that touch, on the nodes, dimension components per node; 0 where there
@@ -19,9 +22,50 @@ impl Trajectory {
     /// run and is now undefined.
     pub fn contact_forces(&self, sample: &Sample) -> Result<Vec<f64>, InputError> {
         let obstacles = self.scene.contacts(self.phase_of(sample)?)?;
-        let touches = self.scene.touch_forces()?;
-        let touches = touches.iter().map(|touch| touch as &dyn Force);
+        let touches = self.touch_forces()?.iter().map(|touch| touch as &dyn Force);
         self.forces_of(obstacles.iter().map(|contact| contact as _).chain(touches), sample)
+    }
+
+    /// What obstacles, and bodies that touch, do at each node: contact pressure, the area in touch, whether it sticks.
+    ///
+    /// ```
+    /// # use pliant::{Body, Cells, ContactStatus, Material, Mesh, Obstacle, Phase, Scene, Statics};
+    /// # let soft = Material { density: 1000.0, young: 1e5, poisson: 0.0, viscosity: 0.0 };
+    /// let block = Body::new(Mesh::rectangle([0.1, 0.05], [5, 3], Cells::Rectangles)?, soft);
+    /// let floor = Obstacle::half_plane([0.0, 0.0], [0.0, 1.0]);
+    /// let scene = Scene::new(block.thickness(0.01).build()?)
+    ///     .gravity([0.0, -9.8])
+    ///     .obstacle(floor.stiffness_density(1e8).friction_coefficient(0.5))
+    ///     .phase(Phase::until(1.0).hold_axes([1], [pliant::Axis::X]));
+    /// let lying = scene.equilibrium(&Statics::default())?;
+    /// let corner = lying.trajectory().nodal_contacts(lying.sample())?[0];
+    /// assert!((corner.pressure() / (1000.0 * 9.8 * 0.05) - 1.0).abs() < 0.01);
+    /// assert!((corner.area() - 0.0125 * 0.01).abs() < 1e-9);
+    /// assert_eq!(corner.status(), ContactStatus::Sticking);
+    /// # Ok::<(), pliant::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`contact_forces`](Self::contact_forces); surfaces that lie on each other.
+    pub fn nodal_contacts(&self, sample: &Sample) -> Result<Vec<NodalContact>, InputError> {
+        let obstacles = self.scene.contacts(self.phase_of(sample)?)?;
+        let nodal = self.contact()?.read(&obstacles, sample.time, [&sample.u, &sample.v]);
+        nodal.map_err(|failure| refused(sample, failure))
+    }
+
+    /// The forces of bodies that touch.
+    pub(crate) fn touch_forces(&self) -> Result<&[TouchForce], InputError> {
+        Ok(&self.contact()?.touches)
+    }
+
+    fn contact(&self) -> Result<&ContactReader, InputError> {
+        match self.contact.get() {
+            Some(known) => Ok(known),
+            None => {
+                let reader = Arc::new(ContactReader::new(&self.scene)?);
+                Ok(self.contact.get_or_init(|| reader))
+            }
+        }
     }
 
     /// The sum (N) of some forces on the nodes.

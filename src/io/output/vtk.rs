@@ -14,6 +14,7 @@ use crate::dynamics::error::Error;
 use crate::dynamics::trajectory::{Sample, Trajectory};
 use crate::elements::body::{CellField, NodalField};
 use crate::elements::mesh::CellKind;
+use crate::scene::forces::NodalContact;
 
 /// Writes one VTK XML file per sample, `<name>_0000.vtu`, ..., and `<name>.pvd`, the collection
 /// that has their times: open this one.
@@ -24,7 +25,9 @@ use crate::elements::mesh::CellKind;
 /// | at | field | meaning |
 /// | --- | --- | --- |
 /// | points | `displacement`, `velocity` | m, m/s |
-/// | points | `contact_force` | of all obstacles together on the node, N |
+/// | points | `contact_force` | of all obstacles, and of bodies that touch, on the node, N |
+/// | points | `contact_pressure` | Pa, of all of them together: [`NodalContact`] |
+/// | points | `contact_status` | 0 where nothing touches, 1 where it sticks, 2 where it slides |
 /// | points | `constraint_force` | of what holds or moves the node, N |
 /// | points | `stress`, `von_mises` | Pa, means of the cells around: [`Body::nodal_fields`](crate::Body::nodal_fields) |
 /// | cells | `strain` | Cauchy's or Green's, as the body's |
@@ -91,6 +94,7 @@ fn grid(trajectory: &Trajectory, sample: &Sample) -> Result<Vtk, Error> {
     let vectors = |name: &str, components: &[f64]| {
         Attribute::DataArray(DataArray::vectors(name).with_vec(spatial(components)))
     };
+    let contacts = trajectory.nodal_contacts(sample)?;
     let nodal = trajectory.body().nodal_fields(&sample.u);
     let fields = trajectory.body().cell_fields(&sample.u);
     let body = trajectory.body();
@@ -164,6 +168,14 @@ fn grid(trajectory: &Trajectory, sample: &Sample) -> Result<Vtk, Error> {
                     vectors("constraint_force", &trajectory.constraint_forces(sample)?),
                     self::tensors("stress", nodal.iter().map(|field| field.stress)),
                     self::scalars("von_mises", nodal.iter().map(NodalField::von_mises).collect()),
+                    self::scalars(
+                        "contact_pressure",
+                        contacts.iter().map(NodalContact::pressure).collect(),
+                    ),
+                    self::scalars(
+                        "contact_status",
+                        contacts.iter().map(|nodal| nodal.status().number().into()).collect(),
+                    ),
                 ],
                 cell: of_cells,
             },

@@ -48,15 +48,17 @@ pub(super) const SENSOR: TableKeys = TableKeys::new(
     Kind {
         word: "contact-force",
         about: "the force of an obstacle, or of bodies that touch, on a body (N)",
-        keys: &[
-            Key::new("obstacle", Holds::Text, "the name of the obstacle").default("`touch`"),
-            Key::new("touch", Holds::Text, "the name of the contact of bodies").default("`obstacle`"),
-            Key::new("nodes", Holds::Nodes, "the nodes on which it acts").default("all").law(
-                "Those of one finger, say: the forces on both sides of what is gripped cancel each other. A `touch` needs \
-                 `nodes` or `body`, as all of its forces together are 0.",
-            ),
-            Key::new("body", Holds::Text, "the body on which a `touch` acts").default("`nodes`"),
-        ],
+        keys: &[OBSTACLE, TOUCH, TOUCHED, TOUCHED_BODY],
+    },
+    Kind {
+        word: "contact-area",
+        about: "the area of the surface of a body that an obstacle, or another body, touches: in the plane a length times the thickness (m^2)",
+        keys: &[OBSTACLE, TOUCH, TOUCHED, TOUCHED_BODY],
+    },
+    Kind {
+        word: "contact-pressure",
+        about: "the largest contact pressure at any of the nodes (Pa)",
+        keys: &[OBSTACLE, TOUCH, TOUCHED, TOUCHED_BODY],
     },
     Kind {
         word: "gap",
@@ -121,6 +123,16 @@ pub(super) const SENSOR: TableKeys = TableKeys::new(
     },
 ]);
 
+const OBSTACLE: Key =
+    Key::new("obstacle", Holds::Text, "the name of the obstacle").default("`touch`");
+const TOUCH: Key =
+    Key::new("touch", Holds::Text, "the name of the contact of bodies").default("`obstacle`");
+const TOUCHED: Key = Key::new("nodes", Holds::Nodes, "the nodes on which it acts").default("all").law(
+    "Those of one finger, say: the forces on both sides of what is gripped cancel each other. A `touch` needs `nodes` or \
+     `body`, as it acts on both sides alike: all of its forces together are 0.",
+);
+const TOUCHED_BODY: Key =
+    Key::new("body", Holds::Text, "the body on which a `touch` acts").default("`nodes`");
 const NODES: Key = Key::new("nodes", Holds::Nodes, "the nodes").required();
 const PLACES: Key = Key::new("nodes", Holds::Nodes, "the nodes").default("`point`");
 const POINT: Key =
@@ -155,14 +167,10 @@ pub(super) fn sensor(value: &Value, scene: &Scene) -> Result<(String, Reading), 
                 None => Reading::constraint_moment(nodes()?, about),
             }
         }
-        "contact-force" => {
-            let nodes = table.optional("nodes", |value| selection(value, mesh))?;
-            match (table.optional("touch", Value::string)?, nodes) {
-                (Some(touch), Some(nodes)) => Reading::touch_force(touch).on(nodes),
-                (Some(touch), None) => Reading::touch_force(touch).of_body(named("body")?),
-                (None, Some(nodes)) => Reading::contact_force_on(named("obstacle")?, nodes),
-                (None, None) => Reading::contact_force(named("obstacle")?),
-            }
+        "contact-force" => contact(&table, mesh, Reading::contact_force, Reading::touch_force)?,
+        "contact-area" => contact(&table, mesh, Reading::contact_area, Reading::touch_area)?,
+        "contact-pressure" => {
+            contact(&table, mesh, Reading::contact_pressure, Reading::touch_pressure)?
         }
         "gap" => Reading::gap(named("touch")?),
         "spring-pull" => Reading::spring_pull(named("spring")?),
@@ -189,6 +197,26 @@ pub(super) fn sensor(value: &Value, scene: &Scene) -> Result<(String, Reading), 
     let alone = Sampling::phase_ends().read(name, reading.clone());
     alone.check(scene).map_err(|error| table.blame(error))?;
     Ok((name.into(), reading))
+}
+
+/// What an obstacle, or bodies that touch, do.
+fn contact(
+    table: &Table,
+    mesh: &Mesh,
+    of_obstacle: fn(String) -> Reading,
+    of_touch: fn(String) -> Reading,
+) -> Result<Reading, Error> {
+    let nodes = table.optional("nodes", |value| selection(value, mesh))?;
+    let named = |key: &str| table.required(key, Value::string);
+    let reading = match (table.optional("touch", Value::string)?, &nodes) {
+        (Some(touch), Some(_)) => of_touch(touch.into()),
+        (Some(touch), None) => of_touch(touch.into()).of_body(named("body")?),
+        (None, _) => of_obstacle(named("obstacle")?.into()),
+    };
+    Ok(match nodes {
+        Some(nodes) => reading.on(nodes),
+        None => reading,
+    })
 }
 
 /// An angle in the unit of the table.

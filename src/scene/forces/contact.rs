@@ -1,5 +1,6 @@
 //! Penalty contact (Hirai (4.3.5), (4.4.2)): obstacles push boundary nodes out of themselves.
 
+mod nodal;
 mod switches;
 #[cfg(test)]
 mod tests;

@@ -104,6 +104,11 @@ impl Coulomb {
         Drag { per_speed, slope: (along - per_speed) / (w * w), along }
     }
 
+    /// Whether it holds what slides at the speed `w` (m/s).
+    pub(super) fn sticks(&self, w: f64) -> bool {
+        self.at_rest > 0.0 && w <= self.sticking_speed
+    }
+
     /// The largest d mu/dw (s/m), that at rest.
     pub(super) fn steepest(&self) -> f64 {
         1.5 * self.at_rest / self.sticking_speed

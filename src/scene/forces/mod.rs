@@ -6,6 +6,7 @@ mod faces;
 mod friction;
 mod gravity;
 mod load;
+mod nodal;
 mod obstacle;
 mod passage;
 mod pressure;
@@ -24,6 +25,8 @@ pub(crate) use contact::Contact;
 pub(crate) use faces::{areas, shares};
 pub(crate) use gravity::Gravity;
 pub(crate) use load::{Load, VaryingLoad};
+pub(crate) use nodal::Tributary;
+pub use nodal::{ContactStatus, NodalContact};
 pub use obstacle::Obstacle;
 pub(crate) use pressure::FacePressure;
 #[cfg(feature = "output")]

@@ -132,7 +132,7 @@ pub(super) fn closed_points(body: &Body, faces: &[Vec<usize>]) -> Option<Vec<Sur
 }
 
 /// The [pieces] of a face by their nodes, with the area (m^2) of each; `None` if it belongs to a string.
-fn measured_pieces<'a>(
+pub(super) fn measured_pieces<'a>(
     body: &'a Body,
     face: &'a [usize],
 ) -> Option<impl Iterator<Item = (Vec<usize>, f64)> + 'a> {

@@ -17,6 +17,7 @@ mod crossing;
 mod force;
 mod law;
 mod near;
+mod nodal;
 mod pair;
 mod spec;
 mod surfaces;

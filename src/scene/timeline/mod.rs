@@ -2,6 +2,7 @@
 
 mod body_state;
 mod changed;
+mod contacts;
 mod finer;
 mod forces;
 mod initial;
@@ -16,6 +17,7 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 
 pub use body_state::BodyState;
+pub(crate) use contacts::ContactReader;
 pub(crate) use load::{Load, LoadKind};
 #[cfg(feature = "checkpoint")]
 pub(crate) use phase::ContactWith;

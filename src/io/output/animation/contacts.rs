@@ -19,7 +19,7 @@ const ROUND_OFF: f64 = 1e-10;
 pub(super) fn resultants(trajectory: &Trajectory, frames: &[&Sample]) -> Result<Value, Error> {
     let scene = trajectory.scene();
     let d = scene.body().dimension();
-    let touches = scene.touch_forces()?;
+    let touches = trajectory.touch_forces()?;
     let bodies: Vec<_> = match touches.is_empty() {
         true => Vec::new(),
         false => scene.body().parts().map(|part| part.nodes).collect(),

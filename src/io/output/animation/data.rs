@@ -5,14 +5,13 @@ use std::ptr;
 
 use serde_json::{Value, json};
 
-use super::colours::Quantity;
+use super::colours::{Fields, Quantity};
 use super::geometry::{Geometry, in_view};
 use super::{contacts, pack};
 use crate::base::input::InputError;
 use crate::dynamics::error::Error;
 use crate::dynamics::system::Energy;
 use crate::dynamics::trajectory::{Sample, Trajectory};
-use crate::elements::body::Body;
 use crate::elements::mesh::Mesh;
 use crate::io::output::role::Role;
 use crate::io::output::svg::{View, displaced, positions};
@@ -46,7 +45,7 @@ pub(super) fn gather(trajectory: &Trajectory, name: &str) -> Result<Value, Error
         "phases": phases_in_force(trajectory, &frames, &geometry)?,
         "body": geometry.to_json(),
         "motion": motion(trajectory, &frames, &geometry),
-        "quantities": quantities(body, &frames, &geometry),
+        "quantities": quantities(trajectory, &frames, &geometry)?,
         "energies": energies(&frames),
         "sensors": sensors(trajectory, &frames),
         "contacts": contacts::resultants(trajectory, &frames)?,
@@ -70,7 +69,7 @@ fn bytes_per_frame(trajectory: &Trajectory, geometry: &Geometry) -> usize {
     // a place and a force of each
     let contacts = 2 * axes * trajectory.scene().obstacles().len();
     let singles = size_of::<f32>() * (sensors + contacts);
-    let quantities = Quantity::of(trajectory.body()).len();
+    let quantities = Quantity::of(trajectory.scene()).len();
     2 * axes * geometry.count() + quantities * geometry.cells.len() + singles
 }
 
@@ -89,17 +88,24 @@ fn motion(trajectory: &Trajectory, frames: &[&Sample], geometry: &Geometry) -> V
     pack::points(&points, axes)
 }
 
-/// The values of each quantity in the cell of each face, sample by sample.
-fn quantities(body: &Body, frames: &[&Sample], geometry: &Geometry) -> Value {
-    let quantities = Quantity::of(body);
+/// The values of each quantity in each face, sample by sample.
+fn quantities(
+    trajectory: &Trajectory,
+    frames: &[&Sample],
+    geometry: &Geometry,
+) -> Result<Value, Error> {
+    let (scene, body) = (trajectory.scene(), trajectory.body());
+    let quantities = Quantity::of(scene);
     let mut values =
         vec![Vec::with_capacity(frames.len() * geometry.cells.len()); quantities.len()];
     for sample in frames {
-        let fields = body.cell_fields(&sample.u);
+        let contacts = match Quantity::has_contact(scene) {
+            true => trajectory.nodal_contacts(sample)?,
+            false => Vec::new(),
+        };
+        let fields = Fields { body, cells: body.cell_fields(&sample.u), contacts };
         for (quantity, values) in quantities.iter().zip(&mut values) {
-            let value =
-                |&cell: &usize| (quantity.value)(&fields[cell], body.strain_of(cell)) as f32;
-            values.extend(geometry.cells.iter().map(value));
+            values.extend(quantity.values(&fields, geometry));
         }
     }
     let packed = quantities.iter().zip(values).map(|(quantity, values)| {
@@ -108,7 +114,7 @@ fn quantities(body: &Body, frames: &[&Sample], geometry: &Geometry) -> Value {
         (told["scale"], told["peak"], told["values"]) = (scale.into(), peak.into(), values);
         told
     });
-    packed.collect()
+    Ok(packed.collect())
 }
 
 /// Names and ends of the phases, and the drawn nodes that they hold and move.

@@ -105,6 +105,11 @@ impl Geometry {
         nodes.iter().filter_map(|&node| self.places[node]).collect()
     }
 
+    /// The nodes of a face.
+    pub(super) fn nodes_of(&self, face: usize) -> impl Iterator<Item = usize> {
+        self.faces[face].iter().map(|&place| self.nodes[place])
+    }
+
     /// The places of what a spring joins, or of what a cable runs along.
     pub(super) fn ends(&self, joints: &[Joint]) -> Vec<usize> {
         let place = |joint: &Joint| match joint {

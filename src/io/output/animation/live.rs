@@ -2,15 +2,15 @@
 
 use serde_json::{Value, json};
 
-use super::colours::Quantity;
+use super::colours::{Fields, Quantity};
 use super::geometry::Geometry;
 use super::{STYLE, data, filled, pack};
 use crate::dynamics::error::Error;
+use crate::dynamics::simulate::View;
 use crate::dynamics::system::Energy;
-use crate::elements::body::Body;
 use crate::elements::mesh::Mesh;
 use crate::io::output::svg::drawn;
-use crate::scene::timeline::Scene;
+use crate::scene::timeline::{ContactReader, Scene};
 
 /// The scripts that such a page shares with the animation: how it decodes and draws.
 const DRAWING: &str = concat!(
@@ -29,20 +29,22 @@ const DRAWING: &str = concat!(
 /// What is drawn of a scene.
 pub(crate) struct Picture {
     geometry: Geometry,
+    quantities: Vec<&'static Quantity>,
+    contact: ContactReader,
 }
 
 impl Picture {
     /// What is drawn of `scene`, and all data that do not change.
     ///
     /// # Errors
-    /// Springs or constraints on nodes that do not exist.
+    /// Springs, constraints or contact of what does not exist.
     pub(crate) fn new(scene: &Scene) -> Result<(Self, Value), Error> {
         let mesh = scene.body().mesh();
         let points = data::point_masses(mesh);
         let ends = data::spring_ends(scene)?;
         let geometry = Geometry::new(scene.body(), ends.iter().flatten().copied(), &points);
-        let quantities: Vec<Value> =
-            Quantity::of(scene.body()).iter().map(Quantity::to_json).collect();
+        let quantities = Quantity::of(scene);
+        let told = quantities.iter().map(|quantity| quantity.to_json());
         let springs = scene.springs().iter().zip(&ends);
         let springs = springs
             .map(|(spring, ends)| json!({ "name": spring.name(), "ends": geometry.ends(ends), "isCable": spring.is_cable() }));
@@ -50,14 +52,14 @@ impl Picture {
             "axes": axes(mesh),
             "phases": data::phases(scene, &geometry)?,
             "body": geometry.to_json(),
-            "quantities": quantities,
+            "quantities": told.collect::<Vec<_>>(),
             "energies": data::ENERGIES,
             "absent": absent(scene),
             "obstacles": data::obstacles(scene),
             "springs": springs.collect::<Vec<_>>(),
             "points": geometry.places(&points),
         });
-        Ok((Self { geometry }, fixed))
+        Ok((Self { geometry, quantities, contact: ContactReader::new(scene)? }, fixed))
     }
 
     /// The page with its own `style`, and with its own scripts before and after those that draw.
@@ -92,13 +94,17 @@ impl Picture {
         pack::singles(numbers)
     }
 
-    /// The values of a quantity in the cell of each face, and the end of their scale; `None` for a number
-    /// that no quantity has.
-    pub(crate) fn colours(&self, body: &Body, u: &[f64], quantity: usize) -> Option<Value> {
-        let shown = Quantity::of(body).get(quantity)?;
-        let fields = body.cell_fields(u);
-        let value = |&cell: &usize| (shown.value)(&fields[cell], body.strain_of(cell)) as f32;
-        let values: Vec<f32> = self.geometry.cells.iter().map(value).collect();
+    /// The values of a quantity in each face, and the end of their scale; `None` for a number that no quantity has, and
+    /// where contact is undefined.
+    pub(crate) fn colours(&self, view: &View, quantity: usize) -> Option<Value> {
+        let shown = self.quantities.get(quantity)?;
+        let contacts = match shown.is_of_contact() {
+            true => view.nodal_contacts(&self.contact)?,
+            false => Vec::new(),
+        };
+        let (body, cells) = (view.body(), view.cell_fields());
+        let fields = Fields { body, cells, contacts };
+        let values: Vec<f32> = shown.values(&fields, &self.geometry).collect();
         let (values, scale, _) = shown.packed(&values);
         Some(json!({ "quantity": quantity, "scale": scale, "values": values }))
     }

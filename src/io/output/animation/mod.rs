@@ -60,7 +60,7 @@ const DATA: [&str; 2] = ["<script type=\"application/json\" id=\"data\">", "</sc
 
 /// Writes the motion as one HTML file that a web browser plays, without a network.
 ///
-/// It shows the body coloured by stress or strain energy density, obstacles, springs (coloured while an
+/// It shows the body coloured by stress, strain energy density, stretch, contact pressure or what sticks, obstacles, springs (coloured while an
 /// actuator pulls or pushes), point masses, held and moved nodes, forces of obstacles as arrows; below it the
 /// energies and what sensors have read over time, and how the motion was computed, with the warnings of the
 /// report. The shown frame can be saved as PNG or SVG. `title` is its heading. Obstacles that are given by a

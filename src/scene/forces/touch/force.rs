@@ -30,24 +30,24 @@ pub(crate) struct TouchForce {
 const ONTO: f64 = 0.02;
 
 /// What acts between a point and a feature.
-struct Action {
+pub(super) struct Action {
     /// Weight times area (m^2): the share of the energy per area.
     share: f64,
     /// Velocity of the point relative to the feature, the rate of the distance, and the sliding velocity (m/s).
     velocity: [f64; 3],
     rate: f64,
-    sliding: [f64; 3],
+    pub(super) sliding: [f64; 3],
     /// The part of the normal force with a potential (N), and what multiplies -rate in the other one (N s/m).
     elastic: f64,
     damping: f64,
     drag: Option<Drag>,
     /// Whether damping does not pull more than the surfaces press; else no force is left.
-    presses: bool,
+    pub(super) presses: bool,
 }
 
 impl Action {
     /// The normal force (N) on the point.
-    fn pressing(&self) -> f64 {
+    pub(super) fn pressing(&self) -> f64 {
         self.elastic - self.damping * self.rate
     }
 
@@ -88,7 +88,7 @@ impl TouchForce {
 
     /// Passes to `see` each pair that acts under the displacements `u` (m), and what its share of the energy per area
     /// is (m^2).
-    fn each(&self, u: &[f64], mut see: impl FnMut(Pair, f64)) {
+    pub(super) fn each(&self, u: &[f64], mut see: impl FnMut(Pair, f64)) {
         let (near, moved) = self.near(u);
         for near in near.pairs.iter().filter(|near| near.distance - moved < self.law.distance) {
             let x = self.surfaces.point_at(near.point, u);
@@ -110,7 +110,7 @@ impl TouchForce {
     }
 
     /// What acts in a pair with the velocities `v` (m/s).
-    fn action(&self, pair: &Pair, share: f64, v: &[f64]) -> Action {
+    pub(super) fn action(&self, pair: &Pair, share: f64, v: &[f64]) -> Action {
         let velocity = pair.velocity(&pair.shares, v, self.surfaces.dimension);
         let rate = dot(&pair.normal, &velocity);
         let sliding: [f64; 3] = std::array::from_fn(|i| velocity[i] - rate * pair.normal[i]);
@@ -123,7 +123,7 @@ impl TouchForce {
     }
 
     /// Why a state is refused in which surfaces lie on each other.
-    fn passed(&self) -> Failure {
+    pub(super) fn passed(&self) -> Failure {
         let name = &self.name;
         Failure::Recoverable(format!(
             "surfaces of \"{name}\" lie on each other (a stiffer contact keeps them apart)"
@@ -135,13 +135,13 @@ impl TouchForce {
         self.nearest(u).map_or(self.law.distance, |(gap, _)| gap)
     }
 
-    /// The force (N) on the nodes that `is_read` names together.
-    pub(crate) fn force(&self, u: &[f64], v: &[f64], is_read: &[bool]) -> [f64; 3] {
+    /// The force (N) on the nodes that `is_read` names together, or on all.
+    pub(crate) fn force(&self, u: &[f64], v: &[f64], is_read: Option<&[bool]>) -> [f64; 3] {
         let mut total = [0.0; 3];
         self.each(u, |pair, share| {
             let action = self.action(&pair, share, v);
             let braking = action.braking(&pair.normal);
-            for m in (0..pair.count).filter(|&m| is_read[pair.nodes[m]]) {
+            for m in (0..pair.count).filter(|&m| is_read.is_none_or(|of| of[pair.nodes[m]])) {
                 for (i, total) in total.iter_mut().enumerate() {
                     *total += pair.shares[m] * (action.elastic * pair.normal[i] + braking[i]);
                 }

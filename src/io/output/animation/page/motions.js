@@ -28,9 +28,16 @@ const computations = copies(document.querySelector(".computation"), page.motions
 const pictures = page.motions.map((motion, k) =>
   pictureOf(motion, figures[k], () => Math.min(...pictures.map(({ fitting }) => fitting()))));
 
+/** The quantities of all motions, each once; every motion has its own in these places, or none. */
+const quantities = pictures.flatMap((picture) => picture.quantities)
+  .filter(({ name }, k, all) => k === all.findIndex((quantity) => quantity.name === name));
+for (const { quantities: own } of pictures) {
+  own.splice(0, own.length, ...quantities.map(({ name }) => own.find((quantity) => quantity.name === name)));
+}
+
 // the same colours for the same values
-pictures[0].quantities.forEach((_, k) => {
-  const same = pictures.map(({ quantities }) => quantities[k]).filter((quantity) => quantity);
+quantities.forEach((_, k) => {
+  const same = pictures.map(({ quantities: own }) => own[k]).filter((quantity) => quantity);
   const largest = (key) => Math.max(...same.map((quantity) => quantity[key]));
   const [scale, peak] = [largest("scale"), largest("peak")];
   for (const quantity of same) Object.assign(quantity, { scale, peak });

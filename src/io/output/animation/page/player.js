@@ -147,7 +147,7 @@ function tellFacts() {
 
 document.body.classList.toggle("several", several);
 tellFacts();
-offerQuantities(pictures[0].quantities, show);
+offerQuantities(quantities, show);
 offerArrows(pictures.some(({ data }) => data.contacts.length), forceOfLongest, show);
 offerSpeeds(last - first);
 for (const chart of charts) {

@@ -1,0 +1,39 @@
+//! What bodies that touch do at their nodes.
+
+use super::force::TouchForce;
+use crate::base::vector::norm;
+use crate::integrators::ode::Failure;
+use crate::scene::forces::nodal::{NodalContact, Tributary};
+
+impl TouchForce {
+    /// Adds what the surfaces do at the nodes of both to `nodal`: each half of the area in touch is that of the points of
+    /// one surface, and both surfaces have the same.
+    ///
+    /// # Errors
+    /// Surfaces that lie on each other.
+    pub(crate) fn add_nodal(
+        &self,
+        [u, v]: [&[f64]; 2],
+        tributary: &Tributary,
+        nodal: &mut [NodalContact],
+    ) -> Result<(), Failure> {
+        let mut is_passed = false;
+        self.each(u, |pair, share| {
+            is_passed |= pair.distance == 0.0;
+            let action = self.action(&pair, share, v);
+            if !action.presses {
+                return;
+            }
+            let sticks = self.coulomb.is_some_and(|law| law.sticks(norm(&action.sliding)));
+            let pressing = action.pressing();
+            let shares = pair.nodes.into_iter().zip(pair.shares).take(pair.count);
+            // those of the point are above 0
+            let of_point = shares.clone().filter(|(_, part)| *part > 0.0).map(|(node, _)| node);
+            let area = share * tributary.facing_part(of_point, u, &pair.normal);
+            for (node, part) in shares {
+                nodal[node].add(part.abs() * pressing, part.abs() * area, !sticks);
+            }
+        });
+        if is_passed { Err(self.passed()) } else { Ok(()) }
+    }
+}
