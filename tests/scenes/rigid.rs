@@ -217,6 +217,27 @@ fn a_held_side_carries_the_weight() {
     assert!(moving.last().u.iter().all(|u| u.abs() < 1e-9), "{:?}", moving.last().u);
 }
 
+/// A rigid body of which all nodes are moved follows: at one velocity, and about one of its nodes, which rests.
+#[test]
+fn a_rigid_body_is_moved_as_a_whole() {
+    let moved = |phase: Phase, place: &dyn Fn(&[f64]) -> [f64; 2]| {
+        let scene = Scene::new(bar("bar", 0.0).build().unwrap()).phase(phase);
+        let motion = run(&scene, Method::CvodeBdf, 1e-8);
+        for (node, u) in motion.last().u.chunks_exact(2).enumerate() {
+            let x = motion.body().mesh().position(node);
+            let off = (0..2).map(|i| (x[i] + u[i] - place(x)[i]).abs()).fold(0.0, f64::max);
+            assert!(off < 1e-7, "node {node} is {off} m off");
+        }
+    };
+    moved(Phase::until(0.1).move_nodes("all", [0.3, -0.1]), &|x| [x[0] + 0.03, x[1] - 0.01]);
+    let pin = [0.05, 0.005];
+    let turned = |x: &[f64]| {
+        let (r, (sin, cos)) = ([x[0] - pin[0], x[1] - pin[1]], 0.4_f64.sin_cos());
+        [pin[0] + cos * r[0] - sin * r[1], pin[1] + sin * r[0] + cos * r[1]]
+    };
+    moved(Phase::until(0.1).rotate_path("all", pin, [1.0], [0.0, 0.1], [0.0, 0.4]), &turned);
+}
+
 /// A run goes on from a checkpoint in a file bit by bit as it goes on from memory, with a hinge and a contact in action.
 #[test]
 fn checkpoints_keep_rigid_bodies() {

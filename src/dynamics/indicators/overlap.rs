@@ -216,7 +216,12 @@ pub(crate) fn check_start(scene: &Scene) -> Result<(), InputError> {
         return Ok(());
     }
     let Some(mut overlaps) = Overlaps::new(scene.body()) else { return Ok(()) };
-    let entries = overlaps.entries(scene.initial_displacements());
+    let mut entries = overlaps.entries(scene.initial_displacements());
+    entries.retain(|entry| {
+        let nodes = [overlaps.node(entry), overlaps.cells[entry.cell].1[0]];
+        let names = nodes.map(|node| scene.body().part_of(node).name);
+        scene.touches().iter().any(|touch| touch.is_between(names))
+    });
     let deepest = Overlaps::deepest(&entries).filter(Entry::is_beyond);
     let Some(deepest) = &deepest else { return Ok(()) };
     let [one, other] = overlaps.who(deepest);

@@ -106,12 +106,9 @@ impl Edges {
         }
     }
 
-    /// Whether one of them changes its length faster than by `least` times the difference of velocities of its nodes.
+    /// Whether one of them changes its length faster than by `least` (m/s).
     pub(super) fn stretches(&self, least: f64) -> bool {
-        let along = |(x, rate): (&[f64; 3], &[f64; 3])| {
-            let size = norm(x) * norm(rate);
-            dot(x, rate).abs() > least * size
-        };
+        let along = |(x, rate): (&[f64; 3], &[f64; 3])| dot(x, rate).abs() > least * norm(x);
         self.arms.iter().zip(&self.rates).any(along)
     }
 

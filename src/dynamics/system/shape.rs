@@ -8,7 +8,7 @@ use crate::integrators::ode::Failure;
 /// What is round-off in the velocities of a rigid piece, relative to the largest.
 const ROUND_OFF: f64 = 1e-12;
 
-/// What is round-off in the rate of an edge, relative to those of its nodes.
+/// What is round-off in the rate of an edge, relative to the largest velocity.
 const TORN: f64 = 1e-9;
 
 impl System {
@@ -26,7 +26,7 @@ impl System {
         let mut v = vec![0.0; self.dofs()];
         self.project(t, u, &mut v);
         self.all_edges.move_to(0.0, u, &v);
-        self.all_edges.stretches(TORN)
+        self.all_edges.stretches(TORN * largest(&v))
     }
 
     /// Has solutions with M follow the edges of rigid pieces as they are now, and what is demanded of them, or else

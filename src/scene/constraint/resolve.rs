@@ -229,8 +229,9 @@ fn without_repetitions(
     Ok(kept.map(|(row, _)| row.clone()).collect())
 }
 
-/// Parts of a row below this, relative to the row, follow from other rows.
-const NOTHING_NEW: f64 = 1e-9;
+/// Parts of a row below this, relative to the row, follow from other rows: nodes that are held as if on a line are there up
+/// to the digits of a file, and the Schur complement loses rows that add less than 1e-6.
+const NOTHING_NEW: f64 = 1e-5;
 /// Times (s) after the start of a phase at which motions of the nodes of a rigid piece are compared.
 const LOOKS: [f64; 4] = [0.0, 0.013, 0.37, 2.9];
 
@@ -254,6 +255,8 @@ fn without_rigid_repetitions(
     // directions that are orthonormal, with what those rows prescribe together
     let mut known: Vec<(Vec<f64>, [f64; 2 * LOOKS.len()])> = Vec::new();
     let mut kept = Vec::with_capacity(rows.len());
+    // of all motions, as a node about which a piece turns has none
+    let mut largest = 0.0_f64;
     for row in rows {
         let mut rest = vec![0.0; places.len()];
         let terms = of_row(&row);
@@ -273,15 +276,12 @@ fn without_rigid_repetitions(
             let Prescribed { displacement, velocity, .. } = row.prescribed(time + after);
             at.copy_from_slice(&[displacement, velocity]);
         }
-        let mut largest = motion.iter().fold(0.0_f64, |most, b| most.max(b.abs()));
+        largest = motion.iter().fold(largest, |most, b| most.max(b.abs()));
         for _ in 0..2 {
             for (direction, own) in &known {
                 let part = dot(direction, &rest);
                 rest.iter_mut().zip(direction).for_each(|(x, e)| *x -= part * e);
-                for (b, own) in motion.iter_mut().zip(own) {
-                    largest = largest.max((part * own).abs());
-                    *b -= part * own;
-                }
+                motion.iter_mut().zip(own).for_each(|(b, own)| *b -= part * own);
             }
         }
         let left = norm(&rest);
