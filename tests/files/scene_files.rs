@@ -203,6 +203,7 @@ fn all_scenes_are_run() {
         "gripper",
         "wheel-over-stones",
         // where contact is tested
+        "cradle",
         "ring-on-table",
     ];
     for entry in std::fs::read_dir(path("scenes")).unwrap() {

@@ -14,6 +14,8 @@ mod compression;
 mod contact;
 mod contact_events;
 mod contact_fields;
+mod contact_motion;
+mod contact_rings;
 mod contact_truths;
 mod damping;
 mod driving;
