@@ -1020,6 +1020,54 @@ def ends(
     )
 
 
+def cable(
+    *,
+    path: Sequence[Nodes | dict],
+    name: str | None = None,
+    stiffness: float | None = None,
+    length: float | None = None,
+    damping: float | None = None,
+    winch: bool | None = None,
+    friction_coefficient: float | dict | None = None,
+    sticking_speed: float | None = None,
+) -> dict:
+    r"""A cable (tendon) along a path, straight from place to place and free to slide around those between its ends. It
+    only pulls, by one tension along all of its path if there is no friction. It acts in all phases; `actuate` in a
+    phase drives it, at its first place.
+
+    Parameters
+    ----------
+    path
+        nodes, by number, name or box, and points of space, in order. Required. Those of a set or a box follow each
+        other by their distance from the place before them, or from the first of them.
+    name
+        the name of the cable. Default: spring 1, spring 2, ...
+    stiffness
+        the stiffness (N/m). Default: 0. With the modulus E and the section A it is E A / length.
+    length
+        the natural length (m). Default: that of the path at the start.
+    damping
+        the damping (N s/m). Default: 0. That of a motor whose tension falls from f at rest to 0 at the speed v is
+        f/v.
+    winch
+        whether `actuate` gives the length that is drawn in, not the tension. Default: false.
+    friction_coefficient
+        Coulomb's coefficient of friction, or both of them (no unit). Default: 0.
+    sticking_speed
+        the speed below which it creeps instead of sticking (m/s). Default: 0.001 times its length per second.
+    """
+    return _table(
+        path=path,
+        name=name,
+        stiffness=stiffness,
+        length=length,
+        damping=damping,
+        winch=winch,
+        friction_coefficient=friction_coefficient,
+        sticking_speed=sticking_speed,
+    )
+
+
 def chamber(
     *,
     name: str,
@@ -1533,7 +1581,7 @@ def phase(
     pressure_on
         pressures on faces. Default: none.
     actuate
-        forces in springs. Default: none.
+        forces in springs and cables. Default: none.
     contact
         the obstacles that act. Default: true. All, none, or those of these names.
     project_velocity
@@ -1843,27 +1891,36 @@ def actuate(
     *,
     springs: str | Sequence[str],
     force: Formula | None = None,
+    length: Formula | None = None,
     times: Sequence[float] | None = None,
     forces: Sequence[float] | None = None,
+    lengths: Sequence[float] | None = None,
 ) -> dict:
-    r"""Forces of the actuators in springs. Those of a table are interpolated linearly, and are constant before and after.
+    r"""Forces of the actuators in springs, tensions of cables, and lengths that winches have drawn in. Those of a table
+    are interpolated linearly, and are constant before and after.
 
     Parameters
     ----------
     springs
-        names of springs. Required.
+        names of springs and cables. Required.
     force
-        the force, positive if it extends (N). Default: none.
+        the force: of a spring positive if it extends, of a cable if it pulls (N). Default: none.
+    length
+        of a winch: the length that it has drawn in (m). Default: none.
     times
         times in ascending order (s). Default: none.
     forces
         forces at these times (N). Default: none.
+    lengths
+        lengths at these times (m). Default: none.
     """
     return _table(
         springs=springs,
         force=force,
+        length=length,
         times=times,
         forces=forces,
+        lengths=lengths,
     )
 
 
@@ -2160,14 +2217,15 @@ def sensor_spring_pull(
     spring: str,
     component: Literal["x", "y", "z", "norm", "xx", "yy", "zz", "xy", "yz", "xz", "von-mises"] | None = None,
 ) -> dict:
-    r"""Sensor of the kind "spring-pull": the force with which a spring and its actuator pull its ends together (N).
+    r"""Sensor of the kind "spring-pull": the force with which a spring and its actuator pull its ends together, or the
+    tension of a cable at its first place (N).
 
     Parameters
     ----------
     name
         the name of the sensor. Required.
     spring
-        the name of the spring. Required.
+        the name of the spring or cable. Required.
     component
         one component alone. Default: all, each a column. Vectors have `x`, `y`, `z` and their length `norm`; tensors
         `xx` and so on; stress has `von-mises` besides.
@@ -2180,20 +2238,47 @@ def sensor_spring_pull(
     )
 
 
+def sensor_tension_at_end(
+    *,
+    name: str,
+    cable: str,
+    component: Literal["x", "y", "z", "norm", "xx", "yy", "zz", "xy", "yz", "xz", "von-mises"] | None = None,
+) -> dict:
+    r"""Sensor of the kind "tension-at-end": the tension of a cable at its last place, from which friction along its path
+    takes its part (N).
+
+    Parameters
+    ----------
+    name
+        the name of the sensor. Required.
+    cable
+        the name of the cable. Required.
+    component
+        one component alone. Default: all, each a column. Vectors have `x`, `y`, `z` and their length `norm`; tensors
+        `xx` and so on; stress has `von-mises` besides.
+    """
+    return _table(
+        kind="tension-at-end",
+        name=name,
+        cable=cable,
+        component=component,
+    )
+
+
 def sensor_spring_length(
     *,
     name: str,
     spring: str,
     component: Literal["x", "y", "z", "norm", "xx", "yy", "zz", "xy", "yz", "xz", "von-mises"] | None = None,
 ) -> dict:
-    r"""Sensor of the kind "spring-length": the length of a spring (m).
+    r"""Sensor of the kind "spring-length": the length of a spring, or of the path of a cable (m).
 
     Parameters
     ----------
     name
         the name of the sensor. Required.
     spring
-        the name of the spring. Required.
+        the name of the spring or cable. Required.
     component
         one component alone. Default: all, each a column. Vectors have `x`, `y`, `z` and their length `norm`; tensors
         `xx` and so on; stress has `von-mises` besides.
@@ -2623,6 +2708,7 @@ __all__ = [
     "body",
     "box",
     "branch",
+    "cable",
     "chamber",
     "ends",
     "fibres",
@@ -2685,6 +2771,7 @@ __all__ = [
     "sensor_spring_pull",
     "sensor_strain",
     "sensor_stress",
+    "sensor_tension_at_end",
     "sensor_velocity",
     "sensor_volume",
     "sets",

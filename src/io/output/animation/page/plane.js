@@ -289,8 +289,8 @@ function drawSprings(context, { xs, ys }, moment) {
 
 /** The colour of a spring or a cable that is driven by a force. */
 function driven(spring, force) {
-  if (force === 0) return "spring";
-  return force > 0 === spring.isCable ? "pull" : "push";
+  if (force === 0 || (spring.isCable && force < 0)) return "spring";
+  return spring.isCable || force < 0 ? "pull" : "push";
 }
 
 /** Held nodes, moved nodes and point masses, those that `shows` lets through. */
