@@ -156,19 +156,16 @@ impl Path {
         v: &[f64],
     ) -> [[f64; 3]; 2] {
         let mut sum = [[0.0; 3]; 2];
-        if place > first {
-            let line = self.line(place - 1, u, v);
-            for i in 0..3 {
-                sum[0][i] += line.direction[i];
-                sum[1][i] += line.turning[i];
+        let mut add = |sign: f64, line: &Line| {
+            for (sum, x) in sum.iter_mut().zip([line.direction, line.turning]) {
+                sum.iter_mut().zip(x).for_each(|(sum, x)| *sum += sign * x);
             }
+        };
+        if place > first {
+            add(1.0, &self.line(place - 1, u, v));
         }
         if place >= first && place < self.lines() {
-            let line = self.line(place, u, v);
-            for i in 0..3 {
-                sum[0][i] -= line.direction[i];
-                sum[1][i] -= line.turning[i];
-            }
+            add(-1.0, &self.line(place, u, v));
         }
         sum
     }
