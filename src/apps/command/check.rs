@@ -135,7 +135,13 @@ fn surroundings(scene: &Scene) -> Result<(), Failure> {
     let springs = scene.springs().iter().map(|spring| spring.name()).collect();
     let chambers = scene.chambers().iter().map(|chamber| chamber.name()).collect();
     let obstacles = scene.obstacles().iter().map(|obstacle| obstacle.name()).collect();
-    for (label, names) in [("springs", springs), ("chambers", chambers), ("obstacles", obstacles)] {
+    let touches = scene.touches().iter().map(|touch| touch.name()).collect();
+    for (label, names) in [
+        ("springs", springs),
+        ("chambers", chambers),
+        ("obstacles", obstacles),
+        ("touches", touches),
+    ] {
         let names: Vec<&str> = names;
         if !names.is_empty() {
             line(label, &names.join(", "))?;

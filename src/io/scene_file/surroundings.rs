@@ -50,7 +50,7 @@ pub(super) const CABLE: TableKeys = TableKeys::new(
         Key::number("sticking_speed", "the speed below which it creeps instead of sticking", "m/s")
             .default("0.001 times its length per second"),
     ],
-    "[[cable]]\nname = \"tendon\"\npath = [{ point = [0.0, 0.1] }, \"top\"]\nfriction_coefficient = 0.1",
+    "[[cable]]\nname = \"tendon\"\npath = [{ point = [-0.01, 0.1] }, \"top\"]\nfriction_coefficient = 0.1",
 );
 
 const END: TableKeys = TableKeys::new(

@@ -133,7 +133,7 @@ impl Spring {
     /// let mesh = Mesh::rectangle([0.1, 0.01], [11, 2], Cells::Rectangles)?;
     /// let rubber = Material { density: 1000.0, young: 1e6, poisson: 0.3, viscosity: 1e4 };
     /// let body = Body::new(mesh, rubber).thickness(0.01).build()?;
-    /// let tendon = Spring::cable([Guide::point([0.0, 0.01]), Guide::nodes("top")]).named("tendon");
+    /// let tendon = Spring::cable([Guide::point([-0.01, 0.01]), Guide::nodes("top")]).named("tendon");
     /// let pull = Phase::until(0.2).hold("left").actuate(["tendon"], 0.05);
     /// let scene = Scene::new(body).spring(tendon).phase(pull);
     /// let trajectory = scene.simulate(&Settings::default(), &Sampling::every(0.1))?;

@@ -367,7 +367,7 @@ impl Scene {
     }
 
     /// How bodies touch.
-    pub(crate) fn touches(&self) -> &[Touch] {
+    pub fn touches(&self) -> &[Touch] {
         &self.touches
     }
 
