@@ -1,6 +1,7 @@
 //! Springs between two nodes, or a node and a point of space, with damping and an actuator; cables, which run around places
 //! in between and only pull.
 
+mod bend;
 mod cable;
 mod force;
 mod path;
@@ -392,9 +393,7 @@ impl SpringGauge {
     pub(crate) fn pulls(&self, u: &[f64], v: &[f64], actuation: [f64; 2]) -> [f64; 2] {
         match &self.0 {
             Law::Spring(elastic) => [elastic.pull(u, v) - actuation[0]; 2],
-            Law::Cable(cable) => {
-                [cable.tension_at_drive(u, v, actuation), cable.tension_at_end(u, v, actuation)]
-            }
+            Law::Cable(cable) => cable.tensions_at_ends(u, v, actuation),
         }
     }
 

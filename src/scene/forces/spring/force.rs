@@ -56,10 +56,8 @@ impl Force for Elastic {
         stiffness: &mut BlockMatrix,
         damping: &mut BlockMatrix,
     ) -> Tangents {
-        let force = -self.stiffness * (self.path.length(u) - self.path.length)
-            - self.damping * self.path.rate(u, v);
-        let slopes = [self.stiffness, self.damping];
-        self.path.add_tangents(slopes, force, (u, v), stiffness, damping);
+        let (slopes, pull) = ([self.stiffness, self.damping], self.pull(u, v));
+        self.path.add_tangents(slopes, pull, None, (u, v), stiffness, damping);
         Tangents::Added
     }
 
@@ -99,8 +97,8 @@ impl Force for Actuator {
         stiffness: &mut BlockMatrix,
         damping: &mut BlockMatrix,
     ) -> Tangents {
-        let force = signal::sum(&self.force, t);
-        self.path.add_tangents([0.0; 2], force, (u, v), stiffness, damping);
+        let pull = -signal::sum(&self.force, t);
+        self.path.add_tangents([0.0; 2], pull, None, (u, v), stiffness, damping);
         Tangents::Added
     }
 

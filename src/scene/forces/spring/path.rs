@@ -1,8 +1,10 @@
 //! The path of a spring or a cable: straight lines from place to place.
 
+use super::bend::Bend;
 use crate::base::sparse::BlockMatrix;
 use crate::base::vector::{dot, norm};
 use crate::integrators::ode::Failure;
+use crate::scene::forces::friction::Coulomb;
 
 /// A line that is shorter than this fraction of its natural length after a step has collapsed:
 /// its direction, and with it the force, is about to flip.
@@ -170,66 +172,97 @@ impl Path {
         sum
     }
 
-    /// Adds the tangents of a `force` along all lines (N), which pushes apart and falls by `k` (N/m) with the length and
-    /// by `c` (N s/m) with its rate: -df/du of place p by place q is k g_p g_q^T + c g_p g_q'^T, and for each
-    /// line -(f/l) (I - e e^T) at its ends; -df/dv is c g_p g_q^T.
+    /// Passes the lines to `see`, each with its number and the part of the tension at the first place that `friction` leaves.
+    pub(super) fn each_line(
+        &self,
+        friction: Option<&Coulomb>,
+        (u, v): (&[f64], &[f64]),
+        mut see: impl FnMut(usize, &Line, f64),
+    ) {
+        let Some(coulomb) = friction else {
+            (0..self.lines()).for_each(|line| see(line, &self.line(line, u, v), 1.0));
+            return;
+        };
+        // towards the first place slides what the lines behind lose in length
+        let (mut behind, mut part) = (self.rate(u, v), 1.0);
+        let mut before: Option<Line> = None;
+        for number in 0..self.lines() {
+            let line = self.line(number, u, v);
+            if let Some(before) = &before {
+                let speed = -behind;
+                let friction = coulomb.drag(speed.abs()).per_speed * speed;
+                part *= (-friction * Bend::new(before, &line).angle).exp();
+            }
+            see(number, &line, part);
+            behind -= line.rate;
+            before = Some(line);
+        }
+    }
+
+    /// Adds the tangents of a `tension` T (N) in all lines, of which friction leaves the part r_k in line k of length l_k: with
+    /// T_k = r_k T they are dT_k dl_k/du + T_k d2l_k/du2, where T changes with the length of the path (N/m) and its rate (N s/m),
+    /// and r_k with the angles at the places before the line and with the speeds there.
     pub(super) fn add_tangents(
         &self,
-        [k, c]: [f64; 2],
-        force: f64,
+        [by_length, by_rate]: [f64; 2],
+        tension: f64,
+        friction: Option<&Coulomb>,
         (u, v): (&[f64], &[f64]),
         stiffness: &mut BlockMatrix,
         damping: &mut BlockMatrix,
     ) {
         let d = self.dimension;
-        for (p, row) in self.nodes.iter().enumerate() {
-            let Some(row) = *row else { continue };
-            let [of_row, _] = self.gradient(0, p, u, v);
-            for (q, column) in self.nodes.iter().enumerate() {
-                let Some(column) = *column else { continue };
-                if p.abs_diff(q) > 1 && k == 0.0 && c == 0.0 {
-                    continue;
-                }
-                let [of_column, turning] = self.gradient(0, q, u, v);
-                if let Some(block) = stiffness.block_mut(row, column) {
-                    for (entry, x) in block.iter_mut().enumerate() {
-                        let (i, j) = (entry / d, entry % d);
-                        let bent = of_row[i] * (k * of_column[j] + c * turning[j]);
-                        *x += bent + self.turn(force, (p, q), (i, j), (u, v));
+        for (q, column) in self.nodes.iter().enumerate() {
+            let Some(column) = *column else { continue };
+            let [of_length, turning] = self.gradient(0, q, u, v);
+            // log r_k and its derivatives by the place q
+            let (mut log, mut log_by_u, mut log_by_v) = (0.0, [0.0; 3], [0.0; 3]);
+            let (mut behind, mut before) = (self.rate(u, v), None::<Line>);
+            for k in 0..self.lines() {
+                let line = self.line(k, u, v);
+                if let (Some(coulomb), Some(before)) = (friction, &before) {
+                    let drag = coulomb.drag(behind.abs());
+                    let bend = Bend::new(before, &line);
+                    let (held, by_place) = (-drag.per_speed * behind, bend.by_place(k, q));
+                    let [of_behind, turning] = self.gradient(k, q, u, v);
+                    log -= held * bend.angle;
+                    for i in 0..d {
+                        log_by_u[i] += bend.angle * drag.along * turning[i] - held * by_place[i];
+                        log_by_v[i] += bend.angle * drag.along * of_behind[i];
                     }
                 }
-                if c == 0.0 {
-                    continue;
-                }
-                if let Some(block) = damping.block_mut(row, column) {
-                    for (entry, x) in block.iter_mut().enumerate() {
-                        *x += c * of_row[entry / d] * of_column[entry % d];
+                let part = log.exp();
+                let e = &line.direction;
+                for (p, sign) in [(k, -1.0), (k + 1, 1.0)] {
+                    let Some(row) = self.nodes[p] else { continue };
+                    let bends = match q {
+                        _ if q == p => 1.0,
+                        _ if q == k || q == k + 1 => -1.0,
+                        _ => 0.0,
+                    };
+                    if let Some(block) = stiffness.block_mut(row, column) {
+                        for (entry, x) in block.iter_mut().enumerate() {
+                            let (i, j) = (entry / d, entry % d);
+                            let change = by_length * of_length[j]
+                                + by_rate * turning[j]
+                                + tension * log_by_u[j];
+                            let turn =
+                                bends * tension / line.length * (f64::from(i == j) - e[i] * e[j]);
+                            *x += part * (sign * e[i] * change + turn);
+                        }
+                    }
+                    if let Some(block) = damping.block_mut(row, column) {
+                        for (entry, x) in block.iter_mut().enumerate() {
+                            let (i, j) = (entry / d, entry % d);
+                            let along = sign * e[i];
+                            *x += part
+                                * (by_rate * along * of_length[j] + along * tension * log_by_v[j]);
+                        }
                     }
                 }
+                behind -= line.rate;
+                before = Some(line);
             }
-        }
-    }
-
-    /// The tangent of a constant force along the lines that join the places p and q, which turns with them.
-    fn turn(
-        &self,
-        force: f64,
-        (p, q): (usize, usize),
-        (i, j): (usize, usize),
-        (u, v): (&[f64], &[f64]),
-    ) -> f64 {
-        let of_line = |line: usize| {
-            let Line { length, direction: e, .. } = self.line(line, u, v);
-            -force / length * (f64::from(i == j) - e[i] * e[j])
-        };
-        match p.abs_diff(q) {
-            0 => {
-                let before = p.checked_sub(1).map(of_line);
-                let after = (p < self.lines()).then(|| of_line(p));
-                before.into_iter().chain(after).sum()
-            }
-            1 => -of_line(p.min(q)),
-            _ => 0.0,
         }
     }
 }
