@@ -1,6 +1,5 @@
 //! How the path of a cable turns at a place, on which its friction there depends.
 
-use super::path::Line;
 use crate::base::vector::{dot, norm};
 
 /// Below this angle (rad) a bend is smoothed: its angle would have a kink where the cable is straight.
@@ -15,8 +14,8 @@ pub(super) struct Bend {
 }
 
 impl Bend {
-    pub(super) fn new(before: &Line, behind: &Line) -> Self {
-        let (a, b) = (&before.direction, &behind.direction);
+    /// Between two lines with these unit vectors `a` and `b` along them, and these `lengths` (m).
+    pub(super) fn new([a, b]: [&[f64; 3]; 2], lengths: [f64; 2]) -> Self {
         let [sum, difference] =
             [1.0, -1.0].map(|sign| norm(&std::array::from_fn::<f64, 3, _>(|i| a[i] + sign * b[i])));
         let theta = 2.0 * difference.atan2(sum);
@@ -26,8 +25,8 @@ impl Bend {
         let slope = -ratio * (theta * theta + 2.0 * STRAIGHT * STRAIGHT) / smooth.powi(3);
         let cosine = dot(a, b);
         let by_lines = [
-            std::array::from_fn(|i| slope * (b[i] - cosine * a[i]) / before.length),
-            std::array::from_fn(|i| slope * (a[i] - cosine * b[i]) / behind.length),
+            std::array::from_fn(|i| slope * (b[i] - cosine * a[i]) / lengths[0]),
+            std::array::from_fn(|i| slope * (a[i] - cosine * b[i]) / lengths[1]),
         ];
         Self { angle: theta * theta / smooth, by_lines }
     }

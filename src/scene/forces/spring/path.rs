@@ -39,6 +39,13 @@ pub(super) struct Line {
     turning: [f64; 3],
 }
 
+impl Line {
+    /// How the path turns to the `next` line.
+    fn bend(&self, next: &Self) -> Bend {
+        Bend::new([&self.direction, &next.direction], [self.length, next.length])
+    }
+}
+
 impl Path {
     /// Number of lines.
     pub(super) fn lines(&self) -> usize {
@@ -191,7 +198,7 @@ impl Path {
             if let Some(before) = &before {
                 let speed = -behind;
                 let friction = coulomb.drag(speed.abs()).per_speed * speed;
-                part *= (-friction * Bend::new(before, &line).angle).exp();
+                part *= (-friction * before.bend(&line).angle).exp();
             }
             see(number, &line, part);
             behind -= line.rate;
@@ -222,7 +229,7 @@ impl Path {
                 let line = self.line(k, u, v);
                 if let (Some(coulomb), Some(before)) = (friction, &before) {
                     let drag = coulomb.drag(behind.abs());
-                    let bend = Bend::new(before, &line);
+                    let bend = before.bend(&line);
                     let (held, by_place) = (-drag.per_speed * behind, bend.by_place(k, q));
                     let [of_behind, turning] = self.gradient(k, q, u, v);
                     log -= held * bend.angle;
