@@ -176,18 +176,42 @@ impl Surface {
         forces.iter().zip(&self.x).map(|(force, x)| force * x * x).sum()
     }
 
-    /// Means over some lengths, for nodes that lie within 0.85 a, beside those that `exact` gives: by the forces on single
-    /// nodes (of linear cells), over the halves of the distances to the next ones.
-    fn by_nodes(&self, forces: &[f64], a: f64) -> Vec<([f64; 2], f64)> {
-        let x = &self.x;
-        let of = |i: usize| {
-            let ends = [0.5 * (x[i - 1] + x[i]), 0.5 * (x[i] + x[i + 1])];
-            (ends, forces[i] / (ends[1] - ends[0]))
-        };
-        (1..x.len() - 1).filter(|&i| x[i].abs() < 0.85 * a).map(of).collect()
+    /// How far the forces on single nodes that lie within 0.85 a are off at most, over the length that a node stands for: the
+    /// integral of its shape function N_i. Exact is the integral of N_i p.
+    fn off_at_nodes(&self, hertz: &Hertz) -> f64 {
+        let near = (0..self.x.len()).filter(|&i| self.x[i].abs() < 0.85 * hertz.half_width);
+        let off = near.map(|i| {
+            let [length, exact] = self.integrals(i, hertz);
+            (self.presses[i] - exact).abs() / length
+        });
+        off.fold(0.0, f64::max)
     }
 
-    /// By the forces on three nodes in a row, those at the ends with half of them.
+    /// The integrals of the shape function of a node, and of that times the exact pressure.
+    fn integrals(&self, node: usize, hertz: &Hertz) -> [f64; 2] {
+        const PARTS: usize = 64;
+        let at = self.x[node];
+        let mut sums = [0.0; 2];
+        for &([from, to], _) in
+            self.cells.iter().filter(|([from, to], _)| (*from..=*to).contains(&at))
+        {
+            let inside: Vec<f64> =
+                self.x.iter().copied().filter(|x| (from..=to).contains(x)).collect();
+            let edge = |part: usize| from + (to - from) * part as f64 / PARTS as f64;
+            for part in 0..PARTS {
+                let ends = [edge(part), edge(part + 1)];
+                let x = 0.5 * (ends[0] + ends[1]);
+                let others = inside.iter().filter(|other| **other != at);
+                let shape: f64 = others.map(|other| (x - other) / (at - other)).product();
+                sums[0] += shape * (ends[1] - ends[0]);
+                sums[1] += shape * hertz.mean(ends) * (ends[1] - ends[0]);
+            }
+        }
+        sums
+    }
+
+    /// Means over some lengths by the forces on three nodes in a row, those at the ends with half of them, for nodes that lie
+    /// within 0.85 a.
     pub fn by_threes(&self, forces: &[f64], a: f64) -> Vec<([f64; 2], f64)> {
         let x = &self.x;
         let of = |i: usize| {
@@ -202,20 +226,23 @@ impl Surface {
     pub fn pressures_off(&self, hertz: &Hertz) -> [f64; 4] {
         let a = hertz.half_width;
         let is_within = |ends: [f64; 2]| ends[0].abs().max(ends[1].abs()) < 0.85 * a;
-        let at_nodes = self.by_nodes(&self.presses, a).into_iter().zip(self.stresses_within(a));
-        let stresses = at_nodes.map(|((ends, _), stress)| (ends, stress)).collect();
+        let cells: Vec<([f64; 2], f64)> =
+            self.cells.iter().filter(|(ends, _)| is_within(*ends)).copied().collect();
         [
-            self.by_nodes(&self.presses, a),
-            self.by_threes(&self.presses, a),
-            self.cells.iter().filter(|(ends, _)| is_within(*ends)).copied().collect(),
-            stresses,
+            self.off_at_nodes(hertz),
+            off(&self.by_threes(&self.presses, a), |ends| hertz.mean(ends)),
+            off(&cells, |ends| hertz.mean(ends)),
+            off(&self.stresses_within(a), |ends| hertz.mean(ends)),
         ]
-        .map(|found| off(&found, |ends| hertz.mean(ends)) / hertz.peak)
+        .map(|off| off / hertz.peak)
     }
 
-    fn stresses_within(&self, a: f64) -> Vec<f64> {
-        let all = self.x.iter().zip(&self.stresses);
-        all.filter(|(x, _)| x.abs() < 0.85 * a).map(|(_, stress)| *stress).collect()
+    /// Stresses at nodes, for the halves of the distances to the next ones.
+    fn stresses_within(&self, a: f64) -> Vec<([f64; 2], f64)> {
+        let x = &self.x;
+        let near = (1..x.len() - 1).filter(|&i| x[i].abs() < 0.85 * a);
+        let of = |i: usize| ([0.5 * (x[i - 1] + x[i]), 0.5 * (x[i] + x[i + 1])], self.stresses[i]);
+        near.map(of).collect()
     }
 }
 

@@ -32,28 +32,28 @@ fn assert_pressed(pressing: &Pressing, width: f64, limits: [f64; 4]) {
     }
 }
 
-/// With 8 linear cells across half of the contact nodal forces over their lengths, and the stress in the cells beside the
-/// contact, are within 1 % of the largest pressure (found: 0.5 % and 0.9 %), half the width is within 0.5 % (0.4 %). Sums
-/// over three nodes smooth what has a corner at the edge (1.8 %); stresses at nodes are extrapolated (5.9 %).
+/// With 8 linear cells across half of the contact nodal forces over the lengths that nodes stand for, and the stress in the
+/// cells beside the contact, are within 1 % of the largest pressure (found: 0.44 % and 0.9 %), half the width is within 0.5 %
+/// (0.36 %). Sums over three nodes smooth what has a corner at the edge (1.8 %); stresses at nodes are extrapolated (5.9 %).
 #[test]
 fn line_contact_of_linear_cells() {
-    assert_pressed(&USUAL, 0.005, [0.01, 0.02, 0.01, 0.065]);
+    assert_pressed(&USUAL, 0.005, [0.005, 0.02, 0.01, 0.065]);
 }
 
-/// Quadratic cells load single nodes unevenly (31.6 %), three in a row evenly (4.3 %); stresses in the cells are within
-/// 4.2 %, half the width within 0.8 %.
+/// Quadratic cells load single nodes as their shape functions say, within 1.04 %; three in a row are within 1.5 %, stresses in
+/// the cells within 2.1 % and at nodes within 4.1 %, half the width within 0.27 %.
 #[test]
 fn line_contact_of_quadratic_cells() {
     let pressing = Pressing { cells: Cells::Rectangles9, ..USUAL };
-    assert_pressed(&pressing, 0.01, [0.35, 0.05, 0.045, 0.13]);
+    assert_pressed(&pressing, 0.003, [0.012, 0.017, 0.023, 0.045]);
 }
 
 /// A paraboloid on a plate, with 2 cells across the radius of the contact: the force for the way of a point in the body is
-/// 14.6 % below that of Hertz, the radius for the force within 1.4 %. The example shows both fall on finer meshes.
+/// 14.4 % below that of Hertz, the radius for the force 1.67 % above. The example shows both fall on finer meshes.
 #[test]
 fn a_sphere_on_a_plate() {
     let found = sphere::pressed(2.0, 0.1, 1.0).unwrap();
     let [force, radius] = [found.force, found.radius].map(|[found, exact]| off(found, exact));
     println!("{} nodes: force {force}, radius {radius}", found.nodes);
-    assert!(force < 0.15 && radius < 0.015, "{force} {radius}");
+    assert!(force < 0.15 && radius < 0.017, "{force} {radius}");
 }

@@ -8,11 +8,13 @@
 
 mod bisection;
 mod closest;
+mod face;
 mod finer;
 mod hexahedron;
 mod hexahedron20;
 mod hexahedron27;
 mod locate;
+mod nearest;
 mod quadrilateral;
 mod quadrilateral8;
 mod quadrilateral9;
@@ -35,11 +37,13 @@ use nalgebra::{SMatrix, SVector};
 pub(crate) use bisection::can_be_bisected;
 pub(crate) use bisection::worst_cells;
 pub(crate) use closest::closest;
+pub(crate) use face::{FacePoint, MOST_NODES, face_points, reach, reference_node};
 pub(crate) use finer::Finer;
 pub(crate) use hexahedron::Hexahedron;
 pub(crate) use hexahedron20::Hexahedron20;
 pub(crate) use hexahedron27::Hexahedron27;
 pub(crate) use locate::{shares_at, shares_in};
+pub(crate) use nearest::{Place, nearest};
 pub(crate) use quadrilateral::Quadrilateral;
 pub(crate) use quadrilateral8::Quadrilateral8;
 pub(crate) use quadrilateral9::Quadrilateral9;

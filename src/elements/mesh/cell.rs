@@ -82,6 +82,29 @@ impl FaceKind {
             | Self::Quadrilateral9 => 2,
         }
     }
+
+    /// How many of its nodes are corners: they come first.
+    pub(crate) fn corners(self) -> usize {
+        match self {
+            Self::Point => 1,
+            Self::Segment | Self::Segment3 => 2,
+            Self::Triangle | Self::Triangle6 | Self::Triangle7 => 3,
+            Self::Quadrilateral | Self::Quadrilateral8 | Self::Quadrilateral9 => 4,
+        }
+    }
+
+    /// The edges of a triangle or quadrilateral by local nodes: both ends, and the mid node if there is one.
+    pub(crate) fn edges(self) -> &'static [&'static [usize]] {
+        match self {
+            Self::Point | Self::Segment | Self::Segment3 => &[],
+            Self::Triangle => &[&[0, 1], &[1, 2], &[2, 0]],
+            Self::Triangle6 | Self::Triangle7 => &[&[0, 1, 3], &[1, 2, 4], &[2, 0, 5]],
+            Self::Quadrilateral => &[&[0, 1], &[1, 2], &[2, 3], &[3, 0]],
+            Self::Quadrilateral8 | Self::Quadrilateral9 => {
+                &[&[0, 1, 4], &[1, 2, 5], &[2, 3, 6], &[3, 0, 7]]
+            }
+        }
+    }
 }
 
 /// Makes the enum of the kinds from their documentation and their shapes.

@@ -2,27 +2,12 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::surface::{pieces, section};
+use super::surface::{natural, pieces, section};
 use crate::base::tensor::determinant;
 use crate::base::vector::{cross, norm};
-use crate::elements::basis::{
-    Quadrilateral, Quadrilateral8, Quadrilateral9, ReferenceCell, Segment, Segment3, Triangle,
-    Triangle6, Triangle7,
-};
+use crate::elements::basis::{FacePoint, face_points};
 use crate::elements::body::Body;
 use crate::elements::mesh::{Face, FaceKind, Mesh};
-
-/// Nodes of a face at most.
-pub(super) const MOST_NODES: usize = 9;
-
-/// A quadrature point of a reference face; what a face does not have is 0.
-pub(super) struct FacePoint {
-    /// The shape functions N_a.
-    pub(super) values: [f64; MOST_NODES],
-    /// Their derivatives by the reference coordinates.
-    pub(super) derivatives: [[f64; 2]; MOST_NODES],
-    pub(super) weight: f64,
-}
 
 /// The number of a kind of face among those `seen`; what all faces of a new one share is computed by `make`.
 pub(super) fn number_of<T>(
@@ -35,49 +20,6 @@ pub(super) fn number_of<T>(
         seen.push((kind, make(kind)));
         seen.len() - 1
     })
-}
-
-/// The quadrature points of all faces of a kind. They integrate the normal times a shape function exactly.
-pub(super) fn face_points(kind: FaceKind) -> Vec<FacePoint> {
-    match kind {
-        FaceKind::Point => {
-            let values = std::array::from_fn(|a| if a == 0 { 1.0 } else { 0.0 });
-            vec![FacePoint { values, derivatives: [[0.0; 2]; MOST_NODES], weight: 1.0 }]
-        }
-        FaceKind::Segment => points_of::<Segment, 2, 1>(),
-        FaceKind::Segment3 => points_of::<Segment3, 3, 1>(),
-        FaceKind::Triangle => points_of::<Triangle, 3, 2>(),
-        FaceKind::Triangle6 => points_of::<Triangle6, 6, 2>(),
-        FaceKind::Triangle7 => points_of::<Triangle7, 7, 2>(),
-        FaceKind::Quadrilateral => points_of::<Quadrilateral, 4, 2>(),
-        FaceKind::Quadrilateral8 => points_of::<Quadrilateral8, 8, 2>(),
-        FaceKind::Quadrilateral9 => points_of::<Quadrilateral9, 9, 2>(),
-    }
-}
-
-fn points_of<C: ReferenceCell<N, M>, const N: usize, const M: usize>() -> Vec<FacePoint> {
-    let point = |&(xi, weight): &([f64; M], f64)| {
-        let (mut values, mut derivatives) = ([0.0; MOST_NODES], [[0.0; 2]; MOST_NODES]);
-        values[..N].copy_from_slice(&C::values(xi));
-        for (to, from) in derivatives.iter_mut().zip(C::derivatives(xi)) {
-            to[..M].copy_from_slice(&from);
-        }
-        FacePoint { values, derivatives, weight }
-    };
-    C::MASS_RULE.iter().map(point).collect()
-}
-
-impl FacePoint {
-    /// Derivatives of the position by the reference coordinates, for a face with its nodes at `x`.
-    pub(super) fn tangents(&self, x: &[[f64; 3]]) -> [[f64; 3]; 2] {
-        let mut tangents = [[0.0; 3]; 2];
-        for (x, derivatives) in x.iter().zip(&self.derivatives) {
-            for (tangent, derivative) in tangents.iter_mut().zip(derivatives) {
-                tangent.iter_mut().zip(x).for_each(|(sum, x)| *sum += derivative * x);
-            }
-        }
-        tangents
-    }
 }
 
 /// The contribution of a face to the area (`N` = 2) or volume (`N` = 3) within walls: (1/N!)
@@ -116,12 +58,6 @@ pub(super) fn volume_parts<const N: usize>(kind: FaceKind) -> Vec<([usize; N], f
 
 /// Weights of parts, which are of the order of 1, are round-off of 0 below this.
 const NO_PART: f64 = 1e-12;
-
-/// Natural position of a node; components beyond the dimension are 0.
-pub(super) fn natural(mesh: &Mesh, node: usize) -> [f64; 3] {
-    let x = mesh.position(node);
-    std::array::from_fn(|i| x.get(i).copied().unwrap_or(0.0))
-}
 
 /// Those of `faces` all of whose nodes are among `nodes`.
 ///

@@ -1,5 +1,6 @@
 //! What contact does at the nodes of a surface, for output.
 
+use std::sync::Arc;
 use std::{iter, mem};
 
 use super::surface::measured_pieces;
@@ -124,6 +125,8 @@ pub(crate) struct Tributary {
 /// A point, segment or triangle of the surface.
 struct Piece {
     corners: Vec<usize>,
+    /// The nodes of the face that it is a piece of.
+    face: Arc<[usize]>,
     /// Its undeformed area (m^2), an equal part of which belongs to each corner.
     area: f64,
     /// Whether both of its sides are outside.
@@ -137,7 +140,9 @@ impl Tributary {
         for face in mesh.boundary_faces() {
             let is_membrane = body.part_of(face[0]).body.mesh().kind().dimension() < dimension;
             let measured = measured_pieces(body, &face).into_iter().flatten();
-            pieces.extend(measured.map(|(corners, area)| Piece { corners, area, is_membrane }));
+            let nodes: Arc<[usize]> = Arc::from(&face[..]);
+            let piece = |(corners, area)| Piece { corners, face: nodes.clone(), area, is_membrane };
+            pieces.extend(measured.map(piece));
             mids.extend(between_corners(mesh.face_kind(&face), &face));
         }
         mids.sort_unstable();
@@ -188,16 +193,11 @@ impl Tributary {
     }
 
     /// The part, from 0 to 1, of the area around a point between some nodes that is [seen](Self::facing).
-    pub(super) fn facing_part(
-        &self,
-        between: impl Iterator<Item = usize> + Clone,
-        u: &[f64],
-        normal: &[f64; 3],
-    ) -> f64 {
+    pub(super) fn facing_part(&self, between: &[usize], u: &[f64], normal: &[f64; 3]) -> f64 {
         let (mut seen, mut whole) = (0.0, 0.0);
-        for &number in between.clone().next().into_iter().flat_map(|node| &self.around[node]) {
+        for &number in between.iter().take(1).flat_map(|&node| &self.around[node]) {
             let piece = &self.pieces[number];
-            if between.clone().all(|node| piece.corners.contains(&node)) {
+            if between.iter().all(|node| piece.face.contains(node)) {
                 seen += piece.area * self.seen(piece, u, normal);
                 whole += piece.area;
             }
@@ -230,12 +230,7 @@ impl Tributary {
 
 /// The nodes of a face that are no corners, each with the corners between which it lies.
 fn between_corners(kind: FaceKind, face: &[usize]) -> Vec<(usize, Vec<usize>)> {
-    let corners = match kind {
-        FaceKind::Point => 1,
-        FaceKind::Segment | FaceKind::Segment3 => 2,
-        FaceKind::Triangle | FaceKind::Triangle6 | FaceKind::Triangle7 => 3,
-        FaceKind::Quadrilateral | FaceKind::Quadrilateral8 | FaceKind::Quadrilateral9 => 4,
-    };
+    let corners = kind.corners();
     let sides = if corners == 2 { 1 } else { corners };
     let of_mid = |(k, &mid): (usize, &usize)| match k < sides {
         true => (mid, vec![face[k], face[(k + 1) % corners]]),

@@ -1,12 +1,12 @@
 //! Pressure on faces of the boundary: a force along the normal of the deformed face.
 
-use super::faces::{
-    FacePoint, LoadedFace, MOST_NODES, face_points, loaded_faces, natural, number_of, on_no_face,
-};
+use super::faces::{LoadedFace, loaded_faces, number_of, on_no_face};
 use super::signal::{Signal, finite_at};
+use super::surface::natural;
 use crate::base::input::InputError;
 use crate::base::sparse::BlockMatrix;
 use crate::base::vector::cross;
+use crate::elements::basis::{FacePoint, MOST_NODES, face_points};
 use crate::elements::body::Body;
 use crate::elements::force::{Force, NodalForces, Tangents};
 use crate::elements::mesh::{FaceKind, Selection};

@@ -14,9 +14,9 @@ use cable::{Cable, CableForce};
 use force::{Actuator, Elastic};
 use path::{COLLAPSED, Path};
 
-use super::faces::natural;
 use super::friction::Friction;
 use super::signal::Signal;
+use super::surface::natural;
 use crate::base::input::{InputError, finite, not_negative, positive};
 use crate::base::vector::norm;
 use crate::elements::force::Force;

@@ -2,16 +2,17 @@
 
 use std::collections::BTreeMap;
 
-use crate::base::vector::{cross, norm};
+use crate::base::vector::{cross, difference, norm};
+use crate::elements::basis::{FacePoint, MOST_NODES, reference_node};
 use crate::elements::body::Body;
-use crate::elements::mesh::FaceKind;
+use crate::elements::mesh::{FaceKind, Mesh};
 
 /// A point that moves with some nodes.
 pub(crate) struct SurfacePoint {
     /// How many of the entries below are used.
     count: usize,
-    nodes: [usize; 3],
-    shares: [f64; 3],
+    nodes: [usize; MOST_NODES],
+    shares: [f64; MOST_NODES],
     /// Area (m^2) of the boundary for which it stands; 1 for a node, 0 for a point of an edge or the middle
     /// of a face.
     pub(super) area: f64,
@@ -87,17 +88,17 @@ pub(crate) fn face_centre(kind: FaceKind, face: &[usize]) -> Option<SurfacePoint
 /// Points inside faces, not nodes: a node at a corner would count the area of faces that do not
 /// touch.
 pub(super) fn gauss_points(body: &Body) -> Option<Vec<SurfacePoint>> {
+    let rule = |corners: usize| -> Rule {
+        match corners {
+            1 => &[(&[1.0], 1.0)],
+            2 => &GAUSS_SEGMENT,
+            _ => &GAUSS_TRIANGLE,
+        }
+    };
     let mut points = Vec::new();
     for face in body.mesh().boundary_faces() {
-        for (corners, area) in measured_pieces(body, &face)? {
-            let rule: &[&[f64]] = match corners.len() {
-                1 => &[&[1.0]],
-                2 => &[&[NEAR, FAR], &[FAR, NEAR]],
-                _ => &TRIANGLE,
-            };
-            let share = area / rule.len() as f64;
-            points.extend(rule.iter().map(|shares| point(&corners, shares, share)));
-        }
+        let measured = measured_points(body, &face, rule)?;
+        points.extend(measured.into_iter().map(|(at, area)| point_of(at, area)));
     }
     Some(points)
 }
@@ -106,29 +107,73 @@ pub(super) fn gauss_points(body: &Body) -> Option<Vec<SurfacePoint>> {
 /// them: Simpson's rule on both halves of segments, a rule of degree 3 on triangles. Points in the same place are one.
 /// A string has no area: `None`.
 pub(super) fn closed_points(body: &Body, faces: &[Vec<usize>]) -> Option<Vec<SurfacePoint>> {
+    let rule = |corners: usize| -> Rule {
+        match corners {
+            1 => &[(&[1.0], 1.0)],
+            2 => &HALVED_SIMPSON,
+            _ => &CLOSED_TRIANGLE,
+        }
+    };
     // by the nodes and the bits of their shares
     let mut areas: BTreeMap<Vec<(usize, u64)>, f64> = BTreeMap::new();
     for face in faces {
-        for (corners, area) in measured_pieces(body, face)? {
-            let rule: &[(&[(usize, f64)], f64)] = match corners.len() {
-                1 => &[(&[(0, 1.0)], 1.0)],
-                2 => &HALVED_SIMPSON,
-                _ => &CLOSED_TRIANGLE,
-            };
-            for (at, weight) in rule {
-                let place = at.iter().map(|&(corner, share)| (corners[corner], share.to_bits()));
-                let mut place: Vec<(usize, u64)> = place.collect();
-                place.sort_unstable();
-                *areas.entry(place).or_default() += weight * area;
-            }
+        for (at, area) in measured_points(body, face, rule)? {
+            let mut place: Vec<(usize, u64)> =
+                at.into_iter().map(|(node, share)| (node, share.to_bits())).collect();
+            place.sort_unstable();
+            *areas.entry(place).or_default() += area;
         }
     }
     let at = |(place, area): (Vec<(usize, u64)>, f64)| {
-        let (nodes, bits): (Vec<usize>, Vec<u64>) = place.into_iter().unzip();
-        let shares: Vec<f64> = bits.into_iter().map(f64::from_bits).collect();
-        point(&nodes, &shares, area)
+        point_of(place.into_iter().map(|(node, bits)| (node, f64::from_bits(bits))).collect(), area)
     };
     Some(areas.into_iter().map(at).collect())
+}
+
+/// The shares of the corners of a piece in its quadrature points, and the weights of these.
+type Rule = &'static [(&'static [f64], f64)];
+
+/// The nodes of a point and their shares in it.
+type At = Vec<(usize, f64)>;
+
+/// Quadrature points of the [pieces] of a face, each with the undeformed area (m^2) that it stands for: places on the
+/// curved face, which move with its nodes by their shape functions. `None` if the face belongs to a string.
+fn measured_points(
+    body: &Body,
+    face: &[usize],
+    rule: impl Fn(usize) -> Rule,
+) -> Option<Vec<(At, f64)>> {
+    let (section, kind) = (section(body, face)?, body.mesh().face_kind(face));
+    let at: Vec<[f64; 3]> = face.iter().map(|&node| natural(body.mesh(), node)).collect();
+    let mut points = Vec::new();
+    for (part, weight) in pieces(kind) {
+        let corners: Vec<[f64; 2]> = part.iter().map(|&node| reference_node(kind, node)).collect();
+        for (shares, of_piece) in rule(part.len()) {
+            let xi = std::array::from_fn(|k| {
+                corners.iter().zip(*shares).map(|(corner, share)| share * corner[k]).sum()
+            });
+            let place = FacePoint::new(kind, xi, 0.0);
+            let [along, across] = place.tangents(&at);
+            let stretch = match kind.dimension() {
+                0 => 1.0,
+                1 => norm(&along) * (corners[1][0] - corners[0][0]).abs(),
+                _ => norm(&cross(&along, &across)) * reference_area(&corners),
+            };
+            let nodes = face.iter().copied().zip(place.values);
+            points.push((
+                nodes.filter(|(_, share)| *share != 0.0).collect(),
+                of_piece * (weight * section * stretch),
+            ));
+        }
+    }
+    Some(points)
+}
+
+/// Area of a triangle with these reference coordinates.
+fn reference_area(corners: &[[f64; 2]]) -> f64 {
+    let from = |k: usize| [corners[k][0] - corners[0][0], corners[k][1] - corners[0][1]];
+    let (ab, ac) = (from(1), from(2));
+    0.5 * (ab[0] * ac[1] - ab[1] * ac[0]).abs()
 }
 
 /// The [pieces] of a face by their nodes, with the area (m^2) of each; `None` if it belongs to a string.
@@ -158,33 +203,38 @@ pub(super) fn section(body: &Body, face: &[usize]) -> Option<f64> {
 /// (1 +- 1/sqrt 3)/2
 const NEAR: f64 = 0.788_675_134_594_812_9;
 const FAR: f64 = 0.211_324_865_405_187_1;
-const TRIANGLE: [&[f64]; 3] = [
-    &[2.0 / 3.0, 1.0 / 6.0, 1.0 / 6.0],
-    &[1.0 / 6.0, 2.0 / 3.0, 1.0 / 6.0],
-    &[1.0 / 6.0, 1.0 / 6.0, 2.0 / 3.0],
+const GAUSS_SEGMENT: [(&[f64], f64); 2] = [(&[NEAR, FAR], 0.5), (&[FAR, NEAR], 0.5)];
+const THIRD: f64 = 1.0 / 3.0;
+const GAUSS_TRIANGLE: [(&[f64], f64); 3] = [
+    (&[2.0 / 3.0, 1.0 / 6.0, 1.0 / 6.0], THIRD),
+    (&[1.0 / 6.0, 2.0 / 3.0, 1.0 / 6.0], THIRD),
+    (&[1.0 / 6.0, 1.0 / 6.0, 2.0 / 3.0], THIRD),
+];
+const HALVED_SIMPSON: [(&[f64], f64); 5] = [
+    (&[1.0, 0.0], 1.0 / 12.0),
+    (&[0.75, 0.25], 1.0 / 3.0),
+    (&[0.5, 0.5], 1.0 / 6.0),
+    (&[0.25, 0.75], 1.0 / 3.0),
+    (&[0.0, 1.0], 1.0 / 12.0),
+];
+const CLOSED_TRIANGLE: [(&[f64], f64); 7] = [
+    (&[1.0, 0.0, 0.0], 1.0 / 20.0),
+    (&[0.0, 1.0, 0.0], 1.0 / 20.0),
+    (&[0.0, 0.0, 1.0], 1.0 / 20.0),
+    (&[0.5, 0.5, 0.0], 2.0 / 15.0),
+    (&[0.0, 0.5, 0.5], 2.0 / 15.0),
+    (&[0.5, 0.0, 0.5], 2.0 / 15.0),
+    (&[THIRD, THIRD, THIRD], 9.0 / 20.0),
 ];
 
-/// Corners of a segment and of a triangle with their shares in quadrature points, and the weights of these.
-const HALVED_SIMPSON: [(&[(usize, f64)], f64); 5] = [
-    (&[(0, 1.0)], 1.0 / 12.0),
-    (&[(0, 0.75), (1, 0.25)], 1.0 / 3.0),
-    (&[(0, 0.5), (1, 0.5)], 1.0 / 6.0),
-    (&[(0, 0.25), (1, 0.75)], 1.0 / 3.0),
-    (&[(1, 1.0)], 1.0 / 12.0),
-];
-const THIRD: f64 = 1.0 / 3.0;
-const CLOSED_TRIANGLE: [(&[(usize, f64)], f64); 7] = [
-    (&[(0, 1.0)], 1.0 / 20.0),
-    (&[(1, 1.0)], 1.0 / 20.0),
-    (&[(2, 1.0)], 1.0 / 20.0),
-    (&[(0, 0.5), (1, 0.5)], 2.0 / 15.0),
-    (&[(1, 0.5), (2, 0.5)], 2.0 / 15.0),
-    (&[(2, 0.5), (0, 0.5)], 2.0 / 15.0),
-    (&[(0, THIRD), (1, THIRD), (2, THIRD)], 9.0 / 20.0),
-];
+fn point_of(at: At, area: f64) -> SurfacePoint {
+    let (nodes, shares): (Vec<usize>, Vec<f64>) = at.into_iter().unzip();
+    point(&nodes, &shares, area)
+}
 
 fn point(nodes: &[usize], shares: &[f64], area: f64) -> SurfacePoint {
-    let mut point = SurfacePoint { count: nodes.len(), nodes: [0; 3], shares: [0.0; 3], area };
+    let (count, none) = (nodes.len(), [0.0; MOST_NODES]);
+    let mut point = SurfacePoint { count, nodes: [0; MOST_NODES], shares: none, area };
     point.nodes[..nodes.len()].copy_from_slice(nodes);
     point.shares[..nodes.len()].copy_from_slice(shares);
     point
@@ -195,12 +245,6 @@ fn point(nodes: &[usize], shares: &[f64], area: f64) -> SurfacePoint {
 pub(crate) fn pieces(face: FaceKind) -> impl Iterator<Item = (&'static [usize], f64)> + Clone {
     let (whole, halves) = cuts(face);
     whole.iter().map(|&part| (part, 1.0)).chain(halves.iter().map(|&part| (part, 0.5)))
-}
-
-/// The same face cut along one diagonal: points, segments or triangles that cover it once.
-pub(super) fn facets(face: FaceKind) -> impl Iterator<Item = &'static [usize]> {
-    let (whole, halves) = cuts(face);
-    whole.iter().chain(&halves[..halves.len() / 2]).copied()
 }
 
 type Cuts = &'static [&'static [usize]];
@@ -239,15 +283,18 @@ fn cuts(face: FaceKind) -> (Cuts, Cuts) {
 
 /// Length of a segment, area of a triangle, 1 of a point.
 fn measure(body: &Body, corners: &[usize]) -> f64 {
-    let edge = |a: usize, b: usize| -> [f64; 3] {
-        let (a, b) = (body.mesh().position(a), body.mesh().position(b));
-        std::array::from_fn(|i| if i < a.len() { b[i] - a[i] } else { 0.0 })
-    };
+    let edge = |a: usize, b: usize| difference(&natural(body.mesh(), b), &natural(body.mesh(), a));
     match *corners {
         [a, b] => norm(&edge(a, b)),
         [a, b, c] => 0.5 * norm(&cross(&edge(a, b), &edge(a, c))),
         _ => 1.0,
     }
+}
+
+/// Undeformed position of a node (m); components beyond the dimension are 0.
+pub(super) fn natural(mesh: &Mesh, node: usize) -> [f64; 3] {
+    let x = mesh.position(node);
+    std::array::from_fn(|i| x.get(i).copied().unwrap_or(0.0))
 }
 
 #[cfg(test)]

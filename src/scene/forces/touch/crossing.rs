@@ -1,10 +1,13 @@
 //! Whether a point has passed through a facet between the ends of a step.
 //!
 //! Every node moves along the cubic with its positions and velocities at both ends, and so does the place of the point
-//! relative to each corner of the facet. The distance of the two changes by no more than the longest way of the point
-//! relative to a corner.
+//! relative to each node of the facet. The distance of the two changes by no more than the longest way of the point
+//! relative to a node, times how much farther than its nodes a curved facet moves.
 
 use super::pair::Pair;
+use super::surfaces::Feature;
+use crate::base::vector::norm;
+use crate::elements::basis::MOST_NODES;
 use crate::scene::forces::passage::Path;
 
 /// Halvings of a step after which the search ends.
@@ -12,21 +15,24 @@ const HALVINGS: u32 = 20;
 /// What is not nearer than this part of the limit is let be: along a way at the limit itself the search would not end.
 const NEARLY: f64 = 0.9;
 
-/// The ways of a point relative to the corners of a facet.
+/// The ways of a point relative to the nodes of a facet.
 #[derive(Clone, Copy)]
-pub(super) struct Ways {
-    paths: [Path; 3],
-    count: usize,
+pub(super) struct Ways<'a> {
+    facet: &'a Feature,
+    paths: [Path; MOST_NODES],
+    /// How much farther than nodes surfaces move.
+    reach: f64,
 }
 
-impl Ways {
-    pub(super) fn new(paths: [Path; 3], count: usize) -> Self {
-        Self { paths, count }
+impl<'a> Ways<'a> {
+    pub(super) fn new(facet: &'a Feature, paths: [Path; MOST_NODES], reach: f64) -> Self {
+        Self { facet, paths, reach }
     }
 
     fn distance(&self, at: impl Fn(&Path) -> &[f64; 3]) -> f64 {
-        let corners: [[f64; 3]; 3] = std::array::from_fn(|k| at(&self.paths[k]).map(|x| -x));
-        Pair::apart(&[0.0; 3], &corners[..self.count]).0
+        let nodes: [[f64; 3]; MOST_NODES] = std::array::from_fn(|k| at(&self.paths[k]).map(|x| -x));
+        let place = self.facet.nearest(&nodes, &[0.0; 3]);
+        norm(&Pair::offset(&[0.0; 3], &place, &nodes))
     }
 
     /// The distances (m) of the point from the facet at both ends.
@@ -47,7 +53,8 @@ impl Ways {
         [from, to]: [f64; 2],
         halvings: u32,
     ) -> Option<f64> {
-        let longest = self.paths[..self.count].iter().map(Path::length).fold(0.0, f64::max);
+        let paths = self.paths[..self.facet.nodes().len()].iter();
+        let longest = self.reach * paths.map(Path::length).fold(0.0, f64::max);
         if halvings == HALVINGS
             || from >= last
             || 0.5 * (ends[0] + ends[1] - longest) >= NEARLY * limit

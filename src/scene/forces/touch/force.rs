@@ -92,13 +92,15 @@ impl TouchForce {
         let (near, moved) = self.near(u);
         for near in near.pairs.iter().filter(|near| near.distance - moved < self.law.distance) {
             let x = self.surfaces.point_at(near.point, u);
-            let corners = self.surfaces.corners_at(near.feature, u);
-            let of = self.surfaces.features[near.feature].nodes();
-            let corners = &corners[..of.len()];
-            let (distance, shares) = Pair::apart(&x, corners);
-            if distance < self.law.distance {
+            let at = self.surfaces.nodes_at(near.feature, u);
+            let feature = &self.surfaces.features[near.feature];
+            if self.surfaces.is_beyond(near.feature, &at, &x, self.law.distance) {
+                continue;
+            }
+            let place = feature.nearest(&at, &x);
+            if norm(&Pair::offset(&x, &place, &at)) < self.law.distance {
                 let point = self.surfaces.points[near.point].on.nodes();
-                see(Pair::new((&x, point), (of, corners), &shares), self.share(near));
+                see(Pair::new((&x, point), (feature.nodes(), &at), &place), self.share(near));
             }
         }
     }
@@ -161,26 +163,27 @@ impl TouchForce {
         nearest
     }
 
-    /// The ways of a point relative to the corners of a facet in a step.
-    fn ways(&self, near: &NearPair, step: &Step) -> Ways {
+    /// The ways of a point relative to the nodes of a facet in a step.
+    fn ways(&self, near: &NearPair, step: &Step) -> Ways<'_> {
         let d = self.surfaces.dimension;
         let duration = step.times[1] - step.times[0];
         let on = &self.surfaces.points[near.point].on;
-        let of = self.surfaces.features[near.feature].nodes();
+        let facet = &self.surfaces.features[near.feature];
+        let of = facet.nodes();
         let points = step.u.map(|u| self.surfaces.point_at(near.point, u));
-        let corners = step.u.map(|u| self.surfaces.corners_at(near.feature, u));
+        let nodes = step.u.map(|u| self.surfaces.nodes_at(near.feature, u));
         let velocities = step.v.map(|v| on.at(v, d));
         let paths = std::array::from_fn(|k| {
             let node = of.get(k).copied().unwrap_or(of[0]);
             let k = k.min(of.len() - 1);
-            let x = [0, 1].map(|end| std::array::from_fn(|i| points[end][i] - corners[end][k][i]));
+            let x = [0, 1].map(|end| std::array::from_fn(|i| points[end][i] - nodes[end][k][i]));
             let v = [0, 1].map(|end| {
                 let of_node = &step.v[end][node * d..][..d];
                 std::array::from_fn(|i| velocities[end][i] - of_node.get(i).copied().unwrap_or(0.0))
             });
             Path::new(x, v, duration)
         });
-        Ways::new(paths, of.len())
+        Ways::new(facet, paths, self.surfaces.reach)
     }
 
     /// The distance (m) below which a step must not lead unseen, for these distances at its ends. A step that ends on
@@ -299,8 +302,8 @@ impl Force for TouchForce {
             let feature = self.surfaces.features[near.feature].nodes().iter();
             let point = self.surfaces.points[near.point].on.nodes();
             for (node, share) in point.chain(feature.map(|&node| (node, 1.0))) {
-                stiffness[node] += 2.0 * share * hard;
-                damping[node] += 2.0 * share * hard * self.law.damping_time();
+                stiffness[node] += 2.0 * share.abs() * hard;
+                damping[node] += 2.0 * share.abs() * hard * self.law.damping_time();
             }
         }
     }
@@ -322,7 +325,7 @@ impl Force for TouchForce {
     fn passage(&self, step: &Step, _tolerance: f64, _clearances: &mut [f64]) -> Option<f64> {
         let ([start, end], acts_from) = (step.times, self.law.distance);
         let (mut near, mut moved) = self.near(step.u[0]);
-        let nearer = 2.0 * step.reach(self.surfaces.dimension);
+        let nearer = 2.0 * self.surfaces.reach * step.reach(self.surfaces.dimension);
         if !near.covers(acts_from, moved + nearer) {
             near = Arc::new(Near::new(&self.surfaces, step.u[0], acts_from + nearer));
             moved = 0.0;

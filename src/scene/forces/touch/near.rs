@@ -3,6 +3,7 @@
 use super::pair::Pair;
 use super::surfaces::Surfaces;
 use crate::base::grid::Grid;
+use crate::base::vector::norm;
 
 /// Points and features that were nearer than a certain distance in some state.
 pub(super) struct Near {
@@ -36,18 +37,17 @@ impl Near {
         if is_finite && !places.is_empty() {
             let grid = Grid::new(&places);
             for feature in 0..surfaces.features.len() {
-                let corners = surfaces.corners_at(feature, u);
-                let corners = &corners[..surfaces.features[feature].nodes().len()];
-                let least = |i| corners.iter().map(|x| x[i]).fold(f64::INFINITY, f64::min);
-                let most = |i| corners.iter().map(|x| x[i]).fold(f64::NEG_INFINITY, f64::max);
-                let low = [0, 1, 2].map(|i| least(i) - within);
-                let high = [0, 1, 2].map(|i| most(i) + within);
+                let at = surfaces.nodes_at(feature, u);
+                let known = &surfaces.features[feature];
+                let [low, high] = surfaces.box_of(feature, &at);
+                let [low, high] = [low.map(|x| x - within), high.map(|x| x + within)];
                 grid.each_within(&[low, high], |point| {
                     let weight = surfaces.weight(point, feature);
                     if weight == 0.0 {
                         return;
                     }
-                    let (distance, _) = Pair::apart(&places[point], corners);
+                    let place = known.nearest(&at, &places[point]);
+                    let distance = norm(&Pair::offset(&places[point], &place, &at));
                     if distance <= within {
                         pairs.push(NearPair { point, feature, weight, distance });
                     }
@@ -58,7 +58,8 @@ impl Near {
         Self { at, within, pairs }
     }
 
-    /// How much nearer (m) any point and feature may have come since: twice the way of the node that has moved most.
+    /// How much nearer (m) any point and feature may have come since: twice the way of the node that has moved most, times
+    /// how much farther than nodes surfaces move.
     pub(super) fn moved(&self, surfaces: &Surfaces, u: &[f64]) -> f64 {
         let squares = surfaces.nodes.iter().zip(&self.at).map(|(&node, before)| {
             let x = surfaces.node_at(node, u);
@@ -66,7 +67,7 @@ impl Near {
         });
         // what is no number has moved farther than anything
         let known = |square: f64| if square.is_finite() { square } else { f64::INFINITY };
-        2.0 * squares.map(known).fold(0.0, f64::max).sqrt()
+        2.0 * surfaces.reach * squares.map(known).fold(0.0, f64::max).sqrt()
     }
 
     /// Whether the pairs include all that are within `distance` (m) once they may have come `nearer` (m).

@@ -27,11 +27,11 @@ impl TouchForce {
             let sticks = self.coulomb.is_some_and(|law| law.sticks(norm(&action.sliding)));
             let pressing = action.pressing();
             let shares = pair.nodes.into_iter().zip(pair.shares).take(pair.count);
-            // those of the point are above 0
-            let of_point = shares.clone().filter(|(_, part)| *part > 0.0).map(|(node, _)| node);
+            let of_point = &pair.nodes[..pair.of_point];
             let area = share * tributary.facing_part(of_point, u, &pair.normal);
-            for (node, part) in shares {
-                nodal[node].add(part.abs() * pressing, part.abs() * area, !sticks);
+            for (m, (node, part)) in shares.enumerate() {
+                let part = if m < pair.of_point { part } else { -part };
+                nodal[node].add(part * pressing, part * area, !sticks);
             }
         });
         if is_passed { Err(self.passed()) } else { Ok(()) }

@@ -1,26 +1,29 @@
 //! A point of one surface and a facet, edge or corner of another: their distance, and how it changes.
 //!
 //! The offset of the point from the nearest place on the feature is r = sum_m c_m(xi) z_m over the nodes z of both; xi
-//! are the coordinates of the place, two on a triangle, one on an edge, none at a corner. As it is nearest, r is normal
-//! to the feature, r . r_a = 0 with r_a = dr/dxi_a, and with E = r.r/2 and G_ab = r_a . r_b
+//! are the coordinates of the place, two on a facet, one on an edge, none at a corner. As it is nearest, r is normal
+//! to the feature, r . r_a = 0 with r_a = dr/dxi_a, and with E = r.r/2 and G_ab = r_a . r_b + r . r_ab (the last term only
+//! of curved facets and edges)
 //!
 //! ```text
 //! E_am = c_m r_a + c_m,a r,   dxi = -G^-1 E_m . dz_m,
 //! d2E/dz_m dz_n = c_m c_n I - E_am G^-1_ab E_bn^T
 //! ```
 
-use crate::base::vector::{difference, dot, norm};
-use crate::elements::basis::closest;
+use crate::base::vector::{dot, norm};
+use crate::elements::basis::{MOST_NODES, Place};
 use crate::scene::forces::surface::weighted;
 
-/// Most nodes of a pair: three of a point and three of a triangle.
-pub(super) const MOST: usize = 6;
+/// Most nodes of a pair: those of the faces of a point and of a place.
+pub(super) const MOST: usize = 2 * MOST_NODES;
 
 /// A point and the nearest place on a feature.
 pub(super) struct Pair {
     /// Its nodes, and how many there are.
     pub(super) nodes: [usize; MOST],
     pub(super) count: usize,
+    /// How many of them, the first ones, are those of the point.
+    pub(super) of_point: usize,
     /// c_m
     pub(super) shares: [f64; MOST],
     /// The unit normal r/|r|, and |r| (m).
@@ -31,6 +34,8 @@ pub(super) struct Pair {
     along: [[f64; 3]; 2],
     slopes: [[f64; 2]; MOST],
     free: usize,
+    /// r . r_ab for 11, 22 and 12.
+    bending: [f64; 3],
 }
 
 /// How the nearest place of a pair moves, for the derivatives of its forces.
@@ -51,52 +56,57 @@ pub(super) struct Change {
 }
 
 impl Pair {
-    /// The distance (m) of a point at `x` from the feature with these `corners`, and the shares of these in the
-    /// nearest place.
-    pub(super) fn apart(x: &[f64; 3], corners: &[[f64; 3]]) -> (f64, [f64; 3]) {
-        let shares = closest(corners, x);
-        (norm(&offset(x, corners, &shares)), shares)
+    /// The offset of `x` from a place on a feature with its nodes `at` these positions (m).
+    pub(super) fn offset(x: &[f64; 3], place: &Place, at: &[[f64; 3]]) -> [f64; 3] {
+        let shares = place.shape().values;
+        std::array::from_fn(|i| {
+            let along = place.nodes.iter().zip(&shares).map(|(&node, share)| share * at[node][i]);
+            x[i] - along.sum::<f64>()
+        })
     }
 
-    /// The pair of a point at `x` with the nodes and shares `point`, and a feature of the nodes `of` at `corners`, of
-    /// which the nearest place has the `shares` of [`apart`](Self::apart). It must not be at the point itself.
+    /// The pair of a point at `x` with the nodes and shares `point`, and the nearest place of a feature of the nodes `of`,
+    /// which are `at` these positions (m). It must not be at the point itself.
     pub(super) fn new(
         (x, point): (&[f64; 3], impl Iterator<Item = (usize, f64)>),
-        (of, corners): (&[usize], &[[f64; 3]]),
-        shares: &[f64; 3],
+        (of, at): (&[usize], &[[f64; 3]]),
+        place: &Place,
     ) -> Self {
-        let r = offset(x, corners, shares);
+        let r = Self::offset(x, place, at);
         let distance = norm(&r);
         let mut pair = Self {
             nodes: [0; MOST],
             count: 0,
+            of_point: 0,
             shares: [0.0; MOST],
             normal: r.map(|r| r / distance),
             distance,
             offset: r,
             along: [[0.0; 3]; 2],
             slopes: [[0.0; 2]; MOST],
-            free: 0,
+            free: place.dimension(),
+            bending: [0.0; 3],
         };
         for (node, share) in point {
             (pair.nodes[pair.count], pair.shares[pair.count]) = (node, share);
             pair.count += 1;
         }
-        // the place moves on the part of the feature whose corners have a share in it
-        let mut first = None;
-        for (k, &node) in of.iter().enumerate().filter(|(k, _)| shares[*k] != 0.0) {
+        pair.of_point = pair.count;
+        let shape = place.shape();
+        let seconds = place.second_derivatives();
+        for (k, &node) in place.nodes.iter().enumerate() {
             let m = pair.count;
-            (pair.nodes[m], pair.shares[m]) = (node, -shares[k]);
-            pair.count += 1;
-            match first {
-                None => first = Some((m, k)),
-                Some((origin, from)) => {
-                    let a = pair.free;
-                    (pair.slopes[m][a], pair.slopes[origin][a]) = (-1.0, 1.0);
-                    pair.along[a] = difference(&corners[from], &corners[k]);
-                    pair.free += 1;
-                }
+            (pair.nodes[m], pair.shares[m]) = (of[node], -shape.values[k]);
+            pair.slopes[m] = shape.derivatives[k].map(|slope| -slope);
+            for (along, slope) in pair.along.iter_mut().zip(pair.slopes[m]) {
+                along.iter_mut().zip(at[node]).for_each(|(along, x)| *along += slope * x);
             }
+            if let Some(seconds) = &seconds {
+                let over = dot(&at[node], &r);
+                let seconds = pair.bending.iter_mut().zip(seconds[k]);
+                seconds.for_each(|(bending, second)| *bending -= second * over);
+            }
+            pair.count += 1;
         }
         pair
     }
@@ -104,11 +114,14 @@ impl Pair {
     /// How its nearest place moves.
     pub(super) fn moving(&self) -> Moving<'_> {
         let (along, r) = (&self.along, &self.offset);
+        let product = |a: usize, b: usize| dot(&along[a], &along[b]);
+        let [by_first, by_second, by_both] = self.bending;
+        let [aa, ab, bb] =
+            [product(0, 0) + by_first, product(0, 1) + by_both, product(1, 1) + by_second];
         let inverse = match self.free {
             0 => [[0.0; 2]; 2],
-            1 => [[1.0 / dot(&along[0], &along[0]), 0.0], [0.0; 2]],
+            1 => [[1.0 / aa, 0.0], [0.0; 2]],
             _ => {
-                let [aa, ab, bb] = [[0, 0], [0, 1], [1, 1]].map(|[a, b]| dot(&along[a], &along[b]));
                 let whole = aa * bb - ab * ab;
                 [[bb / whole, -ab / whole], [-ab / whole, aa / whole]]
             }
@@ -165,10 +178,4 @@ impl Moving<'_> {
         let shares = std::array::from_fn(|m| slopes[m][0] * places[0] + slopes[m][1] * places[1]);
         Change { distance, normal, shares }
     }
-}
-
-fn offset(x: &[f64; 3], corners: &[[f64; 3]], shares: &[f64; 3]) -> [f64; 3] {
-    std::array::from_fn(|i| {
-        x[i] - corners.iter().zip(shares).map(|(corner, share)| share * corner[i]).sum::<f64>()
-    })
 }

@@ -3,8 +3,10 @@
 use std::collections::BTreeMap;
 
 use crate::base::vector::{difference, norm};
+use crate::elements::basis::{MOST_NODES, Place, nearest, reach};
 use crate::elements::body::Body;
-use crate::scene::forces::surface::{SurfacePoint, closed_points, facets};
+use crate::elements::mesh::FaceKind;
+use crate::scene::forces::surface::{SurfacePoint, closed_points};
 
 /// The surfaces of some bodies.
 pub(super) struct Surfaces {
@@ -18,6 +20,8 @@ pub(super) struct Surfaces {
     pub(super) features: Vec<Feature>,
     /// Whether a body touches itself.
     pub(super) itself: bool,
+    /// No point or place on a surface moves farther than this times the nodes: 1 of linear cells.
+    pub(super) reach: f64,
 }
 
 /// A quadrature point.
@@ -28,9 +32,10 @@ pub(super) struct Point {
     unfelt: Vec<usize>,
 }
 
-/// A facet, an edge or a corner.
+/// A facet, which is a face of a cell, an edge or a corner.
 pub(super) struct Feature {
-    nodes: [usize; 3],
+    kind: FaceKind,
+    nodes: [usize; MOST_NODES],
     count: usize,
     body: usize,
     /// The facets that it belongs to, and for a corner its edges.
@@ -38,12 +43,6 @@ pub(super) struct Feature {
     edges: Vec<usize>,
     /// Its weight to points that feel all facets.
     weight: f64,
-}
-
-impl Feature {
-    pub(super) fn nodes(&self) -> &[usize] {
-        &self.nodes[..self.count]
-    }
 }
 
 impl Surfaces {
@@ -57,6 +56,7 @@ impl Surfaces {
             points: Vec::new(),
             features: Vec::new(),
             itself,
+            reach: 1.0,
         };
         let parts: Vec<_> = body.parts().map(|part| part.nodes).collect();
         let faces = body.mesh().boundary_faces();
@@ -66,10 +66,9 @@ impl Surfaces {
             let points = closed_points(body, &own)?.into_iter();
             surfaces.points.extend(points.map(|on| Point { on, body: number, unfelt: Vec::new() }));
             for face in &own {
-                for facet in facets(body.mesh().face_kind(face)) {
-                    let nodes: Vec<usize> = facet.iter().map(|&local| face[local]).collect();
-                    surfaces.features.push(Feature::new(&nodes, number));
-                }
+                let kind = body.mesh().face_kind(face);
+                surfaces.reach = surfaces.reach.max(reach(kind));
+                surfaces.features.push(Feature::new(kind, face, number));
             }
             surfaces.nodes.extend(own.concat());
         }
@@ -80,35 +79,37 @@ impl Surfaces {
     }
 
     fn add_edges_and_corners(&mut self) {
-        let mut edges: BTreeMap<Vec<usize>, Vec<usize>> = BTreeMap::new();
+        // by their ends
+        let mut edges: BTreeMap<[usize; 2], (Vec<usize>, Vec<usize>)> = BTreeMap::new();
         let mut corners: BTreeMap<usize, [Vec<usize>; 2]> = BTreeMap::new();
         for (number, facet) in self.features.iter_mut().enumerate() {
             facet.facets.push(number);
-            let nodes = facet.nodes();
-            if nodes.len() < 2 {
+            if facet.kind == FaceKind::Point {
                 continue;
             }
-            for (k, &node) in nodes.iter().enumerate() {
+            for &node in &facet.nodes[..facet.kind.corners()] {
                 corners.entry(node).or_default()[0].push(number);
-                let next = nodes[(k + 1) % nodes.len()];
-                if nodes.len() == 3 {
-                    edges.entry(vec![node.min(next), node.max(next)]).or_default().push(number);
-                }
+            }
+            for edge in facet.kind.edges() {
+                let mut nodes: Vec<usize> = edge.iter().map(|&local| facet.nodes[local]).collect();
+                nodes[..2].sort_unstable();
+                edges.entry([nodes[0], nodes[1]]).or_insert((nodes, Vec::new())).1.push(number);
             }
         }
         let body = |surfaces: &Self, facet: usize| surfaces.features[facet].body;
-        for (nodes, facets) in edges {
+        for (ends, (nodes, facets)) in edges {
             let number = self.features.len();
-            for node in &nodes {
-                corners.entry(*node).or_default()[1].push(number);
+            for end in ends {
+                corners.entry(end).or_default()[1].push(number);
             }
-            let edge = Feature { facets, ..Feature::new(&nodes, 0) };
-            let body = body(self, edge.facets[0]);
-            self.features.push(Feature { body, ..edge });
+            let body = body(self, facets[0]);
+            let kind = if nodes.len() == 2 { FaceKind::Segment } else { FaceKind::Segment3 };
+            self.features.push(Feature { facets, ..Feature::new(kind, &nodes, body) });
         }
         for (node, [facets, edges]) in corners {
             let body = body(self, facets[0]);
-            self.features.push(Feature { facets, edges, ..Feature::new(&[node], body) });
+            let corner = Feature::new(FaceKind::Point, &[node], body);
+            self.features.push(Feature { facets, edges, ..corner });
         }
         for number in 0..self.features.len() {
             self.features[number].weight = self.weight_among(number, |_| true);
@@ -182,11 +183,15 @@ impl Surfaces {
         [self.points[point].body, self.features[feature].body]
     }
 
-    /// Mean length (m) of the sides of the facets; 0 without any.
+    /// Mean length (m) of the sides of the facets, of half a side where there is a mid node; 0 without any.
     pub(super) fn mean_side(&self) -> f64 {
-        let side = |facet: usize| match *self.features[facet].nodes() {
-            [a, b, ..] => Some(norm(&difference(&self.at_rest(b), &self.at_rest(a)))),
-            _ => None,
+        let side = |facet: usize| {
+            let feature = &self.features[facet];
+            let halved = if feature.count > feature.kind.corners() { 0.5 } else { 1.0 };
+            match *feature.nodes() {
+                [a, b, ..] => Some(halved * norm(&difference(&self.at_rest(b), &self.at_rest(a)))),
+                _ => None,
+            }
         };
         let facets = (0..self.features.len()).filter(|&feature| self.is_facet(feature));
         let sides: Vec<f64> = facets.filter_map(side).collect();
@@ -213,20 +218,63 @@ impl Surfaces {
         std::array::from_fn(|i| rest[i] + moved[i])
     }
 
-    /// Where the corners of a feature are under the displacements `u` (m); those beyond its count are 0.
-    pub(super) fn corners_at(&self, feature: usize, u: &[f64]) -> [[f64; 3]; 3] {
-        let mut corners = [[0.0; 3]; 3];
+    /// Where the nodes of a feature are under the displacements `u` (m); those beyond its count are 0.
+    pub(super) fn nodes_at(&self, feature: usize, u: &[f64]) -> [[f64; 3]; MOST_NODES] {
+        let mut places = [[0.0; 3]; MOST_NODES];
         let nodes = self.features[feature].nodes().iter();
-        corners.iter_mut().zip(nodes).for_each(|(corner, &node)| *corner = self.node_at(node, u));
-        corners
+        places.iter_mut().zip(nodes).for_each(|(place, &node)| *place = self.node_at(node, u));
+        places
+    }
+}
+
+impl Surfaces {
+    /// A box (m) around a feature with its nodes `at` these positions.
+    pub(super) fn box_of(&self, feature: usize, at: &[[f64; 3]; MOST_NODES]) -> [[f64; 3]; 2] {
+        let at = &at[..self.features[feature].count];
+        let mut ends = [at[0]; 2];
+        for x in &at[1..] {
+            for i in 0..3 {
+                ends[0][i] = ends[0][i].min(x[i]);
+                ends[1][i] = ends[1][i].max(x[i]);
+            }
+        }
+        if self.reach > 1.0 {
+            // the middle of the nodes moves as they do, and no place is farther from it than this times the nodes
+            for i in 0..3 {
+                let beyond = 0.5 * (self.reach - 1.0) * (ends[1][i] - ends[0][i]);
+                (ends[0][i], ends[1][i]) = (ends[0][i] - beyond, ends[1][i] + beyond);
+            }
+        }
+        ends
+    }
+
+    /// Whether `x` is farther than `distance` (m) from the box around a feature.
+    pub(super) fn is_beyond(
+        &self,
+        feature: usize,
+        at: &[[f64; 3]; MOST_NODES],
+        x: &[f64; 3],
+        distance: f64,
+    ) -> bool {
+        let [low, high] = self.box_of(feature, at);
+        (0..3).any(|i| x[i] < low[i] - distance || x[i] > high[i] + distance)
     }
 }
 
 impl Feature {
-    fn new(of: &[usize], body: usize) -> Self {
-        let mut nodes = [0; 3];
+    fn new(kind: FaceKind, of: &[usize], body: usize) -> Self {
+        let mut nodes = [0; MOST_NODES];
         nodes[..of.len()].copy_from_slice(of);
         let (facets, edges) = (Vec::new(), Vec::new());
-        Self { nodes, count: of.len(), body, facets, edges, weight: 0.0 }
+        Self { kind, nodes, count: of.len(), body, facets, edges, weight: 0.0 }
+    }
+
+    pub(super) fn nodes(&self) -> &[usize] {
+        &self.nodes[..self.count]
+    }
+
+    /// Its place that is nearest to `x`, if its nodes are `at` these positions (m), as [`Surfaces::nodes_at`] gives them.
+    pub(super) fn nearest(&self, at: &[[f64; 3]; MOST_NODES], x: &[f64; 3]) -> Place {
+        nearest(self.kind, &at[..self.count], x)
     }
 }

@@ -1,0 +1,144 @@
+//! Shape functions of faces by their kind.
+
+use super::{
+    Quadrilateral, Quadrilateral8, Quadrilateral9, ReferenceCell, Segment, Segment3, Triangle,
+    Triangle6, Triangle7,
+};
+use crate::elements::mesh::FaceKind;
+
+/// Nodes of a face at most.
+pub(crate) const MOST_NODES: usize = 9;
+
+/// Calls a function that is generic over the reference cell of a face, its number of nodes and its dimension.
+macro_rules! with_face {
+    ($kind:expr, $function:ident ( $($argument:expr),* ), $of_point:expr) => {
+        match $kind {
+            FaceKind::Point => $of_point,
+            FaceKind::Segment => $function::<Segment, 2, 1>($($argument),*),
+            FaceKind::Segment3 => $function::<Segment3, 3, 1>($($argument),*),
+            FaceKind::Triangle => $function::<Triangle, 3, 2>($($argument),*),
+            FaceKind::Triangle6 => $function::<Triangle6, 6, 2>($($argument),*),
+            FaceKind::Triangle7 => $function::<Triangle7, 7, 2>($($argument),*),
+            FaceKind::Quadrilateral => $function::<Quadrilateral, 4, 2>($($argument),*),
+            FaceKind::Quadrilateral8 => $function::<Quadrilateral8, 8, 2>($($argument),*),
+            FaceKind::Quadrilateral9 => $function::<Quadrilateral9, 9, 2>($($argument),*),
+        }
+    };
+}
+
+/// A point of a reference face; what a face does not have is 0.
+#[derive(Debug, Clone)]
+pub(crate) struct FacePoint {
+    /// The shape functions N_a.
+    pub(crate) values: [f64; MOST_NODES],
+    /// Their derivatives by the reference coordinates.
+    pub(crate) derivatives: [[f64; 2]; MOST_NODES],
+    /// Its weight in a quadrature rule.
+    pub(crate) weight: f64,
+}
+
+impl FacePoint {
+    /// The point with the reference coordinates `xi` on a face of a kind.
+    pub(crate) fn new(kind: FaceKind, xi: [f64; 2], weight: f64) -> Self {
+        with_face!(
+            kind,
+            point_at(xi, weight),
+            Self {
+                values: std::array::from_fn(|a| if a == 0 { 1.0 } else { 0.0 }),
+                derivatives: [[0.0; 2]; MOST_NODES],
+                weight,
+            }
+        )
+    }
+
+    /// The position, for a face with its nodes at `x`.
+    pub(crate) fn position(&self, x: &[[f64; 3]]) -> [f64; 3] {
+        let mut position = [0.0; 3];
+        for (x, value) in x.iter().zip(&self.values) {
+            position.iter_mut().zip(x).for_each(|(sum, x)| *sum += value * x);
+        }
+        position
+    }
+
+    /// Derivatives of the position by the reference coordinates.
+    pub(crate) fn tangents(&self, x: &[[f64; 3]]) -> [[f64; 3]; 2] {
+        let mut tangents = [[0.0; 3]; 2];
+        for (x, derivatives) in x.iter().zip(&self.derivatives) {
+            for (tangent, derivative) in tangents.iter_mut().zip(derivatives) {
+                tangent.iter_mut().zip(x).for_each(|(sum, x)| *sum += derivative * x);
+            }
+        }
+        tangents
+    }
+}
+
+/// Second derivatives of the shape functions by the reference coordinates, N_a,11, N_a,22 and N_a,12: differences of
+/// the first ones, which are quadratic in each coordinate at most, so that these are exact.
+pub(crate) fn second_derivatives(kind: FaceKind, [x, y]: [f64; 2]) -> [[f64; 3]; MOST_NODES] {
+    if is_affine(kind) {
+        return [[0.0; 3]; MOST_NODES];
+    }
+    let at = |xi: [f64; 2]| FacePoint::new(kind, xi, 0.0).derivatives;
+    let (ahead, behind) = (at([x + 0.5, y]), at([x - 0.5, y]));
+    if kind.dimension() == 1 {
+        return std::array::from_fn(|a| [ahead[a][0] - behind[a][0], 0.0, 0.0]);
+    }
+    let (above, below) = (at([x, y + 0.5]), at([x, y - 0.5]));
+    std::array::from_fn(|a| {
+        let across = [0, 1].map(|k| above[a][k] - below[a][k]);
+        [ahead[a][0] - behind[a][0], across[1], across[0]]
+    })
+}
+
+/// Whether the position is a linear function of the reference coordinates on every face of a kind.
+pub(crate) fn is_affine(kind: FaceKind) -> bool {
+    matches!(kind, FaceKind::Point | FaceKind::Segment | FaceKind::Triangle)
+}
+
+/// The reference coordinates of a node of a face.
+pub(crate) fn reference_node(kind: FaceKind, node: usize) -> [f64; 2] {
+    with_face!(kind, node_of(node), [0.0; 2])
+}
+
+/// The most that the sizes of the shape functions add up to at a point of the face (Lebesgue's constant), or a little
+/// more: no point moves farther than this times its nodes.
+pub(crate) fn reach(kind: FaceKind) -> f64 {
+    match kind {
+        FaceKind::Point | FaceKind::Segment | FaceKind::Triangle | FaceKind::Quadrilateral => 1.0,
+        FaceKind::Segment3 => 1.25,
+        FaceKind::Triangle6 => 1.67,
+        FaceKind::Triangle7 => 1.46,
+        FaceKind::Quadrilateral8 => 3.0,
+        FaceKind::Quadrilateral9 => 1.5625,
+    }
+}
+
+fn point_at<C: ReferenceCell<N, M>, const N: usize, const M: usize>(
+    xi: [f64; 2],
+    weight: f64,
+) -> FacePoint {
+    let xi: [f64; M] = std::array::from_fn(|k| xi[k]);
+    let (mut values, mut derivatives) = ([0.0; MOST_NODES], [[0.0; 2]; MOST_NODES]);
+    values[..N].copy_from_slice(&C::values(xi));
+    for (to, from) in derivatives.iter_mut().zip(C::derivatives(xi)) {
+        to[..M].copy_from_slice(&from);
+    }
+    FacePoint { values, derivatives, weight }
+}
+
+fn node_of<C: ReferenceCell<N, M>, const N: usize, const M: usize>(node: usize) -> [f64; 2] {
+    padded(C::NODES[node])
+}
+
+/// The quadrature points of all faces of a kind. They integrate the normal times a shape function exactly.
+pub(crate) fn face_points(kind: FaceKind) -> Vec<FacePoint> {
+    with_face!(kind, mass_points(), vec![FacePoint::new(kind, [0.0; 2], 1.0)])
+}
+
+fn mass_points<C: ReferenceCell<N, M>, const N: usize, const M: usize>() -> Vec<FacePoint> {
+    C::MASS_RULE.iter().map(|&(xi, weight)| point_at::<C, N, M>(padded(xi), weight)).collect()
+}
+
+fn padded<const M: usize>(xi: [f64; M]) -> [f64; 2] {
+    std::array::from_fn(|k| xi.get(k).copied().unwrap_or(0.0))
+}
