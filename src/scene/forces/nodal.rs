@@ -50,7 +50,8 @@ impl NodalContact {
     ///
     /// With a stiffness per area, and of bodies that touch, it is that of the points that feel contact, and may be a
     /// part of what surrounds the node. A stiffness per node acts through the whole of it. Where faces meet at an
-    /// edge, their areas are those seen along the normal of what presses. Strings have none.
+    /// edge, their areas are those seen along the normal of what presses. Strings have none, nor have edges of bodies that
+    /// cross edges, whose forces count all the same.
     pub fn area(&self) -> f64 {
         self.area
     }

@@ -1,4 +1,5 @@
-//! Contact of bodies with each other and with themselves: points of one surface against the facets of another.
+//! Contact of bodies with each other and with themselves: points of one surface against the facets of another, and edges
+//! against edges in space.
 //!
 //! The energy is an integral over both surfaces. At a quadrature point x of a surface, which stands for the area a,
 //!
@@ -12,17 +13,23 @@
 //! the surface is flat or convex all terms but that of the nearest point cancel, so that a point which slides over an
 //! edge is pushed as by a smooth surface (M. Li, Z. Ferguson, T. Schneider et al., *Convergent incremental potential
 //! contact*, arXiv 2307.15908 (2023)). Forces are continuous, and have an energy and exact tangents ([`pair`]).
+//!
+//! Edges that cross edges between these points have an energy of their own ([`edge_pairs`]).
 
+mod action;
 mod crossing;
+mod edge_pairs;
 mod force;
 mod law;
 mod near;
 mod nodal;
 mod pair;
+mod passing;
 mod spec;
 mod surfaces;
 #[cfg(test)]
 mod tests;
+mod window;
 
 pub(crate) use force::TouchForce;
 pub use spec::Touch;

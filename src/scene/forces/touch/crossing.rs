@@ -1,12 +1,13 @@
-//! Whether a point has passed through a facet between the ends of a step.
+//! Whether a point has passed through a facet, or an edge through an edge, between the ends of a step.
 //!
 //! Every node moves along the cubic with its positions and velocities at both ends, and so does the place of the point
 //! relative to each node of the facet. The distance of the two changes by no more than the longest way of the point
-//! relative to a node, times how much farther than its nodes a curved facet moves.
+//! relative to a node, times how much farther than its nodes a curved facet moves; that of two edges by no more than the
+//! longest way of an end of one relative to an end of the other.
 
 use super::pair::Pair;
 use super::surfaces::Feature;
-use crate::base::vector::norm;
+use crate::base::vector::{difference, norm};
 use crate::elements::basis::MOST_NODES;
 use crate::scene::forces::passage::Path;
 
@@ -15,33 +16,43 @@ const HALVINGS: u32 = 20;
 /// What is not nearer than this part of the limit is let be: along a way at the limit itself the search would not end.
 const NEARLY: f64 = 0.9;
 
-/// The ways of a point relative to the nodes of a facet.
+/// The ways of a point relative to the nodes of a facet, or of the two ends of an edge relative to those of another one: both
+/// to its first end, then both to its second.
 #[derive(Clone, Copy)]
 pub(super) struct Ways<'a> {
-    facet: &'a Feature,
+    /// `None` of two edges.
+    facet: Option<&'a Feature>,
     paths: [Path; MOST_NODES],
+    count: usize,
     /// How much farther than nodes surfaces move.
     reach: f64,
 }
 
 impl<'a> Ways<'a> {
-    pub(super) fn new(facet: &'a Feature, paths: [Path; MOST_NODES], reach: f64) -> Self {
-        Self { facet, paths, reach }
+    pub(super) fn to_facet(facet: &'a Feature, paths: [Path; MOST_NODES], reach: f64) -> Self {
+        Self { facet: Some(facet), paths, count: facet.nodes().len(), reach }
+    }
+
+    pub(super) fn of_edges(paths: [Path; 4]) -> Self {
+        Self { facet: None, paths: std::array::from_fn(|k| paths[k.min(3)]), count: 4, reach: 1.0 }
     }
 
     fn distance(&self, at: impl Fn(&Path) -> &[f64; 3]) -> f64 {
+        let Some(facet) = self.facet else {
+            let [a, b, c] = [0, 1, 2].map(|k| *at(&self.paths[k]));
+            return Pair::edges_apart(&[a, b], &[[0.0; 3], difference(&a, &c)]);
+        };
         let nodes: [[f64; 3]; MOST_NODES] = std::array::from_fn(|k| at(&self.paths[k]).map(|x| -x));
-        let place = self.facet.nearest(&nodes, &[0.0; 3]);
+        let place = facet.nearest(&nodes, &[0.0; 3]);
         norm(&Pair::offset(&[0.0; 3], &place, &nodes))
     }
 
-    /// The distances (m) of the point from the facet at both ends.
+    /// The distances (m) at both ends.
     pub(super) fn ends(&self) -> [f64; 2] {
         [self.distance(Path::start), self.distance(Path::end)]
     }
 
-    /// The first place found (from 0 up to `last`) at which the point is nearer to the facet than `limit` (m), which it is
-    /// not at the ends.
+    /// The first place found (from 0 up to `last`) at which the distance is below `limit` (m), which it is not at the ends.
     pub(super) fn meets(&self, limit: f64, last: f64) -> Option<f64> {
         self.search(self.ends(), [limit, last], [0.0, 1.0], 0)
     }
@@ -53,7 +64,7 @@ impl<'a> Ways<'a> {
         [from, to]: [f64; 2],
         halvings: u32,
     ) -> Option<f64> {
-        let paths = self.paths[..self.facet.nodes().len()].iter();
+        let paths = self.paths[..self.count].iter();
         let longest = self.reach * paths.map(Path::length).fold(0.0, f64::max);
         if halvings == HALVINGS
             || from >= last

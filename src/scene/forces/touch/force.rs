@@ -2,22 +2,22 @@
 
 use std::sync::{Arc, Mutex, PoisonError};
 
-use super::crossing::Ways;
-use super::law::{Kind, Law};
+use super::action::{Action, changed};
+use super::edge_pairs::Edges;
+use super::law::Law;
 use super::near::{Near, NearPair};
 use super::pair::{MOST, Pair};
 use super::surfaces::Surfaces;
 use crate::base::sparse::{BlockMatrix, NodePattern};
-use crate::base::vector::{dot, norm};
 use crate::elements::force::{Force, NodalForces, Reservoir, Step, Tangents};
 use crate::integrators::ode::Failure;
-use crate::scene::forces::friction::{Coulomb, Drag};
-use crate::scene::forces::passage::Path;
+use crate::scene::forces::friction::Coulomb;
 
 /// The forces between the surfaces of some bodies.
 pub(crate) struct TouchForce {
     pub(super) name: String,
     pub(super) surfaces: Surfaces,
+    pub(super) edges: Edges,
     pub(super) law: Law,
     pub(super) coulomb: Option<Coulomb>,
     /// How much farther (m) than they act pairs are looked for, so that they need not be at each evaluation.
@@ -26,64 +26,33 @@ pub(crate) struct TouchForce {
     near: Mutex<Arc<Near>>,
 }
 
-/// Part of its distance to which a point may come near a facet within one step.
-const ONTO: f64 = 0.02;
-
-/// What acts between a point and a feature.
-pub(super) struct Action {
-    /// Weight times area (m^2): the share of the energy per area.
-    share: f64,
-    /// Velocity of the point relative to the feature, the rate of the distance, and the sliding velocity (m/s).
-    velocity: [f64; 3],
-    rate: f64,
-    pub(super) sliding: [f64; 3],
-    /// The part of the normal force with a potential (N), and what multiplies -rate in the other one (N s/m).
-    elastic: f64,
-    damping: f64,
-    drag: Option<Drag>,
-    /// Whether damping does not pull more than the surfaces press; else no force is left.
-    pub(super) presses: bool,
-}
-
-impl Action {
-    /// The normal force (N) on the point.
-    pub(super) fn pressing(&self) -> f64 {
-        self.elastic - self.damping * self.rate
-    }
-
-    /// Force on the point (N) of damping and friction.
-    fn braking(&self, normal: &[f64; 3]) -> [f64; 3] {
-        if !self.presses {
-            return normal.map(|n| -self.elastic * n);
-        }
-        let along = self.drag.map_or(0.0, |drag| self.pressing() * drag.per_speed);
-        std::array::from_fn(|i| -self.damping * self.rate * normal[i] - along * self.sliding[i])
-    }
-}
-
 impl TouchForce {
     pub(super) fn new(
         name: String,
-        surfaces: Surfaces,
+        (surfaces, edges): (Surfaces, Edges),
         law: Law,
         coulomb: Option<Coulomb>,
         margin: f64,
         u: &[f64],
     ) -> Self {
-        let near = Near::new(&surfaces, u, law.distance + margin);
-        Self { name, surfaces, law, coulomb, margin, near: Mutex::new(Arc::new(near)) }
+        let near = Near::new(&surfaces, &edges, u, law.distance + margin);
+        Self { name, surfaces, edges, law, coulomb, margin, near: Mutex::new(Arc::new(near)) }
     }
 
     /// Pairs that include all that act under the displacements `u` (m), and how much nearer (m) they may
     /// have come since they were found.
-    fn near(&self, u: &[f64]) -> (Arc<Near>, f64) {
+    pub(super) fn near(&self, u: &[f64]) -> (Arc<Near>, f64) {
         let mut known = self.near.lock().unwrap_or_else(PoisonError::into_inner);
         let moved = known.moved(&self.surfaces, u);
         if known.covers(self.law.distance, moved) {
             return (known.clone(), moved);
         }
-        *known = Arc::new(Near::new(&self.surfaces, u, self.law.distance + self.margin));
+        *known = Arc::new(self.search(u, self.law.distance + self.margin));
         (known.clone(), 0.0)
+    }
+
+    pub(super) fn search(&self, u: &[f64], within: f64) -> Near {
+        Near::new(&self.surfaces, &self.edges, u, within)
     }
 
     /// Passes to `see` each pair that acts under the displacements `u` (m), and what its share of the energy per area
@@ -103,6 +72,14 @@ impl TouchForce {
                 see(Pair::new((&x, point), (feature.nodes(), &at), &place), self.share(near));
             }
         }
+        let acts_from = self.edges.law.distance;
+        for near in near.edges.iter().filter(|near| near.distance - moved < acts_from) {
+            let pair = self.edges.pair(&self.surfaces, near, u);
+            if let Some(pair) = pair.filter(|pair| pair.distance < acts_from) {
+                let share = pair.window.as_ref().map_or(0.0, |window| window.value);
+                see(pair, share);
+            }
+        }
     }
 
     /// Half of the area that a point stands for, as the other surface has the other half, times the weight of the
@@ -114,14 +91,12 @@ impl TouchForce {
     /// What acts in a pair with the velocities `v` (m/s).
     pub(super) fn action(&self, pair: &Pair, share: f64, v: &[f64]) -> Action {
         let velocity = pair.velocity(&pair.shares, v, self.surfaces.dimension);
-        let rate = dot(&pair.normal, &velocity);
-        let sliding: [f64; 3] = std::array::from_fn(|i| velocity[i] - rate * pair.normal[i]);
-        let pressure = self.law.pressure(pair.distance);
-        let damping = self.law.damping_time() * self.law.curvature(pair.distance);
-        let drag = self.coulomb.map(|coulomb| coulomb.drag(norm(&sliding)));
-        let (elastic, damping) = (share * pressure, share * damping);
-        let presses = pressure * share.abs() >= damping.abs() * rate;
-        Action { share, velocity, rate, sliding, elastic, damping, drag, presses }
+        Action::new(pair, share, velocity, self.law(pair), self.coulomb)
+    }
+
+    /// The law of a pair.
+    fn law(&self, pair: &Pair) -> &Law {
+        if pair.window.is_some() { &self.edges.law } else { &self.law }
     }
 
     /// Why a state is refused in which surfaces lie on each other.
@@ -143,16 +118,19 @@ impl TouchForce {
         self.each(u, |pair, share| {
             let action = self.action(&pair, share, v);
             let braking = action.braking(&pair.normal);
+            let drift = pair.drift(self.law(&pair).energy(pair.distance));
             for m in (0..pair.count).filter(|&m| is_read.is_none_or(|of| of[pair.nodes[m]])) {
                 for (i, total) in total.iter_mut().enumerate() {
                     *total += pair.shares[m] * (action.elastic * pair.normal[i] + braking[i]);
+                    *total += drift.map_or(0.0, |drift| drift[m][i]);
                 }
             }
         });
         total
     }
 
-    /// The least distance (m) of any point from a feature that it feels, if one acts, and the nodes of both.
+    /// The least distance (m) of any point from a feature that it feels, or of two edges, below that from which on nothing
+    /// acts, and a node of each.
     pub(super) fn nearest(&self, u: &[f64]) -> Option<(f64, [usize; 2])> {
         let mut nearest: Option<(f64, [usize; 2])> = None;
         self.each(u, |pair, _| {
@@ -160,46 +138,13 @@ impl TouchForce {
                 nearest = Some((pair.distance, [pair.nodes[0], pair.nodes[pair.count - 1]]));
             }
         });
-        nearest
-    }
-
-    /// The ways of a point relative to the nodes of a facet in a step.
-    fn ways(&self, near: &NearPair, step: &Step) -> Ways<'_> {
-        let d = self.surfaces.dimension;
-        let duration = step.times[1] - step.times[0];
-        let on = &self.surfaces.points[near.point].on;
-        let facet = &self.surfaces.features[near.feature];
-        let of = facet.nodes();
-        let points = step.u.map(|u| self.surfaces.point_at(near.point, u));
-        let nodes = step.u.map(|u| self.surfaces.nodes_at(near.feature, u));
-        let velocities = step.v.map(|v| on.at(v, d));
-        let paths = std::array::from_fn(|k| {
-            let node = of.get(k).copied().unwrap_or(of[0]);
-            let k = k.min(of.len() - 1);
-            let x = [0, 1].map(|end| std::array::from_fn(|i| points[end][i] - nodes[end][k][i]));
-            let v = [0, 1].map(|end| {
-                let of_node = &step.v[end][node * d..][..d];
-                std::array::from_fn(|i| velocities[end][i] - of_node.get(i).copied().unwrap_or(0.0))
-            });
-            Path::new(x, v, duration)
-        });
-        Ways::new(facet, paths, self.surfaces.reach)
-    }
-
-    /// The distance (m) below which a step must not lead unseen, for these distances at its ends. A step that ends on
-    /// the surface itself is none that can be continued.
-    fn limit(&self, [before, after]: [f64; 2]) -> Option<f64> {
-        let (least, acts_from) = (before.min(after), self.law.distance);
-        match self.law.kind {
-            Kind::Barrier if after < ONTO * before.min(acts_from) => {
-                Some(0.5 * before.min(acts_from))
+        for near in &self.near(u).0.edges {
+            let distance = self.edges.apart(&self.surfaces, near, u);
+            if distance < nearest.map_or(self.law.distance, |(least, _)| least) {
+                nearest = Some((distance, self.edges.nodes(near).map(|[node, _]| node)));
             }
-            // the force where it is entered is still small
-            _ if least >= acts_from => Some(0.9 * acts_from),
-            // a soft spring may be passed through where it has acted
-            Kind::Spring if least < 0.5 * acts_from => None,
-            _ => Some(0.5 * least),
         }
+        nearest
     }
 }
 
@@ -217,8 +162,12 @@ impl Force for TouchForce {
             let action = self.action(&pair, share, v);
             let braking = action.braking(&pair.normal);
             let brakes = braking != [0.0; 3];
+            let drift = pair.drift(self.law(&pair).energy(pair.distance));
             for m in 0..pair.count {
                 let at = pair.nodes[m] * d;
+                if let Some(drift) = &drift {
+                    (0..d).for_each(|i| forces.conservative[at + i] += drift[m][i]);
+                }
                 for (i, (normal, braking)) in pair.normal.iter().zip(braking).enumerate().take(d) {
                     forces.conservative[at + i] += pair.shares[m] * action.elastic * normal;
                     if brakes {
@@ -240,9 +189,12 @@ impl Force for TouchForce {
         stiffness: &mut BlockMatrix,
         damping: &mut BlockMatrix,
     ) -> Tangents {
-        let (d, law) = (self.surfaces.dimension, &self.law);
+        let d = self.surfaces.dimension;
         self.each(u, |pair, share| {
-            let action = self.action(&pair, share, v);
+            let (action, law) = (self.action(&pair, share, v), self.law(&pair));
+            if pair.window.is_some() {
+                self.add_drift_tangents(&pair, &action, stiffness);
+            }
             if !action.presses {
                 return;
             }
@@ -262,7 +214,12 @@ impl Force for TouchForce {
                         let change = moving.change([n, j]);
                         let carried = pair.velocity(&change.shares, v, d);
                         let elastic = -action.share * curvature * change.distance;
-                        let of_u = [elastic, stiffening * change.distance];
+                        let mut of_u = [elastic, stiffening * change.distance];
+                        if pair.window.is_some() {
+                            let sharing = moving.sharing([n, j]);
+                            of_u[0] += sharing * law.pressure(pair.distance);
+                            of_u[1] += sharing * law.damping_time() * curvature;
+                        }
                         let by_place = changed(&action, &pair, &carried, &change.normal, of_u);
                         let along =
                             std::array::from_fn(|i| if i == j { pair.shares[n] } else { 0.0 });
@@ -297,20 +254,32 @@ impl Force for TouchForce {
         damping: &mut [f64],
     ) {
         let (near, moved) = self.near(u);
+        let mut add = |node: usize, hard: f64| {
+            stiffness[node] += 2.0 * hard;
+            damping[node] += 2.0 * hard * self.law.damping_time();
+        };
         for near in near.pairs.iter().filter(|near| near.distance + moved >= self.law.distance) {
             let hard = self.share(near).max(0.0) * self.law.reserve();
             let feature = self.surfaces.features[near.feature].nodes().iter();
             let point = self.surfaces.points[near.point].on.nodes();
             for (node, share) in point.chain(feature.map(|&node| (node, 1.0))) {
-                stiffness[node] += 2.0 * share.abs() * hard;
-                damping[node] += 2.0 * share.abs() * hard * self.law.damping_time();
+                add(node, share.abs() * hard);
+            }
+        }
+        let of_edges = self.edges.law;
+        for near in near.edges.iter().filter(|near| near.distance + moved >= of_edges.distance) {
+            // what they share is taken as it is now
+            let Some(pair) = self.edges.pair(&self.surfaces, near, u) else { continue };
+            let Some(window) = &pair.window else { continue };
+            for (&node, share) in pair.nodes[..pair.count].iter().zip(&pair.shares) {
+                add(node, share.abs() * window.value * of_edges.reserve());
             }
         }
     }
 
     fn potential(&self, _t: f64, u: &[f64]) -> f64 {
         let mut energy = 0.0;
-        self.each(u, |pair, share| energy += share * self.law.energy(pair.distance));
+        self.each(u, |pair, share| energy += share * self.law(&pair).energy(pair.distance));
         energy
     }
 
@@ -323,25 +292,7 @@ impl Force for TouchForce {
     }
 
     fn passage(&self, step: &Step, _tolerance: f64, _clearances: &mut [f64]) -> Option<f64> {
-        let ([start, end], acts_from) = (step.times, self.law.distance);
-        let (mut near, mut moved) = self.near(step.u[0]);
-        let nearer = 2.0 * self.surfaces.reach * step.reach(self.surfaces.dimension);
-        if !near.covers(acts_from, moved + nearer) {
-            near = Arc::new(Near::new(&self.surfaces, step.u[0], acts_from + nearer));
-            moved = 0.0;
-        }
-        let mut first = None;
-        for near in &near.pairs {
-            let is_far = near.distance - moved - nearer >= acts_from;
-            if is_far || !self.surfaces.is_facet(near.feature) {
-                continue;
-            }
-            let ways = self.ways(near, step);
-            let found =
-                self.limit(ways.ends()).and_then(|limit| ways.meets(limit, first.unwrap_or(1.0)));
-            first = found.or(first);
-        }
-        first.map(|part| start + part * (end - start))
+        self.first_passage(step)
     }
 
     fn couplings_near(&self, u: &[f64], pattern: &NodePattern) -> Vec<[usize; 2]> {
@@ -355,11 +306,17 @@ impl Force for TouchForce {
             return Vec::new();
         }
         let mut all = Vec::new();
-        for near in &self.near(u).0.pairs {
+        let (near, _) = self.near(u);
+        for near in &near.pairs {
             for (a, _) in self.surfaces.points[near.point].on.nodes() {
                 let feature = self.surfaces.features[near.feature].nodes();
                 all.extend(feature.iter().flat_map(|&b| [[a, b], [b, a]]));
             }
+        }
+        for near in &near.edges {
+            let [first, second] = self.edges.nodes(near);
+            let across = first.iter().flat_map(|&a| second.map(|b| [a, b]));
+            all.extend(across.flat_map(|[a, b]| [[a, b], [b, a]]));
         }
         all.sort_unstable();
         all.dedup();
@@ -367,29 +324,28 @@ impl Force for TouchForce {
     }
 }
 
-/// How damping and friction on the point change as its relative velocity changes by `velocity`, the normal by `normal`,
-/// and the elastic force and the damping of a pair by themselves by `of_u`.
-fn changed(
-    action: &Action,
-    pair: &Pair,
-    velocity: &[f64; 3],
-    normal: &[f64; 3],
-    [elastic, damping]: [f64; 2],
-) -> [f64; 3] {
-    let n = &pair.normal;
-    let rate = dot(normal, &action.velocity) + dot(n, velocity);
-    let braking = -damping * action.rate - action.damping * rate;
-    let damped: [f64; 3] =
-        std::array::from_fn(|i| braking * n[i] - action.damping * action.rate * normal[i]);
-    let Some(drag) = &action.drag else { return damped };
-    let sliding: [f64; 3] =
-        std::array::from_fn(|i| velocity[i] - rate * n[i] - action.rate * normal[i]);
-    let pressing = action.pressing();
-    let along = (elastic + braking) * drag.per_speed
-        + pressing * drag.slope * dot(&action.sliding, &sliding);
-    std::array::from_fn(|i| {
-        damped[i] - along * action.sliding[i] - pressing * drag.per_speed * sliding[i]
-    })
+impl TouchForce {
+    /// The derivatives of what two edges do because they share less of the energy elsewhere, -d(-phi dF/dz_m)/dz_n, and
+    /// of their elastic force as they share more, where they press.
+    fn add_drift_tangents(&self, pair: &Pair, action: &Action, stiffness: &mut BlockMatrix) {
+        let law = self.law(pair);
+        let [energy, slope] = [law.energy(pair.distance), -law.pressure(pair.distance)];
+        let moving = pair.moving();
+        let of_distance = |[m, i]: [usize; 2]| slope * pair.shares[m] * pair.normal[i];
+        for n in 0..pair.count {
+            for j in 0..3 {
+                for m in 0..pair.count {
+                    let values = [0, 1, 2].map(|i| {
+                        let drifts = energy * moving.sharing_bends([m, i], [n, j])
+                            + of_distance([n, j]) * moving.sharing([m, i]);
+                        let pressed = of_distance([m, i]) * moving.sharing([n, j]);
+                        if action.presses { drifts + pressed } else { drifts }
+                    });
+                    add_column(stiffness, [pair.nodes[m], pair.nodes[n]], j, &values);
+                }
+            }
+        }
+    }
 }
 
 /// Adds to column `j` of a block.

@@ -1,17 +1,19 @@
-//! Which points and features are near each other.
+//! Which points and features, and which edges, are near each other.
 
+use super::edge_pairs::{Edges, NearEdges};
 use super::pair::Pair;
 use super::surfaces::Surfaces;
 use crate::base::grid::Grid;
 use crate::base::vector::norm;
 
-/// Points and features that were nearer than a certain distance in some state.
+/// Points and features, and edges, that were nearer than a certain distance in some state.
 pub(super) struct Near {
     /// Positions then (m) of the nodes of the surfaces.
     at: Vec<[f64; 3]>,
     /// The distance (m).
     within: f64,
     pub(super) pairs: Vec<NearPair>,
+    pub(super) edges: Vec<NearEdges>,
 }
 
 /// A point and a feature, by their numbers.
@@ -26,7 +28,7 @@ pub(super) struct NearPair {
 
 impl Near {
     /// All pairs `within` a distance (m) under the displacements `u` (m), in the order of their numbers.
-    pub(super) fn new(surfaces: &Surfaces, u: &[f64], within: f64) -> Self {
+    pub(super) fn new(surfaces: &Surfaces, edges: &Edges, u: &[f64], within: f64) -> Self {
         let at: Vec<[f64; 3]> =
             surfaces.nodes.iter().map(|&node| surfaces.node_at(node, u)).collect();
         let mut pairs = Vec::new();
@@ -55,11 +57,12 @@ impl Near {
             }
             pairs.sort_unstable_by_key(|pair| (pair.point, pair.feature));
         }
-        Self { at, within, pairs }
+        let edges = if is_finite { edges.near(surfaces, u, within) } else { Vec::new() };
+        Self { at, within, pairs, edges }
     }
 
-    /// How much nearer (m) any point and feature may have come since: twice the way of the node that has moved most, times
-    /// how much farther than nodes surfaces move.
+    /// How much nearer (m) any of them may have come since: twice the way of the node that has moved most, times how much
+    /// farther than nodes surfaces move.
     pub(super) fn moved(&self, surfaces: &Surfaces, u: &[f64]) -> f64 {
         let squares = surfaces.nodes.iter().zip(&self.at).map(|(&node, before)| {
             let x = surfaces.node_at(node, u);

@@ -1,4 +1,4 @@
-//! A point of one surface and a facet, edge or corner of another: their distance, and how it changes.
+//! A point of one surface and a facet, edge or corner of another, or two edges: their distance, and how it changes.
 //!
 //! The offset of the point from the nearest place on the feature is r = sum_m c_m(xi) z_m over the nodes z of both; xi
 //! are the coordinates of the place, two on a facet, one on an edge, none at a corner. As it is nearest, r is normal
@@ -9,20 +9,29 @@
 //! E_am = c_m r_a + c_m,a r,   dxi = -G^-1 E_m . dz_m,
 //! d2E/dz_m dz_n = c_m c_n I - E_am G^-1_ab E_bn^T
 //! ```
+//!
+//! Two edges are the same with a coordinate on each, r = (1 - xi_0) a_0 + xi_0 a_1 - (1 - xi_1) b_0 - xi_1 b_1. What they
+//! share depends on xi and on c = det G = |a x b|^2 by a [`Window`], whose derivatives need those of second order, too: with
+//! S_ab = dG_ab = dr_a . r_b + r_a . dr_b, and d' for another direction,
+//!
+//! ```text
+//! G_ab d'dxi_b = -(S_ab d'xi_b + S'_ab dxi_b + d'r_a . dr + dr_a . d'r),   dr = sum_m c_m dz_m, dr_a = sum_m c_m,a dz_m
+//! ```
 
-use crate::base::vector::{dot, norm};
-use crate::elements::basis::{MOST_NODES, Place};
+use super::window::Window;
+use crate::base::vector::{cross, difference, dot, norm};
+use crate::elements::basis::{MOST_NODES, Place, closest};
 use crate::scene::forces::surface::weighted;
 
 /// Most nodes of a pair: those of the faces of a point and of a place.
 pub(super) const MOST: usize = 2 * MOST_NODES;
 
-/// A point and the nearest place on a feature.
+/// A point and the nearest place on a feature, or the nearest places of two edges.
 pub(super) struct Pair {
     /// Its nodes, and how many there are.
     pub(super) nodes: [usize; MOST],
     pub(super) count: usize,
-    /// How many of them, the first ones, are those of the point.
+    /// How many of them, the first ones, are those of the point, or of the first edge.
     pub(super) of_point: usize,
     /// c_m
     pub(super) shares: [f64; MOST],
@@ -36,12 +45,15 @@ pub(super) struct Pair {
     free: usize,
     /// r . r_ab for 11, 22 and 12.
     bending: [f64; 3],
+    /// What two edges share; `None` of a point.
+    pub(super) window: Option<Window>,
 }
 
 /// How the nearest place of a pair moves, for the derivatives of its forces.
 pub(super) struct Moving<'a> {
     pair: &'a Pair,
-    /// E_am, and G^-1 E_m.
+    /// G^-1; E_am, and G^-1 E_m.
+    inverse: [[f64; 2]; 2],
     turns: [[[f64; 3]; 2]; MOST],
     moves: [[[f64; 3]; 2]; MOST],
 }
@@ -86,6 +98,7 @@ impl Pair {
             slopes: [[0.0; 2]; MOST],
             free: place.dimension(),
             bending: [0.0; 3],
+            window: None,
         };
         for (node, share) in point {
             (pair.nodes[pair.count], pair.shares[pair.count]) = (node, share);
@@ -111,6 +124,68 @@ impl Pair {
         pair
     }
 
+    /// The distance (m) of two edges with these ends.
+    pub(super) fn edges_apart(a: &[[f64; 3]; 2], b: &[[f64; 3]; 2]) -> f64 {
+        let from_edge = |x: &[f64; 3], of: &[[f64; 3]; 2]| {
+            let shares = closest(of, x);
+            norm(&std::array::from_fn::<_, 3, _>(|i| {
+                x[i] - shares[0] * of[0][i] - shares[1] * of[1][i]
+            }))
+        };
+        let ends = [(&a[0], b), (&a[1], b), (&b[0], a), (&b[1], a)];
+        let least = ends.map(|(x, of)| from_edge(x, of)).into_iter().fold(f64::INFINITY, f64::min);
+        let [along_a, along_b] = [a, b].map(|[from, to]| difference(to, from));
+        let (normal, between) = (cross(&along_a, &along_b), difference(&b[0], &a[0]));
+        let whole = dot(&normal, &normal);
+        let is_within = [&along_b, &along_a].into_iter().all(|along| {
+            let place = dot(&cross(&between, along), &normal);
+            0.0 < place && place < whole
+        });
+        if is_within { least.min(dot(&between, &normal).abs() / whole.sqrt()) } else { least }
+    }
+
+    /// The pair of two edges, by their nodes and where these are, with the nearest `places` xi on them.
+    pub(super) fn of_edges(
+        edges: [([usize; 2], &[[f64; 3]; 2]); 2],
+        places: [f64; 2],
+        window: Window,
+    ) -> Self {
+        let [a, b] = edges.map(|(_, ends)| *ends);
+        let nodes = edges.map(|(nodes, _)| nodes);
+        let along = [difference(&a[1], &a[0]), difference(&b[0], &b[1])];
+        let r = std::array::from_fn(|i| {
+            a[0][i] + places[0] * along[0][i] - b[0][i] + places[1] * along[1][i]
+        });
+        let distance = norm(&r);
+        let mut pair = Self {
+            nodes: [0; MOST],
+            count: 4,
+            of_point: 2,
+            shares: [0.0; MOST],
+            normal: r.map(|r| r / distance),
+            distance,
+            offset: r,
+            along,
+            slopes: [[0.0; 2]; MOST],
+            free: 2,
+            bending: [0.0; 3],
+            window: Some(window),
+        };
+        pair.nodes[..4].copy_from_slice(nodes.as_flattened());
+        let shares = [1.0 - places[0], places[0], places[1] - 1.0, -places[1]];
+        pair.shares[..4].copy_from_slice(&shares);
+        pair.slopes[..4].copy_from_slice(&[[-1.0, 0.0], [1.0, 0.0], [0.0, 1.0], [0.0, -1.0]]);
+        pair
+    }
+
+    /// The forces (N) on its nodes by which two edges go where they share less of an `energy` per area (J/m^2); `None` of a
+    /// point.
+    pub(super) fn drift(&self, energy: f64) -> Option<[[f64; 3]; MOST]> {
+        self.window.as_ref()?;
+        let moving = self.moving();
+        Some(std::array::from_fn(|m| [0, 1, 2].map(|i| -energy * moving.sharing([m, i]))))
+    }
+
     /// How its nearest place moves.
     pub(super) fn moving(&self) -> Moving<'_> {
         let (along, r) = (&self.along, &self.offset);
@@ -126,8 +201,12 @@ impl Pair {
                 [[bb / whole, -ab / whole], [-ab / whole, aa / whole]]
             }
         };
-        let mut moving =
-            Moving { pair: self, turns: [[[0.0; 3]; 2]; MOST], moves: [[[0.0; 3]; 2]; MOST] };
+        let mut moving = Moving {
+            pair: self,
+            inverse,
+            turns: [[[0.0; 3]; 2]; MOST],
+            moves: [[[0.0; 3]; 2]; MOST],
+        };
         for m in 0..self.count {
             // those beyond `free` are 0
             let (share, slopes) = (self.shares[m], self.slopes[m]);
@@ -177,5 +256,50 @@ impl Moving<'_> {
         let slopes = &self.pair.slopes;
         let shares = std::array::from_fn(|m| slopes[m][0] * places[0] + slopes[m][1] * places[1]);
         Change { distance, normal, shares }
+    }
+
+    /// dG_00, dG_01 and dG_11 with component `j` of node `n`.
+    fn metric(&self, [n, j]: [usize; 2]) -> [f64; 3] {
+        let (along, slopes) = (&self.pair.along, &self.pair.slopes[n]);
+        [[0, 0], [0, 1], [1, 1]].map(|[a, b]| along[a][j] * slopes[b] + slopes[a] * along[b][j])
+    }
+
+    /// How the places xi of two edges and c change with component `j` of node `n`.
+    fn steps(&self, [n, j]: [usize; 2]) -> [f64; 3] {
+        let [aa, ab, bb] = self.metric([n, j]);
+        let [along_a, along_b] = &self.pair.along;
+        let crossed = dot(along_b, along_b) * aa + dot(along_a, along_a) * bb
+            - 2.0 * dot(along_a, along_b) * ab;
+        [-self.moves[n][0][j], -self.moves[n][1][j], crossed]
+    }
+
+    /// How what two edges share (m^2) changes with component `j` of node `n`; 0 of a point.
+    pub(super) fn sharing(&self, at: [usize; 2]) -> f64 {
+        self.pair.window.as_ref().map_or(0.0, |window| dot(&window.slopes, &self.steps(at)))
+    }
+
+    /// The second derivative of what two edges share, by components `i` of node `m` and `j` of node `n`; 0 of a point.
+    pub(super) fn sharing_bends(&self, [m, i]: [usize; 2], [n, j]: [usize; 2]) -> f64 {
+        let Some(window) = &self.pair.window else { return 0.0 };
+        let (first, second) = (self.steps([m, i]), self.steps([n, j]));
+        let ([aa, ab, bb], [aa2, ab2, bb2]) = (self.metric([m, i]), self.metric([n, j]));
+        let ([p, q], [p2, q2]) = (self.pair.slopes[m], self.pair.slopes[n]);
+        let same = f64::from(i == j);
+        let across = |a: usize| {
+            let [one, other] = [m, n].map(|m| (self.pair.slopes[m][a], self.pair.shares[m]));
+            same * (one.0 * other.1 + other.0 * one.1)
+        };
+        let forced = [
+            aa2 * first[0] + ab2 * first[1] + aa * second[0] + ab * second[1] + across(0),
+            ab2 * first[0] + bb2 * first[1] + ab * second[0] + bb * second[1] + across(1),
+        ];
+        let [along_a, along_b] = &self.pair.along;
+        let flat = dot(along_b, along_b) * p * p2 + dot(along_a, along_a) * q * q2
+            - dot(along_a, along_b) * (p * q2 + p2 * q);
+        let crossed = 2.0 * same * flat + bb * aa2 + aa * bb2 - 2.0 * ab * ab2;
+        let [of_a, of_b] = self.inverse.map(|of| -(of[0] * forced[0] + of[1] * forced[1]));
+        let bent: f64 =
+            window.bends.iter().zip(&first).map(|(bends, step)| step * dot(bends, &second)).sum();
+        bent + dot(&window.slopes, &[of_a, of_b, crossed])
     }
 }

@@ -1,5 +1,6 @@
 //! Which bodies touch, and how.
 
+use super::edge_pairs::Edges;
 use super::force::TouchForce;
 use super::law::{Kind, Law};
 use super::near::{Near, NearPair};
@@ -17,7 +18,8 @@ use crate::scene::forces::friction::Friction;
 /// barrier:  k (D - d)^2 (D + 2 d)/(3 d^2)       spring:  k (D - d)
 /// ```
 ///
-/// per area of the undeformed surfaces. The barrier, which is the default, grows without bound as d goes to 0, so that
+/// per area of the undeformed surfaces, felt at points of both. In space edges that cross edges push each other apart, too, with
+/// the same law for D/2, so that they do where no point is near. The barrier, which is the default, grows without bound as d goes to 0, so that
 /// surfaces never pass through each other, and sets in smoothly. A step that would lead through a surface between its
 /// ends is taken again in parts. The spring is softer: what presses more than k D passes through, which the overlap
 /// [indicator](crate::Indicator) of a run tells.
@@ -195,22 +197,25 @@ impl Touch {
         positive(&input("stiffness_density"), stiffness, "N/m^3")?;
         not_negative(&input("damping_density"), self.damping, "N s/m^3")?;
         self.friction.validate(&input)?;
+        let law = Law { kind: self.kind, stiffness, damping: self.damping, distance };
+        let mut edges = Edges::new(&surfaces, &law);
         if itself || !glued.is_empty() {
             let rest = vec![0.0; body.dofs()];
-            let near = Near::new(&surfaces, &rest, 2.0 * distance).pairs.into_iter();
+            let near = Near::new(&surfaces, &edges, &rest, 2.0 * distance);
+            let is_joined =
+                |[a, b]: [usize; 2]| a == b || glued.contains(&[a, b]) || glued.contains(&[b, a]);
             let is_left_out = |near: &NearPair| {
-                let [a, b] = surfaces.bodies(near.point, near.feature);
-                let is_joined = a == b || glued.contains(&[a, b]) || glued.contains(&[b, a]);
-                is_joined && surfaces.is_facet(near.feature)
+                is_joined(surfaces.bodies(near.point, near.feature))
+                    && surfaces.is_facet(near.feature)
             };
-            let pairs = near.filter(is_left_out).map(|near| [near.point, near.feature]);
-            let pairs: Vec<[usize; 2]> = pairs.collect();
+            let pairs = near.pairs.into_iter().filter(is_left_out);
+            let pairs: Vec<[usize; 2]> = pairs.map(|near| [near.point, near.feature]).collect();
+            edges.leave_out(&surfaces, &near.edges, is_joined);
             surfaces.leave_out(&pairs);
         }
-        let law = Law { kind: self.kind, stiffness, damping: self.damping, distance };
         let coulomb = self.friction.coulomb(body.size());
         let margin = distance.max(2.0 * side);
-        let force = TouchForce::new(self.name.clone(), surfaces, law, coulomb, margin, u);
+        let force = TouchForce::new(self.name.clone(), (surfaces, edges), law, coulomb, margin, u);
         self.check_start(body, &force, u)?;
         Ok(force)
     }

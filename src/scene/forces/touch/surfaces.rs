@@ -2,11 +2,11 @@
 
 use std::collections::BTreeMap;
 
-use crate::base::vector::{difference, norm};
+use crate::base::vector::{cross, difference, norm};
 use crate::elements::basis::{MOST_NODES, Place, nearest, reach};
 use crate::elements::body::Body;
 use crate::elements::mesh::FaceKind;
-use crate::scene::forces::surface::{SurfacePoint, closed_points};
+use crate::scene::forces::surface::{SurfacePoint, closed_points, pieces};
 
 /// The surfaces of some bodies.
 pub(super) struct Surfaces {
@@ -37,9 +37,9 @@ pub(super) struct Feature {
     kind: FaceKind,
     nodes: [usize; MOST_NODES],
     count: usize,
-    body: usize,
+    pub(super) body: usize,
     /// The facets that it belongs to, and for a corner its edges.
-    facets: Vec<usize>,
+    pub(super) facets: Vec<usize>,
     edges: Vec<usize>,
     /// Its weight to points that feel all facets.
     weight: f64,
@@ -198,7 +198,8 @@ impl Surfaces {
         sides.iter().sum::<f64>() / sides.len().max(1) as f64
     }
 
-    fn at_rest(&self, node: usize) -> [f64; 3] {
+    /// Where a node is undeformed (m).
+    pub(super) fn at_rest(&self, node: usize) -> [f64; 3] {
         let x = &self.natural[node * self.dimension..][..self.dimension];
         std::array::from_fn(|i| x.get(i).copied().unwrap_or(0.0))
     }
@@ -228,6 +229,20 @@ impl Surfaces {
 }
 
 impl Surfaces {
+    /// The undeformed area (m^2) of a triangle, of half of a quadrilateral.
+    pub(super) fn area_of_triangles(&self, facet: usize) -> f64 {
+        let feature = &self.features[facet];
+        let triangles = (feature.kind.corners() - 2) as f64;
+        let area = |part: &[usize]| match *part {
+            [a, b, c] => {
+                let [a, b, c] = [a, b, c].map(|local| self.at_rest(feature.nodes[local]));
+                0.5 * norm(&cross(&difference(&b, &a), &difference(&c, &a)))
+            }
+            _ => 0.0,
+        };
+        pieces(feature.kind).map(|(part, weight)| weight * area(part) / triangles).sum()
+    }
+
     /// A box (m) around a feature with its nodes `at` these positions.
     pub(super) fn box_of(&self, feature: usize, at: &[[f64; 3]; MOST_NODES]) -> [[f64; 3]; 2] {
         let at = &at[..self.features[feature].count];

@@ -5,9 +5,9 @@ use super::force::TouchForce;
 use super::pair::Pair;
 use super::surfaces::Surfaces;
 use crate::base::sparse::BlockMatrix;
-use crate::base::vector::{dot, largest, noise, norm};
+use crate::base::vector::{cross, dot, largest, noise, norm};
 use crate::elements::body::Body;
-use crate::elements::force::{Force, NodalForces};
+use crate::elements::force::{Force, NodalForces, Step};
 use crate::elements::material::Material;
 use crate::elements::mesh::{Cells, Mesh, SolidCells};
 
@@ -53,6 +53,25 @@ fn blocks(kind: Kind) -> Body {
     Body::join([body(mesh(0.0, 2), "lower"), body(mesh(0.051, 3), "upper")]).unwrap()
 }
 
+/// Two bars of 20 cm with square sections of 2 cm, which stand on edge: the upper one is turned by `angle` about the vertical,
+/// and its lowest edge crosses the uppermost one of the other at three tenths of an edge, four fifths of its own, `gap` (m) above
+/// it.
+fn bars_on_edge(angle: f64, gap: f64) -> Body {
+    let half = f64::hypot(0.01, 0.01);
+    let bar = |name: &str, from: f64, up: f64, angle: f64| {
+        let mesh = Mesh::cuboid([0.2, 0.02, 0.02], [3, 2, 2], SolidCells::Hexahedra).unwrap();
+        let mesh = mesh.mapped(|x| {
+            let ([y, z], root) = ([x[1] - 0.01, x[2] - 0.01], f64::sqrt(0.5));
+            let [along, across] = [x[0] - from, root * (z - y)];
+            let [cos, sin] = [angle.cos(), angle.sin()];
+            [along * cos - across * sin, up + root * (y + z), along * sin + across * cos]
+        });
+        Body::new(mesh.unwrap(), SOFT).named(name).build().unwrap()
+    };
+    let upper = bar("upper", 0.08, 2.0 * half + gap, angle);
+    Body::join([bar("lower", 0.13, 0.0, 0.0), upper]).unwrap()
+}
+
 fn forces_at(force: &TouchForce, u: &[f64], v: &[f64]) -> NodalForces {
     let mut forces = NodalForces::zeros(u.len());
     force.add_forces(0.0, u, v, &mut forces).unwrap();
@@ -69,57 +88,69 @@ fn total(force: &TouchForce, u: &[f64], v: &[f64]) -> Vec<f64> {
 #[test]
 fn forces_and_tangents_are_derivatives() {
     for kind in Kind::SOME {
-        let (body, dimension) = (blocks(kind), kind.dimension());
-        let dofs = body.dofs();
-        let touch =
-            Touch::all().distance(8e-3).damping_density(1e4).friction_coefficients(0.5, 0.3);
-        for touch in [touch.clone(), touch.spring()] {
-            let touch = touch.sticking_speed(0.3);
-            let u: Vec<f64> = noise(dofs, 7).iter().map(|x| 4e-4 * x).collect();
-            let v: Vec<f64> = noise(dofs, 3).iter().map(|x| 0.2 * x).collect();
-            let force = touch.force(&body, &[], &u).unwrap();
-            let conservative = forces_at(&force, &u, &v).conservative;
-            assert!(norm(&conservative) > 0.1, "{kind:?}: nothing touches");
-            let pattern = body.inertia().pattern();
-            let near = force.couplings_near(&u, pattern);
-            let pattern = Arc::new(pattern.with_pairs(&near));
-            assert!(force.couplings_near(&u, &pattern).is_empty());
-            let [mut stiffness, mut damping] =
-                [0, 1].map(|_| BlockMatrix::zeros(&pattern, dimension));
-            force.add_tangents(0.0, &u, &v, &mut stiffness, &mut damping);
-            for seed in 0..2 {
-                let direction = noise(dofs, 20 + seed);
-                let h = 1e-8;
-                let moved = |at: &[f64], by: f64| -> Vec<f64> {
-                    at.iter().zip(&direction).map(|(x, d)| x + by * d).collect()
-                };
-                let [ahead, behind] = [h, -h].map(|by| moved(&u, by));
-                let energy = |u: &[f64]| force.potential(0.0, u);
-                let slope = (energy(&ahead) - energy(&behind)) / (2.0 * h);
-                let exact = -dot(&conservative, &direction);
-                assert!(
-                    (slope - exact).abs() < 2e-6 * norm(&conservative),
-                    "{kind:?}: {slope} {exact}"
-                );
+        let (body, touch) = (blocks(kind), Touch::all().distance(8e-3));
+        assert_derivatives(&body, &touch, 0.0);
+        assert_derivatives(&body, &touch.spring(), 0.0);
+    }
+}
 
-                let difference = |a: Vec<f64>, b: Vec<f64>, by: f64| -> Vec<f64> {
-                    a.iter().zip(b).map(|(a, b)| (a - b) / (2.0 * by)).collect()
-                };
-                let check = |found: Vec<f64>, tangent: &BlockMatrix, tolerance: f64, what: &str| {
-                    let mut exact = vec![0.0; dofs];
-                    tangent.add_product(-1.0, &direction, &mut exact);
-                    let off: Vec<f64> = found.iter().zip(&exact).map(|(a, b)| a - b).collect();
-                    let part = largest(&off) / largest(&exact);
-                    assert!(part < tolerance, "{what} of {kind:?} is off by {part:e}");
-                };
-                let by_u = difference(total(&force, &ahead, &v), total(&force, &behind, &v), h);
-                check(by_u, &stiffness, 2e-8, "stiffness");
-                let h = 1e-6;
-                let [ahead, behind] = [h, -h].map(|by| moved(&v, by));
-                let by_v = difference(total(&force, &u, &ahead), total(&force, &u, &behind), h);
-                check(by_v, &damping, 1e-9, "damping");
-            }
+/// The same for two edges, which cross at a right angle and at angles at which they count less.
+#[test]
+fn edges_that_cross_have_exact_tangents() {
+    for sine in [1.0_f64, 0.04, 0.02] {
+        let body = bars_on_edge(sine.asin(), 5e-4);
+        for touch in [Touch::all(), Touch::all().spring()] {
+            // downwards, so that all presses
+            assert_derivatives(&body, &touch.distance(4e-3), 0.3);
         }
+    }
+}
+
+/// As the second half of the nodes moves down at a `speed` (m/s).
+fn assert_derivatives(body: &Body, touch: &Touch, speed: f64) {
+    let (dofs, dimension) = (body.dofs(), body.dimension());
+    let touch = touch.clone().damping_density(1e4).friction_coefficients(0.5, 0.3);
+    let touch = touch.sticking_speed(0.3);
+    let u: Vec<f64> = noise(dofs, 7).iter().map(|x| 4e-4 * x).collect();
+    let mut v: Vec<f64> = noise(dofs, 3).iter().map(|x| 0.2 * x).collect();
+    v[dofs / 2..].iter_mut().skip(1).step_by(dimension).for_each(|v| *v -= speed);
+    let force = touch.force(body, &[], &u).unwrap();
+    let conservative = forces_at(&force, &u, &v).conservative;
+    assert!(norm(&conservative) > 0.1, "{dimension}: nothing touches");
+    let pattern = body.inertia().pattern();
+    let near = force.couplings_near(&u, pattern);
+    let pattern = Arc::new(pattern.with_pairs(&near));
+    assert!(force.couplings_near(&u, &pattern).is_empty());
+    let [mut stiffness, mut damping] = [0, 1].map(|_| BlockMatrix::zeros(&pattern, dimension));
+    force.add_tangents(0.0, &u, &v, &mut stiffness, &mut damping);
+    for seed in 0..2 {
+        let direction = noise(dofs, 20 + seed);
+        let h = 1e-8;
+        let moved = |at: &[f64], by: f64| -> Vec<f64> {
+            at.iter().zip(&direction).map(|(x, d)| x + by * d).collect()
+        };
+        let [ahead, behind] = [h, -h].map(|by| moved(&u, by));
+        let energy = |u: &[f64]| force.potential(0.0, u);
+        let slope = (energy(&ahead) - energy(&behind)) / (2.0 * h);
+        let exact = -dot(&conservative, &direction);
+        assert!((slope - exact).abs() < 2e-6 * norm(&conservative), "{slope} {exact}");
+
+        let difference = |a: Vec<f64>, b: Vec<f64>, by: f64| -> Vec<f64> {
+            a.iter().zip(b).map(|(a, b)| (a - b) / (2.0 * by)).collect()
+        };
+        let check = |found: Vec<f64>, tangent: &BlockMatrix, tolerance: f64, what: &str| {
+            let mut exact = vec![0.0; dofs];
+            tangent.add_product(-1.0, &direction, &mut exact);
+            let off: Vec<f64> = found.iter().zip(&exact).map(|(a, b)| a - b).collect();
+            let part = largest(&off) / largest(&exact);
+            assert!(part < tolerance, "{what} in {dimension} D is off by {part:e}");
+        };
+        let by_u = difference(total(&force, &ahead, &v), total(&force, &behind, &v), h);
+        check(by_u, &stiffness, 2e-8, "stiffness");
+        let h = 1e-6;
+        let [ahead, behind] = [h, -h].map(|by| moved(&v, by));
+        let by_v = difference(total(&force, &u, &ahead), total(&force, &u, &behind), h);
+        check(by_v, &damping, 1e-9, "damping");
     }
 }
 
@@ -143,6 +174,66 @@ fn momentum_is_exchanged_and_energy_lost() {
             }
         }
     }
+}
+
+/// Two edges that cross where no point is near: their force is that of the closed form, on both alike, and turns nothing.
+#[test]
+fn edges_push_where_no_point_is_near() {
+    let (gap, reach, k) = (4e-4, 2e-3, 1e7);
+    let body = bars_on_edge(std::f64::consts::FRAC_PI_2, gap);
+    let still = vec![0.0; body.dofs()];
+    let touch = Touch::all().distance(reach).stiffness_density(k);
+    let force = touch.force(&body, &[], &still).unwrap();
+    // a third of two triangles of 10 x 2 cm, their geometric mean, half of it
+    let area = 0.5 * 2.0 * 1e-3 / 3.0;
+    let (along, slope) = (
+        |s: f64| (4.0 * s * (1.0 - s)).powi(2),
+        |s: f64| 32.0 * s * (1.0 - s) * (1.0 - 2.0 * s) / 0.1,
+    );
+    let within = 0.5 * reach;
+    let pressure = 2.0 * k * (within - gap).powi(2) * (within + 2.0 * gap) / (3.0 * gap * gap);
+    let energy = 2.0 * k * (within - gap).powi(3) / (3.0 * gap);
+    // as the upper one moves along x and z, the places move forth on the lower one and back on itself
+    let exact = [
+        -area * slope(0.3) * along(0.8) * energy,
+        area * along(0.3) * along(0.8) * pressure,
+        area * along(0.3) * slope(0.8) * energy,
+    ];
+    let forces = forces_at(&force, &still, &still).conservative;
+    let upper = body.dofs() / 2;
+    let (mut total, mut turning, mut size) = ([0.0; 3], [0.0; 3], 0.0);
+    for (node, f) in forces.chunks_exact(3).enumerate() {
+        let x: [f64; 3] = std::array::from_fn(|i| body.mesh().position(node)[i]);
+        let moment = cross(&x, &[f[0], f[1], f[2]]);
+        (0..3).for_each(|i| turning[i] += moment[i]);
+        size += norm(&moment);
+        if 3 * node >= upper {
+            (0..3).for_each(|i| total[i] += f[i]);
+        }
+    }
+    // distances are differences of places of some 0.1 m: some 1e-16 of 4e-4
+    for (found, exact) in total.iter().zip(exact) {
+        assert!((found / exact - 1.0).abs() < 1e-11, "{found} {exact}");
+    }
+    assert!(norm(&turning) < 1e-13 * size, "{turning:?} of {size}");
+    assert!((force.gap(&still) - gap).abs() < 1e-15);
+}
+
+/// A step that leads an edge through an edge is cut where they begin to act, though no point comes near a facet.
+#[test]
+fn a_step_through_an_edge_is_seen() {
+    let (gap, reach) = (3e-3, 2e-3);
+    let body = bars_on_edge(std::f64::consts::FRAC_PI_2, gap);
+    let still = vec![0.0; body.dofs()];
+    let force = Touch::all().distance(reach).force(&body, &[], &still).unwrap();
+    let down: Vec<f64> = (0..body.dofs())
+        .map(|k| if k >= body.dofs() / 2 && k % 3 == 1 { -2.0 * gap } else { 0.0 })
+        .collect();
+    let step = Step { times: [0.0, 1.0], u: [&still, &down], v: [&down, &down] };
+    let time = force.passage(&step, 0.0, &mut []).unwrap();
+    // the search ends between 0.81 and 0.9 of the distance from which edges act
+    let left = (gap - 2.0 * gap * time) / (0.5 * reach);
+    assert!(0.8 < left && left < 0.9, "{left}");
 }
 
 /// The weights of facets, edges and corners cancel all but the nearest place of a convex surface, whatever the mesh:
