@@ -11,9 +11,9 @@
 //! edges cross, these come as near as D/2. So surfaces that lie on each other are carried by their points alone, as long
 //! as the pressure is below that of the law at D/2.
 //!
-//! The area A of F is half of the geometric mean of the areas of both edges, a third of the facets beside each. Of edges with
-//! lengths h and h' some 8/(h h') cross on an area, so that the sum of F is the same for all meshes: of triangles about a third of
-//! the area, and at any pressure less than a tenth of the force is that of edges.
+//! The area A of F is half of the geometric mean of the areas of both edges, a third of the facets beside each. How many edges
+//! cross on an area goes with 1/(h h'), their lengths, so that the sum of F is the same for all meshes. Between flat surfaces it adds 1.5 %
+//! to the force at 0.4 D, and 6 % at D/4.
 
 use super::crossing::Ways;
 use super::law::Law;

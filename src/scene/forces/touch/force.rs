@@ -9,6 +9,7 @@ use super::near::{Near, NearPair};
 use super::pair::{MOST, Pair};
 use super::surfaces::Surfaces;
 use crate::base::sparse::{BlockMatrix, NodePattern};
+use crate::base::vector::norm;
 use crate::elements::force::{Force, NodalForces, Reservoir, Step, Tangents};
 use crate::integrators::ode::Failure;
 use crate::scene::forces::friction::Coulomb;
