@@ -91,6 +91,18 @@ class Simulation:
         """Angle (rad) by which a body in the plane has turned; None for others."""
         return self._simulation.rotation()
 
+    def absolute_pressure(self, chamber: str) -> float:
+        """Absolute pressure (Pa) of the gas in a chamber."""
+        return self._simulation.absolute_pressure(chamber)
+
+    def gas_amount(self, chamber: str) -> float:
+        """Amount of gas (kg) in a chamber."""
+        return self._simulation.gas_amount(chamber)
+
+    def gas_flow(self, orifice: str) -> float:
+        """Flow of gas (kg/s) through an orifice, from its first end to its second."""
+        return self._simulation.gas_flow(orifice)
+
     def pressure(self, chamber: str) -> float:
         """Pressure (Pa) in a chamber."""
         return self._simulation.pressure(chamber)
@@ -159,6 +171,10 @@ class Simulation:
     def set_pressure(self, chamber: str, pressure: float) -> None:
         """Sets the pressure (Pa) in a chamber."""
         self._simulation.set_pressure(chamber, pressure)
+
+    def open(self, orifice: str, opening: float) -> None:
+        """Sets how far an orifice is open, from 0 (shut) to 1."""
+        self._simulation.open(orifice, opening)
 
     def actuate(self, spring: str, force: float) -> None:
         """Sets the force (N) of the actuator of a spring, the tension (N) of a cable, or the length (m) that a winch has drawn in."""

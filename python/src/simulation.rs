@@ -142,6 +142,21 @@ impl Simulation {
         Ok(self.lock()?.view().rotation())
     }
 
+    /// Absolute pressure (Pa) of the gas in a chamber.
+    fn absolute_pressure(&self, chamber: &str) -> PyResult<f64> {
+        self.lock()?.view().absolute_pressure(chamber).map_err(raised)
+    }
+
+    /// Amount of gas (kg) in a chamber.
+    fn gas_amount(&self, chamber: &str) -> PyResult<f64> {
+        self.lock()?.view().gas_amount(chamber).map_err(raised)
+    }
+
+    /// Flow of gas (kg/s) through an orifice.
+    fn gas_flow(&self, orifice: &str) -> PyResult<f64> {
+        self.lock()?.view().gas_flow(orifice).map_err(raised)
+    }
+
     /// Pressure (Pa) in a chamber.
     fn pressure(&self, chamber: &str) -> PyResult<f64> {
         self.lock()?.view().pressure(chamber).map_err(raised)
@@ -241,6 +256,11 @@ impl Simulation {
     /// Sets the pressure (Pa) in a chamber.
     fn set_pressure(&self, chamber: &str, pressure: f64) -> PyResult<()> {
         self.lock()?.pressure(chamber, pressure).map_err(raised)
+    }
+
+    /// Sets how far an orifice is open, from 0 to 1.
+    fn open(&self, orifice: &str, opening: f64) -> PyResult<()> {
+        self.lock()?.open(orifice, opening).map_err(raised)
     }
 
     /// Sets the force (N) of the actuator of a spring.

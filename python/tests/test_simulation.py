@@ -120,3 +120,29 @@ def test_one_thread_at_a_time():
 
     with pytest.raises(RuntimeError, match="fork"):
         beam.advance_until(0.1, inside)
+
+
+def test_a_valve():
+    scene = pliant.Scene(
+        body={
+            "mesh": {"kind": "ring", "inner": 0.02, "outer": 0.03, "nodes": [16, 3], "cells": "rectangles"},
+            "thickness": 0.02,
+            "material": {"density": 1000.0, "young": 2e5, "poisson": 0.4, "viscosity": 200.0},
+        },
+        chamber={"name": "air", "nodes": "inner"},
+        gas={"chamber": "air"},
+        supply={"name": "pump", "pressure": 1.05e5},
+        orifice={"name": "valve", "from": "pump", "to": "air", "conductance": 1e-8},
+        phase={"until": 1.0, "hold": [{"nodes": [1]}], "open": [{"orifice": "valve", "opening": 0.0}]},
+    )
+    ring = scene.start()
+    ring.advance_to(0.01)
+    before = ring.gas_amount("air")
+    assert ring.gas_flow("valve") == 0.0 and abs(ring.pressure("air")) < 1.0
+    ring.open("valve", 1.0)
+    assert ring.gas_flow("valve") > 0.0
+    ring.advance_to(0.05)
+    assert ring.gas_amount("air") > before
+    assert ring.absolute_pressure("air") == pytest.approx(101325.0 + ring.pressure("air"))
+    with pytest.raises(pliant.InputError, match="valve"):
+        ring.open("valv", 1.0)

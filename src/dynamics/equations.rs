@@ -40,7 +40,7 @@ impl Scene {
     /// As [`validate`](Self::validate); a phase that the scene does not have; displacements of
     /// the wrong number; constraints that tie several components together; Maxwell branches; rigid pieces.
     pub fn equations(&self, phase: usize, u: &[f64]) -> Result<Equations, InputError> {
-        let forces = self.forces()?;
+        let forces = self.shut().forces()?;
         let matrices = self.matrices(&forces);
         let (Some(own), Some(forces)) = (self.phases().get(phase), forces.into_iter().nth(phase))
         else {
@@ -58,6 +58,10 @@ impl Scene {
         if matrices.branches.is_some() {
             let help = "equations are given for bodies without Maxwell branches: leave them out";
             return Err(InputError::new("material.branches", "some", help));
+        }
+        if !self.orifices().is_empty() {
+            let help = "equations are given for amounts of gas that stay: leave orifices out";
+            return Err(InputError::new("number of orifices", self.orifices().len(), help));
         }
         if matrices.rigid.is_some() {
             let help =

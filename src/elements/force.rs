@@ -114,7 +114,7 @@ pub enum Reservoir {
     Gravity,
     /// Energy stored in penalty springs at obstacles.
     Contact,
-    /// Energy of springs.
+    /// Energy of springs, and of gas in chambers.
     Springs,
     /// None: the force has no potential.
     None,
@@ -291,6 +291,13 @@ pub trait Force: Send + Sync {
         self.switches() > 0
     }
 
+    /// What flows, where this force depends on amounts that are unknowns beside u and v. The other functions then
+    /// are those of the amounts at the start.
+    #[doc(hidden)]
+    fn flow(&self) -> Option<&dyn Flow> {
+        None
+    }
+
     /// Whether it only keeps rigid pieces in their shape, as their edges do where they are constraints.
     #[doc(hidden)]
     fn keeps_rigid(&self) -> bool {
@@ -318,6 +325,69 @@ pub trait Force: Send + Sync {
 impl fmt::Debug for dyn Force {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str("Force")
+    }
+}
+
+/// Amounts m (kg) of what flows between rooms of the volumes V(u) (m^3), and what it does to the nodes: forces p(m, V)
+/// dV/du and rates q(t, m, V).
+#[doc(hidden)]
+pub trait Flow: Send + Sync {
+    /// The amounts at the start.
+    fn start(&self) -> &[f64];
+
+    /// Adds the forces `at` (u, m) and time `t`, and writes the rates (kg/s) of the amounts; the second vector has room for
+    /// as many numbers. Returns the power (W) that is supplied with what flows.
+    ///
+    /// # Errors
+    /// As [`Force::add_forces`].
+    fn add_forces_of(
+        &self,
+        t: f64,
+        at: [&[f64]; 2],
+        forces: &mut NodalForces,
+        rates: [&mut [f64]; 2],
+    ) -> Result<f64, Failure>;
+
+    /// Potential energy (J) of the amounts.
+    fn potential_of(&self, u: &[f64], amounts: &[f64]) -> f64;
+
+    /// Adds -p d^2V/du^2 to `stiffness`, and writes all other derivatives.
+    fn linearize(
+        &self,
+        t: f64,
+        at: [&[f64]; 2],
+        stiffness: &mut BlockMatrix,
+        derivatives: &mut FlowDerivatives,
+    );
+}
+
+/// Derivatives of a [`Flow`] at one state; matrices row by row.
+#[doc(hidden)]
+#[derive(Debug, Clone, Default)]
+pub struct FlowDerivatives {
+    /// dV/du (m^2), of one room after the other.
+    pub gradients: Vec<f64>,
+    /// -dp/dV (Pa/m^3) and dp/dm (Pa/kg) of each room.
+    pub pressures: [Vec<f64>; 2],
+    /// dq/dV (kg/s/m^3) and dq/dm (1/s).
+    pub rates: [Vec<f64>; 2],
+    /// Derivatives of the power that is supplied, by V (W/m^3) and by m (W/kg).
+    pub power: [Vec<f64>; 2],
+    /// Rates of the amounts (kg/s), and room for as many numbers.
+    pub work: [Vec<f64>; 2],
+}
+
+impl FlowDerivatives {
+    /// Zeros for `count` rooms whose walls are among `dofs` displacement components.
+    pub(crate) fn zeros(count: usize, dofs: usize) -> Self {
+        let pair = |length: usize| [vec![0.0; length], vec![0.0; length]];
+        Self {
+            gradients: vec![0.0; count * dofs],
+            pressures: pair(count),
+            rates: pair(count * count),
+            power: pair(count),
+            work: pair(count),
+        }
     }
 }
 

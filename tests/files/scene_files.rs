@@ -200,6 +200,7 @@ fn all_scenes_are_run() {
         "cable",
         "glued-arm",
         "tendon-finger",
+        "pneumatic-finger",
         "gripper",
         "wheel-over-stones",
         // where contact is tested

@@ -22,6 +22,13 @@ kind = "half-plane"
 point = [0.0, 0.0]
 normal = [0.0, 1.0]
 stiffness = 1e3
+[[gas]]
+chamber = "inside"
+[[orifice]]
+name = "leak"
+from = "inside"
+to = "atmosphere"
+conductance = 1e-12
 [[phase]]
 until = 0.01
 hold = [{ nodes = "left" }]
@@ -58,6 +65,9 @@ fn every_kind_reads_what_the_api_reads() -> Result<(), Error> {
         (r#"kind = "spring-pull", spring = "tendon""#, Reading::spring_pull("tendon")),
         (r#"kind = "spring-length", spring = "tendon""#, Reading::spring_length("tendon")),
         (r#"kind = "pressure", chamber = "inside""#, Reading::pressure("inside")),
+        (r#"kind = "absolute-pressure", chamber = "inside""#, Reading::absolute_pressure("inside")),
+        (r#"kind = "gas-amount", chamber = "inside""#, Reading::gas_amount("inside")),
+        (r#"kind = "gas-flow", orifice = "leak""#, Reading::gas_flow("leak")),
         (r#"kind = "volume", chamber = "inside""#, Reading::chamber_volume("inside")),
         (
             r#"kind = "stress", nodes = 5, component = "von-mises""#,
@@ -92,7 +102,7 @@ fn every_kind_reads_what_the_api_reads() -> Result<(), Error> {
     }
     let motion = file.scene.simulate(&file.settings, &file.output.sampling())?;
     // vectors of two and tensors of four components
-    let columns = [2, 1, 2, 1, 2, 2, 1, 1, 1, 1, 1, 1, 1, 4, 4, 4, 1, 1, 1, 1, 1];
+    let columns = [2, 1, 2, 1, 2, 2, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 4, 4, 4, 1, 1, 1, 1, 1];
     assert_eq!(motion.sensors().len(), columns.iter().sum::<usize>());
     assert!(motion.last().sensors.iter().all(|number| number.is_finite()));
     assert!(parse("")?.output.sensors.is_empty());
@@ -116,6 +126,7 @@ fn mistakes_are_on_their_lines() {
         ("kind = \"contact-force\"\nobstacle = \"flor\"", 3, "did you mean \"floor\"?"),
         ("kind = \"spring-pull\"\nspring = \"tendn\"", 3, "did you mean \"tendon\"?"),
         ("kind = \"volume\"\nchamber = \"outside\"", 3, "the chambers \"inside\""),
+        ("kind = \"gas-flow\"\norifice = \"leek\"", 3, "did you mean \"leak\"?"),
         ("kind = \"stress\"", 0, "expected either nodes or point"),
         ("kind = \"stress\"\nnodes = 1\npoint = [0.0, 0.0]", 0, "found both"),
         ("kind = \"stress\"\npoint = [0.0, 0.2]", 3, "outside the body"),

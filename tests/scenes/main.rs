@@ -21,6 +21,7 @@ mod damping;
 mod driving;
 mod forces;
 mod friction;
+mod gas;
 mod index_two;
 mod indicators;
 mod large;

@@ -134,11 +134,13 @@ fn surroundings(scene: &Scene) -> Result<(), Failure> {
     }
     let springs = scene.springs().iter().map(|spring| spring.name()).collect();
     let chambers = scene.chambers().iter().map(|chamber| chamber.name()).collect();
+    let orifices = scene.orifices().iter().map(|orifice| orifice.name()).collect();
     let obstacles = scene.obstacles().iter().map(|obstacle| obstacle.name()).collect();
     let touches = scene.touches().iter().map(|touch| touch.name()).collect();
     for (label, names) in [
         ("springs", springs),
         ("chambers", chambers),
+        ("orifices", orifices),
         ("obstacles", obstacles),
         ("touches", touches),
     ] {

@@ -13,8 +13,8 @@ use crate::settings::SettingsArguments;
 /// Play a scene live in the web browser
 ///
 /// Prints the address of a page, which this machine alone can open. On it time goes on and stops as you want,
-/// slower or faster; sliders set the pressures of chambers, the forces of actuators and the loads on nodes, and the
-/// mouse pulls nodes. The page shows the energies, what sensors read and what the integrator does, and saves what was done
+/// slower or faster; sliders set the pressures of chambers, valves, the forces of actuators and the loads on nodes,
+/// and the mouse pulls nodes. The page shows the energies, what sensors read and what the integrator does, and saves what was done
 /// by the sliders as a scene file, which has the values of --set in it. Flags override the table [solver] of the
 /// file. Ctrl-C ends it.
 #[derive(Args)]

@@ -51,9 +51,10 @@ struct Track {
     values: Vec<f64>,
 }
 
-/// What replaces the scene's own signal or load: on a chamber, a spring, or some nodes.
+/// What replaces the scene's own signal or load: on a chamber, an orifice, a spring, or some nodes.
 pub(super) enum Replacement {
     Pressure(String, Signal),
+    Opening(String, Signal),
     Actuation(String, Signal),
     Load(Selection, Load),
 }
@@ -63,6 +64,7 @@ impl Replacement {
     pub(super) fn command(self, simulation: &mut Simulation) -> Result<(), Error> {
         match self {
             Self::Pressure(chamber, signal) => simulation.pressure(&chamber, signal),
+            Self::Opening(orifice, signal) => simulation.open(&orifice, signal),
             Self::Actuation(spring, signal) => simulation.actuate(&spring, signal),
             Self::Load(nodes, load) => simulation.set_load(nodes, load),
         }
@@ -74,6 +76,10 @@ impl Replacement {
             Self::Pressure(chamber, signal) => {
                 phase.set_pressure(&chamber, signal);
                 "pressure"
+            }
+            Self::Opening(orifice, signal) => {
+                phase.set_opening(&orifice, signal);
+                "open"
             }
             Self::Actuation(spring, signal) => {
                 phase.set_actuation(&spring, signal);
@@ -150,6 +156,9 @@ impl Record {
         let (nodes, kind) = match &track.target {
             Target::Pressure(chamber) => {
                 return Replacement::Pressure(chamber.clone(), track.signal());
+            }
+            Target::Opening(orifice) => {
+                return Replacement::Opening(orifice.clone(), track.signal());
             }
             Target::Actuation(spring) => {
                 return Replacement::Actuation(spring.clone(), track.signal());

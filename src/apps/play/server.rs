@@ -43,8 +43,8 @@ const RECOVERY: Duration = Duration::from_millis(50);
 
 /// A scene that is played in a web browser on this machine.
 ///
-/// A person starts and stops time, sets pressures, forces of actuators and loads by sliders, and pulls nodes
-/// with the mouse.
+/// A person starts and stops time, sets pressures, valves, forces of actuators and loads by sliders, and pulls
+/// nodes with the mouse.
 ///
 /// ```no_run
 /// use pliant::play::Player;

@@ -1,4 +1,4 @@
-//! What sliders set: pressures of chambers, forces of actuators, cables, loads.
+//! What sliders set: pressures of chambers, openings of orifices, forces of actuators, cables, loads.
 
 use serde_json::{Value, json};
 
@@ -6,7 +6,7 @@ use crate::dynamics::error::Error;
 use crate::dynamics::simulate::Simulation;
 use crate::elements::body::{Body, Part};
 use crate::elements::mesh::Selection;
-use crate::scene::forces::Signal;
+use crate::scene::forces::{Chamber, Signal};
 use crate::scene::timeline::{Load, LoadKind, Phase, Scene};
 
 /// What a slider sets.
@@ -14,6 +14,8 @@ use crate::scene::timeline::{Load, LoadKind, Phase, Scene};
 pub(super) enum Target {
     /// The pressure of a chamber (Pa).
     Pressure(String),
+    /// How far an orifice is open.
+    Opening(String),
     /// The force of the actuator of a spring, or the tension of a cable (N), or the length that a winch has drawn in (m).
     Actuation(String),
     /// A component, counted from 0, of the load of a kind on some nodes (N or N/m^2).
@@ -23,7 +25,8 @@ pub(super) enum Target {
 /// A slider.
 pub(super) struct Slider {
     pub(super) target: Target,
-    /// It goes from -`most` to `most`.
+    /// It goes from `least` to `most`.
+    least: f64,
     most: f64,
     /// What it is, for the page.
     what: String,
@@ -40,10 +43,18 @@ impl Slider {
     /// The sliders of a scene.
     pub(super) fn all(scene: &Scene) -> Vec<Self> {
         let [force, pressure] = usual(scene.body());
-        let chambers = scene.chambers().iter().map(|chamber| {
+        let without_gas = |chamber: &&Chamber| scene.gas_in(chamber.name()).is_none();
+        let chambers = scene.chambers().iter().filter(without_gas).map(|chamber| {
             let target = Target::Pressure(chamber.name().to_owned());
             let range = [target.largest_in(scene), pressure];
             Self::new(target, "pressure".into(), range, "Pa")
+        });
+        let orifices = scene.orifices().iter().map(|orifice| Self {
+            target: Target::Opening(orifice.name().to_owned()),
+            least: 0.0,
+            most: 1.0,
+            what: "opening".into(),
+            unit: "",
         });
         let springs = scene.springs().iter().map(|spring| {
             let target = Target::Actuation(spring.name().to_owned());
@@ -63,7 +74,7 @@ impl Slider {
         }
         let loads =
             loaded.into_iter().flat_map(|nodes| Self::of_load(scene, nodes, [force, pressure]));
-        chambers.chain(springs).chain(loads).collect()
+        chambers.chain(orifices).chain(springs).chain(loads).collect()
     }
 
     /// One slider per component of the loads on a selection. The loads are of the kind that the scene always
@@ -95,13 +106,14 @@ impl Slider {
     /// A slider up to twice the largest value of the scene, or up to `usual` if the scene has none.
     fn new(target: Target, what: String, [largest, usual]: [f64; 2], unit: &'static str) -> Self {
         let most = round_up(if largest > 0.0 { 2.0 * largest } else { usual });
-        Self { target, most, what, unit }
+        Self { target, least: -most, most, what, unit }
     }
 
     /// The value in force, as it is shown.
     pub(super) fn value(&self, simulation: &Simulation) -> Result<f64, Error> {
         Ok(match &self.target {
             Target::Pressure(chamber) => simulation.view().pressure(chamber)?,
+            Target::Opening(orifice) => simulation.view().opening(orifice)?,
             Target::Actuation(spring) => simulation.view().actuation(spring)?,
             Target::Load(nodes, kind, axis) => simulation.view().load_of(nodes, *kind)?[*axis],
         })
@@ -109,10 +121,14 @@ impl Slider {
 
     pub(super) fn to_json(&self) -> Value {
         let name = match &self.target {
-            Target::Pressure(name) | Target::Actuation(name) => name.clone(),
+            Target::Pressure(name) | Target::Opening(name) | Target::Actuation(name) => {
+                name.clone()
+            }
             Target::Load(nodes, ..) => name_of(nodes),
         };
-        json!({ "name": name, "what": self.what, "unit": self.unit, "most": self.most })
+        json!({
+            "name": name, "what": self.what, "unit": self.unit, "least": self.least, "most": self.most
+        })
     }
 }
 
@@ -123,6 +139,8 @@ impl Target {
             Self::Load(nodes, kind, axis) => {
                 scene.load_on(phase, nodes, *kind, t).map_or(0.0, |load| load[*axis])
             }
+            // an orifice of which nothing is said is open
+            Self::Opening(_) if self.signals_in(phase).next().is_none() => 1.0,
             _ => self.signals_in(phase).map(|signal| signal.at(t)).sum(),
         }
     }
@@ -135,11 +153,14 @@ impl Target {
         }
     }
 
-    /// The signals of a chamber or a spring in `phase`; the sum of them acts.
+    /// The signals of a chamber, an orifice or a spring in `phase`; the sum of them acts.
     fn signals_in<'a>(&'a self, phase: &'a Phase) -> Box<dyn Iterator<Item = &'a Signal> + 'a> {
         match self {
             Self::Pressure(name) => Box::new(
                 phase.pressures.iter().filter(move |(other, _)| other == name).map(|(_, s)| s),
+            ),
+            Self::Opening(name) => Box::new(
+                phase.openings.iter().filter(move |(other, _)| other == name).map(|(_, s)| s),
             ),
             Self::Actuation(name) => {
                 Box::new(phase.actuations.iter().flat_map(move |(springs, signal)| {

@@ -51,7 +51,7 @@ fn read(trajectory: &mut Trajectory, sampling: &Sampling) -> Result<(), InputErr
     let (gauges, mut angles) = (Gauges::new(scene)?, Angles::default());
     let mut rows = Vec::with_capacity(trajectory.samples().len());
     for sample in trajectory.samples() {
-        let (u, v, others) = (&sample.u, &sample.v, &sample.multipliers);
+        let (u, v, others) = (&sample.u, &sample.v, &sample.amounts);
         let state = State { u, v, dissipated: 0.0, supplied: sample.energy.supplied, others };
         let phase = trajectory.phase_of(sample)?;
         let view = View { scene, phase, gauges: &gauges, time: sample.time, state };

@@ -113,7 +113,7 @@ impl Plan {
             order => (part(method, asked.rtol), order),
         };
         let relaxation = system.relaxation_rate();
-        let is_for_central = system.is_lumped() && relaxation == 0.0;
+        let is_for_central = system.is_lumped() && system.internal() == 0;
         Self {
             settings: given(asked, method, max_order, part),
             asked: asked.clone(),

@@ -349,7 +349,7 @@ impl Run {
 
     /// Finds the ends of the intervals that are left of the phase in force.
     fn find_stops(&mut self) {
-        let mut stops = self.phase.breaks(self.scene.obstacles());
+        let mut stops = self.scene.breaks_in(&self.phase);
         stops.retain(|&stop| self.time < stop && stop < self.phase.until);
         stops.push(self.phase.until);
         stops.reverse();

@@ -36,6 +36,26 @@ impl Simulation {
         })
     }
 
+    /// Sets how far an orifice is open, from 0 (shut) to 1, in place of the present opening.
+    ///
+    /// # Errors
+    /// A name that no orifice has; a number that is not from 0 to 1.
+    pub fn open(&mut self, orifice: &str, opening: impl Into<Signal>) -> Result<(), Error> {
+        let (opening, input) = (opening.into(), "opening of orifice");
+        self.scene().orifice_number(orifice, input)?;
+        if let Some(value) = opening.value().filter(|value| !(0.0..=1.0).contains(value)) {
+            return Err(InputError::new(input, value, "it must be from 0 (shut) to 1").into());
+        }
+        let live = |phase: &Phase| phase.live_opening(orifice).cloned();
+        if self.set_live(live, input, opening.value().as_slice())? {
+            return Ok(());
+        }
+        self.command(Change::Loads, |phase, _| {
+            phase.set_opening(orifice, opening.thawed());
+            Ok(())
+        })
+    }
+
     /// Sets the force (N) of the actuator of a spring, in place of the present one; a positive one extends
     /// the spring. Of a [cable](crate::Spring::cable) it is the tension, and of one on a winch the length (m) that is drawn in.
     ///

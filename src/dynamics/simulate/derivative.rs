@@ -54,7 +54,7 @@ impl Reading {
             v: &sample.v,
             dissipated: 0.0,
             supplied: 0.0,
-            others: &sample.multipliers,
+            others: &sample.amounts,
         };
         let phase = &scene.phases()[sample.phase];
         Ok(gauge(&View { scene, phase, gauges: &gauges, time: sample.time, state }, sample))
@@ -69,7 +69,8 @@ impl Reading {
             What::ConstraintMoment(..) => false,
             What::Velocity(_) | What::Momentum => false,
             What::Contact(..) | What::Gap(_) | What::TensionAtEnd(_) => false,
-            What::Rotation | What::Pressure(_) => false,
+            What::Rotation | What::Pressure(_) | What::AbsolutePressure(_) => false,
+            What::GasAmount(_) | What::GasFlow(_) => false,
             What::SpringPull(_) | What::SpringLength(_) | What::Stress(_) | What::Strain(_) => {
                 false
             }

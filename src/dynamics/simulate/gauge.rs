@@ -107,6 +107,18 @@ impl Reading {
                 scene.spring_number(spring, "spring")?;
                 number(spring, |view, spring| view.spring_length(spring))
             }
+            What::AbsolutePressure(chamber) => {
+                scene.gas_number(chamber, "chamber")?;
+                number(chamber, |view, chamber| view.absolute_pressure(chamber))
+            }
+            What::GasAmount(chamber) => {
+                scene.gas_number(chamber, "chamber")?;
+                number(chamber, |view, chamber| view.gas_amount(chamber))
+            }
+            What::GasFlow(orifice) => {
+                scene.orifice_number(orifice, "orifice")?;
+                number(orifice, |view, orifice| view.gas_flow(orifice))
+            }
             What::Pressure(chamber) => {
                 scene.chamber_number(chamber, "chamber")?;
                 number(chamber, |view, chamber| view.pressure(chamber))

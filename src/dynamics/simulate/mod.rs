@@ -115,13 +115,14 @@ impl Scene {
     ) -> Result<Trajectory, Error> {
         let clock = Instant::now();
         settings.validate()?;
-        let forces = self.forces_from_start()?;
-        let sensors = sampling.sensors(self)?;
-        let matrices = self.matrices(&forces);
+        let scene = &*settings.method.equations_of(self);
+        let forces = scene.forces_from_start()?;
+        let sensors = sampling.sensors(scene)?;
+        let matrices = scene.matrices(&forces);
         let first = forces.into_iter().next().unwrap_or_default();
-        let gauges = Gauges::new(self)?;
+        let gauges = Gauges::new(scene)?;
         let mut run =
-            Run::new(self, settings, (sampling, sensors), clock, (matrices, gauges), first)?;
+            Run::new(scene, settings, (sampling, sensors), clock, (matrices, gauges), first)?;
         while run.advance(&mut observer)? {}
         Ok(run.into_trajectory())
     }

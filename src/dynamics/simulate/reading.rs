@@ -36,6 +36,9 @@ pub(super) enum What {
     TensionAtEnd(String),
     Pressure(String),
     ChamberVolume(String),
+    AbsolutePressure(String),
+    GasAmount(String),
+    GasFlow(String),
     Stress(Place),
     Strain(Place),
     Distance([Selection; 2]),
@@ -253,9 +256,24 @@ impl Reading {
         What::SpringLength(spring.into()).into()
     }
 
-    /// Pressure in a chamber (Pa).
+    /// Pressure in a chamber (Pa): of gas what it exceeds the atmosphere by.
     pub fn pressure(chamber: impl Into<String>) -> Self {
         What::Pressure(chamber.into()).into()
+    }
+
+    /// Absolute pressure (Pa) of the gas in a chamber.
+    pub fn absolute_pressure(chamber: impl Into<String>) -> Self {
+        What::AbsolutePressure(chamber.into()).into()
+    }
+
+    /// Amount of gas (kg) in a chamber.
+    pub fn gas_amount(chamber: impl Into<String>) -> Self {
+        What::GasAmount(chamber.into()).into()
+    }
+
+    /// Flow of gas (kg/s) through an orifice, from its first end to its second.
+    pub fn gas_flow(orifice: impl Into<String>) -> Self {
+        What::GasFlow(orifice.into()).into()
     }
 
     /// Volume that the walls of a chamber enclose (m^3).
@@ -351,7 +369,9 @@ impl Reading {
             What::Contact(OfContact::Pressure, ..) => "Pa",
             What::Gap(_) => "m",
             What::ConstraintMoment(..) => "N m",
-            What::Pressure(_) | What::Stress(_) => "Pa",
+            What::Pressure(_) | What::AbsolutePressure(_) | What::Stress(_) => "Pa",
+            What::GasAmount(_) => "kg",
+            What::GasFlow(_) => "kg/s",
             What::ChamberVolume(_) => "m^3",
             What::Strain(_) => "1",
             What::Angle(_) | What::Rotation if self.in_degrees => DEGREES,

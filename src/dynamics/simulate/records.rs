@@ -22,7 +22,9 @@ pub(super) fn sample(
     state: &[f64],
 ) -> Result<Sample, Failure> {
     let State { u, v, others, .. } = State::of(state, system.dofs());
-    let multipliers = system.multipliers(time, u, v, internal(system, others))?.to_vec();
+    let internal = internal(system, others);
+    let amounts = internal[internal.len().saturating_sub(system.amounts().len())..].to_vec();
+    let multipliers = system.multipliers(time, u, v, internal)?.to_vec();
     let energy = energy(system, time, state);
     let constraint_drift = system.drift(time, u);
     Ok(Sample {
@@ -31,6 +33,7 @@ pub(super) fn sample(
         u: u.to_vec(),
         v: v.to_vec(),
         multipliers,
+        amounts,
         energy,
         constraint_drift,
         sensors: Vec::new(),
@@ -52,7 +55,7 @@ pub(super) fn complete(
     }
     let Sample { time, ref u, ref v, energy, .. } = *sample;
     let Energy { dissipated, supplied, .. } = energy;
-    let state = State { u, v, dissipated, supplied, others: &sample.multipliers };
+    let state = State { u, v, dissipated, supplied, others: &sample.amounts };
     let view = View { scene, phase, gauges, time, state };
     let readings = sensors.read(&view, sample, angles);
     sample.sensors = readings;
@@ -65,9 +68,9 @@ pub(super) fn energy(system: &System, time: f64, state: &[f64]) -> Energy {
     Energy { dissipated, supplied, ..energy }
 }
 
-/// The internal strains, if the last part of a state, `others`, consists of them and not of multipliers.
+/// The internal unknowns among the last part of a state, `others`, in which multipliers follow them.
 fn internal<'a>(system: &System, others: &'a [f64]) -> &'a [f64] {
-    if system.relaxation_rate() > 0.0 { others } else { &[] }
+    others.get(..system.internal()).unwrap_or_default()
 }
 
 /// Projects the velocities of `state` onto those that the constraints allow, if the phase requires that or

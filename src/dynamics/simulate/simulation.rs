@@ -71,14 +71,15 @@ impl Scene {
     pub fn start(&self, settings: &Settings) -> Result<Simulation, Error> {
         let clock = Instant::now();
         settings.validate()?;
-        let mut all = self.forces_from_start()?;
+        let scene = &*settings.method.equations_of(self);
+        let mut all = scene.forces_from_start()?;
         let first = all.first().cloned().unwrap_or_default();
         // matrices have room for chambers that no phase fills
-        let gauges = Gauges::new(self)?;
+        let gauges = Gauges::new(scene)?;
         all.push(gauges.chambers());
-        let own = (self.matrices(&all), gauges);
+        let own = (scene.matrices(&all), gauges);
         let sampling = (&Sampling::phase_ends(), Sensors::default());
-        let run = Run::new(self, settings, sampling, clock, own, first)?;
+        let run = Run::new(scene, settings, sampling, clock, own, first)?;
         let (time, now) = (run.time, run.state.clone());
         Ok(Simulation { run, time, now, commanded: false, watches: Vec::new() })
     }

@@ -151,7 +151,8 @@ pub(super) fn start(
     let mut tolerances = vec![atol.position; n];
     tolerances.resize(2 * n, atol.velocity);
     tolerances.resize(2 * n + ENERGIES, atol.energy);
-    tolerances.resize(system.unknowns(), atol.strain);
+    tolerances.resize(system.unknowns() - system.amounts().len(), atol.strain);
+    tolerances.extend(system.amounts().iter().map(|amount| atol.strain * amount));
     system.expect_iteration(iterates(settings.method, &system));
     match settings.method {
         // a plan never has `Auto`
@@ -166,14 +167,14 @@ pub(super) fn start(
             until(end, Arkode::new(system, t, state, &options)?)
         }
         Method::Ida | Method::IdaKlu | Method::IdaIndexTwo => {
-            let rows = system.rows().len();
-            tolerances.resize(2 * n + ENERGIES + rows, atol.force);
+            let (rows, unknowns) = (system.rows().len(), system.unknowns());
+            tolerances.resize(unknowns + rows, atol.force);
             let index = match settings.method {
                 Method::IdaIndexTwo => Index::Two,
                 _ => Index::One,
             };
             if index == Index::Two {
-                tolerances.resize(2 * n + ENERGIES + 2 * rows, atol.momentum);
+                tolerances.resize(unknowns + 2 * rows, atol.momentum);
             }
             let mut equations = DaeForm::new(system, index);
             let (y, yp) = equations.consistent(t, state).map_err(Failure::into_error)?;
@@ -268,8 +269,10 @@ fn ida_options(
     equations: &DaeForm,
 ) -> Result<IdaOptions, Failed> {
     // What is not marked as differential stays out of the error test: energies and multipliers.
-    let motion = 2 * equations.system.dofs();
-    let differential: Vec<bool> = (0..equations.size()).map(|i| i < motion).collect();
+    let (motion, unknowns) = (2 * equations.system.dofs(), equations.system.unknowns());
+    let amounts = motion + ENERGIES..unknowns;
+    let is_differential = |i: usize| i < motion || amounts.contains(&i);
+    let differential: Vec<bool> = (0..equations.size()).map(is_differential).collect();
     let linear_solver = match settings.method {
         Method::IdaKlu => LinearSolver::Klu {
             pattern: jacobian_pattern(equations)?,

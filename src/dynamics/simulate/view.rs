@@ -8,7 +8,7 @@ use crate::dynamics::state::State;
 use crate::elements::body::{Body, CellField};
 use crate::elements::force::{Force, Forces, NodalForces};
 use crate::elements::mesh::Selection;
-use crate::scene::forces::{ChamberForce, Contact, NodalContact, Signal, SpringGauge};
+use crate::scene::forces::{ChamberForce, Contact, Filled, NodalContact, Signal, SpringGauge};
 use crate::scene::timeline::{ContactReader, LoadKind, Phase, Scene};
 
 /// The motion of a [`Simulation`](super::Simulation) or at a [sample](crate::Sampling::sensor), without copies.
@@ -24,6 +24,7 @@ pub struct View<'a> {
 pub(super) struct Gauges {
     chambers: Vec<Arc<ChamberForce>>,
     springs: Vec<SpringGauge>,
+    gases: Vec<Filled>,
 }
 
 impl Gauges {
@@ -35,6 +36,7 @@ impl Gauges {
         Ok(Self {
             chambers: chambers.collect::<Result<_, _>>()?,
             springs: springs.collect::<Result<_, _>>()?,
+            gases: scene.filled()?,
         })
     }
 
@@ -117,14 +119,75 @@ impl<'a> View<'a> {
         Ok(self.gauges.chambers[number].volume(self.state.u))
     }
 
-    /// Pressure in a chamber (Pa).
+    /// Pressure in a chamber (Pa): of gas what it exceeds the atmosphere by, NaN where it has none.
     ///
     /// # Errors
     /// A name that no chamber has.
     pub fn pressure(&self, chamber: &str) -> Result<f64, InputError> {
         self.scene.chamber_number(chamber, "chamber")?;
+        if let Some(number) = self.scene.gas_in(chamber) {
+            return Ok(self.gauges.gases[number].gauge(self.gas_pressure(number)));
+        }
         let pressures = self.phase.pressures.iter().filter(|(name, _)| name == chamber);
         Ok(pressures.map(|(_, pressure)| pressure.at(self.time)).sum())
+    }
+
+    /// Absolute pressure (Pa) of the gas in a chamber.
+    ///
+    /// # Errors
+    /// A name that no chamber has, or one without gas.
+    pub fn absolute_pressure(&self, chamber: &str) -> Result<f64, InputError> {
+        Ok(self.gas_pressure(self.scene.gas_number(chamber, "chamber")?))
+    }
+
+    /// Amount of gas (kg) in a chamber.
+    ///
+    /// # Errors
+    /// As [`absolute_pressure`](Self::absolute_pressure).
+    pub fn gas_amount(&self, chamber: &str) -> Result<f64, InputError> {
+        Ok(self.amount(self.scene.gas_number(chamber, "chamber")?))
+    }
+
+    /// Flow (kg/s) through an orifice, from its first end to its second.
+    ///
+    /// # Errors
+    /// A name that no orifice has; a supply or an opening out of range.
+    pub fn gas_flow(&self, orifice: &str) -> Result<f64, InputError> {
+        let number = self.scene.orifice_number(orifice, "orifice")?;
+        let flow = self.scene.orifice_flow(number, self.phase)?;
+        let gases = &self.gauges.gases;
+        let pressures: Vec<f64> = (0..gases.len()).map(|gas| self.gas_pressure(gas)).collect();
+        let rate = flow.rate(self.time, gases, &pressures);
+        let [rate, ..] = rate.map_err(|failure| {
+            InputError::new("orifice", format!("\"{orifice}\""), failure.into_error().to_string())
+        })?;
+        Ok(rate)
+    }
+
+    /// How far an orifice is open.
+    ///
+    /// # Errors
+    /// A name that no orifice has.
+    pub fn opening(&self, orifice: &str) -> Result<f64, InputError> {
+        self.scene.orifice_number(orifice, "orifice")?;
+        let mut own = self.phase.openings.iter().filter(|(name, _)| name == orifice).peekable();
+        if own.peek().is_none() {
+            return Ok(1.0);
+        }
+        Ok(own.map(|(_, opening)| opening.at(self.time)).sum())
+    }
+
+    /// The amount (kg) of the gas of that number: amounts that flow are the last unknowns of the state.
+    fn amount(&self, number: usize) -> f64 {
+        let (gases, others) = (&self.gauges.gases, self.state.others);
+        // where there are none, amounts stay what they are
+        let first = others.len().checked_sub(gases.len());
+        first.map_or(gases[number].amount(), |first| others[first + number])
+    }
+
+    fn gas_pressure(&self, number: usize) -> f64 {
+        let pressure = self.gauges.gases[number].pressure(self.state.u, self.amount(number));
+        pressure.map_or(f64::NAN, |[pressure, _]| pressure)
     }
 
     /// Force of the actuator of a spring (N), above 0 where it extends the spring; of a cable its tension, of a winch the

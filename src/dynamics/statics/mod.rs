@@ -85,7 +85,16 @@ impl Scene {
 
     /// The phase of that `number` (from 0) at rest.
     pub(crate) fn at_rest_in(&self, number: usize) -> Result<AtRest, InputError> {
-        let mut forces = self.forces()?;
+        if let [orifice, ..] = self.orifices() {
+            let help = "an equilibrium keeps the amounts of gas as they are: leave the orifices out, or run the scene";
+            return Err(InputError::new(
+                "orifice of statics",
+                format!("\"{}\"", orifice.name()),
+                help,
+            ));
+        }
+        let shut = self.shut();
+        let mut forces = shut.forces()?;
         indicators::overlap::check_start(self)?;
         let matrices = self.matrices(&forces);
         let phase = &self.phases()[number]; // `forces` makes sure that there is one
@@ -217,6 +226,7 @@ impl Scene {
                 u: point.u.clone(),
                 v: vec![0.0; point.u.len()],
                 multipliers: point.mu.clone(),
+                amounts: Vec::new(),
                 energy,
                 constraint_drift: point.drift,
                 sensors: if is_curve { vec![point.fraction] } else { Vec::new() },

@@ -19,6 +19,8 @@
 //! A^T v - b'
 //! A^T u - b
 //! ```
+//!
+//! In both, amounts of gas that flows come before the multipliers, with the residuals m' - q.
 
 use super::System;
 use crate::dynamics::state::{self, State, StateMut};
@@ -61,7 +63,7 @@ impl DaeForm {
             Index::One => self.system.rows.len(),
             Index::Two => 2 * self.system.rows.len(),
         };
-        state::length(self.system.dofs()) + multipliers
+        self.system.unknowns() + multipliers
     }
 
     /// y and y' with which the residual vanishes, from (u, v) and the energies at the beginning of `state`.
@@ -70,12 +72,13 @@ impl DaeForm {
         t: f64,
         state: &[f64],
     ) -> Result<(Vec<f64>, Vec<f64>), Failure> {
-        let State { u, v, .. } = State::of(state, self.system.dofs());
-        self.system.evaluate(t, u, v, &[])?;
+        let State { u, v, others, .. } = State::of(state, self.system.dofs());
+        self.system.evaluate(t, u, v, others)?;
         let (dissipated, supplied) = self.system.powers(v, &self.system.at.multipliers);
         let mut y = [state, &self.system.at.multipliers].concat();
         y.resize(self.size(), 0.0);
-        let mut yp = [v, &self.system.at.acceleration, &[dissipated, supplied]].concat();
+        let flowing = &self.system.at.flowing[0];
+        let mut yp = [v, &self.system.at.acceleration, &[dissipated, supplied], flowing].concat();
         yp.resize(self.size(), 0.0);
         Ok((y, yp))
     }
@@ -132,9 +135,10 @@ impl Dae for DaeForm {
         residual: &mut [f64],
     ) -> Result<(), Failure> {
         let n = self.system.dofs();
-        let (State { u, v, others: multipliers, .. }, rates) = (State::of(y, n), State::of(yp, n));
+        let (State { u, v, others, .. }, rates) = (State::of(y, n), State::of(yp, n));
+        let (amounts, multipliers) = others.split_at(self.system.internal());
         let (multipliers, eta) = multipliers.split_at(self.system.rows.len());
-        self.system.evaluate_forces(t, u, v, &[])?;
+        self.system.evaluate_forces(t, u, v, amounts)?;
         self.system.evaluate_rows(t, u, v)?;
         let (dissipated, supplied) = self.system.powers(v, multipliers);
         let System { matrices, rows, at, .. } = &mut self.system;
@@ -161,7 +165,12 @@ impl Dae for DaeForm {
         }
         *residual.dissipated = rates.dissipated - dissipated;
         *residual.supplied = rates.supplied - supplied;
-        let (of_rates, of_positions) = residual.others.split_at_mut(rows.len());
+        let (of_amounts, of_rows) = residual.others.split_at_mut(amounts.len());
+        for ((residual, rate), flow) in of_amounts.iter_mut().zip(rates.others).zip(&at.flowing[0])
+        {
+            *residual = rate - flow;
+        }
+        let (of_rates, of_positions) = of_rows.split_at_mut(rows.len());
         for (k, row) in rows.iter().enumerate() {
             match self.index {
                 Index::One => of_rates[k] = row.apply(rates.v) - at.demands[k],
@@ -195,22 +204,26 @@ impl Dae for DaeForm {
     }
 
     fn newton_setup(&mut self, t: f64, cj: f64, y: &[f64], _yp: &[f64]) -> Result<(), Failure> {
-        let State { u, v, .. } = State::of(y, self.system.dofs());
+        let State { u, v, others, .. } = State::of(y, self.system.dofs());
         self.system.update_tangents(t, u, v, false);
+        self.system.add_flow_tangents(t, u, &others[..self.system.internal()]);
         self.system.factorize_newton(1.0 / cj)
     }
 
     fn newton_solve(&mut self, r: &mut [f64]) -> Result<(), Failure> {
         let r = StateMut::of(r, self.system.dofs());
-        let (r3, r4) = r.others.split_at_mut(self.system.rows.len());
+        let gamma = self.system.gamma();
+        let (amounts, of_rows) = r.others.split_at_mut(self.system.internal());
+        amounts.iter_mut().for_each(|r| *r *= gamma);
+        let (r3, r4) = of_rows.split_at_mut(self.system.rows.len());
         match self.index {
-            Index::One => self.system.solve_newton_index_one(r.u, r.v, r3),
-            Index::Two => self.system.solve_newton_index_two(r.u, r.v, r3, r4),
+            Index::One => self.system.solve_newton_index_one(r.u, r.v, amounts, r3),
+            Index::Two => self.system.solve_newton_index_two(r.u, r.v, amounts, [r3, r4]),
         }
         let (dissipated, supplied) = self.system.power_changes();
-        let gamma = self.system.gamma();
+        let brought = self.system.solve_amounts(r.u, amounts);
         *r.dissipated = gamma * (*r.dissipated + dissipated);
-        *r.supplied = gamma * (*r.supplied + supplied);
+        *r.supplied = gamma * (*r.supplied + supplied + brought);
         Ok(())
     }
 }

@@ -14,6 +14,8 @@
 //! motion. The first two solve their Newton systems with the one symmetric matrix of [`newton`], half as
 //! large as the state.
 //!
+//! Maxwell branches and gas that flows have unknowns beside u and v: internal strains and amounts, in this order.
+//!
 //! Two more unknowns are integrated: the energy dissipated and the energy supplied since t = 0. They cost two
 //! dot products, nothing depends on them, and the error control leaves them out; they make the energy balance
 //! as accurate as the integration itself.
@@ -25,6 +27,7 @@ mod differences;
 mod edge_solver;
 mod edges;
 mod form;
+mod gas;
 mod gradients;
 mod guide;
 mod mobility;
@@ -64,7 +67,7 @@ use crate::base::vector::dot;
 use crate::dynamics::matrices::Matrices;
 use crate::dynamics::state;
 use crate::elements::body::Branches;
-use crate::elements::force::{Forces, NodalForces, Reservoir, Step};
+use crate::elements::force::{Flow, Force, Forces, NodalForces, Reservoir, Step};
 use crate::integrators::ode::Failure;
 use crate::scene::constraint::{ConstraintRow, Prescribed};
 
@@ -76,6 +79,8 @@ pub(crate) struct System {
     forces: Forces,
     /// Those that keep rigid pieces in their shape, which their edges do here.
     of_rigid: Forces,
+    /// That whose amounts are unknowns, if there is one.
+    flow: Option<Arc<dyn Force>>,
     rows: Vec<ConstraintRow>,
     /// Stabilization rate alpha (1/s).
     alpha: f64,
@@ -108,6 +113,9 @@ struct Evaluation {
     /// Rates (1/s) of the internal strains, and the power (W) that they dissipate.
     relaxing: Vec<f64>,
     relaxed: f64,
+    /// Rates (kg/s) of the amounts of gas, room for as many numbers, and the power (W) supplied with them.
+    flowing: [Vec<f64>; 2],
+    brought: f64,
 }
 
 /// Energies of a state (J).
@@ -121,11 +129,11 @@ pub struct Energy {
     pub gravity: f64,
     /// Stored in the penalty springs of contacts.
     pub contact: f64,
-    /// Stored in springs between nodes.
+    /// Stored in springs between nodes, and in gas in chambers and the air around them.
     pub springs: f64,
     /// Turned into heat since t = 0 by viscosity, damping and friction of contacts.
     pub dissipated: f64,
-    /// Supplied since t = 0 by loads and constraints.
+    /// Supplied since t = 0 by loads and constraints, and with gas that flows in.
     pub supplied: f64,
 }
 
@@ -186,6 +194,8 @@ impl System {
             });
         }
         let newton = NewtonMatrix::new(&matrices, &rows, &edges.list, follows(&matrices, &forces));
+        let (of_rigid, flow, forces) = parted(forces);
+        let amounts = flow_of(&flow).map_or(0, |flow| flow.start().len());
         let internal = matrices.branches.as_ref().map_or(0, Branches::unknowns);
         let at = Evaluation {
             nodal: NodalForces::zeros(dofs),
@@ -196,15 +206,19 @@ impl System {
             demands: vec![0.0; rows.len()],
             relaxing: vec![0.0; internal],
             relaxed: 0.0,
+            flowing: [vec![0.0; amounts], vec![0.0; amounts]],
+            brought: 0.0,
         };
+        let mut newton = newton;
+        newton.hold_amounts(amounts, dofs);
         let (base, refusal) = (matrices.clone(), String::new());
-        let (of_rigid, forces) = parted(forces);
         let linear_edges = edges.clone();
         Ok(Self {
             base,
             matrices,
             forces,
             of_rigid,
+            flow,
             rows,
             alpha,
             inertia,
@@ -228,7 +242,7 @@ impl System {
         if follows(&self.matrices, &forces) != self.newton.follows {
             return false;
         }
-        (self.of_rigid, self.forces) = parted(forces);
+        (self.of_rigid, self.flow, self.forces) = parted(forces);
         self.forget_tangents();
         true
     }
@@ -308,7 +322,8 @@ impl System {
 
     /// Asks the forces whether the step from displacements `before` to `after` makes sense.
     pub(crate) fn check_step(&self, t: f64, before: &[f64], after: &[f64]) -> Result<(), Failure> {
-        self.forces.iter().try_for_each(|force| force.check_step(t, before, after))
+        let all = self.forces.iter().chain(&self.flow);
+        all.into_iter().try_for_each(|force| force.check_step(t, before, after))
     }
 
     /// Number of switches of all forces.
@@ -380,8 +395,8 @@ impl System {
         self.rows.iter().map(drift).fold(self.all_edges.drift(u), f64::max)
     }
 
-    /// Kinetic and potential energies of a state; dissipated and supplied are left at 0. Without `internal` strains
-    /// Maxwell branches have relaxed.
+    /// Kinetic and potential energies of a state; dissipated and supplied are left at 0. Without `internal` unknowns
+    /// Maxwell branches have relaxed, and there is no gas that flows.
     pub(crate) fn energy(&self, t: f64, u: &[f64], v: &[f64], internal: &[f64]) -> Energy {
         let Matrices { inertia, stiffness, linear_by_cells, dimension, branches, .. } =
             &*self.matrices;
@@ -393,8 +408,12 @@ impl System {
             },
             ..Energy::default()
         };
-        if let (Some(branches), [_, ..]) = (branches, internal) {
-            energy.strain += branches.energy(u, internal);
+        let (strains, amounts) = self.parts_of(internal);
+        if let (Some(branches), [_, ..]) = (branches, strains) {
+            energy.strain += branches.energy(u, strains);
+        }
+        if let (Some(flow), [_, ..]) = (flow_of(&self.flow), amounts) {
+            energy.springs += flow.potential_of(u, amounts);
         }
         for force in &self.forces {
             let potential = force.potential(t, u);
@@ -409,7 +428,8 @@ impl System {
         energy
     }
 
-    /// Evaluates forces, accelerations and multipliers. Without `internal` strains Maxwell branches have relaxed.
+    /// Evaluates forces, accelerations and multipliers. Without `internal` unknowns Maxwell branches have relaxed, and
+    /// there is no gas that flows.
     fn evaluate(&mut self, t: f64, u: &[f64], v: &[f64], internal: &[f64]) -> Result<(), Failure> {
         self.evaluate_forces(t, u, v, internal)?;
         self.evaluate_rows(t, u, v)?;
@@ -435,9 +455,18 @@ impl System {
         internal: &[f64],
     ) -> Result<(), Failure> {
         self.collect_forces(t, u, v)?;
-        if let (Some(branches), [_, ..]) = (&self.matrices.branches, internal) {
-            let Evaluation { nodal, relaxing, relaxed, .. } = &mut self.at;
-            *relaxed = branches.add_forces(u, internal, &mut nodal.conservative, relaxing);
+        let (strains, amounts) = self.parts_of(internal);
+        let Evaluation { nodal, relaxing, relaxed, flowing, brought, .. } = &mut self.at;
+        if let (Some(branches), [_, ..]) = (&self.matrices.branches, strains) {
+            *relaxed = branches.add_forces(u, strains, &mut nodal.conservative, relaxing);
+        }
+        if let (Some(flow), [_, ..]) = (flow_of(&self.flow), amounts) {
+            let rates = flowing.each_mut().map(|rates| &mut rates[..]);
+            let added = flow.add_forces_of(t, [u, amounts], nodal, rates);
+            if let Err(Failure::Recoverable(reason)) = &added {
+                self.refusal.clone_from(reason);
+            }
+            *brought = added?;
         }
         self.at.nodal.add_up(&mut self.at.total);
         Ok(())
@@ -489,20 +518,38 @@ impl System {
     /// Power dissipated and power supplied (W) at the last evaluation.
     fn powers(&self, v: &[f64], multipliers: &[f64]) -> (f64, f64) {
         let (dissipated, applied) = self.at.nodal.powers(v);
-        (dissipated + self.at.relaxed, applied + dot(multipliers, &self.at.rates))
+        let supplied = applied + dot(multipliers, &self.at.rates);
+        (dissipated + self.at.relaxed, supplied + self.at.brought)
     }
 
     /// Number of unknowns of the ODE form.
     pub(crate) fn unknowns(&self) -> usize {
-        state::length(self.dofs()) + self.at.relaxing.len()
+        state::length(self.dofs()) + self.internal()
     }
 
-    /// The internal strains with which Maxwell branches are free of stress at the displacements `u`.
+    /// Number of internal unknowns: strains of Maxwell branches, and behind them amounts of gas.
+    pub(crate) fn internal(&self) -> usize {
+        self.at.relaxing.len() + self.amounts().len()
+    }
+
+    /// The amounts of gas (kg) at the start of the scene; none if no gas flows.
+    pub(crate) fn amounts(&self) -> &[f64] {
+        flow_of(&self.flow).map_or(&[], |flow| flow.start())
+    }
+
+    /// The internal strains and the amounts among the `internal` unknowns, if these are given.
+    fn parts_of<'a>(&self, internal: &'a [f64]) -> (&'a [f64], &'a [f64]) {
+        internal.split_at(self.at.relaxing.len().min(internal.len()))
+    }
+
+    /// The internal unknowns of a start: strains with which Maxwell branches are free of stress at the displacements
+    /// `u`, and the first amounts of gas.
     pub(crate) fn relaxed(&self, u: &[f64]) -> Vec<f64> {
         let mut internal = vec![0.0; self.at.relaxing.len()];
         if let Some(branches) = &self.matrices.branches {
             branches.relax(u, &mut internal);
         }
+        internal.extend(self.amounts());
         internal
     }
 
@@ -524,9 +571,18 @@ impl System {
     }
 }
 
-/// The forces that only keep rigid pieces in their shape, and all others.
-fn parted(forces: Forces) -> (Forces, Forces) {
-    forces.into_iter().partition(|force| force.keeps_rigid())
+/// The forces that only keep rigid pieces in their shape, that of gas that flows, and all others.
+fn parted(forces: Forces) -> (Forces, Option<Arc<dyn Force>>, Forces) {
+    let (of_rigid, others): (Forces, Forces) =
+        forces.into_iter().partition(|force| force.keeps_rigid());
+    let (flows, others): (Forces, Forces) =
+        others.into_iter().partition(|force| force.flow().is_some());
+    (of_rigid, flows.into_iter().next(), others)
+}
+
+/// What flows.
+fn flow_of(force: &Option<Arc<dyn Force>>) -> Option<&dyn Flow> {
+    force.as_ref().and_then(|force| force.flow())
 }
 
 /// Whether the Newton matrix depends on more than M, K and B: on the state, or on the step in another way.

@@ -13,7 +13,8 @@
 //! This needs one sparse symmetric matrix N of half the size; alpha costs nothing, however large.
 //!
 //! Maxwell branches are eliminated point by point (`elements/body/branches.rs`), so that Kt includes their
-//! effect in a step of gamma.
+//! effect in a step of gamma. Amounts of gas are eliminated as well; what they add to Kt is of the rank of their number,
+//! and stays apart (`gas.rs`).
 //!
 //! Of r = c + gamma (v, M^-1 (f + A lambda)) the integrators are given only c + gamma (v, 0): then
 //! M rv is M cv + gamma f, and no iteration solves a system with M.
@@ -138,6 +139,9 @@ impl System {
         if let (Ok(()), Some(solver)) = (&factorized, &mut self.newton.solver.edges) {
             solver.turn(&self.linear_edges, Some([gamma, self.alpha]));
         }
+        if factorized.is_ok() {
+            self.condense_flow();
+        }
         factorized.map_err(|_| {
             Failure::Recoverable(
                 "the Newton matrix is singular (a body that is about to buckle or to collapse)"
@@ -151,10 +155,15 @@ impl System {
     /// nodal rows.
     fn solve_newton(&mut self, ru: &mut [f64]) {
         let gamma = self.newton.gamma;
-        let NewtonMatrix { solver, stiffness, damping, right, xv, demands, mu, stray, .. } =
-            &mut self.newton;
+        let NewtonMatrix {
+            solver, stiffness, damping, right, xv, demands, mu, stray, flow, ..
+        } = &mut self.newton;
         let (stiffness, damping) = (stiffness.get(), damping.get());
         solver.solve(&self.rows, right, demands, xv, mu);
+        if let Some(flow) = flow {
+            flow.resist(xv, right);
+            solver.solve(&self.rows, right, demands, xv, mu);
+        }
         let (inertia, dimension) = (&self.matrices.inertia, self.matrices.dimension);
         nodal_multipliers(&self.rows, mu, |dof| {
             let damped = damping.row_product(dof, xv) + gamma * stiffness.row_product(dof, xv);
@@ -176,7 +185,7 @@ impl System {
     /// The Newton system of the ODE form: `ru`, `rv` become xu, xv. First, `share` times the accelerations
     /// that follow from the forces and demands last evaluated is added to `rv`. Leaves in mu gamma times the
     /// change of lambda or, with those accelerations, `share` times the whole lambda. `internal` are the
-    /// residuals of the internal strains.
+    /// residuals of the internal unknowns.
     pub(crate) fn solve_newton_ode(
         &mut self,
         share: f64,
@@ -184,10 +193,14 @@ impl System {
         rv: &mut [f64],
         internal: &[f64],
     ) {
-        let NewtonMatrix { stiffness, right, demands, gamma, place, .. } = &mut self.newton;
+        let NewtonMatrix { stiffness, right, demands, gamma, place, flow, .. } = &mut self.newton;
         right.iter_mut().zip(&self.at.total).for_each(|(right, f)| *right = share * f);
-        if let (Some(branches), [_, ..]) = (&self.matrices.branches, internal) {
-            branches.add_residuals(*gamma, place.each_ref().map(|at| &at[..]), internal, right);
+        let (strains, amounts) = internal.split_at(self.at.relaxing.len());
+        if let (Some(branches), [_, ..]) = (&self.matrices.branches, strains) {
+            branches.add_residuals(*gamma, place.each_ref().map(|at| &at[..]), strains, right);
+        }
+        if let Some(flow) = flow {
+            flow.add_residuals(*gamma, ru, amounts, right);
         }
         self.matrices.inertia.add_product(self.matrices.dimension, 1.0, rv, right);
         for ((demand, row), of_forces) in demands.iter_mut().zip(&self.rows).zip(&self.at.demands) {
@@ -226,18 +239,22 @@ impl System {
     }
 
     /// The Newton system of the index-1 form, cj dF/dy' + dF/dy with cj = 1/gamma: the residuals
-    /// `r1`, `r2`, `r3` become xu, xv and the change of lambda.
+    /// `r1`, `r2`, `r3` become xu, xv and the change of lambda. `amounts` are gamma times those of the amounts of gas.
     pub(super) fn solve_newton_index_one(
         &mut self,
         r1: &mut [f64],
         r2: &mut [f64],
+        amounts: &[f64],
         r3: &mut [f64],
     ) {
         let gamma = self.newton.gamma;
         r1.iter_mut().for_each(|r| *r *= gamma);
-        let NewtonMatrix { stiffness, right, demands, .. } = &mut self.newton;
+        let NewtonMatrix { stiffness, right, demands, flow, .. } = &mut self.newton;
         right.iter_mut().zip(&*r2).for_each(|(f, r)| *f = gamma * r);
         stiffness.get().add_product(-gamma, r1, right);
+        if let Some(flow) = flow {
+            flow.add_residuals(gamma, r1, amounts, right);
+        }
         demands.iter_mut().zip(&*r3).for_each(|(d, r)| *d = gamma * r);
         self.stabilize_demands(r1);
         self.solve_newton(r1);
@@ -256,11 +273,11 @@ impl System {
         &mut self,
         r1: &mut [f64],
         r2: &mut [f64],
-        r3: &mut [f64],
-        r4: &mut [f64],
+        amounts: &[f64],
+        [r3, r4]: [&mut [f64]; 2],
     ) {
         let gamma = self.newton.gamma;
-        let NewtonMatrix { stiffness, right, demands, .. } = &mut self.newton;
+        let NewtonMatrix { stiffness, right, demands, flow, .. } = &mut self.newton;
         right.iter_mut().zip(&*r1).for_each(|(f, r)| *f = gamma * r);
         let of_slip = r4.iter().zip(&*r3).map(|(r4, r3)| r4 - gamma * r3);
         demands.iter_mut().zip(of_slip).for_each(|(d, of_slip)| *d = of_slip);
@@ -271,6 +288,9 @@ impl System {
         });
         right.iter_mut().zip(&*r2).for_each(|(f, r)| *f = gamma * r);
         stiffness.get().add_product(-gamma, r1, right);
+        if let Some(flow) = flow {
+            flow.add_residuals(gamma, r1, amounts, right);
+        }
         demands.copy_from_slice(r3);
         self.solve_newton(r1);
         r2.copy_from_slice(&self.newton.xv);

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use super::differences::Differences;
 use super::edges::Edge;
+use super::gas::FlowMatrix;
 use super::reduced::Reduced;
 use super::source::Coupling;
 use crate::base::sparse::BlockMatrix;
@@ -39,6 +40,8 @@ pub(super) struct NewtonMatrix {
     /// d of the linear system, and its multipliers mu.
     pub(super) demands: Vec<f64>,
     pub(super) mu: Vec<f64>,
+    /// What amounts of gas add, if there are any.
+    pub(super) flow: Option<FlowMatrix>,
     /// By how much velocities differ from those of rigid pieces; empty without any. No force acts on it.
     pub(super) stray: Vec<f64>,
 }
@@ -116,8 +119,14 @@ impl NewtonMatrix {
             xv: vec![0.0; dofs],
             demands: vec![0.0; rows.len()],
             mu: vec![0.0; rows.len()],
+            flow: None,
             stray: vec![0.0; if matrices.rigid.is_some() { dofs } else { 0 }],
         }
+    }
+
+    /// Makes room for what `count` amounts of gas add.
+    pub(super) fn hold_amounts(&mut self, count: usize, dofs: usize) {
+        self.flow = (count > 0).then(|| FlowMatrix::new(count, dofs));
     }
 
     /// Continues with matrices on another pattern, without tangents yet.

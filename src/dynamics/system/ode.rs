@@ -1,4 +1,4 @@
-//! The ODE form: y = (u, v, energy dissipated, energy supplied, internal strains of Maxwell branches).
+//! The ODE form: y = (u, v, energy dissipated, energy supplied, internal strains of Maxwell branches, amounts of gas).
 
 use super::System;
 use crate::dynamics::state::{ENERGIES, State, StateMut};
@@ -12,13 +12,13 @@ impl Ode for System {
         rates.u.copy_from_slice(v);
         rates.v.copy_from_slice(&self.at.acceleration);
         (*rates.dissipated, *rates.supplied) = self.powers(v, &self.at.multipliers);
-        rates.others.copy_from_slice(&self.at.relaxing);
+        self.copy_internal_rates(rates.others);
         Ok(())
     }
 
     fn integrals(&self) -> usize {
-        // integrals must be the last unknowns: internal strains come after the energies
-        if self.at.relaxing.is_empty() { ENERGIES } else { 0 }
+        // integrals must be the last unknowns: internal ones come after the energies
+        if self.internal() == 0 { ENERGIES } else { 0 }
     }
 
     fn newton_setup(
@@ -32,8 +32,12 @@ impl Ode for System {
         let State { u, v, others, .. } = State::of(y, self.dofs());
         self.linearize_edges(t, u, v, others)?;
         // what Maxwell branches add depends on gamma
-        let current = self.update_tangents(t, u, v, reuse && others.is_empty());
-        self.add_branch_tangents(gamma, u, others);
+        let (strains, amounts) = self.parts_of(others);
+        let current = self.update_tangents(t, u, v, reuse && strains.is_empty());
+        self.add_branch_tangents(gamma, u, strains);
+        if current {
+            self.add_flow_tangents(t, u, amounts);
+        }
         self.factorize_newton(gamma)?;
         Ok(current)
     }
@@ -52,7 +56,7 @@ impl Ode for System {
         rates.u.copy_from_slice(v);
         rates.v.fill(0.0);
         (*rates.dissipated, *rates.supplied) = self.powers(v, &self.at.multipliers);
-        rates.others.copy_from_slice(&self.at.relaxing);
+        self.copy_internal_rates(rates.others);
         Ok(())
     }
 
@@ -61,9 +65,11 @@ impl Ode for System {
         let share = if self.has_fixed_edges() { 0.0 } else { gamma };
         self.solve_newton_ode(share, r.u, r.v, r.others);
         let (dissipated, supplied) = self.power_changes();
-        let relaxed = self.solve_branches(r.u, r.others);
+        let (strains, amounts) = r.others.split_at_mut(self.at.relaxing.len());
+        let relaxed = self.solve_branches(r.u, strains);
+        let brought = self.solve_amounts(r.u, amounts);
         *r.dissipated += self.gamma() * (dissipated + relaxed);
-        *r.supplied += self.gamma() * supplied;
+        *r.supplied += self.gamma() * (supplied + brought);
         Ok(())
     }
 }

@@ -37,7 +37,7 @@ impl Scene {
 
     /// How fast the body can move in each phase, in its undeformed shape and at rest.
     ///
-    /// It shows what makes a scene stiff, and which method is suitable for it.
+    /// It shows what makes a scene stiff, and which method is suitable for it. Orifices count as shut.
     ///
     /// ```
     /// let scene = pliant::samples::square_jump(4)?;
@@ -49,7 +49,8 @@ impl Scene {
     /// # Errors
     /// As [`validate`](Self::validate).
     pub fn spectrum(&self) -> Result<Vec<Spectrum>, InputError> {
-        let forces = self.forces()?;
+        let shut = self.shut();
+        let forces = shut.forces()?;
         let matrices = self.matrices(&forces);
         let rest = vec![0.0; self.body().dofs()];
         let mut time = 0.0;

@@ -73,6 +73,8 @@ impl System {
     pub(crate) fn spectrum(&mut self, t: f64, u: &[f64], v: &[f64]) -> Spectrum {
         self.update_tangents(t, u, v, false);
         self.add_branch_tangents(0.0, u, &[]);
+        let amounts = self.amounts().to_vec();
+        self.add_flow_tangents(t, u, &amounts);
         self.edges.move_to(self.alpha, u, v);
         self.turn_inertia(false);
         let highest = self.highest(|system| system.tangents().0);

@@ -10,8 +10,8 @@ use crate::integrators::ode::{Dae, Ode};
 use crate::scene::constraint::{Axis, PhaseStart};
 use crate::studies::samples::SQUARE_MATERIAL;
 use crate::{
-    Body, CellSelection, Cells, Dilatation, InputError, Mesh, Obstacle, Phase, Plane, Scene,
-    SolidCells, Strain, Substance, Viscosity,
+    Body, CellSelection, Cells, Chamber, Dilatation, Gas, InputError, Mesh, Obstacle, Orifice,
+    Phase, Plane, Scene, SolidCells, Strain, Substance, Viscosity,
 };
 
 const ALPHA: f64 = 30.0;
@@ -322,4 +322,69 @@ fn a_row_that_follows_from_others_is_named() {
     let message = error.to_string();
     assert!(message.contains("pull") && message.contains("node 6 x + node 7 x"), "{message}");
     assert!(message.contains("follows from the other constraints"), "{message}");
+}
+
+/// Two rooms of gas within a body, with an orifice between them, from a supply and into the open.
+fn with_gas() -> System {
+    let mesh = Mesh::rectangle([0.3, 0.2], [4, 3], Cells::Triangles).unwrap();
+    let body = Body::new(mesh, SQUARE_MATERIAL).thickness(1.0).build().unwrap();
+    let phase = Phase::until(1.0)
+        .hold_axes([1, 2], [Axis::Y])
+        .hold_combination([(10, Axis::X, 1.0), (12, Axis::X, -2.0), (11, Axis::X, 0.5)])
+        .open("out", 0.5);
+    let scene = Scene::new(body)
+        .chamber(Chamber::within("a", [1, 2, 6, 5]))
+        .chamber(Chamber::within("b", [3, 4, 12, 11]))
+        .gas(Gas::in_chamber("a").pressure(1.3e5).exponent(1.4))
+        .gas(Gas::in_chamber("b").pressure(2.0e5).exponent(1.1))
+        .supply("pump", 4e5)
+        .orifice(Orifice::new("in", "pump", "a", 1e-5))
+        .orifice(Orifice::new("between", "a", "b", 2e-5).critical_ratio(0.3))
+        .orifice(Orifice::new("out", "b", "atmosphere", 3e-5))
+        .phase(phase);
+    let natural = vec![0.0; scene.body().dofs()];
+    first_phase(&scene, &PhaseStart { time: 0.0, u: &natural }).unwrap()
+}
+
+fn state_with_gas(system: &System) -> Vec<f64> {
+    let mut y = state(system);
+    y[..system.dofs()].iter_mut().for_each(|u| *u *= 0.2);
+    y.extend(system.amounts().iter().map(|amount| 1.1 * amount));
+    y
+}
+
+/// Pressures that the tangents of the walls lack, and flows that follow them.
+#[test]
+fn amounts_of_gas_are_eliminated() {
+    let system = with_gas();
+    let y = state_with_gas(&system);
+    assert_eq!(y.len(), system.unknowns());
+    solves_by_the_ode_jacobian(system, &y, 1e-5, 1e-6);
+    for index in [Index::One, Index::Two] {
+        let mut equations = DaeForm::new(with_gas(), index);
+        let y = state_with_gas(&equations.system);
+        let (y, yp) = equations.consistent(0.1, &y).unwrap();
+        let n = equations.system.dofs();
+        let first = 2 * n + ENERGIES;
+        let kept: Vec<usize> = (0..2 * n).chain(first..y.len()).collect();
+        let rows = 2 * n + 2 + equations.system.rows.len();
+        let mut residual = |y: &[f64], yp: &[f64]| {
+            let mut residual = vec![0.0; y.len()];
+            equations.residual(0.1, y, yp, &mut residual).unwrap();
+            residual
+        };
+        let by_y = derivative(&y, 1e-5, |y| residual(y, &yp));
+        let by_yp = derivative(&yp, 1.0, |yp| residual(&y, yp));
+        for cj in [100.0, 1e4] {
+            let entry = |i: usize, j: usize| by_y[(i, j)] + cj * by_yp[(i, j)];
+            let jacobian = Mat::from_fn(kept.len(), kept.len(), |i, j| entry(kept[i], kept[j]));
+            equations.newton_setup(0.1, cj, &y, &yp).unwrap();
+            let r = noise(y.len(), 3);
+            let mut x = r.clone();
+            equations.newton_solve(&mut x).unwrap();
+            let [x, r] = [x, r].map(|all| kept.iter().map(|&i| all[i]).collect::<Vec<_>>());
+            let blocks = [n, 2 * n, 2 * n + 2, rows];
+            assert_close(&x[..rows], &solve(&jacobian, &r)[..rows], 1e-5, &blocks);
+        }
+    }
 }

@@ -21,6 +21,9 @@ pub(super) struct InForce {
     actuations: Vec<(Vec<String>, Given<SignalKind>)>,
     /// Name of a chamber, pressure.
     pressures: Vec<(String, Given<SignalKind>)>,
+    /// Name of an orifice, opening.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    openings: Vec<(String, Given<SignalKind>)>,
     /// Names of the obstacles that act; without: all.
     contact: ContactWith,
     /// Obstacles that commands have set in motion: name, offset from where its velocity or path would have
@@ -120,6 +123,10 @@ fn pressures(phase: &Phase) -> impl Iterator<Item = &SignalKind> {
     phase.pressures.iter().map(|(_, pressure)| &pressure.0)
 }
 
+fn openings(phase: &Phase) -> impl Iterator<Item = &SignalKind> {
+    phase.openings.iter().map(|(_, opening)| &opening.0)
+}
+
 impl InForce {
     /// `phase`, which is the phase `own` of the scene as commands have changed it.
     ///
@@ -142,6 +149,10 @@ impl InForce {
             let name = || format!("pressure of chamber \"{chamber}\"");
             Ok((chamber.clone(), Given::of(&pressure.0, pressures(own), name)?))
         });
+        let openings = phase.openings.iter().map(|(orifice, opening)| {
+            let name = || format!("opening of orifice \"{orifice}\"");
+            Ok((orifice.clone(), Given::of(&opening.0, openings(own), name)?))
+        });
         let moving = phase.redirected.iter().map(|obstacle| {
             (obstacle.name().into(), obstacle.offset(), obstacle.constant_velocity())
         });
@@ -150,6 +161,7 @@ impl InForce {
             loads: loads.collect::<Result<_, InputError>>()?,
             actuations: actuations.collect::<Result<_, InputError>>()?,
             pressures: pressures.collect::<Result<_, InputError>>()?,
+            openings: openings.collect::<Result<_, InputError>>()?,
             contact: phase.contact.clone(),
             moving: moving.collect(),
         })
@@ -174,6 +186,9 @@ impl InForce {
         let pressures = self.pressures.into_iter().map(|(chamber, pressure)| {
             Ok((chamber, Signal(pressure.read("pressure", pressures(own))?)))
         });
+        let openings = self.openings.into_iter().map(|(orifice, opening)| {
+            Ok((orifice, Signal(opening.read("opening", openings(own))?)))
+        });
         let moving = self.moving.into_iter().map(|(name, offset, velocity)| {
             let obstacle = scene.obstacles().iter().find(|obstacle| obstacle.name() == name);
             let obstacle =
@@ -189,6 +204,7 @@ impl InForce {
             loads: loads.collect::<Result<_, String>>()?,
             actuations: actuations.collect::<Result<_, String>>()?,
             pressures: pressures.collect::<Result<_, String>>()?,
+            openings: openings.collect::<Result<_, String>>()?,
             contact: self.contact,
             redirected: moving.collect::<Result<_, String>>()?,
             ..own.clone()

@@ -58,6 +58,10 @@ impl Identity {
         ];
         let mut parts: Vec<(String, String)> =
             parts.map(|(name, hash)| (name.into(), text(hash))).into();
+        // a scene without gas is what it was before there was any
+        if scene.has_gas() {
+            parts.push(("gas".into(), text(of_text(&scene.gas_parts()))));
+        }
         // as in files that were written before there were several bodies
         let tied = scene.tied().unwrap_or_default();
         let [ties, touches] = [of_text(&tied), of_text(&scene.touches())].map(text);

@@ -59,6 +59,9 @@ pub(super) struct Record {
     /// Of Maxwell branches.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     internal_strains: Vec<f64>,
+    /// Of gas that flows (kg).
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    amounts: Vec<f64>,
     /// The angles that sensors read, in turns, by the names of the sensors.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     angles: Vec<(String, f64)>,
@@ -86,6 +89,8 @@ impl Record {
         finite("the state", &kept.state)?;
         finite("the energy balance", &[&kept.energies[..], &[kept.balance]].concat())?;
         let state = State::of(&kept.state, scene.body().dofs());
+        let strains = scene.body().branches().map_or(0, |branches| branches.unknowns());
+        let (strains, amounts) = state.others.split_at(strains);
         Ok(Self {
             what: WHAT.into(),
             format: FORMAT,
@@ -105,7 +110,8 @@ impl Record {
             constraint_starts: kept.origins.clone(),
             displacements: state.u.into(),
             velocities: state.v.into(),
-            internal_strains: state.others.into(),
+            internal_strains: strains.into(),
+            amounts: amounts.into(),
             angles: kept.angles.0.clone(),
         })
     }
@@ -125,6 +131,7 @@ impl Record {
             ("displacements", &self.displacements, dofs),
             ("velocities", &self.velocities, dofs),
             ("internal strains", &self.internal_strains, internal),
+            ("amounts of gas", &self.amounts, scene.flowing_amounts()),
         ] {
             if numbers.len() != needed {
                 let found = numbers.len();
@@ -157,7 +164,14 @@ impl Record {
         let energies = vec![self.dissipated, self.supplied];
         let kept = Kept {
             time: self.time,
-            state: [self.displacements, self.velocities, energies, self.internal_strains].concat(),
+            state: [
+                self.displacements,
+                self.velocities,
+                energies,
+                self.internal_strains,
+                self.amounts,
+            ]
+            .concat(),
             phase: self.in_force.read(phase, scene)?.into(),
             number: self.phase,
             is_commanded: true,

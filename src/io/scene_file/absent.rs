@@ -32,8 +32,8 @@ const ABSENT: [(&[&str], &str); 8] = [
          hold_combination, and two nodes may have a stiff [[spring]] between them; there are no motors and no stops",
     ),
     (
-        &["gas", "fluid", "air", "water", "pressure", "pump"],
-        "there is no gas and no fluid: a phase gives the pressure in a [[chamber]] over time (pressure = [...]), and a [[sensor]] reads its volume",
+        &["fluid", "air", "water", "pressure", "pump", "valve"],
+        "a phase gives the pressure in a [[chamber]] over time (pressure = [...]), or there is [[gas]] in it, which flows through an [[orifice]] from a [[supply]]; there is no fluid otherwise",
     ),
     (
         &["motor", "muscle", "actuator", "actuators"],

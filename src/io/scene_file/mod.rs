@@ -40,6 +40,7 @@ mod absent;
 mod auto;
 mod body;
 mod contents;
+mod gas;
 mod initial;
 mod keys;
 mod listed;

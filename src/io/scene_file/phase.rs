@@ -4,7 +4,7 @@ use toml::de::DeValue;
 
 use super::keys::TableKeys;
 use super::phase_keys::{
-    ACTUATE, HOLD, HOLD_COMBINATION, LOAD, MOVE, PATH, PHASE, PRESSURE, PRESSURE_ON, ROTATE,
+    ACTUATE, HOLD, HOLD_COMBINATION, LOAD, MOVE, OPEN, PATH, PHASE, PRESSURE, PRESSURE_ON, ROTATE,
     SYMMETRY, TERMS,
 };
 use super::selection::selection;
@@ -22,7 +22,7 @@ use crate::scene::timeline::{LoadKind, Phase, Scene};
 type Add = fn(Phase, &Table, &Scene) -> Result<Phase, Error>;
 
 /// The tables inside of a phase: what they add.
-const PARTS: [(&TableKeys, Add); 10] = [
+const PARTS: [(&TableKeys, Add); 11] = [
     (&HOLD, hold),
     (&MOVE, moving),
     (&PATH, path),
@@ -32,6 +32,7 @@ const PARTS: [(&TableKeys, Add); 10] = [
     (&LOAD, load),
     (&PRESSURE, pressure),
     (&PRESSURE_ON, pressure_on),
+    (&OPEN, open),
     (&ACTUATE, actuate),
 ];
 
@@ -203,6 +204,12 @@ fn pressure(phase: Phase, table: &Table, scene: &Scene) -> Result<Phase, Error> 
 fn pressure_on(phase: Phase, table: &Table, scene: &Scene) -> Result<Phase, Error> {
     let nodes = nodes(table, scene)?;
     Ok(phase.pressure_on(nodes, course(table, "value", "values")?))
+}
+
+fn open(phase: Phase, table: &Table, scene: &Scene) -> Result<Phase, Error> {
+    let known: Vec<&str> = scene.orifices().iter().map(|orifice| orifice.name()).collect();
+    let orifice = table.required("orifice", |v| named(v, &known))?;
+    Ok(phase.open(orifice, course(table, "opening", "openings")?))
 }
 
 fn actuate(phase: Phase, table: &Table, scene: &Scene) -> Result<Phase, Error> {

@@ -21,6 +21,7 @@ pub(super) const PHASE: TableKeys = TableKeys::new(
         part(&LOAD, "forces on nodes, tractions on faces"),
         part(&PRESSURE, "pressures in chambers"),
         part(&PRESSURE_ON, "pressures on faces"),
+        part(&OPEN, "openings of orifices"),
         part(&ACTUATE, "forces in springs and cables"),
         Key::new(
             "contact",
@@ -205,6 +206,20 @@ pub(super) const PRESSURE_ON: TableKeys = TableKeys::new(
     "pressure_on = [{ nodes = \"right\", value = \"500*sin(20*t)\" }]",
 )
 .one_of(&[&["value"], &["times", "values"]]);
+
+pub(super) const OPEN: TableKeys = TableKeys::new(
+    "open",
+    "How far an orifice is open, from 0 (shut) to 1. The opening of a table is interpolated linearly, and is constant before and \
+     after.",
+    &[
+        Key::new("orifice", Holds::Text, "the name of an orifice").required(),
+        Key::new("opening", Holds::Changing, "how far it is open").in_unit("1"),
+        TIMES,
+        Key::new("openings", Holds::List(&Holds::Number), "openings at these times").in_unit("1"),
+    ],
+    "open = [{ orifice = \"valve\", times = [0.0, 0.1], openings = [0.0, 1.0] }]",
+)
+.one_of(&[&["opening"], &["times", "openings"]]);
 
 pub(super) const ACTUATE: TableKeys = TableKeys::new(
     "actuate",

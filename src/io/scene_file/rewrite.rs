@@ -18,13 +18,12 @@ pub(crate) struct Rewritten {
     pub(crate) number: usize,
     /// What it is now.
     pub(crate) phase: Phase,
-    /// The keys that differ: `until`, and of its lists `pressure`, `actuate`, `load`.
+    /// The keys that differ: `until`, and of its lists `pressure`, `open`, `actuate`, `load`.
     pub(crate) keys: BTreeSet<&'static str>,
 }
 
 /// Tables such as `[[phase.pressure]]` cannot be replaced in one place.
-const ELSEWHERE: &str =
-    "write the lists of each phase as pressure = [...], actuate = [...], load = [...]";
+const ELSEWHERE: &str = "write the lists of each phase as pressure = [...], open = [...], actuate = [...], load = [...]";
 
 /// The `text` of the file of a `scene` with other signals in the phases `changes`.
 ///
@@ -56,6 +55,7 @@ pub(crate) fn rewritten(
             }
             let list = match key {
                 "pressure" => pressures(phase),
+                "open" => openings(phase),
                 "actuate" => actuations(phase, scene),
                 _ => loads(phase, scene.body().dimension()),
             };
@@ -95,6 +95,14 @@ fn pressures(phase: &Phase) -> String {
         format!("{{ chamber = {chamber}, {} }}", course(pressure, ["value", "values"]))
     };
     list(phase.pressures.iter().map(entry))
+}
+
+fn openings(phase: &Phase) -> String {
+    let entry = |(orifice, opening): &(String, Signal)| {
+        let orifice = quoted(orifice);
+        format!("{{ orifice = {orifice}, {} }}", course(opening, ["opening", "openings"]))
+    };
+    list(phase.openings.iter().map(entry))
 }
 
 fn actuations(phase: &Phase, scene: &Scene) -> String {

@@ -2,6 +2,7 @@
 
 use super::body::{self, BODY, POINT};
 use super::contents::{OutputRequest, SceneFile};
+use super::gas::{self, GAS, ORIFICE, SUPPLY};
 use super::initial::{self, INITIAL};
 use super::keys::{Holds, Key, TableKeys};
 use super::phase;
@@ -27,6 +28,8 @@ pub(super) const TOP: TableKeys = TableKeys::new(
         Key::new("gravity", Holds::Vector, "the acceleration of gravity")
             .in_unit("m/s^2")
             .default("0"),
+        Key::number("atmosphere", "the absolute pressure of the air around chambers with gas", "Pa")
+            .default("101325"),
         Key::new("unusual", Holds::List(&Holds::Text), "quantities that are meant as they are, though they look like wrong units")
             .law("Of `size`, `mass`, `density`, `young`, `wave-speed`, `thickness`, `weight`: they are not [warned of](scene-files.md#warnings).")
             .default("none"),
@@ -38,6 +41,9 @@ pub(super) const TOP: TableKeys = TableKeys::new(
         Key::new("spring", Holds::Tables(&SPRING), "springs"),
         Key::new("cable", Holds::Tables(&CABLE), "cables"),
         Key::new("chamber", Holds::Tables(&CHAMBER), "chambers"),
+        Key::new("gas", Holds::Tables(&GAS), "gas in chambers"),
+        Key::new("supply", Holds::Tables(&SUPPLY), "what gas is drawn from"),
+        Key::new("orifice", Holds::Tables(&ORIFICE), "what gas flows through"),
         Key::new("obstacle", Holds::Tables(&OBSTACLE), "obstacles"),
         Key::new("phase", Holds::Tables(&PHASE), "the phases, one after the other").required(),
         Key::new("sensor", Holds::Tables(&SENSOR), "what is read with each sample"),
@@ -62,6 +68,9 @@ pub(super) fn scene_file(top: &Table) -> Result<SceneFile, Error> {
         let gravity = gravity.vector(scene.body().dimension())?;
         scene = scene.gravity(gravity);
     }
+    if let Some(pressure) = top.get("atmosphere") {
+        scene = gas::add_atmosphere(scene, &pressure)?;
+    }
     if let Some(names) = top.get("unusual") {
         let names = names.list()?;
         let names = names.iter().map(|name| name.string().map(str::to_owned));
@@ -78,12 +87,15 @@ pub(super) fn scene_file(top: &Table) -> Result<SceneFile, Error> {
         Some(Err(_)) => initial,
         None => None,
     };
-    let parts: [(&str, Add); 6] = [
+    let parts: [(&str, Add); 9] = [
         ("tie", tie::add_tie),
         ("touch", touch::add_touch),
         ("spring", surroundings::add_spring),
         ("cable", surroundings::add_cable),
         ("chamber", surroundings::add_chamber),
+        ("gas", gas::add_gas),
+        ("supply", gas::add_supply),
+        ("orifice", gas::add_orifice),
         ("obstacle", surroundings::add_obstacle),
     ];
     for (key, add) in parts {

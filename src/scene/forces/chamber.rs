@@ -273,6 +273,19 @@ impl ChamberForce {
         self.has_room
     }
 
+    /// Adds `factor` times the second derivative of the volume by `u` (m).
+    pub(crate) fn add_hessian(&self, factor: f64, u: &[f64], matrix: &mut BlockMatrix) {
+        match &self.geometry {
+            Geometry::Polygon(polygon, sign) => polygon.add_hessian(factor * sign, matrix),
+            Geometry::Surface(surface, sign) => surface.add_hessian(factor * sign, u, matrix),
+        }
+    }
+
+    /// The name of the chamber.
+    pub(crate) fn name(&self) -> &str {
+        &self.name
+    }
+
     /// Adds `factor` times the derivative of the volume by `u` (m^2).
     pub(crate) fn add_gradient(&self, factor: f64, u: &[f64], gradient: &mut [f64]) {
         match &self.geometry {
@@ -328,15 +341,7 @@ impl Force for ChamberForce {
         stiffness: &mut BlockMatrix,
         _damping: &mut BlockMatrix,
     ) -> Tangents {
-        let pressure = signal::sum(&self.pressure, t);
-        match &self.geometry {
-            Geometry::Polygon(polygon, factor) => {
-                polygon.add_hessian(-factor * pressure, stiffness);
-            }
-            Geometry::Surface(surface, factor) => {
-                surface.add_hessian(-factor * pressure, u, stiffness);
-            }
-        }
+        self.add_hessian(-signal::sum(&self.pressure, t), u, stiffness);
         Tangents::Added
     }
 

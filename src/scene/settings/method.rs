@@ -1,5 +1,6 @@
 //! The settings that are words: integration methods, and how contact events are handled.
 
+use std::borrow::Cow;
 use std::fmt;
 use std::ops::RangeInclusive;
 use std::str::FromStr;
@@ -91,7 +92,18 @@ impl Method {
             Self::IdaKlu if !scene.touches().is_empty() => Some(
                 "its Jacobian has a fixed pattern, and bodies that touch couple ever other nodes: take ida",
             ),
+            Self::IdaKlu | Self::CentralDifference if !scene.orifices().is_empty() => Some(
+                "it has no unknowns for the amounts of gas that flow through orifices: take another method, or auto",
+            ),
             _ => None,
+        }
+    }
+
+    /// A scene as it has equations for it: with constant amounts of gas where it has no unknowns for them.
+    pub(crate) fn equations_of(self, scene: &Scene) -> Cow<'_, Scene> {
+        match self {
+            Self::IdaKlu | Self::CentralDifference if scene.orifices().is_empty() => scene.shut(),
+            _ => Cow::Borrowed(scene),
         }
     }
 

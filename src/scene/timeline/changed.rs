@@ -61,7 +61,9 @@ impl Phase {
             load.value = load.value.frozen();
         }
         let actuations = frozen.actuations.iter_mut().map(|(_, force)| force);
-        for signal in actuations.chain(frozen.pressures.iter_mut().map(|(_, pressure)| pressure)) {
+        let openings = frozen.openings.iter_mut().map(|(_, opening)| opening);
+        let pressures = frozen.pressures.iter_mut().map(|(_, pressure)| pressure);
+        for signal in actuations.chain(pressures).chain(openings) {
             *signal = signal.frozen();
         }
         Arc::new(frozen)
@@ -97,6 +99,7 @@ impl Phase {
         self.loads.iter().any(|(_, load)| load.value.live().is_some())
             || self.actuations.iter().any(|(_, force)| force.live().is_some())
             || self.pressures.iter().any(|(_, pressure)| pressure.live().is_some())
+            || self.openings.iter().any(|(_, opening)| opening.live().is_some())
     }
 
     /// Replaces the pressure in a chamber.

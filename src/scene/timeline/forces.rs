@@ -30,6 +30,7 @@ impl Scene {
         self.add_loads(phase, &mut forces)?;
         self.add_springs(phase, &mut forces)?;
         self.add_chambers(phase, &mut forces)?;
+        self.add_gas(phase, &mut forces)?;
         for (nodes, pressure) in &phase.face_pressures {
             forces.push(Arc::new(FacePressure::new(&self.body, nodes, pressure.clone())?));
         }
@@ -177,7 +178,12 @@ impl Scene {
         let mut pressures: Vec<Vec<Signal>> = vec![Vec::new(); self.chambers.len()];
         for (name, pressure) in &phase.pressures {
             pressure.validate(&input)?;
-            pressures[self.chamber_number(name, &input)?].push(pressure.clone());
+            let number = self.chamber_number(name, &input)?;
+            if self.gas_in(name).is_some() {
+                let help = "the gas in it has a pressure of its own: feed it by an orifice, or leave the gas out";
+                return Err(InputError::new(input, format!("in chamber \"{name}\""), help));
+            }
+            pressures[number].push(pressure.clone());
         }
         for (chamber, pressure) in self.chambers.iter().zip(pressures) {
             if !pressure.is_empty() {

@@ -5,6 +5,7 @@ mod changed;
 mod contacts;
 mod finer;
 mod forces;
+mod gas;
 mod initial;
 mod load;
 mod loading;
@@ -35,7 +36,9 @@ use crate::integrators::ode::Failure;
 use crate::scene::constraint::{
     Constrained, Constraint, ConstraintRow, PhaseStart, prescribe, rows,
 };
-use crate::scene::forces::{Chamber, Contact, Obstacle, Spring, Touch, TouchForce};
+use crate::scene::forces::{
+    ATMOSPHERE, Chamber, Contact, Gas, Obstacle, Orifice, Spring, Supply, Touch, TouchForce,
+};
 
 /// A body, gravity, springs, chambers, obstacles, and what happens when.
 ///
@@ -59,6 +62,13 @@ pub struct Scene {
     gravity: Option<Vec<f64>>,
     springs: Vec<Spring>,
     chambers: Vec<Chamber>,
+    gases: Vec<Gas>,
+    orifices: Vec<Orifice>,
+    supplies: Vec<Supply>,
+    /// Absolute pressure (Pa) around chambers with gas.
+    atmosphere: f64,
+    /// Whether amounts of gas are constants.
+    closes_gas: bool,
     /// The constraints of each tie, found once: its nodes are those of this mesh.
     ties: Vec<Result<Arc<[Constraint]>, InputError>>,
     touches: Vec<Touch>,
@@ -83,6 +93,11 @@ impl Scene {
             gravity: None,
             springs: Vec::new(),
             chambers: Vec::new(),
+            gases: Vec::new(),
+            orifices: Vec::new(),
+            supplies: Vec::new(),
+            atmosphere: ATMOSPHERE,
+            closes_gas: false,
             ties: Vec::new(),
             touches: Vec::new(),
             obstacles: Vec::new(),
@@ -106,7 +121,7 @@ impl Scene {
         self
     }
 
-    /// Adds a chamber, to be filled by the pressure that phases give it.
+    /// Adds a chamber, to be filled by the pressure that phases give it, or with [gas](Self::gas).
     pub fn chamber(mut self, chamber: Chamber) -> Self {
         self.chambers.push(chamber);
         self
@@ -270,7 +285,7 @@ impl Scene {
         let start = phase.checked_sub(1).and_then(|before| self.phases.get(before));
         let start = start.map_or(0.0, |before| before.until);
         let Some(phase) = self.phases.get(phase) else { return Vec::new() };
-        let mut breaks = phase.breaks(&self.obstacles);
+        let mut breaks = self.breaks_in(phase);
         breaks.retain(|&time| start < time && time < phase.until);
         breaks
     }

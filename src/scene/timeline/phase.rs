@@ -26,6 +26,8 @@ pub struct Phase {
     pub(crate) actuations: Vec<(Vec<String>, Signal)>,
     /// Name of a chamber, pressure (Pa).
     pub(crate) pressures: Vec<(String, Signal)>,
+    /// Name of an orifice, opening (0 to 1).
+    pub(crate) openings: Vec<(String, Signal)>,
     /// Nodes, pressure (Pa) on the faces between them.
     pub(crate) face_pressures: Vec<(Selection, Signal)>,
     pub(crate) projects_velocity: bool,
@@ -55,6 +57,7 @@ impl Phase {
             loads: Vec::new(),
             actuations: Vec::new(),
             pressures: Vec::new(),
+            openings: Vec::new(),
             face_pressures: Vec::new(),
             projects_velocity: false,
             contact: ContactWith::All,
@@ -308,10 +311,11 @@ impl Phase {
         let actuations = self.actuations.iter().map(|(_, force)| force.breaks());
         let pressures = self.pressures.iter().map(|(_, pressure)| pressure.breaks());
         let on_faces = self.face_pressures.iter().map(|(_, pressure)| pressure.breaks());
+        let openings = self.openings.iter().map(|(_, opening)| opening.breaks());
         let acting = self.contacts(obstacles).unwrap_or_default();
         let obstacles = acting.into_iter().map(Obstacle::breaks);
         let all = paths.chain(loads).chain(actuations).chain(pressures).chain(on_faces);
-        let all = all.chain(obstacles);
+        let all = all.chain(openings).chain(obstacles);
         let mut breaks = all.flatten().copied().collect::<Vec<f64>>();
         breaks.sort_by(f64::total_cmp);
         breaks.dedup();

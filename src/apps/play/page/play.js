@@ -224,14 +224,14 @@ stage.addEventListener("pointermove", (event) => {
 });
 for (const end of ["pointerup", "pointercancel"]) stage.addEventListener(end, letGo);
 
-/** A slider for every chamber, every spring and every component of a load. */
-const sliders = data.sliders.map(({ name, what, unit, most }, place) => {
+/** A slider for every chamber without gas, every orifice, every spring and every component of a load. */
+const sliders = data.sliders.map(({ name, what, unit, least, most }, place) => {
   const label = Object.assign(document.createElement("label"), { className: "slider" });
   const title = document.createElement("span");
   const output = document.createElement("output");
   const input = document.createElement("input");
   title.append(name, " ", Object.assign(document.createElement("small"), { textContent: what }));
-  Object.assign(input, { type: "range", min: -most, max: most, step: most / 100, value: 0 });
+  Object.assign(input, { type: "range", min: least, max: most, step: most / 100, value: 0 });
   label.append(title, input, output);
   document.getElementById("sliders").append(label);
   const scale = prefixed(most, unit);

@@ -1,0 +1,174 @@
+//! Gas in chambers: amounts of it, closed in or fed and vented through orifices.
+//!
+//! The state of a gas is its density r, relative to that at the start: p = p_0 r^n with r = V_0 m/(V m_0). Its energy
+//! belongs to it as p does: U = R T m L - R T (m - m_0) with L = (r^(n-1) - 1)/(n - 1), or ln r with n = 1, so that
+//! -dU/dV = p; and what flows in brings mu = dU/dm = n R T L for each kilogram. From both mu of the standard atmosphere is
+//! taken, for each kilogram, so that all gas counts from there.
+
+mod closed;
+mod flow;
+mod orifice;
+#[cfg(test)]
+mod tests;
+
+pub(crate) use closed::ClosedGas;
+pub(crate) use flow::GasFlow;
+pub use orifice::Orifice;
+pub(crate) use orifice::{End, OrificeFlow, Supply};
+
+use super::chamber::{ChamberForce, TURNED};
+use crate::base::input::{InputError, not_negative, positive};
+use crate::integrators::ode::Failure;
+
+/// Absolute pressure of the atmosphere (Pa) where a scene does not say another one: the standard atmosphere.
+pub(crate) const ATMOSPHERE: f64 = 101_325.0;
+
+/// R T of the gas (J/kg): air of 1.185 kg/m^3 at 100 kPa and 20 C, the reference of ISO 6358.
+pub(crate) const GAS_CONSTANT_TIMES_TEMPERATURE: f64 = 1e5 / 1.185;
+
+/// An amount of gas in a [chamber](crate::Chamber), in place of a pressure that phases give it.
+///
+/// Its absolute pressure follows the volume V of the chamber and the amount m, p = p_0 (V_0 m/(V m_0))^n, and the walls
+/// are pressed by what it exceeds the [atmosphere](crate::Scene::atmosphere) by. p_0 is the pressure in the undeformed
+/// shape, whose volume V_0 it fills with m_0 = p_0 V_0/(R T) of air at 20 C. The amount stays as it is, unless the chamber
+/// has an [`Orifice`].
+///
+/// ```
+/// use pliant::{Body, Cells, Chamber, Gas, Material, Mesh, Phase, Scene};
+///
+/// let rubber = Material { density: 1000.0, young: 1e5, poisson: 0.3, viscosity: 10.0 };
+/// let ring = Mesh::ring(0.02, 0.03, [16, 3], Cells::Rectangles)?;
+/// let ring = Body::new(ring, rubber).thickness(0.01).build()?;
+/// let scene = Scene::new(ring)
+///     .chamber(Chamber::within("air", "inner"))
+///     .gas(Gas::in_chamber("air").pressure(1.2e5).exponent(1.4))
+///     .phase(Phase::until(0.1));
+/// scene.validate()?;
+/// # Ok::<(), pliant::Error>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct Gas {
+    pub(crate) chamber: String,
+    pressure: f64,
+    exponent: f64,
+}
+
+impl Gas {
+    /// Gas in the chamber of that name, at the pressure of the standard atmosphere and isothermal.
+    pub fn in_chamber(chamber: impl Into<String>) -> Self {
+        Self { chamber: chamber.into(), pressure: ATMOSPHERE, exponent: 1.0 }
+    }
+
+    /// Absolute pressure p_0 (Pa) in the undeformed shape. Default: 101325.
+    pub fn pressure(mut self, pressure: f64) -> Self {
+        self.pressure = pressure;
+        self
+    }
+
+    /// Exponent n: 1 isothermal (slow, the default), 1.4 adiabatic (fast), between them polytropic.
+    pub fn exponent(mut self, exponent: f64) -> Self {
+        self.exponent = exponent;
+        self
+    }
+
+    /// The gas within `walls` of `dofs` displacement components, in air of the pressure `outside` (Pa).
+    ///
+    /// # Errors
+    /// A pressure or an exponent that is not above 0; a chamber without volume in the undeformed shape.
+    pub(crate) fn fill(
+        &self,
+        walls: ChamberForce,
+        dofs: usize,
+        outside: f64,
+    ) -> Result<Filled, InputError> {
+        let input = |key: &str| format!("gas in chamber \"{}\" {key}", self.chamber);
+        let pressure = positive(&input("pressure"), self.pressure, "Pa, absolute")?;
+        let exponent = positive(&input("exponent"), self.exponent, "")?;
+        not_negative("atmosphere", outside, "Pa, absolute")?;
+        let volume = walls.volume(&vec![0.0; dofs]);
+        if !walls.has_room() {
+            let help = "in the undeformed shape the chamber must enclose a volume (m^3), which the gas fills at first";
+            return Err(InputError::new(input("volume"), format!("{volume:.1e}"), help));
+        }
+        let amount = pressure * volume / GAS_CONSTANT_TIMES_TEMPERATURE;
+        let mut filled = Filled { walls, pressure, volume, amount, exponent, outside, zero: 0.0 };
+        filled.zero = filled.brought(ATMOSPHERE)[0];
+        Ok(filled)
+    }
+}
+
+/// Gas within walls.
+pub(crate) struct Filled {
+    walls: ChamberForce,
+    /// p_0 (Pa), V_0 (m^3) and m_0 (kg).
+    pressure: f64,
+    volume: f64,
+    amount: f64,
+    exponent: f64,
+    /// Absolute pressure of the air around (Pa).
+    outside: f64,
+    /// n R T L at the standard atmosphere (J/kg).
+    zero: f64,
+}
+
+impl Filled {
+    /// The amount (kg) at the start.
+    pub(crate) fn amount(&self) -> f64 {
+        self.amount
+    }
+
+    /// Absolute pressure (Pa) of an `amount` (kg) under the displacements `u`, and the volume (m^3).
+    ///
+    /// # Errors
+    /// Walls that have passed through each other; no gas that is left.
+    pub(crate) fn pressure(&self, u: &[f64], amount: f64) -> Result<[f64; 2], Failure> {
+        let (volume, name) = (self.walls.volume(u), self.walls.name());
+        if volume <= 0.0 {
+            return Err(Failure::Recoverable(format!(
+                "chamber \"{name}\" with gas encloses {volume:.1e} m^3: {TURNED}"
+            )));
+        }
+        // a trial point; what flows out of a chamber ceases with its pressure
+        if amount <= 0.0 {
+            return Err(Failure::Recoverable(format!(
+                "chamber \"{name}\" has {amount:.1e} kg of gas"
+            )));
+        }
+        let density = (self.volume / volume) * (amount / self.amount);
+        Ok([self.pressure * density.powf(self.exponent), volume])
+    }
+
+    /// What the gas exceeds the air around by (Pa), at an `absolute` pressure.
+    pub(crate) fn gauge(&self, absolute: f64) -> f64 {
+        absolute - self.outside
+    }
+
+    /// Potential energy (J) of an `amount` (kg) and of the air around, 0 at the start.
+    fn potential(&self, u: &[f64], amount: f64) -> f64 {
+        let Ok([pressure, volume]) = self.pressure(u, amount) else { return f64::NAN };
+        let [work, _] = self.work(pressure);
+        let more = amount - self.amount;
+        GAS_CONSTANT_TIMES_TEMPERATURE * (amount * work - more) - self.zero * more
+            + self.outside * (volume - self.volume)
+    }
+
+    /// L and r^(n-1) at an absolute pressure (Pa).
+    fn work(&self, pressure: f64) -> [f64; 2] {
+        let logarithm = (pressure / self.pressure).ln() / self.exponent;
+        let x = (self.exponent - 1.0) * logarithm;
+        let mean = if x == 0.0 { 1.0 } else { x.exp_m1() / x };
+        [logarithm * mean, x.exp()]
+    }
+
+    /// mu (J/kg) and dmu/dp (J/kg/Pa) at an absolute pressure (Pa).
+    fn brought(&self, pressure: f64) -> [f64; 2] {
+        let [work, heating] = self.work(pressure);
+        let rt = GAS_CONSTANT_TIMES_TEMPERATURE;
+        [self.exponent * rt * work - self.zero, rt * heating / pressure]
+    }
+
+    /// How the temperature falls with the pressure, d ln T/d ln p.
+    fn cooling(&self) -> f64 {
+        (self.exponent - 1.0) / self.exponent
+    }
+}

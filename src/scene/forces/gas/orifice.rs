@@ -1,0 +1,188 @@
+//! Orifices: how much gas flows for which pressures (ISO 6358-1, *Pneumatic fluid power - Determination of flow-rate
+//! characteristics of components using compressible fluids*).
+
+use super::{Filled, GAS_CONSTANT_TIMES_TEMPERATURE};
+use crate::base::input::{InputError, positive};
+use crate::integrators::ode::Failure;
+use crate::scene::forces::Signal;
+
+/// An orifice or a valve, through which gas flows from a [supply](crate::Scene::supply), the atmosphere or a chamber to
+/// another one, either way.
+///
+/// From the absolute pressure p_1 to the lower p_2 flow
+///
+/// ```text
+/// q = C rho_0 p_1 sqrt(T_0/T_1) sqrt(1 - ((p_2/p_1 - b)/(1 - b))^2)  (kg/s),
+/// ```
+///
+/// without the last root (choked) if p_2/p_1 is below the critical ratio b, and with a cubic in place of it where
+/// p_2/p_1 is above 0.999, whose slope is finite. C is the sonic conductance (m^3/(s Pa): 1e-8 are 0.6 l/min for each bar;
+/// a short nozzle has some 2e-3 times its area in m^2), rho_0 = 1.185 kg/m^3 and T_0 = 293.15 K those of the reference.
+/// [Phases](crate::Phase::open) say how far it is open.
+#[derive(Debug, Clone)]
+pub struct Orifice {
+    pub(crate) name: String,
+    pub(crate) ends: [String; 2],
+    conductance: f64,
+    critical_ratio: f64,
+}
+
+impl Orifice {
+    /// An orifice of a sonic `conductance` C (m^3/(s Pa)) between two ends, each the name of a supply, of a chamber with
+    /// gas, or `atmosphere`.
+    pub fn new(
+        name: impl Into<String>,
+        from: impl Into<String>,
+        to: impl Into<String>,
+        conductance: f64,
+    ) -> Self {
+        let ends = [from.into(), to.into()];
+        Self { name: name.into(), ends, conductance, critical_ratio: 0.5 }
+    }
+
+    /// Critical ratio b of pressures, from 0 to below 1. Default: 0.5.
+    pub fn critical_ratio(mut self, ratio: f64) -> Self {
+        self.critical_ratio = ratio;
+        self
+    }
+
+    /// Name of the orifice.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Its flow between `ends`, open by the sum of `opening`, or wholly without any.
+    ///
+    /// # Errors
+    /// Numbers out of range.
+    pub(crate) fn flow(
+        &self,
+        ends: [End; 2],
+        opening: Vec<Signal>,
+    ) -> Result<OrificeFlow, InputError> {
+        let input = |key: &str| format!("orifice \"{}\" {key}", self.name);
+        let conductance = positive(&input("conductance"), self.conductance, "m^3/(s Pa)")?;
+        let ratio = self.critical_ratio;
+        if !(0.0..1.0).contains(&ratio) {
+            let help = "it must be from 0 to below 1; 0.5 suits most valves";
+            return Err(InputError::new(input("critical_ratio"), ratio, help));
+        }
+        // C rho_0, with rho_0 = p_0/(R T_0)
+        let scale = conductance * 1e5 / GAS_CONSTANT_TIMES_TEMPERATURE;
+        Ok(OrificeFlow { name: self.name.clone(), ends, scale, ratio, opening })
+    }
+}
+
+/// What gas is drawn from at a given absolute pressure (Pa).
+#[derive(Debug, Clone)]
+pub(crate) struct Supply {
+    pub(crate) name: String,
+    pub(crate) pressure: Signal,
+}
+
+/// What is at an end of an orifice.
+pub(crate) enum End {
+    /// The gas of that number, among those of the scene.
+    Gas(usize),
+    /// A supply or the atmosphere, of this absolute pressure (Pa).
+    Given(Signal),
+}
+
+/// Ratio of pressures above which the flow follows a cubic.
+const LAMINAR: f64 = 0.999;
+
+/// The flow through an orifice.
+pub(crate) struct OrificeFlow {
+    name: String,
+    pub(super) ends: [End; 2],
+    /// C rho_0 (kg/(s Pa))
+    scale: f64,
+    ratio: f64,
+    opening: Vec<Signal>,
+}
+
+impl OrificeFlow {
+    /// The flow (kg/s) from the first end to the second at time `t` (s), and its derivatives by the absolute pressures
+    /// of both (kg/(s Pa)). The `gases` of the scene have these `pressures` (Pa).
+    ///
+    /// # Errors
+    /// A supply below 0 Pa, an opening that is not from 0 to 1.
+    pub(crate) fn rate(
+        &self,
+        t: f64,
+        gases: &[Filled],
+        pressures: &[f64],
+    ) -> Result<[f64; 3], Failure> {
+        let opening = match self.opening.is_empty() {
+            true => 1.0,
+            false => self.opening.iter().map(|signal| signal.at(t)).sum(),
+        };
+        // round-off of formulas
+        if !(-1e-9..=1.0 + 1e-9).contains(&opening) {
+            let name = &self.name;
+            return Err(Failure::Fatal(
+                format!("the opening of orifice \"{name}\" is {opening} at t = {t} s: it must be from 0 to 1").into(),
+            ));
+        }
+        let mut sides = [[0.0; 3]; 2];
+        for (side, end) in sides.iter_mut().zip(&self.ends) {
+            *side = match end {
+                End::Gas(number) => {
+                    let gas = &gases[*number];
+                    let p = pressures[*number];
+                    let cooling = 0.5 * gas.cooling();
+                    [p, (p / gas.pressure).powf(-cooling), cooling]
+                }
+                End::Given(pressure) => [pressure.at(t), 1.0, 0.0],
+            };
+            let p = side[0];
+            if !(p >= 0.0 && p.is_finite()) {
+                let name = &self.name;
+                return Err(Failure::Fatal(
+                    format!("the supply of orifice \"{name}\" has {p} Pa at t = {t} s: an absolute pressure is finite and not below 0").into(),
+                ));
+            }
+        }
+        let [first, second] = sides;
+        let scale = self.scale * opening.clamp(0.0, 1.0);
+        Ok(match first[0] >= second[0] {
+            true => self.discharge(first, second[0]).map(|x| scale * x),
+            false => {
+                let [flow, up, down] = self.discharge(second, first[0]);
+                [-scale * flow, -scale * down, -scale * up]
+            }
+        })
+    }
+
+    /// The flow of an orifice of C rho_0 = 1 from the pressure p_1, where it is hotter by sqrt(T_0/T_1) = `thinning` with
+    /// -d ln thinning/d ln p_1 = `cooling`, to p_2 below it, and its derivatives by both pressures.
+    fn discharge(&self, [p1, thinning, cooling]: [f64; 3], p2: f64) -> [f64; 3] {
+        if p1 == 0.0 {
+            return [0.0; 3];
+        }
+        let span = 1.0 - self.ratio;
+        let [share, slope] = share((1.0 - p2 / p1) / span, (1.0 - LAMINAR) / span);
+        let flow = thinning * p1 * share;
+        let up = thinning * (share + slope * p2 / (p1 * span)) - cooling * flow / p1;
+        [flow, up, -thinning * slope / span]
+    }
+}
+
+/// Part of the choked flow at d = (1 - p_2/p_1)/(1 - b), and its derivative: sqrt(d (2 - d)), and below d = `least` the odd
+/// cubic that meets it there with the same slope.
+fn share(d: f64, least: f64) -> [f64; 2] {
+    let root = |d: f64| {
+        let value = (d * (2.0 - d)).sqrt();
+        [value, (1.0 - d) / value]
+    };
+    match d {
+        d if d >= 1.0 => [1.0, 0.0],
+        d if d >= least => root(d),
+        d => {
+            let [value, slope] = root(least.min(1.0));
+            let linear = (3.0 * value - slope * least) / (2.0 * least);
+            let cubic = (slope * least - value) / (2.0 * least.powi(3));
+            [d * (linear + cubic * d * d), linear + 3.0 * cubic * d * d]
+        }
+    }
+}

@@ -1,0 +1,238 @@
+//! Gas in the chambers of a scene, and what flows in and out of them.
+
+use std::borrow::Cow;
+use std::sync::Arc;
+
+use super::{Phase, Scene, unique};
+use crate::base::input::{InputError, find, not_negative, unknown_among};
+use crate::elements::force::Forces;
+use crate::scene::forces::{
+    Chamber, ClosedGas, End, Filled, Gas, GasFlow, Live, Orifice, OrificeFlow, Signal, Supply,
+};
+
+/// What an end of an orifice in the open is called.
+const OPEN: &str = "atmosphere";
+
+impl Scene {
+    /// Adds an amount of gas in a chamber, in place of a pressure that phases give it.
+    pub fn gas(mut self, gas: Gas) -> Self {
+        self.gases.push(gas);
+        self
+    }
+
+    /// Adds an orifice or a valve between a supply or the atmosphere and a chamber with gas, or between two of these.
+    ///
+    /// ```
+    /// use pliant::{Body, Cells, Chamber, Gas, Material, Mesh, Orifice, Phase, Scene, Settings};
+    ///
+    /// let rubber = Material { density: 1000.0, young: 1e5, poisson: 0.3, viscosity: 10.0 };
+    /// let ring = Mesh::ring(0.02, 0.03, [16, 3], Cells::Rectangles)?;
+    /// let ring = Body::new(ring, rubber).thickness(0.01).build()?;
+    /// let scene = Scene::new(ring)
+    ///     .chamber(Chamber::within("air", "inner"))
+    ///     .gas(Gas::in_chamber("air"))
+    ///     .supply("pump", 1.2e5)
+    ///     .orifice(Orifice::new("inlet", "pump", "air", 1e-9))
+    ///     .orifice(Orifice::new("outlet", "air", "atmosphere", 1e-9))
+    ///     .phase(Phase::until(0.2).open("outlet", 0.0))
+    ///     .phase(Phase::until(0.4).open("inlet", 0.0));
+    /// let mut ring = scene.start(&Settings::default())?;
+    /// ring.advance_to(0.2)?;
+    /// assert!((ring.view().pressure("air")? - 1.8e4).abs() < 2e3);
+    /// # Ok::<(), pliant::Error>(())
+    /// ```
+    pub fn orifice(mut self, orifice: Orifice) -> Self {
+        self.orifices.push(orifice);
+        self
+    }
+
+    /// Adds a supply for orifices of that absolute pressure (Pa), a number or any other [`Signal`].
+    pub fn supply(mut self, name: impl Into<String>, pressure: impl Into<Signal>) -> Self {
+        self.supplies.push(Supply { name: name.into(), pressure: pressure.into() });
+        self
+    }
+
+    /// Absolute pressure (Pa) of the air around chambers with gas. Default: 101325.
+    pub fn atmosphere(mut self, pressure: f64) -> Self {
+        self.atmosphere = pressure;
+        self
+    }
+
+    /// The orifices.
+    pub fn orifices(&self) -> &[Orifice] {
+        &self.orifices
+    }
+
+    /// Whether any chamber has gas.
+    pub(crate) fn has_gas(&self) -> bool {
+        !self.gases.is_empty()
+    }
+
+    /// Number of amounts of gas that are unknowns.
+    #[cfg(feature = "checkpoint")]
+    pub(crate) fn flowing_amounts(&self) -> usize {
+        if self.closes_gas { 0 } else { self.gases.len() }
+    }
+
+    /// All that gas is and flows through, for comparison with another scene.
+    #[cfg(feature = "checkpoint")]
+    pub(crate) fn gas_parts(&self) -> impl std::fmt::Debug {
+        (&self.gases, &self.orifices, &self.supplies, self.atmosphere)
+    }
+
+    /// The same scene with constant amounts of gas, without orifices: for what has no unknowns for amounts.
+    pub(crate) fn shut(&self) -> Cow<'_, Self> {
+        if !self.has_gas() {
+            return Cow::Borrowed(self);
+        }
+        let mut shut = Self { closes_gas: true, ..self.clone() };
+        shut.orifices.clear();
+        shut.phases.iter_mut().for_each(|phase| phase.openings.clear());
+        Cow::Owned(shut)
+    }
+
+    /// Number (from 0) of the orifice with a name; `input` is where that was given.
+    pub(crate) fn orifice_number(&self, name: &str, input: &str) -> Result<usize, InputError> {
+        find(name, self.orifices.iter().map(Orifice::name), input, "orifices")
+    }
+
+    /// Number (from 0) of the gas in the chamber with a name; `input` is where that was given.
+    pub(crate) fn gas_number(&self, chamber: &str, input: &str) -> Result<usize, InputError> {
+        self.chamber_number(chamber, input)?;
+        self.gas_in(chamber).ok_or_else(|| {
+            let help = "the chamber has no gas: give it some, or name another one";
+            InputError::new(input, format!("\"{chamber}\""), help)
+        })
+    }
+
+    /// Number (from 0) of the gas in a chamber, if there is any.
+    pub(crate) fn gas_in(&self, chamber: &str) -> Option<usize> {
+        self.gases.iter().position(|gas| gas.chamber == chamber)
+    }
+
+    /// The gases within their walls.
+    ///
+    /// # Errors
+    /// A chamber that does not exist, or has two gases; numbers out of range.
+    pub(crate) fn filled(&self) -> Result<Vec<Filled>, InputError> {
+        unique("gas in chamber", self.gases.iter().map(|gas| &*gas.chamber))?;
+        let fill = |gas: &Gas| {
+            let chamber = &self.chambers[self.chamber_number(&gas.chamber, "chamber of gas")?];
+            let walls = chamber.force(&self.body, Vec::new())?;
+            gas.fill(walls, self.body.dofs(), self.atmosphere)
+        };
+        self.gases.iter().map(fill).collect()
+    }
+
+    /// The flow through the orifice of that number in `phase`.
+    ///
+    /// # Errors
+    /// Ends that do not exist, or are the same; numbers out of range.
+    pub(crate) fn orifice_flow(
+        &self,
+        number: usize,
+        phase: &Phase,
+    ) -> Result<OrificeFlow, InputError> {
+        let orifice = &self.orifices[number];
+        let input = format!("orifice \"{}\"", orifice.name);
+        let end = |name: &String| -> Result<End, InputError> {
+            if name == OPEN {
+                return Ok(End::Given(self.atmosphere.into()));
+            }
+            if let Some(supply) = self.supplies.iter().find(|supply| supply.name == *name) {
+                return Ok(End::Given(supply.pressure.clone()));
+            }
+            if let Some(gas) = self.gas_in(name) {
+                return Ok(End::Gas(gas));
+            }
+            let of = format!("{input} end");
+            if self.chambers.iter().any(|chamber| chamber.name() == name) {
+                return Err(self.gas_number(name, &of).err().unwrap_or_else(|| {
+                    InputError::new(of.clone(), format!("\"{name}\""), "it has no gas")
+                }));
+            }
+            let gases = self.gases.iter().map(|gas| &*gas.chamber);
+            let supplies = self.supplies.iter().map(|supply| &*supply.name);
+            let known: Vec<&str> = gases.chain(supplies).chain([OPEN]).collect();
+            let help = unknown_among(name, &known, "scene", "ends of orifices");
+            Err(InputError::new(of, format!("\"{name}\""), help))
+        };
+        let [from, to] = &orifice.ends;
+        let ends = [end(from)?, end(to)?];
+        if from == to || !ends.iter().any(|end| matches!(end, End::Gas(_))) {
+            let help = "it must lead from or to a chamber with gas, and from one place to another";
+            return Err(InputError::new(input, format!("from \"{from}\" to \"{to}\""), help));
+        }
+        let own = phase.openings.iter().filter(|(name, _)| *name == orifice.name);
+        orifice.flow(ends, own.map(|(_, opening)| opening.clone()).collect())
+    }
+
+    /// The names of all that may be at an end of an orifice, and of chambers without gas.
+    pub(crate) fn places(&self) -> impl Iterator<Item = &str> {
+        let supplies = self.supplies.iter().map(|supply| &*supply.name);
+        supplies.chain(self.chambers.iter().map(Chamber::name)).chain([OPEN])
+    }
+
+    /// Adds the forces of all gases: together where their amounts are unknowns, else one by one.
+    pub(super) fn add_gas(&self, phase: &Phase, forces: &mut Forces) -> Result<(), InputError> {
+        let input = format!("open of phase \"{}\"", phase.name);
+        for (name, opening) in &phase.openings {
+            self.orifice_number(name, &input)?;
+            opening.validate(&input)?;
+            if let Some(value) = opening.value().filter(|value| !(0.0..=1.0).contains(value)) {
+                return Err(InputError::new(input, value, "an opening is from 0 (shut) to 1"));
+            }
+        }
+        if !self.supplies.is_empty() || !self.orifices.is_empty() {
+            unique("supply, chamber or atmosphere", self.places())?;
+        }
+        for Supply { name, pressure } in &self.supplies {
+            let input = format!("supply \"{name}\" pressure");
+            pressure.validate(&input)?;
+            pressure
+                .value()
+                .map_or(Ok(0.0), |value| not_negative(&input, value, "Pa, absolute"))?;
+        }
+        unique("orifice", self.orifices.iter().map(Orifice::name))?;
+        let orifices = (0..self.orifices.len()).map(|number| self.orifice_flow(number, phase));
+        let (orifices, gases) = (orifices.collect::<Result<Vec<_>, _>>()?, self.filled()?);
+        if self.closes_gas {
+            for gas in gases {
+                forces.push(Arc::new(ClosedGas::new(gas, self.body.dofs())));
+            }
+        } else if self.has_gas() {
+            forces.push(Arc::new(GasFlow::new(gases, orifices)));
+        }
+        Ok(())
+    }
+
+    /// Times (s, ascending) at which what `phase` prescribes, and the pressure of a supply, changes its law.
+    pub(crate) fn breaks_in(&self, phase: &Phase) -> Vec<f64> {
+        let mut breaks = phase.breaks(&self.obstacles);
+        let supplies = self.supplies.iter().flat_map(|supply| supply.pressure.breaks());
+        breaks.extend(supplies);
+        breaks.sort_by(f64::total_cmp);
+        breaks.dedup();
+        breaks
+    }
+}
+
+impl Phase {
+    /// How far an orifice is open, from 0 (shut) to 1 (the default), a number or any other [`Signal`].
+    pub fn open(mut self, orifice: impl Into<String>, opening: impl Into<Signal>) -> Self {
+        self.openings.push((orifice.into(), opening.into()));
+        self
+    }
+
+    /// The opening of an orifice, if that is one number that a command can set.
+    pub(crate) fn live_opening(&self, orifice: &str) -> Option<&Live> {
+        let mut all = self.openings.iter().filter(|(name, _)| name == orifice);
+        all.next().filter(|_| all.next().is_none())?.1.live()
+    }
+
+    /// Replaces the opening of an orifice.
+    pub(crate) fn set_opening(&mut self, orifice: &str, opening: Signal) {
+        self.openings.retain(|(name, _)| name != orifice);
+        self.openings.push((orifice.to_owned(), opening));
+    }
+}
