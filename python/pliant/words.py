@@ -1107,6 +1107,89 @@ def chamber(
     )
 
 
+def gas(
+    *,
+    chamber: str,
+    pressure: float | None = None,
+    exponent: float | None = None,
+) -> dict:
+    r"""An amount of gas in a chamber, in place of a `pressure` of phases. Its absolute pressure is p_0 (V_0 m/(V m_0))^n,
+    with the volume V and the amount m; the walls are pressed by what it exceeds the `atmosphere` of the file by. The
+    amount changes by orifices alone.
+
+    Parameters
+    ----------
+    chamber
+        the name of the chamber. Required.
+    pressure
+        the absolute pressure p_0 in the undeformed shape (Pa). Default: 101325. There it fills the volume V_0 with
+        m_0 = p_0 V_0 1.185e-5 kg of air at 20 C.
+    exponent
+        the exponent n (no unit). Default: 1. 1 is isothermal, 1.4 adiabatic, and what is between them polytropic.
+    """
+    return _table(
+        chamber=chamber,
+        pressure=pressure,
+        exponent=exponent,
+    )
+
+
+def supply(
+    *,
+    name: str,
+    pressure: Formula,
+) -> dict:
+    r"""What orifices draw gas from, or a vacuum into which they let it.
+
+    Parameters
+    ----------
+    name
+        the name of the supply. Required.
+    pressure
+        its absolute pressure (Pa). Required. A number, or a formula of `t`.
+    """
+    return _table(
+        name=name,
+        pressure=pressure,
+    )
+
+
+def orifice(
+    *,
+    name: str,
+    from_: str,
+    to: str,
+    conductance: float,
+    critical_ratio: float | None = None,
+) -> dict:
+    r"""An orifice, a valve or a leak, through which gas flows either way (ISO 6358-1): from the absolute pressure p_1 to
+    the lower p_2 q = C rho_0 p_1 sqrt(T_0/T_1) sqrt(1 - ((p_2/p_1 - b)/(1 - b))^2), without the last root if p_2/p_1
+    < b, and with a cubic in place of it if p_2/p_1 > 0.999; rho_0 = 1.185 kg/m^3. `open` in a phase says how far it
+    is open; without it, wholly.
+
+    Parameters
+    ----------
+    name
+        the name of the orifice. Required.
+    from_
+        one end: a supply, a chamber with gas, or `atmosphere`. Required.
+    to
+        the other end, likewise. Required.
+    conductance
+        the sonic conductance C (m^3/(s Pa)). Required. 1e-8 are 0.6 l/min for each bar; a short nozzle has some 2e-3
+        times its area in m^2.
+    critical_ratio
+        the critical ratio b of pressures, from 0 to below 1 (no unit). Default: 0.5.
+    """
+    return _table(
+        name=name,
+        from_=from_,
+        to=to,
+        conductance=conductance,
+        critical_ratio=critical_ratio,
+    )
+
+
 def obstacle_half_plane(
     *,
     point: Vector,
@@ -1547,6 +1630,7 @@ def phase(
     load: dict | Sequence[dict] | None = None,
     pressure: dict | Sequence[dict] | None = None,
     pressure_on: dict | Sequence[dict] | None = None,
+    open: dict | Sequence[dict] | None = None,
     actuate: dict | Sequence[dict] | None = None,
     contact: bool | str | Sequence[str] | None = None,
     project_velocity: bool | None = None,
@@ -1580,6 +1664,8 @@ def phase(
         pressures in chambers. Default: none.
     pressure_on
         pressures on faces. Default: none.
+    open
+        openings of orifices. Default: none.
     actuate
         forces in springs and cables. Default: none.
     contact
@@ -1601,6 +1687,7 @@ def phase(
         load=load,
         pressure=pressure,
         pressure_on=pressure_on,
+        open=open,
         actuate=actuate,
         contact=contact,
         project_velocity=project_velocity,
@@ -1884,6 +1971,35 @@ def pressure_on(
         value=value,
         times=times,
         values=values,
+    )
+
+
+def open(
+    *,
+    orifice: str,
+    opening: Formula | None = None,
+    times: Sequence[float] | None = None,
+    openings: Sequence[float] | None = None,
+) -> dict:
+    r"""How far an orifice is open, from 0 (shut) to 1. The opening of a table is interpolated linearly, and is constant
+    before and after.
+
+    Parameters
+    ----------
+    orifice
+        the name of an orifice. Required.
+    opening
+        how far it is open (no unit). Default: none.
+    times
+        times in ascending order (s). Default: none.
+    openings
+        openings at these times (no unit). Default: none.
+    """
+    return _table(
+        orifice=orifice,
+        opening=opening,
+        times=times,
+        openings=openings,
     )
 
 
@@ -2297,7 +2413,7 @@ def sensor_pressure(
     chamber: str,
     component: Literal["x", "y", "z", "norm", "xx", "yy", "zz", "xy", "yz", "xz", "von-mises"] | None = None,
 ) -> dict:
-    r"""Sensor of the kind "pressure": the pressure in a chamber (Pa).
+    r"""Sensor of the kind "pressure": the pressure in a chamber, of gas what it exceeds the atmosphere by (Pa).
 
     Parameters
     ----------
@@ -2313,6 +2429,84 @@ def sensor_pressure(
         kind="pressure",
         name=name,
         chamber=chamber,
+        component=component,
+    )
+
+
+def sensor_absolute_pressure(
+    *,
+    name: str,
+    chamber: str,
+    component: Literal["x", "y", "z", "norm", "xx", "yy", "zz", "xy", "yz", "xz", "von-mises"] | None = None,
+) -> dict:
+    r"""Sensor of the kind "absolute-pressure": the absolute pressure of the gas in a chamber (Pa).
+
+    Parameters
+    ----------
+    name
+        the name of the sensor. Required.
+    chamber
+        the name of the chamber. Required.
+    component
+        one component alone. Default: all, each a column. Vectors have `x`, `y`, `z` and their length `norm`; tensors
+        `xx` and so on; stress has `von-mises` besides.
+    """
+    return _table(
+        kind="absolute-pressure",
+        name=name,
+        chamber=chamber,
+        component=component,
+    )
+
+
+def sensor_gas_amount(
+    *,
+    name: str,
+    chamber: str,
+    component: Literal["x", "y", "z", "norm", "xx", "yy", "zz", "xy", "yz", "xz", "von-mises"] | None = None,
+) -> dict:
+    r"""Sensor of the kind "gas-amount": the amount of gas in a chamber (kg).
+
+    Parameters
+    ----------
+    name
+        the name of the sensor. Required.
+    chamber
+        the name of the chamber. Required.
+    component
+        one component alone. Default: all, each a column. Vectors have `x`, `y`, `z` and their length `norm`; tensors
+        `xx` and so on; stress has `von-mises` besides.
+    """
+    return _table(
+        kind="gas-amount",
+        name=name,
+        chamber=chamber,
+        component=component,
+    )
+
+
+def sensor_gas_flow(
+    *,
+    name: str,
+    orifice: str,
+    component: Literal["x", "y", "z", "norm", "xx", "yy", "zz", "xy", "yz", "xz", "von-mises"] | None = None,
+) -> dict:
+    r"""Sensor of the kind "gas-flow": the flow of gas through an orifice, from its first end to its second (kg/s).
+
+    Parameters
+    ----------
+    name
+        the name of the sensor. Required.
+    orifice
+        the name of the orifice. Required.
+    component
+        one component alone. Default: all, each a column. Vectors have `x`, `y`, `z` and their length `norm`; tensors
+        `xx` and so on; stress has `von-mises` besides.
+    """
+    return _table(
+        kind="gas-flow",
+        name=name,
+        orifice=orifice,
         component=component,
     )
 
@@ -2713,6 +2907,7 @@ __all__ = [
     "ends",
     "fibres",
     "friction_coefficient",
+    "gas",
     "groups",
     "halved_in",
     "hold",
@@ -2745,6 +2940,8 @@ __all__ = [
     "obstacle_parts_half_plane",
     "obstacle_path",
     "obstacle_union",
+    "open",
+    "orifice",
     "output",
     "path",
     "phase",
@@ -2753,6 +2950,7 @@ __all__ = [
     "pressure_on",
     "region",
     "rotate",
+    "sensor_absolute_pressure",
     "sensor_angle",
     "sensor_centre_of_mass",
     "sensor_constraint_force",
@@ -2763,6 +2961,8 @@ __all__ = [
     "sensor_displacement",
     "sensor_distance",
     "sensor_gap",
+    "sensor_gas_amount",
+    "sensor_gas_flow",
     "sensor_momentum",
     "sensor_position",
     "sensor_pressure",
@@ -2778,6 +2978,7 @@ __all__ = [
     "solver",
     "spring",
     "statics",
+    "supply",
     "symmetry",
     "terms",
     "tie",

@@ -85,7 +85,7 @@ fn tables_that_are_not_there_say_what_stands_in() {
         ("rigid", &["rigid = true", "[[obstacle]]"]),
         ("tendon", &["[[cable]]", "a winch"]),
         ("joint", &["is a hinge", "hold_combination"]),
-        ("gas", &["no gas", "[[chamber]]"]),
+        ("pump", &["[[gas]]", "[[orifice]]", "[[chamber]]"]),
         ("friction", &["friction_coefficient in [[obstacle]]"]),
     ] {
         let text = format!("{scene}\n[[{name}]]\nname = \"a\"\n");

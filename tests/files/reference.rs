@@ -9,11 +9,17 @@ use serde_json::Value;
 const PAGE: &str = include_str!("../../docs/reference.md");
 
 /// A file of these parts, each of which may be replaced.
-const PARTS: [(&str, &str); 6] = [
+const PARTS: [(&str, &str); 9] = [
     ("top", "title = \"base\"\n"),
     ("[body]", "[body]\nthickness = 0.01\n"),
     ("[[spring]]", "[[spring]]\nname = \"down\"\nends = [1, 3]\n"),
     ("[[chamber]]", "[[chamber]]\nname = \"inside\"\nnodes = [1, 2, 13, 12]\n"),
+    ("[[gas]]", "[[gas]]\nchamber = \"inside\"\n"),
+    ("[[supply]]", "[[supply]]\nname = \"pump\"\npressure = 2e5\n"),
+    (
+        "[[orifice]]",
+        "[[orifice]]\nname = \"valve\"\nfrom = \"pump\"\nto = \"inside\"\nconductance = 1e-9\n",
+    ),
     (
         "[[obstacle]]",
         "[[obstacle]]\nkind = \"disc\"\ncentre = [0.0, -1.0]\nradius = 0.1\nstiffness = 1e3\n",
@@ -41,7 +47,9 @@ fn with(example: &str, mesh: &str) -> String {
     for (part, base) in PARTS {
         let is_whole = part == place && (key == place || key == "title");
         let is_needed = match part {
-            "[[chamber]]" => key == "pressure",
+            "[[chamber]]" => ["pressure", "[[gas]]", "[[orifice]]", "open"].contains(&key),
+            "[[gas]]" | "[[supply]]" => ["[[orifice]]", "open"].contains(&key),
+            "[[orifice]]" => key == "open",
             "[[spring]]" => key == "actuate",
             _ => true,
         };

@@ -169,8 +169,9 @@ fn scenes_of_the_page() {
     }
 }
 
-/// Scenes of contact that take seconds and more to their ends.
-const LONG: &[&str] = &["ball-in-hand", "ball-in-hand-3d", "bellows", "heap", "two-squares"];
+/// Scenes that take seconds and more to their ends.
+const LONG: &[&str] =
+    &["ball-in-hand", "ball-in-hand-3d", "bellows", "heap", "pneumatic-finger", "two-squares"];
 
 /// They begin, and nothing is to be warned of before.
 #[test]
@@ -200,7 +201,6 @@ fn all_scenes_are_run() {
         "cable",
         "glued-arm",
         "tendon-finger",
-        "pneumatic-finger",
         "gripper",
         "wheel-over-stones",
         // where contact is tested

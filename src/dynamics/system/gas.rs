@@ -1,145 +1,7 @@
-//! Amounts of gas in the Newton system, eliminated.
-//!
-//! With the volumes V(u) of the chambers, their gradients G = dV/du (a column each), the pressures p(m, V) and the flows
-//! q(t, m, V), a step of the parameter gamma has, beside the system of `newton.rs`,
-//!
-//! ```text
-//! (I - gamma Qm) xm - gamma Qv w = rm,       w = G^T xu
-//! ... - gamma G (Pm xm - Pv w) = ...         Pv = -dp/dV, Pm = dp/dm, Qm = dq/dm, Qv = dq/dV
-//! ```
-//!
-//! so that, with S = (I - gamma Qm)^-1 and C = Pv - gamma Pm S Qv,
-//!
-//! ```text
-//! xm = S (rm + gamma Qv w)
-//! (N + gamma^2 G C G^T) xv - A mu = ... - gamma G C G^T ru + gamma G Pm S rm
-//! ```
-//!
-//! The pressure on one wall depends on where all others are: G C G^T is full over the nodes of all walls, and of the
-//! rank of the number of chambers. It stays out of the pattern. With H = G^T N^-1 G, N^-1 being the solve that meets the
-//! constraints (Woodbury's identity), the pressures s = gamma^2 C (I + gamma^2 H C)^-1 G^T N^-1 r resist, and
-//! N xv - A mu = r - G s.
+//! Gas that flows in the equations of a phase, and in their Newton systems.
 
-use super::newton_matrix::NewtonMatrix;
 use super::{System, flow_of};
 use crate::base::vector::dot;
-use crate::elements::force::FlowDerivatives;
-
-/// What amounts of gas add to the Newton system; matrices row by row.
-pub(super) struct FlowMatrix {
-    count: usize,
-    derivatives: FlowDerivatives,
-    /// S, and its product with gamma Qv.
-    response: Vec<f64>,
-    following: Vec<f64>,
-    /// C, and gamma^2 C (I + gamma^2 H C)^-1.
-    stiffness: Vec<f64>,
-    resistance: Vec<f64>,
-    /// H.
-    compliance: Vec<f64>,
-    work: Vec<f64>,
-    /// Changes of the volumes, and what follows from them.
-    volumes: Vec<f64>,
-    changes: Vec<f64>,
-    /// A column of N^-1 G.
-    column: Vec<f64>,
-}
-
-impl FlowMatrix {
-    /// For `count` chambers of a body with `dofs` displacement components.
-    pub(super) fn new(count: usize, dofs: usize) -> Self {
-        let square = vec![0.0; count * count];
-        Self {
-            count,
-            derivatives: FlowDerivatives::zeros(count, dofs),
-            response: square.clone(),
-            following: square.clone(),
-            stiffness: square.clone(),
-            resistance: square.clone(),
-            compliance: square.clone(),
-            work: square,
-            volumes: vec![0.0; count],
-            changes: vec![0.0; count],
-            column: vec![0.0; dofs],
-        }
-    }
-
-    /// Sets S, S gamma Qv and C for a step of the parameter `gamma`.
-    fn condense(&mut self, gamma: f64) {
-        let Self { count, derivatives, response, following, stiffness, work, .. } = self;
-        let (k, FlowDerivatives { pressures: [stiff, pressing], rates, .. }) =
-            (*count, &*derivatives);
-        let [by_volumes, by_amounts] = rates;
-        for (at, x) in work.iter_mut().enumerate() {
-            *x = unit(at, k) - gamma * by_amounts[at];
-        }
-        invert(work, response, k);
-        multiply(response, by_volumes, following, k);
-        following.iter_mut().for_each(|x| *x *= gamma);
-        for (at, x) in stiffness.iter_mut().enumerate() {
-            let row = at / k;
-            *x = unit(at, k) * stiff[row] - pressing[row] * following[at];
-        }
-    }
-
-    /// Sets gamma^2 C (I + gamma^2 H C)^-1.
-    fn resist_by(&mut self, gamma: f64) {
-        let Self { count, stiffness, resistance, compliance, work, .. } = self;
-        let (k, square) = (*count, gamma * gamma);
-        multiply(compliance, stiffness, work, k);
-        for (at, x) in work.iter_mut().enumerate() {
-            *x = unit(at, k) + square * *x;
-        }
-        invert(work, resistance, k);
-        multiply(stiffness, resistance, work, k);
-        resistance.iter_mut().zip(&*work).for_each(|(x, product)| *x = square * product);
-    }
-
-    /// Takes from the right-hand side the pressures that resist its solution `xv` without them.
-    pub(super) fn resist(&mut self, xv: &[f64], right: &mut [f64]) {
-        self.swell(xv);
-        let Self { count, derivatives, resistance, volumes, changes, .. } = self;
-        apply(resistance, volumes, changes, *count);
-        push(derivatives, changes, -1.0, right);
-    }
-
-    /// Adds gamma G Pm S rm - gamma G C G^T ru to the right-hand side, of the residuals `ru` and `amounts`.
-    pub(super) fn add_residuals(
-        &mut self,
-        gamma: f64,
-        ru: &[f64],
-        amounts: &[f64],
-        right: &mut [f64],
-    ) {
-        self.swell(ru);
-        let Self { count, derivatives, response, stiffness, volumes, changes, .. } = self;
-        apply(stiffness, volumes, changes, *count);
-        push(derivatives, changes, -gamma, right);
-        apply(response, amounts, changes, *count);
-        let [_, pressing] = &derivatives.pressures;
-        changes.iter_mut().zip(pressing).for_each(|(x, p)| *x *= p);
-        push(derivatives, changes, gamma, right);
-    }
-
-    /// Turns the residuals `x` of the amounts into their changes, by those of the displacements, `xu`. Returns the change
-    /// of the power (W) that is supplied with them.
-    fn solve(&mut self, xu: &[f64], x: &mut [f64]) -> f64 {
-        self.swell(xu);
-        let Self { count, derivatives, response, following, volumes, changes, .. } = self;
-        apply(response, x, changes, *count);
-        x.copy_from_slice(changes);
-        apply(following, volumes, changes, *count);
-        x.iter_mut().zip(&*changes).for_each(|(x, follows)| *x += follows);
-        let [by_volumes, by_amounts] = &derivatives.power;
-        dot(by_volumes, volumes) + dot(by_amounts, x)
-    }
-
-    /// Sets `volumes` to G^T x.
-    fn swell(&mut self, x: &[f64]) {
-        let gradients = self.derivatives.gradients.chunks(x.len());
-        self.volumes.iter_mut().zip(gradients).for_each(|(v, gradient)| *v = dot(gradient, x));
-    }
-}
 
 impl System {
     /// Writes the rates of the internal unknowns.
@@ -161,81 +23,29 @@ impl System {
 
     /// Prepares what the Newton matrix, just factorized, lacks of gas that flows.
     pub(super) fn condense_flow(&mut self) {
-        let NewtonMatrix { solver, flow, gamma, demands, mu, .. } = &mut self.newton;
-        let Some(matrix) = flow else { return };
-        matrix.condense(*gamma);
-        demands.fill(0.0);
-        if let Some(edges) = &mut solver.edges {
+        let newton = &mut self.newton;
+        let Some(matrix) = &mut newton.flow else { return };
+        matrix.condense(newton.gamma);
+        newton.demands.fill(0.0);
+        if let Some(edges) = &mut newton.solver.edges {
             edges.demands.fill(0.0);
         }
         let (dofs, k) = (matrix.column.len(), matrix.count);
         for column in 0..k {
             let gradients = &matrix.derivatives.gradients;
-            solver.solve(
-                &self.rows,
-                &gradients[column * dofs..][..dofs],
-                demands,
-                &mut matrix.column,
-                mu,
-            );
+            let (own, x) = (&gradients[column * dofs..][..dofs], &mut matrix.column);
+            newton.solver.solve(&self.rows, own, &newton.demands, x, &mut newton.mu);
             for row in 0..k {
                 let gradient = &gradients[row * dofs..][..dofs];
                 matrix.compliance[row * k + column] = dot(gradient, &matrix.column);
             }
         }
-        matrix.resist_by(*gamma);
+        matrix.resist_by(newton.gamma);
     }
 
     /// Turns the residuals `x` of the amounts into their changes, by those of the displacements, `xu`. Returns the change
     /// of the power (W) that is supplied with them.
     pub(super) fn solve_amounts(&mut self, xu: &[f64], x: &mut [f64]) -> f64 {
         self.newton.flow.as_mut().map_or(0.0, |flow| flow.solve(xu, x))
-    }
-}
-
-/// Adds `factor` times G s.
-fn push(derivatives: &FlowDerivatives, s: &[f64], factor: f64, right: &mut [f64]) {
-    for (gradient, s) in derivatives.gradients.chunks(right.len()).zip(s) {
-        right.iter_mut().zip(gradient).for_each(|(right, g)| *right += factor * s * g);
-    }
-}
-
-/// Entry of the unit matrix of size `k` at that place.
-fn unit(at: usize, k: usize) -> f64 {
-    if at / k == at % k { 1.0 } else { 0.0 }
-}
-
-fn apply(matrix: &[f64], x: &[f64], product: &mut [f64], k: usize) {
-    product.iter_mut().zip(matrix.chunks(k)).for_each(|(y, row)| *y = dot(row, x));
-}
-
-fn multiply(a: &[f64], b: &[f64], product: &mut [f64], k: usize) {
-    for (at, x) in product.iter_mut().enumerate() {
-        *x = (0..k).map(|j| a[at / k * k + j] * b[j * k + at % k]).sum();
-    }
-}
-
-/// The inverse of a small matrix, which is destroyed (Gauss and Jordan, with pivots of columns).
-fn invert(matrix: &mut [f64], inverse: &mut [f64], k: usize) {
-    inverse.iter_mut().enumerate().for_each(|(at, x)| *x = unit(at, k));
-    for column in 0..k {
-        let size = |row: &usize| matrix[row * k + column].abs();
-        let pivot = (column..k).max_by(|a, b| size(a).total_cmp(&size(b))).unwrap_or(column);
-        for at in 0..k {
-            matrix.swap(column * k + at, pivot * k + at);
-            inverse.swap(column * k + at, pivot * k + at);
-        }
-        let by = 1.0 / matrix[column * k + column];
-        for at in 0..k {
-            matrix[column * k + at] *= by;
-            inverse[column * k + at] *= by;
-        }
-        for row in (0..k).filter(|row| *row != column) {
-            let part = matrix[row * k + column];
-            for at in 0..k {
-                matrix[row * k + at] -= part * matrix[column * k + at];
-                inverse[row * k + at] -= part * inverse[column * k + at];
-            }
-        }
     }
 }

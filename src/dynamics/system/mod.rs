@@ -26,6 +26,7 @@ mod dae;
 mod differences;
 mod edge_solver;
 mod edges;
+mod flow_matrix;
 mod form;
 mod gas;
 mod gradients;

@@ -14,7 +14,7 @@
 //!
 //! Maxwell branches are eliminated point by point (`elements/body/branches.rs`), so that Kt includes their
 //! effect in a step of gamma. Amounts of gas are eliminated as well; what they add to Kt is of the rank of their number,
-//! and stays apart (`gas.rs`).
+//! and stays apart (`flow_matrix.rs`).
 //!
 //! Of r = c + gamma (v, M^-1 (f + A lambda)) the integrators are given only c + gamma (v, 0): then
 //! M rv is M cv + gamma f, and no iteration solves a system with M.

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::differences::Differences;
 use super::edges::Edge;
-use super::gas::FlowMatrix;
+use super::flow_matrix::FlowMatrix;
 use super::reduced::Reduced;
 use super::source::Coupling;
 use crate::base::sparse::BlockMatrix;
