@@ -111,6 +111,14 @@ class Simulation:
         """Volume (m^3) of a chamber."""
         return self._simulation.chamber_volume(chamber)
 
+    def muscle_stretch(self, muscle: str) -> float:
+        """How much longer the fibres of a muscle are than in the undeformed shape, as a factor."""
+        return self._simulation.muscle_stretch(muscle)
+
+    def magnetic_moment(self) -> Array:
+        """Magnetic moment (A m^2) of all magnets."""
+        return self._simulation.magnetic_moment()
+
     def spring_length(self, spring: str) -> float:
         """Length (m) of a spring."""
         return self._simulation.spring_length(spring)
@@ -177,12 +185,17 @@ class Simulation:
         self._simulation.open(orifice, opening)
 
     def actuate(self, spring: str, force: float) -> None:
-        """Sets the force (N) of the actuator of a spring, the tension (N) of a cable, or the length (m) that a winch has drawn in."""
+        """Sets the force (N) of the actuator of a spring, the tension (N) of a cable, the length (m) that a winch has drawn in, or the stress
+        (Pa) of a muscle, or the strain of a growth."""
         self._simulation.actuate(spring, force)
 
     def load(self, nodes: Nodes, force: Sequence[float]) -> None:
         """Sets a force (N) on each of the nodes, in place of the load that these nodes have."""
         self._simulation.load(nodes, [float(part) for part in force])
+
+    def set_magnetic_field(self, field: Sequence[float]) -> None:
+        """Sets the magnetic field (T) that acts on magnets, one component per dimension; a gradient of it stays."""
+        self._simulation.set_magnetic_field([float(part) for part in field])
 
     def hold(self, nodes: Nodes) -> None:
         """Holds nodes where they are."""

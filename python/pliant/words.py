@@ -1068,6 +1068,113 @@ def cable(
     )
 
 
+def muscle(
+    *,
+    name: str | None = None,
+    along: Vector | None = None,
+    centre: Vector | None = None,
+    axis: Vector | None = None,
+    pitch: float | None = None,
+    box: Sequence[Vector] | None = None,
+    group: str | None = None,
+    cells: Sequence[int] | None = None,
+) -> dict:
+    r"""Fibres in a body that pull by a stress of their own, which `actuate` in a phase gives: a force per section of the
+    undeformed shape, however long they are, in addition to the elasticity of the material. They lie along a vector,
+    or around an axis, in all of the body or in the cells of a `box`, a `group` or a list. For bodies with Green's
+    strain.
+
+    Parameters
+    ----------
+    name
+        the name of the muscle, which no spring has. Default: muscle 1, muscle 2, ...
+    along
+        a vector along them, of any length. Default: none.
+    centre
+        a point of the axis that they run around (m). Default: none.
+    axis
+        direction of the axis, of any length; none in the plane. Default: across the plane.
+    pitch
+        angle by which they climb along the axis: 0 are rings, others helices (rad). Default: 0.
+    box
+        the lower and the upper corner (m). Default: none.
+    group
+        the name of a group of cells. Default: none. A physical group of Gmsh.
+    cells
+        numbers of cells, from 1. Default: none.
+    """
+    return _table(
+        name=name,
+        along=along,
+        centre=centre,
+        axis=axis,
+        pitch=pitch,
+        box=box,
+        group=group,
+        cells=cells,
+    )
+
+
+def growth(
+    *,
+    name: str | None = None,
+    box: Sequence[Vector] | None = None,
+    group: str | None = None,
+    cells: Sequence[int] | None = None,
+) -> dict:
+    r"""Cells that swell, or expand by heat, alike in all directions, by the strain that `actuate` in a phase gives: what
+    is free gets 1 + strain times as long, without stress. All of the body, or the cells of a `box`, a `group` or a
+    list. For Green's strain with any law, in solids, plane stress, membranes and strings.
+
+    Parameters
+    ----------
+    name
+        the name of the growth, which no spring and no muscle has. Default: growth 1, growth 2, ...
+    box
+        the lower and the upper corner (m). Default: none.
+    group
+        the name of a group of cells. Default: none. A physical group of Gmsh.
+    cells
+        numbers of cells, from 1. Default: none.
+    """
+    return _table(
+        name=name,
+        box=box,
+        group=group,
+        cells=cells,
+    )
+
+
+def magnet(
+    *,
+    remanence: Vector,
+    box: Sequence[Vector] | None = None,
+    group: str | None = None,
+    cells: Sequence[int] | None = None,
+) -> dict:
+    r"""A part of the body that is a hard magnet, on which the `magnetic_field` of a phase acts: its remanence moves along
+    with the material. All of the body, or the cells of a `box`, a `group` or a list.
+
+    Parameters
+    ----------
+    remanence
+        the remanence in the undeformed shape (T). Required. Of elastomers filled with powder some 0.1 T, of magnets
+        of neodymium 1.3 T.
+    box
+        the lower and the upper corner (m). Default: none.
+    group
+        the name of a group of cells. Default: none. A physical group of Gmsh.
+    cells
+        numbers of cells, from 1. Default: none.
+    """
+    return _table(
+        remanence=remanence,
+        box=box,
+        group=group,
+        cells=cells,
+    )
+
+
 def chamber(
     *,
     name: str,
@@ -1632,6 +1739,7 @@ def phase(
     pressure_on: dict | Sequence[dict] | None = None,
     open: dict | Sequence[dict] | None = None,
     actuate: dict | Sequence[dict] | None = None,
+    magnetic_field: dict | None = None,
     contact: bool | str | Sequence[str] | None = None,
     project_velocity: bool | None = None,
 ) -> dict:
@@ -1667,7 +1775,9 @@ def phase(
     open
         openings of orifices. Default: none.
     actuate
-        forces in springs and cables. Default: none.
+        forces in springs and cables, stresses of muscles, strains of growth. Default: none.
+    magnetic_field
+        the magnetic field. Default: none.
     contact
         the obstacles that act. Default: true. All, none, or those of these names.
     project_velocity
@@ -1689,6 +1799,7 @@ def phase(
         pressure_on=pressure_on,
         open=open,
         actuate=actuate,
+        magnetic_field=magnetic_field,
         contact=contact,
         project_velocity=project_velocity,
     )
@@ -2005,38 +2116,97 @@ def open(
 
 def actuate(
     *,
-    springs: str | Sequence[str],
+    springs: str | Sequence[str] | None = None,
+    muscles: str | Sequence[str] | None = None,
+    growths: str | Sequence[str] | None = None,
     force: Formula | None = None,
     length: Formula | None = None,
+    stress: Formula | None = None,
+    strain: Formula | None = None,
     times: Sequence[float] | None = None,
     forces: Sequence[float] | None = None,
     lengths: Sequence[float] | None = None,
+    strains: Sequence[float] | None = None,
+    stresses: Sequence[float] | None = None,
 ) -> dict:
-    r"""Forces of the actuators in springs, tensions of cables, and lengths that winches have drawn in. Those of a table
-    are interpolated linearly, and are constant before and after.
+    r"""Forces of the actuators in springs, tensions of cables, lengths that winches have drawn in, stresses of muscles,
+    and strains of growth. Those of a table are interpolated linearly, and are constant before and after.
 
     Parameters
     ----------
     springs
-        names of springs and cables. Required.
+        names of springs and cables. Default: none.
+    muscles
+        names of muscles. Default: none.
+    growths
+        names of growths. Default: none.
     force
         the force: of a spring positive if it extends, of a cable if it pulls (N). Default: none.
     length
         of a winch: the length that it has drawn in (m). Default: none.
+    stress
+        of a muscle: the force per section of the undeformed shape by which it pulls; below 0 it pushes (Pa). Default:
+        none.
+    strain
+        of a growth: by how much what is free gets longer; of heat the coefficient of expansion times the change of
+        temperature (no unit). Default: none.
     times
         times in ascending order (s). Default: none.
     forces
         forces at these times (N). Default: none.
     lengths
         lengths at these times (m). Default: none.
+    strains
+        strains at these times (no unit). Default: none.
+    stresses
+        stresses at these times (Pa). Default: none.
     """
     return _table(
         springs=springs,
+        muscles=muscles,
+        growths=growths,
         force=force,
         length=length,
+        stress=stress,
+        strain=strain,
         times=times,
         forces=forces,
         lengths=lengths,
+        strains=strains,
+        stresses=stresses,
+    )
+
+
+def magnetic_field(
+    *,
+    field: Sequence[Formula] | None = None,
+    times: Sequence[float] | None = None,
+    fields: Sequence[Vector] | None = None,
+    gradient: Sequence[Vector] | None = None,
+    centre: Vector | None = None,
+) -> dict:
+    r"""The magnetic field that acts on the magnets: `field` everywhere, and `gradient` (x - `centre`) beside it. That of
+    a table is interpolated linearly, and constant before and after.
+
+    Parameters
+    ----------
+    field
+        the field (T). Default: none.
+    times
+        times in ascending order (s). Default: none.
+    fields
+        the field at these times (T). Default: none.
+    gradient
+        rows of dB_i/dx_j, a symmetric matrix, in space without trace (T/m). Default: none.
+    centre
+        where the gradient adds nothing (m). Default: the origin.
+    """
+    return _table(
+        field=field,
+        times=times,
+        fields=fields,
+        gradient=gradient,
+        centre=centre,
     )
 
 
@@ -2403,6 +2573,81 @@ def sensor_spring_length(
         kind="spring-length",
         name=name,
         spring=spring,
+        component=component,
+    )
+
+
+def sensor_muscle_stress(
+    *,
+    name: str,
+    muscle: str,
+    component: Literal["x", "y", "z", "norm", "xx", "yy", "zz", "xy", "yz", "xz", "von-mises"] | None = None,
+) -> dict:
+    r"""Sensor of the kind "muscle-stress": the stress by which a muscle pulls (Pa).
+
+    Parameters
+    ----------
+    name
+        the name of the sensor. Required.
+    muscle
+        the name of the muscle. Required.
+    component
+        one component alone. Default: all, each a column. Vectors have `x`, `y`, `z` and their length `norm`; tensors
+        `xx` and so on; stress has `von-mises` besides.
+    """
+    return _table(
+        kind="muscle-stress",
+        name=name,
+        muscle=muscle,
+        component=component,
+    )
+
+
+def sensor_muscle_stretch(
+    *,
+    name: str,
+    muscle: str,
+    component: Literal["x", "y", "z", "norm", "xx", "yy", "zz", "xy", "yz", "xz", "von-mises"] | None = None,
+) -> dict:
+    r"""Sensor of the kind "muscle-stretch": the length of the fibres of a muscle by that in the undeformed shape, the
+    mean over their volume (no unit).
+
+    Parameters
+    ----------
+    name
+        the name of the sensor. Required.
+    muscle
+        the name of the muscle. Required.
+    component
+        one component alone. Default: all, each a column. Vectors have `x`, `y`, `z` and their length `norm`; tensors
+        `xx` and so on; stress has `von-mises` besides.
+    """
+    return _table(
+        kind="muscle-stretch",
+        name=name,
+        muscle=muscle,
+        component=component,
+    )
+
+
+def sensor_magnetic_moment(
+    *,
+    name: str,
+    component: Literal["x", "y", "z", "norm", "xx", "yy", "zz", "xy", "yz", "xz", "von-mises"] | None = None,
+) -> dict:
+    r"""Sensor of the kind "magnetic-moment": the magnetic moment of all magnets (A m^2).
+
+    Parameters
+    ----------
+    name
+        the name of the sensor. Required.
+    component
+        one component alone. Default: all, each a column. Vectors have `x`, `y`, `z` and their length `norm`; tensors
+        `xx` and so on; stress has `von-mises` besides.
+    """
+    return _table(
+        kind="magnetic-moment",
+        name=name,
         component=component,
     )
 
@@ -2909,6 +3154,7 @@ __all__ = [
     "friction_coefficient",
     "gas",
     "groups",
+    "growth",
     "halved_in",
     "hold",
     "hold_combination",
@@ -2921,6 +3167,8 @@ __all__ = [
     "law_st_venant_kirchhoff",
     "law_yeoh",
     "load",
+    "magnet",
+    "magnetic_field",
     "material",
     "mesh_bar",
     "mesh_cuboid",
@@ -2930,6 +3178,7 @@ __all__ = [
     "mesh_rectangle",
     "mesh_ring",
     "move",
+    "muscle",
     "obstacle_box",
     "obstacle_capsule",
     "obstacle_disc",
@@ -2963,7 +3212,10 @@ __all__ = [
     "sensor_gap",
     "sensor_gas_amount",
     "sensor_gas_flow",
+    "sensor_magnetic_moment",
     "sensor_momentum",
+    "sensor_muscle_stress",
+    "sensor_muscle_stretch",
     "sensor_position",
     "sensor_pressure",
     "sensor_rotation",

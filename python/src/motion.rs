@@ -38,7 +38,7 @@ impl Motion {
         sample: usize,
         tensor: impl Fn(&CellField) -> [[f64; 3]; 3],
     ) -> PyResult<Bound<'py, PyArray3<f64>>> {
-        let fields = self.trajectory.body().cell_fields(&self.sample(sample)?.u);
+        let fields = self.trajectory.cell_fields(self.sample(sample)?).map_err(raised)?;
         let numbers: Vec<f64> = fields.iter().flat_map(|field| tensor(field).concat()).collect();
         PyArray1::from_vec(py, numbers).reshape([fields.len(), 3, 3])
     }
@@ -202,7 +202,7 @@ impl Motion {
         py: Python<'py>,
         sample: usize,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        let fields = self.trajectory.body().cell_fields(&self.sample(sample)?.u);
+        let fields = self.trajectory.cell_fields(self.sample(sample)?).map_err(raised)?;
         Ok(PyArray1::from_iter(py, fields.iter().map(CellField::von_mises)))
     }
 

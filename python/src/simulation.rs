@@ -167,6 +167,16 @@ impl Simulation {
         self.lock()?.view().chamber_volume(chamber).map_err(raised)
     }
 
+    /// How much longer the fibres of a muscle are than in the undeformed shape.
+    fn muscle_stretch(&self, muscle: &str) -> PyResult<f64> {
+        self.lock()?.view().muscle_stretch(muscle).map_err(raised)
+    }
+
+    /// Magnetic moment (A m^2) of all magnets.
+    fn magnetic_moment<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        Ok(PyArray1::from_vec(py, self.lock()?.view().magnetic_moment()))
+    }
+
     /// Length (m) of a spring.
     fn spring_length(&self, spring: &str) -> PyResult<f64> {
         self.lock()?.view().spring_length(spring).map_err(raised)
@@ -271,6 +281,11 @@ impl Simulation {
     /// Sets a force (N) on each of the nodes.
     fn load(&self, nodes: Nodes, force: Vec<f64>) -> PyResult<()> {
         self.lock()?.load(nodes, force).map_err(raised)
+    }
+
+    /// Sets the magnetic field (T) that acts on magnets.
+    fn set_magnetic_field(&self, field: Vec<f64>) -> PyResult<()> {
+        self.lock()?.magnetic_field(field).map_err(raised)
     }
 
     /// Holds nodes where they are.

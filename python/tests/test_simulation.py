@@ -111,6 +111,29 @@ def test_bad_commands_name_what_there_is():
         beam.control(0.0, 1.0, lambda beam: None)
 
 
+def test_what_acts_within_the_material_is_driven():
+    strip = pliant.Scene(
+        body=dict(
+            mesh=dict(kind="rectangle", size=[0.1, 0.01], nodes=[11, 3], cells="rectangles"),
+            thickness=0.01,
+            plane="stress",
+            material=dict(density=1000.0, young=1e5, poisson=0.3, viscosity=2e3),
+        ),
+        muscle=dict(name="upper", along=[1.0, 0.0], box=[[0.0, 0.005], [0.1, 0.01]]),
+        growth=dict(name="lower", box=[[0.0, 0.0], [0.1, 0.005]]),
+        magnet=dict(remanence=[0.1, 0.0]),
+        phase=[dict(until=0.1, hold=dict(nodes="left"))],
+    ).start()
+    strip.actuate("upper", 2e3)
+    strip.actuate("lower", 0.01)
+    strip.set_magnetic_field([0.0, 1e-3])
+    strip.advance_to(0.1)
+    assert strip.position("right")[1] > 0.006
+    assert strip.muscle_stretch("upper") < 1.0
+    moment = strip.magnetic_moment()
+    assert moment[1] > 0.01 * moment[0] > 0.0
+
+
 def test_one_thread_at_a_time():
     beam = BEAM.start()
 

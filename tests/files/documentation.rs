@@ -32,12 +32,16 @@ fn fingers_of_silicone_do_not_lock() {
 
 #[test]
 fn all_scenes_are_run() {
-    let [first, second, third, fourth, fifth, sixth, seventh, sensors] = blocks("toml")[..] else {
-        panic!("eight blocks")
+    let [first, second, third, fourth, fifth, sixth, seventh, eighth, ninth, tenth, sensors] =
+        blocks("toml")[..]
+    else {
+        panic!("eleven blocks")
     };
     assert_eq!([fourth, fifth, sixth, seventh], [GLUED_ARM, GRIPPER, WHEEL, FINGER]);
+    assert_eq!([eighth, ninth, tenth], [MUSCLES, MAGNETS, GEL]);
     let with_sensors = first.to_owned() + sensors;
-    for text in [&with_sensors, second, third, fourth, fifth, sixth, seventh] {
+    for text in [&with_sensors, second, third, fourth, fifth, sixth, seventh, eighth, ninth, tenth]
+    {
         let file = SceneFile::parse(text, Path::new("scene.toml")).unwrap();
         let motion = file.scene.simulate(&file.settings, &file.output.sampling()).unwrap();
         assert_eq!(motion.last().time, file.scene.end());
@@ -56,6 +60,9 @@ const GLUED_ARM: &str = include_str!("../../scenes/glued-arm.toml");
 const GRIPPER: &str = include_str!("../../scenes/gripper.toml");
 const FINGER: &str = include_str!("../../scenes/tendon-finger.toml");
 const WHEEL: &str = include_str!("../../scenes/wheel-over-stones.toml");
+const MUSCLES: &str = include_str!("../../scenes/muscle-strip.toml");
+const MAGNETS: &str = include_str!("../../scenes/magnetic-strip.toml");
+const GEL: &str = include_str!("../../scenes/swelling-strip.toml");
 const CABLE: &str = include_str!("../../scenes/cable.toml");
 
 /// A cable under the tension T at the distance e from the axis bends a beam as the moment T e does: to the angle T e L/(E I) at its end,

@@ -9,10 +9,11 @@ use serde_json::Value;
 const PAGE: &str = include_str!("../../docs/reference.md");
 
 /// A file of these parts, each of which may be replaced.
-const PARTS: [(&str, &str); 9] = [
+const PARTS: [(&str, &str); 10] = [
     ("top", "title = \"base\"\n"),
     ("[body]", "[body]\nthickness = 0.01\n"),
     ("[[spring]]", "[[spring]]\nname = \"down\"\nends = [1, 3]\n"),
+    ("[[magnet]]", "[[magnet]]\nremanence = [0.1, 0.0]\n"),
     ("[[chamber]]", "[[chamber]]\nname = \"inside\"\nnodes = [1, 2, 13, 12]\n"),
     ("[[gas]]", "[[gas]]\nchamber = \"inside\"\n"),
     ("[[supply]]", "[[supply]]\nname = \"pump\"\npressure = 2e5\n"),
@@ -51,6 +52,7 @@ fn with(example: &str, mesh: &str) -> String {
             "[[gas]]" | "[[supply]]" => ["[[orifice]]", "open"].contains(&key),
             "[[orifice]]" => key == "open",
             "[[spring]]" => key == "actuate",
+            "[[magnet]]" => key == "magnetic_field",
             _ => true,
         };
         text += if is_whole || !is_needed { "" } else { base };
@@ -64,6 +66,9 @@ fn with(example: &str, mesh: &str) -> String {
     }
     if !PARTS.iter().any(|(part, _)| *part == place) {
         text += example; // a table of its own
+    }
+    if key == "[[growth]]" {
+        text = text.replace("[body]\n", "[body]\nplane = \"stress\"\n");
     }
     if key == "[[tie]]" {
         let beside = mesh.replace(" }", ", origin = [0.1, 0.0] }");

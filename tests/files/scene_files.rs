@@ -201,6 +201,9 @@ fn all_scenes_are_run() {
         "cable",
         "glued-arm",
         "tendon-finger",
+        "muscle-strip",
+        "magnetic-strip",
+        "swelling-strip",
         "gripper",
         "wheel-over-stones",
         // where contact is tested

@@ -133,12 +133,19 @@ fn surroundings(scene: &Scene) -> Result<(), Failure> {
         line("gravity", &format!("{gravity:?} m/s^2"))?;
     }
     let springs = scene.springs().iter().map(|spring| spring.name()).collect();
+    let muscles = scene.muscles().iter().map(|muscle| muscle.name()).collect();
+    let growths = scene.growths().iter().map(|growth| growth.name()).collect();
+    let magnets = scene.magnets().iter().map(|magnet| format!("{:?} T", magnet.remanence()));
+    let magnets: Vec<String> = magnets.collect();
     let chambers = scene.chambers().iter().map(|chamber| chamber.name()).collect();
     let orifices = scene.orifices().iter().map(|orifice| orifice.name()).collect();
     let obstacles = scene.obstacles().iter().map(|obstacle| obstacle.name()).collect();
     let touches = scene.touches().iter().map(|touch| touch.name()).collect();
     for (label, names) in [
         ("springs", springs),
+        ("muscles", muscles),
+        ("growths", growths),
+        ("magnets", magnets.iter().map(String::as_str).collect()),
         ("chambers", chambers),
         ("orifices", orifices),
         ("obstacles", obstacles),
@@ -201,6 +208,9 @@ fn acting(phase: &PhaseSummary) -> String {
     let mut words = Vec::new();
     if let Some(gravity) = &phase.gravity {
         words.push(format!("gravity {gravity:?} m/s^2"));
+    }
+    if phase.has_magnetic_field {
+        words.push("magnetic field".into());
     }
     if phase.loaded_nodes > 0 {
         words.push(format!("loads on {} node(s)", phase.loaded_nodes));

@@ -51,12 +51,13 @@ struct Track {
     values: Vec<f64>,
 }
 
-/// What replaces the scene's own signal or load: on a chamber, an orifice, a spring, or some nodes.
+/// What replaces the scene's own signal, load or field: on a chamber, an orifice, a spring, some nodes, or magnets.
 pub(super) enum Replacement {
     Pressure(String, Signal),
     Opening(String, Signal),
     Actuation(String, Signal),
     Load(Selection, Load),
+    Field(VectorSignal),
 }
 
 impl Replacement {
@@ -67,6 +68,7 @@ impl Replacement {
             Self::Opening(orifice, signal) => simulation.open(&orifice, signal),
             Self::Actuation(spring, signal) => simulation.actuate(&spring, signal),
             Self::Load(nodes, load) => simulation.set_load(nodes, load),
+            Self::Field(field) => simulation.set_field(field),
         }
     }
 
@@ -88,6 +90,10 @@ impl Replacement {
             Self::Load(nodes, load) => {
                 phase.set_load(nodes, load);
                 "load"
+            }
+            Self::Field(field) => {
+                phase.set_field(field);
+                "magnetic_field"
             }
         }
     }
@@ -150,35 +156,45 @@ impl Record {
         self.course(scene, &self.tracks[at], t)
     }
 
-    /// What acts because of a track from time `t` (s) on; for a component of a load, with the other
-    /// components.
+    /// What acts because of a track from time `t` (s) on; for a component of a load or a field, with the
+    /// other components.
     fn course(&self, scene: &Scene, track: &Track, t: f64) -> Replacement {
-        let (nodes, kind) = match &track.target {
-            Target::Pressure(chamber) => {
-                return Replacement::Pressure(chamber.clone(), track.signal());
+        match &track.target {
+            Target::Pressure(chamber) => Replacement::Pressure(chamber.clone(), track.signal()),
+            Target::Actuation(spring) => Replacement::Actuation(spring.clone(), track.signal()),
+            Target::Load(nodes, kind, _) => {
+                let of = |axis| Target::Load(nodes.clone(), *kind, axis);
+                let value = self.vector(scene, track.phase, t, of);
+                Replacement::Load(nodes.clone(), Load { kind: *kind, value })
             }
-            Target::Opening(orifice) => {
-                return Replacement::Opening(orifice.clone(), track.signal());
+            Target::Opening(orifice) => Replacement::Opening(orifice.clone(), track.signal()),
+            Target::Field(_) => {
+                Replacement::Field(self.vector(scene, track.phase, t, Target::Field))
             }
-            Target::Actuation(spring) => {
-                return Replacement::Actuation(spring.clone(), track.signal());
-            }
-            Target::Load(nodes, kind, _) => (nodes, *kind),
-        };
+        }
+    }
+
+    /// The vector whose components are the targets `of` them in a phase, as far as they were moved, from time `t` (s) on.
+    fn vector(
+        &self,
+        scene: &Scene,
+        phase: usize,
+        t: f64,
+        of: impl Fn(usize) -> Target,
+    ) -> VectorSignal {
         let component = |axis| {
-            let target = Target::Load(nodes.clone(), kind, axis);
-            let known = |other: &&Track| (other.phase, &other.target) == (track.phase, &target);
+            let target = of(axis);
+            let known = |other: &&Track| (other.phase, &other.target) == (phase, &target);
             match self.tracks.iter().find(known) {
                 Some(moved) => moved.signal(),
-                None => Track::of(scene, track.phase, target, t).signal(),
+                None => Track::of(scene, phase, target, t).signal(),
             }
         };
         let components: Vec<Signal> = (0..scene.body().dimension()).map(component).collect();
         let times = ascending(components.iter().flat_map(Signal::breaks));
         let force = |t: &f64| components.iter().map(|signal| signal.at(*t)).collect();
         let forces = times.iter().map(force).collect();
-        let value = VectorSignal::TimeTable(TimeTable::new(times, forces));
-        Replacement::Load(nodes.clone(), Load { kind, value })
+        VectorSignal::TimeTable(TimeTable::new(times, forces))
     }
 }
 

@@ -1,4 +1,4 @@
-//! What sliders set: pressures of chambers, openings of orifices, forces of actuators, cables, loads.
+//! What sliders set: pressures of chambers, openings of orifices, forces of actuators, cables, stresses of muscles, loads, magnetic fields.
 
 use serde_json::{Value, json};
 
@@ -6,7 +6,7 @@ use crate::dynamics::error::Error;
 use crate::dynamics::simulate::Simulation;
 use crate::elements::body::{Body, Part};
 use crate::elements::mesh::Selection;
-use crate::scene::forces::{Chamber, Signal};
+use crate::scene::forces::{Chamber, Signal, VectorSignal};
 use crate::scene::timeline::{Load, LoadKind, Phase, Scene};
 
 /// What a slider sets.
@@ -16,8 +16,11 @@ pub(super) enum Target {
     Pressure(String),
     /// How far an orifice is open.
     Opening(String),
-    /// The force of the actuator of a spring, or the tension of a cable (N), or the length that a winch has drawn in (m).
+    /// The force of the actuator of a spring, or the tension of a cable (N), the length that a winch has drawn in (m), the
+    /// stress of a muscle (Pa), or the strain of a growth (1).
     Actuation(String),
+    /// A component, counted from 0, of the magnetic field (T).
+    Field(usize),
     /// A component, counted from 0, of the load of a kind on some nodes (N or N/m^2).
     Load(Selection, LoadKind, usize),
 }
@@ -36,6 +39,10 @@ pub(super) struct Slider {
 /// Pressure (in Young's moduli) and strain that give a useful range of a slider where the scene has no
 /// values.
 const USUAL: f64 = 0.05;
+/// A usual magnetic field (T).
+const USUAL_FIELD: f64 = 0.05;
+/// Times of a phase at which its values are looked at.
+const LOOKS: u32 = 20;
 /// Most node numbers in the name of a slider.
 const FEW: usize = 6;
 
@@ -66,6 +73,11 @@ impl Slider {
             let range = [target.largest_in(scene), usual];
             Self::new(target, what.into(), range, unit)
         });
+        let muscles = scene.muscles().iter().map(|muscle| {
+            let target = Target::Actuation(muscle.name().to_owned());
+            let range = [target.largest_in(scene), pressure];
+            Self::new(target, "stress".into(), range, "Pa")
+        });
         let mut loaded: Vec<&Selection> = Vec::new();
         for (nodes, _) in scene.phases().iter().flat_map(|phase| &phase.loads) {
             if !loaded.contains(&nodes) {
@@ -74,7 +86,26 @@ impl Slider {
         }
         let loads =
             loaded.into_iter().flat_map(|nodes| Self::of_load(scene, nodes, [force, pressure]));
-        chambers.chain(orifices).chain(springs).chain(loads).collect()
+        let growths = scene.growths().iter().map(|growth| {
+            let target = Target::Actuation(growth.name().to_owned());
+            let range = [target.largest_in(scene), USUAL];
+            Self::new(target, "growth".into(), range, "1")
+        });
+        let axes = if scene.magnets().is_empty() { 0 } else { scene.body().dimension() };
+        // all components have one range: a field in another direction may be as strong
+        let largest = (0..axes).map(|axis| Target::Field(axis).largest_in(scene));
+        let largest = largest.fold(0.0, f64::max);
+        let fields = (0..axes).zip(["x", "y", "z"]).map(|(axis, name)| {
+            Self::new(Target::Field(axis), name.into(), [largest, USUAL_FIELD], "T")
+        });
+        chambers
+            .chain(orifices)
+            .chain(springs)
+            .chain(muscles)
+            .chain(growths)
+            .chain(fields)
+            .chain(loads)
+            .collect()
     }
 
     /// One slider per component of the loads on a selection. The loads are of the kind that the scene always
@@ -115,6 +146,7 @@ impl Slider {
             Target::Pressure(chamber) => simulation.view().pressure(chamber)?,
             Target::Opening(orifice) => simulation.view().opening(orifice)?,
             Target::Actuation(spring) => simulation.view().actuation(spring)?,
+            Target::Field(axis) => simulation.view().magnetic_field()[*axis],
             Target::Load(nodes, kind, axis) => simulation.view().load_of(nodes, *kind)?[*axis],
         })
     }
@@ -124,6 +156,7 @@ impl Slider {
             Target::Pressure(name) | Target::Opening(name) | Target::Actuation(name) => {
                 name.clone()
             }
+            Target::Field(_) => "magnetic field".into(),
             Target::Load(nodes, ..) => name_of(nodes),
         };
         json!({
@@ -141,6 +174,8 @@ impl Target {
             }
             // an orifice of which nothing is said is open
             Self::Opening(_) if self.signals_in(phase).next().is_none() => 1.0,
+            Self::Field(axis) => field_in(phase)
+                .map_or(0.0, |field| field.components(t, scene.body().dimension())[*axis]),
             _ => self.signals_in(phase).map(|signal| signal.at(t)).sum(),
         }
     }
@@ -149,11 +184,12 @@ impl Target {
     pub(super) fn breaks_in(&self, phase: &Phase) -> Vec<f64> {
         match self {
             Self::Load(nodes, ..) => ascending(loads_in(phase, nodes).flat_map(breaks)),
+            Self::Field(_) => field_in(phase).map_or_else(Vec::new, |field| field.breaks().into()),
             _ => ascending(self.signals_in(phase).flat_map(Signal::breaks)),
         }
     }
 
-    /// The signals of a chamber, an orifice or a spring in `phase`; the sum of them acts.
+    /// The signals of a chamber, an orifice, a spring or a muscle in `phase`; the sum of them acts.
     fn signals_in<'a>(&'a self, phase: &'a Phase) -> Box<dyn Iterator<Item = &'a Signal> + 'a> {
         match self {
             Self::Pressure(name) => Box::new(
@@ -167,14 +203,18 @@ impl Target {
                     springs.iter().filter(move |other| *other == name).map(move |_| signal)
                 }))
             }
-            Self::Load(..) => Box::new(std::iter::empty()),
+            Self::Load(..) | Self::Field(_) => Box::new(std::iter::empty()),
         }
     }
 
     /// The largest value that the scene itself has for it.
     fn largest_in(&self, scene: &Scene) -> f64 {
-        let phases = scene.phases().iter().flat_map(|phase| {
-            let times = self.breaks_in(phase).into_iter().chain([phase.end()]);
+        let starts = [0.0].into_iter().chain(scene.phases().iter().map(Phase::end));
+        let phases = scene.phases().iter().zip(starts).flat_map(|(phase, start)| {
+            // formulas have no breaks
+            let part = |look| f64::from(look) / f64::from(LOOKS);
+            let looks = (1..LOOKS).map(move |look| start + part(look) * (phase.end() - start));
+            let times = self.breaks_in(phase).into_iter().chain(looks).chain([phase.end()]);
             times.map(move |t| self.value_in(scene, phase, t).abs())
         });
         phases.fold(0.0, f64::max)
@@ -195,6 +235,11 @@ fn usual(body: &Body) -> [f64; 2] {
 /// The loads that `phase` has for a selection; the sum of them acts.
 fn loads_in<'a>(phase: &'a Phase, nodes: &'a Selection) -> impl Iterator<Item = &'a Load> {
     phase.loads.iter().filter(move |(other, _)| other == nodes).map(|(_, load)| load)
+}
+
+/// The magnetic field that `phase` has everywhere.
+fn field_in(phase: &Phase) -> Option<&VectorSignal> {
+    phase.magnetic_field.as_ref().map(|field| &field.field)
 }
 
 fn breaks(load: &Load) -> &[f64] {

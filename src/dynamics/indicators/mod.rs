@@ -6,6 +6,7 @@
 //! | [`units`]: size and mass of the body, speed of waves in it | 10 m, 10 t, 0.1 to 10,000 m/s |
 //! | [`units`]: density, modulus (of rubber) | 5 to 25,000 kg/m^3, 2e12 Pa (1e8 Pa) |
 //! | [`units`]: thickness over size; strain of a column under its own weight | 20; 100 % |
+//! | [`units`]: remanence of magnets, magnetic field | 2 T, 10 T |
 //! | [`mesh`]: Poisson's ratio of linear cells | 0.45 |
 //! | [`mesh`]: pieces that nothing joins | one piece |
 //! | [`overlap`]: how deep the body overlaps itself, as drawn and as it moves | a twentieth of a cell |
@@ -97,7 +98,8 @@ impl Scene {
             named(part.name, body, measured.chain(mesh::locking(part.body)))
         };
         let each = body.parts().flat_map(of_body);
-        each.chain(mesh::pieces(self))
+        each.chain(units::of_scene(self))
+            .chain(mesh::pieces(self))
             .chain(overlap::drawn(body))
             .chain(touch::begun_inside(self))
             .collect()

@@ -5,7 +5,7 @@ use crate::base::vector::{dot, norm};
 use crate::dynamics::report::{Indicator, Verdict};
 use crate::elements::body::Body;
 use crate::elements::material::{Law, Material, Plane};
-use crate::scene::timeline::Scene;
+use crate::scene::timeline::{Phase, Scene};
 
 /// Largest size (m) and mass (kg) of a soft body.
 const LARGEST: f64 = 10.0;
@@ -25,12 +25,56 @@ const PER_METRE: f64 = 1.0;
 /// Strain of a column as high as the body under its own weight.
 const HEAVIEST_STRAIN: f64 = 1.0;
 
-/// The indicators; those that the scene declares as [meant](Scene::unusual) count as within their limits.
+/// Largest remanence (T): magnets of neodymium have up to 1.5 T. Largest magnetic field (T): superconducting coils have more.
+const STRONGEST: f64 = 2.0;
+const STRONGEST_FIELD: f64 = 10.0;
+/// Times of a phase at which fields are looked at.
+const LOOKS: u32 = 20;
+
+/// The indicators of the whole scene.
+pub(super) fn of_scene(scene: &Scene) -> Vec<Indicator> {
+    if scene.magnets().is_empty() {
+        return Vec::new();
+    }
+    let largest = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, f64::max);
+    let remanence = largest(&mut scene.magnets().iter().map(|magnet| norm(magnet.remanence())));
+    let starts = [0.0].into_iter().chain(scene.phases().iter().map(Phase::end));
+    let field = largest(&mut scene.phases().iter().zip(starts).flat_map(|(phase, start)| {
+        let part = move |look| start + (phase.end() - start) * f64::from(look) / f64::from(LOOKS);
+        phase.magnetic_field.iter().flat_map(move |field| {
+            let times = (0..=LOOKS).map(part).chain(field.field.breaks().iter().copied());
+            times.map(|t| norm(&field.field.components(t, scene.body().dimension())))
+        })
+    }));
+    let measured = [
+        ("remanence", remanence, STRONGEST, "a remanence", "magnets of neodymium have 1.3 T"),
+        (
+            "magnetic-field",
+            field,
+            STRONGEST_FIELD,
+            "a magnetic field",
+            "that of the earth is 5e-5 T, at a strong magnet there is 1 T",
+        ),
+    ];
+    let all = measured.map(|(name, value, most, what, known)| {
+        let said = format!("{what} is {} T (limit: {most} T)", told(value));
+        let beyond = || format!("{said}: is it in mT (0.001 T) or gauss (0.0001 T)? {known}");
+        Indicator::trusted(name, (value, "T"), [0.0, most], || said.clone(), beyond)
+    });
+    as_meant(scene, all.into())
+}
+
+/// The indicators of a body; those that the scene declares as [meant](Scene::unusual) count as within their limits.
 pub(super) fn units(scene: &Scene, body: &Body) -> Vec<Indicator> {
     let mut all = extent(body);
     all.extend(materials(body));
     all.extend(thickness(body));
     all.extend(weight(scene, body));
+    as_meant(scene, all)
+}
+
+/// Those that the scene declares as [meant](Scene::unusual) count as within their limits.
+fn as_meant(scene: &Scene, mut all: Vec<Indicator>) -> Vec<Indicator> {
     for indicator in &mut all {
         let is_meant = scene.unusual_quantities().iter().any(|name| name == indicator.name);
         if is_meant && indicator.is_beyond() {
@@ -169,15 +213,18 @@ fn weight(scene: &Scene, body: &Body) -> Option<Indicator> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::timeline::{Phase, UNITS};
+    use crate::scene::forces::Magnet;
+    use crate::scene::timeline::UNITS;
     use crate::studies::samples::square_jump;
 
     /// The names that a scene may call unusual are those of the indicators here.
     #[test]
     fn what_may_be_unusual_is_what_is_measured() {
         let scene = square_jump(4).unwrap().gravity([0.0, -9.8]).phase(Phase::until(9.0));
-        let mut names: Vec<&str> =
-            units(&scene, scene.body()).iter().map(|indicator| indicator.name).collect();
+        let scene = scene.magnet(Magnet::new([0.1, 0.0]));
+        let mut all = units(&scene, scene.body());
+        all.extend(of_scene(&scene));
+        let mut names: Vec<&str> = all.iter().map(|indicator| indicator.name).collect();
         names.sort_unstable();
         let mut known = UNITS.to_vec();
         known.sort_unstable();

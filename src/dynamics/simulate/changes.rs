@@ -25,8 +25,8 @@ use crate::scene::timeline::Phase;
 pub(super) enum Change {
     /// Forces that store no energy.
     Loads,
-    /// Which obstacles act.
-    Contacts,
+    /// Forces that store energy: which obstacles act, how far cells have grown.
+    Stores,
     /// What is held or moved.
     Constraints,
 }
@@ -142,7 +142,7 @@ impl Run {
         let mut system = self.rest()?;
         let constrains = change == Change::Constraints;
         let before = match change {
-            Change::Contacts => energy(&system, self.time, &self.state).balance(),
+            Change::Stores => energy(&system, self.time, &self.state).balance(),
             _ => 0.0,
         };
         if constrains || !system.change_forces(forces) {
@@ -153,7 +153,7 @@ impl Run {
                     return Err(error.into());
                 }
             }
-        } else if change == Change::Contacts {
+        } else if change == Change::Stores {
             self.supply(energy(&system, self.time, &self.state).balance() - before);
         }
         if constrains {

@@ -57,13 +57,20 @@ impl Simulation {
     }
 
     /// Sets the force (N) of the actuator of a spring, in place of the present one; a positive one extends
-    /// the spring. Of a [cable](crate::Spring::cable) it is the tension, and of one on a winch the length (m) that is drawn in.
+    /// the spring. Of a [cable](crate::Spring::cable) it is the tension, and of one on a winch the length (m) that is drawn in; of a
+    /// [muscle](crate::Muscle) it is the stress (Pa) by which it pulls, of a [growth](crate::Growth) the strain (1).
     ///
     /// # Errors
-    /// A name that no spring has; numbers that are not finite.
+    /// A name that no spring, no muscle and no growth has; numbers that are not finite.
     pub fn actuate(&mut self, spring: &str, force: impl Into<Signal>) -> Result<(), Error> {
         let (force, input) = (force.into(), "actuation of spring");
-        self.scene().spring_number(spring, input)?;
+        self.scene().actuator_number(spring, input)?;
+        if self.scene().growths().iter().any(|growth| growth.name() == spring) {
+            return self.command(Change::Stores, |phase, _| {
+                phase.set_actuation(spring, force);
+                Ok(())
+            });
+        }
         let live = |phase: &Phase| phase.live_actuation(spring).cloned();
         if self.set_live(live, input, force.value().as_slice())? {
             return Ok(());
@@ -119,6 +126,20 @@ impl Simulation {
         self.set_load(nodes.into(), Load::each(VectorSignal::TimeTable(table)))
     }
 
+    /// Sets the magnetic field (T) that acts on magnets, one component per dimension, in place of the present one; a gradient of it stays.
+    ///
+    /// # Errors
+    /// A scene without magnets, a wrong number of components, numbers that are not finite.
+    pub fn magnetic_field(&mut self, field: impl Into<Vec<f64>>) -> Result<(), Error> {
+        let (field, input) = (field.into(), "magnetic field");
+        let is_whole = field.len() == self.scene().body().dimension();
+        let live = |phase: &Phase| phase.live_field().cloned();
+        if is_whole && self.set_live(live, input, &field)? {
+            return Ok(());
+        }
+        self.set_field(VectorSignal::Live(Live::new(&field)))
+    }
+
     /// Holds nodes, in all components, where they are.
     ///
     /// # Errors
@@ -172,7 +193,7 @@ impl Simulation {
     /// # Errors
     /// A name that no obstacle has.
     pub fn contact(&mut self, obstacle: &str, acts: bool) -> Result<(), Error> {
-        self.command(Change::Contacts, |phase, scene| {
+        self.command(Change::Stores, |phase, scene| {
             scene.obstacle_number(obstacle, "contact with obstacle")?;
             phase.set_contact(obstacle, acts, scene.obstacles());
             Ok(())
@@ -191,11 +212,19 @@ impl Simulation {
         velocity: impl Into<Vec<f64>>,
     ) -> Result<(), Error> {
         let (velocity, time) = (velocity.into(), self.time);
-        self.command(Change::Contacts, |phase, scene| {
+        self.command(Change::Stores, |phase, scene| {
             let number = scene.obstacle_number(obstacle, "velocity of obstacle")?;
             let obstacle = &scene.obstacles()[number];
             phase.redirect(obstacle, time, velocity);
             phase.moving(obstacle).validated(scene.body().dimension()).map(|_| ())
+        })
+    }
+
+    /// As [`magnetic_field`](Self::magnetic_field), with a field of any kind.
+    pub(crate) fn set_field(&mut self, field: VectorSignal) -> Result<(), Error> {
+        self.command(Change::Loads, |phase, _| {
+            phase.set_field(field);
+            Ok(())
         })
     }
 

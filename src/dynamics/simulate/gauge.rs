@@ -119,6 +119,14 @@ impl Reading {
                 scene.orifice_number(orifice, "orifice")?;
                 number(orifice, |view, orifice| view.gas_flow(orifice))
             }
+            What::MuscleStress(muscle) => {
+                scene.muscle_number(muscle, "muscle")?;
+                number(muscle, |view, muscle| view.actuation(muscle))
+            }
+            What::MuscleStretch(muscle) => {
+                scene.muscle_number(muscle, "muscle")?;
+                number(muscle, |view, muscle| view.muscle_stretch(muscle))
+            }
             What::Pressure(chamber) => {
                 scene.chamber_number(chamber, "chamber")?;
                 number(chamber, |view, chamber| view.pressure(chamber))
@@ -126,6 +134,16 @@ impl Reading {
             What::ChamberVolume(chamber) => {
                 scene.chamber_number(chamber, "chamber")?;
                 number(chamber, |view, chamber| view.chamber_volume(chamber))
+            }
+            What::MagneticMoment => {
+                if scene.magnets().is_empty() {
+                    let help = "the scene has no magnets";
+                    return Err(InputError::new("sensor", "magnetic moment", help));
+                }
+                Box::new(|view, _| {
+                    let moment = view.magnetic_moment();
+                    Value::Vector(std::array::from_fn(|i| moment.get(i).copied().unwrap_or(0.0)))
+                })
             }
             What::Stress(place) => field(scene, place, |field| field.stress)?,
             What::Strain(place) => field(scene, place, |field| field.strain)?,
@@ -200,7 +218,7 @@ fn part(body: &Body, first_node: Option<usize>) -> Part<'_> {
     first_node.map_or_else(|| body.whole(), |node| body.part_of(node))
 }
 
-/// The gauge of a number of the spring or chamber `name`.
+/// The gauge of a number of the spring, muscle or chamber `name`.
 fn number(name: &str, read: fn(&View, &str) -> Result<f64, InputError>) -> Gauge {
     let name = name.to_owned();
     Box::new(move |view, _| Value::Number(read(view, &name).unwrap_or(f64::NAN)))
@@ -249,7 +267,7 @@ fn field(
     };
     let probe = body.probe(&weights);
     Ok(Box::new(move |view, _| {
-        Value::Tensor(tensor(&view.body().probed(&probe, view.displacements())))
+        Value::Tensor(tensor(&view.body().probed(&probe, view.displacements(), &view.grown())))
     }))
 }
 

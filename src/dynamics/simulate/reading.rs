@@ -33,6 +33,9 @@ pub(super) enum What {
     Gap(String),
     SpringPull(String),
     SpringLength(String),
+    MuscleStress(String),
+    MuscleStretch(String),
+    MagneticMoment,
     TensionAtEnd(String),
     Pressure(String),
     ChamberVolume(String),
@@ -256,6 +259,22 @@ impl Reading {
         What::SpringLength(spring.into()).into()
     }
 
+    /// Stress by which a muscle pulls (Pa).
+    pub fn muscle_stress(muscle: impl Into<String>) -> Self {
+        What::MuscleStress(muscle.into()).into()
+    }
+
+    /// How much longer the fibres of a muscle are than in the undeformed shape: see
+    /// [`View::muscle_stretch`](crate::View::muscle_stretch).
+    pub fn muscle_stretch(muscle: impl Into<String>) -> Self {
+        What::MuscleStretch(muscle.into()).into()
+    }
+
+    /// Magnetic moment of all magnets (A m^2).
+    pub fn magnetic_moment() -> Self {
+        What::MagneticMoment.into()
+    }
+
     /// Pressure in a chamber (Pa): of gas what it exceeds the atmosphere by.
     pub fn pressure(chamber: impl Into<String>) -> Self {
         What::Pressure(chamber.into()).into()
@@ -363,6 +382,7 @@ impl Reading {
             What::SpringLength(_) | What::Distance(_) => "m",
             What::Velocity(_) => "m/s",
             What::Momentum => "kg m/s",
+            What::MagneticMoment => "A m^2",
             What::ConstraintForce(_) | What::Contact(OfContact::Force, ..) => "N",
             What::SpringPull(_) | What::TensionAtEnd(_) => "N",
             What::Contact(OfContact::Area, ..) => "m^2",
@@ -370,10 +390,11 @@ impl Reading {
             What::Gap(_) => "m",
             What::ConstraintMoment(..) => "N m",
             What::Pressure(_) | What::AbsolutePressure(_) | What::Stress(_) => "Pa",
+            What::MuscleStress(_) => "Pa",
             What::GasAmount(_) => "kg",
             What::GasFlow(_) => "kg/s",
             What::ChamberVolume(_) => "m^3",
-            What::Strain(_) => "1",
+            What::Strain(_) | What::MuscleStretch(_) => "1",
             What::Angle(_) | What::Rotation if self.in_degrees => DEGREES,
             What::Angle(_) | What::Rotation => "rad",
         }
@@ -424,7 +445,9 @@ impl Reading {
             (What::Strain(_), _) => (&[XX, YY, ZZ, XY, YZ, XZ], None),
             (What::Position(_) | What::Displacement(_) | What::Velocity(_), _)
             | (What::ConstraintForce(_) | What::Contact(OfContact::Force, ..), _)
-            | (What::CentreOfMass | What::Momentum, _) => (&[X, Y, Z][..dimension], Some(Norm)),
+            | (What::CentreOfMass | What::Momentum | What::MagneticMoment, _) => {
+                (&[X, Y, Z][..dimension], Some(Norm))
+            }
             (What::ConstraintMoment(_, Lever { axis: None, .. }), 3) => (&[X, Y, Z], Some(Norm)),
             _ => (&[], None),
         };

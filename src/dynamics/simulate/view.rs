@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use crate::base::input::InputError;
 use crate::dynamics::state::State;
-use crate::elements::body::{Body, CellField};
+use crate::elements::body::{Body, CellField, Grown, Strands};
 use crate::elements::force::{Force, Forces, NodalForces};
 use crate::elements::mesh::Selection;
 use crate::scene::forces::{ChamberForce, Contact, Filled, NodalContact, Signal, SpringGauge};
@@ -20,11 +20,14 @@ pub struct View<'a> {
     pub(super) state: State<'a>,
 }
 
-/// The forces by which chambers and springs are measured, in the order of the scene.
+/// The forces by which chambers, springs and muscles are measured, in the order of the scene.
 pub(super) struct Gauges {
     chambers: Vec<Arc<ChamberForce>>,
     springs: Vec<SpringGauge>,
     gases: Vec<Filled>,
+    muscles: Vec<Strands>,
+    /// By which the positions of nodes make the magnetic moment (A m); empty without magnets.
+    poles: Vec<f64>,
 }
 
 impl Gauges {
@@ -33,10 +36,13 @@ impl Gauges {
         let chambers = scene.chambers().iter();
         let chambers = chambers.map(|chamber| chamber.force(body, Vec::new()).map(Arc::new));
         let springs = scene.springs().iter().map(|spring| spring.gauge(body.mesh()));
+        let muscles = scene.muscles().iter().map(|muscle| muscle.strands(body));
         Ok(Self {
             chambers: chambers.collect::<Result<_, _>>()?,
             springs: springs.collect::<Result<_, _>>()?,
             gases: scene.filled()?,
+            muscles: muscles.collect::<Result<_, _>>()?,
+            poles: scene.magnetization()?.map_or_else(Vec::new, |magnets| magnets.poles),
         })
     }
 
@@ -191,12 +197,13 @@ impl<'a> View<'a> {
     }
 
     /// Force of the actuator of a spring (N), above 0 where it extends the spring; of a cable its tension, of a winch the
-    /// length (m) that it has drawn in.
+    /// length (m) that it has drawn in, of a muscle its stress (Pa), of a
+    /// growth its strain (1).
     ///
     /// # Errors
-    /// A name that no spring has.
+    /// A name that no spring, no muscle and no growth has.
     pub fn actuation(&self, spring: &str) -> Result<f64, InputError> {
-        self.scene.spring_number(spring, "spring")?;
+        self.scene.actuator_number(spring, "spring")?;
         Ok(self.actuation_with_rate(spring)[0])
     }
 
@@ -317,9 +324,46 @@ impl<'a> View<'a> {
         Ok(self.gauges.springs[number].length(self.state.u))
     }
 
+    /// How much longer the fibres of a muscle are than in the undeformed shape, as a factor (1): the mean over their
+    /// volume.
+    ///
+    /// # Errors
+    /// A name that no muscle has.
+    pub fn muscle_stretch(&self, muscle: &str) -> Result<f64, InputError> {
+        let number = self.scene.muscle_number(muscle, "muscle")?;
+        Ok(self.gauges.muscles[number].mean_stretch(self.state.u))
+    }
+
+    /// Magnetic moment (A m^2) of all magnets, one component per dimension.
+    pub fn magnetic_moment(&self) -> Vec<f64> {
+        let d = self.body().dimension();
+        let mut moment = vec![0.0; d];
+        let places =
+            self.body().mesh().positions().chunks_exact(d).zip(self.state.u.chunks_exact(d));
+        for ((x, u), pole) in places.zip(&self.gauges.poles) {
+            for (axis, moment) in moment.iter_mut().enumerate() {
+                *moment += pole * (x[axis] + u[axis]);
+            }
+        }
+        moment
+    }
+
+    /// The uniform part of the magnetic field (T) that acts on magnets, one component per dimension.
+    pub fn magnetic_field(&self) -> Vec<f64> {
+        let d = self.body().dimension();
+        let field = self.phase.magnetic_field.as_ref();
+        field.map_or_else(|| vec![0.0; d], |field| field.field.components(self.time, d))
+    }
+
     /// Strain, stress and strain energy density of each cell.
     pub fn cell_fields(&self) -> Vec<CellField> {
-        self.body().cell_fields(self.state.u)
+        self.body().cell_fields_of(self.state.u, &self.grown())
+    }
+
+    /// The cells that have grown, and to how many times their size.
+    pub(super) fn grown(&self) -> Vec<Grown> {
+        // errors were found when the phase began
+        self.scene.grown(self.phase, self.time).unwrap_or_default()
     }
 
     fn mean(&self, selection: &Selection, x: &[f64]) -> Result<Vec<f64>, InputError> {

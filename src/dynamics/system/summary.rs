@@ -21,7 +21,9 @@ pub struct PhaseSummary {
     pub constraints: usize,
     /// Number of nodes under loads and pressures on faces, counted once for each of them.
     pub loaded_nodes: usize,
-    /// Names of the springs that are actuated.
+    /// Whether a magnetic field acts.
+    pub has_magnetic_field: bool,
+    /// Names of the springs, muscles and growths that are actuated.
     pub actuated: Vec<String>,
     /// Names of the chambers that are under pressure.
     pub pressurized: Vec<String>,
@@ -68,6 +70,7 @@ impl Scene {
             gravity: gravity.map(Into::into),
             constraints: rows.len(),
             loaded_nodes,
+            has_magnetic_field: phase.magnetic_field.is_some(),
             actuated: actuated.cloned().collect(),
             pressurized: pressurized.cloned().collect(),
             obstacles: obstacles.map(str::to_owned).collect(),

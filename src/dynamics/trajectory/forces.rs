@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use super::{Sample, Trajectory};
 use crate::base::input::InputError;
+use crate::elements::body::{CellField, Grown, NodalField};
 use crate::elements::force::{Force, NodalForces};
 use crate::elements::mesh::Selection;
 use crate::integrators::ode::Failure;
@@ -51,6 +52,27 @@ impl Trajectory {
         let obstacles = self.scene.contacts(self.phase_of(sample)?)?;
         let nodal = self.contact()?.read(&obstacles, sample.time, [&sample.u, &sample.v]);
         nodal.map_err(|failure| refused(sample, failure))
+    }
+
+    /// Strain, stress and strain energy density of each cell in a `sample`: those of [`Body::cell_fields`], where cells have
+    /// [grown](crate::Growth) with the stress and the energy of what is left.
+    ///
+    /// # Errors
+    /// A sample of another scene.
+    pub fn cell_fields(&self, sample: &Sample) -> Result<Vec<CellField>, InputError> {
+        Ok(self.body().cell_fields_of(&sample.u, &self.grown(sample)?))
+    }
+
+    /// Strain and stress at each node in a `sample`, likewise: see [`Body::nodal_fields`].
+    ///
+    /// # Errors
+    /// As [`cell_fields`](Self::cell_fields).
+    pub fn nodal_fields(&self, sample: &Sample) -> Result<Vec<NodalField>, InputError> {
+        Ok(self.body().nodal_fields_of(&sample.u, &self.grown(sample)?))
+    }
+
+    fn grown(&self, sample: &Sample) -> Result<Vec<Grown>, InputError> {
+        self.scene.grown(self.phase_of(sample)?, sample.time)
     }
 
     /// The forces of bodies that touch.

@@ -309,7 +309,12 @@ impl Body {
 
     /// Calls `see` with the number of each node of a cell, its number among the nodes of the cell, and the
     /// tensors there.
-    fn each_node(&self, u: &[f64], cell: usize, see: &mut dyn FnMut(usize, usize, &Tensors)) {
+    pub(super) fn each_node(
+        &self,
+        u: &[f64],
+        cell: usize,
+        see: &mut dyn FnMut(usize, usize, &Tensors),
+    ) {
         let Continuum { elements, regions, cells, .. } = self.continuum_of(cell);
         elements.each_node(regions, u, cell - cells.start, see);
     }
@@ -342,11 +347,6 @@ impl Body {
     /// A probe that reads the sum of the fields at nodes (counted from 0), each times its weight.
     pub(crate) fn probe(&self, weights: &[(usize, f64)]) -> Probe {
         Probe::new(&self.mesh, &self.cell_volumes(), weights)
-    }
-
-    /// What `probe` reads under the displacements `u` (m).
-    pub(crate) fn probed(&self, probe: &Probe, u: &[f64]) -> NodalField {
-        probe.read(|cell, see| self.each_node(u, cell, see))
     }
 
     /// Natural volume of each cell (m^3).

@@ -9,6 +9,7 @@ use super::fibres::Reinforced;
 use super::fields::Fields;
 use super::forces::Forces;
 use super::inertia::Masses;
+use super::magnets::Magnetized;
 use super::recovery::Recovery;
 use super::tangents::Tangents;
 use crate::base::input::InputError;
@@ -18,7 +19,7 @@ use crate::elements::mesh::Mesh;
 
 /// All elements of a body.
 pub(super) trait Elements:
-    Masses + Forces + Branched + Reinforced + Tangents + Fields + Recovery + Send + Sync
+    Masses + Forces + Branched + Reinforced + Magnetized + Tangents + Fields + Recovery + Send + Sync
 {
     /// The same on the nodes of several bodies.
     fn among_others(&self, offset: Offset) -> Arc<dyn Elements>;

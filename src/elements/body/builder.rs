@@ -104,10 +104,7 @@ impl BodyBuilder {
     pub(crate) fn on(mut self, finer: &Finer) -> Result<Self, InputError> {
         let (mesh, recipe) = &mut self.bodies[0];
         for (cells, _) in &mut recipe.regions {
-            if let CellSelection::Numbers(_) = cells {
-                let children = finer.children_of(&cells.cells(mesh)?);
-                *cells = CellSelection::Numbers(children.iter().map(|cell| cell + 1).collect());
-            }
+            *cells = cells.on(mesh, finer)?;
         }
         *mesh = finer.mesh.clone();
         Ok(self)

@@ -41,6 +41,9 @@ pub(super) trait Strings: Send + Sync {
 
     fn energy(&self, law: &Fibre, u: &[f64]) -> f64;
 
+    /// Their natural volume (m^3): that of their cells.
+    fn volume(&self) -> f64;
+
     /// The same on the nodes of several bodies.
     fn among_others(&self, offset: Offset) -> Box<dyn Strings>;
 }
@@ -117,6 +120,11 @@ impl<const N: usize, const D: usize, const Q: usize> Strings for ElementsOf<N, 1
 
     fn energy(&self, law: &Fibre, u: &[f64]) -> f64 {
         self.add_energy(0..self.nodes.len(), law, u, 0.0)
+    }
+
+    fn volume(&self) -> f64 {
+        let points = (0..self.nodes.len()).flat_map(|cell| self.points(cell));
+        points.map(|point| point.volume).sum()
     }
 
     fn among_others(&self, offset: Offset) -> Box<dyn Strings> {

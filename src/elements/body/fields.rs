@@ -249,6 +249,11 @@ impl Tensors {
         self.stress += other.stress * share;
     }
 
+    /// This strain with the stress of `other`.
+    pub(super) fn stressed_as(&self, other: &Self) -> Self {
+        Self { stress: other.stress, ..*self }
+    }
+
     /// Strain and stress: this sum divided by `weight`.
     fn over(&self, weight: f64) -> [[[f64; 3]; 3]; 2] {
         let tensor = |sum: Matrix3<f64>| ((sum + sum.transpose()) / (2.0 * weight)).into();

@@ -15,8 +15,11 @@ mod fibres;
 mod fields;
 mod forces;
 mod gather;
+mod growth;
 mod inertia;
 mod joined;
+mod magnetization;
+mod magnets;
 mod masses;
 mod partition;
 mod polynomial;
@@ -27,6 +30,7 @@ mod regions;
 mod reinforcement;
 mod relaxing;
 mod rigid;
+mod strands;
 mod tangents;
 #[cfg(test)]
 mod tests;
@@ -38,11 +42,14 @@ pub(crate) use elastic::LinearByCells;
 
 pub(crate) use fields::von_mises;
 pub use fields::{CellField, NodalField};
+pub(crate) use growth::{Growing, Grown};
 pub use inertia::Inertia;
 pub use joined::Part;
+pub(crate) use magnets::Magnets;
 pub use polynomial::{Coefficients, GreenPolynomial};
 pub use regions::CellSelection;
 pub(crate) use relaxing::Branches;
 pub(crate) use rigid::RigidPieces;
+pub(crate) use strands::Strands;
 
 pub use crate::elements::material::{Strain, Viscosity};

@@ -5,6 +5,7 @@ use std::fmt;
 use std::ops::Range;
 
 use crate::base::input::InputError;
+use crate::elements::basis::Finer;
 use crate::elements::material::{
     Elastic, Hooke, Hookean, Lame, Material, ObjectiveViscosity, Plane, Relaxing, Strain, Substance,
 };
@@ -48,6 +49,16 @@ impl CellSelection {
     /// All cells whose centroid lies in the closed box between `min` and `max` (m).
     pub fn inside(min: impl Into<Vec<f64>>, max: impl Into<Vec<f64>>) -> Self {
         Self::Box { min: min.into(), max: max.into() }
+    }
+
+    /// The same cells on the mesh `finer` than `mesh`, by number if they were given by it.
+    ///
+    /// # Errors
+    /// As [`cells`](Self::cells).
+    pub(crate) fn on(&self, mesh: &Mesh, finer: &Finer) -> Result<Self, InputError> {
+        let Self::Numbers(_) = self else { return Ok(self.clone()) };
+        let children = finer.children_of(&self.cells(mesh)?);
+        Ok(Self::Numbers(children.iter().map(|cell| cell + 1).collect()))
     }
 
     /// The cells, counted from 0.
@@ -240,6 +251,38 @@ impl Regions {
         let of_rigid =
             |laws: &Laws| Laws { elastic: laws.of_rigid.unwrap_or(none), viscous, ..laws.clone() };
         Self { laws: self.laws.iter().map(of_rigid).collect(), ..self.clone() }
+    }
+
+    /// The same of `count` cells with the elasticity of those `inside` alone, and with that of the others and all viscosity.
+    pub(super) fn parted(
+        &self,
+        count: usize,
+        dimension: usize,
+        plane: Plane,
+        inside: impl Fn(usize) -> bool,
+    ) -> [Self; 2] {
+        let zero = Lame { lambda: 0.0, mu: 0.0 };
+        let elastic = Elastic::new(Strain::Green, None, zero, dimension, plane);
+        let viscous = ObjectiveViscosity(Hooke::new(zero, dimension, plane));
+        let laws = |change: &dyn Fn(&Laws) -> Laws| {
+            let changed: Vec<Laws> = self.laws.iter().map(change).collect();
+            self.laws.iter().cloned().chain(changed).collect()
+        };
+        let of_cell = |is_changed: &dyn Fn(usize) -> bool| {
+            let own = |cell| self.of_cell.get(cell).copied().unwrap_or(0);
+            let behind = self.laws.len() as u16;
+            let index = |cell| own(cell) + if is_changed(cell) { behind } else { 0 };
+            (0..count).map(index).collect()
+        };
+        let part = |laws, of_cell| Self { materials: self.materials.clone(), laws, of_cell };
+        // those inside keep their viscosity in the second part
+        let mut grows = part(
+            laws(&|laws| Laws { elastic, viscous, ..laws.clone() }),
+            of_cell(&|cell| !inside(cell)),
+        );
+        grows.laws.iter_mut().for_each(|laws| laws.viscous = viscous);
+        let rest = part(laws(&|laws| Laws { elastic, ..laws.clone() }), of_cell(&inside));
+        [grows, rest]
     }
 
     /// Whether any of them is viscous.

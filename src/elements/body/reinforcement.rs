@@ -27,7 +27,7 @@ pub(super) fn families<'a>(
             continue;
         }
         for Fibres { course, young, stiffening } in fibres {
-            let law = Fibre { young: *young, stiffening: *stiffening };
+            let law = Fibre::Passive { young: *young, stiffening: *stiffening };
             families.push((elements.fibres(mesh, &cells, course)?, law));
         }
     }

@@ -62,18 +62,14 @@ impl Fibres {
     /// Rings around the axis through `centre` (m), in the direction of `axis`, with Young's modulus `young`
     /// (Pa).
     pub fn around(centre: impl Into<Vec<f64>>, axis: impl Into<Vec<f64>>, young: f64) -> Self {
-        let course =
-            FibreDirection::Around { centre: centre.into(), axis: axis.into(), pitch: 0.0 };
+        let course = FibreDirection::around(centre.into(), axis.into());
         Self { course, young, stiffening: 0.0 }
     }
 
     /// The same as helices, which climb along the axis by the angle `pitch` (rad); fibres along a vector do
     /// not change.
-    pub fn pitch(mut self, angle: f64) -> Self {
-        if let FibreDirection::Around { pitch, .. } = &mut self.course {
-            *pitch = angle;
-        }
-        self
+    pub fn pitch(self, angle: f64) -> Self {
+        Self { course: self.course.with_pitch(angle), ..self }
     }
 
     /// The same, stiffening as they stretch with k2 = `stiffening` (1).
@@ -84,9 +80,16 @@ impl Fibres {
     pub(crate) fn validate(&self) -> Result<(), InputError> {
         positive("fibres.young", self.young, "Pa")?;
         not_negative("fibres.stiffening", self.stiffening, "")?;
-        match &self.course {
-            FibreDirection::Along(direction) => has_length("fibres.along", direction),
-            FibreDirection::Around { centre, axis, pitch } => {
+        self.course.validate()
+    }
+}
+
+impl FibreDirection {
+    /// Checks what can be known without a body.
+    pub(crate) fn validate(&self) -> Result<(), InputError> {
+        match self {
+            Self::Along(direction) => has_length("fibres.along", direction),
+            Self::Around { centre, axis, pitch } => {
                 finite("fibres.centre", centre)?;
                 finite("fibres.pitch", &[*pitch])?;
                 match axis.is_empty() {
@@ -96,9 +99,20 @@ impl Fibres {
             }
         }
     }
-}
 
-impl FibreDirection {
+    /// Rings around the axis through `centre` (m), in the direction of `axis`.
+    pub(crate) fn around(centre: Vec<f64>, axis: Vec<f64>) -> Self {
+        Self::Around { centre, axis, pitch: 0.0 }
+    }
+
+    /// The same as helices, which climb along the axis by an `angle` (rad); what runs along a vector does not change.
+    pub(crate) fn with_pitch(mut self, angle: f64) -> Self {
+        if let Self::Around { pitch, .. } = &mut self {
+            *pitch = angle;
+        }
+        self
+    }
+
     /// Checks that its vectors are those of a space of `dimension`.
     pub(crate) fn validate_in(&self, dimension: usize) -> Result<(), InputError> {
         let is = |name: &str, vector: &[f64], expected: usize| match vector.len() == expected {

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use crate::base::input::InputError;
 use crate::elements::mesh::Selection;
 use crate::scene::constraint::{Constrained, Constraint, Motion};
-use crate::scene::forces::{Signal, SignalKind, VectorSignal};
+use crate::scene::forces::{MagneticField, Signal, SignalKind, VectorSignal};
 use crate::scene::timeline::{ContactWith, Load, LoadKind, Phase, Scene};
 
 /// What is in force.
@@ -17,7 +17,7 @@ use crate::scene::timeline::{ContactWith, Load, LoadKind, Phase, Scene};
 pub(super) struct InForce {
     constraints: Vec<(Constrained, Given<Motion>)>,
     loads: Vec<(Selection, LoadKind, Given<VectorSignal>)>,
-    /// Names of springs, force.
+    /// Names of springs or muscles, force or stress.
     actuations: Vec<(Vec<String>, Given<SignalKind>)>,
     /// Name of a chamber, pressure.
     pressures: Vec<(String, Given<SignalKind>)>,
@@ -29,6 +29,9 @@ pub(super) struct InForce {
     /// Obstacles that commands have set in motion: name, offset from where its velocity or path would have
     /// brought it, and velocity; without one: its path in the scene.
     moving: Vec<(String, [f64; 3], Option<[f64; 3]>)>,
+    /// The uniform part of the magnetic field.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    magnetic_field: Option<Given<VectorSignal>>,
 }
 
 /// A motion, load, force or pressure.
@@ -115,6 +118,10 @@ fn values(phase: &Phase) -> impl Iterator<Item = &VectorSignal> {
     phase.loads.iter().map(|(_, load)| &load.value)
 }
 
+fn fields(phase: &Phase) -> impl Iterator<Item = &VectorSignal> {
+    phase.magnetic_field.iter().map(|field| &field.field)
+}
+
 fn forces(phase: &Phase) -> impl Iterator<Item = &SignalKind> {
     phase.actuations.iter().map(|(_, force)| &force.0)
 }
@@ -153,6 +160,9 @@ impl InForce {
             let name = || format!("opening of orifice \"{orifice}\"");
             Ok((orifice.clone(), Given::of(&opening.0, openings(own), name)?))
         });
+        let mut fields_given = fields(phase)
+            .map(|field| Given::of(field, fields(own), || "magnetic field".to_owned()));
+        let magnetic_field = fields_given.next().transpose()?;
         let moving = phase.redirected.iter().map(|obstacle| {
             (obstacle.name().into(), obstacle.offset(), obstacle.constant_velocity())
         });
@@ -164,6 +174,7 @@ impl InForce {
             openings: openings.collect::<Result<_, InputError>>()?,
             contact: phase.contact.clone(),
             moving: moving.collect(),
+            magnetic_field,
         })
     }
 
@@ -199,7 +210,16 @@ impl InForce {
                 None => obstacle,
             })
         });
+        let mut magnetic_field = own.magnetic_field.clone();
+        if let Some(field) = self.magnetic_field {
+            let field = field.read("magnetic field", fields(own))?;
+            match &mut magnetic_field {
+                Some(own) => own.field = field,
+                none => *none = Some(MagneticField::of(field)),
+            }
+        }
         Ok(Phase {
+            magnetic_field,
             constraints: constraints.collect::<Result<_, String>>()?,
             loads: loads.collect::<Result<_, String>>()?,
             actuations: actuations.collect::<Result<_, String>>()?,

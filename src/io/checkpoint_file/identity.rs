@@ -68,6 +68,15 @@ impl Identity {
         if !tied.is_empty() {
             parts.push(("ties".into(), ties));
         }
+        if !scene.muscles().is_empty() {
+            parts.push(("muscles".into(), text(of_text(scene.muscles()))));
+        }
+        if !scene.growths().is_empty() {
+            parts.push(("growths".into(), text(of_text(scene.growths()))));
+        }
+        if !scene.magnets().is_empty() {
+            parts.push(("magnets".into(), text(of_text(scene.magnets()))));
+        }
         if !scene.touches().is_empty() {
             parts.push(("touches".into(), touches));
         }
@@ -120,7 +129,12 @@ impl Identity {
 
 impl PhaseIdentity {
     fn of(phase: &Phase) -> Self {
-        Self { name: phase.name.clone(), until: phase.until, hash: text(of_text(phase)) }
+        // without a magnetic field as in files that were written before there were any
+        let said = format!("{phase:?}").replace(", magnetic_field: None", "");
+        let mut hasher = SipHasher13::new();
+        hasher.write(said.as_bytes());
+        let hash = hasher.finish();
+        Self { name: phase.name.clone(), until: phase.until, hash: text(hash) }
     }
 
     fn label(&self) -> String {

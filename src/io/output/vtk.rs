@@ -95,8 +95,8 @@ fn grid(trajectory: &Trajectory, sample: &Sample) -> Result<Vtk, Error> {
         Attribute::DataArray(DataArray::vectors(name).with_vec(spatial(components)))
     };
     let contacts = trajectory.nodal_contacts(sample)?;
-    let nodal = trajectory.body().nodal_fields(&sample.u);
-    let fields = trajectory.body().cell_fields(&sample.u);
+    let nodal = trajectory.nodal_fields(sample)?;
+    let fields = trajectory.cell_fields(sample)?;
     let body = trajectory.body();
     let stretches = fields.iter().enumerate();
     let stretches: Vec<[f64; 3]> =

@@ -36,8 +36,9 @@ const ABSENT: [(&[&str], &str); 8] = [
         "a phase gives the pressure in a [[chamber]] over time (pressure = [...]), or there is [[gas]] in it, which flows through an [[orifice]] from a [[supply]]; there is no fluid otherwise",
     ),
     (
-        &["motor", "muscle", "actuator", "actuators"],
-        "what acts is a force along a [[spring]] (actuate in a phase), a pressure in a [[chamber]], a load, or nodes that follow a path",
+        &["motor", "actuator", "actuators"],
+        "what acts is a force along a [[spring]], the stress of a [[muscle]] or the strain of a [[growth]] (actuate in a phase), a pressure in a [[chamber]], a load, or nodes \
+         that follow a path",
     ),
 ];
 

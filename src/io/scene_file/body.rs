@@ -1,17 +1,15 @@
 //! `[body]`, `[[body.region]]` and `[[point]]`.
 
+use super::cells::{BOX, CELLS, GROUP, cells};
 use super::contents::AutoRequest;
 use super::keys::{AUTO, Holds, Key, TableKeys};
 use super::material::{MATERIAL, substance};
 use super::mesh::{self, AutoCells, MESH};
-use super::selection::{CORNERS, corners};
 use super::table::Table;
 use super::value::Value;
 use crate::base::input::{find, positive};
 use crate::dynamics::error::Error;
-use crate::elements::body::{
-    Body, BodyBuilder, CellSelection, Dilatation, Inertia, Strain, Viscosity,
-};
+use crate::elements::body::{Body, BodyBuilder, Dilatation, Inertia, Strain, Viscosity};
 use crate::elements::material::{Plane, Substance};
 use crate::elements::mesh::{CellKind, Mesh};
 use crate::scene::timeline::Scene;
@@ -105,10 +103,9 @@ const REGION: TableKeys = TableKeys::new(
     "A part of the body with a material of its own.",
     &[
         Key::new("name", Holds::Text, "the name of the region, for who reads the file"),
-        Key::new("box", Holds::Corners, CORNERS).in_unit("m"),
-        Key::new("group", Holds::Text, "the name of a group of cells")
-            .law("A physical group of Gmsh."),
-        Key::new("cells", Holds::List(&Holds::Count), "numbers of cells, from 1"),
+        BOX,
+        GROUP,
+        CELLS,
         Key::new("material", Holds::Table(&MATERIAL), "the keys of the material that differ")
             .required(),
     ],
@@ -271,22 +268,8 @@ fn add_regions(
 ) -> Result<BodyBuilder, Error> {
     for table in regions.tables(&REGION)? {
         table.optional("name", Value::string)?;
-        let checked = |value: &Value, cells: CellSelection| match cells.cells(mesh) {
-            Ok(_) => Ok(cells),
-            Err(error) => Err(value.error(error)),
-        };
-        let group = table.optional("group", |value| checked(value, value.string()?.into()))?;
-        let numbers = table.optional("cells", |value| {
-            let numbers = value.list_of("cell numbers", Value::count)?;
-            checked(value, CellSelection::Numbers(numbers))
-        })?;
-        let cells = match group.or(numbers) {
-            Some(cells) => cells,
-            None => table.required("box", |value| {
-                let [min, max] = corners(value, mesh)?;
-                checked(value, CellSelection::Box { min, max })
-            })?,
-        };
+        let none = || table.missing("box", "expected either box, group or cells");
+        let cells = cells(&table, mesh)?.ok_or_else(none)?;
         let material = table.required("material", |value| substance(value, Some(base)))?;
         body = body.region(cells, material);
     }

@@ -65,14 +65,28 @@ const FIBRES: TableKeys = TableKeys::new(
         Key::number("young", "Young's modulus that they add along their course: of a fibre, times its share of the section", "Pa")
             .required(),
         Key::number("stiffening", "how fast they stiffen", "1").default("0"),
-        Key::new("along", Holds::Vector, "a vector along them, of any length"),
-        Key::new("centre", Holds::Vector, "a point of the axis that they run around").in_unit("m"),
-        Key::new("axis", Holds::Vector, "direction of the axis, of any length; none in the plane").default("across the plane"),
-        Key::number("pitch", "angle by which they climb along the axis: 0 are rings, others helices", "rad").default("0"),
+        ALONG,
+        CENTRE,
+        AXIS,
+        PITCH,
     ],
     "material = { density = 1070.0, young = 2.0e5, poisson = 0.49, viscosity = 0.0, fibres = [{ along = [1.0, 0.2], young = 2.0e7 }] }",
 )
 .one_of(&[&["along"], &["centre"]]);
+
+pub(super) const ALONG: Key =
+    Key::new("along", Holds::Vector, "a vector along them, of any length");
+pub(super) const CENTRE: Key =
+    Key::new("centre", Holds::Vector, "a point of the axis that they run around").in_unit("m");
+pub(super) const AXIS: Key =
+    Key::new("axis", Holds::Vector, "direction of the axis, of any length; none in the plane")
+        .default("across the plane");
+pub(super) const PITCH: Key = Key::number(
+    "pitch",
+    "angle by which they climb along the axis: 0 are rings, others helices",
+    "rad",
+)
+.default("0");
 
 pub(super) const LAW: TableKeys = TableKeys::new(
     "law",
@@ -255,15 +269,20 @@ fn ogden(table: &Table<'_>) -> Result<(Law, f64), Error> {
     Ok((Law::Ogden { exponents: powers, shares: terms.map(|term| term / twice) }, twice / 2.0))
 }
 
-fn fibres(table: &Table<'_>) -> Result<Fibres, Error> {
-    let course = match table.optional("along", Value::numbers)? {
+/// Which way fibres run.
+pub(super) fn course(table: &Table<'_>) -> Result<FibreDirection, Error> {
+    Ok(match table.optional("along", Value::numbers)? {
         Some(direction) => FibreDirection::Along(direction),
         None => FibreDirection::Around {
             centre: table.required("centre", Value::numbers)?,
             axis: table.optional("axis", Value::numbers)?.unwrap_or_default(),
             pitch: table.optional("pitch", Value::number)?.unwrap_or(0.0),
         },
-    };
+    })
+}
+
+fn fibres(table: &Table<'_>) -> Result<Fibres, Error> {
+    let course = course(table)?;
     let young = table.required("young", Value::number)?;
     let stiffening = table.optional("stiffening", Value::number)?.unwrap_or(0.0);
     let fibres = Fibres { course, young, stiffening };

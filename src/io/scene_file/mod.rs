@@ -39,13 +39,17 @@
 mod absent;
 mod auto;
 mod body;
+mod cells;
 mod contents;
 mod gas;
+mod growth;
 mod initial;
 mod keys;
 mod listed;
+mod magnet;
 mod material;
 mod mesh;
+mod muscle;
 mod overrides;
 mod phase;
 mod phase_keys;

@@ -3,6 +3,7 @@
 use toml::de::DeValue;
 
 use super::keys::TableKeys;
+use super::magnet::magnetic_field;
 use super::phase_keys::{
     ACTUATE, HOLD, HOLD_COMBINATION, LOAD, MOVE, OPEN, PATH, PHASE, PRESSURE, PRESSURE_ON, ROTATE,
     SYMMETRY, TERMS,
@@ -75,6 +76,10 @@ fn add_phase(scene: Scene, value: &Value, check: &Check) -> Result<Scene, Error>
             phase = add(phase, &part, &scene)?;
             check(&scene, &phase).map_err(|error| part.blame(error))?;
         }
+    }
+    if let Some(value) = table.get("magnetic_field") {
+        phase = phase.magnetic_field(magnetic_field(&value, &scene)?);
+        check(&scene, &phase).map_err(|error| value.error(error))?;
     }
     if table.flag("project_velocity")? {
         phase = phase.project_velocity();
@@ -213,6 +218,14 @@ fn open(phase: Phase, table: &Table, scene: &Scene) -> Result<Phase, Error> {
 }
 
 fn actuate(phase: Phase, table: &Table, scene: &Scene) -> Result<Phase, Error> {
+    let muscles: Vec<&str> = scene.muscles().iter().map(|muscle| muscle.name()).collect();
+    if let Some(muscles) = table.optional("muscles", |value| names(value, &muscles))? {
+        return Ok(phase.actuate(muscles, course(table, "stress", "stresses")?));
+    }
+    let growths: Vec<&str> = scene.growths().iter().map(|growth| growth.name()).collect();
+    if let Some(growths) = table.optional("growths", |value| names(value, &growths))? {
+        return Ok(phase.actuate(growths, course(table, "strain", "strains")?));
+    }
     let known: Vec<&str> = scene.springs().iter().map(|spring| spring.name()).collect();
     let springs = table.required("springs", |value| names(value, &known))?;
     let is_length = ["length", "lengths"].into_iter().any(|key| table.get(key).is_some());

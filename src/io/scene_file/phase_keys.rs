@@ -22,7 +22,8 @@ pub(super) const PHASE: TableKeys = TableKeys::new(
         part(&PRESSURE, "pressures in chambers"),
         part(&PRESSURE_ON, "pressures on faces"),
         part(&OPEN, "openings of orifices"),
-        part(&ACTUATE, "forces in springs and cables"),
+        part(&ACTUATE, "forces in springs and cables, stresses of muscles, strains of growth"),
+        Key::new("magnetic_field", Holds::Table(&MAGNETIC_FIELD), "the magnetic field"),
         Key::new(
             "contact",
             Holds::Either(&[Holds::Flag, Holds::OneOrMore(&Holds::Text)]),
@@ -223,16 +224,48 @@ pub(super) const OPEN: TableKeys = TableKeys::new(
 
 pub(super) const ACTUATE: TableKeys = TableKeys::new(
     "actuate",
-    "Forces of the actuators in springs, tensions of cables, and lengths that winches have drawn in. Those of a table are \
+    "Forces of the actuators in springs, tensions of cables, lengths that winches have drawn in, stresses of muscles, and strains of growth. Those of a table are \
      interpolated linearly, and are constant before and after.",
     &[
-        Key::new("springs", Holds::OneOrMore(&Holds::Text), "names of springs and cables").required(),
+        Key::new("springs", Holds::OneOrMore(&Holds::Text), "names of springs and cables"),
+        Key::new("muscles", Holds::OneOrMore(&Holds::Text), "names of muscles"),
+        Key::new("growths", Holds::OneOrMore(&Holds::Text), "names of growths"),
         Key::new("force", Holds::Changing, "the force: of a spring positive if it extends, of a cable if it pulls").in_unit("N"),
         Key::new("length", Holds::Changing, "of a winch: the length that it has drawn in").in_unit("m"),
+        Key::new("stress", Holds::Changing, "of a muscle: the force per section of the undeformed shape by which it pulls; below 0 it pushes")
+            .in_unit("Pa"),
+        Key::new("strain", Holds::Changing, "of a growth: by how much what is free gets longer; of heat the coefficient of expansion times the change of temperature")
+            .in_unit("1"),
         TIMES,
         Key::new("forces", Holds::List(&Holds::Number), "forces at these times").in_unit("N"),
         Key::new("lengths", Holds::List(&Holds::Number), "lengths at these times").in_unit("m"),
+        Key::new("strains", Holds::List(&Holds::Number), "strains at these times").in_unit("1"),
+        Key::new("stresses", Holds::List(&Holds::Number), "stresses at these times").in_unit("Pa"),
     ],
     "actuate = [{ springs = \"down\", times = [0.2, 0.3], forces = [0.0, -0.8] }]",
 )
-.one_of(&[&["force"], &["length"], &["times", "forces"], &["times", "lengths"]]);
+.one_of(&[
+    &["springs", "force"],
+    &["springs", "length"],
+    &["springs", "times", "forces"],
+    &["springs", "times", "lengths"],
+    &["muscles", "stress"],
+    &["muscles", "times", "stresses"],
+    &["growths", "strain"],
+    &["growths", "times", "strains"],
+]);
+
+pub(super) const MAGNETIC_FIELD: TableKeys = TableKeys::new(
+    "magnetic_field",
+    "The magnetic field that acts on the magnets: `field` everywhere, and `gradient` (x - `centre`) beside it. That of a table is interpolated linearly, and constant \
+     before and after.",
+    &[
+        Key::new("field", Holds::ChangingVector, "the field").in_unit("T"),
+        TIMES,
+        Key::new("fields", Holds::List(&Holds::Vector), "the field at these times").in_unit("T"),
+        Key::new("gradient", Holds::List(&Holds::Vector), "rows of dB_i/dx_j, a symmetric matrix, in space without trace").in_unit("T/m"),
+        Key::new("centre", Holds::Vector, "where the gradient adds nothing").in_unit("m").default("the origin"),
+    ],
+    "magnetic_field = { field = [0.0, \"0.01*sin(20*t)\"] }",
+)
+.one_of(&[&["field"], &["times", "fields"]]);

@@ -1,4 +1,4 @@
-//! Writes changed ends of phases, pressures, forces of actuators and loads into the text of a scene file; all
+//! Writes changed ends of phases, pressures, forces of actuators, loads and magnetic fields into the text of a scene file; all
 //! else stays as it was written.
 
 use std::collections::BTreeSet;
@@ -9,7 +9,7 @@ use toml::de::{DeTable, DeValue};
 use super::set_value::quoted;
 use super::written::insertion;
 use crate::elements::mesh::Selection;
-use crate::scene::forces::{Signal, SignalKind, VectorSignal};
+use crate::scene::forces::{MagneticField, Signal, SignalKind, VectorSignal};
 use crate::scene::timeline::{Load, Phase, Scene};
 
 /// A phase whose signals differ from those in the file.
@@ -18,7 +18,7 @@ pub(crate) struct Rewritten {
     pub(crate) number: usize,
     /// What it is now.
     pub(crate) phase: Phase,
-    /// The keys that differ: `until`, and of its lists `pressure`, `open`, `actuate`, `load`.
+    /// The keys that differ: `until`, of its lists `pressure`, `open`, `actuate`, `load`, and `magnetic_field`.
     pub(crate) keys: BTreeSet<&'static str>,
 }
 
@@ -57,6 +57,7 @@ pub(crate) fn rewritten(
                 "pressure" => pressures(phase),
                 "open" => openings(phase),
                 "actuate" => actuations(phase, scene),
+                "magnetic_field" => field(phase, scene.body().dimension()),
                 _ => loads(phase, scene.body().dimension()),
             };
             let edit = match table.get(key) {
@@ -111,10 +112,19 @@ fn actuations(phase: &Phase, scene: &Scene) -> String {
             .springs()
             .iter()
             .any(|spring| spring.is_winch() && springs.iter().any(|name| name == spring.name()));
-        let keys = if is_winch { ["length", "lengths"] } else { ["force", "forces"] };
+        let are = |name: &str| springs.iter().any(|other| other == name);
+        let (key, keys) = if scene.muscles().iter().any(|muscle| are(muscle.name())) {
+            ("muscles", ["stress", "stresses"])
+        } else if scene.growths().iter().any(|growth| are(growth.name())) {
+            ("growths", ["strain", "strains"])
+        } else if is_winch {
+            ("springs", ["length", "lengths"])
+        } else {
+            ("springs", ["force", "forces"])
+        };
         let springs: Vec<String> = springs.iter().map(|spring| quoted(spring)).collect();
         let springs = springs.join(", ");
-        format!("{{ springs = [{springs}], {} }}", course(force, keys))
+        format!("{{ {key} = [{springs}], {} }}", course(force, keys))
     };
     list(phase.actuations.iter().map(entry))
 }
@@ -126,23 +136,37 @@ fn loads(phase: &Phase, dimension: usize) -> String {
             Selection::Numbers(numbers) => format!("{numbers:?}"),
             Selection::Box { min, max } => format!("{{ box = [{min:?}, {max:?}] }}"),
         };
-        let word = load.kind.word();
-        let load = match &load.value {
-            VectorSignal::Constant(force) => format!("{word} = {force:?}"),
-            VectorSignal::Formulas(formulas) => {
-                let texts: Vec<String> =
-                    formulas.iter().map(|formula| quoted(formula.text())).collect();
-                format!("{word} = [{}]", texts.join(", "))
-            }
-            force => {
-                let times = force.breaks();
-                let forces = times.iter().map(|t| force.components(*t, dimension));
-                format!("times = {times:?}, {word}s = {:?}", forces.collect::<Vec<_>>())
-            }
-        };
-        format!("{{ nodes = {nodes}, {load} }}")
+        format!("{{ nodes = {nodes}, {} }}", vectors(&load.value, load.kind.word(), dimension))
     };
     list(phase.loads.iter().map(entry))
+}
+
+fn field(phase: &Phase, dimension: usize) -> String {
+    let field = phase.magnetic_field.as_ref();
+    let entry = |field: &MagneticField| {
+        let gradient = field.gradient_rows().map_or_else(String::new, |(rows, centre)| {
+            format!(", gradient = {rows:?}, centre = {centre:?}")
+        });
+        format!("{{ {}{gradient} }}", vectors(&field.field, "field", dimension))
+    };
+    field.map_or_else(String::new, entry)
+}
+
+/// A vector that may change with time, under the key `word`.
+fn vectors(value: &VectorSignal, word: &str, dimension: usize) -> String {
+    match value {
+        VectorSignal::Constant(vector) => format!("{word} = {vector:?}"),
+        VectorSignal::Formulas(formulas) => {
+            let texts: Vec<String> =
+                formulas.iter().map(|formula| quoted(formula.text())).collect();
+            format!("{word} = [{}]", texts.join(", "))
+        }
+        vector => {
+            let times = vector.breaks();
+            let vectors = times.iter().map(|t| vector.components(*t, dimension));
+            format!("times = {times:?}, {word}s = {:?}", vectors.collect::<Vec<_>>())
+        }
+    }
 }
 
 fn list(entries: impl Iterator<Item = String>) -> String {
@@ -165,7 +189,11 @@ fn course(signal: &Signal, [one, many]: [&str; 2]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::studies::samples::square_jump;
+    use crate::elements::body::Body;
+    use crate::elements::material::Plane;
+    use crate::elements::mesh::{Cells, Mesh};
+    use crate::scene::forces::{Growth, Magnet, Muscle};
+    use crate::studies::samples::{SQUARE_MATERIAL, square_jump};
 
     #[test]
     fn nothing_else_changes() {
@@ -205,5 +233,29 @@ mod tests {
             let error = rewritten(nested, &scene, &changes[1..]).unwrap_err();
             assert!(error.contains("pressure = [...]"), "{error}");
         }
+    }
+
+    /// Muscles, growth and magnetic fields are written by their own words, and a gradient stays.
+    #[test]
+    fn what_acts_within_the_material_is_written() {
+        let mesh = Mesh::rectangle([0.1, 0.1], [2, 2], Cells::Rectangles).unwrap();
+        let body = Body::new(mesh, SQUARE_MATERIAL).thickness(0.01).plane(Plane::Stress);
+        let scene = Scene::new(body.build().unwrap())
+            .muscle(Muscle::along([1.0, 0.0]).named("m"))
+            .growth(Growth::everywhere().named("g"))
+            .magnet(Magnet::new([0.1, 0.0]));
+        let field = MagneticField::table([0.0, 1.0], [[0.0, 0.0], [0.5, 1.0]]);
+        let field = field.gradient([[1.0, 0.0], [0.0, -1.0]], [0.0, 0.5]);
+        let phase = Phase::until(1.0)
+            .actuate(["m"], 2e3)
+            .actuate_table(["g"], [0.0, 1.0], [0.0, 0.25])
+            .magnetic_field(field);
+        let change = Rewritten { number: 0, phase, keys: ["actuate", "magnetic_field"].into() };
+        let text = "[[phase]]\nuntil = 1.0\nmagnetic_field = { field = [0.0, 0.0] }\n";
+        let expected = "[[phase]]\nuntil = 1.0\nactuate = [\n    { muscles = [\"m\"], stress = 2000.0 },\n    \
+                        { growths = [\"g\"], times = [0.0, 1.0], strains = [0.0, 0.25] },\n]\n\
+                        magnetic_field = { times = [0.0, 1.0], fields = [[0.0, 0.0], [0.5, 1.0]], \
+                        gradient = [[1.0, 0.0], [0.0, -1.0]], centre = [0.0, 0.5] }\n";
+        assert_eq!(rewritten(text, &scene, &[change]).unwrap(), expected);
     }
 }

@@ -80,6 +80,21 @@ pub(super) const SENSOR: TableKeys = TableKeys::new(
         about: "the length of a spring, or of the path of a cable (m)",
         keys: &[SPRING],
     },
+    Kind {
+        word: "muscle-stress",
+        about: "the stress by which a muscle pulls (Pa)",
+        keys: &[MUSCLE],
+    },
+    Kind {
+        word: "muscle-stretch",
+        about: "the length of the fibres of a muscle by that in the undeformed shape, the mean over their volume (no unit)",
+        keys: &[MUSCLE],
+    },
+    Kind {
+        word: "magnetic-moment",
+        about: "the magnetic moment of all magnets (A m^2)",
+        keys: &[],
+    },
     Kind { word: "pressure", about: "the pressure in a chamber, of gas what it exceeds the atmosphere by (Pa)", keys: &[CHAMBER] },
     Kind {
         word: "absolute-pressure",
@@ -151,6 +166,7 @@ const POINT: Key =
         .in_unit("m")
         .default("`nodes`");
 const SPRING: Key = Key::new("spring", Holds::Text, "the name of the spring or cable").required();
+const MUSCLE: Key = Key::new("muscle", Holds::Text, "the name of the muscle").required();
 const CHAMBER: Key = Key::new("chamber", Holds::Text, "the name of the chamber").required();
 const UNIT: Key = Key::new("unit", Holds::Word(|| vec!["rad", "deg"]), "the unit").default("rad");
 const BODY: Key =
@@ -187,6 +203,9 @@ pub(super) fn sensor(value: &Value, scene: &Scene) -> Result<(String, Reading), 
         "spring-pull" => Reading::spring_pull(named("spring")?),
         "tension-at-end" => Reading::tension_at_end(named("cable")?),
         "spring-length" => Reading::spring_length(named("spring")?),
+        "muscle-stress" => Reading::muscle_stress(named("muscle")?),
+        "muscle-stretch" => Reading::muscle_stretch(named("muscle")?),
+        "magnetic-moment" => Reading::magnetic_moment(),
         "pressure" => Reading::pressure(named("chamber")?),
         "absolute-pressure" => Reading::absolute_pressure(named("chamber")?),
         "gas-amount" => Reading::gas_amount(named("chamber")?),

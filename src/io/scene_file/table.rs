@@ -100,7 +100,10 @@ impl<'a> Table<'a> {
                 found.push(key);
             }
         }
-        if groups.is_empty() || groups.iter().any(|group| *group == found) {
+        let are_found = |group: &&[&str]| {
+            group.len() == found.len() && group.iter().all(|key| found.contains(key))
+        };
+        if groups.is_empty() || groups.iter().any(are_found) {
             return Ok(());
         }
         let told = |key: &&str| format!("{key}: {}", self.meaning(key));

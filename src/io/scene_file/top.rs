@@ -3,8 +3,11 @@
 use super::body::{self, BODY, POINT};
 use super::contents::{OutputRequest, SceneFile};
 use super::gas::{self, GAS, ORIFICE, SUPPLY};
+use super::growth::{self, GROWTH};
 use super::initial::{self, INITIAL};
 use super::keys::{Holds, Key, TableKeys};
+use super::magnet::{self, MAGNET};
+use super::muscle::{self, MUSCLE};
 use super::phase;
 use super::phase_keys::PHASE;
 use super::sensor::{SENSOR, sensor};
@@ -31,7 +34,7 @@ pub(super) const TOP: TableKeys = TableKeys::new(
         Key::number("atmosphere", "the absolute pressure of the air around chambers with gas", "Pa")
             .default("101325"),
         Key::new("unusual", Holds::List(&Holds::Text), "quantities that are meant as they are, though they look like wrong units")
-            .law("Of `size`, `mass`, `density`, `young`, `wave-speed`, `thickness`, `weight`: they are not [warned of](scene-files.md#warnings).")
+            .law("Of `size`, `mass`, `density`, `young`, `wave-speed`, `thickness`, `weight`, `remanence`, `magnetic-field`: they are not [warned of](scene-files.md#warnings).")
             .default("none"),
         Key::new("body", Holds::Tables(&BODY), "what moves").required(),
         Key::new("point", Holds::Tables(&POINT), "point masses"),
@@ -40,6 +43,9 @@ pub(super) const TOP: TableKeys = TableKeys::new(
         Key::new("touch", Holds::Tables(&TOUCH), "contact of bodies with each other and themselves"),
         Key::new("spring", Holds::Tables(&SPRING), "springs"),
         Key::new("cable", Holds::Tables(&CABLE), "cables"),
+        Key::new("muscle", Holds::Tables(&MUSCLE), "muscles in the bodies"),
+        Key::new("growth", Holds::Tables(&GROWTH), "cells that grow, by swelling or heat"),
+        Key::new("magnet", Holds::Tables(&MAGNET), "magnets in the bodies"),
         Key::new("chamber", Holds::Tables(&CHAMBER), "chambers"),
         Key::new("gas", Holds::Tables(&GAS), "gas in chambers"),
         Key::new("supply", Holds::Tables(&SUPPLY), "what gas is drawn from"),
@@ -87,11 +93,14 @@ pub(super) fn scene_file(top: &Table) -> Result<SceneFile, Error> {
         Some(Err(_)) => initial,
         None => None,
     };
-    let parts: [(&str, Add); 9] = [
+    let parts: [(&str, Add); 12] = [
         ("tie", tie::add_tie),
         ("touch", touch::add_touch),
         ("spring", surroundings::add_spring),
         ("cable", surroundings::add_cable),
+        ("muscle", muscle::add_muscle),
+        ("growth", growth::add_growth),
+        ("magnet", magnet::add_magnet),
         ("chamber", surroundings::add_chamber),
         ("gas", gas::add_gas),
         ("supply", gas::add_supply),

@@ -39,7 +39,12 @@ impl TimeTable {
 
     /// The rate of one component at time `t`; at a kink that of the line behind it.
     fn rate(&self, t: f64, component: usize) -> f64 {
-        match self.times.partition_point(|&time| time <= t) {
+        self.rate_of(self.times.partition_point(|&time| time <= t), component)
+    }
+
+    /// The rate of one component on the line to the time with number `next`, from 0.
+    fn rate_of(&self, next: usize, component: usize) -> f64 {
+        match next {
             0 => 0.0,
             next if next == self.times.len() => 0.0,
             next => {
@@ -194,6 +199,16 @@ impl Signal {
             }
             SignalKind::TimeTable(table) => table.rate(t, 0),
             SignalKind::Formula(formula) => formula.at(t).0[1],
+        }
+    }
+
+    /// Its rate up to time `t` (s); at a kink of a table that of the line before it, where a step ends.
+    pub(crate) fn rate_before(&self, t: f64) -> f64 {
+        match &self.0 {
+            SignalKind::TimeTable(table) => {
+                table.rate_of(table.times.partition_point(|&time| time < t), 0)
+            }
+            _ => self.rate(t),
         }
     }
 

@@ -1,5 +1,7 @@
 //! One check for all forces: force = -dU/du, tangents = -df/du and -df/dv by central differences.
 
+mod within;
+
 use std::sync::Arc;
 
 use super::*;

@@ -7,7 +7,7 @@ use super::phase::{ContactWith, Phase};
 use crate::base::input::InputError;
 use crate::elements::mesh::{Mesh, Selection};
 use crate::scene::constraint::{Constrained, Constraint};
-use crate::scene::forces::{Live, Obstacle, Signal, VectorSignal};
+use crate::scene::forces::{Live, MagneticField, Obstacle, Signal, VectorSignal};
 
 impl Phase {
     /// Lets an obstacle of the scene move on with `velocity` (m/s) from where it is at time `t` (s).
@@ -51,6 +51,11 @@ impl Phase {
         all.next().filter(|_| all.next().is_none())?.1.value.live()
     }
 
+    /// The uniform part of the magnetic field, likewise.
+    pub(crate) fn live_field(&self) -> Option<&Live> {
+        self.magnetic_field.as_ref()?.field.live()
+    }
+
     /// The phase with constants in place of numbers that commands can set: later commands do not change it.
     pub(crate) fn frozen(self: &Arc<Self>) -> Arc<Self> {
         if !self.is_live() {
@@ -59,6 +64,9 @@ impl Phase {
         let mut frozen = Self::clone(self);
         for (_, load) in &mut frozen.loads {
             load.value = load.value.frozen();
+        }
+        if let Some(field) = &mut frozen.magnetic_field {
+            field.field = field.field.frozen();
         }
         let actuations = frozen.actuations.iter_mut().map(|(_, force)| force);
         let openings = frozen.openings.iter_mut().map(|(_, opening)| opening);
@@ -70,7 +78,7 @@ impl Phase {
     }
 
     /// The phase at rest under a `fraction` of its load: loads, pressures and the forces of actuators are
-    /// constant, this fraction of those at the end, and `obstacles` stand where they are at this fraction of
+    /// constant, this fraction of those at the end, as the magnetic field is, and `obstacles` stand where they are at this fraction of
     /// the end time.
     pub(crate) fn at_rest(&self, fraction: f64, obstacles: &[Obstacle], dimension: usize) -> Self {
         let (mut rest, end) = (self.clone(), self.until);
@@ -85,6 +93,8 @@ impl Phase {
         for signal in actuations.chain(pressures).chain(on_faces) {
             *signal = Signal::constant(fraction * signal.at(end));
         }
+        let field = self.magnetic_field.as_ref();
+        rest.magnetic_field = field.map(|field| field.at_rest(fraction, end, dimension));
         let reached = fraction * end;
         for obstacle in obstacles {
             if self.moving(obstacle).velocity_at(reached) != [0.0; 3] {
@@ -100,6 +110,7 @@ impl Phase {
             || self.actuations.iter().any(|(_, force)| force.live().is_some())
             || self.pressures.iter().any(|(_, pressure)| pressure.live().is_some())
             || self.openings.iter().any(|(_, opening)| opening.live().is_some())
+            || self.live_field().is_some()
     }
 
     /// Replaces the pressure in a chamber.
@@ -115,6 +126,14 @@ impl Phase {
         }
         self.actuations.retain(|(names, _)| !names.is_empty());
         self.actuations.push((vec![spring.to_owned()], force));
+    }
+
+    /// Replaces the uniform part of the magnetic field; its gradient stays.
+    pub(crate) fn set_field(&mut self, field: VectorSignal) {
+        match &mut self.magnetic_field {
+            Some(own) => own.field = field,
+            none => *none = Some(MagneticField::of(field)),
+        }
     }
 
     /// Replaces the loads that were given for the same selection.

@@ -124,6 +124,21 @@ impl Scene {
             .iter()
             .map(|chamber| chamber.clone().with_nodes(|nodes| change.extended(nodes)))
             .collect::<Result<_, _>>()?;
+        scene.muscles = self
+            .muscles
+            .iter()
+            .map(|muscle| muscle.with_cells(|cells| cells.on(&coarse, &finer)))
+            .collect::<Result<_, _>>()?;
+        scene.growths = self
+            .growths
+            .iter()
+            .map(|growth| growth.with_cells(|cells| cells.on(&coarse, &finer)))
+            .collect::<Result<_, _>>()?;
+        scene.magnets = self
+            .magnets
+            .iter()
+            .map(|magnet| magnet.with_cells(|cells| cells.on(&coarse, &finer)))
+            .collect::<Result<_, _>>()?;
         for spring in &self.springs {
             spring.selections().try_for_each(|nodes| change.check(nodes))?;
         }

@@ -1,14 +1,16 @@
 //! The forces that act in a phase.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use super::phase::check_vector;
 use super::{LoadKind, Phase, Scene};
 use crate::base::input::{InputError, finite};
+use crate::elements::body::Grown;
 use crate::elements::force::Forces;
 use crate::elements::mesh::Selection;
 use crate::scene::forces::{
-    Contact, FacePressure, Gravity, Load, Signal, VaryingLoad, VectorSignal, areas, shares,
+    Contact, FacePressure, Gravity, Growth, Load, Signal, VaryingLoad, VectorSignal, areas, shares,
 };
 
 impl Scene {
@@ -16,7 +18,14 @@ impl Scene {
     pub(crate) fn forces_in(&self, phase: &Phase) -> Result<Forces, InputError> {
         let dimension = self.body.dimension();
         let mut forces = Forces::new();
-        for elastic in self.body.elastic().into_iter().chain(self.body.elastic_of_rigid()) {
+        let mut grown = Vec::new();
+        for (growth, _) in self.growing(phase)? {
+            grown.extend(growth.cells(&self.body)?);
+        }
+        if let Some(elastic) = self.body.elastic_outside(&grown) {
+            forces.push(Arc::new(elastic));
+        }
+        if let Some(elastic) = self.body.elastic_of_rigid() {
             forces.push(Arc::new(elastic));
         }
         if let Some(reinforcement) = self.body.reinforcement() {
@@ -28,7 +37,15 @@ impl Scene {
             forces.push(Arc::new(Gravity::new(&self.body, gravity)));
         }
         self.add_loads(phase, &mut forces)?;
-        self.add_springs(phase, &mut forces)?;
+        self.add_actuators(phase, &mut forces)?;
+        if let Some(field) = &phase.magnetic_field {
+            let input = format!("magnetic field of phase \"{}\"", phase.name);
+            let Some(magnets) = self.magnetization()? else {
+                let help = "the scene has no magnet that feels it: add one";
+                return Err(InputError::new(input, format!("{:?}", field.field), help));
+            };
+            forces.push(Arc::new(field.force(&self.body, magnets, input)?));
+        }
         self.add_chambers(phase, &mut forces)?;
         self.add_gas(phase, &mut forces)?;
         for (nodes, pressure) in &phase.face_pressures {
@@ -146,9 +163,18 @@ impl Scene {
         Ok(sum)
     }
 
-    fn add_springs(&self, phase: &Phase, forces: &mut Forces) -> Result<(), InputError> {
-        for (spring, actuation) in self.springs.iter().zip(self.actuation_signals(phase)?) {
+    fn add_actuators(&self, phase: &Phase, forces: &mut Forces) -> Result<(), InputError> {
+        let mut actuations = self.actuation_signals(phase)?.into_iter();
+        for (spring, actuation) in self.springs.iter().zip(&mut actuations) {
             forces.extend(spring.forces(self.body.mesh(), actuation)?);
+        }
+        for (muscle, stress) in self.muscles.iter().zip(&mut actuations) {
+            if !stress.is_empty() {
+                forces.push(Arc::new(muscle.force(&self.body, stress)?));
+            }
+        }
+        for (growth, strain) in self.growing(phase)? {
+            forces.push(Arc::new(growth.force(&self.body, strain)?));
         }
         Ok(())
     }
@@ -156,18 +182,55 @@ impl Scene {
     /// Forces (N) of the actuators of all springs at time `t` (s) in `phase`.
     #[cfg(feature = "output")]
     pub(crate) fn actuations(&self, phase: &Phase, t: f64) -> Result<Vec<f64>, InputError> {
-        let signals = self.actuation_signals(phase)?.into_iter();
+        let signals = self.actuation_signals(phase)?.into_iter().take(self.springs.len());
         Ok(signals.map(|signals| signals.iter().map(|signal| signal.at(t)).sum()).collect())
     }
 
-    /// What actuates each spring in `phase`.
+    /// What grows in `phase`, with its strains.
+    ///
+    /// # Errors
+    /// Cells that are part of two growths.
+    fn growing(&self, phase: &Phase) -> Result<Vec<(&Growth, Vec<Signal>)>, InputError> {
+        if self.growths.is_empty() {
+            return Ok(Vec::new());
+        }
+        let signals = self.actuation_signals(phase)?.into_iter();
+        let signals = signals.skip(self.springs.len() + self.muscles.len());
+        let all = self.growths.iter().zip(signals);
+        let all: Vec<(&Growth, Vec<Signal>)> =
+            all.filter(|(_, strain)| !strain.is_empty()).collect();
+        let mut owners = BTreeMap::new();
+        for (growth, _) in &all {
+            for cell in growth.cells(&self.body)? {
+                if let Some(other) = owners.insert(cell, growth.name()) {
+                    let help =
+                        format!("growth \"{other}\" has it, too: give each cells of its own");
+                    let input = format!("growth \"{}\" cell", growth.name());
+                    return Err(InputError::new(input, cell + 1, help));
+                }
+            }
+        }
+        Ok(all)
+    }
+
+    /// The cells that have grown in `phase` at time `t` (s), and to how many times their size.
+    pub(crate) fn grown(&self, phase: &Phase, t: f64) -> Result<Vec<Grown>, InputError> {
+        let all = self.growing(phase)?.into_iter();
+        let grown = all.map(|(growth, strain)| {
+            let strain: f64 = strain.iter().map(|signal| signal.at(t)).sum();
+            Ok((growth.cells(&self.body)?, 1.0 + strain))
+        });
+        grown.collect()
+    }
+
+    /// What actuates each spring, then each muscle, then each growth, in `phase`.
     fn actuation_signals(&self, phase: &Phase) -> Result<Vec<Vec<Signal>>, InputError> {
         let input = format!("actuation of phase \"{}\"", phase.name);
-        let mut actuations: Vec<Vec<Signal>> = vec![Vec::new(); self.springs.len()];
+        let mut actuations: Vec<Vec<Signal>> = vec![Vec::new(); self.actuators().count()];
         for (names, force) in &phase.actuations {
             force.validate(&input)?;
             for name in names {
-                actuations[self.spring_number(name, &input)?].push(force.clone());
+                actuations[self.actuator_number(name, &input)?].push(force.clone());
             }
         }
         Ok(actuations)

@@ -13,6 +13,7 @@ mod phase;
 mod start;
 mod term;
 mod tie;
+mod within;
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -37,10 +38,11 @@ use crate::scene::constraint::{
     Constrained, Constraint, ConstraintRow, PhaseStart, prescribe, rows,
 };
 use crate::scene::forces::{
-    ATMOSPHERE, Chamber, Contact, Gas, Obstacle, Orifice, Spring, Supply, Touch, TouchForce,
+    ATMOSPHERE, Chamber, Contact, Gas, Growth, Magnet, Muscle, Obstacle, Orifice, Spring, Supply,
+    Touch, TouchForce,
 };
 
-/// A body, gravity, springs, chambers, obstacles, and what happens when.
+/// A body, gravity, springs, muscles, magnets, chambers, obstacles, and what happens when.
 ///
 /// ```
 /// use pliant::{Body, Cells, Material, Mesh, Obstacle, Phase, Scene};
@@ -61,6 +63,9 @@ pub struct Scene {
     body: Arc<Body>,
     gravity: Option<Vec<f64>>,
     springs: Vec<Spring>,
+    muscles: Vec<Muscle>,
+    magnets: Vec<Magnet>,
+    growths: Vec<Growth>,
     chambers: Vec<Chamber>,
     gases: Vec<Gas>,
     orifices: Vec<Orifice>,
@@ -81,8 +86,17 @@ pub struct Scene {
 }
 
 /// The quantities of a scene that may be [unusual](Scene::unusual): the names of the indicators of its units.
-pub(crate) const UNITS: [&str; 7] =
-    ["size", "mass", "density", "young", "wave-speed", "thickness", "weight"];
+pub(crate) const UNITS: [&str; 9] = [
+    "size",
+    "mass",
+    "density",
+    "young",
+    "wave-speed",
+    "thickness",
+    "weight",
+    "remanence",
+    "magnetic-field",
+];
 
 impl Scene {
     /// A scene with a body alone, at rest in its undeformed shape at t = 0.
@@ -92,6 +106,9 @@ impl Scene {
             body: Arc::new(body),
             gravity: None,
             springs: Vec::new(),
+            muscles: Vec::new(),
+            magnets: Vec::new(),
+            growths: Vec::new(),
             chambers: Vec::new(),
             gases: Vec::new(),
             orifices: Vec::new(),
@@ -184,8 +201,8 @@ impl Scene {
 
     /// Quantities that are meant as they are, although such values are rare for a soft body in SI units.
     ///
-    /// They are among `size`, `mass`, `density`, `young`, `wave-speed`, `thickness` and `weight` (the strain
-    /// of a column as high as the body under its own weight). [Indicators](Self::indicators) with these names
+    /// They are among `size`, `mass`, `density`, `young`, `wave-speed`, `thickness`, `weight` (the strain
+    /// of a column as high as the body under its own weight), `remanence` and `magnetic-field`. [Indicators](Self::indicators) with these names
     /// keep their numbers and do not warn.
     ///
     /// ```
@@ -362,9 +379,19 @@ impl Scene {
             start = phase.until;
         }
         unique("spring", self.springs.iter().map(Spring::name))?;
+        if !(self.muscles.is_empty() && self.growths.is_empty()) {
+            unique("spring, muscle or growth", self.actuators())?;
+        }
         unique("chamber", self.chambers.iter().map(Chamber::name))?;
         unique("obstacle", self.obstacles.iter().map(Obstacle::name))?;
         unique("touch", self.touches.iter().map(Touch::name))?;
+        for muscle in &self.muscles {
+            muscle.strands(&self.body)?;
+        }
+        for growth in &self.growths {
+            growth.growing(&self.body)?;
+        }
+        self.magnetization()?;
         for chamber in &self.chambers {
             chamber.check_side(&self.body, &chamber.force(&self.body, Vec::new())?)?;
         }

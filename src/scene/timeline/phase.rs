@@ -10,7 +10,7 @@ use crate::elements::mesh::Selection;
 use crate::scene::constraint::{
     Axes, Axis, Constrained, Constraint, Motion, Prescribed, Spline, Turn,
 };
-use crate::scene::forces::{Obstacle, Signal};
+use crate::scene::forces::{MagneticField, Obstacle, Signal};
 
 /// A stretch of time with its own constraints, loads and contacts. Displacements and velocities
 /// carry over from phase to phase.
@@ -22,7 +22,7 @@ pub struct Phase {
     pub(crate) gravity: Option<Vec<f64>>,
     pub(crate) constraints: Vec<Constraint>,
     pub(crate) loads: Vec<(Selection, Load)>,
-    /// Names of springs, force (N).
+    /// Names of springs, force (N), of muscles, stress (Pa), or of growths, strain (1).
     pub(crate) actuations: Vec<(Vec<String>, Signal)>,
     /// Name of a chamber, pressure (Pa).
     pub(crate) pressures: Vec<(String, Signal)>,
@@ -34,6 +34,8 @@ pub struct Phase {
     pub(crate) contact: ContactWith,
     /// Obstacles that move otherwise than in the scene.
     pub(crate) redirected: Vec<Obstacle>,
+    /// What acts on magnets.
+    pub(crate) magnetic_field: Option<MagneticField>,
 }
 
 /// The obstacles that act.
@@ -62,6 +64,7 @@ impl Phase {
             projects_velocity: false,
             contact: ContactWith::All,
             redirected: Vec::new(),
+            magnetic_field: None,
         }
     }
 
@@ -206,7 +209,8 @@ impl Phase {
 
     /// An actuation force (N) in each of the named springs, a number or any other [`Signal`]; a positive one
     /// extends it. Forces on the same spring add up. Of a [cable](crate::Spring::cable) it is the tension, and of one on a winch
-    /// the length (m) that is drawn in.
+    /// the length (m) that is drawn in; of a [muscle](crate::Muscle) it is the stress (Pa) by which it pulls, of a
+    /// [growth](crate::Growth) the strain (1).
     pub fn actuate<N: Into<String>>(
         self,
         springs: impl IntoIterator<Item = N>,
@@ -274,6 +278,12 @@ impl Phase {
         self
     }
 
+    /// The magnetic field (T) that acts on the [magnets](crate::Magnet) of the scene, one component per dimension: a vector, or any other
+    /// [`MagneticField`]. Default: none.
+    pub fn magnetic_field(self, field: impl Into<MagneticField>) -> Self {
+        Self { magnetic_field: Some(field.into()), ..self }
+    }
+
     /// No obstacle acts in this phase.
     pub fn without_contact(self) -> Self {
         self.contact_with::<String>([])
@@ -312,10 +322,11 @@ impl Phase {
         let pressures = self.pressures.iter().map(|(_, pressure)| pressure.breaks());
         let on_faces = self.face_pressures.iter().map(|(_, pressure)| pressure.breaks());
         let openings = self.openings.iter().map(|(_, opening)| opening.breaks());
+        let field = self.magnetic_field.iter().map(|field| field.field.breaks());
         let acting = self.contacts(obstacles).unwrap_or_default();
         let obstacles = acting.into_iter().map(Obstacle::breaks);
         let all = paths.chain(loads).chain(actuations).chain(pressures).chain(on_faces);
-        let all = all.chain(openings).chain(obstacles);
+        let all = all.chain(openings).chain(obstacles).chain(field);
         let mut breaks = all.flatten().copied().collect::<Vec<f64>>();
         breaks.sort_by(f64::total_cmp);
         breaks.dedup();

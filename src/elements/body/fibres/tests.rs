@@ -80,6 +80,49 @@ fn forces_and_tangents_are_derivatives() {
     }
 }
 
+/// The same of fibres that pull by a stress of their own, which has the potential stress V (l - 1) with the mean stretch l.
+#[test]
+fn pulls_and_their_tangents_are_derivatives() {
+    for mesh in meshes() {
+        let (kind, dimension) = (mesh.kind(), mesh.dimension());
+        let body = Body::new(mesh, SQUARE_MATERIAL);
+        let body = if kind.dimension() == 2 { body.thickness(0.01) } else { body };
+        let body = body.build().unwrap();
+        let (n, h, stress) = (body.dofs(), 1e-7, 3e5);
+        let (u, x) = (noise(n, 0.02, 1.0), noise(n, 1.0, 3.0));
+        let cells: Vec<usize> = (0..body.mesh().cell_count()).collect();
+        for Fibres { course, .. } in pair(dimension) {
+            let strands = body.strands(&cells, &course).unwrap();
+            let moved =
+                |by: f64| -> Vec<f64> { u.iter().zip(&x).map(|(u, x)| u + by * x).collect() };
+            let at = |by: f64| {
+                let mut forces = vec![0.0; n];
+                strands.add_forces(stress, &moved(by), &mut forces).unwrap();
+                forces
+            };
+            let potential = |by: f64| stress * body.volume() * strands.mean_stretch(&moved(by));
+            let by_potential = (potential(h) - potential(-h)) / (2.0 * h);
+            let work: f64 = at(0.0).iter().zip(&x).map(|(f, x)| f * x).sum();
+            assert!(work.abs() > 1.0, "{kind:?}: {work}");
+            assert!(
+                (work + by_potential).abs() < 1e-6 * work.abs(),
+                "{kind:?}: {work} {by_potential}"
+            );
+            let zeros = BlockMatrix::zeros(body.inertia().pattern(), dimension);
+            let (mut stiffness, mut damping) = (zeros.clone(), zeros);
+            strands.add_tangents(stress, &u, &mut stiffness, &mut damping);
+            let mut product = vec![0.0; n];
+            stiffness.add_product(1.0, &x, &mut product);
+            let largest = product.iter().fold(0.0_f64, |largest, f| largest.max(f.abs()));
+            let (behind, ahead) = (at(-h), at(h));
+            for (i, product) in product.iter().enumerate() {
+                let apart = ((behind[i] - ahead[i]) / (2.0 * h) - product).abs();
+                assert!(apart < 1e-6 * largest, "{kind:?} {i}: {apart:e} of {largest:e}");
+            }
+        }
+    }
+}
+
 /// K contains the fibres as if slightly stretched: along x they stiffen a bar of one row of cells by young
 /// A / length.
 #[test]

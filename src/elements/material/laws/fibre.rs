@@ -1,17 +1,24 @@
-//! The law of a fibre: an exponential of its strain where it is stretched.
+//! The law of a fibre: an exponential of its strain where it is stretched, or a pull of its own.
 
 use crate::base::tensor::{Matrix, Real};
 use crate::elements::material::law::{Blocks, ElasticLaw};
 use crate::elements::material::response::{Response, Tangent};
 
-/// W = (young / (8 k2)) (exp(4 k2 E^2) - 1) of a stretched fibre, else 0; all of it counts as energy of
-/// shape. Its cell has one dimension.
+/// The law of a fibre, whose energy all counts as that of shape. Its cell has one dimension.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Fibre {
-    /// Young's modulus (Pa).
-    pub(crate) young: f64,
-    /// k2
-    pub(crate) stiffening: f64,
+pub(crate) enum Fibre {
+    /// W = (young / (8 k2)) (exp(4 k2 E^2) - 1) of a stretched fibre, else 0.
+    Passive {
+        /// Young's modulus (Pa).
+        young: f64,
+        /// k2
+        stiffening: f64,
+    },
+    /// W = stress (l - 1), with the stretch l: it pulls by one force, however long it is.
+    Active {
+        /// Force per natural section (Pa).
+        stress: f64,
+    },
 }
 
 /// The largest exponent 4 k2 E^2: with it moduli are still finite.
@@ -20,7 +27,15 @@ const LARGEST: f64 = 300.0;
 impl Fibre {
     /// W, S and dS/dE.
     fn slopes(&self, twice: f64) -> [f64; 3] {
-        let Self { young, stiffening } = *self;
+        let (young, stiffening) = match *self {
+            Self::Passive { young, stiffening } => (young, stiffening),
+            Self::Active { stress } => {
+                let stretch = (1.0 + twice).sqrt();
+                let pull = stress / stretch;
+                let energy = stress * twice / (1.0 + stretch);
+                return [energy, pull, -pull / (stretch * stretch)];
+            }
+        };
         let strain = 0.5 * twice;
         // at rest a fibre counts as stretched
         if strain < 0.0 {
@@ -33,6 +48,15 @@ impl Fibre {
             false => young / (8.0 * stiffening) * exponent.exp_m1(),
         };
         [energy, young * strain * growth, young * growth * (1.0 + 2.0 * exponent)]
+    }
+
+    /// k2; one that pulls by itself has no limit of stretch.
+    #[inline(always)]
+    fn stiffening(&self) -> f64 {
+        match *self {
+            Self::Passive { stiffening, .. } => stiffening,
+            Self::Active { .. } => 0.0,
+        }
     }
 }
 
@@ -110,7 +134,7 @@ impl ElasticLaw for Fibre {
     fn domain<T: Real, const M: usize>(&self, _: T, twice: &Matrix<T, M, M>) -> T {
         // slack fibres have no limit
         let [stretched] = T::each([twice[0][0]], |[twice]| [twice.max(0.0)]);
-        stretched * stretched * -self.stiffening + LARGEST
+        stretched * stretched * -self.stiffening() + LARGEST
     }
 
     fn outside(&self, domain: f64) -> String {

@@ -103,7 +103,7 @@ fn quantities(
             true => trajectory.nodal_contacts(sample)?,
             false => Vec::new(),
         };
-        let fields = Fields { body, cells: body.cell_fields(&sample.u), contacts };
+        let fields = Fields { body, cells: trajectory.cell_fields(sample)?, contacts };
         for (quantity, values) in quantities.iter().zip(&mut values) {
             values.extend(quantity.values(&fields, geometry));
         }

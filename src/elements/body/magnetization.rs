@@ -1,0 +1,32 @@
+//! A body whose cells are magnetized.
+
+use super::assembled::Body;
+use super::magnets::Magnets;
+use crate::base::input::InputError;
+use crate::base::sparse::NodeMatrix;
+
+impl Body {
+    /// A body without magnetization, to which [`magnetize`](Self::magnetize) adds.
+    pub(crate) fn without_magnets(&self) -> Magnets {
+        let poles = vec![0.0; self.mesh.node_count()];
+        Magnets { poles, products: NodeMatrix::zeros(self.inertia.pattern()) }
+    }
+
+    /// Adds a `remanence` (T), one component per dimension, in some `cells`, counted from 0.
+    ///
+    /// # Errors
+    /// Cells of a lower dimension than space's across which it has a part.
+    pub(crate) fn magnetize(
+        &self,
+        cells: &[usize],
+        remanence: &[f64],
+        magnets: &mut Magnets,
+    ) -> Result<(), InputError> {
+        for own in &self.continua {
+            let inside = cells.iter().filter(|cell| own.cells.contains(cell));
+            let inside: Vec<usize> = inside.map(|cell| cell - own.cells.start).collect();
+            own.elements.add_magnets(&inside, remanence, magnets)?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,163 @@
+//! Muscles: fibres in a body that pull by a stress of their own.
+
+use super::signal::{self, Signal, finite_at};
+use crate::base::input::InputError;
+use crate::base::sparse::BlockMatrix;
+use crate::elements::body::{Body, CellSelection, Strands};
+use crate::elements::force::{Force, NodalForces, Tangents};
+use crate::elements::material::FibreDirection;
+use crate::elements::mesh::Mesh;
+use crate::integrators::ode::Failure;
+
+/// A muscle: fibres through cells of a body, which pull along their course by a stress that phases give
+/// ([`Phase::actuate`](crate::Phase::actuate)), in addition to the elasticity of the material.
+///
+/// With the stretch l = |F a| of the fibres along a, which has length 1 in the undeformed shape, the stress s (Pa) adds
+/// s (l - 1) to the energy per natural volume, and so s (F a) a^T / l to the first Piola stress: the muscle pulls by
+/// the force s per section of the undeformed shape, however long it is. Above 0 it contracts, below 0 it pushes. Its
+/// work counts as supplied.
+///
+/// (Active stress beside the elasticity: G. Chagnon, M. Rebouah, D. Favier, Journal of Elasticity 120 (2015) 129-160
+/// compare it with other ways. Many give the second Piola stress, s a a^T, which falls with the stretch as a force
+/// per section does not.)
+///
+/// ```
+/// use pliant::{Body, Cells, CellSelection, Material, Mesh, Muscle, Phase, Scene, Statics};
+///
+/// // a strip whose upper half contracts, so that it bends up
+/// let mesh = Mesh::rectangle([0.1, 0.01], [21, 5], Cells::Rectangles9)?;
+/// let silicone = Material { density: 1070.0, young: 2e5, poisson: 0.4, viscosity: 200.0 };
+/// let body = Body::new(mesh, silicone).thickness(0.01).build()?;
+/// let upper = CellSelection::inside([0.0, 0.005], [0.1, 0.01]);
+/// let scene = Scene::new(body)
+///     .muscle(Muscle::along([1.0, 0.0]).within(upper).named("upper"))
+///     .phase(Phase::until(1.0).hold("left").actuate(["upper"], 1e4));
+/// let bent = scene.equilibrium(&Statics::default())?;
+/// let tip = 2 * (21 * 5 - 1); // the upper corner on the right
+/// assert!(bent.trajectory().last().u[tip + 1] > 0.01);
+/// # Ok::<(), pliant::Error>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct Muscle {
+    name: String,
+    course: FibreDirection,
+    cells: Option<CellSelection>,
+}
+
+impl Muscle {
+    /// A muscle whose fibres run along a `direction`, of any length above 0, in the undeformed shape.
+    pub fn along(direction: impl Into<Vec<f64>>) -> Self {
+        Self::new(FibreDirection::Along(direction.into()))
+    }
+
+    /// One whose fibres are rings around the axis through `centre` (m), in the direction of `axis`; in the plane
+    /// `axis` is empty.
+    pub fn around(centre: impl Into<Vec<f64>>, axis: impl Into<Vec<f64>>) -> Self {
+        Self::new(FibreDirection::around(centre.into(), axis.into()))
+    }
+
+    /// A muscle whose fibres run as fibres of a material do.
+    pub(crate) fn new(course: FibreDirection) -> Self {
+        Self { name: String::new(), course, cells: None }
+    }
+
+    /// Helices in place of rings, which climb along the axis by the angle `pitch` (rad); fibres along a vector do
+    /// not change.
+    pub fn pitch(self, angle: f64) -> Self {
+        Self { course: self.course.with_pitch(angle), ..self }
+    }
+
+    /// The cells that it lies in (default: all).
+    pub fn within(self, cells: impl Into<CellSelection>) -> Self {
+        Self { cells: Some(cells.into()), ..self }
+    }
+
+    /// Name of the muscle (default: "muscle 1", "muscle 2", ... in the order of the scene). Springs have other names.
+    pub fn named(self, name: impl Into<String>) -> Self {
+        Self { name: name.into(), ..self }
+    }
+
+    /// Name of the muscle.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    pub(crate) fn or_named(self, name: String) -> Self {
+        if self.name.is_empty() { self.named(name) } else { self }
+    }
+
+    /// The same with the cells that `change` makes of those it was given.
+    pub(crate) fn with_cells(
+        &self,
+        change: impl Fn(&CellSelection) -> Result<CellSelection, InputError>,
+    ) -> Result<Self, InputError> {
+        Ok(Self { cells: self.cells.as_ref().map(change).transpose()?, ..self.clone() })
+    }
+
+    /// The cells that it lies in, counted from 0.
+    pub(crate) fn cells(&self, mesh: &Mesh) -> Result<Vec<usize>, InputError> {
+        match &self.cells {
+            Some(cells) => cells.cells(mesh).map_err(|error| self.blamed(error)),
+            None => Ok((0..mesh.cell_count()).collect()),
+        }
+    }
+
+    /// Its fibres.
+    ///
+    /// # Errors
+    /// Cells that the body does not have, that are rigid, or whose strain is Cauchy's; a course that is none there.
+    pub(crate) fn strands(&self, body: &Body) -> Result<Strands, InputError> {
+        let cells = self.cells(body.mesh())?;
+        let strands = self.course.validate().and_then(|()| body.strands(&cells, &self.course));
+        strands.map_err(|error| self.blamed(error))
+    }
+
+    fn blamed(&self, error: InputError) -> InputError {
+        InputError { input: format!("muscle \"{}\" {}", self.name, error.input), ..error }
+    }
+
+    /// Its force under the sum of the signals `stress` (Pa).
+    ///
+    /// # Errors
+    /// As [`strands`](Self::strands).
+    pub(crate) fn force(
+        &self,
+        body: &Body,
+        stress: Vec<Signal>,
+    ) -> Result<MuscleForce, InputError> {
+        Ok(MuscleForce { name: self.name.clone(), strands: self.strands(body)?, stress })
+    }
+}
+
+/// The force of a muscle.
+pub(crate) struct MuscleForce {
+    name: String,
+    strands: Strands,
+    stress: Vec<Signal>,
+}
+
+impl Force for MuscleForce {
+    fn add_forces(
+        &self,
+        t: f64,
+        u: &[f64],
+        _v: &[f64],
+        forces: &mut NodalForces,
+    ) -> Result<(), Failure> {
+        let stress = signal::sum(&self.stress, t);
+        finite_at(t, format_args!("the stress of muscle \"{}\"", self.name), stress)?;
+        self.strands.add_forces(stress, u, &mut forces.applied)
+    }
+
+    fn add_tangents(
+        &self,
+        t: f64,
+        u: &[f64],
+        _v: &[f64],
+        stiffness: &mut BlockMatrix,
+        damping: &mut BlockMatrix,
+    ) -> Tangents {
+        self.strands.add_tangents(signal::sum(&self.stress, t), u, stiffness, damping);
+        Tangents::Added
+    }
+}

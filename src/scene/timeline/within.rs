@@ -1,0 +1,74 @@
+//! What acts within the material of the bodies: muscles, growth, magnets.
+
+use super::Scene;
+use crate::base::input::{InputError, find};
+use crate::elements::body::Magnets;
+use crate::scene::forces::{Growth, Magnet, Muscle, Spring};
+
+impl Scene {
+    /// Adds a muscle in the body, to be contracted by the stress that phases give it.
+    pub fn muscle(mut self, muscle: Muscle) -> Self {
+        let number = self.muscles.len() + 1;
+        self.muscles.push(muscle.or_named(format!("muscle {number}")));
+        self
+    }
+
+    /// Lets cells of the body grow, by the strain that phases give.
+    pub fn growth(mut self, growth: Growth) -> Self {
+        let number = self.growths.len() + 1;
+        self.growths.push(growth.or_named(format!("growth {number}")));
+        self
+    }
+
+    /// Makes a part of the body a magnet, on which the magnetic fields of phases act.
+    pub fn magnet(mut self, magnet: Magnet) -> Self {
+        self.magnets.push(magnet);
+        self
+    }
+
+    /// The muscles.
+    pub fn muscles(&self) -> &[Muscle] {
+        &self.muscles
+    }
+
+    /// What grows.
+    pub fn growths(&self) -> &[Growth] {
+        &self.growths
+    }
+
+    /// The magnets.
+    pub fn magnets(&self) -> &[Magnet] {
+        &self.magnets
+    }
+
+    /// The magnetization of the body by all magnets, if there is any.
+    pub(crate) fn magnetization(&self) -> Result<Option<Magnets>, InputError> {
+        if self.magnets.is_empty() {
+            return Ok(None);
+        }
+        let mut sum = self.body.without_magnets();
+        let mut magnets = (1..).zip(&self.magnets);
+        magnets.try_for_each(|(number, magnet)| magnet.add_to(&self.body, number, &mut sum))?;
+        Ok(Some(sum))
+    }
+
+    /// Number (from 0) of the muscle with a name; `input` is where that was given.
+    pub(crate) fn muscle_number(&self, name: &str, input: &str) -> Result<usize, InputError> {
+        find(name, self.muscles.iter().map(Muscle::name), input, "muscles")
+    }
+
+    /// Number (from 0) of the spring, muscle or growth with a name, in this order; `input` is where that was given.
+    pub(crate) fn actuator_number(&self, name: &str, input: &str) -> Result<usize, InputError> {
+        if self.muscles.is_empty() && self.growths.is_empty() {
+            return self.spring_number(name, input);
+        }
+        find(name, self.actuators(), input, "springs, muscles and growths")
+    }
+
+    /// Names of all springs, muscles and growths.
+    pub(super) fn actuators(&self) -> impl Iterator<Item = &str> + Clone {
+        let springs = self.springs.iter().map(Spring::name);
+        let muscles = self.muscles.iter().map(Muscle::name);
+        springs.chain(muscles).chain(self.growths.iter().map(Growth::name))
+    }
+}
