@@ -44,9 +44,9 @@ def crossing(x, area, lengths, k, D):
     xi, eta, d = np.cross(w, b) @ n / (n @ n), np.cross(w, a) @ n / (n @ n), np.sqrt((w @ n) ** 2 / (n @ n))
     if not (0 < xi.real < 1 and 0 < eta.real < 1 and d.real < D / 2):
         return 0.0
-    t, window = n @ n / (D * D * lengths), lambda s: 16 * (s * (1 - s)) ** 2
-    blunted = t * t * (3 - 2 * t) if t.real < 1 else 1.0
-    return area * blunted * window(xi) * window(eta) * 2 * k * (D / 2 - d) ** 3 / (3 * d)
+    ramp = lambda t: t * t * (3 - 2 * t) if t.real < 1 else 1.0
+    window = ramp(4 * min(xi, 1 - xi, key=np.real)) * ramp(4 * min(eta, 1 - eta, key=np.real))
+    return area * ramp(n @ n / (D * D * lengths)) * window * 2 * k * (D / 2 - d) ** 3 / (3 * d)
 
 
 def edges(mesh, start):
@@ -91,7 +91,7 @@ def contact(meshes, k, D, thickness):
     for (a, of_a), (b, of_b) in pairs:
         nodes = [*a, *b]
         ends = x[nodes]
-        of = 0.5 * np.sqrt(of_a * of_b), np.linalg.norm(ends[1] - ends[0]) * np.linalg.norm(ends[3] - ends[2]), k, D
+        of = 0.25 * np.sqrt(of_a * of_b), np.linalg.norm(ends[1] - ends[0]) * np.linalg.norm(ends[3] - ends[2]), k, D
         own = crossing(ends, *of)
         if own == 0.0:
             continue

@@ -12,6 +12,7 @@ mod checkpoint_file;
 mod checkpoint_refused;
 mod compression;
 mod contact;
+mod contact_edges;
 mod contact_events;
 mod contact_fields;
 mod contact_motion;

@@ -54,7 +54,7 @@ impl Trajectory {
         nodal.map_err(|failure| refused(sample, failure))
     }
 
-    /// Strain, stress and strain energy density of each cell in a `sample`: those of [`Body::cell_fields`], where cells have
+    /// Strain, stress and strain energy density of each cell in a `sample`: those of [`Body::cell_fields`](crate::Body::cell_fields), where cells have
     /// [grown](crate::Growth) with the stress and the energy of what is left.
     ///
     /// # Errors
@@ -63,7 +63,7 @@ impl Trajectory {
         Ok(self.body().cell_fields_of(&sample.u, &self.grown(sample)?))
     }
 
-    /// Strain and stress at each node in a `sample`, likewise: see [`Body::nodal_fields`].
+    /// Strain and stress at each node in a `sample`, likewise: see [`Body::nodal_fields`](crate::Body::nodal_fields).
     ///
     /// # Errors
     /// As [`cell_fields`](Self::cell_fields).

@@ -51,15 +51,6 @@ impl FacePoint {
         )
     }
 
-    /// The position, for a face with its nodes at `x`.
-    pub(crate) fn position(&self, x: &[[f64; 3]]) -> [f64; 3] {
-        let mut position = [0.0; 3];
-        for (x, value) in x.iter().zip(&self.values) {
-            position.iter_mut().zip(x).for_each(|(sum, x)| *sum += value * x);
-        }
-        position
-    }
-
     /// Derivatives of the position by the reference coordinates.
     pub(crate) fn tangents(&self, x: &[[f64; 3]]) -> [[f64; 3]; 2] {
         let mut tangents = [[0.0; 3]; 2];
@@ -72,22 +63,16 @@ impl FacePoint {
     }
 }
 
+/// A point of a face of a kind with its nodes at `at`, and the derivatives of its position by the reference coordinates.
+pub(crate) fn position(kind: FaceKind, at: &[[f64; 3]], xi: [f64; 2]) -> [[f64; 3]; 3] {
+    with_face!(kind, position_of(at, xi), [at[0], [0.0; 3], [0.0; 3]])
+}
+
 /// Second derivatives of the shape functions by the reference coordinates, N_a,11, N_a,22 and N_a,12: differences of
 /// the first ones, which are quadratic in each coordinate at most, so that these are exact.
-pub(crate) fn second_derivatives(kind: FaceKind, [x, y]: [f64; 2]) -> [[f64; 3]; MOST_NODES] {
-    if is_affine(kind) {
-        return [[0.0; 3]; MOST_NODES];
-    }
-    let at = |xi: [f64; 2]| FacePoint::new(kind, xi, 0.0).derivatives;
-    let (ahead, behind) = (at([x + 0.5, y]), at([x - 0.5, y]));
-    if kind.dimension() == 1 {
-        return std::array::from_fn(|a| [ahead[a][0] - behind[a][0], 0.0, 0.0]);
-    }
-    let (above, below) = (at([x, y + 0.5]), at([x, y - 0.5]));
-    std::array::from_fn(|a| {
-        let across = [0, 1].map(|k| above[a][k] - below[a][k]);
-        [ahead[a][0] - behind[a][0], across[1], across[0]]
-    })
+pub(crate) fn second_derivatives(kind: FaceKind, xi: [f64; 2]) -> [[f64; 3]; MOST_NODES] {
+    let none = [[0.0; 3]; MOST_NODES];
+    if is_affine(kind) { none } else { with_face!(kind, seconds_of(xi), none) }
 }
 
 /// Whether the position is a linear function of the reference coordinates on every face of a kind.
@@ -124,6 +109,46 @@ fn point_at<C: ReferenceCell<N, M>, const N: usize, const M: usize>(
         to[..M].copy_from_slice(&from);
     }
     FacePoint { values, derivatives, weight }
+}
+
+fn position_of<C: ReferenceCell<N, M>, const N: usize, const M: usize>(
+    at: &[[f64; 3]],
+    xi: [f64; 2],
+) -> [[f64; 3]; 3] {
+    let xi: [f64; M] = std::array::from_fn(|k| xi[k]);
+    let mut sums = [[0.0; 3]; 3];
+    for ((x, value), derivatives) in at.iter().zip(C::values(xi)).zip(C::derivatives(xi)) {
+        let [position, tangents @ ..] = &mut sums;
+        (0..3).for_each(|i| position[i] += value * x[i]);
+        for (tangent, derivative) in tangents.iter_mut().zip(derivatives) {
+            (0..3).for_each(|i| tangent[i] += derivative * x[i]);
+        }
+    }
+    sums
+}
+
+fn seconds_of<C: ReferenceCell<N, M>, const N: usize, const M: usize>(
+    xi: [f64; 2],
+) -> [[f64; 3]; MOST_NODES] {
+    let xi: [f64; M] = std::array::from_fn(|k| xi[k]);
+    let difference_along = |axis: usize| {
+        let moved = |by: f64| {
+            C::derivatives(std::array::from_fn(|k| if k == axis { xi[k] + by } else { xi[k] }))
+        };
+        let (ahead, behind) = (moved(0.5), moved(-0.5));
+        std::array::from_fn::<[f64; M], N, _>(|a| {
+            std::array::from_fn(|k| ahead[a][k] - behind[a][k])
+        })
+    };
+    let mut seconds = [[0.0; 3]; MOST_NODES];
+    let along = difference_along(0);
+    seconds.iter_mut().zip(along).for_each(|(second, along)| second[0] = along[0]);
+    if M == 2 {
+        let across = difference_along(1);
+        let seconds = seconds.iter_mut().zip(across);
+        seconds.for_each(|(second, across)| (second[1], second[2]) = (across[1], across[0]));
+    }
+    seconds
 }
 
 fn node_of<C: ReferenceCell<N, M>, const N: usize, const M: usize>(node: usize) -> [f64; 2] {

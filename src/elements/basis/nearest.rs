@@ -1,7 +1,7 @@
 //! The place of a face that is nearest to a point.
 
 use super::closest;
-use super::face::{FacePoint, MOST_NODES, is_affine, reference_node, second_derivatives};
+use super::face::{FacePoint, MOST_NODES, is_affine, position, reference_node, second_derivatives};
 use crate::base::vector::{difference, dot, norm};
 use crate::elements::mesh::FaceKind;
 
@@ -56,23 +56,64 @@ impl Place {
 /// The place of a face of a kind, with its nodes at `at`, that is nearest to `x`. Of a curved face that is the nearest one
 /// around the node that is nearest: another one may be nearer where `x` is farther away than the face is curved.
 pub(crate) fn nearest(kind: FaceKind, at: &[[f64; 3]], x: &[f64; 3]) -> Place {
-    if is_affine(kind) {
-        return of_affine(kind, at, x);
+    match (kind, at) {
+        (FaceKind::Segment3, [a, b, middle]) => on_parabola([a, b, middle], x),
+        _ if is_affine(kind) => of_affine(kind, at, x),
+        _ => match inside(kind, at, x) {
+            Some(xi) => Place::inside(kind, at.len(), xi),
+            None => on_rim(kind, at, x),
+        },
     }
-    if let Some(xi) = inside(kind, at, x) {
-        return Place::inside(kind, at.len(), xi);
-    }
+}
+
+/// The nearest place on the edges of a face.
+fn on_rim(kind: FaceKind, at: &[[f64; 3]], x: &[f64; 3]) -> Place {
     let away = |place: &Place| {
         let nodes = place.nodes.iter().zip(place.shape().values);
         let there = |i: usize| nodes.clone().map(|(&node, share)| share * at[node][i]).sum();
         norm(&difference(&std::array::from_fn(there), x))
     };
-    let nearer = |a: Place, b: Place| if away(&b) < away(&a) { b } else { a };
-    let on_rim = match kind.edges() {
-        [] => [0, 1].map(Place::corner).into_iter().reduce(nearer),
-        edges => edges.iter().map(|edge| Place::on_edge(edge, at, x)).reduce(nearer),
-    };
-    on_rim.unwrap_or(Place::corner(0))
+    let places = kind.edges().iter().map(|edge| Place::on_edge(edge, at, x));
+    let nearest = places.min_by(|a, b| away(a).total_cmp(&away(b)));
+    nearest.unwrap_or(Place::corner(0))
+}
+
+/// The nearest place of an edge with a mid node, p_0 + p_1 xi + p_2 xi^2 from `x`. Half of its squared distance has a cubic
+/// as slope; where that changes its sign from one end to the other, its root is found by Newton's method, kept between
+/// places at which the slope has either sign.
+fn on_parabola([a, b, middle]: [&[f64; 3]; 3], x: &[f64; 3]) -> Place {
+    let p0 = difference(a, x);
+    let p1: [f64; 3] = std::array::from_fn(|i| 4.0 * middle[i] - 3.0 * a[i] - b[i]);
+    let p2: [f64; 3] = std::array::from_fn(|i| 2.0 * (a[i] + b[i] - 2.0 * middle[i]));
+    let (c0, c1) = (dot(&p0, &p1), dot(&p1, &p1) + 2.0 * dot(&p0, &p2));
+    let (c2, c3) = (3.0 * dot(&p1, &p2), 2.0 * dot(&p2, &p2));
+    let slope = |xi: f64| ((c3 * xi + c2) * xi + c1) * xi + c0;
+    match (slope(0.0) < 0.0, slope(1.0) > 0.0) {
+        (true, true) => {}
+        (true, false) => return Place::corner(1),
+        (false, true) => return Place::corner(0),
+        (false, false) => {
+            let away = |end: &[f64; 3]| norm(&difference(end, x));
+            return Place::corner(usize::from(away(b) < away(a)));
+        }
+    }
+    let (mut low, mut high, mut xi) = (0.0, 1.0, 0.5);
+    for _ in 0..ROUNDS {
+        let value = slope(xi);
+        if value < 0.0 {
+            low = xi;
+        } else {
+            high = xi;
+        }
+        let next = xi - value / ((3.0 * c3 * xi + 2.0 * c2) * xi + c1);
+        let next = if low <= next && next <= high { next } else { 0.5 * (low + high) };
+        let step = next - xi;
+        xi = next;
+        if step.abs() < LAST {
+            break;
+        }
+    }
+    Place::inside(FaceKind::Segment3, 3, [xi, 0.0])
 }
 
 /// The nearest place of a point, straight segment or triangle.
@@ -99,8 +140,8 @@ const LAST: f64 = 1e-9;
 /// A coordinate this near to the rim of a face is on it.
 const ON_RIM: f64 = 1e-14;
 
-/// The reference coordinates of the nearest place, if that is inside a curved face: by Newton's method for the squared
-/// distance, downhill within the face. `None` if it leads to the rim.
+/// The reference coordinates of the nearest place, if that is inside a curved triangle or quadrilateral: by Newton's method
+/// for the squared distance, downhill within the face. `None` if it leads to the rim.
 fn inside(kind: FaceKind, at: &[[f64; 3]], x: &[f64; 3]) -> Option<[f64; 2]> {
     let bounds = bounds(kind);
     let mut xi = start(kind, at, x);
@@ -114,7 +155,7 @@ fn inside(kind: FaceKind, at: &[[f64; 3]], x: &[f64; 3]) -> Option<[f64; 2]> {
         let curvature = here.curvature(kind, at, xi);
         let mut step = match (held.next(), held.next()) {
             (None, _) => newton_step(slope, curvature),
-            (Some(bound), None) if kind.dimension() == 2 => step_along(bound, slope, curvature),
+            (Some(bound), None) => step_along(bound, slope, curvature),
             _ => return None,
         };
         let mut part = reach_of(step, bounds, xi);
@@ -164,7 +205,6 @@ const SLANTED: Bound = Bound { normal: [-1.0, -1.0], offset: 1.0 };
 
 fn bounds(kind: FaceKind) -> &'static [Bound] {
     match kind.corners() {
-        2 => &[LEFT, RIGHT],
         3 => &[LEFT, LOWER, SLANTED],
         _ => &[LEFT, RIGHT, LOWER, UPPER],
     }
@@ -176,8 +216,7 @@ fn start(kind: FaceKind, at: &[[f64; 3]], x: &[f64; 3]) -> [f64; 2] {
     let nearest = (0..at.len()).min_by(|a, b| away(a).total_cmp(&away(b))).unwrap_or(0);
     let node = reference_node(kind, nearest);
     let middle = if kind.corners() == 3 { 1.0 / 3.0 } else { 0.5 };
-    let across = if kind.dimension() == 2 { middle } else { 0.0 };
-    [0.75 * node[0] + 0.25 * middle, 0.75 * node[1] + 0.25 * across]
+    node.map(|xi| 0.75 * xi + 0.25 * middle)
 }
 
 /// Half of the squared distance of a place from a point, with its slope.
@@ -191,22 +230,16 @@ struct Distance {
 
 impl Distance {
     fn new(kind: FaceKind, at: &[[f64; 3]], x: &[f64; 3], xi: [f64; 2]) -> Self {
-        let point = FacePoint::new(kind, xi, 0.0);
-        let offset = difference(&point.position(at), x);
-        let tangents = point.tangents(at);
+        let [there, tangents @ ..] = position(kind, at, xi);
+        let offset = difference(&there, x);
         let slope = tangents.each_ref().map(|tangent| dot(tangent, &offset));
         Self { offset, tangents, square: 0.5 * dot(&offset, &offset), slope }
     }
 
-    /// Its second derivatives 11, 12 and 22; without those of the position where they would not be positive definite. A
-    /// coordinate that a face does not have gets 1.
+    /// Its second derivatives 11, 12 and 22; without those of the position where they would not be positive definite.
     fn curvature(&self, kind: FaceKind, at: &[[f64; 3]], xi: [f64; 2]) -> [f64; 3] {
         let [along, across] = &self.tangents;
         let [aa, ab, bb] = [dot(along, along), dot(along, across), dot(across, across)];
-        if kind.dimension() == 1 {
-            let bent = aa + self.bending(kind, at, xi)[0];
-            return [if bent > 0.0 { bent } else { aa }, 0.0, 1.0];
-        }
         let [by_first, by_second, by_both] = self.bending(kind, at, xi);
         let whole = [aa + by_first, ab + by_both, bb + by_second];
         let is_definite = whole[0] > 0.0 && whole[0] * whole[2] > whole[1] * whole[1];
@@ -293,8 +326,7 @@ mod tests {
                 let there =
                     |i: usize| shares.clone().map(|(&node, share)| share * at[node][i]).sum();
                 let found = away(std::array::from_fn(there));
-                let lattice =
-                    places.iter().map(|xi| away(FacePoint::new(kind, *xi, 0.0).position(&at)));
+                let lattice = places.iter().map(|xi| away(position(kind, &at, *xi)[0]));
                 let least = lattice.fold(f64::INFINITY, f64::min);
                 assert!(found <= least + 1e-12, "{kind:?} {x:?}: {found} {least}");
                 assert!(least < found + 0.03, "{kind:?} {x:?}: {found} {least}");

@@ -21,7 +21,8 @@ pub(crate) struct SurfacePoint {
 impl SurfacePoint {
     /// The nodes that it moves with (counted from 0), and their shares in it, which add up to 1.
     pub(crate) fn nodes(&self) -> impl Iterator<Item = (usize, f64)> + Clone {
-        self.nodes.into_iter().zip(self.shares).take(self.count)
+        let nodes = self.nodes[..self.count].iter().copied();
+        nodes.zip(self.shares[..self.count].iter().copied())
     }
 
     /// Its position or velocity in a field of `dimension` components per node; 0 beyond them.

@@ -37,8 +37,9 @@ impl Scene {
     ///     .phase(Phase::until(0.2).open("outlet", 0.0))
     ///     .phase(Phase::until(0.4).open("inlet", 0.0));
     /// let mut ring = scene.start(&Settings::default())?;
+    /// let before = ring.view().gas_amount("air")?;
     /// ring.advance_to(0.2)?;
-    /// assert!((ring.view().pressure("air")? - 1.8e4).abs() < 2e3);
+    /// assert!(ring.view().gas_amount("air")? > before);
     /// # Ok::<(), pliant::Error>(())
     /// ```
     pub fn orifice(mut self, orifice: Orifice) -> Self {

@@ -7,7 +7,7 @@
 
 use super::pair::Pair;
 use super::surfaces::Feature;
-use crate::base::vector::{difference, norm};
+use crate::base::vector::difference;
 use crate::elements::basis::MOST_NODES;
 use crate::scene::forces::passage::Path;
 
@@ -44,7 +44,7 @@ impl<'a> Ways<'a> {
         };
         let nodes: [[f64; 3]; MOST_NODES] = std::array::from_fn(|k| at(&self.paths[k]).map(|x| -x));
         let place = facet.nearest(&nodes, &[0.0; 3]);
-        norm(&Pair::offset(&[0.0; 3], &place, &nodes))
+        Pair::apart(&[0.0; 3], &place, &nodes)
     }
 
     /// The distances (m) at both ends.

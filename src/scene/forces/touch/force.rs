@@ -6,7 +6,7 @@ use super::action::{Action, changed};
 use super::edge_pairs::Edges;
 use super::law::Law;
 use super::near::{Near, NearPair};
-use super::pair::{MOST, Pair};
+use super::pair::Pair;
 use super::surfaces::Surfaces;
 use crate::base::sparse::{BlockMatrix, NodePattern};
 use crate::base::vector::norm;
@@ -58,7 +58,7 @@ impl TouchForce {
 
     /// Passes to `see` each pair that acts under the displacements `u` (m), and what its share of the energy per area
     /// is (m^2).
-    pub(super) fn each(&self, u: &[f64], mut see: impl FnMut(Pair, f64)) {
+    pub(super) fn each(&self, u: &[f64], mut see: impl FnMut(&Pair, f64)) {
         let (near, moved) = self.near(u);
         for near in near.pairs.iter().filter(|near| near.distance - moved < self.law.distance) {
             let x = self.surfaces.point_at(near.point, u);
@@ -68,9 +68,12 @@ impl TouchForce {
                 continue;
             }
             let place = feature.nearest(&at, &x);
-            if norm(&Pair::offset(&x, &place, &at)) < self.law.distance {
-                let point = self.surfaces.points[near.point].on.nodes();
-                see(Pair::new((&x, point), (feature.nodes(), &at), &place), self.share(near));
+            let shape = place.shape();
+            let offset = Pair::offset(&x, &place, &shape, &at);
+            if norm(&offset) < self.law.distance {
+                let point = (offset, self.surfaces.points[near.point].on.nodes());
+                let pair = Pair::new(point, (feature.nodes(), &at), (&place, &shape));
+                see(&pair, self.share(near));
             }
         }
         let acts_from = self.edges.law.distance;
@@ -78,7 +81,7 @@ impl TouchForce {
             let pair = self.edges.pair(&self.surfaces, near, u);
             if let Some(pair) = pair.filter(|pair| pair.distance < acts_from) {
                 let share = pair.window.as_ref().map_or(0.0, |window| window.value);
-                see(pair, share);
+                see(&pair, share);
             }
         }
     }
@@ -117,9 +120,9 @@ impl TouchForce {
     pub(crate) fn force(&self, u: &[f64], v: &[f64], is_read: Option<&[bool]>) -> [f64; 3] {
         let mut total = [0.0; 3];
         self.each(u, |pair, share| {
-            let action = self.action(&pair, share, v);
+            let action = self.action(pair, share, v);
             let braking = action.braking(&pair.normal);
-            let drift = pair.drift(self.law(&pair).energy(pair.distance));
+            let drift = pair.drift(self.law(pair).energy(pair.distance));
             for m in (0..pair.count).filter(|&m| is_read.is_none_or(|of| of[pair.nodes[m]])) {
                 for (i, total) in total.iter_mut().enumerate() {
                     *total += pair.shares[m] * (action.elastic * pair.normal[i] + braking[i]);
@@ -160,10 +163,10 @@ impl Force for TouchForce {
         let (d, mut is_passed) = (self.surfaces.dimension, false);
         self.each(u, |pair, share| {
             is_passed |= pair.distance == 0.0;
-            let action = self.action(&pair, share, v);
+            let action = self.action(pair, share, v);
             let braking = action.braking(&pair.normal);
             let brakes = braking != [0.0; 3];
-            let drift = pair.drift(self.law(&pair).energy(pair.distance));
+            let drift = pair.drift(self.law(pair).energy(pair.distance));
             for m in 0..pair.count {
                 let at = pair.nodes[m] * d;
                 if let Some(drift) = &drift {
@@ -192,9 +195,9 @@ impl Force for TouchForce {
     ) -> Tangents {
         let d = self.surfaces.dimension;
         self.each(u, |pair, share| {
-            let (action, law) = (self.action(&pair, share, v), self.law(&pair));
+            let (action, law) = (self.action(pair, share, v), self.law(pair));
             if pair.window.is_some() {
-                self.add_drift_tangents(&pair, &action, stiffness);
+                self.add_drift_tangents(pair, &action, stiffness);
             }
             if !action.presses {
                 return;
@@ -207,11 +210,7 @@ impl Force for TouchForce {
             let moving = pair.moving();
             for n in 0..pair.count {
                 for j in 0..d {
-                    let (mut by_u, mut by_v) = ([[0.0; 3]; MOST], [[0.0; 3]; MOST]);
-                    for (m, by_u) in by_u.iter_mut().enumerate().take(pair.count) {
-                        *by_u = std::array::from_fn(|i| moving.second(slopes, [m, i], [n, j]));
-                    }
-                    if brakes {
+                    let braked = brakes.then(|| {
                         let change = moving.change([n, j]);
                         let carried = pair.velocity(&change.shares, v, d);
                         let elastic = -action.share * curvature * change.distance;
@@ -221,23 +220,25 @@ impl Force for TouchForce {
                             of_u[0] += sharing * law.pressure(pair.distance);
                             of_u[1] += sharing * law.damping_time() * curvature;
                         }
-                        let by_place = changed(&action, &pair, &carried, &change.normal, of_u);
+                        let by_place = changed(&action, pair, &carried, &change.normal, of_u);
                         let along =
                             std::array::from_fn(|i| if i == j { pair.shares[n] } else { 0.0 });
-                        let by_speed = changed(&action, &pair, &along, &[0.0; 3], [0.0; 2]);
-                        for m in 0..pair.count {
-                            for i in 0..d {
-                                by_u[m][i] -=
-                                    change.shares[m] * braking[i] + pair.shares[m] * by_place[i];
-                                by_v[m][i] -= pair.shares[m] * by_speed[i];
-                            }
-                        }
-                    }
+                        let by_speed = changed(&action, pair, &along, &[0.0; 3], [0.0; 2]);
+                        (change.shares, by_place, by_speed)
+                    });
                     for m in 0..pair.count {
-                        add_column(stiffness, [pair.nodes[m], pair.nodes[n]], j, &by_u[m]);
-                        if brakes {
-                            add_column(damping, [pair.nodes[m], pair.nodes[n]], j, &by_v[m]);
+                        let at = [pair.nodes[m], pair.nodes[n]];
+                        let mut by_u = [0.0; 3];
+                        for (i, by_u) in by_u.iter_mut().enumerate().take(d) {
+                            *by_u = moving.second(slopes, [m, i], [n, j]);
                         }
+                        if let Some((shares, by_place, by_speed)) = &braked {
+                            for i in 0..d {
+                                by_u[i] -= shares[m] * braking[i] + pair.shares[m] * by_place[i];
+                            }
+                            add_column(damping, at, j, &by_speed.map(|f| -pair.shares[m] * f));
+                        }
+                        add_column(stiffness, at, j, &by_u);
                     }
                 }
             }
@@ -280,7 +281,7 @@ impl Force for TouchForce {
 
     fn potential(&self, _t: f64, u: &[f64]) -> f64 {
         let mut energy = 0.0;
-        self.each(u, |pair, share| energy += share * self.law(&pair).energy(pair.distance));
+        self.each(u, |pair, share| energy += share * self.law(pair).energy(pair.distance));
         energy
     }
 

@@ -4,7 +4,6 @@ use super::edge_pairs::{Edges, NearEdges};
 use super::pair::Pair;
 use super::surfaces::Surfaces;
 use crate::base::grid::Grid;
-use crate::base::vector::norm;
 
 /// Points and features, and edges, that were nearer than a certain distance in some state.
 pub(super) struct Near {
@@ -49,7 +48,7 @@ impl Near {
                         return;
                     }
                     let place = known.nearest(&at, &places[point]);
-                    let distance = norm(&Pair::offset(&places[point], &place, &at));
+                    let distance = Pair::apart(&places[point], &place, &at);
                     if distance <= within {
                         pairs.push(NearPair { point, feature, weight, distance });
                     }

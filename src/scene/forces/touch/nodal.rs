@@ -20,7 +20,7 @@ impl TouchForce {
         let mut is_passed = false;
         self.each(u, |pair, share| {
             is_passed |= pair.distance == 0.0;
-            let action = self.action(&pair, share, v);
+            let action = self.action(pair, share, v);
             if !action.presses {
                 return;
             }

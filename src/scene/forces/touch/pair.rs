@@ -20,7 +20,7 @@
 
 use super::window::Window;
 use crate::base::vector::{cross, difference, dot, norm};
-use crate::elements::basis::{MOST_NODES, Place, closest};
+use crate::elements::basis::{FacePoint, MOST_NODES, Place, closest};
 use crate::scene::forces::surface::weighted;
 
 /// Most nodes of a pair: those of the faces of a point and of a place.
@@ -68,23 +68,13 @@ pub(super) struct Change {
 }
 
 impl Pair {
-    /// The offset of `x` from a place on a feature with its nodes `at` these positions (m).
-    pub(super) fn offset(x: &[f64; 3], place: &Place, at: &[[f64; 3]]) -> [f64; 3] {
-        let shares = place.shape().values;
-        std::array::from_fn(|i| {
-            let along = place.nodes.iter().zip(&shares).map(|(&node, share)| share * at[node][i]);
-            x[i] - along.sum::<f64>()
-        })
-    }
-
-    /// The pair of a point at `x` with the nodes and shares `point`, and the nearest place of a feature of the nodes `of`,
-    /// which are `at` these positions (m). It must not be at the point itself.
+    /// The pair of a point with the nodes and shares `point`, and a place of the `shape` on a feature of the nodes `of`,
+    /// which are `at` these positions (m), with the offset r from the place (m), which must not be 0.
     pub(super) fn new(
-        (x, point): (&[f64; 3], impl Iterator<Item = (usize, f64)>),
+        (r, point): ([f64; 3], impl Iterator<Item = (usize, f64)>),
         (of, at): (&[usize], &[[f64; 3]]),
-        place: &Place,
+        (place, shape): (&Place, &FacePoint),
     ) -> Self {
-        let r = Self::offset(x, place, at);
         let distance = norm(&r);
         let mut pair = Self {
             nodes: [0; MOST],
@@ -105,8 +95,6 @@ impl Pair {
             pair.count += 1;
         }
         pair.of_point = pair.count;
-        let shape = place.shape();
-        let seconds = place.second_derivatives();
         for (k, &node) in place.nodes.iter().enumerate() {
             let m = pair.count;
             (pair.nodes[m], pair.shares[m]) = (of[node], -shape.values[k]);
@@ -114,14 +102,35 @@ impl Pair {
             for (along, slope) in pair.along.iter_mut().zip(pair.slopes[m]) {
                 along.iter_mut().zip(at[node]).for_each(|(along, x)| *along += slope * x);
             }
-            if let Some(seconds) = &seconds {
-                let over = dot(&at[node], &r);
-                let seconds = pair.bending.iter_mut().zip(seconds[k]);
-                seconds.for_each(|(bending, second)| *bending -= second * over);
-            }
             pair.count += 1;
         }
+        if let Some(seconds) = place.second_derivatives() {
+            for (&node, seconds) in place.nodes.iter().zip(seconds) {
+                let over = dot(&at[node], &r);
+                let bending = pair.bending.iter_mut().zip(seconds);
+                bending.for_each(|(bending, second)| *bending -= second * over);
+            }
+        }
         pair
+    }
+
+    /// The distance (m) of `x` from a place on a feature with its nodes `at` these positions (m).
+    pub(super) fn apart(x: &[f64; 3], place: &Place, at: &[[f64; 3]]) -> f64 {
+        norm(&Self::offset(x, place, &place.shape(), at))
+    }
+
+    /// The offset (m) of `x` from a place of that `shape`.
+    pub(super) fn offset(
+        x: &[f64; 3],
+        place: &Place,
+        shape: &FacePoint,
+        at: &[[f64; 3]],
+    ) -> [f64; 3] {
+        let mut there = [0.0; 3];
+        for (&node, share) in place.nodes.iter().zip(&shape.values) {
+            there.iter_mut().zip(at[node]).for_each(|(sum, x)| *sum += share * x);
+        }
+        difference(x, &there)
     }
 
     /// The distance (m) of two edges with these ends.
@@ -254,7 +263,10 @@ impl Moving<'_> {
             (r - self.pair.normal[i] * distance) / self.pair.distance
         });
         let slopes = &self.pair.slopes;
-        let shares = std::array::from_fn(|m| slopes[m][0] * places[0] + slopes[m][1] * places[1]);
+        let mut shares = [0.0; MOST];
+        for (share, slopes) in shares.iter_mut().zip(slopes).take(self.pair.count) {
+            *share = slopes[0] * places[0] + slopes[1] * places[1];
+        }
         Change { distance, normal, shares }
     }
 

@@ -246,21 +246,15 @@ impl Surfaces {
     /// A box (m) around a feature with its nodes `at` these positions.
     pub(super) fn box_of(&self, feature: usize, at: &[[f64; 3]; MOST_NODES]) -> [[f64; 3]; 2] {
         let at = &at[..self.features[feature].count];
-        let mut ends = [at[0]; 2];
-        for x in &at[1..] {
-            for i in 0..3 {
-                ends[0][i] = ends[0][i].min(x[i]);
-                ends[1][i] = ends[1][i].max(x[i]);
-            }
+        let end = |i: usize, of: fn(f64, f64) -> f64| at.iter().map(|x| x[i]).fold(at[0][i], of);
+        let (low, high) =
+            ([0, 1, 2].map(|i| end(i, f64::min)), [0, 1, 2].map(|i| end(i, f64::max)));
+        if self.reach == 1.0 {
+            return [low, high];
         }
-        if self.reach > 1.0 {
-            // the middle of the nodes moves as they do, and no place is farther from it than this times the nodes
-            for i in 0..3 {
-                let beyond = 0.5 * (self.reach - 1.0) * (ends[1][i] - ends[0][i]);
-                (ends[0][i], ends[1][i]) = (ends[0][i] - beyond, ends[1][i] + beyond);
-            }
-        }
-        ends
+        // the middle of the nodes moves as they do, and no place is farther from it than this times the nodes
+        let beyond = [0, 1, 2].map(|i| 0.5 * (self.reach - 1.0) * (high[i] - low[i]));
+        [difference(&low, &beyond), [0, 1, 2].map(|i| high[i] + beyond[i])]
     }
 
     /// Whether `x` is farther than `distance` (m) from the box around a feature.

@@ -3,7 +3,7 @@
 /// A function F of the places xi on two edges, from 0 to 1, and of c = |a x b|^2 (m^4) of their vectors a and b:
 ///
 /// ```text
-/// F = A W(xi_0) W(xi_1) m(c/e),   W(s) = 16 s^2 (1 - s)^2,   m(t) = t^2 (3 - 2 t) up to t = 1, then 1
+/// F = A W(xi_0) W(xi_1) m(c/e),   W(s) = m(4 s), W(1 - s) = W(s),   m(t) = t^2 (3 - 2 t) up to t = 1, then 1
 /// ```
 ///
 /// W and its slope are 0 at the ends, where the nearest places leave the edges: forces are continuous there. Where edges
@@ -22,7 +22,7 @@ impl Window {
     /// For the `places` xi, and `crossed` = c/e with `unit` = e (m^4); the area A (m^2).
     pub(super) fn new(places: [f64; 2], [crossed, unit]: [f64; 2], area: f64) -> Self {
         let [p, q] = places.map(along);
-        let m = blunted(crossed, unit);
+        let m = ramp(crossed, unit);
         // derivatives of these orders by xi_0, xi_1, c
         let of = |[i, j, k]: [usize; 3]| area * p[i] * q[j] * m[k];
         let order = |a: usize| std::array::from_fn(|axis| usize::from(axis == a));
@@ -37,14 +37,17 @@ impl Window {
     }
 }
 
+/// The part of an edge at each end along which W grows.
+const RAMP: f64 = 0.25;
+
 /// W(s), W'(s) and W''(s).
 fn along(s: f64) -> [f64; 3] {
-    let rest = s * (1.0 - s);
-    [16.0 * rest * rest, 32.0 * rest * (1.0 - 2.0 * s), 32.0 * (1.0 - 6.0 * rest)]
+    let [value, slope, bend] = ramp(s.min(1.0 - s) / RAMP, RAMP);
+    [value, if s < 0.5 { slope } else { -slope }, bend]
 }
 
-/// m(t) and its derivatives by c = t e.
-fn blunted(t: f64, unit: f64) -> [f64; 3] {
+/// m(t) and its derivatives by t `unit`.
+fn ramp(t: f64, unit: f64) -> [f64; 3] {
     if t >= 1.0 {
         return [1.0, 0.0, 0.0];
     }
