@@ -46,6 +46,20 @@ impl Place {
         FacePoint::new(self.kind, self.xi, 0.0)
     }
 
+    /// The offset of `x` from it, on a face with its nodes at `at`; `shape` is [its own](Self::shape).
+    pub(crate) fn offset(&self, shape: &FacePoint, at: &[[f64; 3]], x: &[f64; 3]) -> [f64; 3] {
+        let mut there = [0.0; 3];
+        for (&node, share) in self.nodes.iter().zip(&shape.values) {
+            there.iter_mut().zip(at[node]).for_each(|(sum, x)| *sum += share * x);
+        }
+        difference(x, &there)
+    }
+
+    /// The distance of `x` from it.
+    pub(crate) fn distance(&self, at: &[[f64; 3]], x: &[f64; 3]) -> f64 {
+        norm(&self.offset(&self.shape(), at, x))
+    }
+
     /// The second derivatives of the shape functions, by the first coordinate, by the second one, and by both; none if all
     /// are 0.
     pub(crate) fn second_derivatives(&self) -> Option<[[f64; 3]; MOST_NODES]> {
@@ -68,14 +82,12 @@ pub(crate) fn nearest(kind: FaceKind, at: &[[f64; 3]], x: &[f64; 3]) -> Place {
 
 /// The nearest place on the edges of a face.
 fn on_rim(kind: FaceKind, at: &[[f64; 3]], x: &[f64; 3]) -> Place {
-    let away = |place: &Place| {
-        let nodes = place.nodes.iter().zip(place.shape().values);
-        let there = |i: usize| nodes.clone().map(|(&node, share)| share * at[node][i]).sum();
-        norm(&difference(&std::array::from_fn(there), x))
-    };
-    let places = kind.edges().iter().map(|edge| Place::on_edge(edge, at, x));
-    let nearest = places.min_by(|a, b| away(a).total_cmp(&away(b)));
-    nearest.unwrap_or(Place::corner(0))
+    let places = kind.edges().iter().map(|edge| {
+        let place = Place::on_edge(edge, at, x);
+        (place.distance(at, x), place)
+    });
+    let nearest = places.min_by(|(a, _), (b, _)| a.total_cmp(b));
+    nearest.map_or(Place::corner(0), |(_, place)| place)
 }
 
 /// The nearest place of an edge with a mid node, p_0 + p_1 xi + p_2 xi^2 from `x`. Half of its squared distance has a cubic
@@ -322,10 +334,7 @@ mod tests {
                 let x = [0.5 + 0.6 * x[0], 0.5 + 0.6 * x[1], 0.15 * x[2]];
                 let away = |there: [f64; 3]| norm(&difference(&there, &x));
                 let place = nearest(kind, &at, &x);
-                let shares = place.nodes.iter().zip(place.shape().values);
-                let there =
-                    |i: usize| shares.clone().map(|(&node, share)| share * at[node][i]).sum();
-                let found = away(std::array::from_fn(there));
+                let found = place.distance(&at, &x);
                 let lattice = places.iter().map(|xi| away(position(kind, &at, *xi)[0]));
                 let least = lattice.fold(f64::INFINITY, f64::min);
                 assert!(found <= least + 1e-12, "{kind:?} {x:?}: {found} {least}");

@@ -61,6 +61,17 @@ impl CellSelection {
         Ok(Self::Numbers(children.iter().map(|cell| cell + 1).collect()))
     }
 
+    /// The cells of a selection, or all without one, counted from 0.
+    pub(crate) fn cells_or_all(
+        selection: Option<&Self>,
+        mesh: &Mesh,
+    ) -> Result<Vec<usize>, InputError> {
+        match selection {
+            Some(selection) => selection.cells(mesh),
+            None => Ok((0..mesh.cell_count()).collect()),
+        }
+    }
+
     /// The cells, counted from 0.
     pub(crate) fn cells(&self, mesh: &Mesh) -> Result<Vec<usize>, InputError> {
         let cells = match self {

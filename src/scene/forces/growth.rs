@@ -77,10 +77,8 @@ impl Growth {
     /// # Errors
     /// Cells that the body does not have.
     pub(crate) fn cells(&self, body: &Body) -> Result<Vec<usize>, InputError> {
-        match &self.cells {
-            Some(cells) => cells.cells(body.mesh()).map_err(|error| self.blamed(error)),
-            None => Ok((0..body.mesh().cell_count()).collect()),
-        }
+        let cells = CellSelection::cells_or_all(self.cells.as_ref(), body.mesh());
+        cells.map_err(|error| self.blamed(error))
     }
 
     /// The elasticity of its cells.

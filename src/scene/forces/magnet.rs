@@ -5,7 +5,6 @@ use crate::base::input::{InputError, finite};
 use crate::base::sparse::BlockMatrix;
 use crate::elements::body::{Body, CellSelection, Magnets};
 use crate::elements::force::{Force, NodalForces, Tangents};
-use crate::elements::mesh::Mesh;
 use crate::integrators::ode::Failure;
 
 /// A part of a body that is a hard magnet: its remanence b (T), of the undeformed shape, moves along with the material.
@@ -82,15 +81,9 @@ impl Magnet {
             return Err(blamed(InputError::new("remanence", value, help)));
         }
         finite("remanence", &self.remanence).map_err(blamed)?;
-        let cells = self.cells_in(body.mesh()).map_err(blamed)?;
+        let cells =
+            CellSelection::cells_or_all(self.cells.as_ref(), body.mesh()).map_err(blamed)?;
         body.magnetize(&cells, &self.remanence, magnets).map_err(blamed)
-    }
-
-    fn cells_in(&self, mesh: &Mesh) -> Result<Vec<usize>, InputError> {
-        match &self.cells {
-            Some(cells) => cells.cells(mesh),
-            None => Ok((0..mesh.cell_count()).collect()),
-        }
     }
 }
 

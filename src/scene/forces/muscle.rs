@@ -96,10 +96,8 @@ impl Muscle {
 
     /// The cells that it lies in, counted from 0.
     pub(crate) fn cells(&self, mesh: &Mesh) -> Result<Vec<usize>, InputError> {
-        match &self.cells {
-            Some(cells) => cells.cells(mesh).map_err(|error| self.blamed(error)),
-            None => Ok((0..mesh.cell_count()).collect()),
-        }
+        let cells = CellSelection::cells_or_all(self.cells.as_ref(), mesh);
+        cells.map_err(|error| self.blamed(error))
     }
 
     /// Its fibres.

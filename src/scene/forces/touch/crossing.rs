@@ -44,7 +44,7 @@ impl<'a> Ways<'a> {
         };
         let nodes: [[f64; 3]; MOST_NODES] = std::array::from_fn(|k| at(&self.paths[k]).map(|x| -x));
         let place = facet.nearest(&nodes, &[0.0; 3]);
-        Pair::apart(&[0.0; 3], &place, &nodes)
+        place.distance(&nodes, &[0.0; 3])
     }
 
     /// The distances (m) at both ends.

@@ -69,7 +69,7 @@ impl TouchForce {
             }
             let place = feature.nearest(&at, &x);
             let shape = place.shape();
-            let offset = Pair::offset(&x, &place, &shape, &at);
+            let offset = place.offset(&shape, &at, &x);
             if norm(&offset) < self.law.distance {
                 let point = (offset, self.surfaces.points[near.point].on.nodes());
                 let pair = Pair::new(point, (feature.nodes(), &at), (&place, &shape));

@@ -1,7 +1,6 @@
 //! Which points and features, and which edges, are near each other.
 
 use super::edge_pairs::{Edges, NearEdges};
-use super::pair::Pair;
 use super::surfaces::Surfaces;
 use crate::base::grid::Grid;
 
@@ -48,7 +47,7 @@ impl Near {
                         return;
                     }
                     let place = known.nearest(&at, &places[point]);
-                    let distance = Pair::apart(&places[point], &place, &at);
+                    let distance = place.distance(&at, &places[point]);
                     if distance <= within {
                         pairs.push(NearPair { point, feature, weight, distance });
                     }

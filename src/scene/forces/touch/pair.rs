@@ -114,25 +114,6 @@ impl Pair {
         pair
     }
 
-    /// The distance (m) of `x` from a place on a feature with its nodes `at` these positions (m).
-    pub(super) fn apart(x: &[f64; 3], place: &Place, at: &[[f64; 3]]) -> f64 {
-        norm(&Self::offset(x, place, &place.shape(), at))
-    }
-
-    /// The offset (m) of `x` from a place of that `shape`.
-    pub(super) fn offset(
-        x: &[f64; 3],
-        place: &Place,
-        shape: &FacePoint,
-        at: &[[f64; 3]],
-    ) -> [f64; 3] {
-        let mut there = [0.0; 3];
-        for (&node, share) in place.nodes.iter().zip(&shape.values) {
-            there.iter_mut().zip(at[node]).for_each(|(sum, x)| *sum += share * x);
-        }
-        difference(x, &there)
-    }
-
     /// The distance (m) of two edges with these ends.
     pub(super) fn edges_apart(a: &[[f64; 3]; 2], b: &[[f64; 3]; 2]) -> f64 {
         let from_edge = |x: &[f64; 3], of: &[[f64; 3]; 2]| {

@@ -2,7 +2,6 @@ use std::sync::Arc;
 
 use super::Touch;
 use super::force::TouchForce;
-use super::pair::Pair;
 use super::surfaces::Surfaces;
 use crate::base::sparse::BlockMatrix;
 use crate::base::vector::{cross, dot, largest, noise, norm};
@@ -263,7 +262,7 @@ fn a_convex_surface_is_felt_once() {
                 .map(|feature| {
                     let at = surfaces.nodes_at(feature, &still);
                     let place = surfaces.features[feature].nearest(&at, &x);
-                    let d = Pair::apart(&x, &place, &at);
+                    let d = place.distance(&at, &x);
                     let weight = surfaces.weight(stranger, feature);
                     weight * (reach - d).max(0.0).powi(2)
                 })
