@@ -71,8 +71,9 @@ advice: setup ## docs/advice.md, the adviser on trial, some 10 minutes
 stability: setup ## docs/stability.md with its pictures, some minutes
 	cargo run --release --example stability
 
-validation: setup ## docs/validation.md, a beam that was measured, some minutes
+validation: setup ## docs/validation.md, a beam and an arm that were measured, some minutes
 	cargo run --release --example measured_beam
+	cargo run --release --example measured_arm
 
 peers: setup ## Compare with SciPy, Octave, diffsol and others (peers/README.md)
 	peers/run

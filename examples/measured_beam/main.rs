@@ -1,5 +1,5 @@
 //! A beam of silicone that was measured: fits the model to its motion under its own weight, judges it by that under a load,
-//! and writes `docs/validation.md`.
+//! and writes the chapter of it in `docs/validation.md`.
 //!
 //! `cargo run --release --example measured_beam`
 //!
@@ -7,6 +7,8 @@
 
 mod beam;
 mod capture;
+#[path = "../common/chapter.rs"]
+mod chapter;
 mod judge;
 mod page;
 

@@ -1,7 +1,6 @@
 //! The page: what each ingredient of the model buys.
 
 use std::fmt::Write;
-use std::fs;
 use std::ops::Range;
 use std::path::Path;
 
@@ -9,12 +8,12 @@ use pliant::fit::Fitted;
 use pliant::output::Chart;
 use pliant::{Dilatation, Law, SolidCells};
 
-use super::Outcome;
 use super::beam::{Hung, Matter, Model, Release};
 use super::capture::{Trial, height};
 use super::judge::{
     Damping, Found, Nearness, Swing, all_trials, creep, let_go, nearness, own_weight, sag, thread,
 };
+use super::{Outcome, chapter};
 
 /// The model that the others differ from.
 const MODEL: Model = Model {
@@ -194,8 +193,7 @@ pub fn write(trials: &Trials, out: &Path) -> Outcome<()> {
     ];
     let after = include_str!("after.md").to_owned();
     page += &numbers.iter().fold(after, |text, (name, number)| text.replace(name, number));
-    fs::write(out.join("validation.md"), page)?;
-    Ok(())
+    Ok(chapter::write(&out.join("validation.md"), &page)?)
 }
 
 /// Of all rows and of what was measured.
