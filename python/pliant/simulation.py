@@ -119,6 +119,10 @@ class Simulation:
         """Magnetic moment (A m^2) of all magnets."""
         return self._simulation.magnetic_moment()
 
+    def fluid_force(self, fluid: str) -> Array:
+        """Force (N) of a fluid on the bodies, drag and pressure."""
+        return self._simulation.fluid_force(fluid)
+
     def spring_length(self, spring: str) -> float:
         """Length (m) of a spring."""
         return self._simulation.spring_length(spring)

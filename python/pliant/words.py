@@ -1297,6 +1297,56 @@ def orifice(
     )
 
 
+def fluid(
+    *,
+    density: float,
+    name: str | None = None,
+    drag: float | None = None,
+    skin_drag: float | None = None,
+    added_mass: float | None = None,
+    velocity: Sequence[Formula] | None = None,
+    level: float | None = None,
+    nodes: Nodes | None = None,
+) -> dict:
+    r"""A fluid around bodies, crudely: what it does to each face of their boundary by itself, without a wake. With the
+    velocity w of the body relative to the fluid, w_n along the normal n and w_t along the face, drag is the traction
+    -(rho/2) (C_n |w_n| w_n n + C_t |w_t| w_t); `added_mass` moves along with the faces in all directions alike; below
+    the `level` there is the pressure rho g times the depth. One of them at least is needed.
+
+    Parameters
+    ----------
+    density
+        the density rho (kg/m^3). Required. Of water 1000, of air 1.2.
+    name
+        the name of the fluid. Default: fluid 1, fluid 2, ...
+    drag
+        the coefficient C_n of drag along the normal (no unit). Default: 0. Faces at the front and at the back both
+        count: 0.6 to 1 for plates, 0.75 to 0.9 for cylinders across, 0.5 for spheres.
+    skin_drag
+        the coefficient C_t of drag along the face (no unit). Default: 0. Some 0.003 to 0.01 at Reynolds numbers of
+        1e4 to 1e6.
+    added_mass
+        the mass of fluid that moves along with the undeformed area (kg/m^2). Default: 0. The density times R/6 for a
+        sphere of radius R, R/2 for a cylinder across, pi c/8 on both sides of a plate of width c.
+    velocity
+        the velocity of the fluid, a current (m/s). Default: 0.
+    level
+        the height of its surface above the origin, against gravity (m). Default: no pressure by depth.
+    nodes
+        the nodes of the faces that it acts on. Default: all. Those inside of bodies do not matter.
+    """
+    return _table(
+        density=density,
+        name=name,
+        drag=drag,
+        skin_drag=skin_drag,
+        added_mass=added_mass,
+        velocity=velocity,
+        level=level,
+        nodes=nodes,
+    )
+
+
 def obstacle_half_plane(
     *,
     point: Vector,
@@ -2652,6 +2702,41 @@ def sensor_magnetic_moment(
     )
 
 
+def sensor_fluid_force(
+    *,
+    name: str,
+    fluid: str,
+    component: Literal["x", "y", "z", "norm", "xx", "yy", "zz", "xy", "yz", "xz", "von-mises"] | None = None,
+    nodes: Nodes | None = None,
+    body: str | None = None,
+) -> dict:
+    r"""Sensor of the kind "fluid-force": the force of a fluid, its drag and pressure, on all nodes, on some of them or on
+    those of one body (N).
+
+    Parameters
+    ----------
+    name
+        the name of the sensor. Required.
+    fluid
+        the name of the fluid. Required.
+    component
+        one component alone. Default: all, each a column. Vectors have `x`, `y`, `z` and their length `norm`; tensors
+        `xx` and so on; stress has `von-mises` besides.
+    nodes
+        the nodes on which it acts. Default: all.
+    body
+        the name of one of several bodies. Default: all together.
+    """
+    return _table(
+        kind="fluid-force",
+        name=name,
+        fluid=fluid,
+        component=component,
+        nodes=nodes,
+        body=body,
+    )
+
+
 def sensor_pressure(
     *,
     name: str,
@@ -3151,6 +3236,7 @@ __all__ = [
     "chamber",
     "ends",
     "fibres",
+    "fluid",
     "friction_coefficient",
     "gas",
     "groups",
@@ -3209,6 +3295,7 @@ __all__ = [
     "sensor_contact_pressure",
     "sensor_displacement",
     "sensor_distance",
+    "sensor_fluid_force",
     "sensor_gap",
     "sensor_gas_amount",
     "sensor_gas_flow",

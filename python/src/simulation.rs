@@ -177,6 +177,16 @@ impl Simulation {
         Ok(PyArray1::from_vec(py, self.lock()?.view().magnetic_moment()))
     }
 
+    /// Force (N) of a fluid on the bodies.
+    fn fluid_force<'py>(
+        &self,
+        py: Python<'py>,
+        fluid: &str,
+    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let force = self.lock()?.view().fluid_force(fluid).map_err(raised)?;
+        Ok(PyArray1::from_vec(py, force))
+    }
+
     /// Length (m) of a spring.
     fn spring_length(&self, spring: &str) -> PyResult<f64> {
         self.lock()?.view().spring_length(spring).map_err(raised)

@@ -298,6 +298,13 @@ pub trait Force: Send + Sync {
         None
     }
 
+    /// Mass (kg) of the surroundings that moves along with pairs of nodes that share a cell, the same in all phases: it is
+    /// added to m of M = m (x) I.
+    #[doc(hidden)]
+    fn carried(&self) -> &[([usize; 2], f64)] {
+        &[]
+    }
+
     /// Whether it only keeps rigid pieces in their shape, as their edges do where they are constraints.
     #[doc(hidden)]
     fn keeps_rigid(&self) -> bool {

@@ -32,16 +32,39 @@ fn fingers_of_silicone_do_not_lock() {
 
 #[test]
 fn all_scenes_are_run() {
-    let [first, second, third, fourth, fifth, sixth, seventh, eighth, ninth, tenth, sensors] =
-        blocks("toml")[..]
+    let [
+        first,
+        second,
+        third,
+        fourth,
+        fifth,
+        sixth,
+        seventh,
+        eighth,
+        ninth,
+        tenth,
+        eleventh,
+        sensors,
+    ] = blocks("toml")[..]
     else {
-        panic!("eleven blocks")
+        panic!("twelve blocks")
     };
     assert_eq!([fourth, fifth, sixth, seventh], [GLUED_ARM, GRIPPER, WHEEL, FINGER]);
-    assert_eq!([eighth, ninth, tenth], [MUSCLES, MAGNETS, GEL]);
+    assert_eq!([eighth, ninth, tenth, eleventh], [MUSCLES, MAGNETS, GEL, FOAM]);
     let with_sensors = first.to_owned() + sensors;
-    for text in [&with_sensors, second, third, fourth, fifth, sixth, seventh, eighth, ninth, tenth]
-    {
+    for text in [
+        &with_sensors,
+        second,
+        third,
+        fourth,
+        fifth,
+        sixth,
+        seventh,
+        eighth,
+        ninth,
+        tenth,
+        eleventh,
+    ] {
         let file = SceneFile::parse(text, Path::new("scene.toml")).unwrap();
         let motion = file.scene.simulate(&file.settings, &file.output.sampling()).unwrap();
         assert_eq!(motion.last().time, file.scene.end());
@@ -63,6 +86,7 @@ const WHEEL: &str = include_str!("../../scenes/wheel-over-stones.toml");
 const MUSCLES: &str = include_str!("../../scenes/muscle-strip.toml");
 const MAGNETS: &str = include_str!("../../scenes/magnetic-strip.toml");
 const GEL: &str = include_str!("../../scenes/swelling-strip.toml");
+const FOAM: &str = include_str!("../../scenes/float.toml");
 const CABLE: &str = include_str!("../../scenes/cable.toml");
 
 /// A cable under the tension T at the distance e from the axis bends a beam as the moment T e does: to the angle T e L/(E I) at its end,

@@ -204,8 +204,11 @@ fn all_scenes_are_run() {
         "muscle-strip",
         "magnetic-strip",
         "swelling-strip",
+        "float",
         "gripper",
         "wheel-over-stones",
+        // where fluids are tested
+        "fish",
         // where contact is tested
         "cradle",
         "ring-on-table",

@@ -20,6 +20,7 @@ mod contact_rings;
 mod contact_truths;
 mod damping;
 mod driving;
+mod fluids;
 mod forces;
 mod friction;
 mod gas;

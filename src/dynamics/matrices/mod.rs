@@ -100,6 +100,15 @@ impl Matrices {
         }
     }
 
+    /// Adds the mass of the surroundings that moves along with pairs of nodes (kg).
+    pub(crate) fn carry(&mut self, masses: &[([usize; 2], f64)]) {
+        if masses.is_empty() {
+            return;
+        }
+        let inertia = Arc::make_mut(&mut self.inertia);
+        masses.iter().for_each(|&([a, b], mass)| inertia.add(a, b, mass));
+    }
+
     /// Number of displacement components.
     pub(crate) fn dofs(&self) -> usize {
         self.pattern().nodes() * self.dimension

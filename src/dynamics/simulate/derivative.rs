@@ -72,6 +72,7 @@ impl Reading {
             What::Rotation | What::Pressure(_) | What::AbsolutePressure(_) => false,
             What::GasAmount(_) | What::GasFlow(_) => false,
             What::MuscleStress(_) | What::MuscleStretch(_) | What::MagneticMoment => false,
+            What::FluidForce(..) => false,
             What::SpringPull(_) | What::SpringLength(_) | What::Stress(_) | What::Strain(_) => {
                 false
             }

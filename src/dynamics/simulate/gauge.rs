@@ -12,6 +12,7 @@ use crate::dynamics::trajectory::Sample;
 use crate::elements::body::{Body, NodalField, Part, von_mises};
 use crate::elements::mesh::Selection;
 use crate::scene::constraint::{ConstraintRow, PhaseStart};
+use crate::scene::forces::FluidForce;
 use crate::scene::timeline::Scene;
 
 /// The value of a quantity at one time; components beyond the dimension are 0.
@@ -145,6 +146,7 @@ impl Reading {
                     Value::Vector(std::array::from_fn(|i| moment.get(i).copied().unwrap_or(0.0)))
                 })
             }
+            What::FluidForce(fluid, nodes) => self.of_fluid(scene, fluid, nodes.as_ref())?,
             What::Stress(place) => field(scene, place, |field| field.stress)?,
             What::Strain(place) => field(scene, place, |field| field.strain)?,
             What::Distance([from, to]) => {
@@ -175,6 +177,34 @@ impl Reading {
         Ok(Box::new(move |view, _| {
             let vector = read(&part(view.body(), first_node), view);
             Value::Vector(std::array::from_fn(|i| vector.get(i).copied().unwrap_or(0.0)))
+        }))
+    }
+
+    /// The function that reads the force of a fluid.
+    fn of_fluid(
+        &self,
+        scene: &Scene,
+        fluid: &str,
+        nodes: Option<&Selection>,
+    ) -> Result<Gauge, InputError> {
+        let body = scene.body();
+        let read: Option<Vec<usize>> = match (nodes, &self.body) {
+            (Some(nodes), _) => Some(body.mesh().select(nodes)?),
+            (None, Some(name)) => Some(body.part_named(name, "body")?.nodes.collect()),
+            (None, None) => None,
+        };
+        let is_read = read.map(|nodes| {
+            let mut is_read = vec![false; body.mesh().node_count()];
+            nodes.into_iter().for_each(|node| is_read[node] = true);
+            is_read
+        });
+        // no command changes gravity
+        let forces = scene.phases().iter().map(|phase| scene.fluid_force(fluid, phase, "fluid"));
+        let forces = forces.collect::<Result<Vec<_>, _>>()?;
+        Ok(Box::new(move |view, sample| {
+            let (u, v) = (view.displacements(), view.velocities());
+            let on = |force: &FluidForce| force.on(sample.time, u, v, is_read.as_deref());
+            Value::Vector(forces.get(sample.phase).map_or([f64::NAN; 3], on))
         }))
     }
 

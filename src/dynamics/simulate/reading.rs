@@ -36,6 +36,8 @@ pub(super) enum What {
     MuscleStress(String),
     MuscleStretch(String),
     MagneticMoment,
+    /// Of all nodes, or of these.
+    FluidForce(String, Option<Selection>),
     TensionAtEnd(String),
     Pressure(String),
     ChamberVolume(String),
@@ -234,10 +236,10 @@ impl Reading {
         What::Gap(touch.into()).into()
     }
 
-    /// The part of a contact force, or of an area in touch, that belongs to some nodes; the largest contact pressure at
+    /// The part of the force of a contact or a fluid, or of an area in touch, that belongs to some nodes; the largest contact pressure at
     /// these.
     pub fn on(mut self, nodes: impl Into<Selection>) -> Self {
-        if let What::Contact(_, _, on) = &mut self.what {
+        if let What::Contact(_, _, on) | What::FluidForce(_, on) = &mut self.what {
             *on = Some(nodes.into());
         }
         self
@@ -273,6 +275,12 @@ impl Reading {
     /// Magnetic moment of all magnets (A m^2).
     pub fn magnetic_moment() -> Self {
         What::MagneticMoment.into()
+    }
+
+    /// Force of a [fluid](crate::Fluid) (N), drag and pressure, on all nodes, on [some](Self::on) or on those of one [body](Self::of_body).
+    /// What added mass does is inertia, and no part of it.
+    pub fn fluid_force(fluid: impl Into<String>) -> Self {
+        What::FluidForce(fluid.into(), None).into()
     }
 
     /// Pressure in a chamber (Pa): of gas what it exceeds the atmosphere by.
@@ -357,7 +365,7 @@ impl Reading {
         What::Momentum.into()
     }
 
-    /// Of one of several bodies: its centre of mass, its rotation, its momentum, what a touch does to it. Default: of all together.
+    /// Of one of several bodies: its centre of mass, its rotation, its momentum, what a touch or a fluid does to it. Default: of all together.
     pub fn of_body(mut self, name: impl Into<String>) -> Self {
         self.body = Some(name.into());
         self
@@ -384,6 +392,7 @@ impl Reading {
             What::Momentum => "kg m/s",
             What::MagneticMoment => "A m^2",
             What::ConstraintForce(_) | What::Contact(OfContact::Force, ..) => "N",
+            What::FluidForce(..) => "N",
             What::SpringPull(_) | What::TensionAtEnd(_) => "N",
             What::Contact(OfContact::Area, ..) => "m^2",
             What::Contact(OfContact::Pressure, ..) => "Pa",
@@ -430,9 +439,10 @@ impl Reading {
                 | What::Rotation
                 | What::Momentum
                 | What::Contact(_, By::Touch(_), _)
+                | What::FluidForce(..)
         );
         if let Some(name) = self.body.as_ref().filter(|_| !is_of_bodies) {
-            let help = "the centre of mass, the rotation, the momentum and what a touch does are all that is read of a body: name its nodes instead";
+            let help = "the centre of mass, the rotation, the momentum and what a touch or a fluid does are all that is read of a body: name its nodes instead";
             return Err(InputError::new("body", format!("\"{name}\""), help));
         }
         // the components that are columns by default, and one more that must be requested
@@ -445,9 +455,8 @@ impl Reading {
             (What::Strain(_), _) => (&[XX, YY, ZZ, XY, YZ, XZ], None),
             (What::Position(_) | What::Displacement(_) | What::Velocity(_), _)
             | (What::ConstraintForce(_) | What::Contact(OfContact::Force, ..), _)
-            | (What::CentreOfMass | What::Momentum | What::MagneticMoment, _) => {
-                (&[X, Y, Z][..dimension], Some(Norm))
-            }
+            | (What::CentreOfMass | What::Momentum | What::MagneticMoment, _)
+            | (What::FluidForce(..), _) => (&[X, Y, Z][..dimension], Some(Norm)),
             (What::ConstraintMoment(_, Lever { axis: None, .. }), 3) => (&[X, Y, Z], Some(Norm)),
             _ => (&[], None),
         };

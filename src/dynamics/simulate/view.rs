@@ -280,6 +280,16 @@ impl<'a> View<'a> {
         Ok((0..d).map(along).collect())
     }
 
+    /// Force (N) of a fluid on the bodies, drag and pressure, one component per dimension.
+    ///
+    /// # Errors
+    /// A name that no fluid has.
+    pub fn fluid_force(&self, fluid: &str) -> Result<Vec<f64>, InputError> {
+        let force = self.scene.fluid_force(fluid, self.phase, "fluid")?;
+        let sum = force.on(self.time, self.state.u, self.state.v, None);
+        Ok(sum[..self.body().dimension()].to_vec())
+    }
+
     /// What contact does at each node; `None` where it is undefined.
     pub(crate) fn nodal_contacts(&self, reader: &ContactReader) -> Option<Vec<NodalContact>> {
         let obstacles = self.scene.contacts(self.phase).ok()?;

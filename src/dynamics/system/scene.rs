@@ -13,7 +13,10 @@ impl Scene {
     /// The matrices of the scene under the forces of its phases.
     pub(crate) fn matrices(&self, forces: &[Forces]) -> Arc<Matrices> {
         let all = forces.iter().flatten().map(|force| &**force);
-        Arc::new(Matrices::new(self.body(), all))
+        let mut matrices = Matrices::new(self.body(), all);
+        let of_first_phase = forces.first().into_iter().flatten();
+        of_first_phase.for_each(|force| matrices.carry(force.carried()));
+        Arc::new(matrices)
     }
 
     /// The equations of one phase under its forces.

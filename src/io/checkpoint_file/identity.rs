@@ -77,6 +77,9 @@ impl Identity {
         if !scene.magnets().is_empty() {
             parts.push(("magnets".into(), text(of_text(scene.magnets()))));
         }
+        if !scene.fluids().is_empty() {
+            parts.push(("fluids".into(), text(of_text(scene.fluids()))));
+        }
         if !scene.touches().is_empty() {
             parts.push(("touches".into(), touches));
         }

@@ -32,8 +32,9 @@ const ABSENT: [(&[&str], &str); 8] = [
          hold_combination, and two nodes may have a stiff [[spring]] between them; there are no motors and no stops",
     ),
     (
-        &["fluid", "air", "water", "pressure", "pump", "valve"],
-        "a phase gives the pressure in a [[chamber]] over time (pressure = [...]), or there is [[gas]] in it, which flows through an [[orifice]] from a [[supply]]; there is no fluid otherwise",
+        &["air", "water", "liquid", "drag", "buoyancy", "current", "pressure", "pump", "valve"],
+        "what surrounds bodies, with its drag and its pressure by depth, is a [[fluid]]; a phase gives the pressure in a [[chamber]] over time (pressure = [...]), or \
+         there is [[gas]] in it, which flows through an [[orifice]] from a [[supply]]",
     ),
     (
         &["motor", "actuator", "actuators"],

@@ -41,6 +41,7 @@ mod auto;
 mod body;
 mod cells;
 mod contents;
+mod fluid;
 mod gas;
 mod growth;
 mod initial;

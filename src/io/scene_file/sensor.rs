@@ -95,6 +95,15 @@ pub(super) const SENSOR: TableKeys = TableKeys::new(
         about: "the magnetic moment of all magnets (A m^2)",
         keys: &[],
     },
+    Kind {
+        word: "fluid-force",
+        about: "the force of a fluid, its drag and pressure, on all nodes, on some of them or on those of one body (N)",
+        keys: &[
+            Key::new("fluid", Holds::Text, "the name of the fluid").required(),
+            Key::new("nodes", Holds::Nodes, "the nodes on which it acts").default("all"),
+            BODY,
+        ],
+    },
     Kind { word: "pressure", about: "the pressure in a chamber, of gas what it exceeds the atmosphere by (Pa)", keys: &[CHAMBER] },
     Kind {
         word: "absolute-pressure",
@@ -206,6 +215,10 @@ pub(super) fn sensor(value: &Value, scene: &Scene) -> Result<(String, Reading), 
         "muscle-stress" => Reading::muscle_stress(named("muscle")?),
         "muscle-stretch" => Reading::muscle_stretch(named("muscle")?),
         "magnetic-moment" => Reading::magnetic_moment(),
+        "fluid-force" => {
+            let force = of_body(&table, Reading::fluid_force(named("fluid")?))?;
+            table.added(force, "nodes", |value| selection(value, mesh), Reading::on)?
+        }
         "pressure" => Reading::pressure(named("chamber")?),
         "absolute-pressure" => Reading::absolute_pressure(named("chamber")?),
         "gas-amount" => Reading::gas_amount(named("chamber")?),

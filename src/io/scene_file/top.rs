@@ -2,6 +2,7 @@
 
 use super::body::{self, BODY, POINT};
 use super::contents::{OutputRequest, SceneFile};
+use super::fluid::{self, FLUID};
 use super::gas::{self, GAS, ORIFICE, SUPPLY};
 use super::growth::{self, GROWTH};
 use super::initial::{self, INITIAL};
@@ -50,6 +51,7 @@ pub(super) const TOP: TableKeys = TableKeys::new(
         Key::new("gas", Holds::Tables(&GAS), "gas in chambers"),
         Key::new("supply", Holds::Tables(&SUPPLY), "what gas is drawn from"),
         Key::new("orifice", Holds::Tables(&ORIFICE), "what gas flows through"),
+        Key::new("fluid", Holds::Tables(&FLUID), "fluids around bodies"),
         Key::new("obstacle", Holds::Tables(&OBSTACLE), "obstacles"),
         Key::new("phase", Holds::Tables(&PHASE), "the phases, one after the other").required(),
         Key::new("sensor", Holds::Tables(&SENSOR), "what is read with each sample"),
@@ -93,7 +95,7 @@ pub(super) fn scene_file(top: &Table) -> Result<SceneFile, Error> {
         Some(Err(_)) => initial,
         None => None,
     };
-    let parts: [(&str, Add); 12] = [
+    let parts: [(&str, Add); 13] = [
         ("tie", tie::add_tie),
         ("touch", touch::add_touch),
         ("spring", surroundings::add_spring),
@@ -105,6 +107,7 @@ pub(super) fn scene_file(top: &Table) -> Result<SceneFile, Error> {
         ("gas", gas::add_gas),
         ("supply", gas::add_supply),
         ("orifice", gas::add_orifice),
+        ("fluid", fluid::add_fluid),
         ("obstacle", surroundings::add_obstacle),
     ];
     for (key, add) in parts {

@@ -3,6 +3,8 @@
 mod chamber;
 mod contact;
 mod faces;
+mod fluid;
+mod followed;
 mod friction;
 mod gas;
 mod gravity;
@@ -27,6 +29,8 @@ pub use chamber::Chamber;
 pub(crate) use chamber::{ChamberForce, TURNED};
 pub(crate) use contact::Contact;
 pub(crate) use faces::{areas, shares};
+pub use fluid::Fluid;
+pub(crate) use fluid::FluidForce;
 pub(crate) use gas::{ATMOSPHERE, ClosedGas, End, Filled, GasFlow, OrificeFlow, Supply};
 pub use gas::{Gas, Orifice};
 pub(crate) use gravity::Gravity;

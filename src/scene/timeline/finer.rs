@@ -124,6 +124,11 @@ impl Scene {
             .iter()
             .map(|chamber| chamber.clone().with_nodes(|nodes| change.extended(nodes)))
             .collect::<Result<_, _>>()?;
+        scene.fluids = self
+            .fluids
+            .iter()
+            .map(|fluid| fluid.with_nodes(|nodes| change.extended(nodes)))
+            .collect::<Result<_, _>>()?;
         scene.muscles = self
             .muscles
             .iter()

@@ -51,6 +51,7 @@ impl Scene {
         for (nodes, pressure) in &phase.face_pressures {
             forces.push(Arc::new(FacePressure::new(&self.body, nodes, pressure.clone())?));
         }
+        self.add_fluids(phase, &mut forces)?;
         for contact in self.contacts(phase)? {
             forces.push(Arc::new(contact));
         }

@@ -207,11 +207,12 @@ impl Scene {
         Ok(())
     }
 
-    /// Times (s, ascending) at which what `phase` prescribes, and the pressure of a supply, changes its law.
+    /// Times (s, ascending) at which what `phase` prescribes, the pressure of a supply and the velocity of a fluid change their laws.
     pub(crate) fn breaks_in(&self, phase: &Phase) -> Vec<f64> {
         let mut breaks = phase.breaks(&self.obstacles);
         let supplies = self.supplies.iter().flat_map(|supply| supply.pressure.breaks());
         breaks.extend(supplies);
+        breaks.extend(self.fluids.iter().flat_map(|fluid| fluid.breaks()));
         breaks.sort_by(f64::total_cmp);
         breaks.dedup();
         breaks

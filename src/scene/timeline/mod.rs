@@ -4,6 +4,7 @@ mod body_state;
 mod changed;
 mod contacts;
 mod finer;
+mod fluid;
 mod forces;
 mod gas;
 mod initial;
@@ -38,11 +39,11 @@ use crate::scene::constraint::{
     Constrained, Constraint, ConstraintRow, PhaseStart, prescribe, rows,
 };
 use crate::scene::forces::{
-    ATMOSPHERE, Chamber, Contact, Gas, Growth, Magnet, Muscle, Obstacle, Orifice, Spring, Supply,
-    Touch, TouchForce,
+    ATMOSPHERE, Chamber, Contact, Fluid, Gas, Growth, Magnet, Muscle, Obstacle, Orifice, Spring,
+    Supply, Touch, TouchForce,
 };
 
-/// A body, gravity, springs, muscles, magnets, chambers, obstacles, and what happens when.
+/// A body, gravity, springs, muscles, magnets, chambers, fluids, obstacles, and what happens when.
 ///
 /// ```
 /// use pliant::{Body, Cells, Material, Mesh, Obstacle, Phase, Scene};
@@ -66,6 +67,7 @@ pub struct Scene {
     muscles: Vec<Muscle>,
     magnets: Vec<Magnet>,
     growths: Vec<Growth>,
+    fluids: Vec<Fluid>,
     chambers: Vec<Chamber>,
     gases: Vec<Gas>,
     orifices: Vec<Orifice>,
@@ -109,6 +111,7 @@ impl Scene {
             muscles: Vec::new(),
             magnets: Vec::new(),
             growths: Vec::new(),
+            fluids: Vec::new(),
             chambers: Vec::new(),
             gases: Vec::new(),
             orifices: Vec::new(),

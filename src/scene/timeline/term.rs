@@ -37,7 +37,9 @@ impl Scene {
     /// What this scene has that it may be modelled without.
     pub fn terms(&self) -> Vec<Term> {
         let has_gravity = self.phases.iter().filter_map(|phase| self.gravity_in(phase));
-        let has_gravity = has_gravity.flatten().any(|g| *g != 0.0);
+        // by gravity a fluid knows where it is deep
+        let is_needed = self.fluids.iter().any(|fluid| fluid.surface().is_some());
+        let has_gravity = has_gravity.flatten().any(|g| *g != 0.0) && !is_needed;
         let is_viscous = self.body.materials().any(|material| material.viscosity > 0.0);
         let rubs =
             |obstacle: &Obstacle| obstacle.has_friction() || obstacle.has_tangential_damping();
