@@ -98,6 +98,45 @@ pub(crate) fn reach(kind: FaceKind) -> f64 {
     }
 }
 
+/// Points (Bezier's control points) in whose convex hull a face of a kind lies, with its nodes `at` these positions, and
+/// their number: its corners, what its mid nodes make of its edges, and one more inside.
+pub(crate) fn control_points(kind: FaceKind, at: &[[f64; 3]]) -> ([[f64; 3]; MOST_NODES], usize) {
+    let mut points = [[0.0; 3]; MOST_NODES];
+    points[..at.len()].copy_from_slice(at);
+    for edge in kind.edges() {
+        if let &[a, b, middle] = *edge {
+            points[middle] =
+                std::array::from_fn(|i| 2.0 * at[middle][i] - 0.5 * (at[a][i] + at[b][i]));
+        }
+    }
+    let sum = |of: &[[f64; 3]], i: usize| of.iter().map(|x| x[i]).sum::<f64>();
+    let inside: fn(f64, f64, f64) -> f64 = match kind {
+        FaceKind::Segment3 => {
+            let [a, b, middle] = [at[0], at[1], at[2]];
+            points[2] = std::array::from_fn(|i| 2.0 * middle[i] - 0.5 * (a[i] + b[i]));
+            return (points, 3);
+        }
+        // the coefficient of 6 times the product of the three coordinates, from which the bubble adds 27 times its part
+        FaceKind::Triangle7 => {
+            let sums = |i: usize| [sum(&at[..3], i), sum(&at[3..6], i)];
+            points[6] = std::array::from_fn(|i| {
+                let [corners, mids] = sums(i);
+                let bubble = at[6][i] + corners / 9.0 - 4.0 / 9.0 * mids;
+                sum(&points[3..6], i) / 3.0 + 4.5 * bubble
+            });
+            return (points, 7);
+        }
+        FaceKind::Quadrilateral8 => |corners, mids, _| mids - 0.75 * corners,
+        FaceKind::Quadrilateral9 => |corners, mids, centre| 4.0 * centre - mids + 0.25 * corners,
+        _ => return (points, at.len()),
+    };
+    points[8] = std::array::from_fn(|i| {
+        let centre = at.get(8).map_or(0.0, |x| x[i]);
+        inside(sum(&at[..4], i), sum(&at[4..8], i), centre)
+    });
+    (points, 9)
+}
+
 fn point_at<C: ReferenceCell<N, M>, const N: usize, const M: usize>(
     xi: [f64; 2],
     weight: f64,

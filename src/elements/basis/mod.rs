@@ -37,7 +37,9 @@ use nalgebra::{SMatrix, SVector};
 pub(crate) use bisection::can_be_bisected;
 pub(crate) use bisection::worst_cells;
 pub(crate) use closest::closest;
-pub(crate) use face::{FacePoint, MOST_NODES, face_points, reach, reference_node};
+pub(crate) use face::{
+    FacePoint, MOST_NODES, control_points, face_points, is_affine, reach, reference_node,
+};
 pub(crate) use finer::Finer;
 pub(crate) use hexahedron::Hexahedron;
 pub(crate) use hexahedron20::Hexahedron20;

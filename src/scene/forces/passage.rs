@@ -34,6 +34,11 @@ impl Path {
         &self.0[3]
     }
 
+    /// Bezier's control points (m), in whose convex hull the path lies.
+    pub(super) fn controls(&self) -> &[[f64; 3]; 4] {
+        &self.0
+    }
+
     /// Position (m) at `s`, from 0 to 1, and its derivative by `s`.
     pub(super) fn at(&self, s: f64) -> [[f64; 3]; 2] {
         let between =

@@ -20,6 +20,7 @@ mod action;
 mod crossing;
 mod edge_pairs;
 mod force;
+mod hull;
 mod law;
 mod near;
 mod nodal;

@@ -47,6 +47,13 @@ impl<'a> Ways<'a> {
         place.distance(&nodes, &[0.0; 3])
     }
 
+    /// Whether the point stays farther than `distance` (m) from a curved facet, as the hull of its way tells.
+    pub(super) fn stay_beyond(&self, distance: f64) -> bool {
+        let nodes = |k: usize| self.paths.map(|path| path.controls()[k].map(|x| -x));
+        let hull = self.facet.and_then(|facet| facet.hull_along(nodes));
+        hull.is_some_and(|hull| hull.distance(&[0.0; 3]) > distance)
+    }
+
     /// The distances (m) at both ends.
     pub(super) fn ends(&self) -> [f64; 2] {
         [self.distance(Path::start), self.distance(Path::end)]

@@ -260,7 +260,11 @@ impl Force for TouchForce {
             stiffness[node] += 2.0 * hard;
             damping[node] += 2.0 * hard * self.law.damping_time();
         };
-        for near in near.pairs.iter().filter(|near| near.distance + moved >= self.law.distance) {
+        let may_be_apart = |near: &&NearPair| {
+            near.distance + moved >= self.law.distance
+                || self.surfaces.apart(near.point, near.feature, u) >= self.law.distance
+        };
+        for near in near.pairs.iter().filter(may_be_apart) {
             let hard = self.share(near).max(0.0) * self.law.reserve();
             let feature = self.surfaces.features[near.feature].nodes().iter();
             let point = self.surfaces.points[near.point].on.nodes();
@@ -309,7 +313,10 @@ impl Force for TouchForce {
         }
         let mut all = Vec::new();
         let (near, _) = self.near(u);
-        for near in &near.pairs {
+        // the hulls of curved features are nearer than these
+        let within = self.law.distance + self.margin;
+        let is_near = |near: &&NearPair| self.surfaces.apart(near.point, near.feature, u) <= within;
+        for near in near.pairs.iter().filter(is_near) {
             for (a, _) in self.surfaces.points[near.point].on.nodes() {
                 let feature = self.surfaces.features[near.feature].nodes();
                 all.extend(feature.iter().flat_map(|&b| [[a, b], [b, a]]));

@@ -6,8 +6,8 @@ use crate::base::grid::Grid;
 
 /// Points and features, and edges, that were nearer than a certain distance in some state.
 pub(super) struct Near {
-    /// Positions then (m) of the nodes of the surfaces.
-    at: Vec<[f64; 3]>,
+    /// The displacements then (m).
+    u: Vec<f64>,
     /// The distance (m).
     within: f64,
     pub(super) pairs: Vec<NearPair>,
@@ -20,7 +20,7 @@ pub(super) struct NearPair {
     pub(super) point: usize,
     pub(super) feature: usize,
     pub(super) weight: f64,
-    /// Their distance (m) in that state.
+    /// Their distance (m) in that state; no more than that from a curved face.
     pub(super) distance: f64,
 }
 
@@ -41,13 +41,19 @@ impl Near {
                 let known = &surfaces.features[feature];
                 let [low, high] = surfaces.box_of(feature, &at);
                 let [low, high] = [low.map(|x| x - within), high.map(|x| x + within)];
+                let hull = known.hull(&at);
                 grid.each_within(&[low, high], |point| {
+                    let x = &places[point];
+                    let bound = hull.as_ref().map(|hull| hull.distance(x));
+                    if bound.is_some_and(|bound| bound > within) {
+                        return;
+                    }
                     let weight = surfaces.weight(point, feature);
                     if weight == 0.0 {
                         return;
                     }
-                    let place = known.nearest(&at, &places[point]);
-                    let distance = place.distance(&at, &places[point]);
+                    let exact = || known.nearest(&at, x).distance(&at, x);
+                    let distance = bound.unwrap_or_else(exact);
                     if distance <= within {
                         pairs.push(NearPair { point, feature, weight, distance });
                     }
@@ -56,19 +62,16 @@ impl Near {
             pairs.sort_unstable_by_key(|pair| (pair.point, pair.feature));
         }
         let edges = if is_finite { edges.near(surfaces, u, within) } else { Vec::new() };
-        Self { at, within, pairs, edges }
+        Self { u: u.to_vec(), within, pairs, edges }
     }
 
-    /// How much nearer (m) any of them may have come since: twice the way of the node that has moved most, times how much
-    /// farther than nodes surfaces move.
+    /// How much nearer (m) any of them may have come since: twice the way of the place that has moved most.
     pub(super) fn moved(&self, surfaces: &Surfaces, u: &[f64]) -> f64 {
-        let squares = surfaces.nodes.iter().zip(&self.at).map(|(&node, before)| {
-            let x = surfaces.node_at(node, u);
-            (0..3).map(|i| (x[i] - before[i]).powi(2)).sum::<f64>()
-        });
-        // what is no number has moved farther than anything
-        let known = |square: f64| if square.is_finite() { square } else { f64::INFINITY };
-        2.0 * surfaces.reach * squares.map(known).fold(0.0, f64::max).sqrt()
+        let d = surfaces.dimension;
+        2.0 * surfaces.farthest(|node| {
+            let [from, to] = [&self.u[..], u].map(|u| &u[node * d..][..d]);
+            std::array::from_fn(|i| to.get(i).zip(from.get(i)).map_or(0.0, |(to, from)| to - from))
+        })
     }
 
     /// Whether the pairs include all that are within `distance` (m) once they may have come `nearer` (m).

@@ -29,7 +29,9 @@ impl TouchForce {
                 continue;
             }
             let ways = self.ways(near, step);
-            first = self.meets(&ways, acts_from, first).or(first);
+            if !ways.stay_beyond(acts_from) {
+                first = self.meets(&ways, acts_from, first).or(first);
+            }
         }
         let acts_from = self.edges.law.distance;
         for near in near.edges.iter().filter(|near| near.distance - moved - nearer < acts_from) {

@@ -207,6 +207,7 @@ impl Touch {
             let is_left_out = |near: &NearPair| {
                 is_joined(surfaces.bodies(near.point, near.feature))
                     && surfaces.is_facet(near.feature)
+                    && surfaces.apart(near.point, near.feature, &rest) <= 2.0 * distance
             };
             let pairs = near.pairs.into_iter().filter(is_left_out);
             let pairs: Vec<[usize; 2]> = pairs.map(|near| [near.point, near.feature]).collect();

@@ -2,8 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use crate::base::vector::{cross, difference, norm};
-use crate::elements::basis::{MOST_NODES, Place, nearest, reach};
+use super::hull::Hull;
+use crate::base::vector::{cross, difference, dot, norm};
+use crate::elements::basis::{MOST_NODES, Place, control_points, is_affine, nearest, reach};
 use crate::elements::body::Body;
 use crate::elements::mesh::FaceKind;
 use crate::scene::forces::surface::{SurfacePoint, closed_points, pieces};
@@ -145,6 +146,12 @@ impl Surfaces {
         }
     }
 
+    /// The distance (m) of a point from a feature under the displacements `u` (m).
+    pub(super) fn apart(&self, point: usize, feature: usize, u: &[f64]) -> f64 {
+        let (at, x) = (self.nodes_at(feature, u), self.point_at(point, u));
+        self.features[feature].nearest(&at, &x).distance(&at, &x)
+    }
+
     /// The weight of a feature for a point; 0 if the point does not feel it.
     pub(super) fn weight(&self, point: usize, feature: usize) -> f64 {
         let [of_point, of_feature] = self.bodies(point, feature);
@@ -229,6 +236,26 @@ impl Surfaces {
 }
 
 impl Surfaces {
+    /// How far (m) any place of the surfaces moves if nodes move by what `way` tells (m); infinite if that is no number.
+    pub(super) fn farthest(&self, way: impl Fn(usize) -> [f64; 3]) -> f64 {
+        // what is no number has moved farther than anything
+        let known = |way: f64| if way.is_finite() { way } else { f64::INFINITY };
+        let longest = |most: f64, way: &[f64; 3]| most.max(known(dot(way, way)));
+        if self.dimension < 3 || self.reach == 1.0 {
+            let nodes = self.nodes.iter();
+            return self.reach * nodes.fold(0.0, |most, &node| longest(most, &way(node))).sqrt();
+        }
+        let facets = (0..self.features.len()).take_while(|&feature| self.is_facet(feature));
+        let of_facet = |most: f64, facet: usize| {
+            let feature = &self.features[facet];
+            let mut ways = [[0.0; 3]; MOST_NODES];
+            ways.iter_mut().zip(feature.nodes()).for_each(|(to, &node)| *to = way(node));
+            let (points, count) = control_points(feature.kind, &ways[..feature.count]);
+            points[..count].iter().fold(most, longest)
+        };
+        facets.fold(0.0, of_facet).sqrt()
+    }
+
     /// The undeformed area (m^2) of a triangle, of half of a quadrilateral.
     pub(super) fn area_of_triangles(&self, facet: usize) -> f64 {
         let feature = &self.features[facet];
@@ -245,19 +272,18 @@ impl Surfaces {
 
     /// A box (m) around a feature with its nodes `at` these positions.
     pub(super) fn box_of(&self, feature: usize, at: &[[f64; 3]; MOST_NODES]) -> [[f64; 3]; 2] {
-        let at = &at[..self.features[feature].count];
-        let end = |i: usize, of: fn(f64, f64) -> f64| at.iter().map(|x| x[i]).fold(at[0][i], of);
-        let (low, high) =
-            ([0, 1, 2].map(|i| end(i, f64::min)), [0, 1, 2].map(|i| end(i, f64::max)));
-        if self.reach == 1.0 {
-            return [low, high];
+        let Feature { kind, count, .. } = self.features[feature];
+        if is_curved_face(kind) {
+            let (points, count) = control_points(kind, &at[..count]);
+            return box_around(&points[..count]);
         }
+        let [low, high] = box_around(&at[..count]);
         // the middle of the nodes moves as they do, and no place is farther from it than this times the nodes
-        let beyond = [0, 1, 2].map(|i| 0.5 * (self.reach - 1.0) * (high[i] - low[i]));
+        let beyond = [0, 1, 2].map(|i| 0.5 * (reach(kind) - 1.0) * (high[i] - low[i]));
         [difference(&low, &beyond), [0, 1, 2].map(|i| high[i] + beyond[i])]
     }
 
-    /// Whether `x` is farther than `distance` (m) from the box around a feature.
+    /// Whether `x` is farther than `distance` (m) from the boxes around a feature.
     pub(super) fn is_beyond(
         &self,
         feature: usize,
@@ -266,11 +292,32 @@ impl Surfaces {
         distance: f64,
     ) -> bool {
         let [low, high] = self.box_of(feature, at);
-        (0..3).any(|i| x[i] < low[i] - distance || x[i] > high[i] + distance)
+        let is_outside = (0..3).any(|i| x[i] < low[i] - distance || x[i] > high[i] + distance);
+        is_outside
+            || self.features[feature].hull(at).is_some_and(|hull| hull.distance(x) > distance)
     }
 }
 
 impl Feature {
+    /// A box around it, with its nodes `at` these positions (m), if its nearest place takes much longer to find: if it is a
+    /// curved face.
+    pub(super) fn hull(&self, at: &[[f64; 3]; MOST_NODES]) -> Option<Hull> {
+        is_curved_face(self.kind).then(|| Hull::new(self.kind, &at[..self.count]))
+    }
+
+    /// As [`hull`](Self::hull), around it as it moves: with its nodes along cubics of which these are the control points (m).
+    pub(super) fn hull_along(
+        &self,
+        control: impl Fn(usize) -> [[f64; 3]; MOST_NODES],
+    ) -> Option<Hull> {
+        if !is_curved_face(self.kind) {
+            return None;
+        }
+        let mut hull = Hull::new(self.kind, &control(0)[..self.count]);
+        (1..4).for_each(|k| hull.include(self.kind, &control(k)[..self.count]));
+        Some(hull)
+    }
+
     fn new(kind: FaceKind, of: &[usize], body: usize) -> Self {
         let mut nodes = [0; MOST_NODES];
         nodes[..of.len()].copy_from_slice(of);
@@ -286,4 +333,14 @@ impl Feature {
     pub(super) fn nearest(&self, at: &[[f64; 3]; MOST_NODES], x: &[f64; 3]) -> Place {
         nearest(self.kind, &at[..self.count], x)
     }
+}
+
+fn box_around(points: &[[f64; 3]]) -> [[f64; 3]; 2] {
+    let end =
+        |i: usize, of: fn(f64, f64) -> f64| points.iter().map(|x| x[i]).fold(points[0][i], of);
+    [[0, 1, 2].map(|i| end(i, f64::min)), [0, 1, 2].map(|i| end(i, f64::max))]
+}
+
+fn is_curved_face(kind: FaceKind) -> bool {
+    kind.dimension() == 2 && !is_affine(kind)
 }
