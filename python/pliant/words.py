@@ -102,6 +102,7 @@ def mesh_bar(
     length: float,
     nodes: int,
     origin: Vector | None = None,
+    turn: float | Sequence[float] | None = None,
     quadratic: bool | None = None,
     halved: int | None = None,
     halved_in: dict | Sequence[dict] | None = None,
@@ -117,6 +118,9 @@ def mesh_bar(
         the number of nodes. Required.
     origin
         the place of the lower corner, or of the centre of a ring (m). Default: the origin.
+    turn
+        the angle by which the mesh is turned about the origin before it is brought to its place (rad). Default: 0.
+        One number in the plane, counter-clockwise; in space three, the axis times the angle.
     quadratic
         whether cells get mid nodes. Default: false. Triangles, tetrahedra and hexahedra; quadrilaterals are divided
         into triangles first. Numbers of nodes in the file are those of the mesh without this; where several nodes are
@@ -136,6 +140,7 @@ def mesh_bar(
         length=length,
         nodes=nodes,
         origin=origin,
+        turn=turn,
         quadratic=quadratic,
         halved=halved,
         halved_in=halved_in,
@@ -149,6 +154,7 @@ def mesh_rectangle(
     nodes: Sequence[int],
     cells: Literal["triangles", "crossed", "rectangles", "triangles6", "rectangles9", "auto"],
     origin: Vector | None = None,
+    turn: float | Sequence[float] | None = None,
     quadratic: bool | None = None,
     halved: int | None = None,
     halved_in: dict | Sequence[dict] | None = None,
@@ -169,6 +175,9 @@ def mesh_rectangle(
         it is `rectangles9` with `dilatation = "linear"`, as of silicone.
     origin
         the place of the lower corner, or of the centre of a ring (m). Default: the origin.
+    turn
+        the angle by which the mesh is turned about the origin before it is brought to its place (rad). Default: 0.
+        One number in the plane, counter-clockwise; in space three, the axis times the angle.
     quadratic
         whether cells get mid nodes. Default: false. Triangles, tetrahedra and hexahedra; quadrilaterals are divided
         into triangles first. Numbers of nodes in the file are those of the mesh without this; where several nodes are
@@ -193,6 +202,7 @@ def mesh_rectangle(
         nodes=nodes,
         cells=cells,
         origin=origin,
+        turn=turn,
         quadratic=quadratic,
         halved=halved,
         halved_in=halved_in,
@@ -208,6 +218,7 @@ def mesh_ring(
     nodes: Sequence[int],
     cells: Literal["triangles", "crossed", "rectangles", "triangles6", "rectangles9", "auto"],
     origin: Vector | None = None,
+    turn: float | Sequence[float] | None = None,
     quadratic: bool | None = None,
     halved: int | None = None,
     halved_in: dict | Sequence[dict] | None = None,
@@ -229,6 +240,9 @@ def mesh_ring(
         it is `rectangles9` with `dilatation = "linear"`, as of silicone.
     origin
         the place of the lower corner, or of the centre of a ring (m). Default: the origin.
+    turn
+        the angle by which the mesh is turned about the origin before it is brought to its place (rad). Default: 0.
+        One number in the plane, counter-clockwise; in space three, the axis times the angle.
     quadratic
         whether cells get mid nodes. Default: false. Triangles, tetrahedra and hexahedra; quadrilaterals are divided
         into triangles first. Numbers of nodes in the file are those of the mesh without this; where several nodes are
@@ -250,6 +264,7 @@ def mesh_ring(
         nodes=nodes,
         cells=cells,
         origin=origin,
+        turn=turn,
         quadratic=quadratic,
         halved=halved,
         halved_in=halved_in,
@@ -264,6 +279,7 @@ def mesh_half_ring(
     nodes: Sequence[int],
     cells: Literal["triangles", "crossed", "rectangles", "triangles6", "rectangles9", "auto"],
     origin: Vector | None = None,
+    turn: float | Sequence[float] | None = None,
     quadratic: bool | None = None,
     halved: int | None = None,
     halved_in: dict | Sequence[dict] | None = None,
@@ -285,6 +301,9 @@ def mesh_half_ring(
         it is `rectangles9` with `dilatation = "linear"`, as of silicone.
     origin
         the place of the lower corner, or of the centre of a ring (m). Default: the origin.
+    turn
+        the angle by which the mesh is turned about the origin before it is brought to its place (rad). Default: 0.
+        One number in the plane, counter-clockwise; in space three, the axis times the angle.
     quadratic
         whether cells get mid nodes. Default: false. Triangles, tetrahedra and hexahedra; quadrilaterals are divided
         into triangles first. Numbers of nodes in the file are those of the mesh without this; where several nodes are
@@ -306,6 +325,7 @@ def mesh_half_ring(
         nodes=nodes,
         cells=cells,
         origin=origin,
+        turn=turn,
         quadratic=quadratic,
         halved=halved,
         halved_in=halved_in,
@@ -319,6 +339,7 @@ def mesh_cuboid(
     nodes: Sequence[int],
     cells: Literal["tetrahedra", "hexahedra", "tetrahedra10", "hexahedra20", "hexahedra27", "auto"],
     origin: Vector | None = None,
+    turn: float | Sequence[float] | None = None,
     quadratic: bool | None = None,
     halved: int | None = None,
     halved_in: dict | Sequence[dict] | None = None,
@@ -338,6 +359,9 @@ def mesh_cuboid(
         it is `hexahedra27` with `dilatation = "linear"`, as of silicone.
     origin
         the place of the lower corner, or of the centre of a ring (m). Default: the origin.
+    turn
+        the angle by which the mesh is turned about the origin before it is brought to its place (rad). Default: 0.
+        One number in the plane, counter-clockwise; in space three, the axis times the angle.
     quadratic
         whether cells get mid nodes. Default: false. Triangles, tetrahedra and hexahedra; quadrilaterals are divided
         into triangles first. Numbers of nodes in the file are those of the mesh without this; where several nodes are
@@ -362,6 +386,7 @@ def mesh_cuboid(
         nodes=nodes,
         cells=cells,
         origin=origin,
+        turn=turn,
         quadratic=quadratic,
         halved=halved,
         halved_in=halved_in,
@@ -374,6 +399,7 @@ def mesh_gmsh(
     *,
     file: str,
     origin: Vector | None = None,
+    turn: float | Sequence[float] | None = None,
     quadratic: bool | None = None,
     halved: int | None = None,
     halved_in: dict | Sequence[dict] | None = None,
@@ -387,6 +413,9 @@ def mesh_gmsh(
         the path of a Gmsh mesh, relative to the scene file. Required.
     origin
         the place of the lower corner, or of the centre of a ring (m). Default: the origin.
+    turn
+        the angle by which the mesh is turned about the origin before it is brought to its place (rad). Default: 0.
+        One number in the plane, counter-clockwise; in space three, the axis times the angle.
     quadratic
         whether cells get mid nodes. Default: false. Triangles, tetrahedra and hexahedra; quadrilaterals are divided
         into triangles first. Numbers of nodes in the file are those of the mesh without this; where several nodes are
@@ -405,6 +434,7 @@ def mesh_gmsh(
         kind="gmsh",
         file=file,
         origin=origin,
+        turn=turn,
         quadratic=quadratic,
         halved=halved,
         halved_in=halved_in,
@@ -418,6 +448,7 @@ def mesh_listed(
     cells: Literal["segments", "triangles", "triangles6", "triangles7", "quadrilaterals", "quadrilaterals9", "tetrahedra", "tetrahedra10", "tetrahedra15", "hexahedra", "hexahedra20", "hexahedra27"],
     connectivity: Sequence[Sequence[int]],
     origin: Vector | None = None,
+    turn: float | Sequence[float] | None = None,
     quadratic: bool | None = None,
     halved: int | None = None,
     halved_in: dict | Sequence[dict] | None = None,
@@ -438,6 +469,9 @@ def mesh_listed(
         middles of edges.
     origin
         the place of the lower corner, or of the centre of a ring (m). Default: the origin.
+    turn
+        the angle by which the mesh is turned about the origin before it is brought to its place (rad). Default: 0.
+        One number in the plane, counter-clockwise; in space three, the axis times the angle.
     quadratic
         whether cells get mid nodes. Default: false. Triangles, tetrahedra and hexahedra; quadrilaterals are divided
         into triangles first. Numbers of nodes in the file are those of the mesh without this; where several nodes are
@@ -462,6 +496,7 @@ def mesh_listed(
         cells=cells,
         connectivity=connectivity,
         origin=origin,
+        turn=turn,
         quadratic=quadratic,
         halved=halved,
         halved_in=halved_in,
@@ -1358,6 +1393,7 @@ def obstacle_half_plane(
     tangential_damping: float | None = None,
     friction_coefficient: float | dict | None = None,
     sticking_speed: float | None = None,
+    backward: dict | None = None,
     adhesion: bool | None = None,
     velocity: Vector | None = None,
     path: dict | None = None,
@@ -1384,6 +1420,8 @@ def obstacle_half_plane(
         Coulomb's coefficient of friction, or both of them (no unit). Default: 0.
     sticking_speed
         the speed below which friction sticks (m/s). Default: a thousandth of the size of the body per second.
+    backward
+        a way in which friction is larger, as by bristles, scales or claws. Default: none.
     adhesion
         whether damping may pull at a body that leaves. Default: false.
     velocity
@@ -1402,6 +1440,7 @@ def obstacle_half_plane(
         tangential_damping=tangential_damping,
         friction_coefficient=friction_coefficient,
         sticking_speed=sticking_speed,
+        backward=backward,
         adhesion=adhesion,
         velocity=velocity,
         path=path,
@@ -1419,6 +1458,7 @@ def obstacle_disc(
     tangential_damping: float | None = None,
     friction_coefficient: float | dict | None = None,
     sticking_speed: float | None = None,
+    backward: dict | None = None,
     adhesion: bool | None = None,
     velocity: Vector | None = None,
     path: dict | None = None,
@@ -1446,6 +1486,8 @@ def obstacle_disc(
         Coulomb's coefficient of friction, or both of them (no unit). Default: 0.
     sticking_speed
         the speed below which friction sticks (m/s). Default: a thousandth of the size of the body per second.
+    backward
+        a way in which friction is larger, as by bristles, scales or claws. Default: none.
     adhesion
         whether damping may pull at a body that leaves. Default: false.
     velocity
@@ -1466,6 +1508,7 @@ def obstacle_disc(
         tangential_damping=tangential_damping,
         friction_coefficient=friction_coefficient,
         sticking_speed=sticking_speed,
+        backward=backward,
         adhesion=adhesion,
         velocity=velocity,
         path=path,
@@ -1484,6 +1527,7 @@ def obstacle_box(
     tangential_damping: float | None = None,
     friction_coefficient: float | dict | None = None,
     sticking_speed: float | None = None,
+    backward: dict | None = None,
     adhesion: bool | None = None,
     velocity: Vector | None = None,
     path: dict | None = None,
@@ -1510,6 +1554,8 @@ def obstacle_box(
         Coulomb's coefficient of friction, or both of them (no unit). Default: 0.
     sticking_speed
         the speed below which friction sticks (m/s). Default: a thousandth of the size of the body per second.
+    backward
+        a way in which friction is larger, as by bristles, scales or claws. Default: none.
     adhesion
         whether damping may pull at a body that leaves. Default: false.
     velocity
@@ -1528,6 +1574,7 @@ def obstacle_box(
         tangential_damping=tangential_damping,
         friction_coefficient=friction_coefficient,
         sticking_speed=sticking_speed,
+        backward=backward,
         adhesion=adhesion,
         velocity=velocity,
         path=path,
@@ -1546,6 +1593,7 @@ def obstacle_capsule(
     tangential_damping: float | None = None,
     friction_coefficient: float | dict | None = None,
     sticking_speed: float | None = None,
+    backward: dict | None = None,
     adhesion: bool | None = None,
     velocity: Vector | None = None,
     path: dict | None = None,
@@ -1574,6 +1622,8 @@ def obstacle_capsule(
         Coulomb's coefficient of friction, or both of them (no unit). Default: 0.
     sticking_speed
         the speed below which friction sticks (m/s). Default: a thousandth of the size of the body per second.
+    backward
+        a way in which friction is larger, as by bristles, scales or claws. Default: none.
     adhesion
         whether damping may pull at a body that leaves. Default: false.
     velocity
@@ -1593,6 +1643,7 @@ def obstacle_capsule(
         tangential_damping=tangential_damping,
         friction_coefficient=friction_coefficient,
         sticking_speed=sticking_speed,
+        backward=backward,
         adhesion=adhesion,
         velocity=velocity,
         path=path,
@@ -1609,6 +1660,7 @@ def obstacle_union(
     tangential_damping: float | None = None,
     friction_coefficient: float | dict | None = None,
     sticking_speed: float | None = None,
+    backward: dict | None = None,
     adhesion: bool | None = None,
     velocity: Vector | None = None,
     path: dict | None = None,
@@ -1633,6 +1685,8 @@ def obstacle_union(
         Coulomb's coefficient of friction, or both of them (no unit). Default: 0.
     sticking_speed
         the speed below which friction sticks (m/s). Default: a thousandth of the size of the body per second.
+    backward
+        a way in which friction is larger, as by bristles, scales or claws. Default: none.
     adhesion
         whether damping may pull at a body that leaves. Default: false.
     velocity
@@ -1650,6 +1704,7 @@ def obstacle_union(
         tangential_damping=tangential_damping,
         friction_coefficient=friction_coefficient,
         sticking_speed=sticking_speed,
+        backward=backward,
         adhesion=adhesion,
         velocity=velocity,
         path=path,
@@ -1745,6 +1800,27 @@ def obstacle_parts_capsule(
         from_=from_,
         to=to,
         radius=radius,
+    )
+
+
+def backward(
+    *,
+    direction: Vector,
+    friction_coefficient: float,
+) -> dict:
+    r"""Larger friction against sliding one way; what slides at an angle to it has less, and all other ways have
+    `friction_coefficient`.
+
+    Parameters
+    ----------
+    direction
+        the way in which friction is larger, in space. Required.
+    friction_coefficient
+        the static coefficient of friction that way (no unit). Required. The kinetic one is larger in proportion.
+    """
+    return _table(
+        direction=direction,
+        friction_coefficient=friction_coefficient,
     )
 
 
@@ -3229,6 +3305,7 @@ def box(
 
 __all__ = [
     "actuate",
+    "backward",
     "body",
     "box",
     "branch",

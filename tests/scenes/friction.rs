@@ -146,6 +146,33 @@ fn a_sliding_block_stops() {
     }
 }
 
+/// On bristles a block that slides against them stops by their coefficient, and with them by the other one: after
+/// v^2/(2 mu g).
+#[test]
+fn bristles_let_slide_one_way() {
+    let (speed, forward, backward) = (0.7, 0.2, 0.5);
+    for (way, mu) in [(1.0, backward), (-1.0, forward)] {
+        let floor = plane(0.0).friction_coefficient(forward);
+        let scene = Scene::new(block(0.0))
+            .gravity([0.0, -G])
+            .obstacle(floor.backward_friction([way, 0.0], backward))
+            .initial_velocity(|_| vec![speed, 0.0])
+            .phase(Phase::until(0.4));
+        let time = speed / (mu * G);
+        for method in [Method::CvodeBdf, Method::Ida, Method::CentralDifference] {
+            let trajectory = run(&scene, method, &[0.5 * time, 0.99 * time]);
+            let way = |sample: &Sample| trajectory.centre_of_mass(sample)[0] - 0.1;
+            for (sample, part) in trajectory.samples()[1..].iter().zip([0.75, 0.9999]) {
+                let expected = part * speed * time / 2.0;
+                println!("{method}: {} {expected} m", way(sample));
+                // as of a block that stops by one coefficient alone
+                assert!((way(sample) / expected - 1.0).abs() < 1e-3, "{method}: {}", way(sample));
+            }
+            assert_balanced(&trajectory, 1e-5);
+        }
+    }
+}
+
 /// A block on a belt that runs at w gets w after w/(mu g). Half of what the drive has given is motion, half
 /// heat.
 #[test]

@@ -19,6 +19,8 @@ pub(crate) use generate::BYTES_PER_NODE;
 pub use generate::{Cells, SolidCells};
 pub use select::Selection;
 
+use nalgebra::{Rotation3, Vector3};
+
 use crate::base::input::{InputError, finite};
 
 /// A finite element mesh in its undeformed shape: cells of one kind, in a space of their dimension or
@@ -184,6 +186,40 @@ impl Mesh {
         finite("offset", offset)?;
         for position in self.positions.chunks_exact_mut(self.dimension) {
             position.iter_mut().zip(offset).for_each(|(x, d)| *x += d);
+        }
+        Ok(self)
+    }
+
+    /// The same mesh, turned about the origin by the angle `turn` (rad): one number in the plane, counter-clockwise; in
+    /// space three, the axis times the angle.
+    ///
+    /// ```
+    /// # use pliant::{Mesh, SolidCells};
+    /// # use std::f64::consts::PI;
+    /// let lying = Mesh::cuboid([0.3, 0.2, 0.1], [2; 3], SolidCells::Hexahedra)?;
+    /// let upright = lying.turned(&[0.0, -PI / 2.0, 0.0])?; // about y: x goes to z, z to -x
+    /// let last = upright.position(7); // it was at (0.3, 0.2, 0.1)
+    /// assert!((last[0] + 0.1).abs() + (last[1] - 0.2).abs() + (last[2] - 0.3).abs() < 1e-15);
+    /// # Ok::<(), pliant::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// An angle of the wrong length, or not finite; a mesh on a line.
+    pub fn turned(mut self, turn: &[f64]) -> Result<Self, InputError> {
+        finite("turn", turn)?;
+        let rotation = match (self.dimension, turn) {
+            (2, &[angle]) => Rotation3::from_axis_angle(&Vector3::z_axis(), angle),
+            (3, &[x, y, z]) => Rotation3::new(Vector3::new(x, y, z)),
+            _ => {
+                let help = "one angle (rad) in the plane; in space three numbers, the axis times the angle";
+                return Err(InputError::new("turn", format!("{turn:?}"), help));
+            }
+        };
+        for position in self.positions.chunks_exact_mut(self.dimension) {
+            let mut place = Vector3::zeros();
+            position.iter().zip(&mut place).for_each(|(x, place)| *place = *x);
+            let turned = rotation * place;
+            position.iter_mut().zip(&turned).for_each(|(x, turned)| *x = *turned);
         }
         Ok(self)
     }

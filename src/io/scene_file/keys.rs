@@ -135,6 +135,15 @@ impl Key {
         Self::new(name, Holds::Number, meaning).in_unit(unit)
     }
 
+    /// A key of a vector that has to be there.
+    pub(super) const fn vector(
+        name: &'static str,
+        meaning: &'static str,
+        unit: &'static str,
+    ) -> Self {
+        Self::new(name, Holds::Vector, meaning).in_unit(unit).required()
+    }
+
     pub(super) const fn in_unit(mut self, unit: &'static str) -> Self {
         self.meaning.unit = unit;
         self

@@ -20,6 +20,14 @@ pub(super) const MESH: TableKeys = TableKeys::new(
         Key::new("origin", Holds::Vector, "the place of the lower corner, or of the centre of a ring")
             .in_unit("m")
             .default("the origin"),
+        Key::new(
+            "turn",
+            Holds::OneOrMore(&Holds::Number),
+            "the angle by which the mesh is turned about the origin before it is brought to its place",
+        )
+        .in_unit("rad")
+        .law("One number in the plane, counter-clockwise; in space three, the axis times the angle.")
+        .default("0"),
         Key::new("quadratic", Holds::Flag, "whether cells get mid nodes")
             .law(FINER)
             .default("false"),
@@ -169,6 +177,10 @@ pub(super) fn mesh(
     let mesh = generate(&table, auto).map_err(|error| table.blame(error))?;
     let mesh = match dimension {
         Some(dimension) => placed(mesh, dimension)?,
+        None => mesh,
+    };
+    let mesh = match table.optional("turn", Value::one_or_more_numbers)? {
+        Some(turn) => mesh.turned(&turn).map_err(|error| table.blame(error))?,
         None => mesh,
     };
     let origin = table.optional("origin", |value| value.vector(mesh.dimension()))?;

@@ -9,11 +9,12 @@ use super::initial::{self, INITIAL};
 use super::keys::{Holds, Key, TableKeys};
 use super::magnet::{self, MAGNET};
 use super::muscle::{self, MUSCLE};
+use super::obstacle::{self, OBSTACLE};
 use super::phase;
 use super::phase_keys::PHASE;
 use super::sensor::{SENSOR, sensor};
 use super::settings::{self, OUTPUT, SOLVER, STATICS};
-use super::surroundings::{self, CABLE, CHAMBER, OBSTACLE, SPRING};
+use super::surroundings::{self, CABLE, CHAMBER, SPRING};
 use super::table::Table;
 use super::tie::{self, TIE};
 use super::touch::{self, TOUCH};
@@ -108,7 +109,7 @@ pub(super) fn scene_file(top: &Table) -> Result<SceneFile, Error> {
         ("supply", gas::add_supply),
         ("orifice", gas::add_orifice),
         ("fluid", fluid::add_fluid),
-        ("obstacle", surroundings::add_obstacle),
+        ("obstacle", obstacle::add_obstacle),
     ];
     for (key, add) in parts {
         if let Some(values) = top.get(key) {

@@ -1,7 +1,8 @@
 //! `[[touch]]`.
 
+use super::friction::{FRICTION_COEFFICIENT, coefficients};
 use super::keys::{Holds, Key, TableKeys};
-use super::surroundings::{FRICTION_COEFFICIENT, coefficients, unique};
+use super::surroundings::unique;
 use super::value::Value;
 use crate::dynamics::error::Error;
 use crate::scene::forces::Touch;

@@ -7,7 +7,7 @@ mod tests;
 
 use switches::Switches;
 
-use super::friction::{Coulomb, Drag};
+use super::friction::{Backward, Coulomb, Drag};
 use super::obstacle::{Law, Obstacle};
 use super::passage::{Path, deepest};
 use super::shape::Nearest;
@@ -29,6 +29,7 @@ pub(crate) struct Contact {
     fastest: Option<f64>,
     is_custom: bool,
     coulomb: Option<Coulomb>,
+    backward: Option<Backward>,
     points: Vec<ContactPoint>,
     switches: Switches,
 }
@@ -63,6 +64,29 @@ struct Slip {
     /// N (N)
     pressing: f64,
     drag: Drag,
+    /// mu(w)/w times the gradient of the [factor](Backward::factor) by which friction is larger backward
+    /// (s^2/m^2).
+    turning: Option<[f64; 3]>,
+}
+
+impl Slip {
+    fn new(
+        coulomb: Coulomb,
+        backward: Option<&Backward>,
+        sliding: [f64; 3],
+        pressing: f64,
+    ) -> Self {
+        let w = norm(&sliding);
+        let mut drag = coulomb.drag(w);
+        let turning = backward.map(|backward| {
+            let (factor, gradient) = backward.factor(coulomb, &sliding, w);
+            let turning = gradient.map(|x| drag.per_speed * x);
+            let Drag { per_speed, slope, along } = &mut drag;
+            [per_speed, slope, along].into_iter().for_each(|x| *x *= factor);
+            turning
+        });
+        Self { sliding, pressing, drag, turning }
+    }
 }
 
 impl Touch<'_> {
@@ -108,9 +132,10 @@ impl Contact {
         let (points, fastest): (Vec<_>, _) = (points.collect(), obstacle.fastest());
         let is_custom = obstacle.shape().is_custom();
         let coulomb = obstacle.coulomb(body.size());
+        let backward = obstacle.backward();
         let pressing = coulomb.is_some() || !obstacle.has_adhesion();
         let switches = Switches::new(points.len(), pressing, obstacle.has_friction());
-        Ok(Self { obstacle, dimension, fastest, is_custom, coulomb, points, switches })
+        Ok(Self { obstacle, dimension, fastest, is_custom, coulomb, backward, points, switches })
     }
 
     pub(crate) fn obstacle(&self) -> &Obstacle {
@@ -185,7 +210,7 @@ impl Contact {
             let is_cut_off = !presses && !self.obstacle.has_adhesion();
             let slip = self.coulomb.filter(|_| presses).map(|coulomb| {
                 let sliding = std::array::from_fn(|i| velocity[i] - rate * nearest.normal[i]);
-                Slip { sliding, pressing: -pull, drag: coulomb.drag(norm(&sliding)) }
+                Slip::new(coulomb, self.backward.as_ref(), sliding, -pull)
             });
             Some(Touch { k, point, nearest, velocity, rate, is_cut_off, slip })
         })
@@ -272,7 +297,9 @@ impl Force for Contact {
     /// With N the normal force, H the Hessian of d, r = x' - w and B the drag that multiplies the sliding
     /// velocity s, B_t + N c with c = mu(w)/w: -df/du is K_p n n^T + (B_p - B) n (H r)^T - (N + B d') H,
     /// and -df/dv is B_p n n^T + B (I - n n^T), at a fixed B. As B changes, further terms are, with
-    /// g = c'/w, -c s (K_p n + B_p H r)^T - N g d' s (H s)^T and -c B_p s n^T + N g s s^T.
+    /// g = c'/w, -c s (K_p n + B_p H r)^T - N g d' s (H s)^T and -c B_p s n^T + N g s s^T. Where friction is larger
+    /// backward, by a factor with the gradient a, there are -N c s (d' H a + (a . n) H r)^T and
+    /// N c s (a - (a . n) n)^T besides.
     fn add_tangents(
         &self,
         t: f64,
@@ -301,8 +328,12 @@ impl Force for Contact {
                 |i: usize, j: usize| drag * f64::from(i == j) + (damper - drag) * n[i] * n[j];
             spread(&point.on, by_u, stiffness);
             spread(&point.on, by_v, damping);
-            if let Some(Slip { sliding: s, pressing, drag: Drag { per_speed, slope, .. } }) =
-                touch.slip
+            if let Some(Slip {
+                sliding: s,
+                pressing,
+                drag: Drag { per_speed, slope, .. },
+                turning: turns,
+            }) = touch.slip
             {
                 let (bent, change) = (nearest.bend(&s), pressing * slope);
                 let by_u = |i: usize, j: usize| {
@@ -310,6 +341,14 @@ impl Force for Contact {
                     -s[i] * (normal + change * rate * bent[j])
                 };
                 let by_v = |i: usize, j: usize| s[i] * (change * s[j] - per_speed * damper * n[j]);
+                spread(&point.on, by_u, stiffness);
+                spread(&point.on, by_v, damping);
+                let Some(turns) = turns else { continue };
+                let (bent, on_normal) = (nearest.bend(&turns), dot(&turns, n));
+                let by_u = |i: usize, j: usize| {
+                    -pressing * s[i] * (rate * bent[j] + on_normal * turning[j])
+                };
+                let by_v = |i: usize, j: usize| pressing * s[i] * (turns[j] - on_normal * n[j]);
                 spread(&point.on, by_u, stiffness);
                 spread(&point.on, by_v, damping);
             }
@@ -338,7 +377,8 @@ impl Force for Contact {
         let Some(coulomb) = &self.coulomb else { return };
         for touch in self.touches(t, u, v) {
             let Some(Slip { pressing, drag, .. }) = touch.slip else { continue };
-            let lacking = pressing.max(0.0) * (coulomb.steepest() - drag.along.max(0.0));
+            let steepest = coulomb.steepest() * self.backward.map_or(1.0, |b| b.steepest());
+            let lacking = pressing.max(0.0) * (steepest - drag.along.max(0.0));
             for (node, share) in touch.point.on.nodes() {
                 damping[node] += share * lacking;
             }

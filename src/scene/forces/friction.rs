@@ -10,8 +10,20 @@
 //!
 //! mu(w) has a continuous slope, and mu(w)/w is a polynomial in w^2 where it sticks, so that it is smooth at
 //! rest. mu_s is reached at v0 and exceeded nowhere.
+//!
+//! A surface with bristles or scales holds what slides backward, along a unit vector e, by r times as much, less so at
+//! an angle:
+//!
+//! ```text
+//! mu(w) (1 + (r - 1) (3 q^2 - 2 q^3)),   q = h(w) s . e/w where that is above 0,
+//!
+//! h(w) = (3 x - x^3)/2 up to x = 1, then 1: mu(w)/mu_s of a law whose mu_s and mu_k are the same.
+//! ```
+//!
+//! Backward, q is h: the force grows up to v0 and is smooth there, too.
 
 use crate::base::input::{InputError, not_negative, positive};
+use crate::base::vector::{dot, norm};
 
 /// Friction as users give it.
 #[derive(Debug, Clone, Copy, Default)]
@@ -112,5 +124,82 @@ impl Coulomb {
     /// The largest d mu/dw (s/m), that at rest.
     pub(super) fn steepest(&self) -> f64 {
         1.5 * self.at_rest / self.sticking_speed
+    }
+}
+
+/// Friction that is larger one way, as users give it.
+#[derive(Debug, Clone)]
+pub(super) struct Bristles {
+    /// One component per dimension.
+    pub(super) direction: Vec<f64>,
+    /// The static coefficient that way.
+    pub(super) coefficient: f64,
+}
+
+impl Bristles {
+    /// Checks the numbers, beside the `friction` of the other ways; `input` names a key.
+    pub(super) fn validate(
+        &self,
+        friction: &Friction,
+        dimension: usize,
+        input: &impl Fn(&str) -> String,
+    ) -> Result<(), InputError> {
+        let Self { ref direction, coefficient } = *self;
+        let key = input("backward.direction");
+        if direction.len() != dimension {
+            let help = format!("give {dimension} components, one per dimension");
+            return Err(InputError::new(key, format!("{direction:?}"), help));
+        }
+        positive(&format!("length of {key}"), norm(direction), "")?;
+        let [at_rest, _] = friction.coefficients.unwrap_or_default();
+        let key = input("backward");
+        not_negative(&key, coefficient, "")?;
+        let help = if at_rest == 0.0 && coefficient > 0.0 {
+            "it goes with the friction of the other ways: give a friction_coefficient above 0, too"
+        } else if coefficient < at_rest {
+            "it must not be below the static coefficient of the other ways: turn the direction around"
+        } else {
+            return Ok(());
+        };
+        Err(InputError::new(key, coefficient, help))
+    }
+
+    /// How much larger the `friction` is that way.
+    pub(super) fn law(&self, friction: &Friction) -> Option<Backward> {
+        let [at_rest, _] = friction.coefficients.filter(|[at_rest, _]| *at_rest > 0.0)?;
+        let length = norm(&self.direction);
+        let component = |i: usize| self.direction.get(i).map_or(0.0, |x| x / length);
+        let along = std::array::from_fn(component);
+        Some(Backward { along, more: self.coefficient / at_rest - 1.0 })
+    }
+}
+
+/// How much more a surface holds what slides one way.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Backward {
+    /// e, a unit vector; 0 beyond the dimension.
+    pub(super) along: [f64; 3],
+    /// r - 1, 0 or above.
+    pub(super) more: f64,
+}
+
+impl Backward {
+    /// The factor 1 + (r - 1) (3 q^2 - 2 q^3) at the `sliding` velocity s (m/s) of the speed `w`, and its gradient by s
+    /// (s/m).
+    pub(super) fn factor(&self, coulomb: Coulomb, sliding: &[f64; 3], w: f64) -> (f64, [f64; 3]) {
+        let Drag { per_speed, slope, .. } =
+            Coulomb { at_rest: 1.0, sliding: 1.0, ..coulomb }.drag(w);
+        let along = dot(&self.along, sliding);
+        let q = (along * per_speed).clamp(0.0, 1.0);
+        let steepness = 6.0 * self.more * q * (1.0 - q);
+        let gradient = std::array::from_fn(|i| {
+            steepness * (per_speed * self.along[i] + along * slope * sliding[i])
+        });
+        (1.0 + self.more * q * q * (3.0 - 2.0 * q), gradient)
+    }
+
+    /// A bound on how much steeper than at rest without it friction grows.
+    pub(super) fn steepest(&self) -> f64 {
+        1.0 + 1.25 * self.more
     }
 }

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::friction::{Coulomb, Friction};
+use super::friction::{Backward, Bristles, Coulomb, Friction};
 use super::shape::{Nearest, Shape};
 use super::travel::{Cubics, Travel, Waypoints};
 #[cfg(feature = "scene-file")]
@@ -58,6 +58,7 @@ pub struct Obstacle {
     damping: f64,
     tangential_damping: f64,
     friction: Friction,
+    bristles: Option<Bristles>,
     adhesion: bool,
     travel: Travel,
     /// How far it is from where its travel alone would have brought it (m).
@@ -98,6 +99,7 @@ impl Obstacle {
             damping: 0.0,
             tangential_damping: 0.0,
             friction: Friction::default(),
+            bristles: None,
             adhesion: false,
             travel: Travel::Uniform(Vec::new()),
             offset: [0.0; 3],
@@ -202,6 +204,20 @@ impl Obstacle {
         self
     }
 
+    /// The static `coefficient` of friction against sliding along `direction`, one component per dimension, of any
+    /// length above 0: bristles, scales or claws that hold what slides backward (default: the same friction all ways).
+    ///
+    /// It is not below the static one of the [friction coefficients](Self::friction_coefficients), with r its ratio to
+    /// that; mu_k is r times as large, too. What slides at the angle a to the direction has
+    /// 1 + (r - 1) (3 q^2 - 2 q^3) times their friction, with q = cos(a) where that is above 0; backward speeds far
+    /// below v0 have less, which leaves the force smooth. (Snakes: D. L. Hu, J. Nirody, T. Scott, M. J. Shelley, *The
+    /// mechanics of slithering locomotion*, PNAS 106, 2009, take different coefficients forward and backward.) The
+    /// direction is one of space: it does not turn with the obstacle or the body.
+    pub fn backward_friction(mut self, direction: impl Into<Vec<f64>>, coefficient: f64) -> Self {
+        self.bristles = Some(Bristles { direction: direction.into(), coefficient });
+        self
+    }
+
     /// The sliding speed v0 (m/s) below which friction sticks, above 0; with
     /// [friction coefficients](Self::friction_coefficients) only.
     ///
@@ -274,6 +290,8 @@ impl Obstacle {
         let tangential = input(&format!("tangential_damping{area}"));
         not_negative(&tangential, self.tangential_damping, rate)?;
         self.friction.validate(&input)?;
+        let bristles = self.bristles.as_ref();
+        bristles.map_or(Ok(()), |of| of.validate(&self.friction, dimension, &input))?;
         self.travel.validate(dimension, &input)?;
         Ok(Self { shape, ..self.clone() })
     }
@@ -362,12 +380,18 @@ impl Obstacle {
 
     /// The same obstacle without friction and tangential damping.
     pub(crate) fn without_friction(self) -> Self {
-        Self { friction: Friction::default(), tangential_damping: 0.0, ..self }
+        let friction = Friction::default();
+        Self { friction, bristles: None, tangential_damping: 0.0, ..self }
     }
 
     /// Whether what slides on it is held back by Coulomb's friction.
     pub(crate) fn has_friction(&self) -> bool {
         self.friction.acts()
+    }
+
+    /// Whether its friction is larger one way.
+    pub(crate) fn has_bristles(&self) -> bool {
+        self.bristles.is_some()
     }
 
     /// The sliding speed (m/s) below which a body of `size` (m) sticks to it; `None` without friction.
@@ -397,6 +421,11 @@ impl Obstacle {
     /// Its friction with a body of `size` (m).
     pub(super) fn coulomb(&self, size: f64) -> Option<Coulomb> {
         self.friction.coulomb(size)
+    }
+
+    /// How much larger its friction is one way.
+    pub(super) fn backward(&self) -> Option<Backward> {
+        self.bristles.as_ref()?.law(&self.friction)
     }
 
     /// d and its derivatives, with this [`displacement`](Self::displacement).

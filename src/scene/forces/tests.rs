@@ -392,8 +392,14 @@ fn contacts() {
                         viscous.clone().friction_coefficients(0.8, 0.5).sticking_speed(v0)
                     };
                     let rough = [20.0, 1.0, 0.01].map(|part| rough(part * speed));
+                    // bristles, and those of the opposite way
+                    let backward =
+                        |e: [f64; 3], rough: &Obstacle| rough.clone().backward_friction(at(e), 2.9);
+                    let bristly = rough.iter().map(|rough| backward([-1.0, 0.3, 0.2], rough));
+                    let turned = rough.iter().map(|rough| backward([1.0, -0.3, -0.2], rough));
+                    let bristly: Vec<Obstacle> = bristly.chain(turned).collect();
                     let v: Vec<f64> = v.iter().map(|v| speed * v).collect();
-                    for obstacle in rough.iter().chain([&viscous]) {
+                    for obstacle in rough.iter().chain(&bristly).chain([&viscous]) {
                         println!("{dimension} {adhesion} {speed} {obstacle:?}");
                         let contact = Contact::new(&body, obstacle).unwrap();
                         let largest = check(&contact, (dimension, &cells), 0.2, &u, &v, 1e-7);

@@ -150,6 +150,9 @@ impl Choice {
                         if obstacle.has_friction() {
                             sets.push(format!("obstacle.{number}.friction_coefficient=0"));
                         }
+                        if obstacle.has_bristles() {
+                            sets.push(format!("obstacle.{number}.backward.friction_coefficient=0"));
+                        }
                         if obstacle.has_tangential_damping() {
                             sets.push(format!("obstacle.{number}.tangential_damping=0"));
                         }

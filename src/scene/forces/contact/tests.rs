@@ -117,3 +117,33 @@ fn reserves_are_for_what_may_stick() {
         }
     }
 }
+
+/// Friction that is larger backward, written out: r mu N straight backward, mu N forward and across, and
+/// (1 + (r - 1) (3 q^2 - 2 q^3)) mu N with q = cos(a) at an angle a; at half v0, q is 11/16 of that.
+#[test]
+fn bristles_hold_what_slides_backward() {
+    let mesh = Mesh::cuboid([1.0; 3], [2; 3], crate::elements::mesh::SolidCells::Hexahedra);
+    let body = Body::new(mesh.unwrap(), SQUARE_MATERIAL).strain(Strain::Cauchy).build().unwrap();
+    let floor = Obstacle::half_plane([0.0, 0.0, 0.1], [0.0, 0.0, 1.0]).stiffness(50.0);
+    let floor = floor.friction_coefficients(0.3, 0.2).sticking_speed(0.2);
+    let contact = Contact::new(&body, &floor.backward_friction([0.0, -2.0, 0.0], 0.9)).unwrap();
+    let pressing = 50.0 * 0.1;
+    let (backward, slanting) = ([0.0, -1.0], [0.6, -0.8]);
+    let part = |q: f64| 1.0 + 2.0 * q * q * (3.0 - 2.0 * q);
+    for (way, speed, expected) in [
+        (backward, 0.7, 0.2 * 3.0),
+        ([0.0, 1.0], 0.7, 0.2),
+        ([1.0, 0.0], 0.7, 0.2),
+        (backward, 0.2, 0.9),
+        (slanting, 0.7, 0.2 * part(0.8)),
+        (backward, 0.1, 0.3 * 11.0 / 16.0 * part(11.0 / 16.0)),
+        (slanting, 0.1, 0.3 * 11.0 / 16.0 * part(0.8 * 11.0 / 16.0)),
+    ] {
+        let v = [speed * way[0], speed * way[1], 0.0].repeat(8);
+        let mut forces = NodalForces::zeros(24);
+        contact.add_forces(0.0, &[0.0; 24], &v, &mut forces).unwrap();
+        for (force, way) in forces.dissipative[..2].iter().zip(way) {
+            assert!((force + expected * pressing * way).abs() < 1e-14, "{way} {speed}: {force}");
+        }
+    }
+}
