@@ -2,8 +2,8 @@
 
 use crate::common::run;
 use pliant::{
-    Body, Cells, Error, Guide, Material, Mesh, Method, Phase, Sampling, Scene, Settings, Signal,
-    Spring, Statics, Strain, Trajectory,
+    Body, CellSelection, Cells, Error, Guide, Material, Mesh, Method, Phase, Sampling, Scene,
+    Settings, Signal, Spring, Statics, Strain, Trajectory,
 };
 
 const MASS: f64 = 0.1; // kg
@@ -55,6 +55,45 @@ fn a_tendon_bends_a_beam() {
     let between = turned(144) - turned(16);
     println!("turned by {between} rad");
     assert!((between / 0.008 - 1.0).abs() < 2e-4, "{between}");
+}
+
+/// Winches on both sides of a clamped beam, at the distance e from its axis, that draw in d on one side and let out d on the other one,
+/// and a force F across at its tip: cables of stiffness k that stay taut turn the tip by (2 k e d l + F (a l - l^2/2))/(E I + 2 k e^2 l),
+/// with the length l that bends and the length a. They press the beam together by 2e-4, so that the force has shorter arms, and its law
+/// is softer by three times that: as E I is a thirteenth of the denominator, the answers are larger by less than 1e-4.
+#[test]
+fn two_winches_hold_a_beam() {
+    let [length, height, thickness, young, stiffness] = [0.2, 0.005, 0.01, 1e6, 500.0];
+    let mesh = Mesh::rectangle([length, height], [81, 5], Cells::Triangles6).unwrap();
+    let [first, high, low] = [4 * 81 + 1, 5 * 81, 81];
+    let material = Material { density: 1000.0, young, poisson: 0.0, viscosity: 0.0 };
+    let cap = CellSelection::inside([length - 0.0025, 0.0], [length, height]);
+    let body = Body::new(mesh, material).thickness(thickness).region(cap, Material::rigid(1000.0));
+    let body = body.build().unwrap();
+    let (lever, bends) = (0.5 * height, length - 0.0025);
+    let (axial, tension) = (young * height * thickness, 0.005);
+    let pressed = 2.0 * tension / axial;
+    let taut = tension / stiffness + pressed * bends;
+    for (drawn, force) in [(2e-5, 0.0), (0.0, 1e-4), (1e-5, -1e-4)] {
+        let cable =
+            |nodes: Vec<usize>| Spring::cable([Guide::nodes(nodes)]).winch().stiffness(stiffness);
+        let phase = Phase::until(1.0).hold("left").load([high], [0.0, force]);
+        let phase = phase.actuate(["upper"], taut + drawn).actuate(["lower"], taut - drawn);
+        let scene = Scene::new(body.clone())
+            .spring(cable((first..=high).collect()).named("upper"))
+            .spring(cable((1..=low).collect()).named("lower"))
+            .phase(phase);
+        let equilibrium = scene.equilibrium(&Statics::default()).unwrap();
+        let u = &equilibrium.trajectory().last().u;
+        let [x, y] = [0, 1].map(|i| u[2 * (high - 1) + i] - u[2 * (low - 1) + i]);
+        let turned = (-x).atan2(height + y);
+        let moments = 2.0 * stiffness * lever * drawn * bends
+            + (1.0 - pressed) * force * (length * bends - 0.5 * bends * bends);
+        let holds = axial * height * height / 12.0 + 2.0 * stiffness * lever * lever * bends;
+        let off = turned / (moments / holds) - 1.0;
+        println!("turned by {turned} rad, {off:.1e} off");
+        assert!(off.abs() < 1e-4, "{off:e}");
+    }
 }
 
 /// A winch lifts the mass by what it draws in, less what its rope is stretched by the weight; what it has supplied is the
