@@ -170,8 +170,15 @@ fn scenes_of_the_page() {
 }
 
 /// Scenes that take seconds and more to their ends.
-const LONG: &[&str] =
-    &["ball-in-hand", "ball-in-hand-3d", "bellows", "heap", "pneumatic-finger", "two-squares"];
+const LONG: &[&str] = &[
+    "air-gripper",
+    "ball-in-hand",
+    "ball-in-hand-3d",
+    "bellows",
+    "heap",
+    "pneumatic-finger",
+    "two-squares",
+];
 
 /// They begin, and nothing is to be warned of before.
 #[test]
@@ -209,6 +216,9 @@ fn all_scenes_are_run() {
         "wheel-over-stones",
         // where fluids are tested
         "fish",
+        // where robots are tested
+        "inchworm",
+        "rolling-robot",
         // where contact is tested
         "cradle",
         "ring-on-table",
