@@ -1,5 +1,5 @@
 //! What all rooms use and what knows nothing of mechanics: vectors, small tensors, SIMD registers, matrices
-//! over pairs of nodes, points sorted by place, formulas of time, roots of functions, the error of an input.
+//! over pairs of nodes, points sorted by place, few shapes of many states, weights that are not negative, formulas of time, roots of functions, the error of an input.
 
 #[cfg(feature = "bodies")]
 pub(crate) mod formula;
@@ -7,6 +7,10 @@ pub(crate) mod formula;
 pub(crate) mod grid;
 pub(crate) mod input;
 pub(crate) mod lane;
+#[cfg(feature = "bodies")]
+pub(crate) mod nnls;
+#[cfg(feature = "bodies")]
+pub(crate) mod pod;
 pub(crate) mod root;
 pub(crate) mod simd;
 #[cfg(feature = "bodies")]

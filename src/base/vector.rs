@@ -38,6 +38,15 @@ pub(crate) fn cross(a: &[f64; 3], b: &[f64; 3]) -> [f64; 3] {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
+/// Numbers in ascending order, each once.
+#[cfg(feature = "bodies")]
+pub(crate) fn distinct(numbers: impl IntoIterator<Item = usize>) -> Vec<usize> {
+    let mut all: Vec<usize> = numbers.into_iter().collect();
+    all.sort_unstable();
+    all.dedup();
+    all
+}
+
 /// Pseudorandom numbers between -1 and 1, the same in all runs.
 pub(crate) fn noise(length: usize, seed: usize) -> Vec<f64> {
     let number =

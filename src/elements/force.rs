@@ -1,5 +1,6 @@
 //! Nodal forces, and the trait of what exerts them.
 
+use std::collections::BTreeMap;
 use std::fmt;
 use std::ops::{Deref, DerefMut};
 use std::sync::Arc;
@@ -77,6 +78,11 @@ pub struct ForceVector {
 }
 
 impl ForceVector {
+    /// Whether nothing was added.
+    pub(crate) fn is_zero(&self) -> bool {
+        self.is_zero
+    }
+
     fn clear(&mut self) {
         if !self.is_zero {
             self.values.fill(0.0);
@@ -308,6 +314,34 @@ pub trait Force: Send + Sync {
     /// Whether it only keeps rigid pieces in their shape, as their edges do where they are constraints.
     #[doc(hidden)]
     fn keeps_rigid(&self) -> bool {
+        false
+    }
+
+    /// Whether it is a sum over cells, of which a reduced model takes a [sample](Self::sample).
+    #[doc(hidden)]
+    fn is_by_cells(&self) -> bool {
+        false
+    }
+
+    /// The same force by some of the cells, each with a weight, on a pattern that couples their nodes.
+    #[doc(hidden)]
+    fn sample(
+        &self,
+        _weights: &BTreeMap<usize, f64>,
+        _pattern: &NodePattern,
+    ) -> Option<Arc<dyn Force>> {
+        None
+    }
+
+    /// Nodes (counted from 0) that it depends on or acts on; any if it does not say.
+    #[doc(hidden)]
+    fn nodes(&self) -> Option<Vec<usize>> {
+        None
+    }
+
+    /// Whether it depends on nothing, time included.
+    #[doc(hidden)]
+    fn is_steady(&self) -> bool {
         false
     }
 

@@ -1,8 +1,9 @@
 //! Parts of a whole.
 
+use std::fmt;
 use std::str::FromStr;
 
-use super::InputError;
+use super::{InputError, percent};
 
 /// A part of a whole, above 0 and below 1, such as an accuracy: `0.01`, or `1%`.
 ///
@@ -38,5 +39,12 @@ impl FromStr for Fraction {
         Self::check("part", number.unwrap_or(f64::NAN))
             .map(Self)
             .map_err(|error| InputError { value: format!("\"{text}\""), ..error })
+    }
+}
+
+impl fmt::Display for Fraction {
+    /// In percent, with two significant digits.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&percent(self.0))
     }
 }

@@ -23,6 +23,19 @@ pub(super) trait Elements:
 {
     /// The same on the nodes of several bodies.
     fn among_others(&self, offset: Offset) -> Arc<dyn Elements>;
+
+    /// Some of these `cells` (ascending), each times a weight, on a mesh of `node_count` nodes whose pairs `pattern` has,
+    /// or else that of these elements.
+    fn sampled(
+        &self,
+        cells: &[usize],
+        weights: &[f64],
+        pattern: Option<&NodePattern>,
+        node_count: usize,
+    ) -> Arc<dyn Elements>;
+
+    /// The nodes of all cells, one cell after the other.
+    fn nodes_of_cells(&self) -> &[usize];
 }
 
 impl<const N: usize, const M: usize, const D: usize, const Q: usize> Elements
@@ -30,6 +43,20 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Elements
 {
     fn among_others(&self, offset: Offset) -> Arc<dyn Elements> {
         Arc::new(Self::among_others(self, offset))
+    }
+
+    fn sampled(
+        &self,
+        cells: &[usize],
+        weights: &[f64],
+        pattern: Option<&NodePattern>,
+        node_count: usize,
+    ) -> Arc<dyn Elements> {
+        Arc::new(Self::sampled(self, cells, weights, pattern, node_count))
+    }
+
+    fn nodes_of_cells(&self) -> &[usize] {
+        self.nodes.as_flattened()
     }
 }
 

@@ -1,18 +1,23 @@
 //! The elastic and viscous forces that depend on the shape of the body.
 
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
 use super::assembled::Body;
 use super::continuum::Continuum;
 use super::forces::Terms;
-use crate::base::sparse::BlockMatrix;
+use crate::base::sparse::{BlockMatrix, NodePattern};
 use crate::elements::force::{Force, NodalForces, Reservoir, Tangents};
 use crate::elements::mesh::CellKind;
 use crate::integrators::ode::Failure;
 
 /// Elastic forces, forces of objective viscosity, or both.
 pub(crate) struct Elastic {
-    bodies: Vec<(Continuum, Terms)>,
+    pub(super) bodies: Vec<(Continuum, Terms)>,
     /// Whether they are those of the rigid pieces.
-    is_of_rigid: bool,
+    pub(super) is_of_rigid: bool,
+    /// The nodes of its cells, if these are a sample.
+    pub(super) nodes: Option<Vec<usize>>,
 }
 
 impl Force for Elastic {
@@ -52,6 +57,22 @@ impl Force for Elastic {
 
     fn keeps_rigid(&self) -> bool {
         self.is_of_rigid
+    }
+
+    fn is_by_cells(&self) -> bool {
+        true
+    }
+
+    fn sample(
+        &self,
+        weights: &BTreeMap<usize, f64>,
+        pattern: &NodePattern,
+    ) -> Option<Arc<dyn Force>> {
+        Some(Arc::new(self.sampled(weights, pattern)))
+    }
+
+    fn nodes(&self) -> Option<Vec<usize>> {
+        self.nodes.clone()
     }
 }
 
@@ -100,7 +121,8 @@ impl Body {
         let part = if is_of_rigid { Continuum::rigid } else { Continuum::soft };
         let bodies = self.with_terms(Continuum::nonlinear_terms).into_iter();
         let bodies: Vec<_> = bodies.filter_map(|(own, terms)| Some((part(&own)?, terms))).collect();
-        (!bodies.is_empty()).then_some(Elastic { bodies, is_of_rigid })
+        let elastic = Elastic { bodies, is_of_rigid, nodes: None };
+        (!elastic.bodies.is_empty()).then_some(elastic)
     }
 
     /// The forces -K u and -B v element by element, where that is less work than with the matrices: a row of

@@ -33,7 +33,7 @@ pub(super) struct ElementsOf<const N: usize, const M: usize, const D: usize, con
     pub(super) entries: Vec<[[u32; N]; N]>,
     /// Strain points of [`SIDE_BY_SIDE`] cells each, those of the same cells one after the other; volumes
     /// times section. Cells that are missing at the end repeat the last one.
-    points: Arc<Vec<StrainPoint<Packed, N, M, D>>>,
+    pub(super) points: Arc<Vec<StrainPoint<Packed, N, M, D>>>,
     /// Shape functions at the strain points of a cell.
     pub(super) values: [[f64; N]; Q],
     /// The weights by which values at the strain points of a cell are extrapolated to its nodes.
@@ -47,6 +47,8 @@ pub(super) struct ElementsOf<const N: usize, const M: usize, const D: usize, con
     pub(super) modes: Arc<Vec<[Packed; M]>>,
     pub(super) shares: Partition,
     pub(super) rows: ContiguousCells<N>,
+    /// Numbers of the cells of a sample among those of the whole body; empty where they are all.
+    pub(super) numbers: Vec<usize>,
 }
 
 /// Where the nodes of a body are among those of several.
@@ -130,6 +132,7 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<
             modes: modes.into(),
             shares,
             rows,
+            numbers: Vec::new(),
         })
     }
 
@@ -153,6 +156,7 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<
             modes: Arc::default(),
             shares: Partition::new(&nodes, node_count),
             rows: ContiguousCells::new(&nodes),
+            numbers: Vec::new(),
             nodes,
         }
     }
@@ -174,8 +178,14 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<
             modes: self.modes.clone(),
             shares: Partition::new(&nodes, count),
             rows: ContiguousCells::new(&nodes),
+            numbers: self.numbers.clone(),
             nodes,
         }
+    }
+
+    /// The number of a cell in the whole body.
+    pub(super) fn number(&self, cell: usize) -> usize {
+        self.numbers.get(cell).copied().unwrap_or(cell)
     }
 
     /// The strain points, packed for blocks of [`SIDE_BY_SIDE`] cells.
@@ -266,7 +276,7 @@ impl<const N: usize, const M: usize, const D: usize> StrainPoint<Packed, N, M, D
 }
 
 /// The points of cells, `Q` of each, in lanes.
-fn side_by_side<const N: usize, const M: usize, const D: usize, const Q: usize>(
+pub(super) fn side_by_side<const N: usize, const M: usize, const D: usize, const Q: usize>(
     points: &[StrainPoint<f64, N, M, D>],
 ) -> Vec<StrainPoint<Packed, N, M, D>> {
     let cells = points.as_chunks::<Q>().0;

@@ -200,7 +200,8 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<
                 let is_inside = domain > 0.0;
                 if !is_inside {
                     let (nodes, problem) = (nodes.map(|node| node + 1), pull.outside(domain));
-                    let problem = format!("cell {} (nodes {nodes:?}) {problem}", cell + 1);
+                    let number = self.number(cell) + 1;
+                    let problem = format!("cell {number} (nodes {nodes:?}) {problem}");
                     return Err(Failure::Recoverable(problem));
                 }
             }

@@ -30,6 +30,7 @@ mod regions;
 mod reinforcement;
 mod relaxing;
 mod rigid;
+mod sample;
 mod strands;
 mod tangents;
 #[cfg(test)]
@@ -50,6 +51,7 @@ pub use polynomial::{Coefficients, GreenPolynomial};
 pub use regions::CellSelection;
 pub(crate) use relaxing::Branches;
 pub(crate) use rigid::RigidPieces;
+pub(crate) use sample::ByCell;
 pub(crate) use strands::Strands;
 
 pub use crate::elements::material::{Strain, Viscosity};

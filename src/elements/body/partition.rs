@@ -28,7 +28,8 @@ impl Partition {
     /// The shares of `cells` on `nodes` nodes.
     pub(super) fn new<const N: usize>(cells: &[[usize; N]], nodes: usize) -> Self {
         let whole = Self { nodes, cells: vec![vec![0..cells.len()]] };
-        if nodes < LARGE {
+        // a sample touches few of the nodes
+        if nodes.min(N * cells.len()) < LARGE {
             return whole;
         }
         let few_twice = |shares: &Self| {

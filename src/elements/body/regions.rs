@@ -296,6 +296,12 @@ impl Regions {
         [grows, rest]
     }
 
+    /// The same of some `cells` alone, in their order.
+    pub(super) fn sampled(&self, cells: &[usize]) -> Self {
+        let picked = |cell: &usize| self.of_cell.get(*cell).copied();
+        Self { of_cell: cells.iter().filter_map(picked).collect(), ..self.clone() }
+    }
+
     /// Whether any of them is viscous.
     pub(super) fn are_viscous(&self) -> bool {
         self.laws.iter().any(|laws| !laws.viscous.0.is_zero())

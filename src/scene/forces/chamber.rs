@@ -11,6 +11,7 @@ use enclosure::{Polygon, Surface};
 use super::signal::{self, Signal, finite_at};
 use crate::base::input::{InputError, positive};
 use crate::base::sparse::BlockMatrix;
+use crate::base::vector::distinct;
 use crate::elements::body::Body;
 use crate::elements::force::{Force, NodalForces, Tangents};
 use crate::elements::mesh::Selection;
@@ -350,5 +351,9 @@ impl Force for ChamberForce {
             Geometry::Polygon(polygon, _) => polygon.couplings(),
             Geometry::Surface(surface, _) => surface.couplings(),
         }
+    }
+
+    fn nodes(&self) -> Option<Vec<usize>> {
+        Some(distinct(self.couplings().into_iter().flatten()))
     }
 }

@@ -16,7 +16,7 @@ use super::surface::{SurfacePoint, boundary_nodes, gauss_points};
 use super::travel::Cubics;
 use crate::base::input::InputError;
 use crate::base::sparse::BlockMatrix;
-use crate::base::vector::{difference, dot, norm};
+use crate::base::vector::{difference, distinct, dot, norm};
 use crate::elements::body::Body;
 use crate::elements::force::{Force, NodalForces, Reservoir, Step, Tangents};
 use crate::integrators::ode::Failure;
@@ -393,6 +393,10 @@ impl Force for Contact {
             if is_on { 0.5 * point.law.stiffness * distance * distance } else { 0.0 }
         };
         self.points.iter().enumerate().map(energy).sum()
+    }
+
+    fn nodes(&self) -> Option<Vec<usize>> {
+        Some(distinct(self.points.iter().flat_map(|point| point.on.nodes().map(|(node, _)| node))))
     }
 
     fn velocity(&self, t: f64) -> Option<[f64; 3]> {

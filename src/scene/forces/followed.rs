@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use super::faces::{LoadedFace, number_of};
 use super::surface::natural;
 use crate::base::sparse::BlockMatrix;
-use crate::base::vector::norm;
+use crate::base::vector::{distinct, norm};
 use crate::elements::basis::{FacePoint, MOST_NODES, face_points};
 use crate::elements::mesh::{FaceKind, Mesh};
 
@@ -57,6 +57,11 @@ impl FollowedFaces {
             faces.push(FollowedFace { nodes, natural, kind, across });
         }
         Ok(Self { dimension: mesh.dimension(), faces, points })
+    }
+
+    /// Their nodes, ascending.
+    pub(super) fn nodes(&self) -> Vec<usize> {
+        distinct(self.faces.iter().flat_map(|face| face.nodes.iter().copied()))
     }
 
     /// Each quadrature point under the displacements `u` (m).

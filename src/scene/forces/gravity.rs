@@ -39,6 +39,10 @@ impl Force for Gravity {
         false
     }
 
+    fn is_steady(&self) -> bool {
+        true
+    }
+
     fn potential(&self, _t: f64, u: &[f64]) -> f64 {
         self.natural_potential - dot(&self.weight, u)
     }

@@ -1,6 +1,7 @@
 //! Loads: given forces on nodes.
 
 use super::signal::{VectorSignal, finite_at};
+use crate::base::vector::distinct;
 use crate::elements::force::{Force, NodalForces};
 use crate::integrators::ode::Failure;
 
@@ -8,6 +9,8 @@ use crate::integrators::ode::Failure;
 pub(crate) struct Load {
     /// (degree of freedom, force in N)
     pub(crate) forces: Vec<(usize, f64)>,
+    /// Components of a force.
+    pub(crate) dimension: usize,
 }
 
 impl Force for Load {
@@ -26,6 +29,14 @@ impl Force for Load {
 
     fn is_nonlinear(&self) -> bool {
         false
+    }
+
+    fn nodes(&self) -> Option<Vec<usize>> {
+        Some(distinct(self.forces.iter().map(|(dof, _)| dof / self.dimension)))
+    }
+
+    fn is_steady(&self) -> bool {
+        true
     }
 }
 
@@ -71,5 +82,9 @@ impl Force for VaryingLoad {
 
     fn is_nonlinear(&self) -> bool {
         false
+    }
+
+    fn nodes(&self) -> Option<Vec<usize>> {
+        Some(distinct(self.nodes.iter().map(|(node, _)| *node)))
     }
 }

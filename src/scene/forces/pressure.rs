@@ -92,4 +92,8 @@ impl Force for FacePressure {
         });
         Tangents::Added
     }
+
+    fn nodes(&self) -> Option<Vec<usize>> {
+        Some(self.faces.nodes())
+    }
 }

@@ -34,7 +34,8 @@ pub(super) fn nodal_forces(force: &dyn Force, t: f64, u: &[f64], v: &[f64]) -> N
 /// Checks `force` on nodes with `dimension` components each at (t, u, v), to `tolerance` relative
 /// to its largest tangent: central differences with h = 1e-5 are off by about (h/l)^2 where the
 /// force changes over a length l, and by round-off, 1e-16 f/h. Returns its largest tangent.
-/// Its tangents may couple the nodes of `cells` and those that it says it couples.
+/// Its tangents may couple the nodes of `cells` and those that it says it couples. Nodes that it does not name have no
+/// force, and change none.
 #[track_caller]
 pub(super) fn check(
     force: &dyn Force,
@@ -55,12 +56,18 @@ pub(super) fn check(
     // a force that is cut off has tangents of 0
     let scales = [&stiffness, &damping].map(|matrix| largest(&matrix.values).max(1.0));
     let at = nodal_forces(force, t, u, v);
+    let nodes = force.nodes();
+    let is_named =
+        |dof: usize| nodes.as_ref().is_none_or(|nodes| nodes.contains(&(dof / dimension)));
+    let all = |f: &NodalForces| [&f.conservative, &f.dissipative, &f.applied].map(|f| f.to_vec());
+    assert!(all(&at).iter().all(|f| (0..n).all(|i| is_named(i) || f[i] == 0.0)));
     for j in 0..n {
         let slope = force.potential(t, &moved(u, j, h)) - force.potential(t, &moved(u, j, -h));
         let apart = (at.conservative[j] + slope / (2.0 * h)).abs();
         assert!(apart <= tolerance * scales[0], "dU/du {j}: off by {apart}");
         let [ahead, behind] = [h, -h].map(|by| nodal_forces(force, t, &moved(u, j, by), v));
         let [faster, slower] = [h, -h].map(|by| nodal_forces(force, t, u, &moved(v, j, by)));
+        assert!(is_named(j) || [&ahead, &faster].iter().all(|moved| all(moved) == all(&at)), "{j}");
         for i in 0..n {
             let total = |f: &NodalForces| f.conservative[i] + f.dissipative[i] + f.applied[i];
             let by_u = (total(&behind) - total(&ahead)) / (2.0 * h);

@@ -75,6 +75,10 @@ impl Force for ClosedGas {
         Reservoir::Springs
     }
 
+    fn nodes(&self) -> Option<Vec<usize>> {
+        Some(self.nodes.clone())
+    }
+
     fn couplings(&self) -> Vec<[usize; 2]> {
         let before = |(k, &node): (usize, &usize)| {
             self.nodes[..k].iter().map(move |&other| [other, node]).collect::<Vec<_>>()

@@ -19,6 +19,7 @@
 
 use super::path::Path;
 use crate::base::sparse::BlockMatrix;
+use crate::base::vector::distinct;
 use crate::elements::force::{Force, NodalForces, Reservoir, Tangents};
 use crate::integrators::ode::Failure;
 use crate::scene::forces::friction::Coulomb;
@@ -160,5 +161,9 @@ impl Force for CableForce {
     fn couplings(&self) -> Vec<[usize; 2]> {
         let Cable { path, stiffness, damping, friction, .. } = &self.cable;
         path.couplings(*stiffness > 0.0 || *damping > 0.0 || friction.is_some())
+    }
+
+    fn nodes(&self) -> Option<Vec<usize>> {
+        Some(distinct(self.cable.path.nodes.iter().flatten().copied()))
     }
 }

@@ -2,6 +2,7 @@
 
 use super::path::Path;
 use crate::base::sparse::BlockMatrix;
+use crate::base::vector::distinct;
 use crate::elements::force::{Force, NodalForces, Reservoir, Tangents};
 use crate::integrators::ode::Failure;
 use crate::scene::forces::signal::{self, Signal, finite_at};
@@ -72,6 +73,10 @@ impl Force for Elastic {
     fn couplings(&self) -> Vec<[usize; 2]> {
         self.path.couplings(true)
     }
+
+    fn nodes(&self) -> Option<Vec<usize>> {
+        Some(distinct(self.path.nodes.iter().flatten().copied()))
+    }
 }
 
 impl Force for Actuator {
@@ -104,5 +109,9 @@ impl Force for Actuator {
 
     fn couplings(&self) -> Vec<[usize; 2]> {
         self.path.couplings(false)
+    }
+
+    fn nodes(&self) -> Option<Vec<usize>> {
+        Some(distinct(self.path.nodes.iter().flatten().copied()))
     }
 }
