@@ -1,11 +1,13 @@
 //! How a motion was computed, phase by phase, and at what cost.
 
 mod indicator;
+mod reduced;
 
 use std::fmt;
 
 pub(crate) use indicator::warnings;
 pub use indicator::{Indicator, Verdict};
+pub use reduced::ReducedReport;
 
 use crate::base::input::told;
 use crate::scene::settings::Method;
@@ -44,6 +46,8 @@ pub struct Report {
     /// How accurately the motion is known, if it was
     /// [verified](crate::studies::work_precision::Verification).
     pub achieved: Option<Achieved>,
+    /// What a run by a reduced model tells.
+    pub reduced: Option<ReducedReport>,
     /// Phase by phase.
     pub phases: Vec<PhaseReport>,
 }
@@ -309,6 +313,7 @@ impl fmt::Display for Report {
         if let Some(achieved) = &self.achieved {
             write!(f, "\n{achieved}")?;
         }
+        self.reduced.iter().try_for_each(|reduced| write!(f, "\n{reduced}"))?;
         self.warnings().iter().try_for_each(|warning| write!(f, "\nWARNING: {warning}"))
     }
 }

@@ -5,7 +5,9 @@
 
 pub mod constraint;
 pub(crate) mod forces;
+pub(crate) mod reduced_model;
 pub(crate) mod settings;
 pub mod timeline;
 
+pub use reduced_model::ReducedModel;
 pub use timeline::{BodyState, Phase, Scene, Term};

@@ -18,6 +18,8 @@
 //! | [`touch`]: obstacles that act and are never touched | none |
 //! | [`chamber`]: the least volume of a chamber | 0 |
 //! | [`pace`]: absolute tolerance of displacements | 1 % of the distance that nodes travel, or 10 `rtol` |
+//! | [`reduced`]: the error that a run by a reduced model tells | twice what was wanted |
+//! | [`reduced`]: how far it was outside of what the model has learned | 5 % of the range |
 //!
 //! These are measured at the end of each run, and before it if they need no motion. Others take longer, or do
 //! not cause a warning by themselves: [`Trajectory::indicators`], `pliant check --look`. (+) means that a
@@ -48,6 +50,7 @@ mod mesh;
 pub(crate) mod overlap;
 mod pace;
 mod points;
+mod reduced;
 mod rigid;
 mod shape;
 mod size;
@@ -163,6 +166,7 @@ pub(crate) fn of_motion(trajectory: &Trajectory) -> Vec<Indicator> {
     let measured = measured.chain(chamber::volumes(scene, trajectory.samples()));
     let measured = measured.chain(overlaps(trajectory));
     let measured = measured.chain(pace::tolerance(trajectory, &samples));
+    let measured = measured.chain(reduced::reduced(trajectory));
     measured.chain(is_whole.then(missed).into_iter().flatten()).collect()
 }
 

@@ -294,7 +294,7 @@ impl Run {
         let phase = self.phase.frozen();
         let forces = self.scene.forces_in(&phase)?;
         let (alpha, name) = (self.settings.alpha, &phase.name);
-        let system = System::new(self.matrices.clone(), forces, rows, alpha, name)?;
+        let system = self.scene.system_by(&self.matrices, forces, rows, alpha, name)?;
         let mut run = self.twin();
         run.phase = phase;
         run.time = t;

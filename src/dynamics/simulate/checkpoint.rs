@@ -74,6 +74,7 @@ impl Kept {
         let mut rows = run.scene.rows(&self.phase, &start)?;
         rows.iter_mut().zip(&self.origins).for_each(|(row, origin)| row.set_origin(*origin));
         let forces = run.scene.forces_in(&self.phase)?;
-        System::new(run.matrices.clone(), forces, rows, run.settings.alpha, &self.phase.name)
+        let (alpha, name) = (run.settings.alpha, &self.phase.name);
+        run.scene.system_by(&run.matrices, forces, rows, alpha, name)
     }
 }

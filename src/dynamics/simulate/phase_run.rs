@@ -110,7 +110,7 @@ impl PhaseRun {
     /// Ends an integrator and returns its equations.
     pub(super) fn rest(&mut self, work: Running) -> System {
         self.counts.add(work.stepper.counts());
-        self.states = work.stepper.state().len();
+        self.states = work.stepper.unknowns();
         work.stepper.into_system()
     }
 
@@ -119,7 +119,7 @@ impl PhaseRun {
         let (mut counts, mut states) = (self.counts.clone(), self.states);
         if let Integration::Running(work) = at {
             counts.add(work.stepper.counts());
-            states = work.stepper.state().len();
+            states = work.stepper.unknowns();
         }
         counts.contact_events = self.interval.events.count;
         let Plan { settings, reason, .. } = &self.plan;

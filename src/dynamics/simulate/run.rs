@@ -19,7 +19,7 @@ use crate::base::input::InputError;
 use crate::dynamics::error::Error;
 use crate::dynamics::indicators;
 use crate::dynamics::matrices::Matrices;
-use crate::dynamics::report::{Report, creation};
+use crate::dynamics::report::{ReducedReport, Report, creation};
 use crate::dynamics::state::{ENERGIES, State};
 use crate::dynamics::system::System;
 use crate::dynamics::trajectory::{IntegrationFailure, Interrupted, Sample, Trajectory};
@@ -113,6 +113,7 @@ impl Run {
             rtol: settings.rtol,
             atol_position,
             alpha: settings.alpha,
+            reduced: scene.reduced_model().map(ReducedReport::new),
             ..Report::default()
         };
         let plan = Plan::new(settings, &mut system, 0.0, &state);

@@ -6,7 +6,7 @@ use crate::dynamics::state::ENERGIES;
 use crate::dynamics::system::{DaeForm, Form, Index, SecondOrderForm, System};
 use crate::integrators::central_difference::CentralDifference;
 use crate::integrators::common::Integrator;
-use crate::integrators::ode::Failure;
+use crate::integrators::ode::{Failure, Ode};
 use crate::integrators::rk::{self, DormandPrince};
 use crate::integrators::rosenbrock::{self, Rosenbrock};
 use crate::integrators::sundials::{
@@ -14,6 +14,8 @@ use crate::integrators::sundials::{
     LinearSolver, Multistep, Pattern,
 };
 use crate::scene::settings::{AbsoluteTolerances, Method, Settings};
+
+mod lifted;
 
 pub(super) type Failed = Box<dyn std::error::Error + Send + Sync>;
 
@@ -40,6 +42,11 @@ pub(super) trait Stepper: Send {
 
     /// The state at the end of the last step: (u, v, energies, ...).
     fn state(&self) -> &[f64];
+
+    /// Number of its unknowns.
+    fn unknowns(&self) -> usize {
+        self.state().len()
+    }
 
     fn system(&self) -> &System;
 
@@ -95,30 +102,35 @@ impl<I: Integrator<System: Form> + Send> Stepper for I {
     }
 
     fn counts(&self) -> Counts {
-        let (s, system) = (self.statistics(), Stepper::system(self));
-        let [spared, linear_iterations, indefinite] = system.newton_counts();
-        Counts {
-            steps: s.steps as usize,
-            evaluations: s.evaluations as usize,
-            jacobian_evaluations: system.tangent_evaluations(),
-            difference_evaluations: system.difference_evaluations(),
-            factorizations: (s.linear_setups as usize).saturating_sub(spared),
-            linear_iterations,
-            error_test_failures: s.error_test_failures as usize,
-            convergence_failures: (s.nonlinear_failures + s.refused_steps) as usize,
-            pattern_changes: system.pattern_changes(),
-            contact_events: 0,
-            last_step: s.last_step,
-            last_order: s.last_order,
-            // where surfaces turn about each other a few are what contact takes
-            notice: self.notice().or_else(|| {
-                let has_met = system.pattern_changes() > 0;
-                let few = if has_met { 2 + s.linear_setups as usize / MANY } else { 0 };
-                // where a rigid piece is pressed together, what its edges hold is none of M + gamma^2 Kt
-                let told = if system.has_edges() { 0 } else { indefinite.saturating_sub(few) };
-                compression(told)
-            }),
-        }
+        counts(self)
+    }
+}
+
+/// What an integrator has cost, with its equations.
+fn counts<I: Integrator<System: Form>>(integrator: &I) -> Counts {
+    let (s, system) = (integrator.statistics(), integrator.system().system());
+    let [spared, linear_iterations, indefinite] = system.newton_counts();
+    Counts {
+        steps: s.steps as usize,
+        evaluations: s.evaluations as usize,
+        jacobian_evaluations: system.tangent_evaluations(),
+        difference_evaluations: system.difference_evaluations(),
+        factorizations: (s.linear_setups as usize).saturating_sub(spared),
+        linear_iterations,
+        error_test_failures: s.error_test_failures as usize,
+        convergence_failures: (s.nonlinear_failures + s.refused_steps) as usize,
+        pattern_changes: system.pattern_changes(),
+        contact_events: 0,
+        last_step: s.last_step,
+        last_order: s.last_order,
+        // where surfaces turn about each other a few are what contact takes
+        notice: integrator.notice().or_else(|| {
+            let has_met = system.pattern_changes() > 0;
+            let few = if has_met { 2 + s.linear_setups as usize / MANY } else { 0 };
+            // where a rigid piece is pressed together, what its edges hold is none of M + gamma^2 Kt
+            let told = if system.has_edges() { 0 } else { indefinite.saturating_sub(few) };
+            compression(told)
+        }),
     }
 }
 
@@ -146,26 +158,18 @@ pub(super) fn start(
     first: Option<f64>,
     state: &[f64],
 ) -> Result<Box<dyn Stepper>, Failed> {
+    if system.is_reduced() {
+        return lifted::start(system, settings, atol, [t, end], first, state);
+    }
     let n = system.dofs();
-    let longest = settings.max_step.unwrap_or(f64::INFINITY);
     let mut tolerances = vec![atol.position; n];
     tolerances.resize(2 * n, atol.velocity);
     tolerances.resize(2 * n + ENERGIES, atol.energy);
     tolerances.resize(system.unknowns() - system.amounts().len(), atol.strain);
     tolerances.extend(system.amounts().iter().map(|amount| atol.strain * amount));
     system.expect_iteration(iterates(settings.method, &system));
+    let longest = settings.max_step.unwrap_or(f64::INFINITY);
     match settings.method {
-        // a plan never has `Auto`
-        Method::Auto | Method::CvodeBdf | Method::CvodeAdams => {
-            let options = cvode_options(settings, tolerances).max_step(longest);
-            until(end, Cvode::new(system, t, state, &options)?)
-        }
-        Method::Arkode => {
-            let options = arkode_options(settings, tolerances, system.is_linear())?;
-            let options = options.max_step(longest);
-            let options = first.into_iter().fold(options, ArkodeOptions::initial_step);
-            until(end, Arkode::new(system, t, state, &options)?)
-        }
         Method::Ida | Method::IdaKlu | Method::IdaIndexTwo => {
             let (rows, unknowns) = (system.rows().len(), system.unknowns());
             tolerances.resize(unknowns + rows, atol.force);
@@ -181,22 +185,67 @@ pub(super) fn start(
             let options = ida_options(settings, tolerances, &equations)?.max_step(longest);
             until(end, Ida::new(equations, t, &y, &yp, &options)?)
         }
-        Method::Rosenbrock => {
-            let options =
-                rosenbrock_options(settings, tolerances, system.is_linear()).max_step(longest);
-            let options = first.into_iter().fold(options, rosenbrock::Options::initial_step);
-            until(end, Rosenbrock::new(system, t, state, &options)?)
-        }
-        Method::Rk => {
-            let options = rk::Options::new(settings.rtol, tolerances).max_step(longest);
-            let options = first.into_iter().fold(options, rk::Options::initial_step);
-            until(end, DormandPrince::new(system, t, state, &options)?)
-        }
         Method::CentralDifference => {
             let options = rk::Options::new(settings.rtol, tolerances).max_step(longest);
             let options = first.into_iter().fold(options, rk::Options::initial_step);
             until(end, CentralDifference::new(SecondOrderForm::new(system), t, state, &options)?)
         }
+        _ => {
+            let is_linear = system.is_linear();
+            ode(system, is_linear, settings, tolerances, [t, end], first, state)
+        }
+    }
+}
+
+/// Starts an integrator of ordinary differential equations, linear ones or others.
+fn ode<S: Lead>(
+    equations: S,
+    is_linear: bool,
+    settings: &Settings,
+    tolerances: Vec<f64>,
+    [t, end]: [f64; 2],
+    first: Option<f64>,
+    y: &[f64],
+) -> Result<Box<dyn Stepper>, Failed> {
+    let longest = settings.max_step.unwrap_or(f64::INFINITY);
+    match settings.method {
+        Method::Arkode => {
+            let options = arkode_options(settings, tolerances, is_linear)?.max_step(longest);
+            let options = first.into_iter().fold(options, ArkodeOptions::initial_step);
+            S::lead(end, Arkode::new(equations, t, y, &options)?)
+        }
+        Method::Rosenbrock => {
+            let options = rosenbrock_options(settings, tolerances, is_linear).max_step(longest);
+            let options = first.into_iter().fold(options, rosenbrock::Options::initial_step);
+            S::lead(end, Rosenbrock::new(equations, t, y, &options)?)
+        }
+        Method::Rk => {
+            let options = rk::Options::new(settings.rtol, tolerances).max_step(longest);
+            let options = first.into_iter().fold(options, rk::Options::initial_step);
+            S::lead(end, DormandPrince::new(equations, t, y, &options)?)
+        }
+        // a plan never has `Auto`, and other methods take other equations
+        _ => {
+            let options = cvode_options(settings, tolerances).max_step(longest);
+            S::lead(end, Cvode::new(equations, t, y, &options)?)
+        }
+    }
+}
+
+/// Equations that are an ODE, and what leads their integrators.
+trait Lead: Form + Ode + Send + Sized + 'static {
+    /// The stepper of an integrator that stops at `end` (s).
+    fn lead<I>(end: f64, integrator: I) -> Result<Box<dyn Stepper>, Failed>
+    where
+        I: Integrator<System = Self> + Send + 'static;
+}
+
+impl Lead for System {
+    fn lead<I>(end: f64, integrator: I) -> Result<Box<dyn Stepper>, Failed>
+    where
+        I: Integrator<System = Self> + Send + 'static,
+    {
+        until(end, integrator)
     }
 }
 

@@ -160,7 +160,23 @@ impl Run {
         let worst = &mut self.trajectory.report.constraint_drift;
         *worst = worst.max(drift);
         self.follow_angles();
+        if self.trajectory.report.reduced.is_some() {
+            self.check_reduced(work.stepper.system_mut()).map_err(Failure::into_error)?;
+        }
         Ok(if event.is_some() { Outcome::CutOff(step) } else { Outcome::Taken(step) })
+    }
+
+    /// Notes now and then how far a reduced model is from all unknowns.
+    fn check_reduced(&mut self, system: &mut System) -> Result<(), Failure> {
+        let start = self.number.checked_sub(1).map_or(0.0, |k| self.scene.phases()[k].end());
+        let found = system.imbalance(self.time, &self.state, self.phase.until - start)?;
+        let first = &self.trajectory.samples()[0].u;
+        let moved = self.state.iter().zip(first).map(|(u, start)| (u - start).abs());
+        let travel = moved.fold(0.0, f64::max);
+        if let (Some(found), Some(reduced)) = (found, &mut self.trajectory.report.reduced) {
+            reduced.note([found.displacement, travel, found.outside]);
+        }
+        Ok(())
     }
 
     /// Reads the sensors at a few times within a step up to `time`, to find their largest and least values.

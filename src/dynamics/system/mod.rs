@@ -31,16 +31,20 @@ mod form;
 mod gas;
 mod gradients;
 mod guide;
+mod imbalance;
 mod mobility;
 mod newton;
 mod newton_matrix;
 mod ode;
 mod rates;
 mod reduced;
+mod reduced_form;
+mod reduction;
 pub(crate) mod rigid;
 mod scene;
 mod second_order;
 mod shape;
+mod shapes;
 mod source;
 mod spectrum;
 mod summary;
@@ -57,6 +61,8 @@ use edges::Edges;
 pub(crate) use form::Form;
 use newton_matrix::NewtonMatrix;
 use reduced::{EXACT, Reduced, nodal_multipliers};
+pub(crate) use reduced_form::ReducedForm;
+use reduction::Reduction;
 pub(crate) use second_order::SecondOrderForm;
 use source::Coupling;
 pub use spectrum::Spectrum;
@@ -96,6 +102,8 @@ pub(crate) struct System {
     at: Evaluation,
     /// Why a force was undefined, the last time that one was.
     refusal: String,
+    /// The reduced model, where the phase is run by one.
+    reduction: Option<Box<Reduction>>,
 }
 
 /// Results of the last evaluation of the equations.
@@ -229,6 +237,7 @@ impl System {
             newton,
             at,
             refusal,
+            reduction: None,
         })
     }
 
@@ -243,6 +252,12 @@ impl System {
         if follows(&self.matrices, &forces) != self.newton.follows {
             return false;
         }
+        if let Some(reduction) = &mut self.reduction {
+            if !reduction.has_room(&forces) {
+                return false;
+            }
+            reduction.take(&forces);
+        }
         (self.of_rigid, self.flow, self.forces) = parted(forces);
         self.forget_tangents();
         true
@@ -251,6 +266,7 @@ impl System {
     /// Marks the tangents as out of date.
     pub(crate) fn forget_tangents(&mut self) {
         self.newton.is_set = false;
+        self.reduction.iter_mut().for_each(|reduction| reduction.forget_tangents());
     }
 
     /// The inertia matrix.
@@ -286,7 +302,7 @@ impl System {
 
     /// Number of evaluations for the tangents of forces that do not compute them.
     pub(crate) fn difference_evaluations(&self) -> usize {
-        self.newton.difference_evaluations()
+        self.newton.difference_evaluations() + self.reduced_differences()
     }
 
     /// The constraint forces lambda (N) at (t, u, v) and the internal strains, row by row.
@@ -416,7 +432,8 @@ impl System {
         if let (Some(flow), [_, ..]) = (flow_of(&self.flow), amounts) {
             energy.springs += flow.potential_of(u, amounts);
         }
-        for force in &self.forces {
+        let sampled = self.reduction.as_ref().map(|reduction| &reduction.forces);
+        for force in sampled.unwrap_or(&self.forces) {
             let potential = force.potential(t, u);
             match force.reservoir() {
                 Reservoir::Strain => energy.strain += potential,

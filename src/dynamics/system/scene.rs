@@ -6,7 +6,7 @@ use super::{Spectrum, System};
 use crate::base::input::InputError;
 use crate::dynamics::matrices::Matrices;
 use crate::elements::force::Forces;
-use crate::scene::constraint::PhaseStart;
+use crate::scene::constraint::{ConstraintRow, PhaseStart};
 use crate::scene::timeline::{Phase, Scene};
 
 impl Scene {
@@ -29,13 +29,41 @@ impl Scene {
         alpha: f64,
     ) -> Result<System, InputError> {
         let rows = self.rows(phase, start)?;
-        let mut system = System::new(matrices.clone(), forces, rows, alpha, &phase.name)?;
+        let mut system = self.system_by(matrices, forces, rows, alpha, &phase.name)?;
         if system.tears_apart(start.time, start.u) {
             let input = format!("constraints of phase \"{}\"", phase.name);
             let help = "a rigid piece keeps its shape: move it as a whole, or fewer of its nodes";
             return Err(InputError::new(input, "moving nodes of a rigid piece apart", help));
         }
         Ok(system)
+    }
+
+    /// The equations of the phase `name` under its forces and the `rows` of its constraints, by the reduced model of the
+    /// scene if it has one.
+    pub(crate) fn system_by(
+        &self,
+        matrices: &Arc<Matrices>,
+        forces: Forces,
+        rows: Vec<ConstraintRow>,
+        alpha: f64,
+        name: &str,
+    ) -> Result<System, InputError> {
+        let mut system = System::new(matrices.clone(), forces, rows, alpha, name)?;
+        if let Some(model) = self.shared_reduced_model() {
+            system.reduce(self.body(), model, name)?;
+        }
+        Ok(system)
+    }
+
+    /// # Errors
+    /// What a reduced model of the scene cannot have; bad input.
+    pub(crate) fn check_reducible(&self) -> Result<(), InputError> {
+        let forces = self.forces()?;
+        let (matrices, phase) = (self.matrices(&forces), self.first_phase()?);
+        let start = PhaseStart { time: 0.0, u: self.initial_displacements() };
+        let first = forces.into_iter().next().unwrap_or_default();
+        let unreduced = self.clone().unreduced();
+        unreduced.system(&matrices, phase, first, &start, 0.0)?.check_reducible()
     }
 
     /// How fast the body can move in each phase, in its undeformed shape and at rest.

@@ -13,7 +13,7 @@ use crate::scene::forces::{Obstacle, Touch};
 
 impl Scene {
     /// The same scene with its body built differently: of another material, with another measure of strain,
-    /// with other inertia. Nodes and cells stay.
+    /// with other inertia. Nodes and cells stay; a [reduced model](Self::reduced) does not.
     ///
     /// ```
     /// use pliant::{Inertia, Strain, samples};
@@ -37,7 +37,8 @@ impl Scene {
             );
             return Err(InputError::new("displacement components of the body", body.dofs(), help));
         }
-        Ok(Self { body: Arc::new(body), ..self.clone() })
+        // a reduced model is of the body as it was
+        Ok(Self { body: Arc::new(body), reduced: None, ..self.clone() })
     }
 
     /// The same scene with each cell of the mesh divided at the middles of its edges: see [`Mesh::halved`].
@@ -45,7 +46,7 @@ impl Scene {
     /// Node sets, and lists of nodes that are held or moved together, are extended by the new nodes between
     /// them. What acts on single nodes stays there: forces on each node, springs, sensors. Stiffness and
     /// damping of obstacles per node are divided by the factor by which the number of nodes on the boundary
-    /// grows.
+    /// grows. A [reduced model](Self::reduced) is left behind.
     ///
     /// # Errors
     /// Point masses that are named by number, forces that are not of this crate: which nodes they mean is
@@ -117,7 +118,7 @@ impl Scene {
         let finer = make(&coarse)?;
         let body = builder.on(&finer)?.build()?;
         let change = Change { body: &self.body, coarse: &coarse, finer: &finer };
-        let mut scene = self.clone();
+        let mut scene = self.clone().unreduced();
         scene.start = change.start(self, &body)?;
         scene.chambers = self
             .chambers

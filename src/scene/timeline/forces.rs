@@ -95,7 +95,7 @@ impl Scene {
             }
         }
         if !constant.is_empty() {
-            forces.push(Arc::new(Load { forces: constant }));
+            forces.push(Arc::new(Load { forces: constant, dimension }));
         }
         Ok(())
     }

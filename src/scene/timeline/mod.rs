@@ -11,6 +11,7 @@ mod initial;
 mod load;
 mod loading;
 mod phase;
+mod reduced;
 mod start;
 mod term;
 mod tie;
@@ -42,6 +43,7 @@ use crate::scene::forces::{
     ATMOSPHERE, Chamber, Contact, Fluid, Gas, Growth, Magnet, Muscle, Obstacle, Orifice, Spring,
     Supply, Touch, TouchForce,
 };
+use crate::scene::reduced_model::ReducedModel;
 
 /// A body, gravity, springs, muscles, magnets, chambers, fluids, obstacles, and what happens when.
 ///
@@ -85,6 +87,7 @@ pub struct Scene {
     phases: Vec<Phase>,
     start: Start,
     unusual: Vec<String>,
+    reduced: Option<Arc<ReducedModel>>,
 }
 
 /// The quantities of a scene that may be [unusual](Scene::unusual): the names of the indicators of its units.
@@ -124,6 +127,7 @@ impl Scene {
             forces: Forces::new(),
             phases: Vec::new(),
             unusual: Vec::new(),
+            reduced: None,
         }
     }
 

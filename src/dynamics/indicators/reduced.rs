@@ -1,0 +1,36 @@
+//! How far a run by a reduced model can be trusted.
+
+use crate::base::input::percent;
+use crate::dynamics::report::Indicator;
+use crate::dynamics::trajectory::Trajectory;
+
+/// Multiple of the error that was wanted from which a run is doubtful: what it tells is an estimate.
+const TIMES_WANTED: f64 = 2.0;
+/// Part of the widest range of a shape by which a state may be outside of those learned from.
+const MOST_OUTSIDE: f64 = 0.05;
+
+/// The error that the run tells, and how far it was outside of what the model has learned.
+pub(super) fn reduced(trajectory: &Trajectory) -> Vec<Indicator> {
+    let Some(run) = &trajectory.report().reduced else { return Vec::new() };
+    let limit = TIMES_WANTED * run.within;
+    let said = format!(
+        "the reduced model tells an error of {} of the largest displacement (limit: {})",
+        percent(run.told_error),
+        percent(limit)
+    );
+    let beyond =
+        || format!("{said}: reduce the scene with runs such as this one, or run it unreduced");
+    let value = (run.told_error, "1");
+    let error = Indicator::trusted("reduced-error", value, [0.0, limit], || said.clone(), beyond);
+    let said = format!(
+        "the motion is outside of those that the reduced model has learned by {} of their range (limit: {})",
+        percent(run.outside),
+        percent(MOST_OUTSIDE)
+    );
+    let beyond =
+        || format!("{said}: reduce the scene with a wider range (--vary), or run it unreduced");
+    let value = (run.outside, "1");
+    let range =
+        Indicator::trusted("reduced-range", value, [0.0, MOST_OUTSIDE], || said.clone(), beyond);
+    vec![error, range]
+}

@@ -1,0 +1,70 @@
+//! What a run by a reduced model tells about its error.
+
+use std::fmt;
+
+use crate::base::input::percent;
+use crate::scene::reduced_model::ReducedModel;
+
+/// How a run by a reduced model went.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ReducedReport {
+    /// Shapes of the phase that has most.
+    pub shapes: usize,
+    /// Cells whose forces are computed, and all; the first is 0 where all forces of cells are linear.
+    pub cells: [usize; 2],
+    /// Largest error of a displacement in the runs that the model was checked with, relative to their largest one.
+    pub checked_error: f64,
+    /// The error that was wanted of it.
+    pub within: f64,
+    /// The error that this run tells: what the forces left over would move, times the ratio of the two in the runs that the
+    /// model was checked with.
+    pub told_error: f64,
+    /// How far the motion was outside of those learned from, in parts of the widest range of a shape.
+    pub outside: f64,
+    per_imbalance: f64,
+    /// Largest imbalance and largest displacement (m) that were seen.
+    imbalance: f64,
+    travel: f64,
+}
+
+impl ReducedReport {
+    /// A run by `model` at its start.
+    pub(crate) fn new(model: &ReducedModel) -> Self {
+        Self {
+            shapes: model.unknowns(),
+            cells: [model.cells(), model.cell_count],
+            checked_error: model.error,
+            within: model.within,
+            told_error: 0.0,
+            outside: 0.0,
+            per_imbalance: model.error_per_imbalance,
+            imbalance: 0.0,
+            travel: 0.0,
+        }
+    }
+
+    /// Adds an imbalance (m) where the largest displacement is `travel` (m), in a state so far outside of those learned from.
+    pub(crate) fn note(&mut self, [imbalance, travel, outside]: [f64; 3]) {
+        self.imbalance = self.imbalance.max(imbalance);
+        self.travel = self.travel.max(travel);
+        self.outside = self.outside.max(outside);
+        self.told_error = self.per_imbalance * self.imbalance();
+    }
+
+    /// The largest imbalance relative to the largest displacement.
+    pub(crate) fn imbalance(&self) -> f64 {
+        if self.travel > 0.0 { self.imbalance / self.travel } else { 0.0 }
+    }
+}
+
+impl fmt::Display for ReducedReport {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { shapes, cells: [cells, all], checked_error, told_error, .. } = self;
+        write!(f, "reduced model: {shapes} shapes")?;
+        if *cells > 0 {
+            write!(f, ", {cells} of {all} cells")?;
+        }
+        let (checked, told) = (percent(*checked_error), percent(*told_error));
+        write!(f, "; error {checked} where it was checked, {told} as told by this run")
+    }
+}

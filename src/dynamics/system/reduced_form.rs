@@ -1,0 +1,152 @@
+//! The equations of a phase by a reduced model, as an ODE: y = (q, q', energy dissipated, energy supplied).
+
+#[cfg(test)]
+mod tests;
+
+use super::System;
+use super::form::Form;
+use super::reduction::Reduction;
+use crate::base::vector::largest;
+use crate::dynamics::state::{ENERGIES, State, StateMut};
+use crate::integrators::ode::{Failure, Ode};
+
+/// The equations of a phase in the unknowns of a reduced model.
+pub(crate) struct ReducedForm {
+    system: System,
+    /// Unknowns q.
+    free: usize,
+}
+
+impl ReducedForm {
+    /// The equations of a `system` that has a reduced model, from its `state` = (u, v, energies) at time t on; with the
+    /// unknowns of that state. What velocities lose that the model does not have is energy supplied.
+    ///
+    /// # Errors
+    /// The system, if it has no reduced model.
+    pub(crate) fn new(
+        mut system: System,
+        t: f64,
+        state: &[f64],
+    ) -> Result<(Self, Vec<f64>), Box<System>> {
+        let State { u, v, dissipated, supplied, .. } = State::of(state, system.dofs());
+        let kinetic = system.energy(t, u, v, &[]).kinetic;
+        let System { reduction, matrices, rows, .. } = &mut system;
+        let Some(own) = reduction else { return Err(Box::new(system)) };
+        let p = own.begin(matrices, rows, t, [u, v]);
+        let free = p.len();
+        let y = [&vec![0.0; free][..], &p, &[dissipated, supplied]].concat();
+        let mut form = Self { system, free };
+        let mut lifted = vec![0.0; state.len()];
+        form.lift(t, &y, &mut lifted);
+        let n = form.system.dofs();
+        let kept = form.system.energy(t, &lifted[..n], &lifted[n..2 * n], &[]).kinetic;
+        Ok((form, [&y[..=2 * free], &[supplied + kept - kinetic]].concat()))
+    }
+
+    /// Writes (u, v, energies) for the unknowns y at time t.
+    pub(crate) fn lift(&mut self, t: f64, y: &[f64], state: &mut [f64]) {
+        let System { reduction, rows, matrices, .. } = &mut self.system;
+        let own = State::of(y, self.free);
+        let all = StateMut::of(state, matrices.dofs());
+        if let Some(reduction) = reduction {
+            reduction.lift(rows, t, [own.u, own.v], [all.u, all.v]);
+        }
+        (*all.dissipated, *all.supplied) = (own.dissipated, own.supplied);
+    }
+
+    /// The unknowns of a state (u, v, energies) at time t, if the model has it.
+    pub(crate) fn unknowns_of(&mut self, t: f64, state: &[f64]) -> Option<Vec<f64>> {
+        let n = self.system.dofs();
+        let State { u, v, dissipated, supplied, .. } = State::of(state, n);
+        let [q, p] = self.system.reduction.as_ref()?.coordinates(&self.system.rows, t, [u, v]);
+        let y = [&q[..], &p, &[dissipated, supplied]].concat();
+        let mut lifted = vec![0.0; state.len()];
+        self.lift(t, &y, &mut lifted);
+        let differs = |own: &[f64], lifted: &[f64]| {
+            let most = own.iter().zip(lifted).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+            most > ROUND_OFF * largest(own)
+        };
+        (!differs(u, &lifted[..n]) && !differs(v, &lifted[n..2 * n])).then_some(y)
+    }
+
+    /// The model and the unknowns of y, and where the energies are.
+    fn parts<'y>(&mut self, y: &'y [f64]) -> (Option<&mut Reduction>, State<'y>) {
+        (self.system.reduction.as_deref_mut(), State::of(y, self.free))
+    }
+
+    fn evaluate(&mut self, t: f64, y: &[f64]) -> Result<(), Failure> {
+        let State { u: q, v: p, .. } = State::of(y, self.free);
+        let System { reduction, rows, refusal, .. } = &mut self.system;
+        let Some(reduction) = reduction else { return Ok(()) };
+        let evaluated = reduction.evaluate(rows, t, [q, p]);
+        if let Err(Failure::Recoverable(reason)) = &evaluated {
+            refusal.clone_from(reason);
+        }
+        evaluated
+    }
+}
+
+/// Part by which a state may differ from one that the model has.
+const ROUND_OFF: f64 = 1e-9;
+
+impl Form for ReducedForm {
+    fn system(&self) -> &System {
+        &self.system
+    }
+
+    fn system_mut(&mut self) -> &mut System {
+        &mut self.system
+    }
+
+    fn into_system(self) -> System {
+        self.system
+    }
+}
+
+impl Ode for ReducedForm {
+    fn rhs(&mut self, t: f64, y: &[f64], ydot: &mut [f64]) -> Result<(), Failure> {
+        self.evaluate(t, y)?;
+        let free = self.free;
+        let (Some(reduction), state) = self.parts(y) else { return Ok(()) };
+        let rates = StateMut::of(ydot, free);
+        rates.u.copy_from_slice(state.v);
+        rates.v.copy_from_slice(reduction.acceleration());
+        [*rates.dissipated, *rates.supplied] = reduction.powers();
+        Ok(())
+    }
+
+    fn integrals(&self) -> usize {
+        ENERGIES
+    }
+
+    fn newton_setup(
+        &mut self,
+        t: f64,
+        y: &[f64],
+        _ydot: &[f64],
+        gamma: f64,
+        reuse: bool,
+    ) -> Result<bool, Failure> {
+        let is_old = self.system.reduction.as_ref().is_some_and(|own| reuse && own.has_tangents());
+        if !is_old {
+            self.evaluate(t, y)?;
+        }
+        let System { reduction, newton, .. } = &mut self.system;
+        let Some(reduction) = reduction else { return Ok(true) };
+        if !is_old {
+            reduction.update_tangents(t);
+            newton.tangent_evaluations += 1;
+        }
+        reduction.factorize(gamma);
+        Ok(!is_old || self.system.is_linear())
+    }
+
+    fn newton_solve(&mut self, gamma: f64, r: &mut [f64]) -> Result<(), Failure> {
+        let r = StateMut::of(r, self.free);
+        let Some(reduction) = &mut self.system.reduction else { return Ok(()) };
+        let [dissipated, supplied] = reduction.solve([r.u, r.v]);
+        *r.dissipated += gamma * dissipated;
+        *r.supplied += gamma * supplied;
+        Ok(())
+    }
+}

@@ -1,0 +1,561 @@
+//! A phase by a reduced model (`scene/reduced_model.rs`): what lifts its unknowns to displacements of all nodes, what the
+//! forces do along its shapes, and the small matrices of Newton's method.
+//!
+//! With Psi = [Phi E], z = (q, b - b_0) and the forces f, the equations are
+//!
+//! ```text
+//! q'' = Phi^T f(t, u_0 + Psi z, Psi z') - Phi^T M E b''
+//! ```
+//!
+//! Forces of constant matrices and steady ones are projected once. All others see and act on some nodes only, the active
+//! ones: displacements of no others are computed for them.
+
+use std::collections::BTreeSet;
+use std::sync::Arc;
+
+use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::linalg::lu::partial_pivoting::{factor, solve};
+use faer::perm::PermRef;
+use faer::{Mat, MatMut, Par, Spec};
+
+use super::differences::Differences;
+use super::shapes::Shapes;
+use crate::base::input::InputError;
+use crate::base::sparse::{BlockMatrix, NodePattern};
+use crate::base::vector::{dot, largest};
+use crate::dynamics::matrices::Matrices;
+use crate::elements::body::Body;
+use crate::elements::force::{Force, Forces, NodalForces};
+use crate::integrators::ode::Failure;
+use crate::scene::constraint::{ConstraintRow, Prescribed};
+use crate::scene::reduced_model::{ReducedModel, ReducedPhase};
+
+/// A phase by a reduced model.
+pub(super) struct Reduction {
+    pub(super) model: Arc<ReducedModel>,
+    /// Number of the phase in the model.
+    phase: usize,
+    pub(super) shapes: Shapes,
+    /// The rows that move, with b where the equations begin.
+    moved: Vec<(usize, f64)>,
+    /// u_0 (m).
+    origin: Vec<f64>,
+    /// All forces, with a sample in place of those of all cells.
+    pub(super) forces: Forces,
+    /// Those of them that are neither steady nor constant matrices.
+    acting: Forces,
+    pattern: Arc<NodePattern>,
+    constant: Constant,
+    at: Place,
+    tangents: Tangents,
+    factors: Factors,
+    /// When the equations are to be checked next (s), and whether the Newton matrix of all unknowns is factorized.
+    pub(super) next_check: f64,
+    pub(super) can_check: bool,
+}
+
+/// What does not change, along Psi.
+struct Constant {
+    /// M, K and B, each row by row.
+    inertia: Vec<f64>,
+    stiffness: Vec<f64>,
+    damping: Vec<f64>,
+    /// -Psi^T K u_0, and the steady forces: those with a potential, and those from outside.
+    rest: Vec<f64>,
+    steady: [Vec<f64>; 2],
+}
+
+/// The last state that was evaluated, and the forces there.
+struct Place {
+    /// z, z' and b''.
+    z: [Vec<f64>; 2],
+    pushed: Vec<f64>,
+    /// u and v at the active degrees of freedom; elsewhere u_0 and 0.
+    u: Vec<f64>,
+    v: Vec<f64>,
+    nodal: NodalForces,
+    /// Psi^T f, and the parts of it that dissipate and supply.
+    force: Vec<f64>,
+    dissipative: Vec<f64>,
+    applied: Vec<f64>,
+    /// q''
+    acceleration: Vec<f64>,
+    /// Power (W) of obstacles, dissipated and supplied.
+    carried: [f64; 2],
+    /// Forces (N) that move the constraints.
+    reactions: Vec<f64>,
+}
+
+/// -df/du and -df/dv: at the nodes, and along Psi, row by row.
+struct Tangents {
+    nodal: [BlockMatrix; 2],
+    projected: [Vec<f64>; 2],
+    differences: Differences,
+    is_set: bool,
+}
+
+/// I + gamma D + gamma^2 K, factorized.
+struct Factors {
+    matrix: Mat<f64>,
+    forward: Vec<usize>,
+    inverse: Vec<usize>,
+    memory: MemBuffer,
+    gamma: f64,
+    right: Vec<f64>,
+    xv: Vec<f64>,
+}
+
+/// Part by which Phi^T M Phi may differ from the unit matrix: round-off.
+const ORTHONORMAL: f64 = 1e-6;
+
+/// Part of a shape that a constraint may see: round-off.
+const HELD: f64 = 1e-8;
+
+impl Reduction {
+    /// The phase `name` by a `model`, under `forces` and `rows`.
+    pub(super) fn new(
+        body: &Body,
+        matrices: &Matrices,
+        forces: &Forces,
+        rows: &[ConstraintRow],
+        model: &Arc<ReducedModel>,
+        name: &str,
+    ) -> Result<Self, InputError> {
+        let known = model.phases.iter().position(|phase| phase.name == name);
+        let Some(phase) = known else {
+            let value = format!("without a phase \"{name}\"");
+            return Err(InputError::new("reduced model", value, "reduce this scene"));
+        };
+        let moved = moved(&model.phases[phase], rows, name)?;
+        let (dofs, dimension) = (matrices.dofs(), matrices.dimension);
+        let mut shapes = Shapes::new(&model.phases[phase]);
+        shapes.weigh(|x, y| matrices.inertia.add_product(dimension, 1.0, x, y));
+        let s = shapes.count();
+
+        // what the forces couple
+        let mut seen = BTreeSet::new();
+        let mut pairs = body.cell_pairs(model.cells.keys().copied());
+        let mut is_anywhere = false;
+        for force in forces.iter().filter(|force| !force.is_steady() && !force.is_by_cells()) {
+            pairs.extend(force.couplings());
+            match force.nodes() {
+                Some(nodes) => seen.extend(nodes),
+                None => is_anywhere = true,
+            }
+        }
+        if is_anywhere {
+            seen.extend(0..matrices.pattern().nodes());
+        }
+        for &node in &seen {
+            let neighbours = matrices.pattern().row(node).map(|(_, other)| other);
+            pairs
+                .extend(neighbours.filter(|other| seen.contains(other)).map(|other| [node, other]));
+        }
+        let groups = pairs.iter().map(|pair| &pair[..]);
+        let pattern = Arc::new(NodePattern::new(matrices.pattern().nodes(), groups));
+        seen.extend(pairs.iter().flatten());
+        shapes.activate(seen.into_iter(), dimension);
+        let product = |matrix: &dyn Fn(&[f64], &mut [f64])| shapes.products(matrix);
+        let inertia = product(&|x, y| matrices.inertia.add_product(dimension, 1.0, x, y));
+        let off = |(at, mass): (usize, &f64)| {
+            let (row, column) = (at / s, at % s);
+            let exact = if row == column { 1.0 } else { 0.0 };
+            if row.max(column) < shapes.free() { (mass - exact).abs() } else { 0.0 }
+        };
+        if inertia.iter().enumerate().map(off).any(|off| off > ORTHONORMAL) {
+            let help = "it is of a body of another inertia: reduce this scene";
+            return Err(InputError::new("reduced model", "with shapes of another mass", help));
+        }
+        let of_blocks = |matrix: &Option<Arc<BlockMatrix>>| match matrix {
+            Some(matrix) => product(&|x, y| matrix.add_product(1.0, x, y)),
+            None => vec![0.0; s * s],
+        };
+        let tangent = || BlockMatrix::zeros(&pattern, dimension);
+        let mut reduction = Self {
+            phase,
+            moved,
+            origin: vec![0.0; dofs],
+            forces: Forces::new(),
+            acting: Forces::new(),
+            constant: Constant {
+                inertia,
+                stiffness: of_blocks(&matrices.stiffness),
+                damping: of_blocks(&matrices.damping),
+                rest: vec![0.0; s],
+                steady: [vec![0.0; s], vec![0.0; s]],
+            },
+            at: Place {
+                z: [vec![0.0; s], vec![0.0; s]],
+                pushed: vec![0.0; s - shapes.free()],
+                u: vec![0.0; dofs],
+                v: vec![0.0; dofs],
+                nodal: NodalForces::zeros(dofs),
+                force: vec![0.0; s],
+                dissipative: vec![0.0; s],
+                applied: vec![0.0; s],
+                acceleration: vec![0.0; shapes.free()],
+                carried: [0.0; 2],
+                reactions: vec![0.0; s - shapes.free()],
+            },
+            tangents: Tangents {
+                nodal: [tangent(), tangent()],
+                projected: [vec![0.0; s * s], vec![0.0; s * s]],
+                differences: Differences::new(matrices.scales),
+                is_set: false,
+            },
+            factors: Factors::new(shapes.free()),
+            next_check: f64::NEG_INFINITY,
+            can_check: false,
+            model: model.clone(),
+            pattern,
+            shapes,
+        };
+        reduction.take(forces);
+        Ok(reduction)
+    }
+
+    /// Whether forces see only nodes that are active.
+    pub(super) fn has_room(&self, forces: &Forces) -> bool {
+        forces.iter().filter(|force| !force.is_steady() && !force.is_by_cells()).all(|force| {
+            let couples = |[a, b]: [usize; 2]| self.pattern.find(a, b).is_some();
+            let sees = match force.nodes() {
+                Some(nodes) => nodes.iter().all(|&node| self.shapes.sees(node)),
+                None => self.shapes.sees_all(),
+            };
+            sees && force.couplings().into_iter().all(couples)
+        })
+    }
+
+    /// Continues with other forces, which it [has room](Self::has_room) for.
+    pub(super) fn take(&mut self, forces: &Forces) {
+        let weights = &self.model.cells;
+        let sample = |force: &Arc<dyn Force>| match weights.is_empty() {
+            true => None,
+            false => force.sample(weights, &self.pattern),
+        };
+        self.forces =
+            forces.iter().map(|force| sample(force).unwrap_or_else(|| force.clone())).collect();
+        let mut steady = NodalForces::zeros(self.origin.len());
+        self.acting.clear();
+        for force in &self.forces {
+            match force.is_steady() {
+                // it has no meaning nowhere
+                true => {
+                    force.add_forces(0.0, &self.origin, &self.origin, &mut steady).unwrap_or(())
+                }
+                false => self.acting.push(force.clone()),
+            }
+        }
+        let parts = [&steady.conservative, &steady.applied];
+        for (sum, force) in self.constant.steady.iter_mut().zip(parts) {
+            sum.fill(0.0);
+            self.shapes.add_projected(force, sum);
+        }
+        self.tangents.is_set = false;
+    }
+
+    /// Marks the tangents as out of date.
+    pub(super) fn forget_tangents(&mut self) {
+        self.tangents.is_set = false;
+    }
+
+    /// Begins at (u, v), which becomes u_0, and returns q' of it; q is 0.
+    pub(super) fn begin(
+        &mut self,
+        matrices: &Matrices,
+        rows: &[ConstraintRow],
+        t: f64,
+        [u, v]: [&[f64]; 2],
+    ) -> Vec<f64> {
+        self.origin.copy_from_slice(u);
+        self.at.u.copy_from_slice(u);
+        self.at.v.fill(0.0);
+        for (row, start) in &mut self.moved {
+            *start = rows[*row].apply(u);
+        }
+        let rest = &mut self.constant.rest;
+        rest.fill(0.0);
+        if let Some(stiffness) = &matrices.stiffness {
+            let mut force = vec![0.0; u.len()];
+            stiffness.add_product(-1.0, u, &mut force);
+            self.shapes.add_projected(&force, rest);
+        }
+        self.tangents.is_set = false;
+        let mut own = v.to_vec();
+        for ((row, _), column) in self.moved.iter().zip(self.shapes.free()..) {
+            let velocity = rows[*row].prescribed(t).velocity;
+            self.shapes.add_column(column, -velocity, &mut own);
+        }
+        self.shapes.coordinates(&own)
+    }
+
+    /// q and q' of a state (u, v) at time t.
+    pub(super) fn coordinates(
+        &self,
+        rows: &[ConstraintRow],
+        t: f64,
+        [u, v]: [&[f64]; 2],
+    ) -> [Vec<f64>; 2] {
+        let mut own =
+            [u.iter().zip(&self.origin).map(|(u, start)| u - start).collect(), v.to_vec()];
+        for (&(row, start), column) in self.moved.iter().zip(self.shapes.free()..) {
+            let Prescribed { displacement, velocity, .. } = rows[row].prescribed(t);
+            self.shapes.add_column(column, start - displacement, &mut own[0]);
+            self.shapes.add_column(column, -velocity, &mut own[1]);
+        }
+        own.map(|x| self.shapes.coordinates(&x))
+    }
+
+    /// Writes u and v of all nodes for (q, q') at time t.
+    pub(super) fn lift(
+        &mut self,
+        rows: &[ConstraintRow],
+        t: f64,
+        [q, p]: [&[f64]; 2],
+        [u, v]: [&mut [f64]; 2],
+    ) {
+        self.place(rows, t, [q, p]);
+        let [z, rates] = &self.at.z;
+        u.copy_from_slice(&self.origin);
+        v.fill(0.0);
+        self.shapes.add_lifted(z, u);
+        self.shapes.add_lifted(rates, v);
+    }
+
+    /// Sets z, z' and b''.
+    fn place(&mut self, rows: &[ConstraintRow], t: f64, [q, p]: [&[f64]; 2]) {
+        let [z, rates] = &mut self.at.z;
+        let free = q.len();
+        z[..free].copy_from_slice(q);
+        rates[..free].copy_from_slice(p);
+        for (k, &(row, start)) in self.moved.iter().enumerate() {
+            let Prescribed { displacement, velocity, acceleration } = rows[row].prescribed(t);
+            (z[free + k], rates[free + k]) = (displacement - start, velocity);
+            self.at.pushed[k] = acceleration;
+        }
+    }
+
+    /// Evaluates the forces and q'' at (q, q').
+    pub(super) fn evaluate(
+        &mut self,
+        rows: &[ConstraintRow],
+        t: f64,
+        state: [&[f64]; 2],
+    ) -> Result<(), Failure> {
+        self.place(rows, t, state);
+        let Self { at, shapes, origin, acting, constant, .. } = self;
+        let (s, free) = (shapes.count(), shapes.free());
+        let Place { z: [z, rates], pushed, u, v, nodal, .. } = at;
+        shapes.lift_active([z, rates], [u, v], origin);
+        nodal.clear();
+        for force in &*acting {
+            force.add_forces(t, u, v, nodal)?;
+        }
+        at.carried = [nodal.carried_heat, nodal.carried_power];
+
+        // what constant matrices do, and what is steady
+        at.applied.copy_from_slice(&constant.steady[1]);
+        times(&constant.damping, rates, |i, sum| at.dissipative[i] = -sum);
+        times(&constant.stiffness, z, |i, sum| {
+            at.force[i] = constant.rest[i] + constant.steady[0][i] - sum;
+        });
+        // each part of its own only where there is one, for the powers
+        for (part, sum) in
+            [(&nodal.dissipative, &mut at.dissipative), (&nodal.applied, &mut at.applied)]
+        {
+            if !part.is_zero() {
+                shapes.add_projected_active(part, sum);
+            }
+        }
+        shapes.add_projected_active(&nodal.conservative, &mut at.force);
+        for i in 0..s {
+            at.force[i] += at.dissipative[i] + at.applied[i];
+        }
+
+        at.acceleration.copy_from_slice(&at.force[..free]);
+        for (k, push) in pushed.iter().enumerate() {
+            for i in 0..free {
+                at.acceleration[i] -= constant.inertia[i * s + free + k] * push;
+            }
+        }
+        for k in 0..pushed.len() {
+            let row = &constant.inertia[(free + k) * s..][..s];
+            let inertia = dot(&row[..free], &at.acceleration) + dot(&row[free..], pushed);
+            at.reactions[k] = inertia - at.force[free + k];
+        }
+        Ok(())
+    }
+
+    /// q'' at the last evaluation.
+    pub(super) fn acceleration(&self) -> &[f64] {
+        &self.at.acceleration
+    }
+
+    /// u'' of all nodes at the last evaluation.
+    pub(super) fn accelerations(&self) -> Vec<f64> {
+        let all = [&self.at.acceleration[..], &self.at.pushed].concat();
+        let mut of_nodes = vec![0.0; self.origin.len()];
+        self.shapes.add_lifted(&all, &mut of_nodes);
+        of_nodes
+    }
+
+    /// Power dissipated and supplied (W) at the last evaluation.
+    pub(super) fn powers(&self) -> [f64; 2] {
+        let Place { z: [_, rates], dissipative, applied, carried, reactions, .. } = &self.at;
+        let pushed = dot(reactions, &rates[self.shapes.free()..]);
+        [carried[0] - dot(dissipative, rates), carried[1] + dot(applied, rates) + pushed]
+    }
+
+    /// Updates the tangents to the state last evaluated.
+    pub(super) fn update_tangents(&mut self, t: f64) {
+        let Self { at, shapes, acting, constant, tangents, .. } = self;
+        let Tangents { nodal: [stiffness, damping], projected, differences, is_set } = tangents;
+        stiffness.values.fill(0.0);
+        damping.values.fill(0.0);
+        for force in &*acting {
+            differences.add_tangents(force, t, [&at.u, &at.v], [stiffness, damping]);
+        }
+        let constants = [&constant.stiffness, &constant.damping];
+        for ((projected, constant), matrix) in
+            projected.iter_mut().zip(constants).zip([&*stiffness, &*damping])
+        {
+            projected.copy_from_slice(constant);
+            if matrix.values.iter().any(|&value| value != 0.0) {
+                shapes.add_projected_matrix(matrix, projected);
+            }
+        }
+        *is_set = true;
+    }
+
+    /// Whether tangents were evaluated since the forces changed.
+    pub(super) fn has_tangents(&self) -> bool {
+        self.tangents.is_set
+    }
+
+    /// Evaluations for the tangents of forces that do not compute them.
+    pub(super) fn difference_evaluations(&self) -> usize {
+        self.tangents.differences.evaluations()
+    }
+
+    /// Factorizes the Newton matrix for steps of the parameter `gamma`.
+    pub(super) fn factorize(&mut self, gamma: f64) {
+        let (s, free) = (self.shapes.count(), self.shapes.free());
+        let [stiffness, damping] = &self.tangents.projected;
+        let factors = &mut self.factors;
+        factors.gamma = gamma;
+        for j in 0..free {
+            for i in 0..free {
+                let entry = gamma * (damping[i * s + j] + gamma * stiffness[i * s + j]);
+                factors.matrix[(i, j)] = entry + if i == j { 1.0 } else { 0.0 };
+            }
+        }
+        let memory = MemStack::new(&mut factors.memory);
+        let (forward, inverse) = (&mut factors.forward, &mut factors.inverse);
+        let matrix = factors.matrix.as_mut();
+        factor::lu_in_place(matrix, forward, inverse, Par::Seq, memory, Spec::default());
+    }
+
+    /// Solves (I - gamma J) x = r for the residuals `ru` and `rv`, which become x. Returns the changes of the powers
+    /// dissipated and supplied (W) along x.
+    pub(super) fn solve(&mut self, [ru, rv]: [&mut [f64]; 2]) -> [f64; 2] {
+        let (s, free) = (self.shapes.count(), self.shapes.free());
+        let [stiffness, damping] = &self.tangents.projected;
+        let Factors { matrix, forward, inverse, memory, gamma, right, xv } = &mut self.factors;
+        let gamma = *gamma;
+        for i in 0..free {
+            xv[i] = rv[i] - gamma * dot(&stiffness[i * s..][..free], ru);
+        }
+        solve::solve_in_place(
+            matrix.as_ref(),
+            matrix.as_ref(),
+            PermRef::new_checked(forward, inverse, free),
+            MatMut::from_column_major_slice_mut(xv, free, 1),
+            Par::Seq,
+            MemStack::new(memory),
+        );
+        ru.iter_mut().zip(&*xv).for_each(|(x, xv)| *x += gamma * xv);
+        let Place { z: [_, rates], dissipative, applied, .. } = &self.at;
+        // damping forces are proportional to velocity
+        let mut dissipated = -2.0 * dot(&dissipative[..free], xv);
+        for i in 0..free {
+            dissipated += xv[i] * dot(&damping[i * s..][..free], xv);
+        }
+        // the change of q'', which moves what moves the constraints
+        let change = rv.iter().zip(&*xv).map(|(r, x)| (x - r) / gamma);
+        right.iter_mut().zip(change).for_each(|(right, change)| *right = change);
+        let mut supplied = dot(&applied[..free], xv);
+        for row in free..s {
+            let of = |matrix: &[f64], x: &[f64]| dot(&matrix[row * s..][..free], x);
+            let change = of(&self.constant.inertia, right) + of(damping, xv) + of(stiffness, ru);
+            supplied += rates[row] * change;
+        }
+        rv.copy_from_slice(xv);
+        [dissipated, supplied]
+    }
+
+    /// By how much the displacements `u` (m) are beyond those that the model was learned from, in parts of the widest range
+    /// of a shape.
+    pub(super) fn outside(&self, u: &[f64]) -> f64 {
+        let range = &self.model.phases[self.phase].range;
+        let all = self.model.phases.iter().flat_map(|phase| &phase.range);
+        let widest = all.map(|[low, high]| high - low).fold(0.0, f64::max);
+        let beyond = |(x, [low, high]): (&f64, &[f64; 2])| (low - x).max(x - high).max(0.0);
+        let most = self.shapes.coordinates(u).iter().zip(range).map(beyond).fold(0.0, f64::max);
+        if widest > 0.0 { most / widest } else { 0.0 }
+    }
+}
+
+impl Factors {
+    fn new(n: usize) -> Self {
+        let scratch = factor::lu_in_place_scratch::<usize, f64>(n, n, Par::Seq, Spec::default())
+            .or(solve::solve_in_place_scratch::<usize, f64>(n, 1, Par::Seq));
+        Self {
+            matrix: Mat::zeros(n, n),
+            forward: vec![0; n],
+            inverse: vec![0; n],
+            memory: MemBuffer::new(scratch),
+            gamma: 0.0,
+            right: vec![0.0; n],
+            xv: vec![0.0; n],
+        }
+    }
+}
+
+/// The rows that move.
+///
+/// # Errors
+/// Constraints other than those that the model was learned with.
+fn moved(
+    phase: &ReducedPhase,
+    rows: &[ConstraintRow],
+    name: &str,
+) -> Result<Vec<(usize, f64)>, InputError> {
+    let moves = |&row: &usize| rows[row].constant_velocity() != Some(0.0);
+    let moved: Vec<usize> = (0..rows.len()).filter(moves).collect();
+    let is_held = |row: &ConstraintRow| {
+        phase.shapes.iter().all(|shape| {
+            row.apply(shape).abs() <= HELD * largest(shape) * (row.terms.len() as f64).sqrt()
+        })
+    };
+    let is_same = rows.len() == phase.rows && moved.len() == phase.lifts.len();
+    let follows = |(row, lift): (&usize, &Vec<f64>)| (rows[*row].apply(lift) - 1.0).abs() < 1e-6;
+    if is_same && rows.iter().all(is_held) && moved.iter().zip(&phase.lifts).all(follows) {
+        return Ok(moved.into_iter().map(|row| (row, 0.0)).collect());
+    }
+    Err(InputError::new(
+        format!("constraints of phase \"{name}\""),
+        format!("{} rows, {} of them in motion", rows.len(), moved.len()),
+        format!(
+            "the reduced model has learned others ({} rows, {} in motion): reduce the scene with these, or run it \
+             unreduced",
+            phase.rows,
+            phase.lifts.len()
+        ),
+    ))
+}
+
+/// Calls `each` with every component of A x, A square and row by row.
+fn times(matrix: &[f64], x: &[f64], mut each: impl FnMut(usize, f64)) {
+    let rows = matrix.chunks_exact(x.len().max(1)).enumerate();
+    rows.for_each(|(i, row)| each(i, dot(row, x)));
+}
