@@ -53,7 +53,7 @@ pub use dynamics::{
     equations::Equations,
     equilibrium::{Equilibrium, MeshEstimate, NoEquilibrium, Stability},
     error::{Error, Panicked},
-    report::{Achieved, Counts, Indicator, PhaseReport, Report, SlipEvent, Verdict},
+    report::{Achieved, Counts, Indicator, PhaseReport, ReducedReport, Report, SlipEvent, Verdict},
     simulate::{Checkpoint, Sampling, Simulation, View},
     statics::Statics,
     system::{Energy, PhaseSummary, Spectrum},
@@ -72,7 +72,7 @@ pub use integrators::common::Integrator;
 pub use io::scene_file::{OutputRequest, SceneFile};
 #[cfg(feature = "bodies")]
 pub use scene::{
-    BodyState, Phase, Scene, Term,
+    BodyState, Phase, ReducedModel, Scene, Term,
     constraint::{Axis, Prescribed},
     forces::*,
     settings::{
@@ -100,6 +100,8 @@ pub use io::scene_file;
 pub use scene::constraint;
 #[cfg(feature = "fit")]
 pub use studies::fit;
+#[cfg(feature = "bodies")]
+pub use studies::reduce;
 pub use studies::samples;
 #[cfg(feature = "sweep")]
 pub use studies::sweep;
@@ -119,6 +121,11 @@ pub struct ReadmeDoctests;
 #[doc = include_str!("../docs/embedding.md")]
 #[cfg(doctest)]
 pub struct EmbeddingDoctests;
+
+/// Compiles the code blocks of the page on reduced models.
+#[doc = include_str!("../docs/reduced-models.md")]
+#[cfg(all(doctest, feature = "sweep"))]
+pub struct ReducedModelsDoctests;
 
 /// Compiles and runs the code blocks of the page on sweeps.
 #[doc = include_str!("../docs/sweeps.md")]

@@ -6,6 +6,7 @@
 
 A :class:`Scene` is a body, what surrounds it, and what happens; :meth:`Scene.run` gives its :class:`Motion`,
 :meth:`Scene.start` a :class:`Simulation` that a program drives. :mod:`pliant.words` has builders for the tables of scenes.
+:func:`reduce` learns a model of a scene in a few unknowns, by which it runs faster.
 :func:`solve_ivp` integrates any equations, with the signature of SciPy's, :func:`solve_dae` differential-algebraic ones, and
 :func:`gradient` gives derivatives of what comes of them.
 """
@@ -17,6 +18,7 @@ from .errors import Error, FileError, InputError, IntegrationError, ModelWarning
 from .ivp import solve_ivp
 from .mesh import Mesh
 from .motion import Equilibrium, Motion
+from .reduced import ReducedModel, reduce
 from .scene import Scene
 from .simulation import Simulation
 from .sweep import Sweep, sweep
@@ -35,11 +37,13 @@ __all__ = [
     "Motion",
     "NoEquilibrium",
     "OdeResult",
+    "ReducedModel",
     "Scene",
     "SceneError",
     "Simulation",
     "Sweep",
     "gradient",
+    "reduce",
     "solve_dae",
     "solve_ivp",
     "sweep",

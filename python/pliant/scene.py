@@ -179,6 +179,10 @@ class Scene:
         os.makedirs(directory, exist_ok=True)
         return self._scene.chart(os.fspath(directory), methods, [float(r) for r in rtol], repetitions)
 
+    def reduced(self, model):
+        """The same scene by a reduced model of it, a :class:`ReducedModel`; by all its unknowns with None."""
+        return Scene._of(self._scene.reduced(model and model._reduced))
+
     def start(self, **solver) -> Simulation:
         """The scene in motion under the control of a program: a :class:`Simulation`."""
         return Simulation(self._scene.with_values(_settings(None, solver)).start())

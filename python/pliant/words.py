@@ -3166,6 +3166,7 @@ def solver(
     max_step: float | None = None,
     max_steps: int | None = None,
     quantity: str | None = None,
+    reduced: str | None = None,
 ) -> dict:
     r"""How the equations of motion are integrated.
 
@@ -3200,6 +3201,9 @@ def solver(
         what `accuracy` is of. Default: the whole motion. `motion`; a sensor or a set of nodes, with a component where
         need be, as `tip.y`; `com`, `rotation`; behind a colon the part that counts, where all times do not: `end`,
         `max`, `min`, `frequency`, `damping`.
+    reduced
+        the reduced model by which it is run: a file of `pliant reduce`, relative to the scene file. Default: all
+        unknowns. `""` is all unknowns. Statics always takes all of them.
     """
     return _table(
         accuracy=accuracy,
@@ -3214,6 +3218,7 @@ def solver(
         max_step=max_step,
         max_steps=max_steps,
         quantity=quantity,
+        reduced=reduced,
     )
 
 

@@ -8,6 +8,7 @@ mod arrays;
 mod errors;
 mod integrators;
 mod motion;
+mod reduced;
 mod scene;
 mod simulation;
 mod sweep;
@@ -23,6 +24,8 @@ mod _pliant {
     use super::integrators::{Run, gradient, solve};
     #[pymodule_export]
     use super::motion::Motion;
+    #[pymodule_export]
+    use super::reduced::Reduced;
     #[pymodule_export]
     use super::scene::{Scene, read_gmsh, schema, toml_of};
     #[pymodule_export]

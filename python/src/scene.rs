@@ -6,7 +6,7 @@ use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pliant::fit::{Measured, SceneFit, Unknown};
 use pliant::scene_file::{override_of, toml_of as toml_of_scene};
 use pliant::study::{Adviser, Quantity, Scenes, Study, Verification, all_methods};
-use pliant::{Error, Mesh, Part, SceneFile, Settings, Trajectory};
+use pliant::{Error, Mesh, Part, ReducedModel, SceneFile, Settings, Trajectory};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -14,6 +14,7 @@ use pyo3::types::PyDict;
 use crate::arrays::vectors;
 use crate::errors::{made, raised};
 use crate::motion::Motion;
+use crate::reduced::Reduced;
 use crate::simulation::Simulation;
 use crate::watch::Watch;
 
@@ -24,12 +25,22 @@ pub struct Scene {
     path: PathBuf,
     overrides: Vec<String>,
     file: SceneFile,
+    /// A reduced model that is in no file.
+    model: Option<ReducedModel>,
 }
 
 impl Scene {
-    fn read(text: String, path: PathBuf, overrides: Vec<String>) -> Result<Self, Error> {
-        let file = SceneFile::parse_with(&text, &path, &overrides)?;
-        Ok(Self { text, path, overrides, file })
+    fn read(
+        text: String,
+        path: PathBuf,
+        overrides: Vec<String>,
+        model: Option<ReducedModel>,
+    ) -> Result<Self, Error> {
+        let mut file = SceneFile::parse_with(&text, &path, &overrides)?;
+        if let Some(model) = &model {
+            file.scene = file.scene.reduced(model.clone())?;
+        }
+        Ok(Self { text, path, overrides, file, model })
     }
 
     fn motion(&self, mut trajectory: Trajectory, failure: Option<String>) -> Motion {
@@ -66,7 +77,7 @@ impl Scene {
     #[new]
     fn new(text: String, path: PathBuf, values: Vec<(String, String)>) -> PyResult<Self> {
         let overrides = values.iter().map(|(key, value)| overriding(key, value));
-        Self::read(text, path, overrides.collect::<PyResult<_>>()?).map_err(raised)
+        Self::read(text, path, overrides.collect::<PyResult<_>>()?, None).map_err(raised)
     }
 
     /// The scene with other values for some keys, in addition to those that it has.
@@ -75,7 +86,30 @@ impl Scene {
         for (key, value) in &values {
             overrides.push(overriding(key, value)?);
         }
-        Self::read(self.text.clone(), self.path.clone(), overrides).map_err(raised)
+        let (text, path) = (self.text.clone(), self.path.clone());
+        Self::read(text, path, overrides, self.model.clone()).map_err(raised)
+    }
+
+    /// Learns a reduced model over ranges of keys: each its least, its most, and how many values are learned.
+    fn reduce(
+        &self,
+        py: Python<'_>,
+        within: f64,
+        vary: Vec<(String, f64, f64, Option<usize>)>,
+        hold_out: usize,
+        most: usize,
+    ) -> PyResult<Reduced> {
+        let Self { text, path, overrides, .. } = self;
+        let read = |set: &[String]| SceneFile::parse_with(text, path, &[overrides, set].concat());
+        py.detach(|| Reduced::learn(&read, within, vary, hold_out, most)).map_err(raised)
+    }
+
+    /// The scene by a reduced model of it, or with all its unknowns.
+    fn reduced(&self, reduced: Option<&Reduced>) -> PyResult<Self> {
+        let mut overrides = self.overrides.clone();
+        overrides.push(overriding("solver.reduced", "\"\"")?);
+        let model = reduced.map(|reduced| reduced.learned.model.clone());
+        Self::read(self.text.clone(), self.path.clone(), overrides, model).map_err(raised)
     }
 
     /// The text, with other values written into it.

@@ -1,10 +1,15 @@
-//! Files that are complete or not there at all.
+//! Files that are complete or not there at all, and files that say what they are.
 
 use std::fs::{self, File, Permissions};
 use std::io::{self, BufWriter, Write};
 use std::os::unix::fs::PermissionsExt;
 use std::path::Path;
 
+#[cfg(feature = "checkpoint")]
+use serde::{Deserialize, de::DeserializeOwned};
+
+#[cfg(feature = "checkpoint")]
+use crate::base::input::{InputError, read_if_at_most};
 use crate::dynamics::error::Error;
 
 /// Writes `content` to a file next to `path`, which replaces `path` when it is complete and on the disk.
@@ -38,5 +43,71 @@ fn replace(path: &Path, content: impl FnOnce(&mut dyn Write) -> io::Result<()>) 
     match File::open(directory)?.sync_all() {
         Err(error) if error.kind() != io::ErrorKind::InvalidInput => Err(error),
         _ => Ok(()),
+    }
+}
+
+/// A kind of JSON files, each of which begins with what it is and with its format.
+#[cfg(feature = "checkpoint")]
+pub(crate) struct Kind {
+    /// What a file says it is, and the format that this version reads.
+    pub(crate) what: &'static str,
+    pub(crate) format: u32,
+    /// The input that names such a file, in errors.
+    pub(crate) input: &'static str,
+    /// What to name in its place.
+    pub(crate) help: &'static str,
+    /// The most bytes that a file may have.
+    pub(crate) most_bytes: u64,
+}
+
+/// What a file begins with, whatever its format.
+#[cfg(feature = "checkpoint")]
+#[derive(Deserialize)]
+struct Head {
+    what: String,
+    format: u32,
+}
+
+#[cfg(feature = "checkpoint")]
+impl Kind {
+    /// The record in the file at `path`.
+    ///
+    /// # Errors
+    /// [`Error::Read`] if there is no file that can be read; another kind of file or format, a damaged file.
+    pub(crate) fn read<T: DeserializeOwned>(&self, path: &Path) -> Result<T, Error> {
+        let unread = |source| Error::Read { path: path.into(), source };
+        // opening a pipe may block for ever
+        if !fs::metadata(path).map_err(unread)?.is_file() {
+            return Err(self.refuse(path, "it is no regular file: name one"));
+        }
+        let Some(text) = read_if_at_most(path, self.most_bytes).map_err(unread)? else {
+            return Err(self.refuse(path, format!("it has more than {} bytes", self.most_bytes)));
+        };
+        self.parse(&text).map_err(|help| self.refuse(path, help))
+    }
+
+    /// The error that the file at `path` cannot be used.
+    pub(crate) fn refuse(&self, path: &Path, help: impl Into<String>) -> Error {
+        InputError::new(self.input, path.display(), help).into()
+    }
+
+    fn parse<T: DeserializeOwned>(&self, text: &[u8]) -> Result<T, String> {
+        let Self { what, format, help, .. } = self;
+        let none = || format!("it does not say \"{what}\": name {help}");
+        let damaged = |error| format!("it is damaged or cut off ({error}): make it anew");
+        let head: Head = serde_json::from_slice(text).map_err(|error| match error.is_data() {
+            true => none(),
+            false => damaged(error),
+        })?;
+        if head.what != *what {
+            return Err(none());
+        }
+        if head.format != *format {
+            return Err(format!(
+                "it has format {}, this version reads format {format}",
+                head.format
+            ));
+        }
+        serde_json::from_slice(text).map_err(damaged)
     }
 }

@@ -1,4 +1,4 @@
-//! Files: scenes and states that are read, checkpoints, and what is written of a motion.
+//! Files: scenes, states and reduced models that are read, checkpoints, and what is written of a motion.
 
 #[cfg(feature = "checkpoint")]
 pub(crate) mod checkpoint_file;
@@ -6,6 +6,8 @@ pub(crate) mod checkpoint_file;
 pub(crate) mod file;
 #[cfg(feature = "output")]
 pub mod output;
+#[cfg(feature = "checkpoint")]
+pub(crate) mod reduced_file;
 #[cfg(feature = "scene-file")]
 pub mod scene_file;
 #[cfg(feature = "checkpoint")]

@@ -1,31 +1,25 @@
 //! Files with a state that a scene can start from, as JSON.
 
-use std::fs;
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
-use crate::base::input::{InputError, finite, read_if_at_most};
+use crate::base::input::finite;
 use crate::dynamics::error::Error;
-use crate::io::file::write_file;
+use crate::io::file::{Kind, write_file};
 use crate::scene::timeline::BodyState;
 
 /// The name of the file among the results of a run.
 const NAME: &str = "state.json";
 
-/// What a file says it is, and the format that this version writes and reads.
-const WHAT: &str = "pliant state";
-const FORMAT: u32 = 1;
-
-/// The most bytes that a file may have: fifty million numbers.
-const MOST_BYTES: u64 = 1 << 30;
-
-/// What a file begins with, whatever its format.
-#[derive(Deserialize)]
-struct Head {
-    what: String,
-    format: u32,
-}
+const KIND: Kind = Kind {
+    what: "pliant state",
+    format: 1,
+    input: "file of a state",
+    help: "the results of a run, or their state.json",
+    // fifty million numbers
+    most_bytes: 1 << 30,
+};
 
 /// A file, in SI units.
 #[derive(Serialize, Deserialize)]
@@ -47,8 +41,8 @@ impl BodyState {
         let Self { positions, displacements, velocities } = self.clone();
         finite("displacements of the state", &displacements)?;
         finite("velocities of the state", &velocities)?;
-        let record =
-            Record { what: WHAT.into(), format: FORMAT, positions, displacements, velocities };
+        let Kind { what, format, .. } = KIND;
+        let record = Record { what: what.into(), format, positions, displacements, velocities };
         write_file(path.as_ref(), |file| {
             serde_json::to_writer(&mut *file, &record)?;
             writeln!(file)
@@ -62,33 +56,7 @@ impl BodyState {
     pub fn read(path: impl AsRef<Path>) -> Result<Self, Error> {
         let path = path.as_ref();
         let path = if path.is_dir() { path.join(NAME) } else { path.into() };
-        let refuse = |help: String| InputError::new("file of a state", path.display(), help).into();
-        let unread = |source| Error::Read { path: path.clone(), source };
-        // opening a pipe may block for ever
-        if !fs::metadata(&path).map_err(unread)?.is_file() {
-            return Err(refuse("it is no regular file: name one".into()));
-        }
-        let Some(text) = read_if_at_most(&path, MOST_BYTES).map_err(unread)? else {
-            return Err(refuse(format!("it has more than {MOST_BYTES} bytes")));
-        };
-        parse(&text).map_err(refuse)
+        let Record { positions, displacements, velocities, .. } = KIND.read(&path)?;
+        Ok(Self { positions, displacements, velocities })
     }
-}
-
-fn parse(text: &[u8]) -> Result<BodyState, String> {
-    let none = format!("it does not say \"{WHAT}\": name the results of a run, or their {NAME}");
-    let damaged = |error| format!("it is damaged or cut off ({error}): make it anew");
-    let head: Head = serde_json::from_slice(text).map_err(|error| match error.is_data() {
-        true => none.clone(),
-        false => damaged(error),
-    })?;
-    if head.what != WHAT {
-        return Err(none);
-    }
-    if head.format != FORMAT {
-        return Err(format!("it has format {}, this version reads format {FORMAT}", head.format));
-    }
-    let Record { positions, displacements, velocities, .. } =
-        serde_json::from_slice(text).map_err(damaged)?;
-    Ok(BodyState { positions, displacements, velocities })
 }

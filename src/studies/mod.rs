@@ -6,6 +6,8 @@
 pub mod advise;
 #[cfg(feature = "fit")]
 pub mod fit;
+#[cfg(feature = "bodies")]
+pub mod reduce;
 pub mod samples;
 #[cfg(feature = "sweep")]
 pub mod sweep;

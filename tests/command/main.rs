@@ -6,6 +6,7 @@ mod beside;
 #[path = "../../src/apps/command/failure.rs"]
 mod failure;
 mod fit;
+mod reduce;
 #[allow(dead_code)]
 #[path = "../../src/apps/command/settings.rs"]
 mod settings;

@@ -55,9 +55,13 @@ fn without(keys: Vec<String>, table: &str) -> Vec<String> {
     keys.into_iter().filter(|key| !key.starts_with(table)).collect()
 }
 
-/// The keys of a run that was not verified.
+/// The keys of a run with all unknowns, and of one that was not verified.
+fn of_full_run() -> Vec<String> {
+    without(documented("run"), "reduced.")
+}
+
 fn of_run() -> Vec<String> {
-    without(documented("run"), "achieved.")
+    without(of_full_run(), "achieved.")
 }
 
 fn written(run: Result<&Trajectory, &IntegrationFailure>) -> Value {
@@ -122,7 +126,7 @@ fn what_two_runs_differ_by() {
     let verification = Verification::new(&scene, 0.01);
     let motion = verification.finish(|_| ControlFlow::Continue(())).unwrap();
     let report = written(Ok(&motion));
-    let documented = without(without(documented("run"), "failure."), "phases[].slips[].");
+    let documented = without(without(of_full_run(), "failure."), "phases[].slips[].");
     assert_eq!(keys(&report), documented);
     let achieved = &report["achieved"];
     assert_eq!([&achieved["quantity"], &achieved["unit"]], [&json!("motion"), &json!("m")]);
@@ -252,4 +256,27 @@ fn equilibria() {
     let (fraction, tried) = (&report["failure"]["fraction"], &report["failure"]["tried"]);
     assert!(fraction.as_f64().unwrap() < tried.as_f64().unwrap());
     assert_eq!((&report["stability"], &report["load_steps"]), (&Value::Null, &Value::Null));
+}
+
+#[test]
+fn a_run_by_a_reduced_model() {
+    let scene = square_jump(4).unwrap().ended_at(0.5);
+    let settings = Settings { rtol: 1e-4, ..Settings::default() };
+    let training = pliant::reduce::Training {
+        scenes: vec![scene.clone()],
+        held_out: Vec::new(),
+        settings: settings.clone(),
+        within: 0.05,
+        most_unknowns: 64,
+    };
+    let model = pliant::reduce::reduce(&training, &mut |_| {}).unwrap().model;
+    let [unknowns, error] = [model.unknowns() as f64, model.error()];
+    let reduced = scene.reduced(model).unwrap();
+    let report = written(Ok(&reduced.simulate(&settings, &Sampling::every(0.1)).unwrap()));
+    assert!(documented("run").iter().filter(|key| key.starts_with("reduced.")).all(|key| {
+        let (_, inner) = key.split_once('.').unwrap();
+        !report["reduced"][inner].is_null()
+    }));
+    assert_eq!(report["reduced"]["shapes"].as_f64(), Some(unknowns));
+    assert_eq!(report["reduced"]["checked_error"].as_f64(), Some(error));
 }

@@ -38,6 +38,7 @@ mod overlaps;
 mod planes;
 mod random_scenes;
 mod readings;
+mod reduced;
 mod relaxing;
 mod rigid;
 mod ring;

@@ -171,6 +171,10 @@ fn solver(file: &SceneFile) -> Result<(), Failure> {
     let order = max_order.map_or(String::new(), |order| format!("order up to {order}, "));
     let events = format!("contact events: {contact_events}");
     line("", &format!("{order}up to {max_steps} steps in a phase, {events}"))?;
+    if let Some(model) = scene.reduced_model() {
+        line("reduced", &model.to_string())?;
+        line("", &format!("learned from {}", model.learned_from()))?;
+    }
     let step = match (&output.times, output.step) {
         (Some(times), _) => format!("at {} times", times.len()),
         (None, Some(step)) => format!("every {step} s"),

@@ -16,6 +16,7 @@ mod new;
 mod play;
 mod plot;
 mod progress;
+mod reduce;
 mod reference;
 mod run;
 mod scene;
@@ -56,6 +57,7 @@ enum Command {
     Beside(beside::Arguments),
     #[command(allow_negative_numbers = true)]
     Fit(fit::Arguments),
+    Reduce(reduce::Arguments),
     Sweep(sweep::Arguments),
     Check(check::Arguments),
     Chart(chart::Arguments),
@@ -76,6 +78,7 @@ fn main() -> ExitCode {
         Command::Advise(arguments) => advise::run(&arguments),
         Command::Beside(arguments) => beside::run(&arguments),
         Command::Fit(arguments) => fit::run(&arguments),
+        Command::Reduce(arguments) => reduce::run(&arguments),
         Command::Sweep(arguments) => sweep::run(&arguments),
         Command::Check(arguments) => check::run(&arguments),
         Command::Chart(arguments) => chart::run(&arguments),

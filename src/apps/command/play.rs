@@ -1,5 +1,6 @@
 //! `pliant play`
 
+use std::path::PathBuf;
 use std::process;
 
 use clap::Args;
@@ -23,6 +24,9 @@ pub struct Arguments {
     scene: SceneArguments,
     #[command(flatten)]
     settings: SettingsArguments,
+    /// Play it by this reduced model, a file of `pliant reduce`, in place of that of the scene file
+    #[arg(long, value_name = "FILE")]
+    reduced: Option<PathBuf>,
     /// Port of the page on this machine; 0 takes any that is free
     #[arg(long, value_name = "PORT", default_value_t = 0)]
     port: u16,
@@ -32,8 +36,8 @@ pub struct Arguments {
 }
 
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let Arguments { scene, settings, port, until } = arguments;
-    let (mut file, text) = (scene.read()?, scene.text(&[])?);
+    let Arguments { scene, settings, reduced, port, until } = arguments;
+    let (mut file, text) = (scene.read_reduced(reduced.as_deref())?, scene.text(&[])?);
     settings.apply(&mut file.settings)?;
     if let Some(end) = *until {
         file.scene = file.scene.lasting(end);

@@ -66,6 +66,14 @@ Those of `pliant sweep`, by default in `out/` and the name of the study file wit
 | `study.json` | which study it is |
 | `claims/<id>` | locked while the row is computed |
 | `slurm.sh`, `tasks/` | the script of an array job, and what tasks have said |
+
+Those of `pliant reduce`, by default beside the scene file:
+
+| file | what is in it |
+| --- | --- |
+| `NAME.reduced` | the model (JSON): shapes, cells with their weights, errors, and hashes of what identifies the scene |
+| `NAME-reduced.json` | what was tried: `unknowns`, `cells`, `error`, `told` (the error that runs told), `seconds` of each; the same of the `full` model |
+| `NAME-reduced.svg`, `NAME-reduced.png` | error over time of all models that were tried |
 ";
 
 /// The page.

@@ -1,6 +1,7 @@
 //! `pliant run`
 
 use std::ops::ControlFlow;
+use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use clap::Args;
@@ -37,6 +38,9 @@ pub struct Arguments {
     until: Option<f64>,
     #[command(flatten)]
     accuracy: AccuracyArguments,
+    /// Run it by this reduced model, a file of `pliant reduce`, in place of that of the scene file
+    #[arg(long, value_name = "FILE")]
+    reduced: Option<PathBuf>,
     /// Go on with a run of the same scene that was interrupted or killed, from the checkpoint in its directory;
     /// pictures show the motion from there on
     #[arg(long)]
@@ -93,8 +97,8 @@ impl<'a> Keeper<'a> {
 }
 
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let Arguments { scene, settings, step, until, accuracy, resume, output } = arguments;
-    let mut file = scene.read()?;
+    let Arguments { scene, settings, step, until, accuracy, reduced, resume, output } = arguments;
+    let mut file = scene.read_reduced(reduced.as_deref())?;
     settings.apply(&mut file.settings)?;
     accuracy.apply(&mut file.accuracy, settings)?;
     output.apply(&mut file)?;

@@ -4,10 +4,13 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use pliant::scene_file::override_of;
-use pliant::{Error, SceneFile};
+use pliant::{Error, ReducedModel, SceneFile};
 
 use crate::failure::Failure;
 use crate::shell::absolute;
+
+/// What has to be set for a scene with all its unknowns.
+pub const UNREDUCED: &str = "solver.reduced=\"\"";
 
 /// The scene file, and values that replace its own.
 #[derive(Args)]
@@ -30,6 +33,15 @@ impl SceneArguments {
     /// Reads the file with these values, and then `others`, in place of its own.
     pub fn read_with(&self, others: &[String]) -> Result<SceneFile, Error> {
         SceneFile::read_with(&self.path, &[&self.set[..], others].concat())
+    }
+
+    /// Reads the file, with this reduced model in place of its own if there is one.
+    pub fn read_reduced(&self, model: Option<&Path>) -> Result<SceneFile, Error> {
+        let Some(path) = model else { return self.read() };
+        let mut file = self.read_with(&[UNREDUCED.to_owned()])?;
+        let model = ReducedModel::read(path, &file.scene)?;
+        file.scene = file.scene.reduced(model)?;
+        Ok(file)
     }
 
     /// Reads another file, with the same values in place of its own.

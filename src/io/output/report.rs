@@ -7,7 +7,9 @@ use serde_json::{Map, Value, json};
 use super::write_file;
 use crate::dynamics::equilibrium::{Equilibrium, MeshEstimate, NoEquilibrium, Stability};
 use crate::dynamics::error::Error;
-use crate::dynamics::report::{Achieved, Counts, Indicator, PhaseReport, Report, SlipEvent};
+use crate::dynamics::report::{
+    Achieved, Counts, Indicator, PhaseReport, ReducedReport, Report, SlipEvent,
+};
 use crate::dynamics::trajectory::{IntegrationFailure, Quantity, Trajectory};
 use crate::integrators::sundials;
 
@@ -110,6 +112,8 @@ table! {
         "chosen", "", "what was chosen where the scene file says `auto`, and why" => trajectory.report().chosen;
         "achieved" (OfAchieved), "", "to what the motion is known; `null` without `--accuracy`"
             => trajectory.report().achieved.as_ref();
+        "reduced" (OfReduced), "", "what a run by a reduced model tells; `null` of one with all unknowns"
+            => trajectory.report().reduced.as_ref();
         {OfResult} => trajectory;
     }
 }
@@ -181,6 +185,18 @@ table! {
             => achieved.known_until;
         "runs", "", "runs in all" => achieved.runs;
         "rtol", "1", "relative tolerances of the last two" => achieved.rtol;
+    }
+}
+
+table! {
+    OfReduced(reduced: &ReducedReport) {
+        "shapes", "", "shapes of the phase that has most" => reduced.shapes;
+        "cells", "", "cells whose forces are computed, and all; the first is 0 where these are linear" => reduced.cells;
+        "checked_error", "1", "largest error of a displacement in the runs that the model was checked with, relative to their largest one"
+            => reduced.checked_error;
+        "within", "1", "the error that was wanted of it" => reduced.within;
+        "told_error", "1", "the error that this run tells" => reduced.told_error;
+        "outside", "1", "how far the motion was outside of those learned from, in parts of their range" => reduced.outside;
     }
 }
 

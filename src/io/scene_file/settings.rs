@@ -8,6 +8,7 @@ use crate::base::input::{find, positive};
 use crate::dynamics::error::Error;
 use crate::dynamics::simulate::Sampling;
 use crate::dynamics::statics::Statics;
+use crate::scene::ReducedModel;
 use crate::scene::settings::{Settings, SettingsOption, SettingsValue as Kind};
 use crate::scene::timeline::{Phase, Scene};
 
@@ -18,9 +19,10 @@ pub(super) const SOLVER: TableKeys = TableKeys::new(
     "[solver]\nmethod = \"cvode-bdf\"\nrtol = 1e-6\nalpha = 1e4",
 );
 
-const OPTIONS: [Key; SettingsOption::ALL.len() + 2] = {
-    let mut keys = [QUANTITY; SettingsOption::ALL.len() + 2];
+const OPTIONS: [Key; SettingsOption::ALL.len() + 3] = {
+    let mut keys = [QUANTITY; SettingsOption::ALL.len() + 3];
     keys[0] = ACCURACY;
+    keys[SettingsOption::ALL.len() + 2] = REDUCED;
     let mut number = 0;
     while number < SettingsOption::ALL.len() {
         keys[number + 1] = key(&SettingsOption::ALL[number]);
@@ -42,6 +44,13 @@ const ACCURACY: Key = Key::new(
 const QUANTITY: Key = Key::new("quantity", Holds::Text, "what `accuracy` is of")
     .law(QUANTITIES)
     .default("the whole motion");
+const REDUCED: Key = Key::new(
+    "reduced",
+    Holds::Text,
+    "the reduced model by which it is run: a file of `pliant reduce`, relative to the scene file",
+)
+.law("`\"\"` is all unknowns. Statics always takes all of them.")
+.default("all unknowns");
 const QUANTITIES: &str = "`motion`; a sensor or a set of nodes, with a component where need be, as `tip.y`; `com`, `rotation`; \
      behind a colon the part that counts, where all times do not: `end`, `max`, `min`, `frequency`, `damping`.";
 
@@ -128,6 +137,18 @@ pub(super) fn accuracy(value: &Value) -> Result<AccuracyRequest, Error> {
         return Err(table.error("accuracy finds rtol by itself: leave one of them out"));
     }
     Ok(AccuracyRequest { within, quantity })
+}
+
+/// The scene by its reduced model, if it names one.
+pub(super) fn reduced(scene: Scene, value: &Value) -> Result<Scene, Error> {
+    match value.table(&SOLVER)?.get("reduced") {
+        Some(file) if !file.string()?.is_empty() => {
+            let model = ReducedModel::read(file.source.beside(file.string()?), &scene);
+            let model = model.map_err(|error| file.error(error))?;
+            scene.reduced(model).map_err(|error| file.error(error))
+        }
+        _ => Ok(scene),
+    }
 }
 
 pub(super) fn statics(value: &Value, scene: &Scene) -> Result<StaticsRequest, Error> {

@@ -127,6 +127,9 @@ pub(super) fn scene_file(top: &Table) -> Result<SceneFile, Error> {
         scene = initial::add_initial(scene, &initial)?;
     }
     scene = top.required("body", |body| body::moving(scene, body))?;
+    if let Some(solver) = top.get("solver") {
+        scene = settings::reduced(scene, &solver)?;
+    }
     let auto = top.required("body", body::auto)?;
     let settings = top.optional("solver", settings::solver)?.unwrap_or_default();
     let accuracy = top.optional("solver", settings::accuracy)?.unwrap_or_default();

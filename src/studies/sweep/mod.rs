@@ -15,6 +15,7 @@ mod table;
 pub use condition::Condition;
 pub use factor::MANY;
 pub use plan::{Plan, Point};
+pub(crate) use points::{MOST_AXES, sobol};
 pub use row::{Cost, Row, RowVerdict};
 pub use run::{PointRun, Sweep};
 pub use runner::{Runner, Watch};

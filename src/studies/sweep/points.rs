@@ -47,7 +47,7 @@ const POLYNOMIALS: [(usize, u64, &[u64]); 20] = [
 ];
 
 /// Most axes that a point of Sobol's sequence has.
-pub(super) const MOST_AXES: usize = POLYNOMIALS.len() + 1;
+pub(crate) const MOST_AXES: usize = POLYNOMIALS.len() + 1;
 
 /// Binary digits of the places: those of a mantissa.
 const DIGITS: usize = 52;
@@ -56,7 +56,7 @@ const DIGITS: usize = 52;
 ///
 /// The points come in the order of the Gray code, as those of the authors of the table do. (Points of any number, and
 /// in double precision: the crates that there are iterate, or have single precision.)
-pub(super) fn sobol(number: u64, axis: usize) -> f64 {
+pub(crate) fn sobol(number: u64, axis: usize) -> f64 {
     let gray = number ^ (number >> 1);
     let directions = directions(axis);
     let digits = (0..DIGITS).filter(|digit| gray >> digit & 1 == 1);

@@ -1,0 +1,50 @@
+//! A reduced model held against a run with all unknowns.
+
+use std::time::Instant;
+
+use super::Tried;
+use super::error::error as difference;
+use crate::dynamics::error::Error;
+use crate::dynamics::simulate::Sampling;
+use crate::scene::ReducedModel;
+use crate::scene::settings::Settings;
+use crate::scene::timeline::Scene;
+
+/// Times at which the two motions are compared.
+const SAMPLES: f64 = 100.0;
+
+/// A run by a reduced model, beside that with all unknowns.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Verified {
+    /// The run by the model.
+    pub reduced: Tried,
+    /// Time (s) that the run with all unknowns takes.
+    pub full_seconds: f64,
+}
+
+/// Runs a scene with all its unknowns and by a reduced model, and compares both at a hundred times.
+///
+/// # Errors
+/// A model of another scene; a run with all unknowns that fails. One by the model that fails has an infinite error.
+pub fn verify(scene: &Scene, model: &ReducedModel, settings: &Settings) -> Result<Verified, Error> {
+    let sampling = Sampling::every(scene.end() / SAMPLES);
+    let timed = |scene: &Scene| {
+        let start = Instant::now();
+        let motion = scene.simulate(settings, &sampling);
+        (motion, start.elapsed().as_secs_f64())
+    };
+    let short = scene.clone().reduced(model.clone())?;
+    let (full, full_seconds) = timed(&scene.clone().unreduced());
+    let full = full?;
+    let (motion, seconds) = timed(&short);
+    let (error, told) = match motion {
+        Ok(motion) => {
+            let told = motion.report().reduced.as_ref().map_or(0.0, |report| report.told_error);
+            (difference(&full, &motion), told)
+        }
+        Err(Error::Integration(_)) => (f64::INFINITY, f64::INFINITY),
+        Err(error) => return Err(error),
+    };
+    let (unknowns, cells) = (model.unknowns(), model.cells());
+    Ok(Verified { reduced: Tried { unknowns, cells, error, told, seconds }, full_seconds })
+}

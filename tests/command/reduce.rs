@@ -1,0 +1,148 @@
+//! `pliant reduce`: what it learns, writes and says, and what is refused.
+
+use std::fs;
+
+use serde_json::{Value, json};
+
+use super::{Place, says, stdout};
+
+/// A beam that a load bends; both phases are needed for a way back.
+const SCENE: &str = r#"
+[body]
+mesh = { kind = "rectangle", size = [0.1, 0.02], nodes = [9, 3], cells = "triangles" }
+thickness = 0.01
+strain = "green"
+material = { density = 1000.0, young = 1.0e5, poisson = 0.4, viscosity = 500.0 }
+
+[[spring]]
+name = "tendon"
+ends = [9, { point = [0.2, -0.1] }]
+
+[[phase]]
+name = "pull"
+until = 0.2
+hold = [{ nodes = "left" }]
+actuate = [{ springs = "tendon", force = 0.02 }]
+"#;
+
+const FORCE: &str = "phase.pull.actuate.1.force";
+
+/// A file of a model of no scene at all.
+fn stranger() -> String {
+    let model = json!({
+        "dofs": 54, "cell_count": 32, "phases": [], "cells": {}, "error": 0.01, "error_per_imbalance": 1.0,
+        "within": 0.02, "learned_from": "1 run",
+    });
+    json!({ "what": "pliant reduced model", "format": 1, "scene": [], "model": model }).to_string()
+}
+
+/// A model of a range of forces is within what was asked for, and runs by the file are what `--verify` says of them.
+#[test]
+fn a_model_is_learned_written_and_run() {
+    let place = Place::new();
+    let scene = place.scene(SCENE);
+    let vary = format!("{FORCE}=0.005..0.02");
+    let done = place.run(&["reduce", scene, "--within", "5%", "--vary", &vary]);
+    assert!(done.status.success(), "{done:?}");
+    says(&stdout(&done), &["unknowns", "speed-up", "learning it took", "scene.reduced"]);
+    assert_eq!(
+        place.files("."),
+        [
+            "scene-reduced.json",
+            "scene-reduced.png",
+            "scene-reduced.svg",
+            "scene.reduced",
+            "scene.toml"
+        ]
+    );
+    let numbers: Value =
+        serde_json::from_slice(&fs::read(place.path("scene-reduced.json")).unwrap()).unwrap();
+    assert_eq!(numbers["is_within"], true);
+    assert!(numbers["error"].as_f64().unwrap() <= 0.05);
+    assert!(
+        numbers["learned_from"].as_str().unwrap().contains(&format!("{FORCE} from 0.005 to 0.02"))
+    );
+
+    let check = place.run(&["check", scene, "--set", "solver.reduced=scene.reduced"]);
+    says(&stdout(&check), &["reduced", "unknowns", "learned from 5 runs"]);
+    for flags in [["--reduced", "scene.reduced"], ["--set", "solver.reduced=scene.reduced"]] {
+        let run = place.run(&[&["run", scene, "--step", "0.02"][..], &flags].concat());
+        assert!(run.status.success(), "{run:?}");
+        says(&stdout(&run), &["reduced model"]);
+    }
+    let reduced = place.table("out/scene").1;
+    place.run(&["run", scene, "--step", "0.02", "--quiet"]);
+    let full = place.table("out/scene").1;
+    assert!(reduced.len() == full.len() && reduced != full);
+    let verified = place.run(&[
+        "reduce",
+        scene,
+        "--verify",
+        "scene.reduced",
+        "--within",
+        "10%",
+        "--vary",
+        &vary,
+    ]);
+    assert!(verified.status.success(), "{verified:?}");
+    says(&stdout(&verified), &["run 1: off by", "run 2: off by", "the run tells"]);
+}
+
+/// One shape of a beam that is bent to large angles is not enough: the best model is written, and the code says so.
+#[test]
+fn a_model_that_is_not_good_enough_is_written_and_told_of() {
+    let place = Place::new();
+    let scene = place.scene(SCENE);
+    let done = place
+        .run(&["reduce", scene, "--within", "1e-6", "--most", "4", "--out", "models", "--quiet"]);
+    let said = String::from_utf8_lossy(&done.stderr).into_owned();
+    assert_eq!(done.status.code(), Some(1), "{said}");
+    says(&said, &["no model of 4 unknowns at most is within", "--vary", "--most 8"]);
+    assert!(place.path("models/scene.reduced").exists());
+}
+
+#[test]
+fn what_cannot_be_reduced_is_refused_before_anything_runs() {
+    let place = Place::new();
+    let scene = place.scene(SCENE);
+    fs::write(place.path("other.reduced"), stranger()).unwrap();
+    fs::write(place.path("text.reduced"), "text").unwrap();
+    let force = |range: &str| format!("{FORCE}={range}");
+    for (flags, words) in [
+        (
+            vec!["--vary", &force("0.02..0.005")],
+            &["range of phase.pull", "least value to the largest"][..],
+        ),
+        (vec!["--vary", &force("0.02")], &["KEY=LEAST..MOST"]),
+        (vec!["--vary", &force("0..0.02:1")], &["two values at least"]),
+        (vec!["--vary", &force("0..1"), "--vary", &force("0..2")], &["has a range already"]),
+        (vec!["--vary", "phase.pull.actuat.1.force=0..1"], &["actuat", "did you mean"]),
+        (
+            vec!["--vary", "body.material.young=1e5..2e5"],
+            &["body.material.young", "changes the materials"],
+        ),
+        (vec!["--vary", "solver.rtol=1e-5..1e-3"], &["solver.rtol", "no part of what happens"]),
+        (vec!["--within", "150%"], &["150%", "above 0 and below 1"]),
+        (vec!["--verify", "none.reduced"], &["none.reduced", "No such file"]),
+        (vec!["--verify", "text.reduced"], &["text.reduced", "damaged or cut off"]),
+        (
+            vec!["--verify", "other.reduced"],
+            &["other.reduced", "positions of the nodes", "run `pliant reduce`"],
+        ),
+    ] {
+        let done = place.run(&[&["reduce", scene][..], &flags].concat());
+        assert_eq!(done.status.code(), Some(2), "{flags:?}: {done:?}");
+        says(&String::from_utf8_lossy(&done.stderr), words);
+    }
+    for command in ["run", "play"] {
+        let done = place.run(&[command, scene, "--reduced", "other.reduced"]);
+        assert_eq!(done.status.code(), Some(2), "{done:?}");
+        says(&String::from_utf8_lossy(&done.stderr), &["other.reduced", "positions of the nodes"]);
+    }
+    let done = place.run(&["check", scene, "--set", "solver.reduced=other.reduced"]);
+    says(
+        &String::from_utf8_lossy(&done.stderr),
+        &["--set:1: solver.reduced", "positions of the nodes"],
+    );
+    assert_eq!(place.files("."), ["other.reduced", "scene.toml", "text.reduced"]);
+}
