@@ -35,7 +35,8 @@ const INTRODUCTION: &str = "\
 Every section shows a failure with its numbers, says why, and what works instead. Many take scenes of
 chapter 4 of S. Hirai, *Computing Dynamic Deformation*. All numbers and
 pictures are results of `cargo run --release --example stability`, which writes this page in a few
-minutes; the tests in `tests/stability/` hold its conclusions.
+minutes; the tests in `tests/stability/` hold its conclusions. Those of the last section, on reduced models, are
+results of `pliant reduce`.
 
 | | fails | works |
 | --- | --- | --- |
@@ -47,7 +48,11 @@ minutes; the tests in `tests/stability/` hold its conclusions.
 | f | constraints in index 3 | index 1, stabilized; stabilized index 2 |
 | g | St. Venant-Kirchhoff material under strong compression | nothing beyond its limit; it is named |
 | h | linear triangles and rectangles as nu goes to 1/2 | quadratic triangles, alternating diagonals |
-| i | pulses as functions of time | tables, phases, stop times |";
+| i | pulses as functions of time | tables, phases, stop times |
+| [r](#reduced-models) | reduced models of travelling contact, of what was not learned | all unknowns, wider ranges, more shapes |";
+
+/// What does not reduce: measured by the command.
+const REDUCED: &str = include_str!("reduced.md");
 
 type Section = fn(&mut Page) -> Outcome<()>;
 
@@ -81,6 +86,7 @@ fn run(arguments: &Arguments) -> Outcome<()> {
             eprintln!("section {letter}: {:.1} s", clock.elapsed().as_secs_f64());
         }
     }
+    page.say(REDUCED.trim_end());
     fs::write(out.join("stability.md"), page.text().trim_end().to_string() + "\n")?;
     Ok(())
 }
