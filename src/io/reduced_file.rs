@@ -103,9 +103,11 @@ impl ReducedModel {
         if let Some(weight) = self.cells.values().find(|weight| !is_weight(weight)) {
             return Err(format!("a weight of {weight}"));
         }
-        for (name, error) in
-            [("an error", self.error), ("an error for an imbalance", self.error_per_imbalance)]
-        {
+        for (name, error) in [
+            ("a largest displacement", self.travel),
+            ("an error", self.error),
+            ("an error for an imbalance", self.error_per_imbalance),
+        ] {
             if !(error >= 0.0 && error.is_finite()) {
                 return Err(format!("{name} of {error}"));
             }
@@ -162,6 +164,7 @@ mod tests {
             phases: vec![phase("swing", 3), phase("rest", 2)],
             cells: BTreeMap::from([(1, 1.0 / 7.0), (5, 3.25)]),
             error: 0.01,
+            travel: 0.02,
             error_per_imbalance: 1.7,
             within: 0.02,
             learned_from: "two runs".into(),

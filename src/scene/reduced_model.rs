@@ -23,7 +23,9 @@ pub struct ReducedModel {
     pub(crate) phases: Vec<ReducedPhase>,
     /// The cells that stand for all (from 0), with their weights; none where all forces of cells are linear.
     pub(crate) cells: BTreeMap<usize, f64>,
-    /// Largest error of a displacement in the runs that it was checked with, relative to their largest displacement.
+    /// Largest displacement (m) from the start in the runs that it was checked with.
+    pub(crate) travel: f64,
+    /// Largest error of a displacement in these runs, relative to that displacement.
     pub(crate) error: f64,
     /// The error that was wanted.
     pub(crate) within: f64,

@@ -31,7 +31,7 @@ const FORCE: &str = "phase.pull.actuate.1.force";
 fn stranger() -> String {
     let model = json!({
         "dofs": 54, "cell_count": 32, "phases": [], "cells": {}, "error": 0.01, "error_per_imbalance": 1.0,
-        "within": 0.02, "learned_from": "1 run",
+        "within": 0.02, "travel": 0.1, "learned_from": "1 run",
     });
     json!({ "what": "pliant reduced model", "format": 1, "scene": [], "model": model }).to_string()
 }

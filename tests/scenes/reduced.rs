@@ -41,7 +41,9 @@ fn run(scene: &Scene, rtol: f64) -> Trajectory {
 /// Runs that it was not learned from, by frequency and by size, and what they tell of their errors.
 #[test]
 fn held_out_runs_are_within_what_was_wanted_and_tell_their_errors() {
-    let model = learned(vec![pushed(0.04, 9.0), pushed(0.02, 40.0)], 1e-6, 0.01);
+    // at rest, too: errors are parts of the largest displacement in all runs
+    let scenes = vec![pushed(0.04, 9.0), pushed(0.02, 40.0), pushed(0.0, 9.0)];
+    let model = learned(scenes, 1e-6, 0.01);
     assert!(model.unknowns() <= 12 && (3..30).contains(&model.cells()), "{model}");
     for (force, frequency) in [(0.03, 12.0), (0.02, 45.0)] {
         let full = pushed(force, frequency);
@@ -131,14 +133,14 @@ fn constraints_move_the_body_and_supply_energy() {
         let start = move |_: &[f64]| vec![0.0, most * frequency];
         Scene::new(strip(RUBBER)).initial_velocity(start).phase(phase)
     };
-    let model = learned(vec![scene(0.004, 30.0), scene(0.002, 50.0)], 1e-6, 0.01);
+    let model = learned(vec![scene(0.004, 30.0), scene(0.002, 50.0)], 1e-6, 0.002);
     let full = scene(0.003, 40.0);
     let own = run(&full.clone().reduced(model).unwrap(), 1e-6);
     let full = run(&full, 1e-6);
     let report = own.report();
     let [exact, supplied] = [&full, &own].map(|motion| motion.last().energy.supplied);
     assert!((supplied / exact - 1.0).abs() < 0.01, "{exact} {supplied}");
-    assert!(error(&full, &own) < 0.01);
+    assert!(error(&full, &own) < 0.002, "{:e}", error(&full, &own));
     assert!(report.energy_error < 2e-5 * report.energy_scale);
     assert!(report.constraint_drift < 1e-12, "{}", report.constraint_drift);
 }

@@ -12,11 +12,11 @@ pub struct ReducedReport {
     pub shapes: usize,
     /// Cells whose forces are computed, and all; the first is 0 where all forces of cells are linear.
     pub cells: [usize; 2],
-    /// Largest error of a displacement in the runs that the model was checked with, relative to their largest one.
+    /// Largest error of a displacement in the runs that the model was checked with, relative to their largest displacement.
     pub checked_error: f64,
     /// The error that was wanted of it.
     pub within: f64,
-    /// The error that this run tells: what the forces left over would move, times the ratio of the two in the runs that the
+    /// The error that this run tells, relative to the largest displacement in it or in these runs: what the forces left over would move, times the ratio of the two in the runs that the
     /// model was checked with.
     pub told_error: f64,
     /// How far the motion was outside of those learned from, in parts of the widest range of a shape.
@@ -39,11 +39,11 @@ impl ReducedReport {
             outside: 0.0,
             per_imbalance: model.error_per_imbalance,
             imbalance: 0.0,
-            travel: 0.0,
+            travel: model.travel,
         }
     }
 
-    /// Adds an imbalance (m) where the largest displacement is `travel` (m), in a state so far outside of those learned from.
+    /// Adds an imbalance (m) where the largest displacement so far is `travel` (m), in a state so far outside of those learned from.
     pub(crate) fn note(&mut self, [imbalance, travel, outside]: [f64; 3]) {
         self.imbalance = self.imbalance.max(imbalance);
         self.travel = self.travel.max(travel);

@@ -6,18 +6,28 @@ use crate::dynamics::trajectory::{Sample, Trajectory};
 /// of a node in `full` from where it was at first. Infinite if the runs were not sampled at the same times, as where one
 /// has ended early.
 pub fn error(full: &Trajectory, reduced: &Trajectory) -> f64 {
+    let (off, way) = (distance(full, reduced), travel(full));
+    // nothing moves in either of them
+    if off == 0.0 { 0.0 } else { off / way }
+}
+
+/// The largest distance (m) of a node in `reduced` from where it is in `full`; infinite as [`error`].
+pub(super) fn distance(full: &Trajectory, reduced: &Trajectory) -> f64 {
     let (samples, others) = (full.samples(), reduced.samples());
     let is_same = |(one, other): (&Sample, &Sample)| one.time == other.time;
     if samples.len() != others.len() || !samples.iter().zip(others).all(is_same) {
         return f64::INFINITY;
     }
     let dimension = full.scene().body().dimension();
-    let start = &samples[0].u;
-    let way = samples.iter().map(|sample| farthest(&sample.u, start, dimension));
     let off = samples.iter().zip(others).map(|(one, other)| farthest(&one.u, &other.u, dimension));
-    let [way, off] = [way.fold(0.0, f64::max), off.fold(0.0, f64::max)];
-    // nothing moves in either of them
-    if off == 0.0 { 0.0 } else { off / way }
+    off.fold(0.0, f64::max)
+}
+
+/// The largest distance (m) of a node in a run from where it was at first.
+pub(super) fn travel(run: &Trajectory) -> f64 {
+    let dimension = run.scene().body().dimension();
+    let start = &run.samples()[0].u;
+    run.samples().iter().map(|sample| farthest(&sample.u, start, dimension)).fold(0.0, f64::max)
 }
 
 /// The largest distance (m) of a node at displacements `u` from where it is at `other`; infinite where that is no number.

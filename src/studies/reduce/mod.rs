@@ -19,7 +19,7 @@ use std::time::Instant;
 
 use alike::differing_part;
 pub use error::error;
-use error::error as difference;
+use error::{distance, travel};
 use learn::LearnedPhase;
 #[cfg(feature = "sweep")]
 pub use varied::{VariedKey, words};
@@ -44,7 +44,7 @@ pub struct Training {
     pub held_out: Vec<Scene>,
     /// Method and tolerances of all runs.
     pub settings: Settings,
-    /// Largest error of a displacement that is wanted, relative to the largest displacement.
+    /// Largest error of a displacement that is wanted, relative to the largest displacement in all of these runs.
     pub within: f64,
     /// Most unknowns of a model.
     pub most_unknowns: usize,
@@ -74,7 +74,7 @@ pub struct Tried {
     pub unknowns: usize,
     /// Number of cells whose forces it computes; 0 where all forces of cells are linear.
     pub cells: usize,
-    /// Largest error of a displacement, relative to the largest displacement; infinite where the run failed.
+    /// Largest error of a displacement, relative to the largest displacement in all runs; infinite where a run failed.
     pub error: f64,
     /// The error that the runs themselves told (the largest one).
     pub told: f64,
@@ -132,6 +132,7 @@ pub fn reduce(training: &Training, observer: &mut dyn FnMut(&str)) -> Result<Red
         let help = "nothing moves in the training runs: there is nothing to learn";
         return Err(InputError::new("training runs", "at rest", help).into());
     }
+    let way = checks.iter().map(|(run, _)| travel(run)).fold(0.0, f64::max);
     let least = phases.iter().map(LearnedPhase::least).max().unwrap_or(0);
     if least > *most_unknowns {
         let help = format!("a body that nothing holds needs {least} at least");
@@ -153,7 +154,7 @@ pub fn reduce(training: &Training, observer: &mut dyn FnMut(&str)) -> Result<Red
         let mut of_all_cells = None;
         loop {
             observer(&format!("{unknowns} unknowns"));
-            let model = model(training, &phases, &counts, by_cell.as_ref(), tolerance)?;
+            let model = model(training, &phases, &counts, by_cell.as_ref(), [tolerance, way])?;
             let has_all = model.cells() == 0 || model.cells() == model.cell_count;
             let (model, found) = checked(model, &checks, settings);
             tried.push(found.tried);
@@ -169,7 +170,7 @@ pub fn reduce(training: &Training, observer: &mut dyn FnMut(&str)) -> Result<Red
             // more shapes do not help: are the cells too few?
             let with_all = of_all_cells.get_or_insert_with(|| {
                 let worst = &checks[found.worst..=found.worst];
-                let all = self::model(training, &phases, &counts, by_cell.as_ref(), 0.0);
+                let all = self::model(training, &phases, &counts, by_cell.as_ref(), [0.0, way]);
                 all.map_or(f64::INFINITY, |all| checked(all, worst, settings).0.error)
             });
             if error <= OF_SHAPES * *with_all {
@@ -240,7 +241,7 @@ fn model(
     phases: &[LearnedPhase],
     counts: &[usize],
     by_cell: Option<&ByCell>,
-    tolerance: f64,
+    [tolerance, travel]: [f64; 2],
 ) -> Result<ReducedModel, Error> {
     let body = training.scenes[0].body();
     let cells = match by_cell {
@@ -254,6 +255,7 @@ fn model(
         cell_count: body.mesh().cell_count(),
         phases: phases.iter().zip(counts).map(|(phase, &count)| phase.reduced(count)).collect(),
         cells,
+        travel,
         error: f64::INFINITY,
         within: training.within,
         error_per_imbalance: 1.0,
@@ -282,7 +284,7 @@ fn checked(
         let run = full.scene().clone().reduced(model.clone()).map_err(Error::from);
         let own = match run.and_then(|scene| timed(&scene, settings)) {
             Ok((run, time)) => {
-                let own = difference(full, &run);
+                let own = distance(full, &run) / model.travel;
                 let told = run.report().reduced.as_ref().map_or(0.0, |run| run.imbalance());
                 imbalance = imbalance.max(told);
                 if told > 0.0 {

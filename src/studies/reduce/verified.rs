@@ -3,7 +3,7 @@
 use std::time::Instant;
 
 use super::Tried;
-use super::error::error as difference;
+use super::error::{distance, travel};
 use crate::dynamics::error::Error;
 use crate::dynamics::simulate::Sampling;
 use crate::scene::ReducedModel;
@@ -22,7 +22,8 @@ pub struct Verified {
     pub full_seconds: f64,
 }
 
-/// Runs a scene with all its unknowns and by a reduced model, and compares both at a hundred times.
+/// Runs a scene with all its unknowns and by a reduced model, and compares both at a hundred times. The error is relative to the largest
+/// displacement, in this run or in those that the model was checked with.
 ///
 /// # Errors
 /// A model of another scene; a run with all unknowns that fails. One by the model that fails has an infinite error.
@@ -40,7 +41,7 @@ pub fn verify(scene: &Scene, model: &ReducedModel, settings: &Settings) -> Resul
     let (error, told) = match motion {
         Ok(motion) => {
             let told = motion.report().reduced.as_ref().map_or(0.0, |report| report.told_error);
-            (difference(&full, &motion), told)
+            (distance(&full, &motion) / travel(&full).max(model.travel), told)
         }
         Err(Error::Integration(_)) => (f64::INFINITY, f64::INFINITY),
         Err(error) => return Err(error),

@@ -80,6 +80,7 @@ fn model(scene: &Scene, most: usize) -> ReducedModel {
         cells: (0..cells).map(|cell| (cell, 1.0)).collect::<BTreeMap<_, _>>(),
         error: 0.0,
         within: 0.01,
+        travel: 0.1,
         error_per_imbalance: 1.0,
         learned_from: "nothing".into(),
     }
