@@ -170,10 +170,11 @@ impl Run {
     fn check_reduced(&mut self, system: &mut System) -> Result<(), Failure> {
         let start = self.number.checked_sub(1).map_or(0.0, |k| self.scene.phases()[k].end());
         let found = system.imbalance(self.time, &self.state, self.phase.until - start)?;
+        let Some(found) = found else { return Ok(()) };
         let first = &self.trajectory.samples()[0].u;
         let moved = self.state.iter().zip(first).map(|(u, start)| (u - start).abs());
         let travel = moved.fold(0.0, f64::max);
-        if let (Some(found), Some(reduced)) = (found, &mut self.trajectory.report.reduced) {
+        if let Some(reduced) = &mut self.trajectory.report.reduced {
             reduced.note([found.displacement, travel, found.outside]);
         }
         Ok(())

@@ -129,9 +129,8 @@ impl System {
     /// For each row that moves the displacements in equilibrium, in the undeformed shape at time `t`, where it moves by 1
     /// and the others by 0.
     pub(crate) fn lifts(&mut self, t: f64) -> Result<Vec<Vec<f64>>, Failure> {
-        let moved: Vec<usize> = (0..self.rows.len())
-            .filter(|&row| self.rows[row].constant_velocity() != Some(0.0))
-            .collect();
+        let moves = |&row: &usize| self.rows[row].moves();
+        let moved: Vec<usize> = (0..self.rows.len()).filter(moves).collect();
         if moved.is_empty() {
             return Ok(Vec::new());
         }

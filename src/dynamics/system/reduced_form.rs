@@ -5,7 +5,6 @@ mod tests;
 
 use super::System;
 use super::form::Form;
-use super::reduction::Reduction;
 use crate::base::vector::largest;
 use crate::dynamics::state::{ENERGIES, State, StateMut};
 use crate::integrators::ode::{Failure, Ode};
@@ -69,11 +68,6 @@ impl ReducedForm {
         (!differs(u, &lifted[..n]) && !differs(v, &lifted[n..2 * n])).then_some(y)
     }
 
-    /// The model and the unknowns of y, and where the energies are.
-    fn parts<'y>(&mut self, y: &'y [f64]) -> (Option<&mut Reduction>, State<'y>) {
-        (self.system.reduction.as_deref_mut(), State::of(y, self.free))
-    }
-
     fn evaluate(&mut self, t: f64, y: &[f64]) -> Result<(), Failure> {
         let State { u: q, v: p, .. } = State::of(y, self.free);
         let System { reduction, rows, refusal, .. } = &mut self.system;
@@ -106,10 +100,9 @@ impl Form for ReducedForm {
 impl Ode for ReducedForm {
     fn rhs(&mut self, t: f64, y: &[f64], ydot: &mut [f64]) -> Result<(), Failure> {
         self.evaluate(t, y)?;
-        let free = self.free;
-        let (Some(reduction), state) = self.parts(y) else { return Ok(()) };
-        let rates = StateMut::of(ydot, free);
-        rates.u.copy_from_slice(state.v);
+        let Some(reduction) = &self.system.reduction else { return Ok(()) };
+        let rates = StateMut::of(ydot, self.free);
+        rates.u.copy_from_slice(State::of(y, self.free).v);
         rates.v.copy_from_slice(reduction.acceleration());
         [*rates.dissipated, *rates.supplied] = reduction.powers();
         Ok(())

@@ -136,7 +136,7 @@ impl Reduction {
         let mut seen = BTreeSet::new();
         let mut pairs = body.cell_pairs(model.cells.keys().copied());
         let mut is_anywhere = false;
-        for force in forces.iter().filter(|force| !force.is_steady() && !force.is_by_cells()) {
+        for force in unsampled(forces) {
             pairs.extend(force.couplings());
             match force.nodes() {
                 Some(nodes) => seen.extend(nodes),
@@ -216,7 +216,7 @@ impl Reduction {
 
     /// Whether forces see only nodes that are active.
     pub(super) fn has_room(&self, forces: &Forces) -> bool {
-        forces.iter().filter(|force| !force.is_steady() && !force.is_by_cells()).all(|force| {
+        unsampled(forces).all(|force| {
             let couples = |[a, b]: [usize; 2]| self.pattern.find(a, b).is_some();
             let sees = match force.nodes() {
                 Some(nodes) => nodes.iter().all(|&node| self.shapes.sees(node)),
@@ -281,12 +281,8 @@ impl Reduction {
             self.shapes.add_projected(&force, rest);
         }
         self.tangents.is_set = false;
-        let mut own = v.to_vec();
-        for ((row, _), column) in self.moved.iter().zip(self.shapes.free()..) {
-            let velocity = rows[*row].prescribed(t).velocity;
-            self.shapes.add_column(column, -velocity, &mut own);
-        }
-        self.shapes.coordinates(&own)
+        let [_, p] = self.coordinates(rows, t, [u, v]);
+        p
     }
 
     /// q and q' of a state (u, v) at time t.
@@ -521,6 +517,11 @@ impl Factors {
     }
 }
 
+/// The forces that are evaluated as they are: neither steady nor by a sample of the cells.
+fn unsampled(forces: &Forces) -> impl Iterator<Item = &Arc<dyn Force>> {
+    forces.iter().filter(|force| !force.is_steady() && !force.is_by_cells())
+}
+
 /// The rows that move.
 ///
 /// # Errors
@@ -530,8 +531,7 @@ fn moved(
     rows: &[ConstraintRow],
     name: &str,
 ) -> Result<Vec<(usize, f64)>, InputError> {
-    let moves = |&row: &usize| rows[row].constant_velocity() != Some(0.0);
-    let moved: Vec<usize> = (0..rows.len()).filter(moves).collect();
+    let moved: Vec<usize> = (0..rows.len()).filter(|&row| rows[row].moves()).collect();
     let is_held = |row: &ConstraintRow| {
         phase.shapes.iter().all(|shape| {
             row.apply(shape).abs() <= HELD * largest(shape) * (row.terms.len() as f64).sqrt()

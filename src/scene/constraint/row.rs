@@ -88,6 +88,11 @@ impl ConstraintRow {
         }
     }
 
+    /// Whether b changes, or may.
+    pub(crate) fn moves(&self) -> bool {
+        self.constant_velocity() != Some(0.0)
+    }
+
     /// The part of the row that depends on the state at its start: b (m), the time (s), and for a row that
     /// turns the components of its arm r and of a x r (m).
     pub(crate) fn origin(&self) -> [f64; 4] {

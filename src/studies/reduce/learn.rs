@@ -43,7 +43,7 @@ pub(super) struct State {
 
 impl LearnedPhase {
     /// Phase `number` of the `runs` of scenes that have the same body and phases.
-    pub(super) fn new(runs: &[Trajectory], number: usize, most: usize) -> Result<Self, Error> {
+    pub(super) fn new(runs: &[&Trajectory], number: usize, most: usize) -> Result<Self, Error> {
         let scene = runs[0].scene();
         let (body, phase) = (scene.body(), &scene.phases()[number]);
         let start = number.checked_sub(1).map_or(0.0, |before| scene.phases()[before].end());
@@ -56,10 +56,8 @@ impl LearnedPhase {
             scene.clone().unreduced().system(&matrices, phase, own, &at, 0.0)?
         };
         let lifts = system.lifts(start).map_err(|failure| failed(phase.name(), failure))?;
-        let moved: Vec<ConstraintRow> = {
-            let moves = |row: &&ConstraintRow| row.constant_velocity() != Some(0.0);
-            system.rows().iter().filter(moves).cloned().collect()
-        };
+        let moved: Vec<ConstraintRow> =
+            system.rows().iter().filter(|row| row.moves()).cloned().collect();
         let mut states = Vec::new();
         for run in runs {
             states.extend(states_of(run, number, &mut system, &moved, &lifts));

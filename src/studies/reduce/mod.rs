@@ -118,8 +118,8 @@ pub fn reduce(training: &Training, observer: &mut dyn FnMut(&str)) -> Result<Red
     };
     let learned_from = full(scenes, "training run")?;
     let held_out = full(held_out, "run to check with")?;
-    let runs: Vec<Trajectory> = learned_from.iter().map(|(run, _)| run.clone()).collect();
     let checks: Vec<(Trajectory, f64)> = learned_from.into_iter().chain(held_out).collect();
+    let runs: Vec<&Trajectory> = checks[..scenes.len()].iter().map(|(run, _)| run).collect();
 
     observer("shapes");
     let body = scenes[0].body();
