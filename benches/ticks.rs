@@ -9,6 +9,7 @@
 //! a checkpoint and to start anew.
 
 use std::error::Error;
+use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 
 use pliant::reduce::{Training, reduce};
@@ -178,7 +179,7 @@ fn learned(case: &Case) -> Result<ReducedModel, Box<dyn Error>> {
         within: 0.02,
         most_unknowns: 64,
     };
-    Ok(reduce(&training, &mut |_| {})?.model)
+    Ok(reduce(&training, &mut |_| ControlFlow::Continue(()))?.model)
 }
 
 /// The largest difference of a component of two paths, relative to the largest component of `full`.

@@ -16,6 +16,7 @@
 mod common;
 
 use std::f64::consts::TAU;
+use std::ops::ControlFlow;
 use std::path::PathBuf;
 use std::time::Instant;
 
@@ -153,7 +154,7 @@ fn learned(scene: &Scene, arguments: &Arguments, settings: &Settings) -> Result<
         within: arguments.within,
         most_unknowns: arguments.unknowns,
     };
-    let reduced = reduce(&training, &mut |what| eprintln!("{what}"))?;
+    let reduced = reduce(&training, &mut |_| ControlFlow::Continue(()))?;
     println!("{reduced}\n");
     Ok(scene.clone().reduced(reduced.model)?)
 }

@@ -19,7 +19,7 @@ class ReducedModel:
         self._reduced = reduced
 
     unknowns = property(lambda self: self._reduced.unknowns, doc="Number of unknowns.")
-    cells = property(lambda self: self._reduced.cells, doc="Number of cells whose forces are computed; 0 where all are linear.")
+    cells = property(lambda self: self._reduced.cells, doc="Number of cells whose forces are computed; 0 where these are exact along the shapes.")
     error = property(lambda self: self._reduced.error, doc="Largest error of a displacement where it was checked, as a part of the largest one.")
     is_within = property(lambda self: self._reduced.is_within, doc="Whether that is within what was wanted.")
 

@@ -1,5 +1,6 @@
 //! Reduced models of scenes, as `pliant reduce` learns them.
 
+use std::ops::ControlFlow;
 use std::path::PathBuf;
 
 use pliant::reduce::{Reduced as Learned, Training, VariedKey, reduce, words};
@@ -25,8 +26,8 @@ impl Reduced {
         read: &dyn Fn(&[String]) -> Result<SceneFile, Error>,
         within: f64,
         vary: Vec<Range>,
-        hold_out: usize,
-        most_unknowns: usize,
+        [hold_out, most_unknowns]: [usize; 2],
+        observer: &mut dyn FnMut(&str) -> ControlFlow<()>,
     ) -> Result<Self, Error> {
         let keys = vary.into_iter().map(|(key, least, most, count)| {
             let key = VariedKey::new(key, least, most);
@@ -35,7 +36,7 @@ impl Reduced {
         let keys: Vec<VariedKey> = keys.collect();
         let training = Training::varied(read, &keys, hold_out)?;
         let training = Training { within, most_unknowns, ..training };
-        let mut learned = reduce(&training, &mut |_| {})?;
+        let mut learned = reduce(&training, observer)?;
         if !keys.is_empty() {
             learned.model = learned.model.learned_over(&words(&keys));
         }

@@ -101,7 +101,11 @@ impl Scene {
     ) -> PyResult<Reduced> {
         let Self { text, path, overrides, .. } = self;
         let read = |set: &[String]| SceneFile::parse_with(text, path, &[overrides, set].concat());
-        py.detach(|| Reduced::learn(&read, within, vary, hold_out, most)).map_err(raised)
+        let mut watch = Watch::new(None);
+        let observer = &mut |_: &str| watch.see(0.0);
+        let learned = py.detach(|| Reduced::learn(&read, within, vary, [hold_out, most], observer));
+        watch.check(py)?;
+        learned.map_err(raised)
     }
 
     /// The scene by a reduced model of it, or with all its unknowns.

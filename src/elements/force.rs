@@ -333,6 +333,22 @@ pub trait Force: Send + Sync {
         None
     }
 
+    /// Whether it has a [generalized](Self::generalized) form along so many shapes that is exact, and less work.
+    #[doc(hidden)]
+    fn is_exact_along(&self, _shapes: usize) -> bool {
+        false
+    }
+
+    /// The same force along `shapes` (m) from displacements `origin` (m), if it [has](Self::is_exact_along) that form.
+    #[doc(hidden)]
+    fn generalized(
+        &self,
+        _origin: &[f64],
+        _shapes: &[&[f64]],
+    ) -> Option<Box<dyn GeneralizedForce>> {
+        None
+    }
+
     /// Nodes (counted from 0) that it depends on or acts on; any if it does not say.
     #[doc(hidden)]
     fn nodes(&self) -> Option<Vec<usize>> {
@@ -367,6 +383,24 @@ impl fmt::Debug for dyn Force {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str("Force")
     }
+}
+
+/// The generalized force psi_k . f of a force f along shapes psi_k, under the displacements u_0 + sum z_k psi_k.
+#[doc(hidden)]
+pub trait GeneralizedForce: Send {
+    /// Adds the force at time t (s), with a component for each shape, at [z, z'].
+    ///
+    /// # Errors
+    /// As [`Force::add_forces`].
+    fn add_forces(
+        &mut self,
+        t: f64,
+        z: [&[f64]; 2],
+        forces: &mut NodalForces,
+    ) -> Result<(), Failure>;
+
+    /// Adds its derivatives, as [`Force::add_tangents`], row by row.
+    fn add_tangents(&mut self, t: f64, z: [&[f64]; 2], stiffness: &mut [f64], damping: &mut [f64]);
 }
 
 /// Amounts m (kg) of what flows between rooms of the volumes V(u) (m^3), and what it does to the nodes: forces p(m, V)

@@ -21,7 +21,7 @@ pub struct ReducedModel {
     pub(crate) dofs: usize,
     pub(crate) cell_count: usize,
     pub(crate) phases: Vec<ReducedPhase>,
-    /// The cells that stand for all (from 0), with their weights; none where all forces of cells are linear.
+    /// The cells that stand for all (from 0), with their weights; none where these forces are exact along the shapes.
     pub(crate) cells: BTreeMap<usize, f64>,
     /// Largest displacement (m) from the start in the runs that it was checked with.
     pub(crate) travel: f64,
@@ -57,7 +57,7 @@ impl ReducedModel {
         self.phases.iter().map(|phase| phase.shapes.len()).max().unwrap_or(0)
     }
 
-    /// Number of cells whose forces are computed; 0 where all forces of cells are linear.
+    /// Number of cells whose forces are computed; 0 where these are exact along the shapes.
     pub fn cells(&self) -> usize {
         self.cells.len()
     }

@@ -269,7 +269,9 @@ fn a_run_by_a_reduced_model() {
         within: 0.05,
         most_unknowns: 64,
     };
-    let model = pliant::reduce::reduce(&training, &mut |_| {}).unwrap().model;
+    let model = pliant::reduce::reduce(&training, &mut |_| std::ops::ControlFlow::Continue(()))
+        .unwrap()
+        .model;
     let [unknowns, error] = [model.unknowns() as f64, model.error()];
     let reduced = scene.reduced(model).unwrap();
     let report = written(Ok(&reduced.simulate(&settings, &Sampling::every(0.1)).unwrap()));

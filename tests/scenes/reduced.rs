@@ -1,5 +1,7 @@
 //! Reduced models against the full ones that they are learned from, and against runs that they have not seen.
 
+use std::ops::ControlFlow;
+
 use pliant::reduce::{Training, error, reduce};
 use pliant::{
     Body, Cells, Error, Inertia, Law, Material, Mesh, Method, Obstacle, Phase, Prescribed,
@@ -29,7 +31,7 @@ fn pushed(force: f64, frequency: f64) -> Scene {
 fn learned(scenes: Vec<Scene>, rtol: f64, within: f64) -> ReducedModel {
     let settings = settings(rtol);
     let training = Training { scenes, held_out: Vec::new(), settings, within, most_unknowns: 64 };
-    let found = reduce(&training, &mut |_| {}).unwrap();
+    let found = reduce(&training, &mut |_| ControlFlow::Continue(())).unwrap();
     assert!(found.is_within, "{found}");
     found.model
 }
@@ -66,6 +68,30 @@ fn held_out_runs_are_within_what_was_wanted_and_tell_their_errors() {
     for name in ["reduced-error", "reduced-range"] {
         assert!(warnings.iter().any(|(other, _)| *other == name), "{warnings:?}");
     }
+}
+
+/// Saint Venant and Kirchhoff's law needs no sample of the cells, however the body is loaded: forces are exact along the shapes.
+#[test]
+fn quadratic_strains_need_no_cells() {
+    let mesh = Mesh::rectangle([0.1, 0.02], [21, 5], Cells::Triangles6).unwrap();
+    let body = Body::new(mesh, RUBBER).strain(Strain::Green).viscosity(Viscosity::Objective);
+    let body = body.thickness(0.01).build().unwrap();
+    let scene = |force: f64| {
+        let loaded = Phase::until(0.2).named("loaded").hold("left").load("right", [0.0, force]);
+        // another start, in a shape that the body has not had at rest
+        let let_go = Phase::until(0.4).named("let go").hold("left");
+        Scene::new(body.clone()).phase(loaded).phase(let_go)
+    };
+    let model = learned(vec![scene(0.004)], 1e-6, 0.01);
+    assert_eq!(model.cells(), 0, "{model}");
+    let full = scene(0.003);
+    let own = run(&full.clone().reduced(model).unwrap(), 1e-6);
+    let exact = error(&run(&full, 1e-6), &own);
+    assert!(exact < 0.01, "{exact:e}");
+    let report = own.report();
+    let (balance, scale) = (report.energy_error, report.energy_scale);
+    // the energy is that of all cells: rtol, as in full runs
+    assert!(balance < 1e-5 * scale, "{:e}", balance / scale);
 }
 
 /// All methods integrate the same few equations, and the same powers.
@@ -219,7 +245,9 @@ fn what_cannot_be_reduced_is_told() {
         within,
         most_unknowns: 64,
     };
-    let refused = |training: &Training| reduce(training, &mut |_| {}).unwrap_err().to_string();
+    let refused = |training: &Training| {
+        reduce(training, &mut |_| ControlFlow::Continue(())).unwrap_err().to_string()
+    };
     let message = refused(&training(Vec::new(), 0.01));
     assert!(message.contains("one run at least"), "{message}");
     let message = refused(&training(vec![scene.clone()], 0.0));
@@ -234,7 +262,7 @@ fn what_cannot_be_reduced_is_told() {
     // a tolerance that no size meets: the best one
     let mut hopeless = training(vec![scene.clone()], 1e-12);
     hopeless.most_unknowns = 6;
-    let best = reduce(&hopeless, &mut |_| {}).unwrap();
+    let best = reduce(&hopeless, &mut |_| ControlFlow::Continue(())).unwrap();
     assert!(!best.is_within && best.model.unknowns() <= 6 && best.model.error() < 0.2, "{best}");
 
     let model = best.model;

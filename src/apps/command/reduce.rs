@@ -1,5 +1,6 @@
 //! `pliant reduce`
 
+use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
@@ -88,7 +89,10 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let title = scene.title(if title.is_empty() { &stem } else { &title });
 
     let progress = spinner(*quiet);
-    let reduced = reduce(&training, &mut |what| progress.set_message(what.to_owned()));
+    let reduced = reduce(&training, &mut |what| {
+        progress.set_message(what.to_owned());
+        ControlFlow::Continue(())
+    });
     progress.finish_and_clear();
     let mut reduced = reduced?;
     if !vary.is_empty() {

@@ -56,6 +56,7 @@ pub(super) fn of(present: &Present, colours: Option<usize>, since: Option<f64>) 
         "steps": report.steps(),
         "evaluations": report.evaluations(),
         "factorizations": report.factorizations(),
+        "reduced": report.reduced.as_ref().map(ToString::to_string),
         "warnings": report.warnings(),
     })
 }

@@ -63,6 +63,7 @@ mod waves;
 
 use deformed::Deformed;
 use each::{each_body, named};
+pub(crate) use reduced::reduced;
 use shape::Extent;
 
 use crate::dynamics::report::{Indicator, warnings};
@@ -166,7 +167,7 @@ pub(crate) fn of_motion(trajectory: &Trajectory) -> Vec<Indicator> {
     let measured = measured.chain(chamber::volumes(scene, trajectory.samples()));
     let measured = measured.chain(overlaps(trajectory));
     let measured = measured.chain(pace::tolerance(trajectory, &samples));
-    let measured = measured.chain(reduced::reduced(trajectory));
+    let measured = measured.chain(trajectory.report().reduced.iter().flat_map(reduced));
     measured.chain(is_whole.then(missed).into_iter().flatten()).collect()
 }
 

@@ -1,8 +1,7 @@
 //! How far a run by a reduced model can be trusted.
 
 use crate::base::input::percent;
-use crate::dynamics::report::Indicator;
-use crate::dynamics::trajectory::Trajectory;
+use crate::dynamics::report::{Indicator, ReducedReport};
 
 /// Multiple of the error that was wanted from which a run is doubtful: what it tells is an estimate.
 const TIMES_WANTED: f64 = 2.0;
@@ -10,8 +9,7 @@ const TIMES_WANTED: f64 = 2.0;
 const MOST_OUTSIDE: f64 = 0.05;
 
 /// The error that the run tells, and how far it was outside of what the model has learned.
-pub(super) fn reduced(trajectory: &Trajectory) -> Vec<Indicator> {
-    let Some(run) = &trajectory.report().reduced else { return Vec::new() };
+pub(crate) fn reduced(run: &ReducedReport) -> Vec<Indicator> {
     let limit = TIMES_WANTED * run.within;
     let said = format!(
         "the reduced model tells an error of {} of the largest displacement (limit: {})",

@@ -10,7 +10,7 @@ use crate::scene::reduced_model::ReducedModel;
 pub struct ReducedReport {
     /// Shapes of the phase that has most.
     pub shapes: usize,
-    /// Cells whose forces are computed, and all; the first is 0 where all forces of cells are linear.
+    /// Cells whose forces are computed, and all; the first is 0 where these are exact along the shapes.
     pub cells: [usize; 2],
     /// Largest error of a displacement in the runs that the model was checked with, relative to their largest displacement.
     pub checked_error: f64,
@@ -43,11 +43,16 @@ impl ReducedReport {
         }
     }
 
-    /// Adds an imbalance (m) where the largest displacement so far is `travel` (m), in a state so far outside of those learned from.
-    pub(crate) fn note(&mut self, [imbalance, travel, outside]: [f64; 3]) {
-        self.imbalance = self.imbalance.max(imbalance);
+    /// Adds a state whose largest displacement is `travel` (m), so far outside of those learned from.
+    pub(crate) fn note_state(&mut self, travel: f64, outside: f64) {
         self.travel = self.travel.max(travel);
         self.outside = self.outside.max(outside);
+        self.told_error = self.per_imbalance * self.imbalance();
+    }
+
+    /// Adds an imbalance (m).
+    pub(crate) fn note_imbalance(&mut self, imbalance: f64) {
+        self.imbalance = self.imbalance.max(imbalance);
         self.told_error = self.per_imbalance * self.imbalance();
     }
 

@@ -8,6 +8,7 @@ use super::checkpoint::{Checkpoint, Kept};
 use super::interval::Ending;
 use super::phase_run::{Integration, MeanSteps, PhaseRun};
 use super::records::{self, energy, project};
+use super::reduced_checks::locked;
 use super::run::Run;
 use super::sampling::Sampling;
 use super::sensor::Sensors;
@@ -270,6 +271,7 @@ impl Run {
         }
         if self.number != number {
             self.number = number;
+            self.reduced.iter().for_each(|checks| locked(checks).forget());
             self.phase_run = self.new_phase_run(plan.clone());
             let before = number.checked_sub(1).map_or(0.0, |last| self.scene.phases()[last].until);
             self.trajectory.report.phases.retain(|phase| phase.end <= before);

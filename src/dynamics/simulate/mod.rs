@@ -19,6 +19,7 @@ mod phase_run;
 mod progress;
 mod reading;
 mod records;
+mod reduced_checks;
 mod run;
 mod sampling;
 mod sensor;

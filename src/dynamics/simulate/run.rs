@@ -1,7 +1,7 @@
 //! The run of a scene: phases one after the other, and their intervals.
 
 use std::mem::take;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex};
 use std::time::Instant;
 
 use super::angles::Angles;
@@ -11,6 +11,7 @@ use super::interval::{Ending, RollbackPoint};
 use super::phase_run::{Integration, PhaseRun, Running};
 use super::progress::Observer;
 use super::records::{self, begin_to_move, energy, project};
+use super::reduced_checks::{ReducedChecks, locked};
 use super::sampling::Sampling;
 use super::sensor::Sensors;
 use super::stepper::{self, Failed};
@@ -19,7 +20,7 @@ use crate::base::input::InputError;
 use crate::dynamics::error::Error;
 use crate::dynamics::indicators;
 use crate::dynamics::matrices::Matrices;
-use crate::dynamics::report::{ReducedReport, Report, creation};
+use crate::dynamics::report::{Report, creation};
 use crate::dynamics::state::{ENERGIES, State};
 use crate::dynamics::system::System;
 use crate::dynamics::trajectory::{IntegrationFailure, Interrupted, Sample, Trajectory};
@@ -72,6 +73,8 @@ pub(super) struct Run {
     pub(super) least_energy: f64,
     /// A time (s) at which steps end, though no interval does.
     pub(super) pause: Option<f64>,
+    /// What is known of the error of a reduced model, if the scene is run by one.
+    pub(super) reduced: Option<Mutex<ReducedChecks>>,
 }
 
 impl Run {
@@ -113,7 +116,6 @@ impl Run {
             rtol: settings.rtol,
             atol_position,
             alpha: settings.alpha,
-            reduced: scene.reduced_model().map(ReducedReport::new),
             ..Report::default()
         };
         let plan = Plan::new(settings, &mut system, 0.0, &state);
@@ -148,6 +150,7 @@ impl Run {
             trajectory,
             least_energy: least_energy(scene.body()),
             pause: None,
+            reduced: scene.reduced_model().map(|model| Mutex::new(ReducedChecks::new(model))),
             scene: Arc::new(scene.clone()),
         };
         run.follow_angles();
@@ -322,6 +325,7 @@ impl Run {
             balance: self.balance,
             least_energy: self.least_energy,
             pause: None,
+            reduced: self.reduced.as_ref().map(|checks| Mutex::new(locked(checks).clone())),
         }
     }
 
@@ -332,6 +336,12 @@ impl Run {
         report.wall_seconds = self.clock.elapsed().as_secs_f64();
         report.states = phase.states;
         report.phases.push(phase);
+        if let Some(checks) = &self.reduced {
+            let mut checks = locked(checks);
+            checks.settle(|| self.equations(&self.phase, &self.state).ok());
+            report.indicators = indicators::reduced(&checks.report);
+            report.reduced = Some(checks.report.clone());
+        }
         report
     }
 

@@ -7,6 +7,7 @@ use super::interval::{Ending, Outcome, RollbackPoint};
 use super::phase_run::Running;
 use super::progress::{Observer, Progress};
 use super::records::{self, energy};
+use super::reduced_checks::locked;
 use super::run::Run;
 use super::stepper::{Failed, Stepper};
 use crate::dynamics::report::creation;
@@ -160,22 +161,22 @@ impl Run {
         let worst = &mut self.trajectory.report.constraint_drift;
         *worst = worst.max(drift);
         self.follow_angles();
-        if self.trajectory.report.reduced.is_some() {
+        if self.reduced.is_some() {
             self.check_reduced(work.stepper.system_mut()).map_err(Failure::into_error)?;
         }
         Ok(if event.is_some() { Outcome::CutOff(step) } else { Outcome::Taken(step) })
     }
 
-    /// Notes now and then how far a reduced model is from all unknowns.
+    /// Keeps now and then what a reduced model leaves over.
     fn check_reduced(&mut self, system: &mut System) -> Result<(), Failure> {
         let start = self.number.checked_sub(1).map_or(0.0, |k| self.scene.phases()[k].end());
-        let found = system.imbalance(self.time, &self.state, self.phase.until - start)?;
-        let Some(found) = found else { return Ok(()) };
+        let left_over = system.left_over(self.time, &self.state, self.phase.until - start)?;
+        let Some(left_over) = left_over else { return Ok(()) };
         let first = &self.trajectory.samples()[0].u;
         let moved = self.state.iter().zip(first).map(|(u, start)| (u - start).abs());
         let travel = moved.fold(0.0, f64::max);
-        if let Some(reduced) = &mut self.trajectory.report.reduced {
-            reduced.note([found.displacement, travel, found.outside]);
+        if let Some(checks) = &self.reduced {
+            locked(checks).keep(left_over, travel);
         }
         Ok(())
     }

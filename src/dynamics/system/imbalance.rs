@@ -1,21 +1,26 @@
-//! What a reduced model leaves out, measured now and then with all unknowns: the forces that the other nodes and cells
-//! would feel, as the displacement that would balance them.
+//! What a reduced model leaves out, looked at now and then with all unknowns: the forces that the other nodes and cells
+//! would feel, and the displacements that would balance them.
 
 use std::sync::Arc;
 
+use super::reduced::nodal_multipliers;
 use super::{Reduction, System};
 use crate::base::input::InputError;
+use crate::base::simd::add;
 use crate::base::vector::largest;
 use crate::dynamics::state::State;
 use crate::elements::body::Body;
 use crate::integrators::ode::Failure;
 use crate::scene::reduced_model::ReducedModel;
 
-/// How far a state of a reduced model is from what all unknowns would do.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Imbalance {
-    /// Largest component (m) of the displacements by which the forces left over would be balanced.
-    pub(crate) displacement: f64,
+/// A state of a reduced model, with what all unknowns would feel in it except the forces of cells, which depend on nothing else.
+#[derive(Debug, Clone)]
+pub(crate) struct LeftOver {
+    /// Time (s), displacements (m), velocities (m/s) and accelerations (m/s^2) of all nodes.
+    time: f64,
+    state: [Vec<f64>; 3],
+    /// The nodal forces (N) of all but the cells.
+    forces: Vec<f64>,
     /// How far the state is outside of those learned from, in parts of the widest range of a shape.
     pub(crate) outside: f64,
 }
@@ -74,14 +79,14 @@ impl System {
         self.reduction.as_ref().map_or(0, |reduction| reduction.difference_evaluations())
     }
 
-    /// The imbalance of `state` = (u, v, ...) of a reduced model at time `t`, if it is due: some times in a phase that
+    /// What `state` = (u, v, ...) of a reduced model leaves over at time `t`, if that is due: some times in a phase that
     /// lasts `span` (s).
-    pub(crate) fn imbalance(
+    pub(crate) fn left_over(
         &mut self,
         t: f64,
         state: &[f64],
         span: f64,
-    ) -> Result<Option<Imbalance>, Failure> {
+    ) -> Result<Option<LeftOver>, Failure> {
         match &mut self.reduction {
             Some(reduction) if t >= reduction.next_check => {
                 reduction.next_check = t + span / CHECKS;
@@ -89,31 +94,66 @@ impl System {
             _ => return Ok(None),
         }
         let State { u, v, .. } = State::of(state, self.dofs());
-        self.evaluate_forces(t, u, v, &[])?;
-        let Some(mut reduction) = self.reduction.take() else { return Ok(None) };
+        self.at.nodal.clear();
+        self.add_forces_where(|force| !force.is_by_cells(), t, u, v)?;
+        self.at.nodal.add_up(&mut self.at.total);
+        let forces = self.at.total.clone();
+        let a = self.reduced_accelerations(t, u, v)?;
+        let outside = self.reduction.as_ref().map_or(0.0, |own| own.outside(u));
+        Ok(Some(LeftOver { time: t, state: [u.to_vec(), v.to_vec(), a], forces, outside }))
+    }
+
+    /// Accelerations (m/s^2) of all nodes as a reduced model has them.
+    fn reduced_accelerations(&mut self, t: f64, u: &[f64], v: &[f64]) -> Result<Vec<f64>, Failure> {
+        let Some(reduction) = &mut self.reduction else { return Ok(vec![0.0; u.len()]) };
         let [q, p] = reduction.coordinates(&self.rows, t, [u, v]);
-        let evaluated = reduction.evaluate(&self.rows, t, [&q, &p]);
-        let accelerations = reduction.accelerations();
-        let outside = reduction.outside(u);
-        let can_check = reduction.can_check;
-        reduction.can_check = true;
-        self.reduction = Some(reduction);
-        evaluated?;
-        if !can_check {
-            // a step so long that inertia hardly matters, except where nothing resists a motion
-            let [size, speed] = self.matrices.scales;
-            self.newton.is_set = false;
-            self.update_tangents(t, u, v, false);
-            self.factorize_newton(SLOW * size / speed)?;
+        reduction.evaluate(&self.rows, t, [&q, &p])?;
+        Ok(reduction.accelerations())
+    }
+
+    /// Evaluates forces, accelerations and multipliers, with the accelerations that a reduced model has.
+    pub(super) fn evaluate_reduced(&mut self, t: f64, u: &[f64], v: &[f64]) -> Result<(), Failure> {
+        self.evaluate_forces(t, u, v, &[])?;
+        self.at.acceleration = self.reduced_accelerations(t, u, v)?;
+        let Self { matrices, rows, inertia, at, .. } = self;
+        let mut left_over = at.total.clone();
+        matrices.inertia.add_product(matrices.dimension, -1.0, &at.acceleration, &mut left_over);
+        if rows.iter().any(|row| row.nodal().is_none()) {
+            let (mut x, demands) = (vec![0.0; left_over.len()], vec![0.0; rows.len()]);
+            inertia.solve(rows, &left_over, &demands, &mut x, &mut at.multipliers);
         }
+        nodal_multipliers(rows, &mut at.multipliers, |dof| -left_over[dof]);
+        Ok(())
+    }
+
+    /// For each of some states of a phase the largest component (m) of the displacements by which what a reduced model leaves
+    /// over would be balanced.
+    pub(crate) fn imbalances(&mut self, states: &[LeftOver]) -> Result<Vec<f64>, Failure> {
+        let Some(LeftOver { time, state: [u, v, _], .. }) = states.first() else {
+            return Ok(Vec::new());
+        };
+        // a step so long that inertia hardly matters, except where nothing resists a motion
+        let [size, speed] = self.matrices.scales;
+        self.newton.is_set = false;
+        self.update_tangents(*time, u, v, false);
+        self.factorize_newton(SLOW * size / speed)?;
         let gamma = self.newton.gamma;
-        let mut left = self.at.total.clone();
-        self.matrices.inertia.add_product(self.matrices.dimension, -1.0, &accelerations, &mut left);
-        left.iter_mut().for_each(|force| *force *= gamma * gamma);
         let none = vec![0.0; self.rows.len()];
-        let (mut x, mut mu) = (vec![0.0; left.len()], none.clone());
-        self.newton.solver.solve(&self.rows, &left, &none, &mut x, &mut mu);
-        Ok(Some(Imbalance { displacement: largest(&x), outside }))
+        let (mut x, mut mu) = (vec![0.0; self.dofs()], none.clone());
+        let mut imbalances = Vec::new();
+        for LeftOver { time, state: [u, v, a], forces, .. } in states {
+            self.at.nodal.clear();
+            self.add_forces_of_matrices(u, v)?;
+            self.add_forces_where(|force| force.is_by_cells(), *time, u, v)?;
+            let Self { at, matrices, newton, rows, .. } = self;
+            at.nodal.add_up(&mut at.total);
+            add(forces, &mut at.total);
+            matrices.inertia.add_product(matrices.dimension, -1.0, a, &mut at.total);
+            at.total.iter_mut().for_each(|force| *force *= gamma * gamma);
+            newton.solver.solve(rows, &at.total, &none, &mut x, &mut mu);
+            imbalances.push(largest(&x));
+        }
+        Ok(imbalances)
     }
 
     /// The displacement nearest to `x`, in the sense of kinetic energy, that constraints at rest allow.

@@ -59,6 +59,7 @@ pub(crate) use at_rest::{AtRest, ForceBalance};
 pub(crate) use dae::{DaeForm, Index};
 use edges::Edges;
 pub(crate) use form::Form;
+pub(crate) use imbalance::LeftOver;
 use newton_matrix::NewtonMatrix;
 use reduced::{EXACT, Reduced, nodal_multipliers};
 pub(crate) use reduced_form::ReducedForm;
@@ -313,7 +314,10 @@ impl System {
         v: &[f64],
         internal: &[f64],
     ) -> Result<&[f64], Failure> {
-        self.evaluate(t, u, v, internal)?;
+        match self.is_reduced() {
+            true => self.evaluate_reduced(t, u, v)?,
+            false => self.evaluate(t, u, v, internal)?,
+        }
         Ok(&self.at.multipliers)
     }
 
@@ -491,8 +495,14 @@ impl System {
     }
 
     fn collect_forces(&mut self, t: f64, u: &[f64], v: &[f64]) -> Result<(), Failure> {
+        self.at.nodal.clear();
+        self.add_forces_of_matrices(u, v)?;
+        self.add_forces_where(|_| true, t, u, v)
+    }
+
+    /// Adds -K u and -B v.
+    fn add_forces_of_matrices(&mut self, u: &[f64], v: &[f64]) -> Result<(), Failure> {
         let nodal = &mut self.at.nodal;
-        nodal.clear();
         let matrices = &*self.matrices;
         match (&matrices.linear_by_cells, &matrices.stiffness) {
             (Some(cells), _) => cells.add_forces(u, v, nodal)?,
@@ -506,8 +516,19 @@ impl System {
             (_, Some(m)) => m.add_product(matrices.dimension, -1.0, v, &mut nodal.dissipative),
             (_, None) => {}
         }
-        for force in &self.forces {
-            let added = force.add_forces(t, u, v, nodal);
+        Ok(())
+    }
+
+    /// Adds the forces that have no constant matrix, if they are `among` those that are asked for.
+    fn add_forces_where(
+        &mut self,
+        among: impl Fn(&dyn Force) -> bool,
+        t: f64,
+        u: &[f64],
+        v: &[f64],
+    ) -> Result<(), Failure> {
+        for force in self.forces.iter().filter(|force| among(&***force)) {
+            let added = force.add_forces(t, u, v, &mut self.at.nodal);
             if let Err(Failure::Recoverable(reason)) = &added {
                 self.refusal.clone_from(reason);
             }

@@ -23,18 +23,26 @@ impl ReducedForm {
     /// # Errors
     /// The system, if it has no reduced model.
     pub(crate) fn new(
-        mut system: System,
+        system: System,
         t: f64,
         state: &[f64],
     ) -> Result<(Self, Vec<f64>), Box<System>> {
-        let State { u, v, dissipated, supplied, .. } = State::of(state, system.dofs());
-        let kinetic = system.energy(t, u, v, &[]).kinetic;
-        let System { reduction, matrices, rows, .. } = &mut system;
-        let Some(own) = reduction else { return Err(Box::new(system)) };
-        let p = own.begin(matrices, rows, t, [u, v]);
-        let free = p.len();
-        let y = [&vec![0.0; free][..], &p, &[dissipated, supplied]].concat();
+        let Some(free) = system.reduction.as_ref().map(|own| own.shapes.free()) else {
+            return Err(Box::new(system));
+        };
         let mut form = Self { system, free };
+        // after a rest the motion goes on from where its phase began
+        if let Some(y) = form.unknowns_of(t, state) {
+            return Ok((form, y));
+        }
+        let State { u, v, dissipated, supplied, .. } = State::of(state, form.system.dofs());
+        let kinetic = form.system.energy(t, u, v, &[]).kinetic;
+        let System { reduction, matrices, rows, .. } = &mut form.system;
+        let p = match reduction {
+            Some(own) => own.begin(matrices, rows, t, [u, v]),
+            None => Vec::new(),
+        };
+        let y = [&vec![0.0; free][..], &p, &[dissipated, supplied]].concat();
         let mut lifted = vec![0.0; state.len()];
         form.lift(t, &y, &mut lifted);
         let n = form.system.dofs();
@@ -57,7 +65,8 @@ impl ReducedForm {
     pub(crate) fn unknowns_of(&mut self, t: f64, state: &[f64]) -> Option<Vec<f64>> {
         let n = self.system.dofs();
         let State { u, v, dissipated, supplied, .. } = State::of(state, n);
-        let [q, p] = self.system.reduction.as_ref()?.coordinates(&self.system.rows, t, [u, v]);
+        let reduction = self.system.reduction.as_ref().filter(|own| own.has_begun())?;
+        let [q, p] = reduction.coordinates(&self.system.rows, t, [u, v]);
         let y = [&q[..], &p, &[dissipated, supplied]].concat();
         let mut lifted = vec![0.0; state.len()];
         self.lift(t, &y, &mut lifted);

@@ -7,8 +7,8 @@
 //! q'' = Phi^T f(t, u_0 + Psi z, Psi z') - Phi^T M E b''
 //! ```
 //!
-//! Forces of constant matrices and steady ones are projected once. All others see and act on some nodes only, the active
-//! ones: displacements of no others are computed for them.
+//! Forces of constant matrices and steady ones are projected once, and some others are [`GeneralizedForce`]s of z. What is
+//! left sees and acts on some nodes only, the active ones: displacements of no others are computed for it.
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -25,7 +25,7 @@ use crate::base::sparse::{BlockMatrix, NodePattern};
 use crate::base::vector::{dot, largest};
 use crate::dynamics::matrices::Matrices;
 use crate::elements::body::Body;
-use crate::elements::force::{Force, Forces, NodalForces};
+use crate::elements::force::{Force, Forces, GeneralizedForce, NodalForces};
 use crate::integrators::ode::Failure;
 use crate::scene::constraint::{ConstraintRow, Prescribed};
 use crate::scene::reduced_model::{ReducedModel, ReducedPhase};
@@ -38,20 +38,21 @@ pub(super) struct Reduction {
     pub(super) shapes: Shapes,
     /// The rows that move, with b where the equations begin.
     moved: Vec<(usize, f64)>,
-    /// u_0 (m).
+    /// u_0 (m), and whether a motion has begun there.
     origin: Vec<f64>,
+    has_begun: bool,
     /// All forces, with a sample in place of those of all cells.
     pub(super) forces: Forces,
-    /// Those of them that are neither steady nor constant matrices.
+    /// Those of them that are functions of z, and those that act on nodes: all but the steady ones.
+    generalized: Vec<Box<dyn GeneralizedForce>>,
     acting: Forces,
     pattern: Arc<NodePattern>,
     constant: Constant,
     at: Place,
     tangents: Tangents,
     factors: Factors,
-    /// When the equations are to be checked next (s), and whether the Newton matrix of all unknowns is factorized.
+    /// When the equations are to be checked next (s).
     pub(super) next_check: f64,
-    pub(super) can_check: bool,
 }
 
 /// What does not change, along Psi.
@@ -74,6 +75,7 @@ struct Place {
     u: Vec<f64>,
     v: Vec<f64>,
     nodal: NodalForces,
+    generalized: NodalForces,
     /// Psi^T f, and the parts of it that dissipate and supply.
     force: Vec<f64>,
     dissipative: Vec<f64>,
@@ -136,7 +138,7 @@ impl Reduction {
         let mut seen = BTreeSet::new();
         let mut pairs = body.cell_pairs(model.cells.keys().copied());
         let mut is_anywhere = false;
-        for force in unsampled(forces) {
+        for force in on_nodes(forces, s) {
             pairs.extend(force.couplings());
             match force.nodes() {
                 Some(nodes) => seen.extend(nodes),
@@ -175,7 +177,9 @@ impl Reduction {
             phase,
             moved,
             origin: vec![0.0; dofs],
+            has_begun: false,
             forces: Forces::new(),
+            generalized: Vec::new(),
             acting: Forces::new(),
             constant: Constant {
                 inertia,
@@ -190,6 +194,7 @@ impl Reduction {
                 u: vec![0.0; dofs],
                 v: vec![0.0; dofs],
                 nodal: NodalForces::zeros(dofs),
+                generalized: NodalForces::zeros(s),
                 force: vec![0.0; s],
                 dissipative: vec![0.0; s],
                 applied: vec![0.0; s],
@@ -205,7 +210,6 @@ impl Reduction {
             },
             factors: Factors::new(shapes.free()),
             next_check: f64::NEG_INFINITY,
-            can_check: false,
             model: model.clone(),
             pattern,
             shapes,
@@ -216,7 +220,7 @@ impl Reduction {
 
     /// Whether forces see only nodes that are active.
     pub(super) fn has_room(&self, forces: &Forces) -> bool {
-        unsampled(forces).all(|force| {
+        on_nodes(forces, self.shapes.count()).all(|force| {
             let couples = |[a, b]: [usize; 2]| self.pattern.find(a, b).is_some();
             let sees = match force.nodes() {
                 Some(nodes) => nodes.iter().all(|&node| self.shapes.sees(node)),
@@ -228,23 +232,26 @@ impl Reduction {
 
     /// Continues with other forces, which it [has room](Self::has_room) for.
     pub(super) fn take(&mut self, forces: &Forces) {
-        let weights = &self.model.cells;
-        let sample = |force: &Arc<dyn Force>| match weights.is_empty() {
-            true => None,
-            false => force.sample(weights, &self.pattern),
-        };
+        let (weights, count) = (&self.model.cells, self.shapes.count());
+        let sample =
+            |force: &Arc<dyn Force>| match weights.is_empty() || force.is_exact_along(count) {
+                true => None,
+                false => force.sample(weights, &self.pattern),
+            };
         self.forces =
             forces.iter().map(|force| sample(force).unwrap_or_else(|| force.clone())).collect();
         let mut steady = NodalForces::zeros(self.origin.len());
         self.acting.clear();
         for force in &self.forces {
-            match force.is_steady() {
+            if force.is_steady() {
                 // it has no meaning nowhere
-                true => {
-                    force.add_forces(0.0, &self.origin, &self.origin, &mut steady).unwrap_or(())
-                }
-                false => self.acting.push(force.clone()),
+                force.add_forces(0.0, &self.origin, &self.origin, &mut steady).unwrap_or(());
+            } else if !force.is_exact_along(count) {
+                self.acting.push(force.clone());
             }
+        }
+        if self.has_begun {
+            self.generalize();
         }
         let parts = [&steady.conservative, &steady.applied];
         for (sum, force) in self.constant.steady.iter_mut().zip(parts) {
@@ -252,6 +259,14 @@ impl Reduction {
             self.shapes.add_projected(force, sum);
         }
         self.tangents.is_set = false;
+    }
+
+    /// Sets the forces that are functions of z, from u_0 on.
+    fn generalize(&mut self) {
+        let (shapes, origin) = (self.shapes.all(), &self.origin);
+        let generalized = self.forces.iter().filter(|force| !force.is_steady());
+        self.generalized =
+            generalized.filter_map(|force| force.generalized(origin, &shapes)).collect();
     }
 
     /// Marks the tangents as out of date.
@@ -267,6 +282,7 @@ impl Reduction {
         t: f64,
         [u, v]: [&[f64]; 2],
     ) -> Vec<f64> {
+        self.has_begun = true;
         self.origin.copy_from_slice(u);
         self.at.u.copy_from_slice(u);
         self.at.v.fill(0.0);
@@ -280,9 +296,15 @@ impl Reduction {
             stiffness.add_product(-1.0, u, &mut force);
             self.shapes.add_projected(&force, rest);
         }
+        self.generalize();
         self.tangents.is_set = false;
         let [_, p] = self.coordinates(rows, t, [u, v]);
         p
+    }
+
+    /// Whether a motion has begun.
+    pub(super) fn has_begun(&self) -> bool {
+        self.has_begun
     }
 
     /// q and q' of a state (u, v) at time t.
@@ -339,13 +361,19 @@ impl Reduction {
         state: [&[f64]; 2],
     ) -> Result<(), Failure> {
         self.place(rows, t, state);
-        let Self { at, shapes, origin, acting, constant, .. } = self;
+        let Self { at, shapes, origin, generalized, acting, constant, .. } = self;
         let (s, free) = (shapes.count(), shapes.free());
-        let Place { z: [z, rates], pushed, u, v, nodal, .. } = at;
-        shapes.lift_active([z, rates], [u, v], origin);
+        let Place { z: [z, rates], pushed, u, v, nodal, generalized: along, .. } = at;
         nodal.clear();
+        along.clear();
+        if !acting.is_empty() {
+            shapes.lift_active([z, rates], [u, v], origin);
+        }
         for force in &*acting {
             force.add_forces(t, u, v, nodal)?;
+        }
+        for force in generalized {
+            force.add_forces(t, [z, rates], along)?;
         }
         at.carried = [nodal.carried_heat, nodal.carried_power];
 
@@ -356,14 +384,18 @@ impl Reduction {
             at.force[i] = constant.rest[i] + constant.steady[0][i] - sum;
         });
         // each part of its own only where there is one, for the powers
-        for (part, sum) in
-            [(&nodal.dissipative, &mut at.dissipative), (&nodal.applied, &mut at.applied)]
-        {
+        for (part, along, sum) in [
+            (&nodal.dissipative, &along.dissipative, &mut at.dissipative),
+            (&nodal.applied, &along.applied, &mut at.applied),
+            (&nodal.conservative, &along.conservative, &mut at.force),
+        ] {
             if !part.is_zero() {
                 shapes.add_projected_active(part, sum);
             }
+            if !along.is_zero() {
+                sum.iter_mut().zip(&along[..]).for_each(|(sum, along)| *sum += along);
+            }
         }
-        shapes.add_projected_active(&nodal.conservative, &mut at.force);
         for i in 0..s {
             at.force[i] += at.dissipative[i] + at.applied[i];
         }
@@ -404,7 +436,7 @@ impl Reduction {
 
     /// Updates the tangents to the state last evaluated.
     pub(super) fn update_tangents(&mut self, t: f64) {
-        let Self { at, shapes, acting, constant, tangents, .. } = self;
+        let Self { at, shapes, generalized, acting, constant, tangents, .. } = self;
         let Tangents { nodal: [stiffness, damping], projected, differences, is_set } = tangents;
         stiffness.values.fill(0.0);
         damping.values.fill(0.0);
@@ -419,6 +451,11 @@ impl Reduction {
             if matrix.values.iter().any(|&value| value != 0.0) {
                 shapes.add_projected_matrix(matrix, projected);
             }
+        }
+        let [z, rates] = &at.z;
+        let [stiffness, damping] = projected;
+        for force in generalized {
+            force.add_tangents(t, [z, rates], stiffness, damping);
         }
         *is_set = true;
     }
@@ -517,9 +554,12 @@ impl Factors {
     }
 }
 
-/// The forces that are evaluated as they are: neither steady nor by a sample of the cells.
-fn unsampled(forces: &Forces) -> impl Iterator<Item = &Arc<dyn Force>> {
-    forces.iter().filter(|force| !force.is_steady() && !force.is_by_cells())
+/// The forces on nodes other than those of sampled cells: neither steady nor functions of the coordinates of so many shapes.
+fn on_nodes(forces: &Forces, shapes: usize) -> impl Iterator<Item = &Arc<dyn Force>> {
+    let are_on_nodes = move |force: &&Arc<dyn Force>| {
+        !force.is_steady() && !force.is_exact_along(shapes) && !force.is_by_cells()
+    };
+    forces.iter().filter(are_on_nodes)
 }
 
 /// The rows that move.

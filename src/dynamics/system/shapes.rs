@@ -100,6 +100,11 @@ impl Shapes {
         self.count
     }
 
+    /// All of them.
+    pub(super) fn all(&self) -> Vec<&[f64]> {
+        self.columns.chunks(self.dofs.max(1)).collect()
+    }
+
     /// y += factor times a column
     pub(super) fn add_column(&self, column: usize, factor: f64, y: &mut [f64]) {
         add_multiple(factor, &self.columns[column * self.dofs..][..self.dofs], y);

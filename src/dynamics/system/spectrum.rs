@@ -6,6 +6,7 @@ use super::System;
 use super::at_rest::shifted;
 use super::reduced::Reduced;
 use super::rigid::{self, Shape};
+use super::shapes::Shapes;
 use super::source::Coupling;
 use crate::base::sparse::{BlockMatrix, NodeMatrix};
 use crate::base::vector::{dot, noise};
@@ -68,6 +69,9 @@ const SHIFT: f64 = 1e-8;
 /// A shift above the lowest eigenvalue is lowered to this part of it: slender bodies are so soft.
 const LOWER_SHIFT: f64 = 0.1;
 
+/// Part of the highest eigenvalue along shapes below which one is round-off of 0.
+const ROUND_OFF: f64 = 1e-10;
+
 impl System {
     /// The spectrum at (t, u, v).
     pub(crate) fn spectrum(&mut self, t: f64, u: &[f64], v: &[f64]) -> Spectrum {
@@ -75,6 +79,9 @@ impl System {
         self.add_branch_tangents(0.0, u, &[]);
         let amounts = self.amounts().to_vec();
         self.add_flow_tangents(t, u, &amounts);
+        if let Some(reduction) = &self.reduction {
+            return self.spectrum_along(&reduction.shapes);
+        }
         self.edges.move_to(self.alpha, u, v);
         self.turn_inertia(false);
         let highest = self.highest(|system| system.tangents().0);
@@ -94,6 +101,43 @@ impl System {
             let by_mass = |m: &NodeMatrix| m.quadratic_form(self.matrices.dimension, &x);
             spectrum.mass_damping_ratio =
                 self.matrices.mass_damping.as_deref().map_or(0.0, by_mass) / (2.0 * omega);
+        }
+        spectrum
+    }
+
+    /// The spectrum along the shapes of a reduced model, which are orthonormal by M.
+    fn spectrum_along(&self, shapes: &Shapes) -> Spectrum {
+        let (count, free) = (shapes.count(), shapes.free());
+        let along = |product: &dyn Fn(&[f64], &mut [f64])| {
+            let all = shapes.products(product);
+            let entry = |i: usize, j: usize| 0.5 * (all[i * count + j] + all[j * count + i]);
+            DMatrix::from_fn(free, free, entry)
+        };
+        let (k, d) = self.tangents();
+        let stiffness = SymmetricEigen::new(along(&|x, y| k.add_product(1.0, x, y)));
+        let damping = along(&|x, y| d.add_product(1.0, x, y));
+        let highest = stiffness.eigenvalues.iter().copied().fold(0.0, f64::max);
+        let vibrations = (0..free).filter(|&i| stiffness.eigenvalues[i] > ROUND_OFF * highest);
+        let lowest = vibrations
+            .min_by(|&i, &j| stiffness.eigenvalues[i].total_cmp(&stiffness.eigenvalues[j]));
+        let mut spectrum = Spectrum {
+            highest_frequency: highest.sqrt(),
+            lowest_frequency: None,
+            damping_rate: damping.symmetric_eigenvalues().iter().copied().fold(0.0, f64::max),
+            lowest_damping_ratio: 0.0,
+            mass_damping_ratio: 0.0,
+        };
+        if let Some(lowest) = lowest {
+            let omega = stiffness.eigenvalues[lowest].sqrt();
+            let x = stiffness.eigenvectors.column(lowest);
+            let ratio = |matrix: &DMatrix<f64>| (matrix * x).dot(&x) / (2.0 * omega);
+            spectrum.lowest_frequency = Some(omega);
+            spectrum.lowest_damping_ratio = ratio(&damping);
+            if let Some(m) = &self.matrices.mass_damping {
+                let product =
+                    |x: &[f64], y: &mut [f64]| m.add_product(self.matrices.dimension, 1.0, x, y);
+                spectrum.mass_damping_ratio = ratio(&along(&product));
+            }
         }
         spectrum
     }

@@ -11,6 +11,7 @@ use super::forces::Forces;
 use super::inertia::Masses;
 use super::magnets::Magnetized;
 use super::recovery::Recovery;
+use super::strain_modes::StrainProducts;
 use super::tangents::Tangents;
 use crate::base::input::InputError;
 use crate::base::sparse::NodePattern;
@@ -19,7 +20,17 @@ use crate::elements::mesh::Mesh;
 
 /// All elements of a body.
 pub(super) trait Elements:
-    Masses + Forces + Branched + Reinforced + Magnetized + Tangents + Fields + Recovery + Send + Sync
+    Masses
+    + Forces
+    + Branched
+    + Reinforced
+    + Magnetized
+    + Tangents
+    + Fields
+    + Recovery
+    + StrainProducts
+    + Send
+    + Sync
 {
     /// The same on the nodes of several bodies.
     fn among_others(&self, offset: Offset) -> Arc<dyn Elements>;

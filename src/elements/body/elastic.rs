@@ -3,11 +3,14 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use faer::Mat;
+
 use super::assembled::Body;
 use super::continuum::Continuum;
 use super::forces::Terms;
+use super::strain_modes::{self, StrainModes};
 use crate::base::sparse::{BlockMatrix, NodePattern};
-use crate::elements::force::{Force, NodalForces, Reservoir, Tangents};
+use crate::elements::force::{Force, GeneralizedForce, NodalForces, Reservoir, Tangents};
 use crate::elements::mesh::CellKind;
 use crate::integrators::ode::Failure;
 
@@ -73,6 +76,48 @@ impl Force for Elastic {
 
     fn nodes(&self) -> Option<Vec<usize>> {
         self.nodes.clone()
+    }
+
+    fn is_exact_along(&self, shapes: usize) -> bool {
+        self.has_strain_modes(shapes)
+    }
+
+    fn generalized(&self, origin: &[f64], shapes: &[&[f64]]) -> Option<Box<dyn GeneralizedForce>> {
+        self.has_strain_modes(shapes.len())
+            .then(|| Box::new(self.strain_modes(origin, shapes)) as Box<dyn GeneralizedForce>)
+    }
+}
+
+/// Part of the multiplications for all cells that those for the modes of their strains may take: what a sample of the cells
+/// would take.
+const OF_CELLS: usize = 8;
+
+impl Elastic {
+    /// Whether the forces along so many shapes follow from the modes of the strains, in less time than from a sample of
+    /// the cells.
+    pub(crate) fn has_strain_modes(&self, shapes: usize) -> bool {
+        let has_modes = |(Continuum { elements, regions, .. }, terms): &(Continuum, Terms)| {
+            elements.has_strain_modes(regions, *terms)
+        };
+        let work: usize = self.bodies.iter().map(|(own, _)| own.elements.work()).sum();
+        let of_modes = strain_modes::modes(shapes).saturating_pow(2);
+        self.bodies.iter().all(has_modes) && OF_CELLS.saturating_mul(of_modes) <= work
+    }
+
+    /// The forces along `shapes` from displacements `origin` (m), if [they have such modes](Self::has_strain_modes).
+    pub(super) fn strain_modes(&self, origin: &[f64], shapes: &[&[f64]]) -> StrainModes {
+        let zeros = || {
+            let modes = strain_modes::modes(shapes.len());
+            Mat::zeros(modes, modes)
+        };
+        let have =
+            |is_term: fn(&Terms) -> bool| self.bodies.iter().any(|(_, terms)| is_term(terms));
+        let mut products =
+            [have(|terms| terms.elastic), have(|terms| terms.viscous)].map(|has| has.then(zeros));
+        for (Continuum { elements, regions, .. }, terms) in &self.bodies {
+            elements.add_products(regions, *terms, origin, shapes, &mut products);
+        }
+        StrainModes::new(shapes.len(), products)
     }
 }
 

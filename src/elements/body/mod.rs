@@ -31,6 +31,7 @@ mod reinforcement;
 mod relaxing;
 mod rigid;
 mod sample;
+mod strain_modes;
 mod strands;
 mod tangents;
 #[cfg(test)]

@@ -1,6 +1,7 @@
 //! Chambers: pressure within walls of nodes, a closed polygon or a closed surface.
 
 mod enclosure;
+mod generalized;
 mod sides;
 #[cfg(test)]
 mod tests;
@@ -13,7 +14,7 @@ use crate::base::input::{InputError, positive};
 use crate::base::sparse::BlockMatrix;
 use crate::base::vector::distinct;
 use crate::elements::body::Body;
-use crate::elements::force::{Force, NodalForces, Tangents};
+use crate::elements::force::{Force, GeneralizedForce, NodalForces, Tangents};
 use crate::elements::mesh::Selection;
 use crate::integrators::ode::Failure;
 
@@ -355,5 +356,14 @@ impl Force for ChamberForce {
 
     fn nodes(&self) -> Option<Vec<usize>> {
         Some(distinct(self.couplings().into_iter().flatten()))
+    }
+
+    fn is_exact_along(&self, shapes: usize) -> bool {
+        self.is_larger_than(shapes)
+    }
+
+    fn generalized(&self, origin: &[f64], shapes: &[&[f64]]) -> Option<Box<dyn GeneralizedForce>> {
+        self.is_larger_than(shapes.len())
+            .then(|| Box::new(self.along(origin, shapes)) as Box<dyn GeneralizedForce>)
     }
 }

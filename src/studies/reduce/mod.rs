@@ -15,12 +15,15 @@ mod varied;
 mod verified;
 
 use std::collections::BTreeMap;
+use std::ops::ControlFlow;
 use std::time::Instant;
 
 use alike::differing_part;
 pub use error::error;
 use error::{distance, travel};
 use learn::LearnedPhase;
+#[cfg(feature = "study")]
+pub(crate) use told::pays_from;
 #[cfg(feature = "sweep")]
 pub use varied::{VariedKey, words};
 pub use verified::{Verified, verify};
@@ -72,7 +75,7 @@ pub struct Reduced {
 pub struct Tried {
     /// Its unknowns.
     pub unknowns: usize,
-    /// Number of cells whose forces it computes; 0 where all forces of cells are linear.
+    /// Number of cells whose forces it computes; 0 where these are exact along the shapes.
     pub cells: usize,
     /// Largest error of a displacement, relative to the largest displacement in all runs; infinite where a run failed.
     pub error: f64,
@@ -85,7 +88,7 @@ pub struct Tried {
 /// Numbers of unknowns that are tried.
 const SIZES: [usize; 10] = [4, 6, 8, 12, 16, 24, 32, 48, 64, 96];
 
-/// Samples of a run.
+/// Samples of a run that is learned from or checked with.
 const SAMPLES: f64 = 200.0;
 
 /// Parts of the error that is wanted by which the work of the sampled cells may differ from that of all: at first, and where
@@ -99,29 +102,27 @@ const HELPED: f64 = 0.7;
 const OF_SHAPES: f64 = 2.0;
 
 /// Learns reduced models of growing size, and returns the smallest one that is good enough. `observer` is told what is
-/// being done, in a few words.
+/// being done, in a few words, after each step of a run, and ends it all by [`ControlFlow::Break`].
 ///
 /// # Errors
 /// No scene to learn from, scenes that differ in their bodies or phases, what a reduced model cannot have; a training run
-/// that fails.
-pub fn reduce(training: &Training, observer: &mut dyn FnMut(&str)) -> Result<Reduced, Error> {
+/// that fails, or that the observer has ended.
+pub fn reduce(
+    training: &Training,
+    observer: &mut dyn FnMut(&str) -> ControlFlow<()>,
+) -> Result<Reduced, Error> {
     let clock = Instant::now();
     check(training)?;
     let Training { scenes, held_out, settings, within, most_unknowns } = training;
-    let mut full = |scenes: &[Scene], what: &str| -> Result<Vec<(Trajectory, f64)>, Error> {
-        let mut runs = Vec::new();
+    let mut checks = Vec::new();
+    for (scenes, what) in [(scenes, "training run"), (held_out, "run to check with")] {
         for (k, scene) in scenes.iter().enumerate() {
-            observer(&format!("{what} {} of {}", k + 1, scenes.len()));
-            runs.push(timed(scene, settings)?);
+            let what = format!("{what} {} of {}", k + 1, scenes.len());
+            checks.push(timed(scene, settings, SAMPLES, &mut || observer(&what))?);
         }
-        Ok(runs)
-    };
-    let learned_from = full(scenes, "training run")?;
-    let held_out = full(held_out, "run to check with")?;
-    let checks: Vec<(Trajectory, f64)> = learned_from.into_iter().chain(held_out).collect();
+    }
     let runs: Vec<&Trajectory> = checks[..scenes.len()].iter().map(|(run, _)| run).collect();
 
-    observer("shapes");
     let body = scenes[0].body();
     let numbers = 0..scenes[0].phases().len();
     let phases: Result<Vec<LearnedPhase>, Error> =
@@ -132,58 +133,31 @@ pub fn reduce(training: &Training, observer: &mut dyn FnMut(&str)) -> Result<Red
         let help = "nothing moves in the training runs: there is nothing to learn";
         return Err(InputError::new("training runs", "at rest", help).into());
     }
-    let way = checks.iter().map(|(run, _)| travel(run)).fold(0.0, f64::max);
     let least = phases.iter().map(LearnedPhase::least).max().unwrap_or(0);
     if least > *most_unknowns {
         let help = format!("a body that nothing holds needs {least} at least");
         return Err(InputError::new("most unknowns", most_unknowns, help).into());
     }
-    let by_cell = body.elastic().map(|elastic| elastic.by_cell(body.mesh()));
-    let mut tolerance = OF_CELLS[0] * within;
-    let mut tried: Vec<Tried> = Vec::new();
-    let mut best: Option<ReducedModel> = None;
-    let mut failure = None;
-    for size in
-        SIZES.into_iter().chain([most]).filter(|size| (least..=*most_unknowns).contains(size))
-    {
-        let counts: Vec<usize> = phases.iter().map(|phase| phase.count(size)).collect();
-        let unknowns = counts.iter().copied().max().unwrap_or(0);
-        if tried.iter().any(|tried| tried.unknowns >= unknowns) {
-            continue;
-        }
-        let mut of_all_cells = None;
-        loop {
-            observer(&format!("{unknowns} unknowns"));
-            let model = model(training, &phases, &counts, by_cell.as_ref(), [tolerance, way])?;
-            let has_all = model.cells() == 0 || model.cells() == model.cell_count;
-            let (model, found) = checked(model, &checks, settings);
-            tried.push(found.tried);
-            failure = found.problem.or(failure);
-            let before = best.as_ref().map_or(f64::INFINITY, |best| best.error);
-            let error = model.error;
-            if error < before {
-                best = Some(model);
-            }
-            if error <= *within || error < HELPED * before || has_all {
-                break;
-            }
-            // more shapes do not help: are the cells too few?
-            let with_all = of_all_cells.get_or_insert_with(|| {
-                let worst = &checks[found.worst..=found.worst];
-                let all = self::model(training, &phases, &counts, by_cell.as_ref(), [0.0, way]);
-                all.map_or(f64::INFINITY, |all| checked(all, worst, settings).0.error)
-            });
-            if error <= OF_SHAPES * *with_all {
-                break;
-            }
-            let least = OF_CELLS[1] * within;
-            tolerance = if tolerance > least { 0.1 * tolerance } else { 0.0 };
-        }
-        tolerance = tolerance.max(OF_CELLS[1] * within);
-        if best.as_ref().is_some_and(|best| best.error <= *within) {
+    let mut search = Search {
+        training,
+        phases: &phases,
+        checks: &checks,
+        by_cell: body.elastic().map(|elastic| elastic.by_cell(body.mesh())),
+        travel: checks.iter().map(|(run, _)| travel(run)).fold(0.0, f64::max),
+        observer,
+        tolerance: OF_CELLS[0] * within,
+        tried: Vec::new(),
+        best: None,
+        failure: None,
+    };
+    let sizes = SIZES.into_iter().chain([most]);
+    for size in sizes.filter(|size| (least..=*most_unknowns).contains(size)) {
+        search.try_size(size)?;
+        if search.best_error() <= *within {
             break;
         }
     }
+    let Search { best, failure, tried, .. } = search;
     let Some(model) = best else {
         // no model could be run to the end
         if let Some(problem) = failure {
@@ -200,6 +174,158 @@ pub fn reduce(training: &Training, observer: &mut dyn FnMut(&str)) -> Result<Red
         training_seconds: clock.elapsed().as_secs_f64(),
         full: [body.dofs(), body.mesh().cell_count()],
     })
+}
+
+/// The models that were tried, from what was learned.
+struct Search<'a> {
+    training: &'a Training,
+    phases: &'a [LearnedPhase],
+    checks: &'a [(Trajectory, f64)],
+    by_cell: Option<ByCell>,
+    /// Largest displacement (m) in the checks.
+    travel: f64,
+    observer: &'a mut dyn FnMut(&str) -> ControlFlow<()>,
+    /// Part by which the work of the sampled cells may differ from that of all.
+    tolerance: f64,
+    tried: Vec<Tried>,
+    best: Option<ReducedModel>,
+    failure: Option<Error>,
+}
+
+impl Search<'_> {
+    fn best_error(&self) -> f64 {
+        self.best.as_ref().map_or(f64::INFINITY, |best| best.error)
+    }
+
+    /// Tries models of `size` unknowns, with more and more cells as long as these are too few.
+    fn try_size(&mut self, size: usize) -> Result<(), Error> {
+        let within = self.training.within;
+        let counts: Vec<usize> = self.phases.iter().map(|phase| phase.count(size)).collect();
+        let unknowns = counts.iter().copied().max().unwrap_or(0);
+        if self.tried.iter().any(|tried| tried.unknowns >= unknowns) {
+            return Ok(());
+        }
+        let what = format!("{unknowns} unknowns");
+        let mut of_all_cells = None;
+        loop {
+            let model = self.model(&counts, self.tolerance)?;
+            let has_all = model.cells() == 0 || model.cells() == model.cell_count;
+            let (model, found) = self.checked(model, self.checks, &what)?;
+            self.tried.push(found.tried);
+            self.failure = found.problem.or(self.failure.take());
+            let before = self.best_error();
+            let error = model.error;
+            if error < before {
+                self.best = Some(model);
+            }
+            if error <= within || error < HELPED * before || has_all {
+                break;
+            }
+            // more shapes do not help: are the cells too few?
+            let with_all = match of_all_cells {
+                Some(known) => known,
+                None => {
+                    let worst = &self.checks[found.worst..=found.worst];
+                    let all = self.model(&counts, 0.0)?;
+                    self.checked(all, worst, &what)?.0.error
+                }
+            };
+            of_all_cells = Some(with_all);
+            if error <= OF_SHAPES * with_all {
+                break;
+            }
+            let least = OF_CELLS[1] * within;
+            self.tolerance = if self.tolerance > least { 0.1 * self.tolerance } else { 0.0 };
+        }
+        self.tolerance = self.tolerance.max(OF_CELLS[1] * within);
+        Ok(())
+    }
+
+    /// A model of so many shapes of each phase, not checked yet, with cells that do the work of all to a `tolerance`.
+    fn model(&self, counts: &[usize], tolerance: f64) -> Result<ReducedModel, Error> {
+        let Self { training, phases, by_cell, travel, .. } = self;
+        let body = training.scenes[0].body();
+        let shapes =
+            phases.iter().zip(counts).map(|(phase, count)| count + phase.lifts.len()).max();
+        let is_exact = body.elastic().is_some_and(|own| own.has_strain_modes(shapes.unwrap_or(0)));
+        let cells = match by_cell.as_ref().filter(|_| !is_exact) {
+            Some(by_cell) if tolerance > 0.0 => {
+                sample::weights(by_cell, phases, counts, tolerance)?
+            }
+            Some(_) => (0..body.mesh().cell_count()).map(|cell| (cell, 1.0)).collect(),
+            None => BTreeMap::new(),
+        };
+        let runs = training.scenes.len();
+        Ok(ReducedModel {
+            dofs: body.dofs(),
+            cell_count: body.mesh().cell_count(),
+            phases: phases.iter().zip(counts).map(|(phase, &count)| phase.reduced(count)).collect(),
+            cells,
+            travel: *travel,
+            error: f64::INFINITY,
+            within: training.within,
+            error_per_imbalance: 1.0,
+            learned_from: format!("{runs} run{}", if runs == 1 { "" } else { "s" }),
+        })
+    }
+
+    /// A model with its errors in the runs that it is checked with.
+    ///
+    /// # Errors
+    /// Runs that the observer has ended; others that fail have an infinite error.
+    fn checked(
+        &mut self,
+        mut model: ReducedModel,
+        checks: &[(Trajectory, f64)],
+        what: &str,
+    ) -> Result<(ReducedModel, Found), Error> {
+        let (mut error, mut worst, mut problem) = (0.0_f64, 0, None);
+        let (mut per_imbalance, mut imbalance, mut seconds) = (0.0_f64, 0.0_f64, Vec::new());
+        let settings = &self.training.settings;
+        for (number, (full, _)) in checks.iter().enumerate() {
+            let scene = full.scene().clone().reduced(model.clone())?;
+            let own = match timed(&scene, settings, SAMPLES, &mut || (self.observer)(what)) {
+                Ok((run, time)) => {
+                    let own = distance(full, &run) / model.travel;
+                    let told = run.report().reduced.as_ref().map_or(0.0, |run| run.imbalance());
+                    imbalance = imbalance.max(told);
+                    if told > 0.0 {
+                        per_imbalance = per_imbalance.max(own / told);
+                    }
+                    seconds.push(time);
+                    own
+                }
+                Err(Error::Integration(failed)) if failed.is_interruption() => {
+                    return Err(Error::Integration(failed));
+                }
+                Err(failed) => {
+                    problem = Some(failed);
+                    f64::INFINITY
+                }
+            };
+            if own > error {
+                (error, worst) = (own, number);
+            }
+        }
+        let tried = Tried {
+            unknowns: model.unknowns(),
+            cells: model.cells(),
+            error,
+            told: imbalance * per_imbalance,
+            seconds: mean(seconds.into_iter()),
+        };
+        (model.error, model.error_per_imbalance) = (error, per_imbalance);
+        Ok((model, Found { tried, worst, problem }))
+    }
+}
+
+/// What the runs of a model have shown.
+struct Found {
+    tried: Tried,
+    /// The check with the largest error.
+    worst: usize,
+    /// Why a run failed, if one did.
+    problem: Option<Error>,
 }
 
 fn check(training: &Training) -> Result<(), InputError> {
@@ -228,89 +354,17 @@ fn check(training: &Training) -> Result<(), InputError> {
     Ok(())
 }
 
-/// A run with the samples that models are learned from and checked by, and the time (s) that it takes.
-fn timed(scene: &Scene, settings: &Settings) -> Result<(Trajectory, f64), Error> {
-    let clock = Instant::now();
-    let run = scene.simulate(settings, &Sampling::every(scene.end() / SAMPLES))?;
-    Ok((run, clock.elapsed().as_secs_f64()))
-}
-
-/// A model of so many shapes of each phase, not checked yet.
-fn model(
-    training: &Training,
-    phases: &[LearnedPhase],
-    counts: &[usize],
-    by_cell: Option<&ByCell>,
-    [tolerance, travel]: [f64; 2],
-) -> Result<ReducedModel, Error> {
-    let body = training.scenes[0].body();
-    let cells = match by_cell {
-        Some(by_cell) if tolerance > 0.0 => sample::weights(by_cell, phases, counts, tolerance)?,
-        Some(_) => (0..body.mesh().cell_count()).map(|cell| (cell, 1.0)).collect(),
-        None => BTreeMap::new(),
-    };
-    let runs = training.scenes.len();
-    Ok(ReducedModel {
-        dofs: body.dofs(),
-        cell_count: body.mesh().cell_count(),
-        phases: phases.iter().zip(counts).map(|(phase, &count)| phase.reduced(count)).collect(),
-        cells,
-        travel,
-        error: f64::INFINITY,
-        within: training.within,
-        error_per_imbalance: 1.0,
-        learned_from: format!("{runs} run{}", if runs == 1 { "" } else { "s" }),
-    })
-}
-
-/// What the runs of a model have shown.
-struct Found {
-    tried: Tried,
-    /// The check with the largest error.
-    worst: usize,
-    /// Why a run failed, if one did.
-    problem: Option<Error>,
-}
-
-/// A model with its errors in the runs that it is checked with.
-fn checked(
-    mut model: ReducedModel,
-    checks: &[(Trajectory, f64)],
+/// A run with so many samples, and the time (s) that it takes.
+fn timed(
+    scene: &Scene,
     settings: &Settings,
-) -> (ReducedModel, Found) {
-    let (mut error, mut worst, mut problem) = (0.0_f64, 0, None);
-    let (mut per_imbalance, mut imbalance, mut seconds) = (0.0_f64, 0.0_f64, Vec::new());
-    for (number, (full, _)) in checks.iter().enumerate() {
-        let run = full.scene().clone().reduced(model.clone()).map_err(Error::from);
-        let own = match run.and_then(|scene| timed(&scene, settings)) {
-            Ok((run, time)) => {
-                let own = distance(full, &run) / model.travel;
-                let told = run.report().reduced.as_ref().map_or(0.0, |run| run.imbalance());
-                imbalance = imbalance.max(told);
-                if told > 0.0 {
-                    per_imbalance = per_imbalance.max(own / told);
-                }
-                seconds.push(time);
-                own
-            }
-            Err(failed) => {
-                problem = Some(failed);
-                f64::INFINITY
-            }
-        };
-        if own > error {
-            (error, worst) = (own, number);
-        }
-    }
-    let tried = Tried {
-        unknowns: model.unknowns(),
-        cells: model.cells(),
-        error,
-        told: imbalance * per_imbalance,
-        seconds: mean(seconds.into_iter()),
-    };
-    (model.error, model.error_per_imbalance) = (error, per_imbalance);
-    (model, Found { tried, worst, problem })
+    samples: f64,
+    observer: &mut dyn FnMut() -> ControlFlow<()>,
+) -> Result<(Trajectory, f64), Error> {
+    let clock = Instant::now();
+    let sampling = Sampling::every(scene.end() / samples);
+    let run = scene.simulate_with(settings, &sampling, |_| observer())?;
+    Ok((run, clock.elapsed().as_secs_f64()))
 }
 
 fn mean(values: impl Iterator<Item = f64>) -> f64 {

@@ -20,8 +20,7 @@ impl Reduced {
 
     /// From which run on the time that learning has taken is won back; none if the model is not faster.
     pub fn pays_from(&self) -> Option<f64> {
-        let won = self.full_seconds - self.chosen()?.seconds;
-        (won > 0.0).then(|| (self.training_seconds / won).ceil().max(1.0))
+        pays_from(self.training_seconds, self.full_seconds - self.chosen()?.seconds)
     }
 
     /// All numbers, as JSON.
@@ -95,6 +94,11 @@ impl Reduced {
     }
 }
 
+/// From which run on the time `spent` (s) is won back, if each wins some time (s).
+pub(crate) fn pays_from(spent: f64, won: f64) -> Option<f64> {
+    (won > 0.0).then(|| (spent / won).ceil().max(1.0))
+}
+
 impl fmt::Display for Reduced {
     /// A table of what was tried, and what was chosen.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -102,7 +106,7 @@ impl fmt::Display for Reduced {
         let [unknowns, cells] = self.full;
         let full = self.full_seconds;
         for Tried { unknowns, cells, error, told: said, seconds } in &self.tried {
-            let cells = if *cells == 0 { "linear".into() } else { cells.to_string() };
+            let cells = if *cells == 0 { "exact".into() } else { cells.to_string() };
             if error.is_infinite() {
                 writeln!(f, "{unknowns:8} {cells:>9} {:>10}", "failed")?;
                 continue;

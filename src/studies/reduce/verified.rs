@@ -1,11 +1,10 @@
 //! A reduced model held against a run with all unknowns.
 
-use std::time::Instant;
+use std::ops::ControlFlow;
 
-use super::Tried;
 use super::error::{distance, travel};
+use super::{Tried, timed};
 use crate::dynamics::error::Error;
-use crate::dynamics::simulate::Sampling;
 use crate::scene::ReducedModel;
 use crate::scene::settings::Settings;
 use crate::scene::timeline::Scene;
@@ -28,22 +27,16 @@ pub struct Verified {
 /// # Errors
 /// A model of another scene; a run with all unknowns that fails. One by the model that fails has an infinite error.
 pub fn verify(scene: &Scene, model: &ReducedModel, settings: &Settings) -> Result<Verified, Error> {
-    let sampling = Sampling::every(scene.end() / SAMPLES);
-    let timed = |scene: &Scene| {
-        let start = Instant::now();
-        let motion = scene.simulate(settings, &sampling);
-        (motion, start.elapsed().as_secs_f64())
-    };
+    let mut observer = || ControlFlow::Continue(());
     let short = scene.clone().reduced(model.clone())?;
-    let (full, full_seconds) = timed(&scene.clone().unreduced());
-    let full = full?;
-    let (motion, seconds) = timed(&short);
-    let (error, told) = match motion {
-        Ok(motion) => {
+    let whole = scene.clone().unreduced();
+    let (full, full_seconds) = timed(&whole, settings, SAMPLES, &mut observer)?;
+    let (error, told, seconds) = match timed(&short, settings, SAMPLES, &mut observer) {
+        Ok((motion, seconds)) => {
             let told = motion.report().reduced.as_ref().map_or(0.0, |report| report.told_error);
-            (distance(&full, &motion) / travel(&full).max(model.travel), told)
+            (distance(&full, &motion) / travel(&full).max(model.travel), told, seconds)
         }
-        Err(Error::Integration(_)) => (f64::INFINITY, f64::INFINITY),
+        Err(Error::Integration(_)) => (f64::INFINITY, f64::INFINITY, f64::NAN),
         Err(error) => return Err(error),
     };
     let (unknowns, cells) = (model.unknowns(), model.cells());

@@ -102,6 +102,7 @@ function showFacts() {
   const slow = playing && factor !== null && factor < speed ? ", slower than asked for" : "";
   listFacts(document.getElementById("facts"), {
     Mesh: `${count(data.mesh.nodes)} nodes, ${count(data.mesh.cells)} ${data.mesh.cellName}`,
+    ...(frame.reduced ? { Model: frame.reduced } : {}),
     Method: method + (order ? `, order ${order}` : ""),
     Tolerance: signed(data.solver.rtol),
     "Step size": size ? `${number(step / size.factor)} ${size.unit}` : "none yet",

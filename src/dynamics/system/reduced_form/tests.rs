@@ -127,8 +127,9 @@ fn with_all_shapes_and_cells_it_is_the_body() {
         assert!((own / exact - 1.0).abs() < 1e-10, "power {k}: {own}, {exact}");
     }
     // nothing is left over, and the state is one of its own
-    let imbalance = form.system.imbalance(T, &state, 1.0).unwrap().unwrap();
-    assert!(imbalance.displacement < 1e-13, "{:e} m", imbalance.displacement);
+    let left_over = form.system.left_over(T, &state, 1.0).unwrap().unwrap();
+    let [imbalance] = form.system.imbalances(&[left_over]).unwrap()[..] else { panic!() };
+    assert!(imbalance < 1e-13, "{imbalance:e} m");
     let again = form.unknowns_of(T, &state).unwrap();
     let off: Vec<f64> = again.iter().zip(&y).map(|(a, b)| a - b).collect();
     assert!(norm(&off) < 1e-12 * norm(&y), "{:e}", norm(&off));
@@ -163,6 +164,7 @@ fn a_state_that_the_model_does_not_have_is_none_of_its_own() {
     state.iter_mut().zip(other).for_each(|(x, other)| *x += 1e-6 * other);
     assert!(form.unknowns_of(T, &state).is_none());
     // what is left out is told
-    let found = form.system.imbalance(T, &state, 1.0).unwrap().unwrap();
-    assert!(found.displacement > 1e-6, "{:e} m", found.displacement);
+    let left_over = form.system.left_over(T, &state, 1.0).unwrap().unwrap();
+    let [found] = form.system.imbalances(&[left_over]).unwrap()[..] else { panic!() };
+    assert!(found > 1e-6, "{found:e} m");
 }

@@ -41,6 +41,11 @@ impl<const D: usize> Enclosure<D> {
         })
     }
 
+    /// Number of parts.
+    pub(super) fn parts(&self) -> usize {
+        self.parts.len()
+    }
+
     /// Pairs of nodes that the second derivative couples.
     pub(super) fn couplings(&self) -> Vec<[usize; 2]> {
         let pairs = |(nodes, _): &Part<D>| {
