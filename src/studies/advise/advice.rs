@@ -2,6 +2,7 @@
 
 use super::choice::Choice;
 use super::parts::Parts;
+use super::reduced::ReducedCandidate;
 use crate::dynamics::equilibrium::MeshEstimate;
 use crate::scene::timeline::Term;
 use crate::studies::work_precision::look::Look;
@@ -53,6 +54,8 @@ pub struct Advice {
     /// adjoint-weighted residuals; only where an equilibrium is enough. The errors of candidates come from
     /// comparing runs.
     pub mesh_estimate: Option<MeshEstimate>,
+    /// What a reduced model of what is enough would save.
+    pub reduced: Option<ReducedCandidate>,
     /// What a coarse run has shown before all others.
     pub look: Option<Look>,
     /// What was not tried, and why.

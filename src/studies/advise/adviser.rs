@@ -174,6 +174,7 @@ impl<'a> Adviser<'a> {
             terms: found.terms,
             together: found.together,
             mesh_estimate: found.mesh_estimate,
+            reduced: found.reduced,
             look: None,
             known_until: found.known_until,
             end: search.scene.end(),

@@ -84,6 +84,7 @@ impl Advice {
                 paired.map_or_else(String::new, |paired| format!(" (by paired runs: {paired})"))
             ));
         }
+        reasons.extend(self.reduced.iter().map(ToString::to_string));
         reasons
     }
 

@@ -1,6 +1,7 @@
 //! What the search has found so far.
 
 use super::parts::Parts;
+use super::reduced::ReducedCandidate;
 use super::search::Solved;
 use crate::dynamics::equilibrium::MeshEstimate;
 use crate::scene::timeline::Term;
@@ -32,6 +33,8 @@ pub(super) struct Found {
     pub(super) sweep: Vec<Solved>,
     /// By how much an equilibrium is off on the mesh as it was written.
     pub(super) mesh_estimate: Option<MeshEstimate>,
+    /// What a reduced model of what is enough would save.
+    pub(super) reduced: Option<ReducedCandidate>,
     /// Time (s) until which two tight runs agree, if that is before the end.
     pub(super) known_until: Option<f64>,
     pub(super) not_tried: Vec<String>,

@@ -57,7 +57,8 @@ impl Search<'_> {
         if self.request.quantity.is_at_end() {
             self.rest(&enough, found)?;
         }
-        self.sweep(&enough, found)
+        self.sweep(&enough, found)?;
+        self.reduce(found)
     }
 
     /// The model as it was written with hardly any error of the integration. `None` if it has no such motion.

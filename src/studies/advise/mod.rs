@@ -10,6 +10,7 @@ mod ladder;
 mod page;
 mod parts;
 mod record;
+mod reduced;
 mod runs;
 mod search;
 
@@ -17,3 +18,4 @@ pub use advice::{Advice, Candidate};
 pub use adviser::Adviser;
 pub use choice::{Choice, RicherCells};
 pub use parts::Parts;
+pub use reduced::ReducedCandidate;

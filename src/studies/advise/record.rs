@@ -70,6 +70,16 @@ impl Advice {
             "mesh_estimate": self.mesh_estimate.as_ref().map(|estimate| {
                 json!({ "value": estimate.value, "change": estimate.change, "correction": estimate.correction, "is_reliable": estimate.is_reliable() })
             }),
+            "reduced": self.reduced.as_ref().map(|reduced| {
+                json!({
+                    "unknowns": reduced.unknowns,
+                    "cells": reduced.cells[0],
+                    "change": reduced.change,
+                    "seconds": reduced.seconds,
+                    "training_seconds": reduced.training_seconds,
+                    "pays_from": reduced.pays_from(),
+                })
+            }),
             "look": self.look.as_ref().map(Look::to_json),
             "not_tried": self.not_tried,
             "is_cut_short": self.is_cut_short,

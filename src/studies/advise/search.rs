@@ -107,7 +107,7 @@ const REPETITIONS: usize = 3;
 const LOOKS: usize = 10;
 const WORST: f64 = 0.8;
 /// A run may take this part of the time that is left: others follow.
-const SHARE: f64 = 0.4;
+pub(super) const SHARE: f64 = 0.4;
 /// If less than this part of the budget is left, it counts as spent.
 const LEAST: f64 = 0.02;
 /// Exponent by which run time grows with the unknowns, between those of the plane and of space, until it is measured; and the
@@ -139,7 +139,7 @@ impl<'a> Search<'a> {
     }
 
     /// Seconds left.
-    fn left(&self) -> f64 {
+    pub(super) fn left(&self) -> f64 {
         self.request.budget - self.began.elapsed().as_secs_f64()
     }
 
@@ -198,15 +198,25 @@ impl<'a> Search<'a> {
             let seconds = clock.elapsed().as_secs_f64();
             return Ok(Outcome::new(Some(seen), seconds, scene.body().dofs()));
         }
+        self.measured(&scene, &choice.settings, &what)
+    }
+
+    /// What is seen of a motion, and the time that it takes: the least of several runs, if it is short.
+    pub(super) fn measured(
+        &mut self,
+        scene: &Scene,
+        settings: &Settings,
+        what: &str,
+    ) -> Result<Outcome, Error> {
         let nodes = (0..self.nodes).collect();
-        let probe = Probe::new(&scene, self.request.quantity.clone(), nodes);
-        let first = self.once(&scene, &probe, &choice.settings, &what)?;
+        let probe = Probe::new(scene, self.request.quantity.clone(), nodes);
+        let first = self.once(scene, &probe, settings, what)?;
         let mut seconds = first.report().wall_seconds;
         for _ in 1..REPETITIONS {
             if seconds > SHORT {
                 break;
             }
-            let again = self.once(&scene, &probe, &choice.settings, &what)?;
+            let again = self.once(scene, &probe, settings, what)?;
             seconds = seconds.min(again.report().wall_seconds);
         }
         let (seen, warnings) = (probe.seen(&first), first.report().warnings());
@@ -229,19 +239,22 @@ impl<'a> Search<'a> {
         what: &str,
     ) -> Result<Trajectory, Error> {
         self.runs += 1;
-        let share = SHARE * self.left();
-        let clock = Instant::now();
+        let (clock, share) = (Instant::now(), SHARE * self.left());
         // a look at the clock costs nothing compared with a step
-        scene.simulate_with(settings, &probe.sampling(), |_| {
-            let seconds = clock.elapsed().as_secs_f64();
-            self.cut = match (self.observer)(what) {
-                ControlFlow::Break(()) => Some(Cut::Interrupted),
-                ControlFlow::Continue(()) if seconds > self.patience => Some(Cut::Late),
-                ControlFlow::Continue(()) if seconds > share => Some(Cut::Share),
-                ControlFlow::Continue(()) => None,
-            };
-            self.cut.map_or(ControlFlow::Continue(()), |_| ControlFlow::Break(()))
-        })
+        scene.simulate_with(settings, &probe.sampling(), |_| self.look_up(what, clock, share))
+    }
+
+    /// Looks up from `what` is run since `clock`, and ends it where it takes more than its `share` (s) or than there is patience
+    /// for.
+    pub(super) fn look_up(&mut self, what: &str, clock: Instant, share: f64) -> ControlFlow<()> {
+        let seconds = clock.elapsed().as_secs_f64();
+        self.cut = match (self.observer)(what) {
+            ControlFlow::Break(()) => Some(Cut::Interrupted),
+            ControlFlow::Continue(()) if seconds > self.patience => Some(Cut::Late),
+            ControlFlow::Continue(()) if seconds > share => Some(Cut::Share),
+            ControlFlow::Continue(()) => None,
+        };
+        self.cut.map_or(ControlFlow::Continue(()), |_| ControlFlow::Break(()))
     }
 
     /// Whether there is time for a run with as many unknowns, judged by the times of others from coarse to fine: the last of them,
