@@ -35,6 +35,7 @@ mod strands;
 mod tangents;
 #[cfg(test)]
 mod tests;
+mod whole;
 
 pub use assembled::Body;
 pub use builder::BodyBuilder;
