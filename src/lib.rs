@@ -64,7 +64,10 @@ pub use elements::{
     body::{
         Body, CellField, CellSelection, Dilatation, Inertia, NodalField, Part, Strain, Viscosity,
     },
-    material::{FibreDirection, Fibres, Lame, Law, Material, MaxwellBranch, Plane, Substance},
+    material::{
+        FibreDirection, Fibres, Lame, Law, Material, MaxwellBranch, Moments, Plane, RigidMass,
+        Substance,
+    },
     mesh::{Cells, Mesh, Selection, SolidCells},
 };
 pub use integrators::common::Integrator;

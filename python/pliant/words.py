@@ -442,6 +442,58 @@ def mesh_gmsh(
     )
 
 
+def mesh_surface(
+    *,
+    file: str,
+    origin: Vector | None = None,
+    turn: float | Sequence[float] | None = None,
+    quadratic: bool | None = None,
+    halved: int | None = None,
+    halved_in: dict | Sequence[dict] | None = None,
+    bubbles: bool | None = None,
+    scale: float | None = None,
+) -> dict:
+    r"""Mesh of the kind "surface": the closed surface of a rigid solid, of triangles: a file STL (text or binary), OBJ or
+    Gmsh.
+
+    Parameters
+    ----------
+    file
+        the path of a file .stl, .obj or .msh, relative to the scene file. Required.
+    origin
+        the place of the lower corner, or of the centre of a ring (m). Default: the origin.
+    turn
+        the angle by which the mesh is turned about the origin before it is brought to its place (rad). Default: 0.
+        One number in the plane, counter-clockwise; in space three, the axis times the angle.
+    quadratic
+        whether cells get mid nodes. Default: false. Triangles, tetrahedra and hexahedra; quadrilaterals are divided
+        into triangles first. Numbers of nodes in the file are those of the mesh without this; where several nodes are
+        held, moved or under tractions, those between them are, too. Forces on each node stay at the nodes that there
+        were, and stiffness and damping of obstacles per node are shared out.
+    halved
+        how often each cell is divided at the middles of its edges. Default: 0. After `quadratic`, and like it.
+    halved_in
+        where triangles and tetrahedra are divided further. Default: nowhere. After `halved`, and like it.
+    bubbles
+        whether triangles and tetrahedra get mid nodes, and one in the middle of each cell and face. Default: false.
+        With `dilatation = "linear"`, which goes with them, they are the cells for nearly incompressible bodies of any
+        shape: `triangles7` and `tetrahedra15`. After `halved_in`, and like it.
+    scale
+        the length of which the coordinates are multiples (m). Default: 1. 0.001 of a drawing in millimetres.
+    """
+    return _table(
+        kind="surface",
+        file=file,
+        origin=origin,
+        turn=turn,
+        quadratic=quadratic,
+        halved=halved,
+        halved_in=halved_in,
+        bubbles=bubbles,
+        scale=scale,
+    )
+
+
 def mesh_listed(
     *,
     positions: Sequence[Vector],
@@ -576,6 +628,9 @@ def material(
     *,
     density: float | None = None,
     rigid: bool | None = None,
+    mass: float | None = None,
+    centre: Vector | None = None,
+    inertia: float | Sequence[float] | Sequence[Sequence[float]] | None = None,
     young: float | None = None,
     poisson: float | None = None,
     viscosity: float | None = None,
@@ -593,8 +648,19 @@ def material(
         the density (kg/m^3). Default: required; in a region, that of the body.
     rigid
         whether what is made of it is rigid. Default: false; in a region, as the body. The mesh then gives its shape
-        and inertia, and it moves by 3 degrees of freedom (6 in space). Only `density` is needed; in equilibria
-        `young`, by default 1e8 Pa, keeps its shape.
+        and inertia, and it moves by 3 degrees of freedom (6 in space). Only `density` is needed, or `mass`; in
+        equilibria `young`, by default 1e8 Pa, keeps its shape.
+    mass
+        the mass of a rigid body, in place of `density` (kg). Default: that of `density`. Of a whole body that is one
+        piece, without regions.
+    centre
+        the undeformed position of the centre of mass of a rigid body (m). Default: that of a uniform density. Goes
+        with `inertia`.
+    inertia
+        moments of inertia of a rigid body about its centre of mass (kg m^2). Default: those of a uniform density.
+        Goes with `mass`. In the plane one number; in space the three principal moments, where x, y and z are
+        principal axes of the undeformed body, or the symmetric matrix, with the products -int x y dm beside its
+        diagonal.
     young
         Young's modulus at small strains (Pa). Default: required; in a region, that of the body. It follows from the
         constants of a law that has them.
@@ -618,6 +684,9 @@ def material(
     return _table(
         density=density,
         rigid=rigid,
+        mass=mass,
+        centre=centre,
+        inertia=inertia,
         young=young,
         poisson=poisson,
         viscosity=viscosity,
@@ -3345,6 +3414,7 @@ __all__ = [
     "mesh_listed",
     "mesh_rectangle",
     "mesh_ring",
+    "mesh_surface",
     "move",
     "muscle",
     "obstacle_box",

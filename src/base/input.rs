@@ -1,6 +1,6 @@
 //! The error of an input that cannot be used, and the checks that raise it.
 
-#[cfg(any(feature = "checkpoint", feature = "gmsh"))]
+#[cfg(feature = "bodies")]
 mod file;
 mod fraction;
 mod memory;
@@ -9,7 +9,7 @@ mod words;
 
 use std::fmt::Display;
 
-#[cfg(feature = "gmsh")]
+#[cfg(feature = "bodies")]
 pub(crate) use file::read_at_most;
 #[cfg(feature = "checkpoint")]
 pub(crate) use file::read_if_at_most;

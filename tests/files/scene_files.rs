@@ -174,6 +174,7 @@ const LONG: &[&str] = &[
     "air-gripper",
     "ball-in-hand",
     "ball-in-hand-3d",
+    "ball-in-bowl",
     "bellows",
     "heap",
     "pneumatic-finger",

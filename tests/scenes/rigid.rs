@@ -8,7 +8,7 @@ use pliant::{
 };
 
 /// The methods that have equations for rigid bodies.
-const METHODS: [Method; 6] = [
+pub(crate) const METHODS: [Method; 6] = [
     Method::CvodeBdf,
     Method::CvodeAdams,
     Method::Arkode,
@@ -18,7 +18,11 @@ const METHODS: [Method; 6] = [
 ];
 
 /// The numbers that the equations y' = f(y) lead to, by the integrators alone.
-fn led(start: &[f64], time: f64, f: impl Fn(&[f64], &mut [f64]) + Send + 'static) -> Vec<f64> {
+pub(crate) fn led(
+    start: &[f64],
+    time: f64,
+    f: impl Fn(&[f64], &mut [f64]) + Send + 'static,
+) -> Vec<f64> {
     let rates = move |_: f64, y: &[f64], rates: &mut [f64]| {
         f(y, rates);
         Ok(())
@@ -29,7 +33,7 @@ fn led(start: &[f64], time: f64, f: impl Fn(&[f64], &mut [f64]) + Send + 'static
     solution.at(time).unwrap()
 }
 
-fn run(scene: &Scene, method: Method, rtol: f64) -> Trajectory {
+pub(crate) fn run(scene: &Scene, method: Method, rtol: f64) -> Trajectory {
     let settings = Settings { method, rtol, ..Settings::default() };
     scene.simulate(&settings, &Sampling::phase_ends()).unwrap()
 }

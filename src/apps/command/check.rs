@@ -92,7 +92,12 @@ fn part_of(Part { name, body, .. }: &Part) -> Result<(), Failure> {
 }
 
 fn made_of(substance: &Substance, strain: Strain) -> String {
-    let Substance { material, law, mass_damping, branches, fibres, is_rigid } = substance;
+    let Substance { material, law, mass_damping, branches, fibres, is_rigid, mass } = substance;
+    if let Some(mass) = mass {
+        let by = if mass.moments.is_some() { "inertia by numbers" } else { "uniform" };
+        let young = material.young;
+        return format!("rigid, {} kg, {by}; E {young:.4e} Pa in equilibria", mass.mass);
+    }
     if *is_rigid {
         return format!(
             "rigid, {} kg/m^3; E {:.4e} Pa in equilibria",

@@ -6,7 +6,6 @@ use std::path::Path;
 
 /// The contents of the file at `path`, if it has at most `most` bytes: some files, such as `/dev/zero`, never
 /// end.
-#[cfg(feature = "gmsh")]
 pub(crate) fn read_at_most(path: &Path, most: u64) -> io::Result<Vec<u8>> {
     let too_long = || io::Error::other(format!("it has more than {} MiB", most >> 20));
     read_if_at_most(path, most)?.ok_or_else(too_long)

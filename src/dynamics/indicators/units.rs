@@ -162,7 +162,7 @@ fn thickness(body: &Body) -> Option<Indicator> {
     let mesh = body.mesh();
     let (thickness, size) = (body.section(), mesh.size());
     let is_per_metre = body.plane() == Plane::Strain && thickness == PER_METRE;
-    if mesh.kind().dimension() != 2 || is_per_metre {
+    if mesh.kind().dimension() != 2 || mesh.is_surface() || is_per_metre {
         return None;
     }
     let part = thickness / size;

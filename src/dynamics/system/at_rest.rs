@@ -259,12 +259,13 @@ impl AtRest {
         self.system.tangents().0
     }
 
-    /// Largest K_ii / M_ii (1/s^2): of the order of the square of the highest frequency.
+    /// Largest K_ii / M_ii (1/s^2) where there is mass: of the order of the square of the highest frequency.
     pub(crate) fn highest(&self) -> f64 {
         let (k, _) = self.system.tangents();
         let (m, d) = (&self.system.matrices.inertia, self.system.matrices.dimension);
         let ratio = |dof: usize| k.get(dof, dof).abs() / m.get(dof / d, dof / d);
-        (0..self.system.dofs()).map(ratio).fold(0.0, f64::max)
+        // a rigid body by numbers has all of it at the nodes of its frame
+        (0..self.system.dofs()).map(ratio).filter(|ratio| ratio.is_finite()).fold(0.0, f64::max)
     }
 
     /// Factorizes the symmetric part of K + `shift` M. Returns whether it is positive definite

@@ -12,6 +12,7 @@ use super::recipe::Recipe;
 use super::regions::{CellSelection, Laws, Regions};
 use super::reinforcement::{add_at_rest, families};
 use super::rigid::RigidPieces;
+use super::whole::{MassMoments, Whole};
 use crate::base::input::{InputError, positive};
 use crate::base::sparse::{BlockMatrix, NodeMatrix, NodePattern};
 use crate::elements::basis::Finer;
@@ -137,35 +138,59 @@ impl BodyBuilder {
 
 impl Body {
     /// The single body of a recipe.
-    fn made(mut mesh: Mesh, recipe: Recipe) -> Result<Self, InputError> {
+    fn made(mut mesh: Mesh, mut recipe: Recipe) -> Result<Self, InputError> {
         let section = recipe.section(&mesh)?;
-        let Recipe { ref material, strain, plane, .. } = recipe;
+        let Recipe { strain, plane, .. } = recipe;
         let viscosity = recipe.viscosity.unwrap_or(match strain {
             Strain::Cauchy => Viscosity::Natural,
             _ => Viscosity::Objective,
         });
-        let regions = Regions::new(&mesh, strain, plane, material, &recipe.regions)?;
+        let mut regions = Regions::new(&mesh, strain, plane, &recipe.material, &recipe.regions)?;
+        let whole = Whole::of(&mesh, &recipe)?;
         for (name, position, mass) in &recipe.points {
             positive(&format!("mass of point \"{name}\""), *mass, "kg")?;
             mesh.push_node(name, position)?;
         }
 
-        let pattern = Arc::new(NodePattern::new(mesh.node_count(), mesh.cells()));
+        let frame = whole.iter().map(|whole| &whole.frame[..]);
+        let pattern = Arc::new(NodePattern::new(mesh.node_count(), mesh.cells().chain(frame)));
         recipe.dilatation.check(mesh.kind(), mesh.dimension(), plane)?;
         let elements = elements(&mesh, section, recipe.dilatation, &pattern)?;
+        if let Some(given) = &recipe.material.mass {
+            let density = given.mass / elements.volumes().iter().sum::<f64>();
+            recipe.material.material.density = density;
+            regions.set_density(density);
+        }
+        let material = &recipe.material;
         let mut inertia = NodeMatrix::zeros(&pattern);
         let mut stiffness = BlockMatrix::zeros(&pattern, mesh.dimension());
         let mut damping = stiffness.clone();
         elements.add_inertia(&regions, &|laws| laws.density, recipe.inertia, &mut inertia);
+        let whole = whole.map(|whole| {
+            let uniform = match mesh.is_surface() {
+                true => MassMoments::of_surface(&mesh, material.material.density),
+                false => MassMoments::of_matrix(&mesh, &inertia),
+            };
+            let moments = uniform.replaced_by(material.mass.as_ref())?;
+            inertia = NodeMatrix::zeros(&pattern);
+            whole.add_inertia(&moments, 1.0, &mut inertia);
+            Ok((whole, moments))
+        });
+        let whole = whole.transpose()?;
         elements.add_stiffness(&regions, &|laws| laws.elastic, &mut stiffness);
         elements.add_stiffness(&regions, &|laws| laws.natural_viscosity(), &mut damping);
         let mass_damping = regions.have_mass_damping().then(|| {
-            let mut matrix = match recipe.inertia {
-                Inertia::Consistent => NodeMatrix::zeros(&pattern),
-                Inertia::Lumped => NodeMatrix::diagonal(mesh.node_count()),
+            let mut matrix = match (recipe.inertia, &whole) {
+                (Inertia::Lumped, None) => NodeMatrix::diagonal(mesh.node_count()),
+                _ => NodeMatrix::zeros(&pattern),
             };
             let density = |laws: &Laws| laws.mass_damping * laws.density;
-            elements.add_inertia(&regions, &density, recipe.inertia, &mut matrix);
+            match &whole {
+                Some((whole, moments)) => {
+                    whole.add_inertia(moments, material.mass_damping, &mut matrix);
+                }
+                None => elements.add_inertia(&regions, &density, recipe.inertia, &mut matrix),
+            }
             damping.add_on_all_axes(&matrix);
             Arc::new(matrix)
         });
@@ -206,7 +231,12 @@ impl Body {
             Self { rigid: RigidPieces::of(&body.mesh, &body.rigid_cells()).map(Arc::new), ..body };
         // not the nodal masses: those of quadratic cells are 0 and below at corners
         let mut nodes = 0..body.mesh.node_count();
-        match nodes.find(|&node| body.inertia.get(node, node) == 0.0) {
+        let has_no_mass = |&node: &usize| {
+            // nodes of rigid pieces may have it at others, with which they move
+            body.inertia.get(node, node) == 0.0
+                && body.rigid.as_ref().is_none_or(|rigid| !rigid.contains(node))
+        };
+        match nodes.find(has_no_mass) {
             Some(node) => Err(InputError::new(
                 "node",
                 node + 1,

@@ -52,6 +52,13 @@ impl Body {
     pub(crate) fn arms(&self) -> Vec<[f64; 2]> {
         let positions = self.mesh().positions();
         let centre = self.mass_average(positions);
+        if self.substances().any(|substance| substance.mass.is_some()) {
+            // all mass is at the nodes of a frame, where row sums may be below 0: the whole matrix counts
+            let from_centre = self.mesh().field(|x| vec![x[0] - centre[0], x[1] - centre[1]]);
+            let mut arms = vec![0.0; from_centre.len()];
+            self.inertia.add_product(2, 1.0, &from_centre, &mut arms);
+            return arms.as_chunks::<2>().0.to_vec();
+        }
         let masses = self.nodal_masses();
         let arm = |(mass, x): (&f64, &[f64])| [0, 1].map(|i| mass * (x[i] - centre[i]));
         masses.iter().zip(positions.chunks_exact(2)).map(arm).collect()

@@ -36,6 +36,7 @@ mod strands;
 mod tangents;
 #[cfg(test)]
 mod tests;
+mod whole;
 
 pub use assembled::Body;
 pub use builder::BodyBuilder;

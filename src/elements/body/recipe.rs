@@ -33,6 +33,14 @@ impl Recipe {
         let misplaced = |name: &str, value: f64| {
             Err(InputError::new(name, value, format!("a body of {kind:?} cells has no {name}")))
         };
+        if mesh.is_surface() {
+            // the volumes of the cells then add up to that of the solid
+            return match (self.area, self.thickness) {
+                (None, None) => self.within(mesh).map(|volume| volume / mesh.area()),
+                (Some(value), _) => Err(no_section("area", value)),
+                (_, Some(value)) => Err(no_section("thickness", value)),
+            };
+        }
         match (kind.dimension(), self.area, self.thickness) {
             (1, Some(area), None) => positive("area", area, "m^2"),
             (2, None, Some(thickness)) => positive("thickness", thickness, "m"),
@@ -43,6 +51,32 @@ impl Recipe {
             _ => Err(missing("thickness", "a two-dimensional body needs its thickness in m")),
         }
     }
+
+    /// The volume (m^3) of the solid within the closed surface `mesh`.
+    ///
+    /// # Errors
+    /// A solid that is not rigid, or that has regions; a surface that was turned inside out.
+    fn within(&self, mesh: &Mesh) -> Result<f64, InputError> {
+        if !self.material.is_rigid {
+            let help = "a surface alone makes a rigid body (rigid = true in its material); a body that deforms needs a mesh of cells within the \
+                        surface, tetrahedra of Gmsh for one";
+            return Err(InputError::new("mesh", "the surface of a solid", help));
+        }
+        if let Some((cells, _)) = self.regions.first() {
+            let help = "there are no cells within the surface of a solid: leave regions out, or give mass and inertia by numbers";
+            return Err(InputError::new("region", cells, help));
+        }
+        positive(
+            "volume within the surface",
+            mesh.enclosed().volume,
+            "m^3, as no map that mirrors leaves it",
+        )
+    }
+}
+
+fn no_section(name: &str, value: f64) -> InputError {
+    let help = format!("the surface of a solid has no {name}: leave it out");
+    InputError::new(name, value, help)
 }
 
 fn missing(input: &str, help: &str) -> InputError {

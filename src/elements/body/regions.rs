@@ -159,7 +159,8 @@ impl Regions {
     ) -> Result<Self, InputError> {
         let laws = |substance: &Substance| -> Result<Laws, InputError> {
             substance.validate()?;
-            let Substance { material, law, mass_damping, branches, fibres, is_rigid } = substance;
+            let Substance { material, law, mass_damping, branches, fibres, is_rigid, .. } =
+                substance;
             if *is_rigid && !(branches.is_empty() && fibres.is_empty()) {
                 let help = "what is rigid has no branches and no fibres: leave them out";
                 return Err(InputError::new("material.rigid", true, help));
@@ -216,6 +217,12 @@ impl Regions {
             all.materials = used.iter().map(|&number| all.materials[usize::from(number)]).collect();
         }
         Ok(all)
+    }
+
+    /// Gives what everything is made of, without regions, this density (kg/m^3).
+    pub(super) fn set_density(&mut self, density: f64) {
+        self.laws.iter_mut().for_each(|laws| laws.density = density);
+        self.materials.iter_mut().for_each(|material| material.density = density);
     }
 
     /// The substance of a cell.

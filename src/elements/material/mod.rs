@@ -9,6 +9,7 @@ mod hooke;
 mod law;
 mod laws;
 mod response;
+mod rigid_mass;
 mod substance;
 
 pub use branch::MaxwellBranch;
@@ -22,6 +23,7 @@ pub use hooke::{Lame, Plane};
 pub(crate) use law::{Block, Blocks, ElasticLaw};
 pub(crate) use laws::{ByPoint, Elastic, Fibre, Hookean, Linear, ObjectiveViscosity, with_law};
 pub use laws::{Law, Strain, Viscosity};
+pub use rigid_mass::{Moments, RigidMass};
 pub use substance::Substance;
 
 use crate::base::input::{InputError, not_negative, positive};

@@ -3,7 +3,7 @@
 
 use std::fmt;
 
-use super::{Fibres, Material, MaxwellBranch, laws::Law};
+use super::{Fibres, Material, MaxwellBranch, RigidMass, laws::Law};
 use crate::base::input::{InputError, not_negative};
 
 /// A material with its elastic law, damping in proportion to its mass, springs that relax, and fibres.
@@ -34,18 +34,24 @@ pub struct Substance {
     pub fibres: Vec<Fibres>,
     /// Whether what is made of it is [rigid](Material::rigid).
     pub is_rigid: bool,
+    /// Mass, centre and moments of inertia of a rigid body, where they do not follow from a density: see
+    /// [`Material::rigid_of`].
+    pub mass: Option<RigidMass>,
 }
 
 impl fmt::Debug for Substance {
     /// What is not rigid is written as before there were rigid pieces: this is a part of what identifies a scene.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { material, law, mass_damping, branches, fibres, is_rigid } = self;
+        let Self { material, law, mass_damping, branches, fibres, is_rigid, mass } = self;
         let mut fields = f.debug_struct("Substance");
         fields.field("material", material).field("law", law);
         fields.field("mass_damping", mass_damping);
         fields.field("branches", branches).field("fibres", fibres);
         if *is_rigid {
             fields.field("is_rigid", is_rigid);
+        }
+        if let Some(mass) = mass {
+            fields.field("mass", mass);
         }
         fields.finish()
     }
@@ -60,6 +66,7 @@ impl From<Material> for Substance {
             branches: Vec::new(),
             fibres: Vec::new(),
             is_rigid: false,
+            mass: None,
         }
     }
 }
@@ -119,6 +126,26 @@ impl Material {
         let young = Self::RIGID_YOUNG;
         let substance = Substance::from(Self { density, young, poisson: 0.0, viscosity: 0.0 });
         Substance { is_rigid: true, ..substance }
+    }
+
+    /// What a rigid body is made of whose mass, and where they are given centre and moments of inertia, are these numbers.
+    ///
+    /// They are those of a whole body, which is one piece without regions, in place of a density; the density is their
+    /// mean over the volume of the mesh. The mesh still gives the shape. All else is as with [`rigid`](Self::rigid).
+    ///
+    /// ```
+    /// use pliant::{Body, Cells, Material, Mesh, Moments, RigidMass};
+    ///
+    /// let mesh = Mesh::rectangle([0.05, 0.05], [2, 2], Cells::Rectangles)?;
+    /// let wheel = RigidMass::new(0.2).moments(Moments::Plane(9e-5)); // most of it at the rim
+    /// let body = Body::new(mesh, Material::rigid_of(wheel)).thickness(0.01).build()?;
+    /// assert!((body.mass() - 0.2).abs() < 1e-12); // kg
+    /// assert!((body.material().density - 8000.0).abs() < 1e-9); // kg/m^3
+    /// # Ok::<(), pliant::Error>(())
+    /// ```
+    pub fn rigid_of(mass: RigidMass) -> Substance {
+        // the body knows its volume
+        Substance { mass: Some(mass), ..Self::rigid(1.0) }
     }
 
     /// Young's modulus (Pa) with which [rigid](Self::rigid) pieces keep their shape in equilibria.
@@ -239,6 +266,14 @@ impl Substance {
 
     pub(crate) fn validate(&self) -> Result<(), InputError> {
         self.material.validate()?;
+        if let Some(mass) = &self.mass {
+            mass.validate()?;
+            if !self.is_rigid {
+                let help =
+                    "only what is rigid has a mass by numbers: give a density, or rigid = true";
+                return Err(InputError::new("material.mass", mass.mass, help));
+            }
+        }
         not_negative("material.mass_damping", self.mass_damping, "1/s")?;
         self.branches.iter().try_for_each(MaxwellBranch::validate)?;
         self.fibres.iter().try_for_each(Fibres::validate)?;

@@ -9,6 +9,7 @@ mod generate;
 #[cfg(feature = "gmsh")]
 mod gmsh;
 mod select;
+mod surface;
 
 use std::collections::BTreeMap;
 
@@ -18,13 +19,14 @@ pub(crate) use cell::FaceKind;
 pub(crate) use generate::BYTES_PER_NODE;
 pub use generate::{Cells, SolidCells};
 pub use select::Selection;
+pub(crate) use surface::Enclosed;
 
 use nalgebra::{Rotation3, Vector3};
 
 use crate::base::input::{InputError, finite};
 
 /// A finite element mesh in its undeformed shape: cells of one kind, in a space of their dimension or
-/// of a higher one (a string in the plane or in space, a membrane in space). That of several bodies
+/// of a higher one (a string in the plane or in space, a membrane in space, the [surface](Mesh::closed) of a rigid solid). That of several bodies
 /// ([`Body::join`](crate::Body::join)) has those of one body after those of the other.
 ///
 /// Axes are x, y, z in this order. Generators name the sides of a body by them: `left` and `right`
@@ -45,6 +47,8 @@ pub struct Mesh {
 struct Block {
     kind: CellKind,
     connectivity: Vec<usize>,
+    /// Whether they are the closed surface of a solid.
+    is_surface: bool,
 }
 
 impl Block {
@@ -117,7 +121,7 @@ impl Mesh {
     ) -> Self {
         let all = (0..positions.len() / dimension).collect();
         let (sets, cell_groups) = (BTreeMap::from([("all".into(), all)]), BTreeMap::new());
-        let blocks = vec![Block { kind, connectivity }];
+        let blocks = vec![Block { kind, connectivity, is_surface: false }];
         let mut mesh = Self { dimension, positions, blocks, sets, cell_groups };
         mesh.sets.insert("boundary".into(), mesh.find_boundary_nodes());
         mesh
@@ -158,7 +162,9 @@ impl Mesh {
         kind: CellKind,
         connectivity: Vec<usize>,
     ) -> Self {
-        Self::named(self.dimension, positions, kind, connectivity)
+        let mut mesh = Self::named(self.dimension, positions, kind, connectivity);
+        mesh.blocks[0].is_surface = self.blocks[0].is_surface;
+        mesh
     }
 
     /// Names nodes (from 0).
@@ -323,6 +329,7 @@ impl Mesh {
             joined.blocks.extend(mesh.blocks.iter().map(|block| Block {
                 kind: block.kind,
                 connectivity: moved(&block.connectivity, first_node),
+                is_surface: block.is_surface,
             }));
             boundary.extend(mesh.boundary_nodes().iter().map(|node| first_node + node));
             for (own, nodes) in mesh.sets.iter().filter(|(own, _)| *own != "all") {

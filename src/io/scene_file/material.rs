@@ -4,7 +4,9 @@ use super::keys::{Holds, Key, Kind, TableKeys};
 use super::table::Table;
 use super::value::Value;
 use crate::dynamics::error::Error;
-use crate::elements::material::{FibreDirection, Fibres, Law, Material, MaxwellBranch, Substance};
+use crate::elements::material::{
+    FibreDirection, Fibres, Law, Material, MaxwellBranch, Moments, RigidMass, Substance,
+};
 
 pub(super) const MATERIAL: TableKeys = TableKeys::new(
     "material",
@@ -13,9 +15,29 @@ pub(super) const MATERIAL: TableKeys = TableKeys::new(
     &[
         Key::number("density", "the density", "kg/m^3").default(OF_BODY),
         Key::new("rigid", Holds::Flag, "whether what is made of it is rigid")
-            .law("The mesh then gives its shape and inertia, and it moves by 3 degrees of freedom (6 in space). Only `density` is needed; \
+            .law("The mesh then gives its shape and inertia, and it moves by 3 degrees of freedom (6 in space). Only `density` is needed, or `mass`; \
                   in equilibria `young`, by default 1e8 Pa, keeps its shape.")
             .default("false; in a region, as the body"),
+        Key::number("mass", "the mass of a rigid body, in place of `density`", "kg")
+            .law("Of a whole body that is one piece, without regions.")
+            .default("that of `density`"),
+        Key::new("centre", Holds::Vector, "the undeformed position of the centre of mass of a rigid body")
+            .in_unit("m")
+            .law("Goes with `inertia`.")
+            .default("that of a uniform density"),
+        Key::new(
+            "inertia",
+            Holds::Either(&[
+                Holds::Number,
+                Holds::Array(&Holds::Number, 3),
+                Holds::Array(&Holds::Array(&Holds::Number, 3), 3),
+            ]),
+            "moments of inertia of a rigid body about its centre of mass",
+        )
+        .in_unit("kg m^2")
+        .law("Goes with `mass`. In the plane one number; in space the three principal moments, where x, y and z are principal axes of the \
+              undeformed body, or the symmetric matrix, with the products -int x y dm beside its diagonal.")
+        .default("those of a uniform density"),
         Key::number("young", "Young's modulus at small strains", "Pa")
             .law("It follows from the constants of a law that has them.")
             .default(OF_BODY),
@@ -175,7 +197,18 @@ pub(super) fn substance(value: &Value, base: Option<&Substance>) -> Result<Subst
             return Err(value.error(format!("it follows from {by}: leave one of them out")));
         }
     }
-    let density = number("density", of_body)?;
+    let mass = rigid_mass(&table)?;
+    let density = match (&mass, table.get("density")) {
+        (Some(_), Some(value)) => {
+            return Err(value.error("mass gives it: leave one of the two out"));
+        }
+        // the body knows its volume
+        (Some(_), None) => 1.0,
+        (None, None) if is_rigid && of_body.is_none() => {
+            return Err(table.missing("density", "expected the density (kg/m^3), or mass"));
+        }
+        (None, _) => number("density", of_body)?,
+    };
     let viscosity = number("viscosity", known.map(|m| m.viscosity))?;
     let material = match (shear, bulk) {
         (Some(shear), Some(bulk)) => Material::of_moduli(density, shear, bulk, viscosity),
@@ -208,9 +241,35 @@ pub(super) fn substance(value: &Value, base: Option<&Substance>) -> Result<Subst
         value.tables(&FIBRES)?.iter().map(fibres).collect::<Result<Vec<_>, Error>>()
     })?;
     let fibres = families.or(base.map(|base| base.fibres.clone())).unwrap_or_default();
-    let substance = Substance { material, law, mass_damping, branches, fibres, is_rigid };
+    let substance = Substance { material, law, mass_damping, branches, fibres, is_rigid, mass };
     substance.validate().map_err(|error| table.blame(error))?;
     Ok(substance)
+}
+
+/// Mass and inertia by numbers, if they are given.
+fn rigid_mass(table: &Table<'_>) -> Result<Option<RigidMass>, Error> {
+    let Some(mass) = table.optional("mass", Value::number)? else {
+        let other = ["centre", "inertia"].into_iter().find_map(|key| table.get(key));
+        return other.map_or(Ok(None), |value| {
+            Err(value.error("it goes with mass, in place of density: give mass, too"))
+        });
+    };
+    let centre = table.optional("centre", Value::numbers)?;
+    Ok(Some(RigidMass { mass, centre, moments: table.optional("inertia", moments)? }))
+}
+
+fn moments(value: &Value) -> Result<Moments, Error> {
+    let help = "one number in the plane; in space three, or 3 rows of 3";
+    Ok(match value.list() {
+        Err(_) => Moments::Plane(value.number().map_err(|_| value.unexpected(help))?),
+        Ok(rows) if rows.iter().all(|row| row.number().is_ok()) => {
+            Moments::Principal(value.array()?)
+        }
+        Ok(rows) => {
+            let rows = rows.iter().map(Value::array).collect::<Result<Vec<[f64; 3]>, Error>>()?;
+            Moments::Matrix(rows.try_into().map_err(|_| value.unexpected(help))?)
+        }
+    })
 }
 
 fn law(value: &Value) -> Result<Constants, Error> {

@@ -5,7 +5,7 @@ use super::listed::{self, listed};
 use super::selection::selection;
 use super::table::Table;
 use super::value::Value;
-use crate::base::input::InputError;
+use crate::base::input::{InputError, positive};
 use crate::dynamics::error::Error;
 use crate::elements::body::CellSelection;
 use crate::elements::mesh::{Cells, Mesh, SolidCells};
@@ -81,6 +81,17 @@ pub(super) const MESH: TableKeys = TableKeys::new(
         about: "a file of Gmsh; coordinates are metres",
         keys: &[Key::new("file", Holds::Text, "the path of a Gmsh mesh, relative to the scene file")
             .required()],
+    },
+    Kind {
+        word: "surface",
+        about: "the closed surface of a rigid solid, of triangles: a file STL (text or binary), OBJ or Gmsh",
+        keys: &[
+            Key::new("file", Holds::Text, "the path of a file .stl, .obj or .msh, relative to the scene file")
+                .required(),
+            Key::number("scale", "the length of which the coordinates are multiples", "m")
+                .law("0.001 of a drawing in millimetres.")
+                .default("1"),
+        ],
     },
     Kind { word: "listed", about: "node by node, as programs hand meshes over", keys: listed::KEYS },
 ]);
@@ -263,7 +274,7 @@ pub(super) fn gets_mid_nodes(value: &Value) -> Result<(bool, bool), Error> {
 pub(super) fn has_auto_cells(value: &Value) -> Result<bool, Error> {
     let table = value.table(&MESH)?;
     match table.kind() {
-        "bar" | "gmsh" | "listed" => Ok(false),
+        "bar" | "gmsh" | "listed" | "surface" => Ok(false),
         _ => Ok(table.optional("cells", Value::string)? == Some(AUTO)),
     }
 }
@@ -295,6 +306,19 @@ fn generate(table: &Table, auto: AutoCells) -> Result<Mesh, Error> {
             table.required("cells", |value| value.word(&solid_cells(auto)))?,
         )?,
         "listed" => listed(table)?,
+        "surface" => {
+            let mesh = table.required("file", |value| {
+                let file = value.source.beside(value.string()?);
+                Mesh::read_surface(file).map_err(|error| value.error(error))
+            })?;
+            match table.optional("scale", Value::number)? {
+                Some(scale) => {
+                    positive("scale", scale, "m").map_err(|error| table.blame(error))?;
+                    mesh.mapped(|x| [0, 1, 2].map(|i| scale * x[i]))?
+                }
+                None => mesh,
+            }
+        }
         _ => table.required("file", |value| {
             let file = value.source.beside(value.string()?);
             Mesh::read_gmsh(file).map_err(|error| value.error(error))

@@ -219,8 +219,7 @@ impl Chamber {
     /// Whether the cells at its walls fill the plane or space.
     fn fill_space(&self, body: &Body, walls: &Selection) -> Result<bool, InputError> {
         let nodes = body.mesh().select(walls)?;
-        let fills =
-            |node: &usize| body.part_of(*node).body.mesh().kind().dimension() == body.dimension();
+        let fills = |node: &usize| body.part_of(*node).body.mesh().has_inside();
         Ok(nodes.iter().all(fills))
     }
 

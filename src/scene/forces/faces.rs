@@ -101,7 +101,7 @@ pub(super) fn loaded_faces(body: &Body, nodes: &[usize]) -> Result<Vec<LoadedFac
         LoadedFace { nodes, kind, section }
     };
     let skin = between(mesh.boundary_faces(), &given);
-    if body.parts().all(|part| part.body.mesh().kind().dimension() == body.dimension()) {
+    if mesh.has_inside() {
         return Ok(skin?.into_iter().map(on_skin).collect());
     }
     let on_rim = |nodes: Face| {

@@ -139,7 +139,7 @@ impl Tributary {
         let (mesh, dimension) = (body.mesh(), body.dimension());
         let (mut pieces, mut mids) = (Vec::new(), Vec::new());
         for face in mesh.boundary_faces() {
-            let is_membrane = body.part_of(face[0]).body.mesh().kind().dimension() < dimension;
+            let is_membrane = !body.part_of(face[0]).body.mesh().has_inside();
             let measured = measured_pieces(body, &face).into_iter().flatten();
             let nodes: Arc<[usize]> = Arc::from(&face[..]);
             let piece = |(corners, area)| Piece { corners, face: nodes.clone(), area, is_membrane };

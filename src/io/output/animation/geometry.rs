@@ -55,7 +55,7 @@ impl Geometry {
                 (1, 1) => ("bar", segments(own)),
                 (1, _) => ("string", segments(own)),
                 (_, 2) => ("area", cells(own)),
-                (2, _) => ("membrane", cells(own)),
+                (2, _) if !own.has_inside() => ("membrane", cells(own)),
                 _ => ("solid", surface(own)),
             };
             bodies.push((part.name.to_owned(), look, drawn.len()));

@@ -199,7 +199,7 @@ fn surface(
     depths: &[f64],
     paint: Paint,
 ) -> Vec<(f64, Vec<Point>, Paint)> {
-    let solid = mesh.kind().dimension() == 3;
+    let solid = mesh.has_inside();
     let mut faces = Vec::new();
     for face in mesh.boundary_faces() {
         let around: Vec<Point> = around(&face).map(|node| points[node]).collect();
@@ -216,7 +216,7 @@ fn behind(mesh: &Mesh, points: &[Point]) -> impl Iterator<Item = usize> + use<> 
     let (mut behind, mut seen) = (BTreeSet::new(), BTreeSet::new());
     for face in mesh.boundary_faces() {
         let polygon: Vec<Point> = around(&face).map(|node| points[node]).collect();
-        let is_seen = mesh.kind().dimension() < 3 || looks_at_viewer(&polygon);
+        let is_seen = !mesh.has_inside() || looks_at_viewer(&polygon);
         if is_seen { &mut seen } else { &mut behind }.extend(face.iter().copied());
     }
     behind.into_iter().filter(move |node| !seen.contains(node))
