@@ -176,6 +176,7 @@ const LONG: &[&str] = &[
     "ball-in-hand-3d",
     "bellows",
     "heap",
+    "hydraulic-finger",
     "pneumatic-finger",
     "two-squares",
 ];
