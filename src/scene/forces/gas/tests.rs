@@ -48,7 +48,7 @@ fn nozzles_have_the_flow_of_an_expansion() {
         let ends = pressures.map(|pressure| End::Given(pressure.into()));
         nozzle.flow(ends, Vec::new()).unwrap().rate(0.0, &[], &[]).unwrap()
     };
-    let temperature = 293.15;
+    let temperature = 293.15_f64;
     let choked = 0.0404 * 1e-6 * 6e5 / temperature.sqrt();
     for (pressures, sign) in [([6e5, 1e5], 1.0), ([1e5, 6e5], -1.0), ([6e5, 3.1e5], 1.0)] {
         let [found, ..] = flow(pressures, 0.8);
