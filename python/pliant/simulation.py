@@ -103,6 +103,14 @@ class Simulation:
         """Flow of gas (kg/s) through an orifice, from its first end to its second."""
         return self._simulation.gas_flow(orifice)
 
+    def liquid_volume(self, chamber: str) -> float:
+        """Volume (m^3) of the liquid in a chamber, as it is without pressure."""
+        return self._simulation.liquid_volume(chamber)
+
+    def liquid_flow(self, chamber: str) -> float:
+        """Flow of liquid (m^3/s) into a chamber."""
+        return self._simulation.liquid_flow(chamber)
+
     def pressure(self, chamber: str) -> float:
         """Pressure (Pa) in a chamber."""
         return self._simulation.pressure(chamber)
@@ -187,6 +195,10 @@ class Simulation:
     def open(self, orifice: str, opening: float) -> None:
         """Sets how far an orifice is open, from 0 (shut) to 1."""
         self._simulation.open(orifice, opening)
+
+    def flow(self, chamber: str, flow: float) -> None:
+        """Sets the flow of liquid (m^3/s) into a chamber; below 0 it flows out."""
+        self._simulation.flow(chamber, flow)
 
     def actuate(self, spring: str, force: float) -> None:
         """Sets the force (N) of the actuator of a spring, the tension (N) of a cable, the length (m) that a winch has drawn in, or the stress

@@ -1287,8 +1287,9 @@ def chamber(
     closed_by_line: bool | None = None,
     closed_by_lid: bool | None = None,
     thickness: float | None = None,
+    burst: float | None = None,
 ) -> dict:
-    r"""A closed space that `pressure` in a phase blows up.
+    r"""A closed space that `pressure` in a phase blows up, unless it has [[gas]] or a [[liquid]].
 
     Parameters
     ----------
@@ -1307,6 +1308,9 @@ def chamber(
         edges. Default: false. Without it a rim is an error. The nodes of the rim feel the pressure on its lid.
     thickness
         the thickness (m). Default: that of the body.
+    burst
+        the pressure, above that outside, at which it bursts (Pa). Default: none. The first step that ends with more
+        ends the run, with an error that says when and how much.
     """
     return _table(
         name=name,
@@ -1315,6 +1319,7 @@ def chamber(
         closed_by_line=closed_by_line,
         closed_by_lid=closed_by_lid,
         thickness=thickness,
+        burst=burst,
     )
 
 
@@ -1370,13 +1375,16 @@ def orifice(
     name: str,
     from_: str,
     to: str,
-    conductance: float,
+    conductance: float | None = None,
     critical_ratio: float | None = None,
+    area: float | None = None,
+    discharge: float | None = None,
 ) -> dict:
     r"""An orifice, a valve or a leak, through which gas flows either way (ISO 6358-1): from the absolute pressure p_1 to
     the lower p_2 q = C rho_0 p_1 sqrt(T_0/T_1) sqrt(1 - ((p_2/p_1 - b)/(1 - b))^2), without the last root if p_2/p_1
-    < b, and with a cubic in place of it if p_2/p_1 > 0.999; rho_0 = 1.185 kg/m^3. `open` in a phase says how far it
-    is open; without it, wholly.
+    < b, and with a cubic in place of it if p_2/p_1 > 0.999; rho_0 = 1.185 kg/m^3. With an `area` it is a nozzle
+    without losses up to its narrowest section, q = C_d A p_1/sqrt(R T_1) sqrt(7 (r^(2/1.4) - r^(2.4/1.4))), r =
+    p_2/p_1 but not below 0.528. `open` in a phase says how far it is open; without it, wholly.
 
     Parameters
     ----------
@@ -1387,10 +1395,15 @@ def orifice(
     to
         the other end, likewise. Required.
     conductance
-        the sonic conductance C (m^3/(s Pa)). Required. 1e-8 are 0.6 l/min for each bar; a short nozzle has some 2e-3
-        times its area in m^2.
+        the sonic conductance C (m^3/(s Pa)). Default: none. 1e-8 are 0.6 l/min for each bar; a short nozzle has some
+        2e-3 times its area in m^2.
     critical_ratio
         the critical ratio b of pressures, from 0 to below 1 (no unit). Default: 0.5.
+    area
+        the area A of a nozzle (m^2). Default: none.
+    discharge
+        its coefficient of discharge C_d, above 0 and up to 1 (no unit). Default: 1. Some 0.95 of one that is round,
+        0.6 to 0.85 of a hole with sharp edges.
     """
     return _table(
         name=name,
@@ -1398,6 +1411,40 @@ def orifice(
         to=to,
         conductance=conductance,
         critical_ratio=critical_ratio,
+        area=area,
+        discharge=discharge,
+    )
+
+
+def liquid(
+    *,
+    chamber: str,
+    bulk_modulus: float | None = None,
+    density: float | None = None,
+    fill: float | None = None,
+) -> dict:
+    r"""A liquid that fills a chamber, in place of a `pressure` of phases. Above that outside it has the pressure p = K
+    (V_m - V)/V_m, with the volume V of the chamber and the volume V_m that it would have without pressure, which a
+    `flow` in phases changes. Where there is gravity it has weight: p is the mean, and the pressure on the walls grows
+    with depth. Its own motion, its inertia, is left out.
+
+    Parameters
+    ----------
+    chamber
+        the name of the chamber. Required.
+    bulk_modulus
+        the bulk modulus K (Pa). Default: 2.2e9, water.
+    density
+        the density without pressure (kg/m^3). Default: 1000.
+    fill
+        V_m at the start, as a part of the volume of the undeformed chamber (no unit). Default: 1. With 1 there is no
+        pressure at first.
+    """
+    return _table(
+        chamber=chamber,
+        bulk_modulus=bulk_modulus,
+        density=density,
+        fill=fill,
     )
 
 
@@ -1933,6 +1980,7 @@ def phase(
     pressure: dict | Sequence[dict] | None = None,
     pressure_on: dict | Sequence[dict] | None = None,
     open: dict | Sequence[dict] | None = None,
+    flow: dict | Sequence[dict] | None = None,
     actuate: dict | Sequence[dict] | None = None,
     magnetic_field: dict | None = None,
     contact: bool | str | Sequence[str] | None = None,
@@ -1969,6 +2017,8 @@ def phase(
         pressures on faces. Default: none.
     open
         openings of orifices. Default: none.
+    flow
+        flows of liquids into chambers. Default: none.
     actuate
         forces in springs and cables, stresses of muscles, strains of growth. Default: none.
     magnetic_field
@@ -1993,6 +2043,7 @@ def phase(
         pressure=pressure,
         pressure_on=pressure_on,
         open=open,
+        flow=flow,
         actuate=actuate,
         magnetic_field=magnetic_field,
         contact=contact,
@@ -2306,6 +2357,35 @@ def open(
         opening=opening,
         times=times,
         openings=openings,
+    )
+
+
+def flow(
+    *,
+    chamber: str,
+    rate: Formula | None = None,
+    times: Sequence[float] | None = None,
+    rates: Sequence[float] | None = None,
+) -> dict:
+    r"""How much liquid flows into a chamber, as from a syringe or a pump; below 0 it flows out. That of a table is
+    interpolated linearly, and is constant before and after.
+
+    Parameters
+    ----------
+    chamber
+        the name of a chamber with a liquid. Required.
+    rate
+        the volume, without pressure, that flows in per time (m^3/s). Default: none.
+    times
+        times in ascending order (s). Default: none.
+    rates
+        rates at these times (m^3/s). Default: none.
+    """
+    return _table(
+        chamber=chamber,
+        rate=rate,
+        times=times,
+        rates=rates,
     )
 
 
@@ -2888,7 +2968,8 @@ def sensor_pressure(
     chamber: str,
     component: Literal["x", "y", "z", "norm", "xx", "yy", "zz", "xy", "yz", "xz", "von-mises"] | None = None,
 ) -> dict:
-    r"""Sensor of the kind "pressure": the pressure in a chamber, of gas what it exceeds the atmosphere by (Pa).
+    r"""Sensor of the kind "pressure": the pressure in a chamber, of gas and of a liquid what it exceeds that outside by,
+    of a liquid with weight the mean (Pa).
 
     Parameters
     ----------
@@ -2982,6 +3063,58 @@ def sensor_gas_flow(
         kind="gas-flow",
         name=name,
         orifice=orifice,
+        component=component,
+    )
+
+
+def sensor_liquid_volume(
+    *,
+    name: str,
+    chamber: str,
+    component: Literal["x", "y", "z", "norm", "xx", "yy", "zz", "xy", "yz", "xz", "von-mises"] | None = None,
+) -> dict:
+    r"""Sensor of the kind "liquid-volume": the volume of the liquid in a chamber, as it is without pressure (m^3).
+
+    Parameters
+    ----------
+    name
+        the name of the sensor. Required.
+    chamber
+        the name of the chamber. Required.
+    component
+        one component alone. Default: all, each a column. Vectors have `x`, `y`, `z` and their length `norm`; tensors
+        `xx` and so on; stress has `von-mises` besides.
+    """
+    return _table(
+        kind="liquid-volume",
+        name=name,
+        chamber=chamber,
+        component=component,
+    )
+
+
+def sensor_liquid_flow(
+    *,
+    name: str,
+    chamber: str,
+    component: Literal["x", "y", "z", "norm", "xx", "yy", "zz", "xy", "yz", "xz", "von-mises"] | None = None,
+) -> dict:
+    r"""Sensor of the kind "liquid-flow": the flow of liquid into a chamber (m^3/s).
+
+    Parameters
+    ----------
+    name
+        the name of the sensor. Required.
+    chamber
+        the name of the chamber. Required.
+    component
+        one component alone. Default: all, each a column. Vectors have `x`, `y`, `z` and their length `norm`; tensors
+        `xx` and so on; stress has `von-mises` besides.
+    """
+    return _table(
+        kind="liquid-flow",
+        name=name,
+        chamber=chamber,
         component=component,
     )
 
@@ -3387,6 +3520,7 @@ __all__ = [
     "chamber",
     "ends",
     "fibres",
+    "flow",
     "fluid",
     "friction_coefficient",
     "gas",
@@ -3403,6 +3537,7 @@ __all__ = [
     "law_ogden",
     "law_st_venant_kirchhoff",
     "law_yeoh",
+    "liquid",
     "load",
     "magnet",
     "magnetic_field",
@@ -3451,6 +3586,8 @@ __all__ = [
     "sensor_gap",
     "sensor_gas_amount",
     "sensor_gas_flow",
+    "sensor_liquid_flow",
+    "sensor_liquid_volume",
     "sensor_magnetic_moment",
     "sensor_momentum",
     "sensor_muscle_stress",

@@ -157,6 +157,16 @@ impl Simulation {
         self.lock()?.view().gas_flow(orifice).map_err(raised)
     }
 
+    /// Volume (m^3) of the liquid in a chamber, as it is without pressure.
+    fn liquid_volume(&self, chamber: &str) -> PyResult<f64> {
+        self.lock()?.view().liquid_volume(chamber).map_err(raised)
+    }
+
+    /// Flow of liquid (m^3/s) into a chamber.
+    fn liquid_flow(&self, chamber: &str) -> PyResult<f64> {
+        self.lock()?.view().liquid_flow(chamber).map_err(raised)
+    }
+
     /// Pressure (Pa) in a chamber.
     fn pressure(&self, chamber: &str) -> PyResult<f64> {
         self.lock()?.view().pressure(chamber).map_err(raised)
@@ -281,6 +291,11 @@ impl Simulation {
     /// Sets how far an orifice is open, from 0 to 1.
     fn open(&self, orifice: &str, opening: f64) -> PyResult<()> {
         self.lock()?.open(orifice, opening).map_err(raised)
+    }
+
+    /// Sets the flow of liquid (m^3/s) into a chamber.
+    fn flow(&self, chamber: &str, flow: f64) -> PyResult<()> {
+        self.lock()?.flow(chamber, flow).map_err(raised)
     }
 
     /// Sets the force (N) of the actuator of a spring.

@@ -145,6 +145,29 @@ def test_one_thread_at_a_time():
         beam.advance_until(0.1, inside)
 
 
+def test_a_syringe():
+    scene = pliant.Scene(
+        body={
+            "mesh": {"kind": "ring", "inner": 0.02, "outer": 0.03, "nodes": [16, 3], "cells": "rectangles"},
+            "thickness": 0.02,
+            "material": {"density": 1000.0, "young": 2e5, "poisson": 0.4, "viscosity": 200.0},
+        },
+        chamber={"name": "bag", "nodes": "inner", "burst": 1e5},
+        liquid={"chamber": "bag"},
+        phase={"until": 0.1, "hold": [{"nodes": [1]}]},
+    )
+    ring = scene.start()
+    before = ring.liquid_volume("bag")
+    assert ring.liquid_flow("bag") == 0.0
+    ring.flow("bag", 2e-5)
+    ring.advance_to(0.05)
+    assert ring.liquid_flow("bag") == 2e-5
+    assert ring.liquid_volume("bag") - before == pytest.approx(1e-6, rel=1e-6)
+    assert ring.chamber_volume("bag") - before == pytest.approx(1e-6, rel=1e-3) and ring.pressure("bag") > 0.0
+    with pytest.raises(pliant.InputError, match="bag"):
+        ring.flow("bog", 1e-5)
+
+
 def test_a_valve():
     scene = pliant.Scene(
         body={

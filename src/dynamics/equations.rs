@@ -59,6 +59,10 @@ impl Scene {
             let help = "equations are given for bodies without Maxwell branches: leave them out";
             return Err(InputError::new("material.branches", "some", help));
         }
+        if self.pours() {
+            let help = "equations are given for amounts of liquids that stay: leave it out";
+            return Err(InputError::new("flow of a phase", "into a chamber", help));
+        }
         if !self.orifices().is_empty() {
             let help = "equations are given for amounts of gas that stay: leave orifices out";
             return Err(InputError::new("number of orifices", self.orifices().len(), help));

@@ -120,7 +120,7 @@ pub enum Reservoir {
     Gravity,
     /// Energy stored in penalty springs at obstacles.
     Contact,
-    /// Energy of springs, and of gas in chambers.
+    /// Energy of springs, and of gas and liquids in chambers.
     Springs,
     /// None: the force has no potential.
     None,
@@ -425,6 +425,12 @@ pub trait Flow: Send + Sync {
 
     /// Potential energy (J) of the amounts.
     fn potential_of(&self, u: &[f64], amounts: &[f64]) -> f64;
+
+    /// Checks a step after it was taken, to time `t`, with what it has led to.
+    ///
+    /// # Errors
+    /// A state at which the run ends.
+    fn check(&self, t: f64, u: &[f64], amounts: &[f64]) -> Result<(), Failure>;
 
     /// Adds -p d^2V/du^2 to `stiffness`, and writes all other derivatives.
     fn linearize(

@@ -116,7 +116,7 @@ fn tables_that_are_not_there_say_what_stands_in() {
         ("rigid", &["rigid = true", "[[obstacle]]"]),
         ("tendon", &["[[cable]]", "a winch"]),
         ("joint", &["is a hinge", "hold_combination"]),
-        ("pump", &["[[gas]]", "[[orifice]]", "[[chamber]]"]),
+        ("pump", &["[[gas]]", "[[orifice]]", "[[chamber]]", "[[liquid]]"]),
         ("friction", &["friction_coefficient in [[obstacle]]"]),
     ] {
         let text = format!("{scene}\n[[{name}]]\nname = \"a\"\n");

@@ -9,7 +9,7 @@ use serde_json::Value;
 const PAGE: &str = include_str!("../../docs/reference.md");
 
 /// A file of these parts, each of which may be replaced.
-const PARTS: [(&str, &str); 10] = [
+const PARTS: [(&str, &str); 11] = [
     ("top", "title = \"base\"\n"),
     ("[body]", "[body]\nthickness = 0.01\n"),
     ("[[spring]]", "[[spring]]\nname = \"down\"\nends = [1, 3]\n"),
@@ -21,6 +21,7 @@ const PARTS: [(&str, &str); 10] = [
         "[[orifice]]",
         "[[orifice]]\nname = \"valve\"\nfrom = \"pump\"\nto = \"inside\"\nconductance = 1e-9\n",
     ),
+    ("[[liquid]]", "[[liquid]]\nchamber = \"inside\"\n"),
     (
         "[[obstacle]]",
         "[[obstacle]]\nkind = \"disc\"\ncentre = [0.0, -1.0]\nradius = 0.1\nstiffness = 1e3\n",
@@ -48,9 +49,12 @@ fn with(example: &str, mesh: &str) -> String {
     for (part, base) in PARTS {
         let is_whole = part == place && (key == place || key == "title");
         let is_needed = match part {
-            "[[chamber]]" => ["pressure", "[[gas]]", "[[orifice]]", "open"].contains(&key),
+            "[[chamber]]" => {
+                ["pressure", "[[gas]]", "[[orifice]]", "open", "[[liquid]]", "flow"].contains(&key)
+            }
             "[[gas]]" | "[[supply]]" => ["[[orifice]]", "open"].contains(&key),
             "[[orifice]]" => key == "open",
+            "[[liquid]]" => key == "flow",
             "[[spring]]" => key == "actuate",
             "[[magnet]]" => key == "magnetic_field",
             _ => true,

@@ -177,6 +177,7 @@ const LONG: &[&str] = &[
     "ball-in-bowl",
     "bellows",
     "heap",
+    "hydraulic-finger",
     "pneumatic-finger",
     "two-squares",
 ];

@@ -29,9 +29,15 @@ name = "leak"
 from = "inside"
 to = "atmosphere"
 conductance = 1e-12
+[[chamber]]
+name = "bag"
+nodes = [1, 2, 5, 4]
+[[liquid]]
+chamber = "bag"
 [[phase]]
 until = 0.01
 hold = [{ nodes = "left" }]
+flow = [{ chamber = "bag", rate = 1e-9 }]
 "#;
 
 fn parse(sensors: &str) -> Result<SceneFile, Error> {
@@ -68,6 +74,8 @@ fn every_kind_reads_what_the_api_reads() -> Result<(), Error> {
         (r#"kind = "absolute-pressure", chamber = "inside""#, Reading::absolute_pressure("inside")),
         (r#"kind = "gas-amount", chamber = "inside""#, Reading::gas_amount("inside")),
         (r#"kind = "gas-flow", orifice = "leak""#, Reading::gas_flow("leak")),
+        (r#"kind = "liquid-volume", chamber = "bag""#, Reading::liquid_volume("bag")),
+        (r#"kind = "liquid-flow", chamber = "bag""#, Reading::liquid_flow("bag")),
         (r#"kind = "volume", chamber = "inside""#, Reading::chamber_volume("inside")),
         (
             r#"kind = "stress", nodes = 5, component = "von-mises""#,
@@ -102,7 +110,7 @@ fn every_kind_reads_what_the_api_reads() -> Result<(), Error> {
     }
     let motion = file.scene.simulate(&file.settings, &file.output.sampling())?;
     // vectors of two and tensors of four components
-    let columns = [2, 1, 2, 1, 2, 2, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 4, 4, 4, 1, 1, 1, 1, 1];
+    let columns = [2, 1, 2, 1, 2, 2, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 4, 4, 4, 1, 1, 1, 1, 1];
     assert_eq!(motion.sensors().len(), columns.iter().sum::<usize>());
     assert!(motion.last().sensors.iter().all(|number| number.is_finite()));
     assert!(parse("")?.output.sensors.is_empty());

@@ -13,12 +13,12 @@ const DENSITY: f64 = 1.185;
 const RT: f64 = 1e5 / DENSITY;
 const OUTSIDE: f64 = 101_325.0;
 /// Volume (m^3) and base (m^2) of a cylinder, and half of the mass (kg) of its piston.
-const VOLUME: f64 = 1e-3;
-const BASE: f64 = 1e-2;
-const HALF: f64 = 0.5;
+pub(super) const VOLUME: f64 = 1e-3;
+pub(super) const BASE: f64 = 1e-2;
+pub(super) const HALF: f64 = 0.5;
 
 /// Cylinders, 0.1 m wide, high and thick, on blocks that do not move, with two point masses as pistons on each.
-fn cylinders(count: usize) -> Scene {
+pub(super) fn cylinders(count: usize) -> Scene {
     let rubber = Material { density: 1000.0, young: 1e6, poisson: 0.3, viscosity: 0.0 };
     let block = |number: usize| {
         let x = number as f64;
@@ -44,7 +44,7 @@ fn cylinders(count: usize) -> Scene {
 }
 
 /// A phase in which pistons are free to rise or held.
-fn phase(until: f64, is_free: bool, count: usize) -> Phase {
+pub(super) fn phase(until: f64, is_free: bool, count: usize) -> Phase {
     (0..count).fold(Phase::until(until), |phase, number| {
         let at = |node: usize| 6 * number + node;
         let phase = phase.hold([1, 2, 3, 4].map(at)).hold_axes([5, 6].map(at), [Axis::X]);
@@ -335,6 +335,12 @@ fn mistakes_are_named() {
         (one().orifice(orifice(0.0)), free(), "conductance = 0"),
         (one().orifice(orifice(-1e-9)), free(), "conductance = -0.000000001"),
         (one().orifice(orifice(1e-9).critical_ratio(1.0)), free(), "critical_ratio = 1"),
+        (one().orifice(Orifice::nozzle("valve", "pump", "0", 0.0)), free(), "area = 0"),
+        (
+            one().orifice(Orifice::nozzle("valve", "pump", "0", 1e-6).discharge(1.1)),
+            free(),
+            "discharge = 1.1",
+        ),
         (one().orifice(orifice(1e-9)).orifice(orifice(1e-9)), free(), "orifice name"),
         (one().supply("pump", 3e5), free(), "it is taken"),
         (one().supply("vacuum", -1.0), free(), "supply \"vacuum\" pressure = -1"),

@@ -29,6 +29,7 @@ mod growth;
 mod index_two;
 mod indicators;
 mod large;
+mod liquids;
 mod magnets;
 mod moving_obstacles;
 mod muscles;

@@ -144,6 +144,7 @@ fn surroundings(scene: &Scene) -> Result<(), Failure> {
     let magnets: Vec<String> = magnets.collect();
     let chambers = scene.chambers().iter().map(|chamber| chamber.name()).collect();
     let orifices = scene.orifices().iter().map(|orifice| orifice.name()).collect();
+    let liquids = scene.liquids().iter().map(|liquid| liquid.chamber()).collect();
     let fluids = scene.fluids().iter().map(|fluid| fluid.name()).collect();
     let obstacles = scene.obstacles().iter().map(|obstacle| obstacle.name()).collect();
     let touches = scene.touches().iter().map(|touch| touch.name()).collect();
@@ -154,6 +155,7 @@ fn surroundings(scene: &Scene) -> Result<(), Failure> {
         ("magnets", magnets.iter().map(String::as_str).collect()),
         ("chambers", chambers),
         ("orifices", orifices),
+        ("liquids", liquids),
         ("fluids", fluids),
         ("obstacles", obstacles),
         ("touches", touches),

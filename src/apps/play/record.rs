@@ -51,10 +51,11 @@ struct Track {
     values: Vec<f64>,
 }
 
-/// What replaces the scene's own signal, load or field: on a chamber, an orifice, a spring, some nodes, or magnets.
+/// What replaces the scene's own signal, load or field: on a chamber, its liquid, an orifice, a spring, some nodes, or magnets.
 pub(super) enum Replacement {
     Pressure(String, Signal),
     Opening(String, Signal),
+    Flow(String, Signal),
     Actuation(String, Signal),
     Load(Selection, Load),
     Field(VectorSignal),
@@ -66,6 +67,7 @@ impl Replacement {
         match self {
             Self::Pressure(chamber, signal) => simulation.pressure(&chamber, signal),
             Self::Opening(orifice, signal) => simulation.open(&orifice, signal),
+            Self::Flow(chamber, signal) => simulation.flow(&chamber, signal),
             Self::Actuation(spring, signal) => simulation.actuate(&spring, signal),
             Self::Load(nodes, load) => simulation.set_load(nodes, load),
             Self::Field(field) => simulation.set_field(field),
@@ -82,6 +84,10 @@ impl Replacement {
             Self::Opening(orifice, signal) => {
                 phase.set_opening(&orifice, signal);
                 "open"
+            }
+            Self::Flow(chamber, signal) => {
+                phase.set_flow(&chamber, signal);
+                "flow"
             }
             Self::Actuation(spring, signal) => {
                 phase.set_actuation(&spring, signal);
@@ -168,6 +174,7 @@ impl Record {
                 Replacement::Load(nodes.clone(), Load { kind: *kind, value })
             }
             Target::Opening(orifice) => Replacement::Opening(orifice.clone(), track.signal()),
+            Target::Flow(chamber) => Replacement::Flow(chamber.clone(), track.signal()),
             Target::Field(_) => {
                 Replacement::Field(self.vector(scene, track.phase, t, Target::Field))
             }

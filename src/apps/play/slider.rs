@@ -1,4 +1,4 @@
-//! What sliders set: pressures of chambers, openings of orifices, forces of actuators, cables, stresses of muscles, loads, magnetic fields.
+//! What sliders set: pressures of chambers, flows of liquids, openings of orifices, forces of actuators, cables, stresses of muscles, loads, magnetic fields.
 
 use serde_json::{Value, json};
 
@@ -16,6 +16,8 @@ pub(super) enum Target {
     Pressure(String),
     /// How far an orifice is open.
     Opening(String),
+    /// The flow of liquid into a chamber (m^3/s).
+    Flow(String),
     /// The force of the actuator of a spring, or the tension of a cable (N), the length that a winch has drawn in (m), the
     /// stress of a muscle (Pa), or the strain of a growth (1).
     Actuation(String),
@@ -50,8 +52,11 @@ impl Slider {
     /// The sliders of a scene.
     pub(super) fn all(scene: &Scene) -> Vec<Self> {
         let [force, pressure] = usual(scene.body());
-        let without_gas = |chamber: &&Chamber| scene.gas_in(chamber.name()).is_none();
-        let chambers = scene.chambers().iter().filter(without_gas).map(|chamber| {
+        let is_empty = |chamber: &&Chamber| {
+            let name = chamber.name();
+            scene.gas_in(name).is_none() && scene.liquid_in(name).is_none()
+        };
+        let chambers = scene.chambers().iter().filter(is_empty).map(|chamber| {
             let target = Target::Pressure(chamber.name().to_owned());
             let range = [target.largest_in(scene), pressure];
             Self::new(target, "pressure".into(), range, "Pa")
@@ -62,6 +67,13 @@ impl Slider {
             most: 1.0,
             what: "opening".into(),
             unit: "",
+        });
+        // a usual part of the volume of the bodies in a second
+        let pumped = USUAL * scene.body().volume();
+        let flows = scene.liquids().iter().map(|liquid| {
+            let target = Target::Flow(liquid.chamber().to_owned());
+            let range = [target.largest_in(scene), pumped];
+            Self::new(target, "flow".into(), range, "m^3/s")
         });
         let springs = scene.springs().iter().map(|spring| {
             let target = Target::Actuation(spring.name().to_owned());
@@ -100,6 +112,7 @@ impl Slider {
         });
         chambers
             .chain(orifices)
+            .chain(flows)
             .chain(springs)
             .chain(muscles)
             .chain(growths)
@@ -145,6 +158,7 @@ impl Slider {
         Ok(match &self.target {
             Target::Pressure(chamber) => simulation.view().pressure(chamber)?,
             Target::Opening(orifice) => simulation.view().opening(orifice)?,
+            Target::Flow(chamber) => simulation.view().liquid_flow(chamber)?,
             Target::Actuation(spring) => simulation.view().actuation(spring)?,
             Target::Field(axis) => simulation.view().magnetic_field()[*axis],
             Target::Load(nodes, kind, axis) => simulation.view().load_of(nodes, *kind)?[*axis],
@@ -153,9 +167,10 @@ impl Slider {
 
     pub(super) fn to_json(&self) -> Value {
         let name = match &self.target {
-            Target::Pressure(name) | Target::Opening(name) | Target::Actuation(name) => {
-                name.clone()
-            }
+            Target::Pressure(name)
+            | Target::Opening(name)
+            | Target::Flow(name)
+            | Target::Actuation(name) => name.clone(),
             Target::Field(_) => "magnetic field".into(),
             Target::Load(nodes, ..) => name_of(nodes),
         };
@@ -198,6 +213,9 @@ impl Target {
             Self::Opening(name) => Box::new(
                 phase.openings.iter().filter(move |(other, _)| other == name).map(|(_, s)| s),
             ),
+            Self::Flow(name) => {
+                Box::new(phase.flows.iter().filter(move |(other, _)| other == name).map(|(_, s)| s))
+            }
             Self::Actuation(name) => {
                 Box::new(phase.actuations.iter().flat_map(move |(springs, signal)| {
                     springs.iter().filter(move |other| *other == name).map(move |_| signal)

@@ -56,6 +56,24 @@ impl Simulation {
         })
     }
 
+    /// Sets the flow (m^3/s) of liquid into a chamber, in place of the present one; below 0 it flows out.
+    ///
+    /// # Errors
+    /// A name that no chamber with a liquid has; numbers that are not finite; a method without unknowns for amounts (`ida-klu`,
+    /// `central-difference`).
+    pub fn flow(&mut self, chamber: &str, flow: impl Into<Signal>) -> Result<(), Error> {
+        let (flow, input) = (flow.into(), "flow into chamber");
+        self.scene().liquid_number(chamber, input)?;
+        let live = |phase: &Phase| phase.live_flow(chamber).cloned();
+        if self.set_live(live, input, flow.value().as_slice())? {
+            return Ok(());
+        }
+        self.command(Change::Loads, |phase, _| {
+            phase.set_flow(chamber, flow.thawed());
+            Ok(())
+        })
+    }
+
     /// Sets the force (N) of the actuator of a spring, in place of the present one; a positive one extends
     /// the spring. Of a [cable](crate::Spring::cable) it is the tension, and of one on a winch the length (m) that is drawn in; of a
     /// [muscle](crate::Muscle) it is the stress (Pa) by which it pulls, of a [growth](crate::Growth) the strain (1).

@@ -120,6 +120,14 @@ impl Reading {
                 scene.orifice_number(orifice, "orifice")?;
                 number(orifice, |view, orifice| view.gas_flow(orifice))
             }
+            What::LiquidVolume(chamber) => {
+                scene.liquid_number(chamber, "chamber")?;
+                number(chamber, |view, chamber| view.liquid_volume(chamber))
+            }
+            What::LiquidFlow(chamber) => {
+                scene.liquid_number(chamber, "chamber")?;
+                number(chamber, |view, chamber| view.liquid_flow(chamber))
+            }
             What::MuscleStress(muscle) => {
                 scene.muscle_number(muscle, "muscle")?;
                 number(muscle, |view, muscle| view.actuation(muscle))

@@ -44,6 +44,8 @@ pub(super) enum What {
     AbsolutePressure(String),
     GasAmount(String),
     GasFlow(String),
+    LiquidVolume(String),
+    LiquidFlow(String),
     Stress(Place),
     Strain(Place),
     Distance([Selection; 2]),
@@ -283,7 +285,7 @@ impl Reading {
         What::FluidForce(fluid.into(), None).into()
     }
 
-    /// Pressure in a chamber (Pa): of gas what it exceeds the atmosphere by.
+    /// Pressure in a chamber (Pa): of gas and of a liquid what it exceeds that outside by, of a liquid with weight the mean.
     pub fn pressure(chamber: impl Into<String>) -> Self {
         What::Pressure(chamber.into()).into()
     }
@@ -301,6 +303,16 @@ impl Reading {
     /// Flow of gas (kg/s) through an orifice, from its first end to its second.
     pub fn gas_flow(orifice: impl Into<String>) -> Self {
         What::GasFlow(orifice.into()).into()
+    }
+
+    /// Natural volume of the liquid in a chamber (m^3).
+    pub fn liquid_volume(chamber: impl Into<String>) -> Self {
+        What::LiquidVolume(chamber.into()).into()
+    }
+
+    /// Flow of liquid into a chamber (m^3/s).
+    pub fn liquid_flow(chamber: impl Into<String>) -> Self {
+        What::LiquidFlow(chamber.into()).into()
     }
 
     /// Volume that the walls of a chamber enclose (m^3).
@@ -402,7 +414,8 @@ impl Reading {
             What::MuscleStress(_) => "Pa",
             What::GasAmount(_) => "kg",
             What::GasFlow(_) => "kg/s",
-            What::ChamberVolume(_) => "m^3",
+            What::ChamberVolume(_) | What::LiquidVolume(_) => "m^3",
+            What::LiquidFlow(_) => "m^3/s",
             What::Strain(_) | What::MuscleStretch(_) => "1",
             What::Angle(_) | What::Rotation if self.in_degrees => DEGREES,
             What::Angle(_) | What::Rotation => "rad",

@@ -137,7 +137,7 @@ impl Run {
         // a step that is refused leaves no samples
         let (system, arrived) = arrival(stepper, event, sample)?;
         let before = &self.state[..n];
-        system.check_step(time, before, &arrived[..n]).map_err(Failure::into_error)?;
+        system.check_step(time, before, arrived).map_err(Failure::into_error)?;
         while let Some(t) = self.phase_run.interval.next_sample().filter(|&t| t <= time) {
             self.phase_run.interval.taken += 1;
             stepper.interpolate(t, sample)?;

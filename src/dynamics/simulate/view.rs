@@ -8,7 +8,9 @@ use crate::dynamics::state::State;
 use crate::elements::body::{Body, CellField, Grown, Strands};
 use crate::elements::force::{Force, Forces, NodalForces};
 use crate::elements::mesh::Selection;
-use crate::scene::forces::{ChamberForce, Contact, Filled, NodalContact, Signal, SpringGauge};
+use crate::scene::forces::{
+    ChamberForce, Contact, Content, Filled, NodalContact, Poured, Signal, SpringGauge,
+};
 use crate::scene::timeline::{ContactReader, LoadKind, Phase, Scene};
 
 /// The motion of a [`Simulation`](super::Simulation) or at a [sample](crate::Sampling::sensor), without copies.
@@ -25,6 +27,7 @@ pub(super) struct Gauges {
     chambers: Vec<Arc<ChamberForce>>,
     springs: Vec<SpringGauge>,
     gases: Vec<Filled>,
+    liquids: Vec<Poured>,
     muscles: Vec<Strands>,
     /// By which the positions of nodes make the magnetic moment (A m); empty without magnets.
     poles: Vec<f64>,
@@ -41,6 +44,7 @@ impl Gauges {
             chambers: chambers.collect::<Result<_, _>>()?,
             springs: springs.collect::<Result<_, _>>()?,
             gases: scene.filled()?,
+            liquids: scene.poured(None)?,
             muscles: muscles.collect::<Result<_, _>>()?,
             poles: scene.magnetization()?.map_or_else(Vec::new, |magnets| magnets.poles),
         })
@@ -125,14 +129,19 @@ impl<'a> View<'a> {
         Ok(self.gauges.chambers[number].volume(self.state.u))
     }
 
-    /// Pressure in a chamber (Pa): of gas what it exceeds the atmosphere by, NaN where it has none.
+    /// Pressure in a chamber (Pa): of gas and of a liquid what it exceeds that outside by, NaN where it has none; of a liquid with weight the mean.
     ///
     /// # Errors
     /// A name that no chamber has.
     pub fn pressure(&self, chamber: &str) -> Result<f64, InputError> {
         self.scene.chamber_number(chamber, "chamber")?;
         if let Some(number) = self.scene.gas_in(chamber) {
-            return Ok(self.gauges.gases[number].gauge(self.gas_pressure(number)));
+            let gas = &self.gauges.gases[number];
+            return Ok(gas.gauge(self.state.u, self.amount(number)).unwrap_or(f64::NAN));
+        }
+        if let Some(number) = self.scene.liquid_in(chamber) {
+            let (liquid, amount) = (&self.gauges.liquids[number], self.liquid_amount(number));
+            return Ok(liquid.gauge(self.state.u, amount).unwrap_or(f64::NAN));
         }
         let pressures = self.phase.pressures.iter().filter(|(name, _)| name == chamber);
         Ok(pressures.map(|(_, pressure)| pressure.at(self.time)).sum())
@@ -183,12 +192,41 @@ impl<'a> View<'a> {
         Ok(own.map(|(_, opening)| opening.at(self.time)).sum())
     }
 
-    /// The amount (kg) of the gas of that number: amounts that flow are the last unknowns of the state.
+    /// Natural volume (m^3) of the liquid in a chamber.
+    ///
+    /// # Errors
+    /// A name that no chamber has, or one without liquid.
+    pub fn liquid_volume(&self, chamber: &str) -> Result<f64, InputError> {
+        let number = self.scene.liquid_number(chamber, "chamber")?;
+        Ok(self.gauges.liquids[number].natural(self.liquid_amount(number)))
+    }
+
+    /// Flow (m^3/s, of natural volume) of liquid into a chamber.
+    ///
+    /// # Errors
+    /// As [`liquid_volume`](Self::liquid_volume).
+    pub fn liquid_flow(&self, chamber: &str) -> Result<f64, InputError> {
+        self.scene.liquid_number(chamber, "chamber")?;
+        let own = self.phase.flows.iter().filter(|(name, _)| name == chamber);
+        Ok(own.map(|(_, flow)| flow.at(self.time)).sum())
+    }
+
+    /// The amount (kg) of the gas of that number: amounts are the last unknowns of the state, of gases and then of liquids.
     fn amount(&self, number: usize) -> f64 {
-        let (gases, others) = (&self.gauges.gases, self.state.others);
+        let Gauges { gases, liquids, .. } = self.gauges;
+        let others = self.state.others;
         // where there are none, amounts stay what they are
-        let first = others.len().checked_sub(gases.len());
-        first.map_or(gases[number].amount(), |first| others[first + number])
+        let first = others.len().checked_sub(gases.len() + liquids.len());
+        match (first, number.checked_sub(gases.len())) {
+            (Some(first), _) => others[first + number],
+            (None, None) => gases[number].amount(),
+            (None, Some(number)) => liquids[number].amount(),
+        }
+    }
+
+    /// That of the liquid of that number.
+    fn liquid_amount(&self, number: usize) -> f64 {
+        self.amount(self.gauges.gases.len() + number)
     }
 
     fn gas_pressure(&self, number: usize) -> f64 {

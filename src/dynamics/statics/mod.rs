@@ -93,6 +93,10 @@ impl Scene {
                 help,
             ));
         }
+        if self.pours() {
+            let help = "an equilibrium keeps the amounts of liquids as they are: leave it out and give a fill, or run the scene";
+            return Err(InputError::new("flow of statics", "into a chamber", help));
+        }
         let shut = self.shut();
         let mut forces = shut.forces()?;
         indicators::overlap::check_start(self)?;

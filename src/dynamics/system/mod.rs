@@ -73,7 +73,7 @@ use crate::base::input::InputError;
 use crate::base::sparse::NodeMatrix;
 use crate::base::vector::dot;
 use crate::dynamics::matrices::Matrices;
-use crate::dynamics::state;
+use crate::dynamics::state::{self, State};
 use crate::elements::body::Branches;
 use crate::elements::force::{Flow, Force, Forces, NodalForces, Reservoir, Step};
 use crate::integrators::ode::Failure;
@@ -139,11 +139,11 @@ pub struct Energy {
     pub gravity: f64,
     /// Stored in the penalty springs of contacts.
     pub contact: f64,
-    /// Stored in springs between nodes, and in gas in chambers and the air around them.
+    /// Stored in springs between nodes, and in gas in chambers and the air around them; of liquids that of their compression and their weight.
     pub springs: f64,
     /// Turned into heat since t = 0 by viscosity, damping and friction of contacts.
     pub dissipated: f64,
-    /// Supplied since t = 0 by loads and constraints, and with gas that flows in.
+    /// Supplied since t = 0 by loads and constraints, and with gas and liquids that flow in.
     pub supplied: f64,
 }
 
@@ -341,10 +341,16 @@ impl System {
         &self.refusal
     }
 
-    /// Asks the forces whether the step from displacements `before` to `after` makes sense.
+    /// Asks the forces whether the step from displacements `before` to the state `after` makes sense.
     pub(crate) fn check_step(&self, t: f64, before: &[f64], after: &[f64]) -> Result<(), Failure> {
+        let State { u, others, .. } = State::of(after, before.len());
         let all = self.forces.iter().chain(&self.flow);
-        all.into_iter().try_for_each(|force| force.check_step(t, before, after))
+        all.into_iter().try_for_each(|force| force.check_step(t, before, u))?;
+        let (_, amounts) = self.parts_of(others);
+        match flow_of(&self.flow) {
+            Some(flow) if !amounts.is_empty() => flow.check(t, u, amounts),
+            _ => Ok(()),
+        }
     }
 
     /// Number of switches of all forces.

@@ -10,8 +10,8 @@ use crate::integrators::ode::{Dae, Ode};
 use crate::scene::constraint::{Axis, PhaseStart};
 use crate::studies::samples::SQUARE_MATERIAL;
 use crate::{
-    Body, CellSelection, Cells, Chamber, Dilatation, Gas, InputError, Mesh, Obstacle, Orifice,
-    Phase, Plane, Scene, SolidCells, Strain, Substance, Viscosity,
+    Body, CellSelection, Cells, Chamber, Dilatation, Gas, InputError, Liquid, Mesh, Obstacle,
+    Orifice, Phase, Plane, Scene, SolidCells, Strain, Substance, Viscosity,
 };
 
 const ALPHA: f64 = 30.0;
@@ -324,7 +324,7 @@ fn a_row_that_follows_from_others_is_named() {
     assert!(message.contains("follows from the other constraints"), "{message}");
 }
 
-/// Two rooms of gas within a body, with an orifice between them, from a supply and into the open.
+/// Two rooms of gas within a body, with an orifice between them, from a supply and into the open, and one full of a light liquid that is pumped in.
 fn with_gas() -> System {
     let mesh = Mesh::rectangle([0.3, 0.2], [4, 3], Cells::Triangles).unwrap();
     let body =
@@ -332,10 +332,14 @@ fn with_gas() -> System {
     let phase = Phase::until(1.0)
         .hold_axes([1, 2], [Axis::Y])
         .hold_combination([(10, Axis::X, 1.0), (12, Axis::X, -2.0), (11, Axis::X, 0.5)])
-        .open("out", 0.5);
+        .open("out", 0.5)
+        .flow("c", 1e-3);
     let scene = Scene::new(body)
         .chamber(Chamber::within("a", [1, 2, 6, 5]))
         .chamber(Chamber::within("b", [3, 4, 12, 11]))
+        .chamber(Chamber::within("c", [6, 7, 11, 10]))
+        .gravity([3.0, -9.0])
+        .liquid(Liquid::in_chamber("c").bulk_modulus(3e5).density(50.0))
         .gas(Gas::in_chamber("a").pressure(1.3e5).exponent(1.4))
         .gas(Gas::in_chamber("b").pressure(2.0e5).exponent(1.1))
         .supply("pump", 4e5)

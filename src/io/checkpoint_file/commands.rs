@@ -24,6 +24,9 @@ pub(super) struct InForce {
     /// Name of an orifice, opening.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     openings: Vec<(String, Given<SignalKind>)>,
+    /// Name of a chamber, flow of its liquid.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    flows: Vec<(String, Given<SignalKind>)>,
     /// Names of the obstacles that act; without: all.
     contact: ContactWith,
     /// Obstacles that commands have set in motion: name, offset from where its velocity or path would have
@@ -134,6 +137,10 @@ fn openings(phase: &Phase) -> impl Iterator<Item = &SignalKind> {
     phase.openings.iter().map(|(_, opening)| &opening.0)
 }
 
+fn flows(phase: &Phase) -> impl Iterator<Item = &SignalKind> {
+    phase.flows.iter().map(|(_, flow)| &flow.0)
+}
+
 impl InForce {
     /// `phase`, which is the phase `own` of the scene as commands have changed it.
     ///
@@ -160,6 +167,10 @@ impl InForce {
             let name = || format!("opening of orifice \"{orifice}\"");
             Ok((orifice.clone(), Given::of(&opening.0, openings(own), name)?))
         });
+        let flows_given = phase.flows.iter().map(|(chamber, flow)| {
+            let name = || format!("flow into chamber \"{chamber}\"");
+            Ok((chamber.clone(), Given::of(&flow.0, flows(own), name)?))
+        });
         let mut fields_given = fields(phase)
             .map(|field| Given::of(field, fields(own), || "magnetic field".to_owned()));
         let magnetic_field = fields_given.next().transpose()?;
@@ -172,6 +183,7 @@ impl InForce {
             actuations: actuations.collect::<Result<_, InputError>>()?,
             pressures: pressures.collect::<Result<_, InputError>>()?,
             openings: openings.collect::<Result<_, InputError>>()?,
+            flows: flows_given.collect::<Result<_, InputError>>()?,
             contact: phase.contact.clone(),
             moving: moving.collect(),
             magnetic_field,
@@ -200,6 +212,10 @@ impl InForce {
         let openings = self.openings.into_iter().map(|(orifice, opening)| {
             Ok((orifice, Signal(opening.read("opening", openings(own))?)))
         });
+        let flows_given = self
+            .flows
+            .into_iter()
+            .map(|(chamber, flow)| Ok((chamber, Signal(flow.read("flow", flows(own))?))));
         let moving = self.moving.into_iter().map(|(name, offset, velocity)| {
             let obstacle = scene.obstacles().iter().find(|obstacle| obstacle.name() == name);
             let obstacle =
@@ -225,6 +241,7 @@ impl InForce {
             actuations: actuations.collect::<Result<_, String>>()?,
             pressures: pressures.collect::<Result<_, String>>()?,
             openings: openings.collect::<Result<_, String>>()?,
+            flows: flows_given.collect::<Result<_, String>>()?,
             contact: self.contact,
             redirected: moving.collect::<Result<_, String>>()?,
             ..own.clone()

@@ -62,6 +62,9 @@ impl Identity {
         if scene.has_gas() {
             parts.push(("gas".into(), text(of_text(&scene.gas_parts()))));
         }
+        if !scene.liquids().is_empty() {
+            parts.push(("liquids".into(), text(of_text(scene.liquids()))));
+        }
         // as in files that were written before there were several bodies
         let tied = scene.tied().unwrap_or_default();
         let [ties, touches] = [of_text(&tied), of_text(&scene.touches())].map(text);

@@ -32,9 +32,20 @@ const ABSENT: [(&[&str], &str); 8] = [
          hold_combination, and two nodes may have a stiff [[spring]] between them; there are no motors and no stops",
     ),
     (
-        &["air", "water", "liquid", "drag", "buoyancy", "current", "pressure", "pump", "valve"],
+        &[
+            "air",
+            "water",
+            "drag",
+            "buoyancy",
+            "current",
+            "pressure",
+            "pump",
+            "valve",
+            "syringe",
+            "hydraulics",
+        ],
         "what surrounds bodies, with its drag and its pressure by depth, is a [[fluid]]; a phase gives the pressure in a [[chamber]] over time (pressure = [...]), or \
-         there is [[gas]] in it, which flows through an [[orifice]] from a [[supply]]",
+         there is [[gas]] in it, which flows through an [[orifice]] from a [[supply]], or a [[liquid]], of which a phase lets flow = [...] in",
     ),
     (
         &["motor", "actuator", "actuators"],

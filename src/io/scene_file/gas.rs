@@ -1,11 +1,11 @@
-//! `[[gas]]`, `[[supply]]` and `[[orifice]]`.
+//! `[[gas]]`, `[[supply]]`, `[[orifice]]` and `[[liquid]]`.
 
 use super::keys::{Holds, Key, TableKeys};
 use super::surroundings::unique;
 use super::value::Value;
 use crate::base::input::{InputError, not_negative};
 use crate::dynamics::error::Error;
-use crate::scene::forces::{Gas, Orifice};
+use crate::scene::forces::{Gas, Liquid, Orifice};
 use crate::scene::timeline::{Phase, Scene};
 
 pub(super) const GAS: TableKeys = TableKeys::new(
@@ -42,17 +42,42 @@ pub(super) const ORIFICE: TableKeys = TableKeys::new(
     "[[orifice]]",
     "An orifice, a valve or a leak, through which gas flows either way (ISO 6358-1): from the absolute pressure p_1 to the lower \
      p_2 q = C rho_0 p_1 sqrt(T_0/T_1) sqrt(1 - ((p_2/p_1 - b)/(1 - b))^2), without the last root if p_2/p_1 < b, and with a cubic in \
-     place of it if p_2/p_1 > 0.999; rho_0 = 1.185 kg/m^3. `open` in a phase says how far it is open; without it, wholly.",
+     place of it if p_2/p_1 > 0.999; rho_0 = 1.185 kg/m^3. With an `area` it is a nozzle without losses up to its narrowest section, \
+     q = C_d A p_1/sqrt(R T_1) sqrt(7 (r^(2/1.4) - r^(2.4/1.4))), r = p_2/p_1 but not below 0.528. `open` in a phase says how far it is open; without it, wholly.",
     &[
         Key::new("name", Holds::Text, "the name of the orifice").required(),
         Key::new("from", Holds::Text, "one end: a supply, a chamber with gas, or `atmosphere`").required(),
         Key::new("to", Holds::Text, "the other end, likewise").required(),
         Key::number("conductance", "the sonic conductance C", "m^3/(s Pa)")
-            .law("1e-8 are 0.6 l/min for each bar; a short nozzle has some 2e-3 times its area in m^2.")
-            .required(),
+            .law("1e-8 are 0.6 l/min for each bar; a short nozzle has some 2e-3 times its area in m^2."),
         Key::number("critical_ratio", "the critical ratio b of pressures, from 0 to below 1", "1").default("0.5"),
+        Key::number("area", "the area A of a nozzle", "m^2"),
+        Key::number("discharge", "its coefficient of discharge C_d, above 0 and up to 1", "1")
+            .law("Some 0.95 of one that is round, 0.6 to 0.85 of a hole with sharp edges.")
+            .default("1"),
     ],
     "[[orifice]]\nname = \"valve\"\nfrom = \"pump\"\nto = \"inside\"\nconductance = 1.0e-9",
+)
+.one_of(&[&["conductance"], &["area"]]);
+
+pub(super) const LIQUID: TableKeys = TableKeys::new(
+    "[[liquid]]",
+    "A liquid that fills a chamber, in place of a `pressure` of phases. Above that outside it has the pressure p = K (V_m - V)/V_m, with the volume V of the \
+     chamber and the volume V_m that it would have without pressure, which a `flow` in phases changes. Where there is gravity it has weight: p is the mean, and the \
+     pressure on the walls grows with depth. Its own motion, its inertia, is left out.",
+    &[
+        Key::new("chamber", Holds::Text, "the name of the chamber").required(),
+        Key::number("bulk_modulus", "the bulk modulus K", "Pa").default("2.2e9, water"),
+        Key::number("density", "the density without pressure", "kg/m^3").default("1000"),
+        Key::number(
+            "fill",
+            "V_m at the start, as a part of the volume of the undeformed chamber",
+            "1",
+        )
+        .law("With 1 there is no pressure at first.")
+        .default("1"),
+    ],
+    "[[liquid]]\nchamber = \"inside\"\nbulk_modulus = 2.2e9\ndensity = 1000.0",
 );
 
 /// The scene with the gas that `value` describes.
@@ -63,6 +88,18 @@ pub(super) fn add_gas(scene: Scene, value: &Value) -> Result<Scene, Error> {
     gas = table.added(gas, "exponent", Value::number, Gas::exponent)?;
     let scene = scene.gas(gas);
     scene.filled().map_err(|error| table.blame(error))?;
+    Ok(scene)
+}
+
+/// The scene with the liquid that `value` describes.
+pub(super) fn add_liquid(scene: Scene, value: &Value) -> Result<Scene, Error> {
+    let table = &value.table(&LIQUID)?;
+    let mut liquid = Liquid::in_chamber(table.required("chamber", Value::string)?);
+    liquid = table.added(liquid, "bulk_modulus", Value::number, Liquid::bulk_modulus)?;
+    liquid = table.added(liquid, "density", Value::number, Liquid::density)?;
+    liquid = table.added(liquid, "fill", Value::number, Liquid::fill)?;
+    let scene = scene.liquid(liquid);
+    scene.poured(None).map_err(|error| table.blame(error))?;
     Ok(scene)
 }
 
@@ -84,9 +121,23 @@ pub(super) fn add_supply(scene: Scene, value: &Value) -> Result<Scene, Error> {
 pub(super) fn add_orifice(scene: Scene, value: &Value) -> Result<Scene, Error> {
     let table = &value.table(&ORIFICE)?;
     let text = |key: &str| table.required(key, Value::string);
-    let conductance = table.required("conductance", Value::number)?;
-    let mut orifice = Orifice::new(text("name")?, text("from")?, text("to")?, conductance);
+    let (name, from, to) = (text("name")?, text("from")?, text("to")?);
+    let (key, other) = match table.get("area") {
+        Some(_) => ("critical_ratio", "a nozzle has a critical ratio of its own: leave it out"),
+        None => (
+            "discharge",
+            "it is that of a nozzle: leave it out, or give an area in place of the conductance",
+        ),
+    };
+    if let Some(value) = table.get(key) {
+        return Err(value.error(format!("{key}: {other}")));
+    }
+    let mut orifice = match table.optional("area", Value::number)? {
+        Some(area) => Orifice::nozzle(name, from, to, area),
+        None => Orifice::new(name, from, to, table.required("conductance", Value::number)?),
+    };
     orifice = table.added(orifice, "critical_ratio", Value::number, Orifice::critical_ratio)?;
+    orifice = table.added(orifice, "discharge", Value::number, Orifice::discharge)?;
     unique(table, orifice.name(), scene.orifices().iter().map(Orifice::name))?;
     let scene = scene.orifice(orifice);
     let last = scene.orifices().len() - 1;

@@ -5,8 +5,8 @@ use toml::de::DeValue;
 use super::keys::TableKeys;
 use super::magnet::magnetic_field;
 use super::phase_keys::{
-    ACTUATE, HOLD, HOLD_COMBINATION, LOAD, MOVE, OPEN, PATH, PHASE, PRESSURE, PRESSURE_ON, ROTATE,
-    SYMMETRY, TERMS,
+    ACTUATE, FLOW, HOLD, HOLD_COMBINATION, LOAD, MOVE, OPEN, PATH, PHASE, PRESSURE, PRESSURE_ON,
+    ROTATE, SYMMETRY, TERMS,
 };
 use super::selection::selection;
 use super::table::Table;
@@ -23,7 +23,7 @@ use crate::scene::timeline::{LoadKind, Phase, Scene};
 type Add = fn(Phase, &Table, &Scene) -> Result<Phase, Error>;
 
 /// The tables inside of a phase: what they add.
-const PARTS: [(&TableKeys, Add); 11] = [
+const PARTS: [(&TableKeys, Add); 12] = [
     (&HOLD, hold),
     (&MOVE, moving),
     (&PATH, path),
@@ -34,6 +34,7 @@ const PARTS: [(&TableKeys, Add); 11] = [
     (&PRESSURE, pressure),
     (&PRESSURE_ON, pressure_on),
     (&OPEN, open),
+    (&FLOW, flow),
     (&ACTUATE, actuate),
 ];
 
@@ -215,6 +216,12 @@ fn open(phase: Phase, table: &Table, scene: &Scene) -> Result<Phase, Error> {
     let known: Vec<&str> = scene.orifices().iter().map(|orifice| orifice.name()).collect();
     let orifice = table.required("orifice", |v| named(v, &known))?;
     Ok(phase.open(orifice, course(table, "opening", "openings")?))
+}
+
+fn flow(phase: Phase, table: &Table, scene: &Scene) -> Result<Phase, Error> {
+    let known: Vec<&str> = scene.liquids().iter().map(|liquid| liquid.chamber()).collect();
+    let chamber = table.required("chamber", |v| named(v, &known))?;
+    Ok(phase.flow(chamber, course(table, "rate", "rates")?))
 }
 
 fn actuate(phase: Phase, table: &Table, scene: &Scene) -> Result<Phase, Error> {

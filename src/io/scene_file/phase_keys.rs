@@ -22,6 +22,7 @@ pub(super) const PHASE: TableKeys = TableKeys::new(
         part(&PRESSURE, "pressures in chambers"),
         part(&PRESSURE_ON, "pressures on faces"),
         part(&OPEN, "openings of orifices"),
+        part(&FLOW, "flows of liquids into chambers"),
         part(&ACTUATE, "forces in springs and cables, stresses of muscles, strains of growth"),
         Key::new("magnetic_field", Holds::Table(&MAGNETIC_FIELD), "the magnetic field"),
         Key::new(
@@ -221,6 +222,20 @@ pub(super) const OPEN: TableKeys = TableKeys::new(
     "open = [{ orifice = \"valve\", times = [0.0, 0.1], openings = [0.0, 1.0] }]",
 )
 .one_of(&[&["opening"], &["times", "openings"]]);
+
+pub(super) const FLOW: TableKeys = TableKeys::new(
+    "flow",
+    "How much liquid flows into a chamber, as from a syringe or a pump; below 0 it flows out. That of a table is interpolated linearly, and is \
+     constant before and after.",
+    &[
+        Key::new("chamber", Holds::Text, "the name of a chamber with a liquid").required(),
+        Key::new("rate", Holds::Changing, "the volume, without pressure, that flows in per time").in_unit("m^3/s"),
+        TIMES,
+        Key::new("rates", Holds::List(&Holds::Number), "rates at these times").in_unit("m^3/s"),
+    ],
+    "flow = [{ chamber = \"inside\", times = [0.0, 0.1], rates = [0.0, 1.0e-6] }]",
+)
+.one_of(&[&["rate"], &["times", "rates"]]);
 
 pub(super) const ACTUATE: TableKeys = TableKeys::new(
     "actuate",

@@ -56,6 +56,7 @@ pub(crate) fn rewritten(
             let list = match key {
                 "pressure" => pressures(phase),
                 "open" => openings(phase),
+                "flow" => flows(phase),
                 "actuate" => actuations(phase, scene),
                 "magnetic_field" => field(phase, scene.body().dimension()),
                 _ => loads(phase, scene.body().dimension()),
@@ -104,6 +105,13 @@ fn openings(phase: &Phase) -> String {
         format!("{{ orifice = {orifice}, {} }}", course(opening, ["opening", "openings"]))
     };
     list(phase.openings.iter().map(entry))
+}
+
+fn flows(phase: &Phase) -> String {
+    let entry = |(chamber, flow): &(String, Signal)| {
+        format!("{{ chamber = {}, {} }}", quoted(chamber), course(flow, ["rate", "rates"]))
+    };
+    list(phase.flows.iter().map(entry))
 }
 
 fn actuations(phase: &Phase, scene: &Scene) -> String {

@@ -63,7 +63,7 @@ const END: TableKeys = TableKeys::new(
 
 pub(super) const CHAMBER: TableKeys = TableKeys::new(
     "[[chamber]]",
-    "A closed space that `pressure` in a phase blows up.",
+    "A closed space that `pressure` in a phase blows up, unless it has [[gas]] or a [[liquid]].",
     &[
         Key::new("name", Holds::Text, "the name of the chamber").required(),
         Key::new(
@@ -92,6 +92,9 @@ pub(super) const CHAMBER: TableKeys = TableKeys::new(
         .law("Without it a rim is an error. The nodes of the rim feel the pressure on its lid.")
         .default("false"),
         Key::number("thickness", "the thickness", "m").default("that of the body"),
+        Key::number("burst", "the pressure, above that outside, at which it bursts", "Pa")
+            .law("The first step that ends with more ends the run, with an error that says when and how much.")
+            .default("none"),
     ],
     "[[chamber]]\nname = \"inside\"\nnodes = \"inner\"",
 )
@@ -191,6 +194,7 @@ pub(super) fn add_chamber(scene: Scene, value: &Value) -> Result<Scene, Error> {
         chamber = chamber.closed_by_lid();
     }
     chamber = table.added(chamber, "thickness", Value::number, Chamber::thickness)?;
+    chamber = table.added(chamber, "burst", Value::number, Chamber::burst)?;
     unique(table, name, scene.chambers().iter().map(Chamber::name))?;
     chamber.force(body, Vec::new()).map_err(|error| table.blame(error))?;
     Ok(scene.chamber(chamber))

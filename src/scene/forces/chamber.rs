@@ -1,24 +1,26 @@
 //! Chambers: pressure within walls of nodes, a closed polygon or a closed surface.
 
+mod depth;
 mod enclosure;
+mod force;
 mod generalized;
 mod sides;
 #[cfg(test)]
 mod tests;
 mod walls;
 
+use std::fmt;
+
 use enclosure::{Polygon, Surface};
 
-use super::signal::{self, Signal, finite_at};
+use super::signal::Signal;
 use crate::base::input::{InputError, positive};
 use crate::base::sparse::BlockMatrix;
-use crate::base::vector::distinct;
 use crate::elements::body::Body;
-use crate::elements::force::{Force, GeneralizedForce, NodalForces, Tangents};
 use crate::elements::mesh::Selection;
-use crate::integrators::ode::Failure;
 
-/// A chamber filled with a gas of given pressure p (Pa), which pushes its walls apart.
+/// A chamber filled with a gas of given pressure p (Pa), which pushes its walls apart, unless it has [gas](crate::Gas) or a
+/// [liquid](crate::Liquid) with a pressure of its own.
 ///
 /// The force on its nodes is p h dS/du in the plane, with the area S within its walls and the thickness h,
 /// and p dV/du in space, with the enclosed volume V. Walls with mid nodes are curved according to the shape
@@ -27,19 +29,35 @@ use crate::integrators::ode::Failure;
 ///
 /// Walls have no contact with each other. A run ends with an error where a chamber under pressure encloses a
 /// volume below 0; without pressure, that is a warning.
-#[derive(Debug, Clone)]
+#[derive(Clone)]
 pub struct Chamber {
     name: String,
     walls: Walls,
     is_closed_by_line: bool,
     is_closed_by_lid: bool,
     thickness: Option<f64>,
+    burst: Option<f64>,
 }
 
 #[derive(Debug, Clone)]
 enum Walls {
     Nodes(Selection),
     Triangles(Vec<[usize; 3]>),
+}
+
+/// As it was before chambers could burst, where this one cannot: checkpoints tell scenes apart by it.
+impl fmt::Debug for Chamber {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut parts = f.debug_struct("Chamber");
+        parts.field("name", &self.name).field("walls", &self.walls);
+        parts.field("is_closed_by_line", &self.is_closed_by_line);
+        parts.field("is_closed_by_lid", &self.is_closed_by_lid);
+        parts.field("thickness", &self.thickness);
+        self.burst.iter().for_each(|burst| {
+            parts.field("burst", burst);
+        });
+        parts.finish()
+    }
 }
 
 impl Chamber {
@@ -80,7 +98,14 @@ impl Chamber {
     }
 
     fn new(name: String, walls: Walls) -> Self {
-        Self { name, walls, is_closed_by_line: false, is_closed_by_lid: false, thickness: None }
+        Self {
+            name,
+            walls,
+            is_closed_by_line: false,
+            is_closed_by_lid: false,
+            thickness: None,
+            burst: None,
+        }
     }
 
     /// Closes walls in the plane that are open at one place by the straight line between their ends.
@@ -107,6 +132,26 @@ impl Chamber {
         self
     }
 
+    /// Pressure (Pa, above that outside) at which it bursts: the first step that ends with more in it ends the run, with an error that says when
+    /// and how much that was. Default: it bears any pressure. An equilibrium is not checked.
+    ///
+    /// ```
+    /// use pliant::{Body, Cells, Chamber, Material, Mesh, Phase, Sampling, Scene, Settings, Signal};
+    ///
+    /// let rubber = Material { density: 1000.0, young: 1e6, poisson: 0.3, viscosity: 100.0 };
+    /// let ring = Mesh::ring(0.02, 0.03, [16, 3], Cells::Rectangles)?;
+    /// let scene = Scene::new(Body::new(ring, rubber).thickness(0.01).build()?)
+    ///     .chamber(Chamber::within("air", "inner").burst(30e3))
+    ///     .phase(Phase::until(1.0).pressure("air", Signal::ramp(0.0, 40e3, 0.0, 1.0)));
+    /// let end = scene.simulate(&Settings::default(), &Sampling::every(0.1)).unwrap_err();
+    /// assert!(end.to_string().contains("chamber \"air\" bursts at t = 0.7"), "{end}");
+    /// # Ok::<(), pliant::Error>(())
+    /// ```
+    pub fn burst(mut self, pressure: f64) -> Self {
+        self.burst = Some(pressure);
+        self
+    }
+
     /// Name of the chamber.
     pub fn name(&self) -> &str {
         &self.name
@@ -130,6 +175,8 @@ impl Chamber {
             let help = "a lid closes walls in space only: in the plane say closed_by_line";
             return Err(InputError::new(self.input("closed_by_lid"), true, help));
         }
+        let burst = self.burst.map(|burst| positive(&self.input("burst"), burst, "Pa"));
+        let burst = burst.transpose()?;
         let geometry = match (&self.walls, body.dimension()) {
             (Walls::Nodes(nodes), 2) => self.polygon(body, nodes)?,
             (Walls::Nodes(nodes), 3) => {
@@ -155,7 +202,7 @@ impl Chamber {
             }
         };
         let mut force =
-            ChamberForce { name: self.name.clone(), geometry, pressure, has_room: false };
+            ChamberForce { name: self.name.clone(), geometry, pressure, has_room: false, burst };
         let natural = force.volume(&vec![0.0; body.dofs()]);
         force.has_room = orientation(natural, body) == Some(1.0);
         Ok(force)
@@ -258,6 +305,8 @@ pub(crate) struct ChamberForce {
     pressure: Vec<Signal>,
     /// Whether its walls enclose a volume in the undeformed shape, and are not flat.
     has_room: bool,
+    /// Pressure (Pa) at which it bursts.
+    burst: Option<f64>,
 }
 
 impl ChamberForce {
@@ -301,68 +350,4 @@ impl ChamberForce {
 enum Geometry {
     Polygon(Polygon, f64),
     Surface(Surface, f64),
-}
-
-impl Force for ChamberForce {
-    fn add_forces(
-        &self,
-        t: f64,
-        u: &[f64],
-        _v: &[f64],
-        forces: &mut NodalForces,
-    ) -> Result<(), Failure> {
-        let pressure = signal::sum(&self.pressure, t);
-        finite_at(t, format_args!("the pressure in chamber \"{}\"", self.name), pressure)?;
-        self.add_gradient(pressure, u, &mut forces.applied);
-        Ok(())
-    }
-
-    /// Pressure in a volume below 0 is refused: it would pull the walls further through each other instead of
-    /// pushing them apart.
-    fn check_step(&self, t: f64, _before: &[f64], after: &[f64]) -> Result<(), Failure> {
-        let pressure = signal::sum(&self.pressure, t);
-        if pressure == 0.0 {
-            return Ok(());
-        }
-        let volume = self.volume(after);
-        if !self.has_room || volume >= 0.0 {
-            return Ok(());
-        }
-        Err(Failure::Recoverable(format!(
-            "chamber \"{}\" encloses {volume:.1e} m^3 at t = {t} s under {pressure} Pa: {TURNED}",
-            self.name
-        )))
-    }
-
-    fn add_tangents(
-        &self,
-        t: f64,
-        u: &[f64],
-        _v: &[f64],
-        stiffness: &mut BlockMatrix,
-        _damping: &mut BlockMatrix,
-    ) -> Tangents {
-        self.add_hessian(-signal::sum(&self.pressure, t), u, stiffness);
-        Tangents::Added
-    }
-
-    fn couplings(&self) -> Vec<[usize; 2]> {
-        match &self.geometry {
-            Geometry::Polygon(polygon, _) => polygon.couplings(),
-            Geometry::Surface(surface, _) => surface.couplings(),
-        }
-    }
-
-    fn nodes(&self) -> Option<Vec<usize>> {
-        Some(distinct(self.couplings().into_iter().flatten()))
-    }
-
-    fn is_exact_along(&self, shapes: usize) -> bool {
-        self.is_larger_than(shapes)
-    }
-
-    fn generalized(&self, origin: &[f64], shapes: &[&[f64]]) -> Option<Box<dyn GeneralizedForce>> {
-        self.is_larger_than(shapes.len())
-            .then(|| Box::new(self.along(origin, shapes)) as Box<dyn GeneralizedForce>)
-    }
 }

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use super::faces::{LoadedFace, number_of};
 use super::surface::natural;
 use crate::base::sparse::BlockMatrix;
-use crate::base::vector::{distinct, norm};
+use crate::base::vector::{cross, distinct, dot, norm};
 use crate::elements::basis::{FacePoint, MOST_NODES, face_points};
 use crate::elements::mesh::{FaceKind, Mesh};
 
@@ -98,6 +98,48 @@ impl FollowedFaces {
 }
 
 impl Followed<'_> {
+    /// The normal of its face times the area per reference area.
+    pub(super) fn facing(&self) -> [f64; 3] {
+        cross(&self.tangents[0], &self.tangents[1])
+    }
+
+    /// Its position (m).
+    pub(super) fn place(&self) -> [f64; 3] {
+        let mut x = [0.0; 3];
+        for (place, share) in self.places.iter().zip(self.point.values) {
+            x.iter_mut().zip(place).for_each(|(x, place)| *x += share * place);
+        }
+        x
+    }
+
+    /// The second derivative of d^2 (e . n)/2, with the `depth` d along e (m), by the positions of two nodes of its face, given with their
+    /// numbers in it and the c of [`turning`](Self::turning):
+    ///
+    /// ```text
+    /// N_a N_b (e . n) e e^T + d (N_a e m_b^T + N_b m_a e^T) - (1/2) d^2 (N_a,1 N_b,2 - N_b,1 N_a,2) [e x],   m_b = e x c_b
+    /// ```
+    pub(super) fn bending(
+        &self,
+        e: &[f64; 3],
+        depth: f64,
+        facing: &[f64; 3],
+        [(a, from), (b, to)]: [(usize, [f64; 3]); 2],
+    ) -> [[f64; 3]; 3] {
+        let [of_a, of_b] = [cross(e, &from), cross(e, &to)];
+        let (values, [da, db]) =
+            (&self.point.values, [self.point.derivatives[a], self.point.derivatives[b]]);
+        let straight = values[a] * values[b] * dot(e, facing);
+        let bent = 0.5 * depth * depth * (da[0] * db[1] - db[0] * da[1]);
+        let spin = cross_with(*e);
+        std::array::from_fn(|i| {
+            std::array::from_fn(|j| {
+                straight * e[i] * e[j]
+                    + depth * (values[a] * e[i] * of_b[j] + values[b] * of_a[i] * e[j])
+                    - bent * spin[i][j]
+            })
+        })
+    }
+
     /// The vectors c_b of its nodes with which the derivative of the normal by u_b is [c_b x]: N_b,2 x,1 - N_b,1 x,2.
     pub(super) fn turning(&self) -> impl Iterator<Item = [f64; 3]> + '_ {
         let [first, second] = self.tangents;

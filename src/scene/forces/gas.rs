@@ -5,19 +5,20 @@
 //! -dU/dV = p; and what flows in brings mu = dU/dm = n R T L for each kilogram. From both mu of the standard atmosphere is
 //! taken, for each kilogram, so that all gas counts from there.
 
-mod closed;
 mod flow;
 mod orifice;
 #[cfg(test)]
 mod tests;
 
-pub(crate) use closed::ClosedGas;
-pub(crate) use flow::GasFlow;
+pub(crate) use flow::AmountFlow;
 pub use orifice::Orifice;
 pub(crate) use orifice::{End, OrificeFlow, Supply};
 
 use super::chamber::{ChamberForce, TURNED};
+use super::content::Content;
 use crate::base::input::{InputError, not_negative, positive};
+use crate::base::sparse::BlockMatrix;
+use crate::elements::force::NodalForces;
 use crate::integrators::ode::Failure;
 
 /// Absolute pressure of the atmosphere (Pa) where a scene does not say another one: the standard atmosphere.
@@ -112,11 +113,6 @@ pub(crate) struct Filled {
 }
 
 impl Filled {
-    /// The amount (kg) at the start.
-    pub(crate) fn amount(&self) -> f64 {
-        self.amount
-    }
-
     /// Absolute pressure (Pa) of an `amount` (kg) under the displacements `u`, and the volume (m^3).
     ///
     /// # Errors
@@ -138,18 +134,19 @@ impl Filled {
         Ok([self.pressure * density.powf(self.exponent), volume])
     }
 
-    /// What the gas exceeds the air around by (Pa), at an `absolute` pressure.
-    pub(crate) fn gauge(&self, absolute: f64) -> f64 {
-        absolute - self.outside
+    /// Adds its forces, and returns the absolute pressure (Pa).
+    ///
+    /// # Errors
+    /// As [`pressure`](Self::pressure).
+    fn push(&self, u: &[f64], amount: f64, forces: &mut NodalForces) -> Result<f64, Failure> {
+        let [pressure, _] = self.pressure(u, amount)?;
+        self.walls.add_gradient(self.above_outside(pressure), u, &mut forces.conservative);
+        Ok(pressure)
     }
 
-    /// Potential energy (J) of an `amount` (kg) and of the air around, 0 at the start.
-    fn potential(&self, u: &[f64], amount: f64) -> f64 {
-        let Ok([pressure, volume]) = self.pressure(u, amount) else { return f64::NAN };
-        let [work, _] = self.work(pressure);
-        let more = amount - self.amount;
-        GAS_CONSTANT_TIMES_TEMPERATURE * (amount * work - more) - self.zero * more
-            + self.outside * (volume - self.volume)
+    /// What the gas exceeds the air around by (Pa), at an `absolute` pressure.
+    fn above_outside(&self, absolute: f64) -> f64 {
+        absolute - self.outside
     }
 
     /// L and r^(n-1) at an absolute pressure (Pa).
@@ -170,5 +167,47 @@ impl Filled {
     /// How the temperature falls with the pressure, d ln T/d ln p.
     fn cooling(&self) -> f64 {
         (self.exponent - 1.0) / self.exponent
+    }
+}
+
+impl Content for Filled {
+    fn walls(&self) -> &ChamberForce {
+        &self.walls
+    }
+
+    fn amount(&self) -> f64 {
+        self.amount
+    }
+
+    fn press(&self, u: &[f64], amount: f64, forces: &mut NodalForces) -> Result<(), Failure> {
+        self.push(u, amount, forces).map(|_| ())
+    }
+
+    fn linearize(
+        &self,
+        u: &[f64],
+        amount: f64,
+        stiffness: &mut BlockMatrix,
+        gradient: &mut [f64],
+    ) -> Option<[f64; 3]> {
+        let [pressure, volume] = self.pressure(u, amount).ok()?;
+        self.walls.add_hessian(-self.above_outside(pressure), u, stiffness);
+        self.walls.add_gradient(1.0, u, gradient);
+        let stiff = self.exponent * pressure / volume;
+        Some([pressure, stiff, self.exponent * pressure / amount])
+    }
+
+    /// With that of the air around.
+    fn potential(&self, u: &[f64], amount: f64) -> f64 {
+        let Ok([pressure, volume]) = self.pressure(u, amount) else { return f64::NAN };
+        let [work, _] = self.work(pressure);
+        let more = amount - self.amount;
+        GAS_CONSTANT_TIMES_TEMPERATURE * (amount * work - more) - self.zero * more
+            + self.outside * (volume - self.volume)
+    }
+
+    fn gauge(&self, u: &[f64], amount: f64) -> Result<f64, Failure> {
+        let [pressure, _] = self.pressure(u, amount)?;
+        Ok(self.above_outside(pressure))
     }
 }

@@ -1,7 +1,9 @@
 //! Forces on a body from outside: one file per kind of force.
 
 mod chamber;
+mod closed;
 mod contact;
+mod content;
 mod faces;
 mod fluid;
 mod followed;
@@ -9,8 +11,10 @@ mod friction;
 mod gas;
 mod gravity;
 mod growth;
+mod liquid;
 mod load;
 mod magnet;
+mod moment;
 mod muscle;
 mod nodal;
 mod obstacle;
@@ -27,14 +31,18 @@ mod travel;
 
 pub use chamber::Chamber;
 pub(crate) use chamber::{ChamberForce, TURNED};
+pub(crate) use closed::Closed;
 pub(crate) use contact::Contact;
+pub(crate) use content::Content;
 pub(crate) use faces::{areas, shares};
 pub use fluid::Fluid;
 pub(crate) use fluid::FluidForce;
-pub(crate) use gas::{ATMOSPHERE, ClosedGas, End, Filled, GasFlow, OrificeFlow, Supply};
+pub(crate) use gas::{ATMOSPHERE, AmountFlow, End, Filled, OrificeFlow, Supply};
 pub use gas::{Gas, Orifice};
 pub(crate) use gravity::Gravity;
 pub use growth::Growth;
+pub use liquid::Liquid;
+pub(crate) use liquid::{Poured, Weight};
 pub(crate) use load::{Load, VaryingLoad};
 pub use magnet::{Magnet, MagneticField};
 pub use muscle::Muscle;

@@ -95,14 +95,21 @@ impl Method {
             Self::IdaKlu | Self::CentralDifference if !scene.orifices().is_empty() => Some(
                 "it has no unknowns for the amounts of gas that flow through orifices: take another method, or auto",
             ),
+            Self::IdaKlu | Self::CentralDifference if scene.pours() => Some(
+                "it has no unknowns for the amounts of liquids that flow into chambers: take another method, or auto",
+            ),
             _ => None,
         }
     }
 
-    /// A scene as it has equations for it: with constant amounts of gas where it has no unknowns for them.
+    /// A scene as it has equations for it: with constant amounts of gas and liquids where it has no unknowns for them.
     pub(crate) fn equations_of(self, scene: &Scene) -> Cow<'_, Scene> {
         match self {
-            Self::IdaKlu | Self::CentralDifference if scene.orifices().is_empty() => scene.shut(),
+            Self::IdaKlu | Self::CentralDifference
+                if scene.orifices().is_empty() && !scene.pours() =>
+            {
+                scene.shut()
+            }
             _ => Cow::Borrowed(scene),
         }
     }

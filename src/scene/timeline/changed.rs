@@ -71,7 +71,8 @@ impl Phase {
         let actuations = frozen.actuations.iter_mut().map(|(_, force)| force);
         let openings = frozen.openings.iter_mut().map(|(_, opening)| opening);
         let pressures = frozen.pressures.iter_mut().map(|(_, pressure)| pressure);
-        for signal in actuations.chain(pressures).chain(openings) {
+        let flows = frozen.flows.iter_mut().map(|(_, flow)| flow);
+        for signal in actuations.chain(pressures).chain(openings).chain(flows) {
             *signal = signal.frozen();
         }
         Arc::new(frozen)
@@ -110,6 +111,7 @@ impl Phase {
             || self.actuations.iter().any(|(_, force)| force.live().is_some())
             || self.pressures.iter().any(|(_, pressure)| pressure.live().is_some())
             || self.openings.iter().any(|(_, opening)| opening.live().is_some())
+            || self.flows.iter().any(|(_, flow)| flow.live().is_some())
             || self.live_field().is_some()
     }
 

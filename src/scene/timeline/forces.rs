@@ -47,7 +47,7 @@ impl Scene {
             forces.push(Arc::new(field.force(&self.body, magnets, input)?));
         }
         self.add_chambers(phase, &mut forces)?;
-        self.add_gas(phase, &mut forces)?;
+        self.add_amounts(phase, &mut forces)?;
         for (nodes, pressure) in &phase.face_pressures {
             forces.push(Arc::new(FacePressure::new(&self.body, nodes, pressure.clone())?));
         }
@@ -245,6 +245,10 @@ impl Scene {
             let number = self.chamber_number(name, &input)?;
             if self.gas_in(name).is_some() {
                 let help = "the gas in it has a pressure of its own: feed it by an orifice, or leave the gas out";
+                return Err(InputError::new(input, format!("in chamber \"{name}\""), help));
+            }
+            if self.liquid_in(name).is_some() {
+                let help = "the liquid in it has a pressure of its own: let it flow in and out, or leave the liquid out";
                 return Err(InputError::new(input, format!("in chamber \"{name}\""), help));
             }
             pressures[number].push(pressure.clone());

@@ -7,7 +7,7 @@ use super::{Phase, Scene, unique};
 use crate::base::input::{InputError, find, not_negative, unknown_among};
 use crate::elements::force::Forces;
 use crate::scene::forces::{
-    Chamber, ClosedGas, End, Filled, Gas, GasFlow, Live, Orifice, OrificeFlow, Signal, Supply,
+    AmountFlow, Chamber, Closed, End, Filled, Gas, Live, Orifice, OrificeFlow, Signal, Supply,
 };
 
 /// What an end of an orifice in the open is called.
@@ -69,10 +69,10 @@ impl Scene {
         !self.gases.is_empty()
     }
 
-    /// Number of amounts of gas that are unknowns.
+    /// Number of amounts of gas and liquids that are unknowns.
     #[cfg(feature = "checkpoint")]
     pub(crate) fn flowing_amounts(&self) -> usize {
-        if self.closes_gas { 0 } else { self.gases.len() }
+        if self.is_shut { 0 } else { self.gases.len() + self.liquids.len() }
     }
 
     /// All that gas is and flows through, for comparison with another scene.
@@ -81,14 +81,17 @@ impl Scene {
         (&self.gases, &self.orifices, &self.supplies, self.atmosphere)
     }
 
-    /// The same scene with constant amounts of gas, without orifices: for what has no unknowns for amounts.
+    /// The same scene with constant amounts of gas and liquids, without orifices: for what has no unknowns for amounts.
     pub(crate) fn shut(&self) -> Cow<'_, Self> {
-        if !self.has_gas() {
+        if !self.has_gas() && self.liquids.is_empty() {
             return Cow::Borrowed(self);
         }
-        let mut shut = Self { closes_gas: true, ..self.clone() };
+        let mut shut = Self { is_shut: true, ..self.clone() };
         shut.orifices.clear();
-        shut.phases.iter_mut().for_each(|phase| phase.openings.clear());
+        shut.phases.iter_mut().for_each(|phase| {
+            phase.openings.clear();
+            phase.flows.clear();
+        });
         Cow::Owned(shut)
     }
 
@@ -174,8 +177,8 @@ impl Scene {
         supplies.chain(self.chambers.iter().map(Chamber::name)).chain([OPEN])
     }
 
-    /// Adds the forces of all gases: together where their amounts are unknowns, else one by one.
-    pub(super) fn add_gas(&self, phase: &Phase, forces: &mut Forces) -> Result<(), InputError> {
+    /// Adds the forces of all gases and liquids: together where their amounts are unknowns, else one by one.
+    pub(super) fn add_amounts(&self, phase: &Phase, forces: &mut Forces) -> Result<(), InputError> {
         let input = format!("open of phase \"{}\"", phase.name);
         for (name, opening) in &phase.openings {
             self.orifice_number(name, &input)?;
@@ -197,12 +200,16 @@ impl Scene {
         unique("orifice", self.orifices.iter().map(Orifice::name))?;
         let orifices = (0..self.orifices.len()).map(|number| self.orifice_flow(number, phase));
         let (orifices, gases) = (orifices.collect::<Result<Vec<_>, _>>()?, self.filled()?);
-        if self.closes_gas {
+        let (liquids, dofs) = (self.poured(Some(phase))?, self.body.dofs());
+        if self.is_shut {
             for gas in gases {
-                forces.push(Arc::new(ClosedGas::new(gas, self.body.dofs())));
+                forces.push(Arc::new(Closed::new(gas, dofs)));
             }
-        } else if self.has_gas() {
-            forces.push(Arc::new(GasFlow::new(gases, orifices)));
+            for liquid in liquids {
+                forces.push(Arc::new(Closed::new(liquid, dofs)));
+            }
+        } else if !(gases.is_empty() && liquids.is_empty()) {
+            forces.push(Arc::new(AmountFlow::new(gases, orifices, liquids)));
         }
         Ok(())
     }

@@ -8,6 +8,7 @@ mod fluid;
 mod forces;
 mod gas;
 mod initial;
+mod liquid;
 mod load;
 mod loading;
 mod phase;
@@ -40,8 +41,8 @@ use crate::scene::constraint::{
     Constrained, Constraint, ConstraintRow, PhaseStart, prescribe, rows,
 };
 use crate::scene::forces::{
-    ATMOSPHERE, Chamber, Contact, Fluid, Gas, Growth, Magnet, Muscle, Obstacle, Orifice, Spring,
-    Supply, Touch, TouchForce,
+    ATMOSPHERE, Chamber, Contact, Fluid, Gas, Growth, Liquid, Magnet, Muscle, Obstacle, Orifice,
+    Spring, Supply, Touch, TouchForce,
 };
 use crate::scene::reduced_model::ReducedModel;
 
@@ -72,12 +73,13 @@ pub struct Scene {
     fluids: Vec<Fluid>,
     chambers: Vec<Chamber>,
     gases: Vec<Gas>,
+    liquids: Vec<Liquid>,
     orifices: Vec<Orifice>,
     supplies: Vec<Supply>,
     /// Absolute pressure (Pa) around chambers with gas.
     atmosphere: f64,
-    /// Whether amounts of gas are constants.
-    closes_gas: bool,
+    /// Whether amounts of gas and liquids are constants.
+    is_shut: bool,
     /// The constraints of each tie, found once: its nodes are those of this mesh.
     ties: Vec<Result<Arc<[Constraint]>, InputError>>,
     touches: Vec<Touch>,
@@ -117,10 +119,11 @@ impl Scene {
             fluids: Vec::new(),
             chambers: Vec::new(),
             gases: Vec::new(),
+            liquids: Vec::new(),
             orifices: Vec::new(),
             supplies: Vec::new(),
             atmosphere: ATMOSPHERE,
-            closes_gas: false,
+            is_shut: false,
             ties: Vec::new(),
             touches: Vec::new(),
             obstacles: Vec::new(),
@@ -145,7 +148,7 @@ impl Scene {
         self
     }
 
-    /// Adds a chamber, to be filled by the pressure that phases give it, or with [gas](Self::gas).
+    /// Adds a chamber, to be filled by the pressure that phases give it, or with [gas](Self::gas) or a [liquid](Self::liquid).
     pub fn chamber(mut self, chamber: Chamber) -> Self {
         self.chambers.push(chamber);
         self
@@ -405,6 +408,7 @@ impl Scene {
         for obstacle in &self.obstacles {
             Contact::new(&self.body, obstacle)?;
         }
+        self.check_flows()?;
         let (mut time, mut u) = (0.0, self.initial_displacements().to_vec());
         let forces = self.phases.iter().map(|phase| {
             let rows = self.rows(phase, &PhaseStart { time, u: &u })?;

@@ -28,6 +28,8 @@ pub struct Phase {
     pub(crate) pressures: Vec<(String, Signal)>,
     /// Name of an orifice, opening (0 to 1).
     pub(crate) openings: Vec<(String, Signal)>,
+    /// Name of a chamber, flow of its liquid (m^3/s).
+    pub(crate) flows: Vec<(String, Signal)>,
     /// Nodes, pressure (Pa) on the faces between them.
     pub(crate) face_pressures: Vec<(Selection, Signal)>,
     pub(crate) projects_velocity: bool,
@@ -60,6 +62,7 @@ impl Phase {
             actuations: Vec::new(),
             pressures: Vec::new(),
             openings: Vec::new(),
+            flows: Vec::new(),
             face_pressures: Vec::new(),
             projects_velocity: false,
             contact: ContactWith::All,
@@ -322,11 +325,12 @@ impl Phase {
         let pressures = self.pressures.iter().map(|(_, pressure)| pressure.breaks());
         let on_faces = self.face_pressures.iter().map(|(_, pressure)| pressure.breaks());
         let openings = self.openings.iter().map(|(_, opening)| opening.breaks());
+        let flows = self.flows.iter().map(|(_, flow)| flow.breaks());
         let field = self.magnetic_field.iter().map(|field| field.field.breaks());
         let acting = self.contacts(obstacles).unwrap_or_default();
         let obstacles = acting.into_iter().map(Obstacle::breaks);
         let all = paths.chain(loads).chain(actuations).chain(pressures).chain(on_faces);
-        let all = all.chain(openings).chain(obstacles).chain(field);
+        let all = all.chain(openings).chain(flows).chain(obstacles).chain(field);
         let mut breaks = all.flatten().copied().collect::<Vec<f64>>();
         breaks.sort_by(f64::total_cmp);
         breaks.dedup();

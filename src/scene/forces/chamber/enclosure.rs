@@ -18,6 +18,8 @@ pub(super) struct Enclosure<const D: usize> {
     parts: Vec<Part<D>>,
     /// Natural positions of their corners.
     corners: Vec<[[f64; D]; D]>,
+    /// A node, and its natural position, that positions are counted from.
+    anchor: Option<(usize, [f64; D])>,
 }
 
 /// Closed polygons.
@@ -30,13 +32,24 @@ impl<const D: usize> Enclosure<D> {
     pub(super) fn new(mesh: &Mesh, parts: Vec<Part<D>>) -> Self {
         let position = |node: usize| std::array::from_fn(|i| mesh.position(node)[i]);
         let corners = parts.iter().map(|(nodes, _)| nodes.map(position)).collect();
-        Self { parts, corners }
+        Self { parts, corners, anchor: None }
+    }
+
+    /// Counts positions from one of its own nodes: closed walls enclose the same from wherever they are seen.
+    pub(super) fn anchor(&mut self) {
+        let first = self.parts.first().zip(self.corners.first());
+        self.anchor = first.map(|((nodes, _), corners)| (nodes[0], corners[0]));
     }
 
     /// Parts with the present positions of their corners.
     fn iter<'a>(&'a self, u: &'a [f64]) -> impl Iterator<Item = (&'a Part<D>, [[f64; D]; D])> {
-        self.parts.iter().zip(&self.corners).map(|(part, from)| {
-            let at = |k: usize, i: usize| from[k][i] + u[D * part.0[k] + i];
+        let anchor = self.anchor.as_ref();
+        let moved = anchor.map(|(node, from)| (&u[D * node..][..D], from));
+        self.parts.iter().zip(&self.corners).map(move |(part, from)| {
+            let at = |k: usize, i: usize| match moved {
+                None => from[k][i] + u[D * part.0[k] + i],
+                Some((u0, x0)) => (from[k][i] - x0[i]) + (u[D * part.0[k] + i] - u0[i]),
+            };
             (part, std::array::from_fn(|k| std::array::from_fn(|i| at(k, i))))
         })
     }

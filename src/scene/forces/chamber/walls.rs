@@ -31,17 +31,26 @@ impl Chamber {
         }
     }
 
+    /// The faces of the boundary of the body in space between the selected nodes.
+    pub(super) fn boundary(
+        &self,
+        mesh: &Mesh,
+        selection: &Selection,
+    ) -> Result<Vec<Face>, InputError> {
+        let nodes = mesh.select(selection)?.into_iter().collect();
+        let mut faces = mesh.boundary_faces();
+        // the cells of a string are no walls
+        faces.retain(|face| face.len() > 2);
+        walls(faces, &nodes).map_err(|problem| self.bad_walls(selection, &problem))
+    }
+
     /// The triangles of the boundary of the body between the selected nodes, and those of lids.
     pub(super) fn faces(
         &self,
         mesh: &Mesh,
         selection: &Selection,
     ) -> Result<Vec<Part<3>>, InputError> {
-        let nodes = mesh.select(selection)?.into_iter().collect();
-        let mut faces = mesh.boundary_faces();
-        // the cells of a string are no walls
-        faces.retain(|face| face.len() > 2);
-        let faces = walls(faces, &nodes).map_err(|problem| self.bad_walls(selection, &problem))?;
+        let faces = self.boundary(mesh, selection)?;
         let outlines = faces.iter().map(|face| outline(face, face.len() > 4));
         let lids = self.lids(outlines).map_err(|problem| self.bad_walls(selection, &problem))?;
         let (mut all, mut by_kind) = (Vec::new(), Vec::new());

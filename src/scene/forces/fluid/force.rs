@@ -54,7 +54,7 @@ impl FluidForce {
         let (d, current) = (self.faces.dimension, self.current(t));
         let mut power = 0.0;
         self.faces.each_point(u, |at| {
-            let facing = facing(at);
+            let facing = at.facing();
             let nodes = || at.nodes.iter().copied().zip(at.point.values);
             if let Some(drag) = &self.drag {
                 let traction = drag.traction(&relative(at, v, &current, d), &facing);
@@ -63,12 +63,12 @@ impl FluidForce {
                 power += dot(&force, &current);
             }
             if let Some(open) = self.open() {
-                let pressure = at.point.weight * open.weight * open.at(&place(at));
+                let pressure = at.point.weight * open.weight * open.at(&at.place());
                 let force = facing.map(|n| -pressure * n);
                 nodes().for_each(|(node, share)| see(Kind::Open, node, force.map(|x| share * x)));
             }
             if let Some(closed) = self.closed() {
-                let depth = closed.at(&place(at));
+                let depth = closed.at(&at.place());
                 let factor = -at.point.weight * closed.weight * depth;
                 let up = factor * dot(&closed.down, &facing);
                 for ((node, share), c) in nodes().zip(at.turning()) {
@@ -115,21 +115,7 @@ enum Kind {
     Open,
 }
 
-/// The normal of a face times its area per reference area.
-fn facing(at: &Followed) -> [f64; 3] {
-    cross(&at.tangents[0], &at.tangents[1])
-}
-
-/// The position of a point (m).
-fn place(at: &Followed) -> [f64; 3] {
-    let mut x = [0.0; 3];
-    for (place, share) in at.places.iter().zip(at.point.values) {
-        x.iter_mut().zip(place).for_each(|(x, place)| *x += share * place);
-    }
-    x
-}
-
-/// Its velocity (m/s), where nodes have the velocities `v`, less that of the fluid.
+/// The velocity (m/s) of a point, where nodes have the velocities `v`, less that of the fluid.
 fn relative(at: &Followed, v: &[f64], current: &[f64; 3], dimension: usize) -> [f64; 3] {
     let mut velocity = current.map(|w| -w);
     for (node, share) in at.nodes.iter().zip(at.point.values) {
@@ -166,14 +152,9 @@ impl Force for FluidForce {
         Ok(())
     }
 
-    /// With T the traction times the area, c_b of [`turning`](Followed::turning) and m_b = e x c_b: -df_a/du_b is
-    /// -N_a (dT/d(n J) [c_b x] + N_b dT/dx), -df_a/dv_b is -N_a N_b dT/dw, and the second derivative of U adds
-    ///
-    /// ```text
-    /// W N_a N_b (e . n) e e^T + W d (N_a e m_b^T + N_b m_a e^T) - (W/2) d^2 (N_a,1 N_b,2 - N_b,1 N_a,2) [e x]
-    /// ```
-    ///
-    /// where the point is below the surface.
+    /// With T the traction times the area, c_b of [`turning`](Followed::turning): -df_a/du_b is
+    /// -N_a (dT/d(n J) [c_b x] + N_b dT/dx), -df_a/dv_b is -N_a N_b dT/dw, and where the point is below the surface
+    /// the second derivative of U adds W times [`bending`](Followed::bending).
     fn add_tangents(
         &self,
         t: f64,
@@ -184,12 +165,12 @@ impl Force for FluidForce {
     ) -> Tangents {
         let (d, current) = (self.faces.dimension, self.current(t));
         self.faces.each_point(u, |at| {
-            let facing = facing(at);
+            let facing = at.facing();
             let [mut by_facing, mut by_velocity, mut by_place] = [[[0.0; 3]; 3]; 3];
             if let Some(drag) = &self.drag {
                 [by_facing, by_velocity] = drag.derivatives(&relative(at, v, &current, d), &facing);
             }
-            let depth = self.depth.as_ref().map_or(0.0, |depth| depth.at(&place(at)));
+            let depth = self.depth.as_ref().map_or(0.0, |depth| depth.at(&at.place()));
             if let Some(Depth { weight, down, .. }) = self.open().filter(|_| depth > 0.0) {
                 for i in 0..3 {
                     by_facing[i][i] += weight * depth;
@@ -208,7 +189,7 @@ impl Force for FluidForce {
                     add_block(stiffness, pair, factor, &by_u);
                     add_block(damping, pair, factor * share, &by_velocity);
                     if let Some(closed) = closed {
-                        let hessian = closed.hessian(at, depth, &facing, [(a, from), (b, c)]);
+                        let hessian = at.bending(&closed.down, depth, &facing, [(a, from), (b, c)]);
                         add_block(stiffness, pair, at.point.weight * closed.weight, &hessian);
                     }
                 }
@@ -221,8 +202,8 @@ impl Force for FluidForce {
         let Some(closed) = self.closed() else { return 0.0 };
         let mut potential = 0.0;
         self.faces.each_point(u, |at| {
-            let depth = closed.at(&place(at));
-            let under = 0.5 * closed.weight * depth * depth * dot(&closed.down, &facing(at));
+            let depth = closed.at(&at.place());
+            let under = 0.5 * closed.weight * depth * depth * dot(&closed.down, &at.facing());
             potential += at.point.weight * under;
         });
         potential
@@ -237,33 +218,6 @@ impl Force for FluidForce {
 
     fn carried(&self) -> &[([usize; 2], f64)] {
         &self.carried
-    }
-}
-
-impl Depth {
-    /// The second derivative of d^2 (e . n)/2 by the positions of two nodes of a face, given with their numbers in it and the c of
-    /// [`turning`](Followed::turning).
-    fn hessian(
-        &self,
-        at: &Followed,
-        depth: f64,
-        facing: &[f64; 3],
-        [(a, from), (b, to)]: [(usize, [f64; 3]); 2],
-    ) -> Matrix {
-        let e = &self.down;
-        let [of_a, of_b] = [cross(e, &from), cross(e, &to)];
-        let (values, [da, db]) =
-            (&at.point.values, [at.point.derivatives[a], at.point.derivatives[b]]);
-        let straight = values[a] * values[b] * dot(e, facing);
-        let bent = 0.5 * depth * depth * (da[0] * db[1] - db[0] * da[1]);
-        let spin = cross_with(*e);
-        std::array::from_fn(|i| {
-            std::array::from_fn(|j| {
-                straight * e[i] * e[j]
-                    + depth * (values[a] * e[i] * of_b[j] + values[b] * of_a[i] * e[j])
-                    - bent * spin[i][j]
-            })
-        })
     }
 }
 

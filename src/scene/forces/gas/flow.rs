@@ -1,41 +1,40 @@
-//! The gases of a scene with orifices: amounts that are unknowns.
+//! The gases and liquids of a scene whose amounts are unknowns.
 
 use super::Filled;
 use super::orifice::{End, OrificeFlow};
 use crate::base::sparse::BlockMatrix;
 use crate::elements::force::{Flow, FlowDerivatives, Force, NodalForces, Tangents};
 use crate::integrators::ode::Failure;
+use crate::scene::forces::content::Content;
+use crate::scene::forces::liquid::Poured;
 
-/// All gases of a scene and the orifices between them.
-pub(crate) struct GasFlow {
+/// All gases of a scene and the orifices between them, and behind them all liquids.
+pub(crate) struct AmountFlow {
     gases: Vec<Filled>,
     orifices: Vec<OrificeFlow>,
+    liquids: Vec<Poured>,
     start: Vec<f64>,
 }
 
-impl GasFlow {
-    pub(crate) fn new(gases: Vec<Filled>, orifices: Vec<OrificeFlow>) -> Self {
-        Self { start: gases.iter().map(Filled::amount).collect(), gases, orifices }
+impl AmountFlow {
+    pub(crate) fn new(
+        gases: Vec<Filled>,
+        orifices: Vec<OrificeFlow>,
+        liquids: Vec<Poured>,
+    ) -> Self {
+        let mut start: Vec<f64> = gases.iter().map(Content::amount).collect();
+        start.extend(liquids.iter().map(Content::amount));
+        Self { start, gases, orifices, liquids }
     }
 
-    /// Adds the forces at the `amounts` (kg) and writes the pressures (Pa).
-    fn press(
-        &self,
-        u: &[f64],
-        amounts: &[f64],
-        forces: &mut NodalForces,
-        mut each: impl FnMut(usize, f64),
-    ) -> Result<(), Failure> {
-        for (number, (gas, &amount)) in self.gases.iter().zip(amounts).enumerate() {
-            let [pressure, _] = gas.pressure(u, amount)?;
-            gas.walls.add_gradient(gas.gauge(pressure), u, &mut forces.conservative);
-            each(number, pressure);
-        }
-        Ok(())
+    /// All gases, and then all liquids.
+    fn all(&self) -> impl Iterator<Item = &dyn Content> {
+        let gases = self.gases.iter().map(|gas| gas as &dyn Content);
+        gases.chain(self.liquids.iter().map(|liquid| liquid as &dyn Content))
     }
 }
 
-impl Flow for GasFlow {
+impl Flow for AmountFlow {
     fn start(&self) -> &[f64] {
         &self.start
     }
@@ -47,8 +46,10 @@ impl Flow for GasFlow {
         forces: &mut NodalForces,
         [rates, pressures]: [&mut [f64]; 2],
     ) -> Result<f64, Failure> {
-        self.press(u, amounts, forces, |number, pressure| pressures[number] = pressure)?;
         rates.fill(0.0);
+        for (number, (gas, &amount)) in self.gases.iter().zip(amounts).enumerate() {
+            pressures[number] = gas.push(u, amount, forces)?;
+        }
         for orifice in &self.orifices {
             let [flow, ..] = orifice.rate(t, &self.gases, pressures)?;
             for (end, sign) in orifice.ends.iter().zip([-1.0, 1.0]) {
@@ -58,11 +59,25 @@ impl Flow for GasFlow {
             }
         }
         let each = self.gases.iter().zip(&*rates).zip(&*pressures);
-        Ok(each.map(|((gas, rate), &pressure)| gas.brought(pressure)[0] * rate).sum())
+        let mut power = each.map(|((gas, rate), &pressure)| gas.brought(pressure)[0] * rate).sum();
+        let count = self.gases.len();
+        let each = amounts[count..].iter().zip(&mut rates[count..]);
+        for (liquid, (&amount, rate)) in self.liquids.iter().zip(each) {
+            liquid.press(u, amount, forces)?;
+            *rate = liquid.rate(t)?;
+            if *rate != 0.0 {
+                power += liquid.brought(u, amount)?[0] * *rate;
+            }
+        }
+        Ok(power)
     }
 
     fn potential_of(&self, u: &[f64], amounts: &[f64]) -> f64 {
-        self.gases.iter().zip(amounts).map(|(gas, &amount)| gas.potential(u, amount)).sum()
+        self.all().zip(amounts).map(|(content, &amount)| content.potential(u, amount)).sum()
+    }
+
+    fn check(&self, t: f64, u: &[f64], amounts: &[f64]) -> Result<(), Failure> {
+        self.all().zip(amounts).try_for_each(|(content, &amount)| content.check(t, u, amount))
     }
 
     /// Leaves all at 0 where there is no pressure: the step will be refused by the forces.
@@ -76,16 +91,14 @@ impl Flow for GasFlow {
         let FlowDerivatives { gradients, pressures: [stiff, pressing], rates, power, work } =
             derivatives;
         let ([by_volumes, by_amounts], [flows, pressures]) = (rates, work);
-        let count = self.gases.len();
+        let count = self.start.len();
         gradients.fill(0.0);
         [&mut *by_volumes, by_amounts, stiff, pressing, flows].iter_mut().for_each(|x| x.fill(0.0));
-        for (number, (gas, &amount)) in self.gases.iter().zip(amounts).enumerate() {
-            let Ok([pressure, volume]) = gas.pressure(u, amount) else { return };
-            gas.walls.add_hessian(-gas.gauge(pressure), u, stiffness);
-            gas.walls.add_gradient(1.0, u, &mut gradients[number * u.len()..][..u.len()]);
-            pressures[number] = pressure;
-            stiff[number] = gas.exponent * pressure / volume;
-            pressing[number] = gas.exponent * pressure / amount;
+        for (number, (content, &amount)) in self.all().zip(amounts).enumerate() {
+            let gradient = &mut gradients[number * u.len()..][..u.len()];
+            let linear = content.linearize(u, amount, stiffness, gradient);
+            let Some([pressure, by_volume, by_amount]) = linear else { return };
+            (pressures[number], stiff[number], pressing[number]) = (pressure, by_volume, by_amount);
         }
         for orifice in &self.orifices {
             let Ok([flow, by_first, by_second]) = orifice.rate(t, &self.gases, pressures) else {
@@ -102,7 +115,7 @@ impl Flow for GasFlow {
             }
         }
         let [power_by_volumes, power_by_amounts] = power;
-        for column in 0..count {
+        for column in 0..self.gases.len() {
             let slope = flows[column] * self.gases[column].brought(pressures[column])[1];
             power_by_volumes[column] = -slope * stiff[column];
             power_by_amounts[column] = slope * pressing[column];
@@ -112,11 +125,18 @@ impl Flow for GasFlow {
                 power_by_amounts[column] += brought * by_amounts[row * count + column];
             }
         }
+        for (at, liquid) in (self.gases.len()..).zip(&self.liquids) {
+            let Ok(rate) = liquid.rate(t) else { return };
+            let Ok([_, slope]) = liquid.brought(u, amounts[at]) else { return };
+            // d^2E/dm du is less the derivative of the forces by the amount
+            power_by_volumes[at] = -rate * pressing[at];
+            power_by_amounts[at] = rate * slope;
+        }
     }
 }
 
 /// As if the amounts stayed what they are at the start.
-impl Force for GasFlow {
+impl Force for AmountFlow {
     fn add_forces(
         &self,
         _t: f64,
@@ -124,7 +144,8 @@ impl Force for GasFlow {
         _v: &[f64],
         forces: &mut NodalForces,
     ) -> Result<(), Failure> {
-        self.press(u, &self.start, forces, |_, _| {})
+        let mut all = self.all().zip(&self.start);
+        all.try_for_each(|(content, &amount)| content.press(u, amount, forces))
     }
 
     fn add_tangents(
@@ -140,7 +161,7 @@ impl Force for GasFlow {
     }
 
     fn couplings(&self) -> Vec<[usize; 2]> {
-        self.gases.iter().flat_map(|gas| gas.walls.couplings()).collect()
+        self.all().flat_map(|content| content.walls().couplings()).collect()
     }
 
     fn flow(&self) -> Option<&dyn Flow> {

@@ -18,13 +18,31 @@ use crate::scene::forces::Signal;
 /// without the last root (choked) if p_2/p_1 is below the critical ratio b, and with a cubic in place of it where
 /// p_2/p_1 is above 0.999, whose slope is finite. C is the sonic conductance (m^3/(s Pa): 1e-8 are 0.6 l/min for each bar;
 /// a short nozzle has some 2e-3 times its area in m^2), rho_0 = 1.185 kg/m^3 and T_0 = 293.15 K those of the reference.
+///
+/// A [nozzle](Self::nozzle) of the area A has the flow of an ideal gas of exponent k = 1.4 without losses up to its narrowest section (A. J. C. B. de Saint-Venant,
+/// L. Wantzel, Journal de l'Ecole Royale Polytechnique 27 (1839) 85-122), times a coefficient of discharge C_d,
+///
+/// ```text
+/// q = C_d A p_1/sqrt(R T_1) sqrt(2 k/(k - 1) (r^(2/k) - r^((k + 1)/k))),   r = p_2/p_1, but not below (2/(k + 1))^(k/(k - 1)) = 0.528,
+/// ```
+///
+/// with a cubic above 0.999, too.
 /// [Phases](crate::Phase::open) say how far it is open.
 #[derive(Debug, Clone)]
 pub struct Orifice {
     pub(crate) name: String,
     pub(crate) ends: [String; 2],
-    conductance: f64,
+    opening: Opening,
     critical_ratio: f64,
+}
+
+/// How large it is.
+#[derive(Debug, Clone)]
+enum Opening {
+    /// C (m^3/(s Pa))
+    Conductance(f64),
+    /// A (m^2) and C_d.
+    Nozzle(f64, f64),
 }
 
 impl Orifice {
@@ -37,10 +55,29 @@ impl Orifice {
         conductance: f64,
     ) -> Self {
         let ends = [from.into(), to.into()];
-        Self { name: name.into(), ends, conductance, critical_ratio: 0.5 }
+        let opening = Opening::Conductance(conductance);
+        Self { name: name.into(), ends, opening, critical_ratio: 0.5 }
     }
 
-    /// Critical ratio b of pressures, from 0 to below 1. Default: 0.5.
+    /// A nozzle of an `area` A (m^2) between two ends, as those of [`new`](Self::new), without losses.
+    pub fn nozzle(
+        name: impl Into<String>,
+        from: impl Into<String>,
+        to: impl Into<String>,
+        area: f64,
+    ) -> Self {
+        Self { opening: Opening::Nozzle(area, 1.0), ..Self::new(name, from, to, 0.0) }
+    }
+
+    /// Coefficient of discharge C_d of a nozzle, above 0 and up to 1: some 0.95 of one that is round, 0.6 to 0.85 of a hole with sharp edges. Default: 1.
+    pub fn discharge(mut self, coefficient: f64) -> Self {
+        if let Opening::Nozzle(_, discharge) = &mut self.opening {
+            *discharge = coefficient;
+        }
+        self
+    }
+
+    /// Critical ratio b of pressures, from 0 to below 1. Default: 0.5. A nozzle has its own.
     pub fn critical_ratio(mut self, ratio: f64) -> Self {
         self.critical_ratio = ratio;
         self
@@ -61,15 +98,29 @@ impl Orifice {
         opening: Vec<Signal>,
     ) -> Result<OrificeFlow, InputError> {
         let input = |key: &str| format!("orifice \"{}\" {key}", self.name);
-        let conductance = positive(&input("conductance"), self.conductance, "m^3/(s Pa)")?;
         let ratio = self.critical_ratio;
         if !(0.0..1.0).contains(&ratio) {
             let help = "it must be from 0 to below 1; 0.5 suits most valves";
             return Err(InputError::new(input("critical_ratio"), ratio, help));
         }
-        // C rho_0, with rho_0 = p_0/(R T_0)
-        let scale = conductance * 1e5 / GAS_CONSTANT_TIMES_TEMPERATURE;
-        Ok(OrificeFlow { name: self.name.clone(), ends, scale, ratio, opening })
+        let (scale, law) = match self.opening {
+            Opening::Conductance(conductance) => {
+                let conductance = positive(&input("conductance"), conductance, "m^3/(s Pa)")?;
+                // C rho_0, with rho_0 = p_0/(R T_0)
+                (conductance * 1e5 / GAS_CONSTANT_TIMES_TEMPERATURE, Law::Standard { ratio })
+            }
+            Opening::Nozzle(area, discharge) => {
+                let area = positive(&input("area"), area, "m^2")?;
+                if !(discharge > 0.0 && discharge <= 1.0) {
+                    let help =
+                        "it must be above 0 and up to 1; 0.6 to 0.85 suit a hole with sharp edges";
+                    return Err(InputError::new(input("discharge"), discharge, help));
+                }
+                let choked = nozzle(CRITICAL).sqrt();
+                (discharge * area * choked / GAS_CONSTANT_TIMES_TEMPERATURE.sqrt(), Law::Nozzle)
+            }
+        };
+        Ok(OrificeFlow { name: self.name.clone(), ends, scale, law, opening })
     }
 }
 
@@ -91,13 +142,28 @@ pub(crate) enum End {
 /// Ratio of pressures above which the flow follows a cubic.
 const LAMINAR: f64 = 0.999;
 
+/// Exponent k of air without heat.
+const AIR: f64 = 1.4;
+
+/// (2/(k + 1))^(k/(k - 1)), the ratio of pressures below which a nozzle is choked.
+const CRITICAL: f64 = 0.528_281_787_717_174_3;
+
+/// How the flow depends on the ratio of pressures.
+enum Law {
+    /// That of ISO 6358, of this critical ratio.
+    Standard {
+        ratio: f64,
+    },
+    Nozzle,
+}
+
 /// The flow through an orifice.
 pub(crate) struct OrificeFlow {
     name: String,
     pub(super) ends: [End; 2],
-    /// C rho_0 (kg/(s Pa))
+    /// Choked flow over the pressure (kg/(s Pa)): C rho_0 or that of a nozzle.
     scale: f64,
-    ratio: f64,
+    law: Law,
     opening: Vec<Signal>,
 }
 
@@ -154,29 +220,55 @@ impl OrificeFlow {
         })
     }
 
-    /// The flow of an orifice of C rho_0 = 1 from the pressure p_1, where it is hotter by sqrt(T_0/T_1) = `thinning` with
+    /// The flow of an orifice whose choked flow is p_1 from the pressure p_1, where it is hotter by sqrt(T_0/T_1) = `thinning` with
     /// -d ln thinning/d ln p_1 = `cooling`, to p_2 below it, and its derivatives by both pressures.
     fn discharge(&self, [p1, thinning, cooling]: [f64; 3], p2: f64) -> [f64; 3] {
         if p1 == 0.0 {
             return [0.0; 3];
         }
-        let span = 1.0 - self.ratio;
-        let [share, slope] = share((1.0 - p2 / p1) / span, (1.0 - LAMINAR) / span);
+        let drop = 1.0 - p2 / p1;
+        let (span, [share, slope]) = match self.law {
+            Law::Standard { ratio } => {
+                let span = 1.0 - ratio;
+                (span, share(drop / span, (1.0 - LAMINAR) / span, standard_share))
+            }
+            Law::Nozzle => (1.0, share(drop, 1.0 - LAMINAR, nozzle_share)),
+        };
         let flow = thinning * p1 * share;
         let up = thinning * (share + slope * p2 / (p1 * span)) - cooling * flow / p1;
         [flow, up, -thinning * slope / span]
     }
 }
 
-/// Part of the choked flow at d = (1 - p_2/p_1)/(1 - b), and its derivative: sqrt(d (2 - d)), and below d = `least` the odd
-/// cubic that meets it there with the same slope.
-fn share(d: f64, least: f64) -> [f64; 2] {
-    let root = |d: f64| {
-        let value = (d * (2.0 - d)).sqrt();
-        [value, (1.0 - d) / value]
-    };
+/// Part of the choked flow at d = (1 - p_2/p_1)/(1 - b), and its derivative: sqrt(d (2 - d)).
+fn standard_share(d: f64) -> [f64; 2] {
+    if d >= 1.0 {
+        return [1.0, 0.0];
+    }
+    let value = (d * (2.0 - d)).sqrt();
+    [value, (1.0 - d) / value]
+}
+
+/// 2 k/(k - 1) (r^(2/k) - r^((k + 1)/k)), the square of the flow of a nozzle over A p_1/sqrt(R T_1).
+fn nozzle(r: f64) -> f64 {
+    2.0 * AIR / (AIR - 1.0) * (r.powf(2.0 / AIR) - r.powf((AIR + 1.0) / AIR))
+}
+
+/// Part of the choked flow of a nozzle at d = 1 - p_2/p_1, and its derivative.
+fn nozzle_share(d: f64) -> [f64; 2] {
+    let r = 1.0 - d;
+    if r <= CRITICAL {
+        return [1.0, 0.0];
+    }
+    let choked = nozzle(CRITICAL);
+    let value = (nozzle(r) / choked).sqrt();
+    let slope = (2.0 * r.powf(2.0 / AIR - 1.0) - (AIR + 1.0) * r.powf(1.0 / AIR)) / (AIR - 1.0);
+    [value, -slope / (value * choked)]
+}
+
+/// What `root` gives at d, and below d = `least` the odd cubic that meets it there with the same slope.
+fn share(d: f64, least: f64, root: fn(f64) -> [f64; 2]) -> [f64; 2] {
     match d {
-        d if d >= 1.0 => [1.0, 0.0],
         d if d >= least => root(d),
         d => {
             let [value, slope] = root(least.min(1.0));

@@ -1,6 +1,6 @@
 //! Gas and orifices against their own derivatives and against values of the standard.
 
-use super::{Filled, Gas, GasFlow, Orifice};
+use super::{AmountFlow, Filled, GAS_CONSTANT_TIMES_TEMPERATURE, Gas, Orifice};
 use crate::base::sparse::BlockMatrix;
 use crate::elements::body::Body;
 use crate::elements::force::{Flow, FlowDerivatives, NodalForces};
@@ -39,6 +39,45 @@ fn flows_are_those_of_the_standard() {
     assert_eq!(flow(c, 0.3, [0.0, 0.0])[0], 0.0);
 }
 
+/// A nozzle of 1 mm^2 lets 0.0404 p/sqrt(T) kg/s through for each m^2 and Pa where it is choked (the constant for air in textbooks), either way; else what
+/// Bernoulli's equation for the density behind an adiabatic expansion gives, w = sqrt(2 c_p (T_1 - T_2)).
+#[test]
+fn nozzles_have_the_flow_of_an_expansion() {
+    let flow = |pressures: [f64; 2], discharge: f64| {
+        let nozzle = Orifice::nozzle("n", "a", "b", 1e-6).discharge(discharge);
+        let ends = pressures.map(|pressure| End::Given(pressure.into()));
+        nozzle.flow(ends, Vec::new()).unwrap().rate(0.0, &[], &[]).unwrap()
+    };
+    let temperature = 293.15_f64;
+    let choked = 0.0404 * 1e-6 * 6e5 / temperature.sqrt();
+    for (pressures, sign) in [([6e5, 1e5], 1.0), ([1e5, 6e5], -1.0), ([6e5, 3.1e5], 1.0)] {
+        let [found, ..] = flow(pressures, 0.8);
+        // as many digits as the constant has: R is 287.9 J/(kg K) here, 287.05 in it
+        assert!((found / (sign * 0.8 * choked) - 1.0).abs() < 2e-3, "{found} {choked}");
+    }
+    for ratio in [0.53, 0.6, 0.8, 0.95, 0.99, 0.998] {
+        let gas_constant = GAS_CONSTANT_TIMES_TEMPERATURE / temperature;
+        let behind = temperature * f64::powf(ratio, 0.4 / 1.4);
+        let speed = (2.0 * 3.5 * gas_constant * (temperature - behind)).sqrt();
+        let density = ratio * 2e5 / (gas_constant * behind);
+        for (pressures, sign) in [([2e5, 2e5 * ratio], 1.0), ([2e5 * ratio, 2e5], -1.0)] {
+            let [found, ..] = flow(pressures, 1.0);
+            let expected = sign * 1e-6 * density * speed;
+            assert!((found / expected - 1.0).abs() < 1e-13, "{ratio}: {found} {expected}");
+        }
+    }
+    for up in [0.5281e5, 0.5284e5, 0.7e5, 0.9989e5, 0.9991e5, 1e5, 1.0005e5, 1.5e5, 3e5] {
+        let at = |apart: [f64; 2]| flow([1e5 + apart[0], up + apart[1]], 1.0);
+        let [_, by_first, by_second] = at([0.0; 2]);
+        for (slope, along) in [(by_first, [0.01, 0.0]), (by_second, [0.0, 0.01])] {
+            let [ahead, behind] = [at(along)[0], at(along.map(|x| -x))[0]];
+            let difference = (ahead - behind) / 0.02;
+            // of the largest, at equal pressures
+            assert!((slope - difference).abs() < 1e-4 * 1e-7, "{up}: {slope} {difference}");
+        }
+    }
+}
+
 /// Its slopes are those of differences, without a jump where it becomes choked or laminar, or turns.
 #[test]
 fn flows_have_the_slopes_that_are_told() {
@@ -63,7 +102,7 @@ fn energies_belong_to_the_pressures() {
         let (body, gas) = filled(1.3e5, exponent);
         let orifice = Orifice::new("o", "supply", "room", 1e-6);
         let orifice = orifice.flow([End::Given(2e5.into()), End::Gas(0)], Vec::new()).unwrap();
-        let flow = GasFlow::new(vec![gas], vec![orifice]);
+        let flow = AmountFlow::new(vec![gas], vec![orifice], Vec::new());
         let first = flow.start()[0];
         let at = |swelling: f64, amount: f64| -> ([f64; 4], FlowDerivatives) {
             // the upper nodes rise

@@ -1,31 +1,31 @@
-//! An amount of gas that is closed in: a force with a potential.
+//! An amount of gas or liquid that is closed in: a force with a potential.
 
 use std::collections::BTreeSet;
 use std::sync::{Mutex, PoisonError};
 
-use super::Filled;
+use super::content::Content;
 use crate::base::sparse::BlockMatrix;
 use crate::elements::force::{Force, NodalForces, Reservoir, Tangents};
 use crate::integrators::ode::Failure;
 
-/// The force of a closed gas. The pressure on one wall depends on where all others are: its tangent is full over the
+/// The force of an amount that stays. The pressure on one wall depends on where all others are: its tangent is full over the
 /// nodes of the walls.
-pub(crate) struct ClosedGas {
-    gas: Filled,
+pub(crate) struct Closed<C> {
+    content: C,
     /// The nodes of the walls.
     nodes: Vec<usize>,
     /// dV/du (m^2) at all nodes.
     gradient: Mutex<Vec<f64>>,
 }
 
-impl ClosedGas {
-    pub(crate) fn new(gas: Filled, dofs: usize) -> Self {
-        let nodes: BTreeSet<usize> = gas.walls.couplings().into_iter().flatten().collect();
-        Self { gas, nodes: nodes.into_iter().collect(), gradient: Mutex::new(vec![0.0; dofs]) }
+impl<C: Content> Closed<C> {
+    pub(crate) fn new(content: C, dofs: usize) -> Self {
+        let nodes: BTreeSet<usize> = content.walls().couplings().into_iter().flatten().collect();
+        Self { content, nodes: nodes.into_iter().collect(), gradient: Mutex::new(vec![0.0; dofs]) }
     }
 }
 
-impl Force for ClosedGas {
+impl<C: Content> Force for Closed<C> {
     fn add_forces(
         &self,
         _t: f64,
@@ -33,9 +33,11 @@ impl Force for ClosedGas {
         _v: &[f64],
         forces: &mut NodalForces,
     ) -> Result<(), Failure> {
-        let [pressure, _] = self.gas.pressure(u, self.gas.amount)?;
-        self.gas.walls.add_gradient(self.gas.gauge(pressure), u, &mut forces.conservative);
-        Ok(())
+        self.content.press(u, self.content.amount(), forces)
+    }
+
+    fn check_step(&self, t: f64, _before: &[f64], after: &[f64]) -> Result<(), Failure> {
+        self.content.check(t, after, self.content.amount())
     }
 
     fn add_tangents(
@@ -46,14 +48,12 @@ impl Force for ClosedGas {
         stiffness: &mut BlockMatrix,
         _damping: &mut BlockMatrix,
     ) -> Tangents {
-        let gas = &self.gas;
-        // the forces refuse such a state
-        let Ok([pressure, volume]) = gas.pressure(u, gas.amount) else { return Tangents::Added };
-        gas.walls.add_hessian(-gas.gauge(pressure), u, stiffness);
         let mut gradient = self.gradient.lock().unwrap_or_else(PoisonError::into_inner);
         gradient.fill(0.0);
-        gas.walls.add_gradient(1.0, u, &mut gradient);
-        let (d, factor) = (stiffness.dimension(), gas.exponent * pressure / volume);
+        let linear = self.content.linearize(u, self.content.amount(), stiffness, &mut gradient);
+        // the forces refuse such a state
+        let Some([_, factor, _]) = linear else { return Tangents::Added };
+        let d = stiffness.dimension();
         for &row in &self.nodes {
             for &column in &self.nodes {
                 let Some(block) = stiffness.block_mut(row, column) else { continue };
@@ -68,7 +68,7 @@ impl Force for ClosedGas {
     }
 
     fn potential(&self, _t: f64, u: &[f64]) -> f64 {
-        self.gas.potential(u, self.gas.amount)
+        self.content.potential(u, self.content.amount())
     }
 
     fn reservoir(&self) -> Reservoir {

@@ -1,0 +1,49 @@
+//! How deep what is in a chamber lies.
+
+use super::{Chamber, ChamberForce, Geometry, Walls};
+use crate::base::input::InputError;
+use crate::elements::body::Body;
+use crate::elements::mesh::{Face, FaceKind};
+use crate::scene::forces::faces::LoadedFace;
+use crate::scene::forces::followed::FollowedFaces;
+use crate::scene::forces::moment::Moment;
+
+impl Chamber {
+    /// The integral of the depth along `down`, of length 1, over the chamber, whose force is `force`; depths are counted from the origin.
+    ///
+    /// # Errors
+    /// A lid, which has no faces.
+    pub(crate) fn moment(
+        &self,
+        body: &Body,
+        force: &ChamberForce,
+        down: [f64; 3],
+    ) -> Result<Moment, InputError> {
+        if self.is_closed_by_lid {
+            let help = "a lid does not feel the weight of a liquid: leave gravity out, or close the chamber by walls of the body or by triangles";
+            return Err(InputError::new(self.input("closed_by_lid"), true, help));
+        }
+        let mesh = body.mesh();
+        let (factor, section) = match &force.geometry {
+            Geometry::Polygon(_, factor) => (factor, Some(factor.abs())),
+            Geometry::Surface(_, factor) => (factor, None),
+        };
+        let faces = match (&self.walls, body.dimension()) {
+            (Walls::Nodes(nodes), 2) => self.edges(mesh, nodes)?,
+            (Walls::Nodes(nodes), _) => self.boundary(mesh, nodes)?,
+            (Walls::Triangles(triangles), _) => {
+                triangles.iter().map(|triangle| triangle.map(|node| node - 1).to_vec()).collect()
+            }
+        };
+        let kind = |face: &Face| match (section, face.len()) {
+            (Some(_), 2) => FaceKind::Segment,
+            (Some(_), _) => FaceKind::Segment3,
+            (None, _) => mesh.face_kind(face),
+        };
+        let faces =
+            faces.into_iter().map(|nodes| LoadedFace { kind: kind(&nodes), nodes, section });
+        let faces = FollowedFaces::new(mesh, faces.collect());
+        let faces = faces.map_err(|help| InputError::new(self.input("walls"), "flat", help))?;
+        Ok(Moment::new(faces, down, factor.signum()))
+    }
+}

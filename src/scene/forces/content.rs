@@ -1,0 +1,52 @@
+//! What may be closed in a chamber: an amount that has a pressure.
+
+use super::chamber::ChamberForce;
+use crate::base::sparse::BlockMatrix;
+use crate::elements::force::NodalForces;
+use crate::integrators::ode::Failure;
+
+/// An amount of something within walls, whose energy depends on it and on the displacements of the walls alone.
+pub(crate) trait Content: Send + Sync {
+    /// Its walls.
+    fn walls(&self) -> &ChamberForce;
+
+    /// The amount (kg) at the start.
+    fn amount(&self) -> f64;
+
+    /// Adds the forces of an `amount` (kg) under the displacements `u` (m).
+    ///
+    /// # Errors
+    /// A state without meaning: walls that have passed through each other, no amount that is left.
+    fn press(&self, u: &[f64], amount: f64, forces: &mut NodalForces) -> Result<(), Failure>;
+
+    /// Adds the tangent under a pressure that stays to `stiffness`, and the derivative of what the pressure acts on (dV/du, m^2) to `gradient`. Returns the
+    /// pressure (Pa), of gas the absolute one, and its derivatives by the volume, -dp/dV (Pa/m^3), and by the amount, dp/dm (Pa/kg). `None` where
+    /// [`press`](Self::press) fails.
+    fn linearize(
+        &self,
+        u: &[f64],
+        amount: f64,
+        stiffness: &mut BlockMatrix,
+        gradient: &mut [f64],
+    ) -> Option<[f64; 3]>;
+
+    /// Potential energy (J), 0 at the start.
+    fn potential(&self, u: &[f64], amount: f64) -> f64;
+
+    /// By what the pressure of an `amount` (kg) exceeds that outside (Pa) under the displacements `u` (m).
+    ///
+    /// # Errors
+    /// As [`press`](Self::press).
+    fn gauge(&self, u: &[f64], amount: f64) -> Result<f64, Failure>;
+
+    /// Checks a step after it was taken, to time `t` (s).
+    ///
+    /// # Errors
+    /// A pressure at which the chamber [bursts](crate::Chamber::burst).
+    fn check(&self, t: f64, u: &[f64], amount: f64) -> Result<(), Failure> {
+        match self.walls().can_burst() {
+            true => self.walls().check_burst(t, self.gauge(u, amount)?),
+            false => Ok(()),
+        }
+    }
+}

@@ -1,0 +1,149 @@
+//! Liquids in the chambers of a scene, and what flows in and out of them.
+
+use super::{Phase, Scene, unique};
+use crate::base::input::InputError;
+use crate::base::vector::norm;
+use crate::scene::forces::{Content, Liquid, Live, Poured, Signal, Weight};
+
+/// Parts of the time between two breaks of a flow in which it is added up.
+const PARTS: usize = 50;
+
+impl Scene {
+    /// Adds a liquid that fills a chamber, in place of a pressure that phases give it.
+    pub fn liquid(mut self, liquid: Liquid) -> Self {
+        self.liquids.push(liquid);
+        self
+    }
+
+    /// The liquids.
+    pub fn liquids(&self) -> &[Liquid] {
+        &self.liquids
+    }
+
+    /// Whether any phase changes the amount of a liquid.
+    pub(crate) fn pours(&self) -> bool {
+        self.phases.iter().any(|phase| !phase.flows.is_empty())
+    }
+
+    /// Number (from 0) of the liquid in a chamber, if there is any.
+    pub(crate) fn liquid_in(&self, chamber: &str) -> Option<usize> {
+        self.liquids.iter().position(|liquid| liquid.chamber() == chamber)
+    }
+
+    /// Number (from 0) of the liquid in the chamber with a name; `input` is where that was given.
+    pub(crate) fn liquid_number(&self, chamber: &str, input: &str) -> Result<usize, InputError> {
+        self.chamber_number(chamber, input)?;
+        self.liquid_in(chamber).ok_or_else(|| {
+            let help = "the chamber has no liquid: give it some, or name another one";
+            InputError::new(input, format!("\"{chamber}\""), help)
+        })
+    }
+
+    /// The liquids within their walls, as they are in a phase; without one they have no weight, and nothing flows.
+    ///
+    /// # Errors
+    /// A chamber that does not exist, or has two contents; numbers out of range; a flow where amounts are constants.
+    pub(crate) fn poured(&self, phase: Option<&Phase>) -> Result<Vec<Poured>, InputError> {
+        for (chamber, flow) in phase.into_iter().flat_map(|phase| &phase.flows) {
+            let input = format!("flow of phase \"{}\"", phase.map_or("", Phase::name));
+            self.liquid_number(chamber, &input)?;
+            flow.validate(&input)?;
+            if self.is_shut {
+                let help = "this method has no unknowns for amounts that change: take another one";
+                return Err(InputError::new(input, format!("into \"{chamber}\""), help));
+            }
+        }
+        if self.liquids.is_empty() {
+            return Ok(Vec::new());
+        }
+        unique("liquid in chamber", self.liquids.iter().map(Liquid::chamber))?;
+        self.liquids.iter().map(|liquid| self.poured_in(phase, liquid)).collect()
+    }
+
+    fn poured_in(&self, phase: Option<&Phase>, liquid: &Liquid) -> Result<Poured, InputError> {
+        let name = liquid.chamber();
+        let chamber = &self.chambers[self.chamber_number(name, "chamber of liquid")?];
+        if self.gas_in(name).is_some() {
+            let help = "it has gas already: leave one of them out";
+            return Err(InputError::new("chamber of liquid", format!("\"{name}\""), help));
+        }
+        let walls = chamber.force(&self.body, Vec::new())?;
+        let gravity =
+            phase.and_then(|phase| self.gravity_in(phase)).map(|gravity| (gravity, norm(gravity)));
+        let weight = match gravity.filter(|(_, strength)| *strength > 0.0) {
+            None => None,
+            Some((along, strength)) => {
+                let down = |axis: usize| along.get(axis).map_or(0.0, |g| g / strength);
+                let moment = chamber.moment(&self.body, &walls, std::array::from_fn(down))?;
+                Some(Weight { moment, gravity: strength })
+            }
+        };
+        let flows = phase.into_iter().flat_map(|phase| &phase.flows);
+        let flows =
+            flows.filter(|(other, _)| other == name).map(|(_, flow)| flow.clone()).collect();
+        liquid.pour(walls, self.body.dofs(), weight, flows)
+    }
+
+    /// Checks that no flow empties a chamber.
+    ///
+    /// # Errors
+    /// A phase in which more flows out than there is.
+    pub(super) fn check_flows(&self) -> Result<(), InputError> {
+        if !self.pours() {
+            return Ok(());
+        }
+        for (liquid, full) in self.liquids.iter().zip(self.poured(None)?) {
+            let whole = full.natural(full.amount());
+            let (mut start, mut volume) = (0.0, whole);
+            for phase in &self.phases {
+                let flows = phase.flows.iter().filter(|(name, _)| name == liquid.chamber());
+                for end in self.breaks_in(phase).into_iter().chain([phase.until]) {
+                    let part = (end.clamp(start, phase.until) - start) / PARTS as f64;
+                    for _ in 0..PARTS {
+                        let end = start + part;
+                        let flows = flows.clone().map(|(_, flow)| added(flow, [start, end]));
+                        volume += flows.sum::<f64>();
+                        start = end;
+                        // what is not finite is told as it goes
+                        if volume <= 0.0 {
+                            let help = format!(
+                                "by t = {end:.4} s all of the {whole:.4e} m^3 in it have flowed out: let less flow, or shorter"
+                            );
+                            let input = format!("flow of phase \"{}\"", phase.name);
+                            let value = format!("out of chamber \"{}\"", liquid.chamber());
+                            return Err(InputError::new(input, value, help));
+                        }
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+/// What flows in (m^3) by a `flow` between two times (s), by Simpson's rule.
+fn added(flow: &Signal, [start, end]: [f64; 2]) -> f64 {
+    let middle = start + 0.5 * (end - start);
+    (end - start) * (flow.at(start) + 4.0 * flow.at(middle) + flow.at(end)) / 6.0
+}
+
+impl Phase {
+    /// The flow (m^3/s, of natural volume) of liquid into a chamber, a number or any other [`Signal`]; below 0 it flows out. What flows in has the
+    /// pressure that is there, and its energy counts as supplied. Flows into the same chamber add up. Default: none.
+    pub fn flow(mut self, chamber: impl Into<String>, flow: impl Into<Signal>) -> Self {
+        self.flows.push((chamber.into(), flow.into()));
+        self
+    }
+
+    /// The flow into a chamber, if that is one number that a command can set.
+    pub(crate) fn live_flow(&self, chamber: &str) -> Option<&Live> {
+        let mut all = self.flows.iter().filter(|(name, _)| name == chamber);
+        all.next().filter(|_| all.next().is_none())?.1.live()
+    }
+
+    /// Replaces the flow into a chamber.
+    pub(crate) fn set_flow(&mut self, chamber: &str, flow: Signal) {
+        self.flows.retain(|(name, _)| name != chamber);
+        self.flows.push((chamber.to_owned(), flow));
+    }
+}
