@@ -130,7 +130,7 @@ pub(super) fn add_orifice(scene: Scene, value: &Value) -> Result<Scene, Error> {
         ),
     };
     if let Some(value) = table.get(key) {
-        return Err(value.error(format!("{key}: {other}")));
+        return Err(value.error(other));
     }
     let mut orifice = match table.optional("area", Value::number)? {
         Some(area) => Orifice::nozzle(name, from, to, area),
