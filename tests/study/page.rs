@@ -56,6 +56,7 @@ fn advice() -> Advice {
         known_until: None,
         end: 0.6,
         mesh_estimate: None,
+        reduced: None,
         look: None,
         not_tried: vec![HOSTILE.into()],
         is_cut_short: false,
