@@ -170,7 +170,8 @@ impl Run {
     /// Keeps now and then what a reduced model leaves over.
     fn check_reduced(&mut self, system: &mut System) -> Result<(), Failure> {
         let start = self.number.checked_sub(1).map_or(0.0, |k| self.scene.phases()[k].end());
-        let left_over = system.left_over(self.time, &self.state, self.phase.until - start)?;
+        let phase = [start, self.phase.until];
+        let left_over = system.left_over(self.time, &self.state, phase)?;
         let Some(left_over) = left_over else { return Ok(()) };
         let first = &self.trajectory.samples()[0].u;
         let moved = self.state.iter().zip(first).map(|(u, start)| (u - start).abs());

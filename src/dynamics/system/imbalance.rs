@@ -25,8 +25,8 @@ pub(crate) struct LeftOver {
     pub(crate) outside: f64,
 }
 
-/// Checks in a phase.
-const CHECKS: f64 = 4.0;
+/// Parts of a phase after which states are looked at: often at first, where what acts has just changed.
+const CHECKS: [f64; 9] = [0.0, 0.01, 0.02, 0.04, 0.08, 0.16, 0.32, 0.6, 0.8];
 
 impl System {
     /// Has the phase `name` be run by a reduced model.
@@ -79,17 +79,19 @@ impl System {
         self.reduction.as_ref().map_or(0, |reduction| reduction.difference_evaluations())
     }
 
-    /// What `state` = (u, v, ...) of a reduced model leaves over at time `t`, if that is due: some times in a phase that
-    /// lasts `span` (s).
+    /// What `state` = (u, v, ...) of a reduced model leaves over at time `t`, if that is due: some times in a phase from
+    /// `start` to `end` (s).
     pub(crate) fn left_over(
         &mut self,
         t: f64,
         state: &[f64],
-        span: f64,
+        [start, end]: [f64; 2],
     ) -> Result<Option<LeftOver>, Failure> {
+        let part = (t - start) / (end - start);
         match &mut self.reduction {
-            Some(reduction) if t >= reduction.next_check => {
-                reduction.next_check = t + span / CHECKS;
+            Some(reduction) if part >= reduction.next_check => {
+                let next = CHECKS.into_iter().find(|check| *check > part);
+                reduction.next_check = next.unwrap_or(f64::INFINITY);
             }
             _ => return Ok(None),
         }

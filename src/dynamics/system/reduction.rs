@@ -51,7 +51,7 @@ pub(super) struct Reduction {
     at: Place,
     tangents: Tangents,
     factors: Factors,
-    /// When the equations are to be checked next (s).
+    /// Part of the phase after which the equations are to be checked next.
     pub(super) next_check: f64,
 }
 

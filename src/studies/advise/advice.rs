@@ -2,7 +2,7 @@
 
 use super::choice::Choice;
 use super::parts::Parts;
-use super::reduced::ReducedCandidate;
+use super::reduced_candidate::ReducedCandidate;
 use crate::dynamics::equilibrium::MeshEstimate;
 use crate::scene::timeline::Term;
 use crate::studies::work_precision::look::Look;

@@ -1,7 +1,7 @@
 //! What the search has found so far.
 
 use super::parts::Parts;
-use super::reduced::ReducedCandidate;
+use super::reduced_candidate::ReducedCandidate;
 use super::search::Solved;
 use crate::dynamics::equilibrium::MeshEstimate;
 use crate::scene::timeline::Term;

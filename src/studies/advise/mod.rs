@@ -11,6 +11,7 @@ mod page;
 mod parts;
 mod record;
 mod reduced;
+mod reduced_candidate;
 mod runs;
 mod search;
 
@@ -18,4 +19,4 @@ pub use advice::{Advice, Candidate};
 pub use adviser::Adviser;
 pub use choice::{Choice, RicherCells};
 pub use parts::Parts;
-pub use reduced::ReducedCandidate;
+pub use reduced_candidate::ReducedCandidate;

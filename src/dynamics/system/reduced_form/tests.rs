@@ -127,7 +127,7 @@ fn with_all_shapes_and_cells_it_is_the_body() {
         assert!((own / exact - 1.0).abs() < 1e-10, "power {k}: {own}, {exact}");
     }
     // nothing is left over, and the state is one of its own
-    let left_over = form.system.left_over(T, &state, 1.0).unwrap().unwrap();
+    let left_over = form.system.left_over(T, &state, [0.0, 1.0]).unwrap().unwrap();
     let [imbalance] = form.system.imbalances(&[left_over]).unwrap()[..] else { panic!() };
     assert!(imbalance < 1e-13, "{imbalance:e} m");
     let again = form.unknowns_of(T, &state).unwrap();
@@ -164,7 +164,7 @@ fn a_state_that_the_model_does_not_have_is_none_of_its_own() {
     state.iter_mut().zip(other).for_each(|(x, other)| *x += 1e-6 * other);
     assert!(form.unknowns_of(T, &state).is_none());
     // what is left out is told
-    let left_over = form.system.left_over(T, &state, 1.0).unwrap().unwrap();
+    let left_over = form.system.left_over(T, &state, [0.0, 1.0]).unwrap().unwrap();
     let [found] = form.system.imbalances(&[left_over]).unwrap()[..] else { panic!() };
     assert!(found > 1e-6, "{found:e} m");
 }
