@@ -16,8 +16,10 @@ use crate::scene::reduced_model::ReducedModel;
 /// A state of a reduced model, with what all unknowns would feel in it except the forces of cells, which depend on nothing else.
 #[derive(Debug, Clone)]
 pub(crate) struct LeftOver {
-    /// Time (s), displacements (m), velocities (m/s) and accelerations (m/s^2) of all nodes.
+    /// Time (s), and how long the phase has lasted then (s).
     time: f64,
+    age: f64,
+    /// Displacements (m), velocities (m/s) and accelerations (m/s^2) of all nodes.
     state: [Vec<f64>; 3],
     /// The nodal forces (N) of all but the cells.
     forces: Vec<f64>,
@@ -26,7 +28,7 @@ pub(crate) struct LeftOver {
 }
 
 /// Parts of a phase after which states are looked at: often at first, where what acts has just changed.
-const CHECKS: [f64; 9] = [0.0, 0.01, 0.02, 0.04, 0.08, 0.16, 0.32, 0.6, 0.8];
+const CHECKS: [f64; 6] = [0.02, 0.05, 0.12, 0.25, 0.5, 0.8];
 
 impl System {
     /// Has the phase `name` be run by a reduced model.
@@ -87,11 +89,12 @@ impl System {
         state: &[f64],
         [start, end]: [f64; 2],
     ) -> Result<Option<LeftOver>, Failure> {
-        let part = (t - start) / (end - start);
+        let age = t - start;
+        let part = age / (end - start);
         match &mut self.reduction {
-            Some(reduction) if part >= reduction.next_check => {
+            Some(reduction) if part >= reduction.next_check.unwrap_or(CHECKS[0]) => {
                 let next = CHECKS.into_iter().find(|check| *check > part);
-                reduction.next_check = next.unwrap_or(f64::INFINITY);
+                reduction.next_check = Some(next.unwrap_or(f64::INFINITY));
             }
             _ => return Ok(None),
         }
@@ -102,7 +105,8 @@ impl System {
         let forces = self.at.total.clone();
         let a = self.reduced_accelerations(t, u, v)?;
         let outside = self.reduction.as_ref().map_or(0.0, |own| own.outside(u));
-        Ok(Some(LeftOver { time: t, state: [u.to_vec(), v.to_vec(), a], forces, outside }))
+        let state = [u.to_vec(), v.to_vec(), a];
+        Ok(Some(LeftOver { time: t, age, state, forces, outside }))
     }
 
     /// Accelerations (m/s^2) of all nodes as a reduced model has them.
@@ -131,19 +135,25 @@ impl System {
     /// For each of some states of a phase the largest component (m) of the displacements by which what a reduced model leaves
     /// over would be balanced.
     pub(crate) fn imbalances(&mut self, states: &[LeftOver]) -> Result<Vec<f64>, Failure> {
-        let Some(LeftOver { time, state: [u, v, _], .. }) = states.first() else {
+        // the tangents of the last one: what has just been loaded may be about to buckle, what has come to rest is not
+        let Some(LeftOver { time, state: [u, v, _], .. }) = states.last() else {
             return Ok(Vec::new());
         };
         // a step so long that inertia hardly matters, except where nothing resists a motion
         let [size, speed] = self.matrices.scales;
+        let slow = SLOW * size / speed;
         self.newton.is_set = false;
         self.update_tangents(*time, u, v, false);
-        self.factorize_newton(SLOW * size / speed)?;
-        let gamma = self.newton.gamma;
+        let mut gamma = 0.0;
         let none = vec![0.0; self.rows.len()];
         let (mut x, mut mu) = (vec![0.0; self.dofs()], none.clone());
         let mut imbalances = Vec::new();
-        for LeftOver { time, state: [u, v, a], forces, .. } in states {
+        for LeftOver { time, age, state: [u, v, a], forces, .. } in states {
+            // what has just begun to act has not moved the body far
+            if gamma != slow.min(*age) {
+                gamma = slow.min(*age);
+                self.factorize_newton(gamma)?;
+            }
             self.at.nodal.clear();
             self.add_forces_of_matrices(u, v)?;
             self.add_forces_where(|force| force.is_by_cells(), *time, u, v)?;

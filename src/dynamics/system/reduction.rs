@@ -43,16 +43,17 @@ pub(super) struct Reduction {
     has_begun: bool,
     /// All forces, with a sample in place of those of all cells.
     pub(super) forces: Forces,
-    /// Those of them that are functions of z, and those that act on nodes: all but the steady ones.
-    generalized: Vec<Box<dyn GeneralizedForce>>,
+    /// Those of them that are functions of z, those of cells apart from others, and those that act on nodes: all but the steady
+    /// ones.
+    generalized: [Vec<Box<dyn GeneralizedForce>>; 2],
     acting: Forces,
     pattern: Arc<NodePattern>,
     constant: Constant,
     at: Place,
     tangents: Tangents,
     factors: Factors,
-    /// Part of the phase after which the equations are to be checked next.
-    pub(super) next_check: f64,
+    /// Part of the phase after which the equations are to be checked next, once they have been.
+    pub(super) next_check: Option<f64>,
 }
 
 /// What does not change, along Psi.
@@ -179,7 +180,7 @@ impl Reduction {
             origin: vec![0.0; dofs],
             has_begun: false,
             forces: Forces::new(),
-            generalized: Vec::new(),
+            generalized: [Vec::new(), Vec::new()],
             acting: Forces::new(),
             constant: Constant {
                 inertia,
@@ -209,7 +210,7 @@ impl Reduction {
                 is_set: false,
             },
             factors: Factors::new(shapes.free()),
-            next_check: f64::NEG_INFINITY,
+            next_check: None,
             model: model.clone(),
             pattern,
             shapes,
@@ -250,9 +251,8 @@ impl Reduction {
                 self.acting.push(force.clone());
             }
         }
-        if self.has_begun {
-            self.generalize();
-        }
+        // cells stay what they are
+        self.generalize(false);
         let parts = [&steady.conservative, &steady.applied];
         for (sum, force) in self.constant.steady.iter_mut().zip(parts) {
             sum.fill(0.0);
@@ -261,12 +261,14 @@ impl Reduction {
         self.tangents.is_set = false;
     }
 
-    /// Sets the forces that are functions of z, from u_0 on.
-    fn generalize(&mut self) {
+    /// Sets the forces that are functions of z, from u_0 on: those of cells, or all others.
+    fn generalize(&mut self, are_by_cells: bool) {
         let (shapes, origin) = (self.shapes.all(), &self.origin);
-        let generalized = self.forces.iter().filter(|force| !force.is_steady());
-        self.generalized =
-            generalized.filter_map(|force| force.generalized(origin, &shapes)).collect();
+        let are_asked =
+            |force: &&Arc<dyn Force>| !force.is_steady() && force.is_by_cells() == are_by_cells;
+        let forces = self.forces.iter().filter(are_asked);
+        self.generalized[usize::from(are_by_cells)] =
+            forces.filter_map(|force| force.generalized(origin, &shapes)).collect();
     }
 
     /// Marks the tangents as out of date.
@@ -296,7 +298,8 @@ impl Reduction {
             stiffness.add_product(-1.0, u, &mut force);
             self.shapes.add_projected(&force, rest);
         }
-        self.generalize();
+        self.generalize(true);
+        self.generalize(false);
         self.tangents.is_set = false;
         let [_, p] = self.coordinates(rows, t, [u, v]);
         p
@@ -372,7 +375,7 @@ impl Reduction {
         for force in &*acting {
             force.add_forces(t, u, v, nodal)?;
         }
-        for force in generalized {
+        for force in generalized.iter_mut().flatten() {
             force.add_forces(t, [z, rates], along)?;
         }
         at.carried = [nodal.carried_heat, nodal.carried_power];
@@ -454,7 +457,7 @@ impl Reduction {
         }
         let [z, rates] = &at.z;
         let [stiffness, damping] = projected;
-        for force in generalized {
+        for force in generalized.iter_mut().flatten() {
             force.add_tangents(t, [z, rates], stiffness, damping);
         }
         *is_set = true;
