@@ -55,7 +55,7 @@ const HILL: TableKeys = TableKeys::new(
         .default("0.25"),
         Key::number("eccentric", "the limit of f_v in fast lengthening", "1").default("1.4"),
     ],
-    "hill = { largest = 2e5, rate = 5.0 }",
+    "[[muscle]]\nname = \"biceps\"\nalong = [1.0, 0.0]\nhill = { largest = 2e5, rate = 5.0 }",
 );
 
 /// Hill's law that `value` describes.
