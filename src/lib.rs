@@ -65,8 +65,8 @@ pub use elements::{
         Body, CellField, CellSelection, Dilatation, Inertia, NodalField, Part, Strain, Viscosity,
     },
     material::{
-        FibreDirection, Fibres, Lame, Law, Material, MaxwellBranch, Moments, Plane, RigidMass,
-        Substance,
+        FibreDirection, Fibres, Hill, Lame, Law, Material, MaxwellBranch, Moments, Plane,
+        RigidMass, Substance,
     },
     mesh::{Cells, Mesh, Selection, SolidCells},
 };

@@ -119,6 +119,10 @@ class Simulation:
         """Volume (m^3) of a chamber."""
         return self._simulation.chamber_volume(chamber)
 
+    def muscle_stress(self, muscle: str) -> float:
+        """Stress (Pa) by which a muscle pulls; by Hill's law the mean over its volume."""
+        return self._simulation.muscle_stress(muscle)
+
     def muscle_stretch(self, muscle: str) -> float:
         """How much longer the fibres of a muscle are than in the undeformed shape, as a factor."""
         return self._simulation.muscle_stretch(muscle)

@@ -1182,6 +1182,7 @@ def muscle(
     box: Sequence[Vector] | None = None,
     group: str | None = None,
     cells: Sequence[int] | None = None,
+    hill: dict | None = None,
 ) -> dict:
     r"""Fibres in a body that pull by a stress of their own, which `actuate` in a phase gives: a force per section of the
     undeformed shape, however long they are, in addition to the elasticity of the material. They lie along a vector,
@@ -1206,6 +1207,8 @@ def muscle(
         the name of a group of cells. Default: none. A physical group of Gmsh.
     cells
         numbers of cells, from 1. Default: none.
+    hill
+        lets it pull less far from its best length and as it shortens. Default: it pulls alike.
     """
     return _table(
         name=name,
@@ -1216,6 +1219,47 @@ def muscle(
         box=box,
         group=group,
         cells=cells,
+        hill=hill,
+    )
+
+
+def hill(
+    *,
+    largest: float,
+    optimal: float | None = None,
+    width: float | None = None,
+    rate: float | None = None,
+    shape: float | None = None,
+    eccentric: float | None = None,
+) -> dict:
+    r"""Hill's law of a muscle: it pulls by `stress` f_l f_v, the `stress` of `actuate` being activation (0 to 1) times
+    `largest`. With the length L of its fibres in best lengths and its rate V by `rate`, f_l = exp(-(L - 1)^2 /
+    `width`), and f_v = (1 + V) / (1 - V / `shape`) as they shorten (0 where that is faster than `rate`); as they
+    lengthen f_v grows, at first alike, to `eccentric`. The defaults are values of D. G. Thelen (2003) for young
+    adults.
+
+    Parameters
+    ----------
+    largest
+        the stress of full activation at the best length, while that does not change (Pa). Required.
+    optimal
+        the best length, by that in the undeformed shape (no unit). Default: 1.
+    width
+        the square of the width of f_l (no unit). Default: 0.45.
+    rate
+        the fastest shortening, in best lengths per second (1/s). Default: 10.
+    shape
+        Hill's a by the force at rest: the smaller, the more f_v is bent (no unit). Default: 0.25.
+    eccentric
+        the limit of f_v in fast lengthening (no unit). Default: 1.4.
+    """
+    return _table(
+        largest=largest,
+        optimal=optimal,
+        width=width,
+        rate=rate,
+        shape=shape,
+        eccentric=eccentric,
     )
 
 
@@ -3527,6 +3571,7 @@ __all__ = [
     "groups",
     "growth",
     "halved_in",
+    "hill",
     "hold",
     "hold_combination",
     "initial",

@@ -177,6 +177,11 @@ impl Simulation {
         self.lock()?.view().chamber_volume(chamber).map_err(raised)
     }
 
+    /// Stress (Pa) by which a muscle pulls.
+    fn muscle_stress(&self, muscle: &str) -> PyResult<f64> {
+        self.lock()?.view().muscle_stress(muscle).map_err(raised)
+    }
+
     /// How much longer the fibres of a muscle are than in the undeformed shape.
     fn muscle_stretch(&self, muscle: &str) -> PyResult<f64> {
         self.lock()?.view().muscle_stretch(muscle).map_err(raised)

@@ -218,6 +218,8 @@ fn all_scenes_are_run() {
         "wheel-over-stones",
         // where fluids are tested
         "fish",
+        // where muscles are tested
+        "hill-muscle",
         // where robots are tested
         "inchworm",
         "rolling-robot",

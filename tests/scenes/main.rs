@@ -26,6 +26,7 @@ mod friction;
 mod gas;
 mod gripping;
 mod growth;
+mod hill;
 mod index_two;
 mod indicators;
 mod large;

@@ -87,8 +87,12 @@ impl Slider {
         });
         let muscles = scene.muscles().iter().map(|muscle| {
             let target = Target::Actuation(muscle.name().to_owned());
+            let what = "stress".into();
+            if let Some(hill) = muscle.law() {
+                return Self { target, least: 0.0, most: hill.largest, what, unit: "Pa" };
+            }
             let range = [target.largest_in(scene), pressure];
-            Self::new(target, "stress".into(), range, "Pa")
+            Self::new(target, what, range, "Pa")
         });
         let mut loaded: Vec<&Selection> = Vec::new();
         for (nodes, _) in scene.phases().iter().flat_map(|phase| &phase.loads) {

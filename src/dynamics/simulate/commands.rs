@@ -79,7 +79,8 @@ impl Simulation {
     /// [muscle](crate::Muscle) it is the stress (Pa) by which it pulls, of a [growth](crate::Growth) the strain (1).
     ///
     /// # Errors
-    /// A name that no spring, no muscle and no growth has; numbers that are not finite.
+    /// A name that no spring, no muscle and no growth has; numbers that are not finite; a stress that [Hill's law](crate::Hill) of a muscle does not
+    /// have.
     pub fn actuate(&mut self, spring: &str, force: impl Into<Signal>) -> Result<(), Error> {
         let (force, input) = (force.into(), "actuation of spring");
         self.scene().actuator_number(spring, input)?;
@@ -88,6 +89,10 @@ impl Simulation {
                 phase.set_actuation(spring, force);
                 Ok(())
             });
+        }
+        let muscle = self.scene().muscles().iter().find(|muscle| muscle.name() == spring);
+        if let (Some(muscle), Some(stress)) = (muscle, force.value()) {
+            muscle.check_stress(stress)?;
         }
         let live = |phase: &Phase| phase.live_actuation(spring).cloned();
         if self.set_live(live, input, force.value().as_slice())? {

@@ -130,7 +130,7 @@ impl Reading {
             }
             What::MuscleStress(muscle) => {
                 scene.muscle_number(muscle, "muscle")?;
-                number(muscle, |view, muscle| view.actuation(muscle))
+                number(muscle, |view, muscle| view.muscle_stress(muscle))
             }
             What::MuscleStretch(muscle) => {
                 scene.muscle_number(muscle, "muscle")?;

@@ -263,7 +263,7 @@ impl Reading {
         What::SpringLength(spring.into()).into()
     }
 
-    /// Stress by which a muscle pulls (Pa).
+    /// Stress by which a muscle pulls (Pa): see [`View::muscle_stress`](crate::View::muscle_stress).
     pub fn muscle_stress(muscle: impl Into<String>) -> Self {
         What::MuscleStress(muscle.into()).into()
     }

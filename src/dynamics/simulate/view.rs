@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use crate::base::input::InputError;
 use crate::dynamics::state::State;
-use crate::elements::body::{Body, CellField, Grown, Strands};
+use crate::elements::body::{Body, CellField, Contraction, Grown, Strands};
 use crate::elements::force::{Force, Forces, NodalForces};
 use crate::elements::mesh::Selection;
 use crate::scene::forces::{
@@ -370,6 +370,18 @@ impl<'a> View<'a> {
     pub fn spring_length(&self, spring: &str) -> Result<f64, InputError> {
         let number = self.scene.spring_number(spring, "spring")?;
         Ok(self.gauges.springs[number].length(self.state.u))
+    }
+
+    /// Stress (Pa) by which a muscle pulls: what actuates it, or by [Hill's law](crate::Hill) the mean over its volume of what becomes of that.
+    ///
+    /// # Errors
+    /// A name that no muscle has.
+    pub fn muscle_stress(&self, muscle: &str) -> Result<f64, InputError> {
+        let number = self.scene.muscle_number(muscle, "muscle")?;
+        let [stress, _] = self.actuation_with_rate(muscle);
+        let Some(law) = self.scene.muscles()[number].law() else { return Ok(stress) };
+        let contraction = Contraction { law, stress };
+        Ok(self.gauges.muscles[number].mean_pull(contraction, self.state.u, self.state.v))
     }
 
     /// How much longer the fibres of a muscle are than in the undeformed shape, as a factor (1): the mean over their

@@ -3,6 +3,7 @@
 //! A fibre at a point of a cell sees one direction of the strain there. It is a cell of one dimension on the
 //! same nodes: its gradients are those of the shape functions along it, and its frame is its direction.
 
+use super::contraction::{Contraction, ContractionTangent};
 use super::elements::{ElementsOf, Offset};
 use super::forces::ElasticStress;
 use super::tangents::ElasticTangent;
@@ -40,6 +41,28 @@ pub(super) trait Strings: Send + Sync {
     );
 
     fn energy(&self, law: &Fibre, u: &[f64]) -> f64;
+
+    /// Adds the forces of a contraction.
+    fn contract(
+        &self,
+        contraction: Contraction,
+        u: &[f64],
+        v: &[f64],
+        forces: &mut [f64],
+    ) -> Result<(), Failure>;
+
+    /// Adds the tangents of a contraction to the stiffness and to the damping.
+    fn add_contraction_tangents(
+        &self,
+        contraction: Contraction,
+        u: &[f64],
+        v: &[f64],
+        stiffness: &mut BlockMatrix,
+        damping: &mut BlockMatrix,
+    );
+
+    /// The integral of the stress of a contraction over their volume (N m).
+    fn total_pull(&self, contraction: Contraction, u: &[f64], v: &[f64]) -> f64;
 
     /// Their natural volume (m^3): that of their cells.
     fn volume(&self) -> f64;
@@ -120,6 +143,43 @@ impl<const N: usize, const D: usize, const Q: usize> Strings for ElementsOf<N, 1
 
     fn energy(&self, law: &Fibre, u: &[f64]) -> f64 {
         self.add_energy(0..self.nodes.len(), law, u, 0.0)
+    }
+
+    fn contract(
+        &self,
+        contraction: Contraction,
+        u: &[f64],
+        v: &[f64],
+        forces: &mut [f64],
+    ) -> Result<(), Failure> {
+        let fields = [u.as_chunks::<D>().0, v.as_chunks::<D>().0];
+        self.share_out(forces, |run, first, forces| {
+            self.add(run.clone(), fields, first, forces, contraction)
+        })
+    }
+
+    fn add_contraction_tangents(
+        &self,
+        contraction: Contraction,
+        u: &[f64],
+        v: &[f64],
+        stiffness: &mut BlockMatrix,
+        damping: &mut BlockMatrix,
+    ) {
+        let fields = [u.as_chunks::<D>().0, v.as_chunks::<D>().0];
+        let rows = (stiffness.rows_mut(), damping.rows_mut());
+        self.shares.each(rows.0, rows.1, &|share, mut stiffness, mut damping| {
+            for run in &self.shares.cells[share] {
+                let by_shape = ContractionTangent::<false>(contraction);
+                self.add_to(&mut stiffness, run.clone(), fields, by_shape);
+                let by_rate = ContractionTangent::<true>(contraction);
+                self.add_to(&mut damping, run.clone(), fields, by_rate);
+            }
+        });
+    }
+
+    fn total_pull(&self, contraction: Contraction, u: &[f64], v: &[f64]) -> f64 {
+        Self::total_pull(self, contraction, u, v)
     }
 
     fn volume(&self) -> f64 {

@@ -28,8 +28,8 @@ use crate::integrators::ode::Failure;
 
 mod stress;
 
-pub(super) use stress::ElasticStress;
-use stress::{StressTerm, ViscousStress};
+use stress::ViscousStress;
+pub(super) use stress::{ElasticStress, StressTerm};
 
 /// Which forces are computed element by element.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -7,6 +7,7 @@ mod builder;
 mod constant;
 mod contiguous;
 mod continuum;
+mod contraction;
 mod dilatation;
 mod elastic;
 mod elements;
@@ -40,6 +41,7 @@ mod whole;
 
 pub use assembled::Body;
 pub use builder::BodyBuilder;
+pub(crate) use contraction::Contraction;
 pub use dilatation::Dilatation;
 pub(crate) use elastic::LinearByCells;
 

@@ -1,6 +1,7 @@
 //! Fibres that pull by a stress of their own: muscles.
 
 use super::assembled::Body;
+use super::contraction::Contraction;
 use super::fibres::Strings;
 use crate::base::input::InputError;
 use crate::base::sparse::BlockMatrix;
@@ -36,6 +37,38 @@ impl Strands {
     ) {
         let law = Fibre::Active { stress };
         self.parts.iter().for_each(|part| part.add_tangents(&law, u, stiffness, damping));
+    }
+
+    /// Adds the nodal forces of a contraction by Hill's law.
+    pub(crate) fn contract(
+        &self,
+        contraction: Contraction,
+        u: &[f64],
+        v: &[f64],
+        forces: &mut [f64],
+    ) -> Result<(), Failure> {
+        self.parts.iter().try_for_each(|part| part.contract(contraction, u, v, forces))
+    }
+
+    /// Adds its tangents to the stiffness and the damping.
+    pub(crate) fn add_contraction_tangents(
+        &self,
+        contraction: Contraction,
+        u: &[f64],
+        v: &[f64],
+        stiffness: &mut BlockMatrix,
+        damping: &mut BlockMatrix,
+    ) {
+        let parts = self.parts.iter();
+        parts.for_each(|part| {
+            part.add_contraction_tangents(contraction, u, v, stiffness, damping);
+        });
+    }
+
+    /// The mean over their volume of the stress (Pa) by which they pull in a contraction.
+    pub(crate) fn mean_pull(&self, contraction: Contraction, u: &[f64], v: &[f64]) -> f64 {
+        let total: f64 = self.parts.iter().map(|part| part.total_pull(contraction, u, v)).sum();
+        total / self.volume
     }
 
     /// The mean over their volume of how much longer they are than in the undeformed shape, as a factor.

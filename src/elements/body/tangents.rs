@@ -23,8 +23,8 @@ mod tangent;
 mod tests;
 
 use pass::Pass;
-pub(super) use tangent::ElasticTangent;
-use tangent::{OfVolume, RateTangent, TangentTerm, ViscousTangent};
+pub(super) use tangent::{ElasticTangent, TangentTerm};
+use tangent::{OfVolume, RateTangent, ViscousTangent};
 
 /// Elements as matrices.
 pub(super) trait Tangents {

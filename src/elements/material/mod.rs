@@ -22,7 +22,7 @@ pub(crate) use hooke::Hooke;
 pub use hooke::{Lame, Plane};
 pub(crate) use law::{Block, Blocks, ElasticLaw};
 pub(crate) use laws::{ByPoint, Elastic, Fibre, Hookean, Linear, ObjectiveViscosity, with_law};
-pub use laws::{Law, Strain, Viscosity};
+pub use laws::{Hill, Law, Strain, Viscosity};
 pub use rigid_mass::{Moments, RigidMass};
 pub use substance::Substance;
 

@@ -3,9 +3,9 @@
 use super::signal::{self, Signal, finite_at};
 use crate::base::input::InputError;
 use crate::base::sparse::BlockMatrix;
-use crate::elements::body::{Body, CellSelection, Strands};
+use crate::elements::body::{Body, CellSelection, Contraction, Strands};
 use crate::elements::force::{Force, NodalForces, Tangents};
-use crate::elements::material::FibreDirection;
+use crate::elements::material::{FibreDirection, Hill};
 use crate::elements::mesh::Mesh;
 use crate::integrators::ode::Failure;
 
@@ -16,6 +16,8 @@ use crate::integrators::ode::Failure;
 /// s (l - 1) to the energy per natural volume, and so s (F a) a^T / l to the first Piola stress: the muscle pulls by
 /// the force s per section of the undeformed shape, however long it is. Above 0 it contracts, below 0 it pushes. Its
 /// work counts as supplied.
+///
+/// By [Hill's law](Self::hill) it pulls less where its fibres are far from their best length, and as they shorten.
 ///
 /// (Active stress beside the elasticity: G. Chagnon, M. Rebouah, D. Favier, Journal of Elasticity 120 (2015) 129-160
 /// compare it with other ways. Many give the second Piola stress, s a a^T, which falls with the stretch as a force
@@ -42,6 +44,7 @@ pub struct Muscle {
     name: String,
     course: FibreDirection,
     cells: Option<CellSelection>,
+    hill: Option<Hill>,
 }
 
 impl Muscle {
@@ -58,7 +61,7 @@ impl Muscle {
 
     /// A muscle whose fibres run as fibres of a material do.
     pub(crate) fn new(course: FibreDirection) -> Self {
-        Self { name: String::new(), course, cells: None }
+        Self { name: String::new(), course, cells: None, hill: None }
     }
 
     /// Helices in place of rings, which climb along the axis by the angle `pitch` (rad); fibres along a vector do
@@ -70,6 +73,17 @@ impl Muscle {
     /// The cells that it lies in (default: all).
     pub fn within(self, cells: impl Into<CellSelection>) -> Self {
         Self { cells: Some(cells.into()), ..self }
+    }
+
+    /// Lets the stress depend on the length of the fibres and on its rate, by a `law`: phases then give the stress of fibres of the best length at rest,
+    /// from 0 to the largest. It acts as a damper, too.
+    pub fn hill(self, law: Hill) -> Self {
+        Self { hill: Some(law), ..self }
+    }
+
+    /// Hill's law, if it has one.
+    pub fn law(&self) -> Option<&Hill> {
+        self.hill.as_ref()
     }
 
     /// Name of the muscle (default: "muscle 1", "muscle 2", ... in the order of the scene). Springs have other names.
@@ -103,9 +117,11 @@ impl Muscle {
     /// Its fibres.
     ///
     /// # Errors
-    /// Cells that the body does not have, that are rigid, or whose strain is Cauchy's; a course that is none there.
+    /// Cells that the body does not have, that are rigid, or whose strain is Cauchy's; a course that is none there; numbers that are none of
+    /// Hill's law.
     pub(crate) fn strands(&self, body: &Body) -> Result<Strands, InputError> {
         let cells = self.cells(body.mesh())?;
+        self.hill.iter().try_for_each(Hill::validate).map_err(|error| self.blamed(error))?;
         let strands = self.course.validate().and_then(|()| body.strands(&cells, &self.course));
         strands.map_err(|error| self.blamed(error))
     }
@@ -114,22 +130,34 @@ impl Muscle {
         InputError { input: format!("muscle \"{}\" {}", self.name, error.input), ..error }
     }
 
+    /// Checks a stress (Pa) that does not change.
+    ///
+    /// # Errors
+    /// One that Hill's law does not have.
+    pub(crate) fn check_stress(&self, stress: f64) -> Result<(), InputError> {
+        let checked = self.hill.as_ref().map_or(Ok(()), |hill| hill.check_stress(stress));
+        checked.map_err(|error| self.blamed(error))
+    }
+
     /// Its force under the sum of the signals `stress` (Pa).
     ///
     /// # Errors
-    /// As [`strands`](Self::strands).
+    /// As [`strands`](Self::strands); a constant stress that Hill's law does not have.
     pub(crate) fn force(
         &self,
         body: &Body,
         stress: Vec<Signal>,
     ) -> Result<MuscleForce, InputError> {
-        Ok(MuscleForce { name: self.name.clone(), strands: self.strands(body)?, stress })
+        if let Some(constant) = stress.iter().map(Signal::value).sum() {
+            self.check_stress(constant)?;
+        }
+        Ok(MuscleForce { muscle: self.clone(), strands: self.strands(body)?, stress })
     }
 }
 
 /// The force of a muscle.
 pub(crate) struct MuscleForce {
-    name: String,
+    muscle: Muscle,
     strands: Strands,
     stress: Vec<Signal>,
 }
@@ -139,23 +167,37 @@ impl Force for MuscleForce {
         &self,
         t: f64,
         u: &[f64],
-        _v: &[f64],
+        v: &[f64],
         forces: &mut NodalForces,
     ) -> Result<(), Failure> {
         let stress = signal::sum(&self.stress, t);
-        finite_at(t, format_args!("the stress of muscle \"{}\"", self.name), stress)?;
-        self.strands.add_forces(stress, u, &mut forces.applied)
+        let applied = &mut forces.applied;
+        finite_at(t, format_args!("the stress of muscle \"{}\"", self.muscle.name), stress)?;
+        let Some(law) = &self.muscle.hill else {
+            return self.strands.add_forces(stress, u, applied);
+        };
+        self.muscle
+            .check_stress(stress)
+            .map_err(|error| Failure::Fatal(format!("at t = {t} s {error}").into()))?;
+        self.strands.contract(Contraction { law, stress }, u, v, applied)
     }
 
     fn add_tangents(
         &self,
         t: f64,
         u: &[f64],
-        _v: &[f64],
+        v: &[f64],
         stiffness: &mut BlockMatrix,
         damping: &mut BlockMatrix,
     ) -> Tangents {
-        self.strands.add_tangents(signal::sum(&self.stress, t), u, stiffness, damping);
+        let stress = signal::sum(&self.stress, t);
+        match &self.muscle.hill {
+            None => self.strands.add_tangents(stress, u, stiffness, damping),
+            Some(law) => {
+                let contraction = Contraction { law, stress };
+                self.strands.add_contraction_tangents(contraction, u, v, stiffness, damping);
+            }
+        }
         Tangents::Added
     }
 }

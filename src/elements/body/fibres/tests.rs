@@ -1,10 +1,10 @@
 //! Fibres in all cells: forces are derivatives of the energy, tangents those of forces.
 
 use crate::base::sparse::BlockMatrix;
-use crate::elements::body::Body;
 use crate::elements::body::tests::noise;
+use crate::elements::body::{Body, Contraction};
 use crate::elements::force::{Force, NodalForces};
-use crate::elements::material::{Fibres, Law};
+use crate::elements::material::{Fibres, Hill, Law};
 use crate::elements::mesh::{Cells, Mesh, SolidCells};
 use crate::studies::samples::SQUARE_MATERIAL;
 
@@ -118,6 +118,50 @@ fn pulls_and_their_tangents_are_derivatives() {
             for (i, product) in product.iter().enumerate() {
                 let apart = ((behind[i] - ahead[i]) / (2.0 * h) - product).abs();
                 assert!(apart < 1e-6 * largest, "{kind:?} {i}: {apart:e} of {largest:e}");
+            }
+        }
+    }
+}
+
+/// Tangents of a contraction by Hill's law, by displacements and by velocities, are derivatives of its forces. Some fibres lengthen and some shorten; at the fastest shortening
+/// the slope jumps, which none of them comes near.
+#[test]
+fn tangents_of_contractions_are_derivatives() {
+    let hill = Hill { optimal: 1.1, width: 0.1, rate: 3.0, ..Hill::new(4e5) };
+    let contraction = Contraction { law: &hill, stress: 3e5 };
+    for mesh in meshes() {
+        let (kind, dimension) = (mesh.kind(), mesh.dimension());
+        let body = Body::new(mesh, SQUARE_MATERIAL);
+        let body = if kind.dimension() == 2 { body.thickness(0.01) } else { body };
+        let body = body.build().unwrap();
+        let (n, h) = (body.dofs(), 1e-7);
+        let (u, v) = (noise(n, 0.01, 1.0), noise(n, 0.02, 2.0));
+        let (x, none) = (noise(n, 1.0, 3.0), vec![0.0; n]);
+        let cells: Vec<usize> = (0..body.mesh().cell_count()).collect();
+        for Fibres { course, .. } in pair(dimension) {
+            let strands = body.strands(&cells, &course).unwrap();
+            let zeros = BlockMatrix::zeros(body.inertia().pattern(), dimension);
+            let (mut stiffness, mut damping) = (zeros.clone(), zeros);
+            strands.add_contraction_tangents(contraction, &u, &v, &mut stiffness, &mut damping);
+            for (tangent, [by_u, by_v]) in [(&stiffness, [&x, &none]), (&damping, [&none, &x])] {
+                let moved = |from: &[f64], x: &[f64], by: f64| -> Vec<f64> {
+                    from.iter().zip(x).map(|(from, x)| from + by * x).collect()
+                };
+                let at = |by: f64| {
+                    let mut forces = vec![0.0; n];
+                    let (u, v) = (moved(&u, by_u, by), moved(&v, by_v, by));
+                    strands.contract(contraction, &u, &v, &mut forces).unwrap();
+                    forces
+                };
+                let mut product = vec![0.0; n];
+                tangent.add_product(1.0, &x, &mut product);
+                let largest = product.iter().fold(0.0_f64, |largest, f| largest.max(f.abs()));
+                assert!(largest > 1.0, "{kind:?}: {largest}");
+                let (behind, ahead) = (at(-h), at(h));
+                for (i, product) in product.iter().enumerate() {
+                    let apart = ((behind[i] - ahead[i]) / (2.0 * h) - product).abs();
+                    assert!(apart < 1e-6 * largest, "{kind:?} {i}: {apart:e} of {largest:e}");
+                }
             }
         }
     }

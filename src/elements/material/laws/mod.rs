@@ -2,6 +2,7 @@
 
 mod by_point;
 mod fibre;
+mod hill;
 mod hookean;
 mod invariants;
 mod objective_viscosity;
@@ -14,6 +15,7 @@ mod volume;
 
 pub(crate) use by_point::ByPoint;
 pub(crate) use fibre::Fibre;
+pub use hill::Hill;
 pub(crate) use hookean::{Hookean, Linear, StVenantKirchhoff};
 pub(crate) use objective_viscosity::ObjectiveViscosity;
 pub(crate) use rivlin::Rivlin;
