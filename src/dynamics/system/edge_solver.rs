@@ -13,6 +13,9 @@
 //! ```text
 //! R = (1 + alpha gamma)^2 x + 2 gamma (1 + alpha gamma) x' + gamma^2 x''
 //! ```
+//!
+//! Central differences ask for lengths at the end of a step instead, x.x = 2 halves with x = start + weight (x'' of
+//! the step), which Newton's method finds piece by piece.
 
 use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
 use faer::linalg::lu::partial_pivoting::factor::{lu_in_place, lu_in_place_scratch};
@@ -39,13 +42,29 @@ pub(super) struct EdgeSolver {
     /// What R x is to be, and the multipliers that make it so.
     pub(super) demands: Vec<f64>,
     pub(super) multipliers: Vec<f64>,
+    /// What is asked for instead in the first half of a step of central differences.
+    pub(super) arrival: Arrival,
     /// G^T multipliers at the frames.
     pull: Vec<f64>,
+}
+
+/// Where edges are to be at the end of a step.
+pub(super) struct Arrival {
+    /// The part of accelerations in displacements at the end of the step (s^2), if lengths are asked for.
+    pub(super) weight: Option<f64>,
+    /// The edges there without accelerations (m), and what half of the squares of their lengths is to be (m^2).
+    pub(super) starts: Vec<[f64; 3]>,
+    pub(super) halves: Vec<f64>,
+    /// Whether no multipliers were found, the last time.
+    pub(super) is_missed: bool,
 }
 
 /// Edges that feel each other through X, with their factorized small matrix.
 struct Piece {
     edges: Vec<usize>,
+    /// Z G^T: by how much the multiplier of each moves each, and their sums over the rounds of Newton's method.
+    blocks: Vec<[f64; 3]>,
+    sums: Vec<f64>,
     lu: Mat<f64>,
     forward: Vec<usize>,
     backward: Vec<usize>,
@@ -62,12 +81,65 @@ impl Piece {
         ]));
         Self {
             edges,
+            blocks: vec![[0.0; 3]; count * count],
+            sums: vec![0.0; count],
             lu: Mat::zeros(count, count),
             forward: vec![0; count],
             backward: vec![0; count],
             right: vec![0.0; count],
             memory,
         }
+    }
+
+    fn factorize(&mut self) {
+        let stack = MemStack::new(&mut self.memory);
+        let Self { lu, forward, backward, .. } = self;
+        lu_in_place(lu.as_mut(), forward, backward, Par::Seq, stack, Spec::default());
+    }
+
+    /// Replaces `right` by the solution.
+    fn solve(&mut self) {
+        let Self { lu, forward, backward, right, memory, .. } = self;
+        let count = right.len();
+        solve_in_place(
+            lu.as_ref(),
+            lu.as_ref(),
+            PermRef::new_checked(forward, backward, count),
+            MatMut::from_column_major_slice_mut(right, count, 1),
+            Par::Seq,
+            MemStack::new(memory),
+        );
+    }
+
+    /// Finds the multipliers of an arrival, into `right`; `columns` are the edges where the step begins. Returns whether
+    /// there are any, of a step in which no edge turns by more than 60 degrees.
+    fn arrive(&mut self, weight: f64, arrival: &Arrival, columns: &[[f64; 3]]) -> bool {
+        let count = self.edges.len();
+        self.sums.fill(0.0);
+        for _ in 0..MOST_ROUNDS {
+            let (mut worst, mut is_turned) = (0.0_f64, false);
+            for (i, &k) in self.edges.iter().enumerate() {
+                let (mut x, half) = (arrival.starts[k], arrival.halves[k]);
+                let blocks = &self.blocks[i * count..][..count];
+                for (block, sum) in blocks.iter().zip(&self.sums) {
+                    x.iter_mut().zip(block).for_each(|(x, b)| *x += weight * sum * b);
+                }
+                let off = 0.5 * dot(&x, &x) - half;
+                worst = worst.max(off.abs() / half);
+                is_turned |= dot(&x, &columns[k]) < half;
+                self.right[i] = -off / weight;
+                blocks.iter().enumerate().for_each(|(j, block)| self.lu[(i, j)] = dot(&x, block));
+            }
+            self.factorize();
+            self.solve();
+            self.sums.iter_mut().zip(&self.right).for_each(|(sum, more)| *sum += more);
+            if worst <= NEAR {
+                self.right.copy_from_slice(&self.sums);
+                return !is_turned && self.sums.iter().all(|sum| sum.is_finite());
+            }
+        }
+        self.right.fill(0.0);
+        false
     }
 }
 
@@ -103,6 +175,12 @@ impl EdgeSolver {
             columns: vec![[0.0; 3]; edges.len()],
             demands: vec![0.0; edges.len()],
             multipliers: vec![0.0; edges.len()],
+            arrival: Arrival {
+                weight: None,
+                starts: vec![[0.0; 3]; edges.len()],
+                halves: vec![0.0; edges.len()],
+                is_missed: false,
+            },
             pull: vec![0.0; count],
         }
     }
@@ -140,6 +218,30 @@ impl EdgeSolver {
         }
     }
 
+    /// Asks for an arrival from where the edges are, instead of rates.
+    pub(super) fn aim(&mut self, edges: &Edges) {
+        self.columns.copy_from_slice(&edges.arms);
+        let mut pieces = std::mem::take(&mut self.pieces);
+        for Piece { edges, blocks, .. } in &mut pieces {
+            let all = edges.iter().flat_map(|&row| edges.iter().map(move |&column| (row, column)));
+            blocks.iter_mut().zip(all).for_each(|(block, (row, column))| {
+                *block = self.block(row, column);
+            });
+        }
+        self.pieces = pieces;
+    }
+
+    /// Z G^T of two edges: how the multiplier of one moves the other.
+    fn block(&self, row: usize, column: usize) -> [f64; 3] {
+        let ([c, d], [a, b]) = (self.ends[column], self.places[row]);
+        let g = &self.columns[column][..self.dimension];
+        std::array::from_fn(|i| {
+            let z = |at: usize| self.z[(a + i, at)] - self.z[(b + i, at)];
+            let part = |(j, g): (usize, &f64)| (z(c + j) - z(d + j)) * g;
+            if i < self.dimension { g.iter().enumerate().map(part).sum() } else { 0.0 }
+        })
+    }
+
     /// R Z G^T of two edges.
     fn entry(&self, row: usize, column: usize) -> f64 {
         let (r, g) = (&self.rows[row], &self.columns[column]);
@@ -157,20 +259,20 @@ impl EdgeSolver {
 
     /// Sets R and G.
     pub(super) fn turn(&mut self, edges: &Edges, step: Option<[f64; 2]>) {
+        self.arrival.weight = None;
         self.columns.copy_from_slice(&edges.arms);
         match step {
             Some([gamma, alpha]) => edges.rows(gamma, alpha, &mut self.rows),
             None => self.rows.copy_from_slice(&edges.arms),
         }
         let mut pieces = std::mem::take(&mut self.pieces);
-        for Piece { edges, lu, forward, backward, memory, .. } in &mut pieces {
-            for (i, &row) in edges.iter().enumerate() {
-                for (j, &column) in edges.iter().enumerate() {
-                    lu[(i, j)] = self.entry(row, column);
+        for piece in &mut pieces {
+            for (i, &row) in piece.edges.iter().enumerate() {
+                for (j, &column) in piece.edges.iter().enumerate() {
+                    piece.lu[(i, j)] = self.entry(row, column);
                 }
             }
-            let stack = MemStack::new(memory);
-            lu_in_place(lu.as_mut(), forward, backward, Par::Seq, stack, Spec::default());
+            piece.factorize();
         }
         self.pieces = pieces;
     }
@@ -229,26 +331,32 @@ impl EdgeSolver {
             columns,
             demands,
             multipliers,
+            arrival,
             pull,
             ..
         } = self;
         pull.fill(0.0);
-        for Piece { edges, lu, forward, backward, right, memory } in pieces {
-            for (right, &k) in right.iter_mut().zip(&*edges) {
-                let ([a, b], r) = (places[k], &rows[k]);
-                let along: f64 = (0..*d).map(|i| r[i] * (x[a + i] - x[b + i])).sum();
-                *right = demands[k] - along;
+        arrival.is_missed = false;
+        for piece in pieces {
+            match arrival.weight {
+                None => {
+                    for (right, &k) in piece.right.iter_mut().zip(&piece.edges) {
+                        let ([a, b], r) = (places[k], &rows[k]);
+                        let along: f64 = (0..*d).map(|i| r[i] * (x[a + i] - x[b + i])).sum();
+                        *right = demands[k] - along;
+                    }
+                    piece.solve();
+                }
+                Some(weight) => {
+                    for &k in &piece.edges {
+                        let [a, b] = places[k];
+                        let start = arrival.starts[k].iter_mut().take(*d);
+                        start.enumerate().for_each(|(i, s)| *s += weight * (x[a + i] - x[b + i]));
+                    }
+                    arrival.is_missed |= !piece.arrive(weight, arrival, columns);
+                }
             }
-            let count = right.len();
-            solve_in_place(
-                lu.as_ref(),
-                lu.as_ref(),
-                PermRef::new_checked(forward, backward, count),
-                MatMut::from_column_major_slice_mut(right, count, 1),
-                Par::Seq,
-                MemStack::new(memory),
-            );
-            for (multiplier, &k) in right.iter().zip(&*edges) {
+            for (multiplier, &k) in piece.right.iter().zip(&piece.edges) {
                 multipliers[k] = *multiplier;
                 let ([a, b], g) = (ends[k], &columns[k]);
                 for i in 0..*d {
@@ -269,3 +377,8 @@ impl EdgeSolver {
 
 /// Pivots below this, relative to the diagonal, are round-off.
 const LOST: f64 = 1e-10;
+
+/// Rounds of Newton's method for an arrival, and how near, relative to the squares of lengths, the round is after which
+/// round-off is left, as each squares what is left.
+const MOST_ROUNDS: usize = 8;
+const NEAR: f64 = 1e-8;

@@ -29,6 +29,16 @@ impl Edge {
         let apart = difference_at(self.nodes, dimension, u);
         std::array::from_fn(|i| self.natural[i] + apart[i])
     }
+
+    /// The difference of a vector, `dimension` components per node, at its nodes.
+    pub(super) fn apart(&self, values: &[f64], dimension: usize) -> [f64; 3] {
+        difference_at(self.nodes, dimension, values)
+    }
+
+    /// L^2/2 (m^2).
+    pub(super) fn half_square(&self) -> f64 {
+        0.5 * dot(&self.natural, &self.natural)
+    }
 }
 
 /// The difference of a vector, `dimension` components per node, at two nodes.
@@ -104,6 +114,22 @@ impl Edges {
                 -dot(&rate, &rate) - 2.0 * alpha * dot(&x, &rate) - alpha * alpha * off;
             (self.arms[k], self.rates[k]) = (x, rate);
         }
+    }
+
+    /// Moves the edges on to displacements `u` (m), without their rates.
+    pub(super) fn place(&mut self, u: &[f64]) {
+        for (arm, edge) in self.arms.iter_mut().zip(&self.list) {
+            *arm = edge.at(u, self.dimension);
+        }
+    }
+
+    /// g and its rate at the displacements `u` (m) and velocities `v` (m/s), edge by edge.
+    pub(super) fn remainders(&self, u: &[f64], v: &[f64]) -> impl Iterator<Item = [f64; 2]> {
+        self.list.iter().map(move |edge| {
+            let x = edge.at(u, self.dimension);
+            let off = 0.5 * dot(&x, &x) - edge.half_square();
+            [off, dot(&x, &edge.apart(v, self.dimension))]
+        })
     }
 
     /// Whether one of them changes its length faster than by `least` (m/s).

@@ -7,7 +7,7 @@
 //! ```
 //!
 //! so that A^T u is known beforehand and can be prescribed directly: no alpha, however large, bounds the
-//! step, and nothing drifts.
+//! step, and nothing drifts. The same holds for g of the edges of rigid pieces, in place of R.
 
 use super::System;
 use crate::integrators::ode::Failure;
@@ -22,13 +22,23 @@ pub(super) struct Guide {
     is_on_path: bool,
     /// A^T v after kicks, row by row.
     pub(super) rates: Vec<f64>,
+    /// g_0 and g_0' + alpha g_0, edge by edge.
+    of_edges: Vec<(f64, f64)>,
+    /// g at the end of the step, then g' there.
+    pub(super) edges: Vec<f64>,
 }
 
 impl Guide {
-    /// Without motion, for `rows` rows.
-    pub(super) fn new(rows: usize) -> Self {
-        let remainders = vec![(0.0, 0.0); rows];
-        Self { since: 0.0, remainders, is_on_path: true, rates: vec![0.0; rows] }
+    /// Without motion, for `rows` rows and `edges` edges.
+    pub(super) fn new([rows, edges]: [usize; 2]) -> Self {
+        Self {
+            since: 0.0,
+            remainders: vec![(0.0, 0.0); rows],
+            is_on_path: true,
+            rates: vec![0.0; rows],
+            of_edges: vec![(0.0, 0.0); edges],
+            edges: vec![0.0; edges],
+        }
     }
 
     /// Starts the motion from (t, u, v).
@@ -46,6 +56,8 @@ impl Guide {
             *remainder = (off, row.apply(v) - velocity + system.alpha * off);
         }
         self.is_on_path = self.remainders.iter().all(|remainder| *remainder == (0.0, 0.0));
+        let of_edges = self.of_edges.iter_mut().zip(system.edges.remainders(u, v));
+        of_edges.for_each(|(remainder, [off, rate])| *remainder = (off, rate + system.alpha * off));
         Ok(())
     }
 
@@ -72,6 +84,10 @@ impl Guide {
             let remainder = (off + slope * elapsed) * change + slope * ahead;
             self.rates[k] = prescribed + remainder * decay;
         }
+        let elapsed = elapsed + h;
+        for (goal, &(off, slope)) in self.edges.iter_mut().zip(&self.of_edges) {
+            *goal = (off + slope * elapsed) * (-alpha * elapsed).exp();
+        }
         Ok(())
     }
 
@@ -94,6 +110,9 @@ impl Guide {
                 u[dof] = (displacement + remainder * decay) / coefficient;
                 v[dof] = self.rates[k] / coefficient;
             }
+        }
+        for (goal, &(off, slope)) in self.edges.iter_mut().zip(&self.of_edges) {
+            *goal = (slope - alpha * (off + slope * elapsed)) * (-alpha * elapsed).exp();
         }
         Ok(())
     }

@@ -8,6 +8,7 @@ use super::System;
 use super::reduced::nodal_multipliers;
 use crate::base::simd::{Formula, each};
 use crate::base::tensor::Real;
+use crate::base::vector::dot;
 use crate::dynamics::matrices::Matrices;
 use crate::integrators::ode::Kick;
 use crate::scene::constraint::ConstraintRow;
@@ -122,6 +123,32 @@ impl Formula<2, 1, 0> for ByMass {
 }
 
 impl System {
+    /// Has the accelerations in the first kick of a step of size `h` (s), from where the edges were placed, end it with
+    /// the `goals` of g (m^2).
+    pub(super) fn aim_edges(&mut self, h: f64, kick: &Kick<'_>, goals: &[f64]) {
+        let Some(solver) = &mut self.inertia.edges else { return };
+        let arrival = &mut solver.arrival;
+        arrival.weight = Some(h * kick.duration);
+        let all = self.edges.list.iter().zip(&self.edges.arms).zip(goals);
+        for (k, ((edge, arm), goal)) in all.enumerate() {
+            let rate = edge.apart(kick.before, self.matrices.dimension);
+            arrival.starts[k] = std::array::from_fn(|i| arm[i] + h * rate[i]);
+            arrival.halves[k] = edge.half_square() + goal;
+        }
+        solver.aim(&self.edges);
+    }
+
+    /// Has the accelerations in a kick, where the edges were placed, end it with the rates `goals` of g (m^2/s).
+    pub(super) fn lead_edges(&mut self, kick: &Kick<'_>, goals: &[f64]) {
+        let Some(solver) = &mut self.inertia.edges else { return };
+        let all = self.edges.list.iter().zip(&self.edges.arms).zip(goals);
+        for (demand, ((edge, arm), goal)) in solver.demands.iter_mut().zip(all) {
+            let rate = dot(arm, &edge.apart(kick.before, self.matrices.dimension));
+            *demand = (goal - rate) / kick.duration;
+        }
+        solver.turn(&self.edges, None);
+    }
+
     /// Accelerations a and multipliers lambda with M a - A lambda = f, A^T a = d.
     fn accelerations(&mut self, f: &[f64], d: &[f64], a: &mut [f64], multipliers: &mut [f64]) {
         self.inertia.solve(&self.rows, f, d, a, multipliers);

@@ -18,13 +18,16 @@ pub(crate) struct SecondOrderForm {
     guide: Guide,
     mobility: Mobility,
     bound: RatesBound,
+    /// Size of a step (s) until its first kick.
+    departs: Option<f64>,
 }
 
 impl SecondOrderForm {
     pub(crate) fn new(mut system: System) -> Self {
-        let (guide, mobility) = (Guide::new(system.rows.len()), Mobility::new(&system));
+        let counts = [system.rows.len(), system.edges.list.len()];
+        let (guide, mobility) = (Guide::new(counts), Mobility::new(&system));
         let bound = RatesBound::new(&mut system);
-        Self { system, guide, mobility, bound }
+        Self { system, guide, mobility, bound, departs: None }
     }
 }
 
@@ -34,7 +37,11 @@ impl SecondOrder for SecondOrderForm {
     }
 
     fn accelerations(&mut self, kick: &Kick<'_>, a: &mut [f64]) {
-        let Self { system, guide, mobility, .. } = self;
+        let Self { system, guide, mobility, departs, .. } = self;
+        match departs.take() {
+            Some(h) => system.aim_edges(h, kick, &guide.edges),
+            None => system.lead_edges(kick, &guide.edges),
+        }
         mobility.accelerations(system, kick, &guide.rates, a);
     }
 
@@ -66,8 +73,25 @@ impl SecondOrder for SecondOrderForm {
         Ok(!self.mobility.is_diagonal())
     }
 
+    fn is_curved(&self) -> bool {
+        self.system.has_edges()
+    }
+
+    fn depart(&mut self, h: f64, u: &[f64]) {
+        self.system.edges.place(u);
+        self.departs = Some(h);
+    }
+
     fn prescribe(&mut self, t: f64, u: &mut [f64], v: &mut [f64]) -> Result<(), Failure> {
-        self.guide.prescribe(&self.system, t, u, v)
+        self.guide.prescribe(&self.system, t, u, v)?;
+        let Some(solver) = &self.system.inertia.edges else { return Ok(()) };
+        if solver.arrival.is_missed {
+            let reason = "a rigid piece turns by more than 60 degrees in a step";
+            return Err(Failure::Recoverable(reason.into()));
+        }
+        self.system.matrices.rigid.iter().for_each(|rigid| rigid.carry(u));
+        self.system.edges.place(u);
+        Ok(())
     }
 
     fn lead(&mut self, kick: &Kick<'_>, after: &mut [f64], work: &mut [f64]) {

@@ -73,6 +73,11 @@
 //! With the largest omega and the largest r of a whole body, each taken by itself, this is a bound for the
 //! body.
 //!
+//! **Constraints** g(u) = 0 that are not linear are met at the end of each step, by positions and velocities, as
+//! multipliers along their gradients act in both halves of it (RATTLE: H. C. Andersen, J. Comput. Phys. 52 (1983)
+//! 24-34). The method stays symmetric and symplectic (E. Hairer, C. Lubich, G. Wanner, *Geometric Numerical
+//! Integration*, section VII.1.4).
+//!
 //! **Energies.** The kinetic energy changes in one step by h w . (f_n + f_(n+1))/2, up to a bounded
 //! remainder. So the trapezoidal rule for the powers of damping and applied forces gives the work that these
 //! forces do in the scheme. The work of the constraint forces is summed up in the kicks.

@@ -51,6 +51,10 @@ pub struct CentralDifference<S> {
     pub(super) earlier: Vec<f64>,
     pub(super) first: Vec<f64>,
     pub(super) second: Vec<f64>,
+    /// Accelerations in the first half of a step, and whether they are kept: where constraints are not linear, these
+    /// are others than those at the end of the step before.
+    pub(super) departure: Vec<f64>,
+    pub(super) is_curved: bool,
     /// Size of the step before the last.
     pub(super) step_before: Option<f64>,
     /// Velocities in the middle of a step, and extrapolated to its end.
@@ -81,6 +85,7 @@ impl<S: SecondOrder> CentralDifference<S> {
         }
         let n = both / 2;
         let (zeros, none) = (vec![0.0; n], vec![0.0; integrals]);
+        let is_curved = system.is_curved();
         let mut solver = Self {
             system,
             n,
@@ -102,6 +107,8 @@ impl<S: SecondOrder> CentralDifference<S> {
             earlier: zeros.clone(),
             first: zeros.clone(),
             second: zeros.clone(),
+            departure: vec![0.0; if is_curved { n } else { 0 }],
+            is_curved,
             step_before: None,
             middle: zeros.clone(),
             extrapolated: zeros,
@@ -120,7 +127,10 @@ impl<S: SecondOrder> CentralDifference<S> {
             self.control.set_limit(*t, limit.min(longest));
         }
         self.step_before = (step > 0.0).then_some(step);
-        swap(&mut self.earlier, &mut self.first);
+        match self.is_curved {
+            true => swap(&mut self.earlier, &mut self.departure),
+            false => swap(&mut self.earlier, &mut self.first),
+        }
         swap(&mut self.first, &mut self.second);
         // until this step succeeds there is nothing to interpolate in
         (self.t_before, self.rest) = (self.t, None);

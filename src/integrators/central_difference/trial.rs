@@ -18,11 +18,15 @@ impl<S: SecondOrder> CentralDifference<S> {
         let half = 0.5 * h;
         let is_coupled = system.aim_at_mean_rates(self.t, h)?;
         let kick = Kick { duration: half, force: &self.force, before: v };
+        let departure = if self.is_curved { &mut self.departure } else { &mut self.first };
         // otherwise `first` holds those at the end of the step before
-        if self.step_before.is_none() || is_coupled {
-            call::accelerations(system, &kick, &mut self.first);
+        if self.step_before.is_none() || is_coupled || self.is_curved {
+            if self.is_curved {
+                system.depart(h, u);
+            }
+            call::accelerations(system, &kick, departure);
         }
-        each(Drift { h }, [u, v, &self.first], [middle, u_next, extrapolated]);
+        each(Drift { h }, [u, v, departure], [middle, u_next, extrapolated]);
         system.lead(&kick, middle, work);
 
         system.prescribe(next, u_next, extrapolated)?;
@@ -36,9 +40,19 @@ impl<S: SecondOrder> CentralDifference<S> {
             None => (0.0, 1.0),
         };
         let (position_weights, velocity_weights) = self.weights.split_at(self.n);
+        let [earlier, first] = match self.is_curved {
+            false => [&self.earlier, &self.first],
+            // each step by its own two kicks: multipliers are those of times within it
+            true => {
+                let last = self.first.iter().zip(&self.earlier);
+                let all = extrapolated.iter_mut().zip(&self.departure).zip(last);
+                all.for_each(|((out, a), (end, begin))| *out = a - (end - begin));
+                [&*extrapolated, &self.departure]
+            }
+        };
         let [position, velocity] = each(
             Arrive { half, ratio },
-            [middle, &self.earlier, &self.first, &self.second, position_weights, velocity_weights],
+            [middle, earlier, first, &self.second, position_weights, velocity_weights],
             [v_next],
         );
         system.lead(&kick, v_next, work);

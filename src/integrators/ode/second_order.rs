@@ -6,8 +6,8 @@ use super::failure::Failure;
 ///
 /// [`forces`](Self::forces), [`accelerations`](Self::accelerations) and [`rates`](Self::rates) make a
 /// system. [`integrals`](Self::integrals) and the two methods after it add integrals over time and a
-/// check of the energy. The last four are for constrained systems, where part of the motion is known
-/// beforehand.
+/// check of the energy. The last six are for constrained systems, where part of the motion is known
+/// beforehand, or bodies keep their shape.
 pub trait SecondOrder {
     /// Writes the forces f(t, u, v) into `f` (zero on entry), without those of constraints.
     ///
@@ -60,6 +60,17 @@ pub trait SecondOrder {
     fn aim_at_mean_rates(&mut self, _t: f64, _h: f64) -> Result<bool, Failure> {
         Ok(false)
     }
+
+    /// Whether there are constraints g(u) = 0 that are not linear. They act as in RATTLE: in the first half of a step so
+    /// that they hold at the end of it, and in the second half so that the velocities keep them there.
+    fn is_curved(&self) -> bool {
+        false
+    }
+
+    /// Called after [`aim_at_mean_rates`](Self::aim_at_mean_rates) where the system [is curved](Self::is_curved): the
+    /// next kick is the first half of a step of size `h` from the displacements `u`. The kick after
+    /// [`prescribe`](Self::prescribe) is the second half, at the displacements given there.
+    fn depart(&mut self, _h: f64, _u: &[f64]) {}
 
     /// Writes the components of `u` and `v` that are known at time `t`, and sets the target rates of
     /// [`accelerations`](Self::accelerations) and [`lead`](Self::lead) to those known for that time.
