@@ -33,7 +33,7 @@ impl ReducedChecks {
         if self.left_over.is_empty() {
             return;
         }
-        let found = equations().and_then(|mut system| system.imbalances(&self.left_over).ok());
+        let found = equations().map(|mut system| system.imbalances(&self.left_over));
         let imbalances = found.unwrap_or_else(|| vec![f64::INFINITY]);
         imbalances.into_iter().for_each(|imbalance| self.report.note_imbalance(imbalance));
         self.left_over.clear();

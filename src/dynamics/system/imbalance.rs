@@ -133,12 +133,23 @@ impl System {
     }
 
     /// For each of some states of a phase the largest component (m) of the displacements by which what a reduced model leaves
-    /// over would be balanced.
-    pub(crate) fn imbalances(&mut self, states: &[LeftOver]) -> Result<Vec<f64>, Failure> {
-        // the tangents of the last one: what has just been loaded may be about to buckle, what has come to rest is not
-        let Some(LeftOver { time, state: [u, v, _], .. }) = states.last() else {
-            return Ok(Vec::new());
-        };
+    /// over would be balanced; infinite where no tangents tell.
+    ///
+    /// Of the tangents of the first and of the last state those tell that resist more: a body on the way to where it comes to
+    /// rest may be about to buckle, and move far under any force.
+    pub(crate) fn imbalances(&mut self, states: &[LeftOver]) -> Vec<f64> {
+        let mut least = vec![f64::INFINITY; states.len()];
+        for at in [states.first(), states.last()].into_iter().flatten() {
+            if let Ok(found) = self.imbalances_by(at, states) {
+                least.iter_mut().zip(found).for_each(|(least, own)| *least = least.min(own));
+            }
+        }
+        least
+    }
+
+    /// The same with the tangents of one of them.
+    fn imbalances_by(&mut self, at: &LeftOver, states: &[LeftOver]) -> Result<Vec<f64>, Failure> {
+        let LeftOver { time, state: [u, v, _], .. } = at;
         // a step so long that inertia hardly matters, except where nothing resists a motion
         let [size, speed] = self.matrices.scales;
         let slow = SLOW * size / speed;

@@ -102,6 +102,10 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Reinforced
                     return Err(InputError::new("fibres in cell", cell + 1, help));
                 }
                 own.iter_mut().for_each(|x| *x /= length);
+                // fibres have no sign, and the frame of a cell that fills a line is the identity
+                if D == 1 {
+                    own = own.map(f64::abs);
+                }
                 points.push(StrainPoint {
                     gradients: std::array::from_fn(|a| [dot(&point.gradients[a], &own)]),
                     frame: [apply(&point.frame, &own)],

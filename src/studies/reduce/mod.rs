@@ -289,7 +289,7 @@ impl Search<'_> {
                     let own = distance(full, &run) / model.travel;
                     let told = run.report().reduced.as_ref().map_or(0.0, |run| run.imbalance());
                     imbalance = imbalance.max(told);
-                    if told > 0.0 {
+                    if told > 0.0 && told.is_finite() {
                         per_imbalance = per_imbalance.max(own / told);
                     }
                     seconds.push(time);
