@@ -1333,7 +1333,7 @@ def chamber(
     thickness: float | None = None,
     burst: float | None = None,
 ) -> dict:
-    r"""A closed space that `pressure` in a phase blows up, unless it has [[gas]] or a [[liquid]].
+    r"""A closed space that `pressure` in a phase blows up, unless it has `[[gas]]` or a `[[liquid]]`.
 
     Parameters
     ----------

@@ -63,7 +63,7 @@ const END: TableKeys = TableKeys::new(
 
 pub(super) const CHAMBER: TableKeys = TableKeys::new(
     "[[chamber]]",
-    "A closed space that `pressure` in a phase blows up, unless it has [[gas]] or a [[liquid]].",
+    "A closed space that `pressure` in a phase blows up, unless it has `[[gas]]` or a `[[liquid]]`.",
     &[
         Key::new("name", Holds::Text, "the name of the chamber").required(),
         Key::new(
