@@ -139,16 +139,38 @@ impl System {
     /// rest may be about to buckle, and move far under any force.
     pub(crate) fn imbalances(&mut self, states: &[LeftOver]) -> Vec<f64> {
         let mut least = vec![f64::INFINITY; states.len()];
-        for at in [states.first(), states.last()].into_iter().flatten() {
-            if let Ok(found) = self.imbalances_by(at, states) {
+        let residuals: Result<Vec<_>, Failure> =
+            states.iter().map(|state| self.residual(state)).collect();
+        let Ok(residuals) = residuals else { return least };
+        let (first, others) = (states.first(), states.get(1..).unwrap_or_default());
+        for at in first.into_iter().chain(others.last()) {
+            if let Ok(found) = self.imbalances_by(at, states, &residuals) {
                 least.iter_mut().zip(found).for_each(|(least, own)| *least = least.min(own));
             }
         }
         least
     }
 
-    /// The same with the tangents of one of them.
-    fn imbalances_by(&mut self, at: &LeftOver, states: &[LeftOver]) -> Result<Vec<f64>, Failure> {
+    /// The nodal forces (N) that a state leaves over.
+    fn residual(&mut self, state: &LeftOver) -> Result<Vec<f64>, Failure> {
+        let LeftOver { time, state: [u, v, a], forces, .. } = state;
+        self.at.nodal.clear();
+        self.add_forces_of_matrices(u, v)?;
+        self.add_forces_where(|force| force.is_by_cells(), *time, u, v)?;
+        let Self { at, matrices, .. } = self;
+        at.nodal.add_up(&mut at.total);
+        add(forces, &mut at.total);
+        matrices.inertia.add_product(matrices.dimension, -1.0, a, &mut at.total);
+        Ok(at.total.clone())
+    }
+
+    /// The imbalances with the tangents of one of the states.
+    fn imbalances_by(
+        &mut self,
+        at: &LeftOver,
+        states: &[LeftOver],
+        residuals: &[Vec<f64>],
+    ) -> Result<Vec<f64>, Failure> {
         let LeftOver { time, state: [u, v, _], .. } = at;
         // a step so long that inertia hardly matters, except where nothing resists a motion
         let [size, speed] = self.matrices.scales;
@@ -159,21 +181,14 @@ impl System {
         let none = vec![0.0; self.rows.len()];
         let (mut x, mut mu) = (vec![0.0; self.dofs()], none.clone());
         let mut imbalances = Vec::new();
-        for LeftOver { time, age, state: [u, v, a], forces, .. } in states {
+        for (LeftOver { age, .. }, residual) in states.iter().zip(residuals) {
             // what has just begun to act has not moved the body far
             if gamma != slow.min(*age) {
                 gamma = slow.min(*age);
                 self.factorize_newton(gamma)?;
             }
-            self.at.nodal.clear();
-            self.add_forces_of_matrices(u, v)?;
-            self.add_forces_where(|force| force.is_by_cells(), *time, u, v)?;
-            let Self { at, matrices, newton, rows, .. } = self;
-            at.nodal.add_up(&mut at.total);
-            add(forces, &mut at.total);
-            matrices.inertia.add_product(matrices.dimension, -1.0, a, &mut at.total);
-            at.total.iter_mut().for_each(|force| *force *= gamma * gamma);
-            newton.solver.solve(rows, &at.total, &none, &mut x, &mut mu);
+            let right: Vec<f64> = residual.iter().map(|force| force * (gamma * gamma)).collect();
+            self.newton.solver.solve(&self.rows, &right, &none, &mut x, &mut mu);
             imbalances.push(largest(&x));
         }
         Ok(imbalances)
