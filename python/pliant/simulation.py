@@ -131,6 +131,14 @@ class Simulation:
         """Magnetic moment (A m^2) of all magnets."""
         return self._simulation.magnetic_moment()
 
+    def dipole_position(self, dipole: str) -> Array:
+        """Where a dipole is (m)."""
+        return self._simulation.dipole_position(dipole)
+
+    def dipole_force(self, dipole: str) -> Array:
+        """Force (N) of a dipole on all magnets; that on the dipole is minus this."""
+        return self._simulation.dipole_force(dipole)
+
     def fluid_force(self, fluid: str) -> Array:
         """Force (N) of a fluid on the bodies, drag and pressure."""
         return self._simulation.fluid_force(fluid)
@@ -216,6 +224,14 @@ class Simulation:
     def set_magnetic_field(self, field: Sequence[float]) -> None:
         """Sets the magnetic field (T) that acts on magnets, one component per dimension; a gradient of it stays."""
         self._simulation.set_magnetic_field([float(part) for part in field])
+
+    def set_dipole_position(self, dipole: str, position: Sequence[float]) -> None:
+        """Sets the position (m) of a dipole, one component per dimension."""
+        self._simulation.set_dipole_position(dipole, [float(part) for part in position])
+
+    def set_dipole_moment(self, dipole: str, moment: Sequence[float]) -> None:
+        """Sets the moment (A m^2) of a dipole, one component per dimension."""
+        self._simulation.set_dipole_moment(dipole, [float(part) for part in moment])
 
     def hold(self, nodes: Nodes) -> None:
         """Holds nodes where they are."""

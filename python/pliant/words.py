@@ -1323,6 +1323,42 @@ def magnet(
     )
 
 
+def dipole(
+    *,
+    moment: Sequence[Formula],
+    name: str | None = None,
+    position: Sequence[Formula] | None = None,
+    times: Sequence[float] | None = None,
+    positions: Sequence[Vector] | None = None,
+) -> dict:
+    r"""A magnet outside of the bodies, which moves as it is told: a point dipole of the moment m at p, whose field
+    mu_0/(4 pi) (3 (m . r) r/|r|^5 - m/|r|^3), r = x - p, acts on each `[[magnet]]` at its deformed place. In the
+    plane it is that of a dipole in space which lies in the plane of the body, as its moment does. It acts in all
+    phases; `drive` in a phase moves it and changes its moment.
+
+    Parameters
+    ----------
+    moment
+        the moment m (A m^2). Required. Of a magnet of the remanence b and the volume V it is b V/mu_0: 1.03 for 1
+        cm^3 of neodymium of 1.3 T.
+    name
+        the name of the dipole. Default: dipole 1, dipole 2, ...
+    position
+        the position p (m). Default: none.
+    times
+        times in ascending order (s). Default: none.
+    positions
+        the positions at these times (m). Default: none.
+    """
+    return _table(
+        moment=moment,
+        name=name,
+        position=position,
+        times=times,
+        positions=positions,
+    )
+
+
 def chamber(
     *,
     name: str,
@@ -2026,6 +2062,7 @@ def phase(
     open: dict | Sequence[dict] | None = None,
     flow: dict | Sequence[dict] | None = None,
     actuate: dict | Sequence[dict] | None = None,
+    drive: dict | Sequence[dict] | None = None,
     magnetic_field: dict | None = None,
     contact: bool | str | Sequence[str] | None = None,
     project_velocity: bool | None = None,
@@ -2065,6 +2102,8 @@ def phase(
         flows of liquids into chambers. Default: none.
     actuate
         forces in springs and cables, stresses of muscles, strains of growth. Default: none.
+    drive
+        where dipoles are, and their moments. Default: none.
     magnetic_field
         the magnetic field. Default: none.
     contact
@@ -2089,6 +2128,7 @@ def phase(
         open=open,
         flow=flow,
         actuate=actuate,
+        drive=drive,
         magnetic_field=magnetic_field,
         contact=contact,
         project_velocity=project_velocity,
@@ -2493,6 +2533,43 @@ def actuate(
         lengths=lengths,
         strains=strains,
         stresses=stresses,
+    )
+
+
+def drive(
+    *,
+    dipole: str,
+    position: Sequence[Formula] | None = None,
+    moment: Sequence[Formula] | None = None,
+    times: Sequence[float] | None = None,
+    positions: Sequence[Vector] | None = None,
+    moments: Sequence[Vector] | None = None,
+) -> dict:
+    r"""Where a [dipole](#dipole) is in this phase, or its moment, in place of what the scene says; a moment of 0 switches
+    it off. Those of tables are interpolated linearly, and constant before and after.
+
+    Parameters
+    ----------
+    dipole
+        the name of the dipole. Required.
+    position
+        its position (m). Default: none.
+    moment
+        its moment (A m^2). Default: none.
+    times
+        times in ascending order (s). Default: none.
+    positions
+        its positions at these times (m). Default: none.
+    moments
+        its moments at these times (A m^2). Default: none.
+    """
+    return _table(
+        dipole=dipole,
+        position=position,
+        moment=moment,
+        times=times,
+        positions=positions,
+        moments=moments,
     )
 
 
@@ -2967,6 +3044,58 @@ def sensor_magnetic_moment(
     return _table(
         kind="magnetic-moment",
         name=name,
+        component=component,
+    )
+
+
+def sensor_dipole_force(
+    *,
+    name: str,
+    dipole: str,
+    component: Literal["x", "y", "z", "norm", "xx", "yy", "zz", "xy", "yz", "xz", "von-mises"] | None = None,
+) -> dict:
+    r"""Sensor of the kind "dipole-force": the force of a dipole on all magnets; that on the dipole is minus this (N).
+
+    Parameters
+    ----------
+    name
+        the name of the sensor. Required.
+    dipole
+        the name of the dipole. Required.
+    component
+        one component alone. Default: all, each a column. Vectors have `x`, `y`, `z` and their length `norm`; tensors
+        `xx` and so on; stress has `von-mises` besides.
+    """
+    return _table(
+        kind="dipole-force",
+        name=name,
+        dipole=dipole,
+        component=component,
+    )
+
+
+def sensor_dipole_position(
+    *,
+    name: str,
+    dipole: str,
+    component: Literal["x", "y", "z", "norm", "xx", "yy", "zz", "xy", "yz", "xz", "von-mises"] | None = None,
+) -> dict:
+    r"""Sensor of the kind "dipole-position": where a dipole is (m).
+
+    Parameters
+    ----------
+    name
+        the name of the sensor. Required.
+    dipole
+        the name of the dipole. Required.
+    component
+        one component alone. Default: all, each a column. Vectors have `x`, `y`, `z` and their length `norm`; tensors
+        `xx` and so on; stress has `von-mises` besides.
+    """
+    return _table(
+        kind="dipole-position",
+        name=name,
+        dipole=dipole,
         component=component,
     )
 
@@ -3562,6 +3691,8 @@ __all__ = [
     "branch",
     "cable",
     "chamber",
+    "dipole",
+    "drive",
     "ends",
     "fibres",
     "flow",
@@ -3625,6 +3756,8 @@ __all__ = [
     "sensor_contact_area",
     "sensor_contact_force",
     "sensor_contact_pressure",
+    "sensor_dipole_force",
+    "sensor_dipole_position",
     "sensor_displacement",
     "sensor_distance",
     "sensor_fluid_force",

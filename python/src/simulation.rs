@@ -192,6 +192,26 @@ impl Simulation {
         Ok(PyArray1::from_vec(py, self.lock()?.view().magnetic_moment()))
     }
 
+    /// Where a dipole is (m).
+    fn dipole_position<'py>(
+        &self,
+        py: Python<'py>,
+        dipole: &str,
+    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let position = self.lock()?.view().dipole_position(dipole).map_err(raised)?;
+        Ok(PyArray1::from_vec(py, position))
+    }
+
+    /// Force (N) of a dipole on all magnets.
+    fn dipole_force<'py>(
+        &self,
+        py: Python<'py>,
+        dipole: &str,
+    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let force = self.lock()?.view().dipole_force(dipole).map_err(raised)?;
+        Ok(PyArray1::from_vec(py, force))
+    }
+
     /// Force (N) of a fluid on the bodies.
     fn fluid_force<'py>(
         &self,
@@ -316,6 +336,16 @@ impl Simulation {
     /// Sets the magnetic field (T) that acts on magnets.
     fn set_magnetic_field(&self, field: Vec<f64>) -> PyResult<()> {
         self.lock()?.magnetic_field(field).map_err(raised)
+    }
+
+    /// Sets the position (m) of a dipole.
+    fn set_dipole_position(&self, dipole: &str, position: Vec<f64>) -> PyResult<()> {
+        self.lock()?.dipole_position(dipole, position).map_err(raised)
+    }
+
+    /// Sets the moment (A m^2) of a dipole.
+    fn set_dipole_moment(&self, dipole: &str, moment: Vec<f64>) -> PyResult<()> {
+        self.lock()?.dipole_moment(dipole, moment).map_err(raised)
     }
 
     /// Holds nodes where they are.

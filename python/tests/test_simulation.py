@@ -134,6 +134,26 @@ def test_what_acts_within_the_material_is_driven():
     assert moment[1] > 0.01 * moment[0] > 0.0
 
 
+def test_a_dipole_is_led():
+    strip = pliant.Scene(
+        body=dict(
+            mesh=dict(kind="rectangle", size=[0.02, 0.001], nodes=[21, 3], cells="rectangles9"),
+            thickness=0.005,
+            material=dict(density=2000.0, young=1e6, poisson=0.3, viscosity=5e3),
+        ),
+        magnet=dict(remanence=[0.1, 0.0]),
+        dipole=dict(name="lead", moment=[0.0, 0.3], position=[0.02, 1.0]),
+        phase=[dict(until=0.05, hold=dict(nodes="left"))],
+    ).start()
+    strip.set_dipole_position("lead", [0.02, 0.03])
+    strip.advance_to(0.05)
+    assert strip.position("right")[1] > 0.001
+    assert strip.dipole_position("lead")[1] == 0.03
+    assert strip.dipole_force("lead")[1] > 0.0
+    strip.set_dipole_moment("lead", [0.0, 0.0])
+    assert (strip.dipole_force("lead") == 0.0).all()
+
+
 def test_one_thread_at_a_time():
     beam = BEAM.start()
 

@@ -42,15 +42,16 @@ fn all_scenes_are_run() {
         seventh,
         eighth,
         ninth,
+        led,
         tenth,
         eleventh,
         sensors,
     ] = blocks("toml")[..]
     else {
-        panic!("twelve blocks")
+        panic!("thirteen blocks")
     };
     assert_eq!([fourth, fifth, sixth, seventh], [GLUED_ARM, GRIPPER, WHEEL, FINGER]);
-    assert_eq!([eighth, ninth, tenth, eleventh], [MUSCLES, MAGNETS, GEL, FOAM]);
+    assert_eq!([eighth, ninth, led, tenth, eleventh], [MUSCLES, MAGNETS, LED, GEL, FOAM]);
     let with_sensors = first.to_owned() + sensors;
     for text in [
         &with_sensors,
@@ -62,6 +63,7 @@ fn all_scenes_are_run() {
         seventh,
         eighth,
         ninth,
+        led,
         tenth,
         eleventh,
     ] {
@@ -85,6 +87,7 @@ const FINGER: &str = include_str!("../../scenes/tendon-finger.toml");
 const WHEEL: &str = include_str!("../../scenes/wheel-over-stones.toml");
 const MUSCLES: &str = include_str!("../../scenes/muscle-strip.toml");
 const MAGNETS: &str = include_str!("../../scenes/magnetic-strip.toml");
+const LED: &str = include_str!("../../scenes/led-strip.toml");
 const GEL: &str = include_str!("../../scenes/swelling-strip.toml");
 const FOAM: &str = include_str!("../../scenes/float.toml");
 const CABLE: &str = include_str!("../../scenes/cable.toml");

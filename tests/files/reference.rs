@@ -9,11 +9,12 @@ use serde_json::Value;
 const PAGE: &str = include_str!("../../docs/reference.md");
 
 /// A file of these parts, each of which may be replaced.
-const PARTS: [(&str, &str); 11] = [
+const PARTS: [(&str, &str); 12] = [
     ("top", "title = \"base\"\n"),
     ("[body]", "[body]\nthickness = 0.01\n"),
     ("[[spring]]", "[[spring]]\nname = \"down\"\nends = [1, 3]\n"),
     ("[[magnet]]", "[[magnet]]\nremanence = [0.1, 0.0]\n"),
+    ("[[dipole]]", "[[dipole]]\nname = \"lead\"\nmoment = [0.0, 1.0]\nposition = [0.05, 0.3]\n"),
     ("[[chamber]]", "[[chamber]]\nname = \"inside\"\nnodes = [1, 2, 13, 12]\n"),
     ("[[gas]]", "[[gas]]\nchamber = \"inside\"\n"),
     ("[[supply]]", "[[supply]]\nname = \"pump\"\npressure = 2e5\n"),
@@ -56,7 +57,8 @@ fn with(example: &str, mesh: &str) -> String {
             "[[orifice]]" => key == "open",
             "[[liquid]]" => key == "flow",
             "[[spring]]" => key == "actuate",
-            "[[magnet]]" => key == "magnetic_field",
+            "[[magnet]]" => ["magnetic_field", "[[dipole]]", "drive"].contains(&key),
+            "[[dipole]]" => key == "drive",
             _ => true,
         };
         text += if is_whole || !is_needed { "" } else { base };

@@ -212,6 +212,7 @@ fn all_scenes_are_run() {
         "tendon-finger",
         "muscle-strip",
         "magnetic-strip",
+        "led-strip",
         "swelling-strip",
         "float",
         "gripper",

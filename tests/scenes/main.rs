@@ -19,6 +19,7 @@ mod contact_motion;
 mod contact_rings;
 mod contact_truths;
 mod damping;
+mod dipoles;
 mod driving;
 mod fluids;
 mod forces;

@@ -142,6 +142,7 @@ fn surroundings(scene: &Scene) -> Result<(), Failure> {
     let growths = scene.growths().iter().map(|growth| growth.name()).collect();
     let magnets = scene.magnets().iter().map(|magnet| format!("{:?} T", magnet.remanence()));
     let magnets: Vec<String> = magnets.collect();
+    let dipoles = scene.dipoles().iter().map(|dipole| dipole.name()).collect();
     let chambers = scene.chambers().iter().map(|chamber| chamber.name()).collect();
     let orifices = scene.orifices().iter().map(|orifice| orifice.name()).collect();
     let liquids = scene.liquids().iter().map(|liquid| liquid.chamber()).collect();
@@ -153,6 +154,7 @@ fn surroundings(scene: &Scene) -> Result<(), Failure> {
         ("muscles", muscles),
         ("growths", growths),
         ("magnets", magnets.iter().map(String::as_str).collect()),
+        ("dipoles", dipoles),
         ("chambers", chambers),
         ("orifices", orifices),
         ("liquids", liquids),

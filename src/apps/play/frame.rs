@@ -46,6 +46,7 @@ pub(super) fn of(present: &Present, colours: Option<usize>, since: Option<f64>) 
         "colours": colours.and_then(|quantity| picture.colours(&view, quantity)),
         "past": past.after(since),
         "sliders": values.collect::<Vec<_>>(),
+        "dipoles": picture.dipoles(&view),
         "actuations": actuations.collect::<Vec<_>>(),
         "pull": hand.map(Hand::to_json),
         "speed": pace.speed,

@@ -8,7 +8,7 @@ use crate::dynamics::error::Error;
 use crate::dynamics::simulate::Simulation;
 use crate::elements::mesh::Selection;
 use crate::io::scene_file::{Rewritten, SceneFile, rewritten};
-use crate::scene::forces::{Signal, TimeTable, VectorSignal};
+use crate::scene::forces::{DipolePart, Signal, TimeTable, VectorSignal};
 use crate::scene::timeline::{Load, Phase, Scene};
 
 /// Part of the scene's duration over which a slider changes its value: a body should not get a jump.
@@ -51,7 +51,7 @@ struct Track {
     values: Vec<f64>,
 }
 
-/// What replaces the scene's own signal, load or field: on a chamber, its liquid, an orifice, a spring, some nodes, or magnets.
+/// What replaces the scene's own signal, load or field: on a chamber, its liquid, an orifice, a spring, some nodes, magnets, or a dipole.
 pub(super) enum Replacement {
     Pressure(String, Signal),
     Opening(String, Signal),
@@ -59,6 +59,7 @@ pub(super) enum Replacement {
     Actuation(String, Signal),
     Load(Selection, Load),
     Field(VectorSignal),
+    Dipole(String, DipolePart, VectorSignal),
 }
 
 impl Replacement {
@@ -71,6 +72,7 @@ impl Replacement {
             Self::Actuation(spring, signal) => simulation.actuate(&spring, signal),
             Self::Load(nodes, load) => simulation.set_load(nodes, load),
             Self::Field(field) => simulation.set_field(field),
+            Self::Dipole(name, part, value) => simulation.set_dipole(&name, part, value),
         }
     }
 
@@ -100,6 +102,10 @@ impl Replacement {
             Self::Field(field) => {
                 phase.set_field(field);
                 "magnetic_field"
+            }
+            Self::Dipole(name, part, value) => {
+                phase.set_dipole(&name, part, value);
+                "drive"
             }
         }
     }
@@ -173,6 +179,11 @@ impl Record {
                 let value = self.vector(scene, track.phase, t, of);
                 Replacement::Load(nodes.clone(), Load { kind: *kind, value })
             }
+            Target::Dipole(name, part, _) => {
+                let of = |axis| Target::Dipole(name.clone(), *part, axis);
+                let value = self.vector(scene, track.phase, t, of);
+                Replacement::Dipole(name.clone(), *part, value)
+            }
             Target::Opening(orifice) => Replacement::Opening(orifice.clone(), track.signal()),
             Target::Flow(chamber) => Replacement::Flow(chamber.clone(), track.signal()),
             Target::Field(_) => {
@@ -209,7 +220,7 @@ impl Track {
     /// The scene's own values; for a function of time without breaks, its value at time `t` (s).
     fn of(scene: &Scene, number: usize, target: Target, t: f64) -> Self {
         let phase = scene.phases().get(number);
-        let mut times = phase.map_or_else(Vec::new, |phase| target.breaks_in(phase));
+        let mut times = phase.map_or_else(Vec::new, |phase| target.breaks_in(scene, phase));
         if times.is_empty() {
             times.push(t);
         }

@@ -1,4 +1,4 @@
-//! What sliders set: pressures of chambers, flows of liquids, openings of orifices, forces of actuators, cables, stresses of muscles, loads, magnetic fields.
+//! What sliders set: pressures of chambers, flows of liquids, openings of orifices, forces of actuators, cables, stresses of muscles, loads, magnetic fields, places and moments of dipoles.
 
 use serde_json::{Value, json};
 
@@ -6,7 +6,7 @@ use crate::dynamics::error::Error;
 use crate::dynamics::simulate::Simulation;
 use crate::elements::body::{Body, Part};
 use crate::elements::mesh::Selection;
-use crate::scene::forces::{Chamber, Signal, VectorSignal};
+use crate::scene::forces::{Chamber, Dipole, DipolePart, Signal, VectorSignal};
 use crate::scene::timeline::{Load, LoadKind, Phase, Scene};
 
 /// What a slider sets.
@@ -23,6 +23,8 @@ pub(super) enum Target {
     Actuation(String),
     /// A component, counted from 0, of the magnetic field (T).
     Field(usize),
+    /// A component, counted from 0, of the position (m) or the moment (A m^2) of a dipole.
+    Dipole(String, DipolePart, usize),
     /// A component, counted from 0, of the load of a kind on some nodes (N or N/m^2).
     Load(Selection, LoadKind, usize),
 }
@@ -43,6 +45,8 @@ pub(super) struct Slider {
 const USUAL: f64 = 0.05;
 /// A usual magnetic field (T).
 const USUAL_FIELD: f64 = 0.05;
+/// A usual moment of a dipole (A m^2).
+const USUAL_MOMENT: f64 = 1.0;
 /// Times of a phase at which its values are looked at.
 const LOOKS: u32 = 20;
 /// Most node numbers in the name of a slider.
@@ -121,8 +125,29 @@ impl Slider {
             .chain(muscles)
             .chain(growths)
             .chain(fields)
+            .chain(scene.dipoles().iter().flat_map(|dipole| Self::of_dipole(scene, dipole)))
             .chain(loads)
             .collect()
+    }
+
+    /// One slider per component of the position and of the moment of a dipole.
+    fn of_dipole(scene: &Scene, dipole: &Dipole) -> Vec<Self> {
+        let axes = 0..scene.body().dimension();
+        let usual = |part| match part {
+            DipolePart::Position => scene.body().size(),
+            DipolePart::Moment => USUAL_MOMENT,
+        };
+        let sliders = DipolePart::ALL.into_iter().flat_map(|part| {
+            let targets =
+                axes.clone().map(move |axis| Target::Dipole(dipole.name().into(), part, axis));
+            let largest =
+                targets.clone().map(|target| target.largest_in(scene)).fold(0.0, f64::max);
+            targets.zip(["x", "y", "z"]).map(move |(target, axis)| {
+                let what = format!("{part} {axis}");
+                Self::new(target, what, [largest, usual(part)], part.unit())
+            })
+        });
+        sliders.collect()
     }
 
     /// One slider per component of the loads on a selection. The loads are of the kind that the scene always
@@ -165,6 +190,12 @@ impl Slider {
             Target::Flow(chamber) => simulation.view().liquid_flow(chamber)?,
             Target::Actuation(spring) => simulation.view().actuation(spring)?,
             Target::Field(axis) => simulation.view().magnetic_field()[*axis],
+            Target::Dipole(name, DipolePart::Position, axis) => {
+                simulation.view().dipole_position(name)?[*axis]
+            }
+            Target::Dipole(name, DipolePart::Moment, axis) => {
+                simulation.view().dipole_moment(name)?[*axis]
+            }
             Target::Load(nodes, kind, axis) => simulation.view().load_of(nodes, *kind)?[*axis],
         })
     }
@@ -174,7 +205,8 @@ impl Slider {
             Target::Pressure(name)
             | Target::Opening(name)
             | Target::Flow(name)
-            | Target::Actuation(name) => name.clone(),
+            | Target::Actuation(name)
+            | Target::Dipole(name, ..) => name.clone(),
             Target::Field(_) => "magnetic field".into(),
             Target::Load(nodes, ..) => name_of(nodes),
         };
@@ -195,15 +227,20 @@ impl Target {
             Self::Opening(_) if self.signals_in(phase).next().is_none() => 1.0,
             Self::Field(axis) => field_in(phase)
                 .map_or(0.0, |field| field.components(t, scene.body().dimension())[*axis]),
+            Self::Dipole(name, part, axis) => dipole_in(scene, phase, name).map_or(0.0, |dipole| {
+                dipole.part(*part).components(t, scene.body().dimension())[*axis]
+            }),
             _ => self.signals_in(phase).map(|signal| signal.at(t)).sum(),
         }
     }
 
     /// Times (s) at which its signals or loads in `phase` have breaks, ascending.
-    pub(super) fn breaks_in(&self, phase: &Phase) -> Vec<f64> {
+    pub(super) fn breaks_in(&self, scene: &Scene, phase: &Phase) -> Vec<f64> {
         match self {
             Self::Load(nodes, ..) => ascending(loads_in(phase, nodes).flat_map(breaks)),
             Self::Field(_) => field_in(phase).map_or_else(Vec::new, |field| field.breaks().into()),
+            Self::Dipole(name, part, _) => dipole_in(scene, phase, name)
+                .map_or_else(Vec::new, |dipole| dipole.part(*part).breaks().into()),
             _ => ascending(self.signals_in(phase).flat_map(Signal::breaks)),
         }
     }
@@ -225,7 +262,7 @@ impl Target {
                     springs.iter().filter(move |other| *other == name).map(move |_| signal)
                 }))
             }
-            Self::Load(..) | Self::Field(_) => Box::new(std::iter::empty()),
+            Self::Load(..) | Self::Field(_) | Self::Dipole(..) => Box::new(std::iter::empty()),
         }
     }
 
@@ -236,7 +273,7 @@ impl Target {
             // formulas have no breaks
             let part = |look| f64::from(look) / f64::from(LOOKS);
             let looks = (1..LOOKS).map(move |look| start + part(look) * (phase.end() - start));
-            let times = self.breaks_in(phase).into_iter().chain(looks).chain([phase.end()]);
+            let times = self.breaks_in(scene, phase).into_iter().chain(looks).chain([phase.end()]);
             times.map(move |t| self.value_in(scene, phase, t).abs())
         });
         phases.fold(0.0, f64::max)
@@ -262,6 +299,12 @@ fn loads_in<'a>(phase: &'a Phase, nodes: &'a Selection) -> impl Iterator<Item = 
 /// The magnetic field that `phase` has everywhere.
 fn field_in(phase: &Phase) -> Option<&VectorSignal> {
     phase.magnetic_field.as_ref().map(|field| &field.field)
+}
+
+/// The dipole with a `name` as it is in `phase`.
+fn dipole_in(scene: &Scene, phase: &Phase, name: &str) -> Option<Dipole> {
+    let dipole = scene.dipoles().iter().find(|dipole| dipole.name() == name)?;
+    Some(phase.with_dipole(dipole))
 }
 
 fn breaks(load: &Load) -> &[f64] {

@@ -5,6 +5,7 @@ use crate::base::vector::{dot, norm};
 use crate::dynamics::report::{Indicator, Verdict};
 use crate::elements::body::Body;
 use crate::elements::material::{Law, Material, Plane};
+use crate::scene::forces::{DipolePart, VectorSignal};
 use crate::scene::timeline::{Phase, Scene};
 
 /// Largest size (m) and mass (kg) of a soft body.
@@ -28,7 +29,9 @@ const HEAVIEST_STRAIN: f64 = 1.0;
 /// Largest remanence (T): magnets of neodymium have up to 1.5 T. Largest magnetic field (T): superconducting coils have more.
 const STRONGEST: f64 = 2.0;
 const STRONGEST_FIELD: f64 = 10.0;
-/// Times of a phase at which fields are looked at.
+/// Largest moment of a dipole (A m^2): that of a cube of neodymium of 20 cm.
+const STRONGEST_DIPOLE: f64 = 1e4;
+/// Times of a phase at which fields and dipoles are looked at.
 const LOOKS: u32 = 20;
 
 /// The indicators of the whole scene.
@@ -39,13 +42,29 @@ pub(super) fn of_scene(scene: &Scene) -> Vec<Indicator> {
     let largest = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, f64::max);
     let remanence = largest(&mut scene.magnets().iter().map(|magnet| norm(magnet.remanence())));
     let starts = [0.0].into_iter().chain(scene.phases().iter().map(Phase::end));
-    let field = largest(&mut scene.phases().iter().zip(starts).flat_map(|(phase, start)| {
-        let part = move |look| start + (phase.end() - start) * f64::from(look) / f64::from(LOOKS);
-        phase.magnetic_field.iter().flat_map(move |field| {
-            let times = (0..=LOOKS).map(part).chain(field.field.breaks().iter().copied());
-            times.map(|t| norm(&field.field.components(t, scene.body().dimension())))
+    let phases = scene.phases().iter().zip(starts);
+    let most = |phase: &Phase, start: f64, vector: &VectorSignal| {
+        let part = |look| start + (phase.end() - start) * f64::from(look) / f64::from(LOOKS);
+        let times = (0..=LOOKS).map(part).chain(vector.breaks().iter().copied());
+        times.map(|t| norm(&vector.components(t, scene.body().dimension()))).fold(0.0, f64::max)
+    };
+    let field = largest(&mut phases.clone().filter_map(|(phase, start)| {
+        phase.magnetic_field.as_ref().map(|field| most(phase, start, &field.field))
+    }));
+    let moment = largest(&mut phases.flat_map(|(phase, start)| {
+        scene.dipoles().iter().map(move |dipole| {
+            most(phase, start, phase.with_dipole(dipole).part(DipolePart::Moment))
         })
     }));
+    let dipoles = (!scene.dipoles().is_empty()).then(|| {
+        let said =
+            format!("the moment of a dipole is {} A m^2 (limit: {STRONGEST_DIPOLE} A m^2)", told(moment));
+        let beyond = || {
+            format!("{said}: is it in emu (0.001 A m^2) or A mm^2 (1e-6 A m^2)? A cube of neodymium of 1 cm has 1 A m^2")
+        };
+        let range = [0.0, STRONGEST_DIPOLE];
+        Indicator::trusted("dipole-moment", (moment, "A m^2"), range, || said.clone(), beyond)
+    });
     let measured = [
         ("remanence", remanence, STRONGEST, "a remanence", "magnets of neodymium have 1.3 T"),
         (
@@ -61,7 +80,7 @@ pub(super) fn of_scene(scene: &Scene) -> Vec<Indicator> {
         let beyond = || format!("{said}: is it in mT (0.001 T) or gauss (0.0001 T)? {known}");
         Indicator::trusted(name, (value, "T"), [0.0, most], || said.clone(), beyond)
     });
-    as_meant(scene, all.into())
+    as_meant(scene, all.into_iter().chain(dipoles).collect())
 }
 
 /// The indicators of a body; those that the scene declares as [meant](Scene::unusual) count as within their limits.
@@ -213,7 +232,7 @@ fn weight(scene: &Scene, body: &Body) -> Option<Indicator> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::forces::Magnet;
+    use crate::scene::forces::{Dipole, Magnet};
     use crate::scene::timeline::UNITS;
     use crate::studies::samples::square_jump;
 
@@ -221,7 +240,8 @@ mod tests {
     #[test]
     fn what_may_be_unusual_is_what_is_measured() {
         let scene = square_jump(4).unwrap().gravity([0.0, -9.8]).phase(Phase::until(9.0));
-        let scene = scene.magnet(Magnet::new([0.1, 0.0]));
+        let scene =
+            scene.magnet(Magnet::new([0.1, 0.0])).dipole(Dipole::new([1.0, 0.0], [0.0, 9.0]));
         let mut all = units(&scene, scene.body());
         all.extend(of_scene(&scene));
         let mut names: Vec<&str> = all.iter().map(|indicator| indicator.name).collect();

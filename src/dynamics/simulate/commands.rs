@@ -261,7 +261,7 @@ impl Simulation {
 
     /// Sets the numbers that `find` finds in the phase in force; `false` if there are none that a command can
     /// set. (The forces read them: nothing is rebuilt.)
-    fn set_live(
+    pub(super) fn set_live(
         &mut self,
         find: impl Fn(&Phase) -> Option<Live>,
         input: &str,
@@ -292,7 +292,7 @@ impl Simulation {
     }
 
     /// Gives a command: an `edit` of the phase in force.
-    fn command(
+    pub(super) fn command(
         &mut self,
         change: Change,
         edit: impl FnOnce(&mut Phase, &Scene) -> Result<(), InputError>,

@@ -29,6 +29,11 @@ pub(super) type Gauge = Box<dyn Fn(&View, &Sample) -> Value + Send + Sync>;
 pub(super) type AngleGauge = Arc<dyn Fn(&View) -> f64 + Send + Sync>;
 
 impl Value {
+    /// A vector with as many components as there are dimensions.
+    fn of_vector(vector: &[f64]) -> Self {
+        Self::Vector(std::array::from_fn(|i| vector.get(i).copied().unwrap_or(0.0)))
+    }
+
     /// A component, which the quantity has.
     pub(super) fn part(&self, component: Component) -> f64 {
         match (self, component) {
@@ -46,6 +51,20 @@ impl Value {
             (Self::Tensor(a), _) => von_mises(a),
         }
     }
+}
+
+/// The function that reads a vector of the dipole with a `name`.
+fn of_dipole(
+    scene: &Scene,
+    name: &str,
+    read: fn(&View<'_>, &str) -> Result<Vec<f64>, InputError>,
+) -> Result<Gauge, InputError> {
+    scene.dipole_number(name, "dipole")?;
+    let name = name.to_owned();
+    // the name is known
+    Ok(Box::new(move |view, _| {
+        read(view, &name).map_or(Value::Vector([f64::NAN; 3]), |vector| Value::of_vector(&vector))
+    }))
 }
 
 impl Reading {
@@ -149,10 +168,13 @@ impl Reading {
                     let help = "the scene has no magnets";
                     return Err(InputError::new("sensor", "magnetic moment", help));
                 }
-                Box::new(|view, _| {
-                    let moment = view.magnetic_moment();
-                    Value::Vector(std::array::from_fn(|i| moment.get(i).copied().unwrap_or(0.0)))
-                })
+                Box::new(|view, _| Value::of_vector(&view.magnetic_moment()))
+            }
+            What::DipoleForce(dipole) => {
+                of_dipole(scene, dipole, |view, name| view.dipole_force(name))?
+            }
+            What::DipolePosition(dipole) => {
+                of_dipole(scene, dipole, |view, name| view.dipole_position(name))?
             }
             What::FluidForce(fluid, nodes) => self.of_fluid(scene, fluid, nodes.as_ref())?,
             What::Stress(place) => field(scene, place, |field| field.stress)?,
@@ -182,10 +204,7 @@ impl Reading {
         read: fn(&Part, &View) -> Vec<f64>,
     ) -> Result<Gauge, InputError> {
         let first_node = self.first_node(scene)?;
-        Ok(Box::new(move |view, _| {
-            let vector = read(&part(view.body(), first_node), view);
-            Value::Vector(std::array::from_fn(|i| vector.get(i).copied().unwrap_or(0.0)))
-        }))
+        Ok(Box::new(move |view, _| Value::of_vector(&read(&part(view.body(), first_node), view))))
     }
 
     /// The function that reads the force of a fluid.

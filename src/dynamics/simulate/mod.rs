@@ -11,6 +11,7 @@ mod commands;
 mod contact_gauge;
 #[cfg(feature = "study")]
 mod derivative;
+mod dipole;
 mod events;
 mod failure;
 mod gauge;

@@ -36,6 +36,8 @@ pub(super) enum What {
     MuscleStress(String),
     MuscleStretch(String),
     MagneticMoment,
+    DipoleForce(String),
+    DipolePosition(String),
     /// Of all nodes, or of these.
     FluidForce(String, Option<Selection>),
     TensionAtEnd(String),
@@ -279,6 +281,16 @@ impl Reading {
         What::MagneticMoment.into()
     }
 
+    /// Force of a [dipole](crate::Dipole) on all magnets (N): see [`View::dipole_force`](crate::View::dipole_force).
+    pub fn dipole_force(dipole: impl Into<String>) -> Self {
+        What::DipoleForce(dipole.into()).into()
+    }
+
+    /// Where a [dipole](crate::Dipole) is (m).
+    pub fn dipole_position(dipole: impl Into<String>) -> Self {
+        What::DipolePosition(dipole.into()).into()
+    }
+
     /// Force of a [fluid](crate::Fluid) (N), drag and pressure, on all nodes, on [some](Self::on) or on those of one [body](Self::of_body).
     /// What added mass does is inertia, and no part of it.
     pub fn fluid_force(fluid: impl Into<String>) -> Self {
@@ -404,7 +416,8 @@ impl Reading {
             What::Momentum => "kg m/s",
             What::MagneticMoment => "A m^2",
             What::ConstraintForce(_) | What::Contact(OfContact::Force, ..) => "N",
-            What::FluidForce(..) => "N",
+            What::FluidForce(..) | What::DipoleForce(_) => "N",
+            What::DipolePosition(_) => "m",
             What::SpringPull(_) | What::TensionAtEnd(_) => "N",
             What::Contact(OfContact::Area, ..) => "m^2",
             What::Contact(OfContact::Pressure, ..) => "Pa",
@@ -469,7 +482,9 @@ impl Reading {
             (What::Position(_) | What::Displacement(_) | What::Velocity(_), _)
             | (What::ConstraintForce(_) | What::Contact(OfContact::Force, ..), _)
             | (What::CentreOfMass | What::Momentum | What::MagneticMoment, _)
-            | (What::FluidForce(..), _) => (&[X, Y, Z][..dimension], Some(Norm)),
+            | (What::FluidForce(..) | What::DipoleForce(_) | What::DipolePosition(_), _) => {
+                (&[X, Y, Z][..dimension], Some(Norm))
+            }
             (What::ConstraintMoment(_, Lever { axis: None, .. }), 3) => (&[X, Y, Z], Some(Norm)),
             _ => (&[], None),
         };

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use crate::base::input::InputError;
 use crate::dynamics::state::State;
-use crate::elements::body::{Body, CellField, Contraction, Grown, Strands};
+use crate::elements::body::{Body, CellField, Contraction, Grown, MagnetizedPoints, Strands};
 use crate::elements::force::{Force, Forces, NodalForces};
 use crate::elements::mesh::Selection;
 use crate::scene::forces::{
@@ -31,6 +31,8 @@ pub(super) struct Gauges {
     muscles: Vec<Strands>,
     /// By which the positions of nodes make the magnetic moment (A m); empty without magnets.
     poles: Vec<f64>,
+    /// On which dipoles act; empty without dipoles.
+    pub(super) magnetized: Arc<[Box<dyn MagnetizedPoints>]>,
 }
 
 impl Gauges {
@@ -47,6 +49,7 @@ impl Gauges {
             liquids: scene.poured(None)?,
             muscles: muscles.collect::<Result<_, _>>()?,
             poles: scene.magnetization()?.map_or_else(Vec::new, |magnets| magnets.poles),
+            magnetized: scene.magnetized_points()?,
         })
     }
 

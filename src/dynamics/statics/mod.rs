@@ -236,7 +236,7 @@ impl Scene {
                 sensors: if is_curve { vec![point.fraction] } else { Vec::new() },
                 commanded: Commanded(Some(Arc::new(acting.at_rest(
                     point.fraction,
-                    self.obstacles(),
+                    (self.obstacles(), self.dipoles()),
                     d,
                 )))),
             }

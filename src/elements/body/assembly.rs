@@ -9,6 +9,7 @@ use super::fibres::Reinforced;
 use super::fields::Fields;
 use super::forces::Forces;
 use super::inertia::Masses;
+use super::magnetized_points::InDipoleField;
 use super::magnets::Magnetized;
 use super::recovery::Recovery;
 use super::strain_modes::StrainProducts;
@@ -25,6 +26,7 @@ pub(super) trait Elements:
     + Branched
     + Reinforced
     + Magnetized
+    + InDipoleField
     + Tangents
     + Fields
     + Recovery

@@ -11,6 +11,7 @@ use super::elements::ElementsOf;
 use crate::base::input::InputError;
 use crate::base::sparse::NodeMatrix;
 use crate::base::tensor::dot;
+use crate::elements::basis::StrainPoint;
 
 /// The permeability of vacuum mu_0 (T m/A), CODATA 2018.
 pub(crate) const VACUUM: f64 = 1.256_637_062_12e-6;
@@ -21,6 +22,14 @@ pub(crate) struct Magnets {
     pub(crate) poles: Vec<f64>,
     /// S (A m), symmetric, on the pattern of the body.
     pub(crate) products: NodeMatrix,
+}
+
+/// A `remanence` (T) in the coordinates of a cell at one of its points.
+pub(super) fn direction<const N: usize, const M: usize, const D: usize>(
+    point: &StrainPoint<f64, N, M, D>,
+    remanence: &[f64],
+) -> [f64; M] {
+    std::array::from_fn(|j| point.frame[j].iter().zip(remanence).map(|(e, b)| e * b).sum())
 }
 
 /// Elements that can be magnetized.
@@ -47,9 +56,7 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Magnetized
         for &cell in cells {
             let nodes = &self.nodes[cell];
             for (point, values) in self.points(cell).zip(&self.values) {
-                let own: [f64; M] = std::array::from_fn(|j| {
-                    point.frame[j].iter().zip(remanence).map(|(e, b)| e * b).sum()
-                });
+                let own = direction(&point, remanence);
                 // round-off of the components
                 if M < D && dot(&own, &own).sqrt() < (1.0 - 1e-9) * strength {
                     let help = "it has a part across the cells, which have no thickness that turns: give one along them";

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use crate::base::input::InputError;
 use crate::elements::mesh::Selection;
 use crate::scene::constraint::{Constrained, Constraint, Motion};
-use crate::scene::forces::{MagneticField, Signal, SignalKind, VectorSignal};
+use crate::scene::forces::{DipolePart, MagneticField, Signal, SignalKind, VectorSignal};
 use crate::scene::timeline::{ContactWith, Load, LoadKind, Phase, Scene};
 
 /// What is in force.
@@ -35,6 +35,9 @@ pub(super) struct InForce {
     /// The uniform part of the magnetic field.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     magnetic_field: Option<Given<VectorSignal>>,
+    /// Name of a dipole, and what is otherwise of it than in the scene.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    dipoles: Vec<(String, DipolePart, Given<VectorSignal>)>,
 }
 
 /// A motion, load, force or pressure.
@@ -125,6 +128,10 @@ fn fields(phase: &Phase) -> impl Iterator<Item = &VectorSignal> {
     phase.magnetic_field.iter().map(|field| &field.field)
 }
 
+fn of_dipoles(phase: &Phase) -> impl Iterator<Item = &VectorSignal> {
+    phase.dipoles.iter().map(|(.., value)| value)
+}
+
 fn forces(phase: &Phase) -> impl Iterator<Item = &SignalKind> {
     phase.actuations.iter().map(|(_, force)| &force.0)
 }
@@ -174,6 +181,10 @@ impl InForce {
         let mut fields_given = fields(phase)
             .map(|field| Given::of(field, fields(own), || "magnetic field".to_owned()));
         let magnetic_field = fields_given.next().transpose()?;
+        let dipoles = phase.dipoles.iter().map(|(name, part, value)| {
+            let what = || format!("{part} of dipole \"{name}\"");
+            Ok((name.clone(), *part, Given::of(value, of_dipoles(own), what)?))
+        });
         let moving = phase.redirected.iter().map(|obstacle| {
             (obstacle.name().into(), obstacle.offset(), obstacle.constant_velocity())
         });
@@ -187,6 +198,7 @@ impl InForce {
             contact: phase.contact.clone(),
             moving: moving.collect(),
             magnetic_field,
+            dipoles: dipoles.collect::<Result<_, InputError>>()?,
         })
     }
 
@@ -216,6 +228,10 @@ impl InForce {
             .flows
             .into_iter()
             .map(|(chamber, flow)| Ok((chamber, Signal(flow.read("flow", flows(own))?))));
+        let dipoles = self
+            .dipoles
+            .into_iter()
+            .map(|(name, part, value)| Ok((name, part, value.read("dipole", of_dipoles(own))?)));
         let moving = self.moving.into_iter().map(|(name, offset, velocity)| {
             let obstacle = scene.obstacles().iter().find(|obstacle| obstacle.name() == name);
             let obstacle =
@@ -236,6 +252,7 @@ impl InForce {
         }
         Ok(Phase {
             magnetic_field,
+            dipoles: dipoles.collect::<Result<_, String>>()?,
             constraints: constraints.collect::<Result<_, String>>()?,
             loads: loads.collect::<Result<_, String>>()?,
             actuations: actuations.collect::<Result<_, String>>()?,

@@ -80,6 +80,9 @@ impl Identity {
         if !scene.magnets().is_empty() {
             parts.push(("magnets".into(), text(of_text(scene.magnets()))));
         }
+        if !scene.dipoles().is_empty() {
+            parts.push(("dipoles".into(), text(of_text(scene.dipoles()))));
+        }
         if !scene.fluids().is_empty() {
             parts.push(("fluids".into(), text(of_text(scene.fluids()))));
         }
@@ -135,8 +138,9 @@ impl Identity {
 
 impl PhaseIdentity {
     fn of(phase: &Phase) -> Self {
-        // without a magnetic field as in files that were written before there were any
-        let said = format!("{phase:?}").replace(", magnetic_field: None", "");
+        // without a magnetic field or dipoles as in files that were written before there were any
+        let said = format!("{phase:?}");
+        let said = said.replace(", dipoles: []", "").replace(", magnetic_field: None", "");
         let mut hasher = SipHasher13::new();
         hasher.write(said.as_bytes());
         let hash = hasher.finish();

@@ -41,6 +41,7 @@ mod auto;
 mod body;
 mod cells;
 mod contents;
+mod dipole;
 mod fluid;
 mod friction;
 mod gas;

@@ -5,8 +5,8 @@ use toml::de::DeValue;
 use super::keys::TableKeys;
 use super::magnet::magnetic_field;
 use super::phase_keys::{
-    ACTUATE, FLOW, HOLD, HOLD_COMBINATION, LOAD, MOVE, OPEN, PATH, PHASE, PRESSURE, PRESSURE_ON,
-    ROTATE, SYMMETRY, TERMS,
+    ACTUATE, DRIVE, FLOW, HOLD, HOLD_COMBINATION, LOAD, MOVE, OPEN, PATH, PHASE, PRESSURE,
+    PRESSURE_ON, ROTATE, SYMMETRY, TERMS,
 };
 use super::selection::selection;
 use super::table::Table;
@@ -16,14 +16,14 @@ use crate::base::vector::norm;
 use crate::dynamics::error::Error;
 use crate::elements::mesh::Selection;
 use crate::scene::constraint::Axis;
-use crate::scene::forces::{Signal, TimeTable, VectorSignal};
+use crate::scene::forces::{Dipole, DipolePart, Signal, TimeTable, VectorSignal};
 use crate::scene::timeline::{LoadKind, Phase, Scene};
 
 /// Adds a table inside of a phase.
 type Add = fn(Phase, &Table, &Scene) -> Result<Phase, Error>;
 
 /// The tables inside of a phase: what they add.
-const PARTS: [(&TableKeys, Add); 12] = [
+const PARTS: [(&TableKeys, Add); 13] = [
     (&HOLD, hold),
     (&MOVE, moving),
     (&PATH, path),
@@ -36,6 +36,7 @@ const PARTS: [(&TableKeys, Add); 12] = [
     (&OPEN, open),
     (&FLOW, flow),
     (&ACTUATE, actuate),
+    (&DRIVE, drive),
 ];
 
 /// The scene with the phases that `values` describe at its end.
@@ -181,24 +182,41 @@ fn hold_combination(phase: Phase, table: &Table, scene: &Scene) -> Result<Phase,
 }
 
 fn load(phase: Phase, table: &Table, scene: &Scene) -> Result<Phase, Error> {
-    let dimension = scene.body().dimension();
     let nodes = nodes(table, scene)?;
     for kind in LoadKind::ALL {
-        let one = table.optional(kind.word(), |value| value.vector_signal(dimension))?;
-        let many = table.optional(&format!("{}s", kind.word()), |value| {
-            value.list_of("vectors, one per time", |vector| vector.vector(dimension))
-        })?;
-        let value = match (one, many) {
-            (Some(value), _) => value,
-            (None, Some(values)) => {
-                let times = table.required("times", Value::numbers)?;
-                VectorSignal::TimeTable(TimeTable::new(times, values))
-            }
-            (None, None) => continue,
-        };
-        return Ok(phase.loaded(nodes, kind, value));
+        if let Some(value) = vectors(table, kind.word(), scene.body().dimension())? {
+            return Ok(phase.loaded(nodes, kind, value));
+        }
     }
     Ok(phase) // one of them is there: the table's groups say so
+}
+
+fn drive(mut phase: Phase, table: &Table, scene: &Scene) -> Result<Phase, Error> {
+    let known: Vec<&str> = scene.dipoles().iter().map(Dipole::name).collect();
+    let dipole = table.required("dipole", |value| named(value, &known))?;
+    for part in DipolePart::ALL {
+        if let Some(value) = vectors(table, part.word(), scene.body().dimension())? {
+            phase.set_dipole(&dipole, part, value);
+        }
+    }
+    Ok(phase)
+}
+
+/// The vector of the key `word`, constant or by formulas, or of the keys `times` and `word` with an s, if there is any.
+pub(super) fn vectors(
+    table: &Table,
+    word: &str,
+    dimension: usize,
+) -> Result<Option<VectorSignal>, Error> {
+    if let Some(value) = table.optional(word, |value| value.vector_signal(dimension))? {
+        return Ok(Some(value));
+    }
+    let many = table.optional(&format!("{word}s"), |value| {
+        value.list_of("vectors, one per time", |vector| vector.vector(dimension))
+    })?;
+    let Some(values) = many else { return Ok(None) };
+    let times = table.required("times", Value::numbers)?;
+    Ok(Some(VectorSignal::TimeTable(TimeTable::new(times, values))))
 }
 
 fn pressure(phase: Phase, table: &Table, scene: &Scene) -> Result<Phase, Error> {

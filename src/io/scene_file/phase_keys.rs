@@ -24,6 +24,7 @@ pub(super) const PHASE: TableKeys = TableKeys::new(
         part(&OPEN, "openings of orifices"),
         part(&FLOW, "flows of liquids into chambers"),
         part(&ACTUATE, "forces in springs and cables, stresses of muscles, strains of growth"),
+        part(&DRIVE, "where dipoles are, and their moments"),
         Key::new("magnetic_field", Holds::Table(&MAGNETIC_FIELD), "the magnetic field"),
         Key::new(
             "contact",
@@ -269,6 +270,22 @@ pub(super) const ACTUATE: TableKeys = TableKeys::new(
     &["growths", "strain"],
     &["growths", "times", "strains"],
 ]);
+
+pub(super) const DRIVE: TableKeys = TableKeys::new(
+    "drive",
+    "Where a [dipole](#dipole) is in this phase, or its moment, in place of what the scene says; a moment of 0 switches it off. Those of tables are interpolated linearly, \
+     and constant before and after.",
+    &[
+        Key::new("dipole", Holds::Text, "the name of the dipole").required(),
+        Key::new("position", Holds::ChangingVector, "its position").in_unit("m"),
+        Key::new("moment", Holds::ChangingVector, "its moment").in_unit("A m^2"),
+        TIMES,
+        Key::new("positions", Holds::List(&Holds::Vector), "its positions at these times").in_unit("m"),
+        Key::new("moments", Holds::List(&Holds::Vector), "its moments at these times").in_unit("A m^2"),
+    ],
+    "drive = [{ dipole = \"lead\", times = [0.0, 0.1], positions = [[0.05, 0.3], [0.1, 0.3]] }]",
+)
+.one_of(&[&["position"], &["moment"], &["times", "positions"], &["times", "moments"]]);
 
 pub(super) const MAGNETIC_FIELD: TableKeys = TableKeys::new(
     "magnetic_field",

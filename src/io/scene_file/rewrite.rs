@@ -1,4 +1,4 @@
-//! Writes changed ends of phases, pressures, forces of actuators, loads and magnetic fields into the text of a scene file; all
+//! Writes changed ends of phases, pressures, forces of actuators, loads, magnetic fields and dipoles into the text of a scene file; all
 //! else stays as it was written.
 
 use std::collections::BTreeSet;
@@ -9,7 +9,7 @@ use toml::de::{DeTable, DeValue};
 use super::set_value::quoted;
 use super::written::insertion;
 use crate::elements::mesh::Selection;
-use crate::scene::forces::{MagneticField, Signal, SignalKind, VectorSignal};
+use crate::scene::forces::{DipolePart, MagneticField, Signal, SignalKind, VectorSignal};
 use crate::scene::timeline::{Load, Phase, Scene};
 
 /// A phase whose signals differ from those in the file.
@@ -18,7 +18,7 @@ pub(crate) struct Rewritten {
     pub(crate) number: usize,
     /// What it is now.
     pub(crate) phase: Phase,
-    /// The keys that differ: `until`, of its lists `pressure`, `open`, `actuate`, `load`, and `magnetic_field`.
+    /// The keys that differ: `until`, of its lists `pressure`, `open`, `actuate`, `load`, `drive`, and `magnetic_field`.
     pub(crate) keys: BTreeSet<&'static str>,
 }
 
@@ -58,6 +58,7 @@ pub(crate) fn rewritten(
                 "open" => openings(phase),
                 "flow" => flows(phase),
                 "actuate" => actuations(phase, scene),
+                "drive" => dipoles(phase, scene.body().dimension()),
                 "magnetic_field" => field(phase, scene.body().dimension()),
                 _ => loads(phase, scene.body().dimension()),
             };
@@ -149,6 +150,14 @@ fn loads(phase: &Phase, dimension: usize) -> String {
     list(phase.loads.iter().map(entry))
 }
 
+fn dipoles(phase: &Phase, dimension: usize) -> String {
+    let entry = |(name, part, value): &(String, DipolePart, VectorSignal)| {
+        let value = vectors(value, part.word(), dimension);
+        format!("{{ dipole = {}, {value} }}", quoted(name))
+    };
+    list(phase.dipoles.iter().map(entry))
+}
+
 fn field(phase: &Phase, dimension: usize) -> String {
     let field = phase.magnetic_field.as_ref();
     let entry = |field: &MagneticField| {
@@ -200,7 +209,7 @@ mod tests {
     use crate::elements::body::Body;
     use crate::elements::material::Plane;
     use crate::elements::mesh::{Cells, Mesh};
-    use crate::scene::forces::{Growth, Magnet, Muscle};
+    use crate::scene::forces::{Growth, Magnet, Muscle, Signals};
     use crate::studies::samples::{SQUARE_MATERIAL, square_jump};
 
     #[test]
@@ -243,7 +252,7 @@ mod tests {
         }
     }
 
-    /// Muscles, growth and magnetic fields are written by their own words, and a gradient stays.
+    /// Muscles, growth, magnetic fields and dipoles are written by their own words, and a gradient stays.
     #[test]
     fn what_acts_within_the_material_is_written() {
         let mesh = Mesh::rectangle([0.1, 0.1], [2, 2], Cells::Rectangles).unwrap();
@@ -265,5 +274,11 @@ mod tests {
                         magnetic_field = { times = [0.0, 1.0], fields = [[0.0, 0.0], [0.5, 1.0]], \
                         gradient = [[1.0, 0.0], [0.0, -1.0]], centre = [0.0, 0.5] }\n";
         assert_eq!(rewritten(text, &scene, &[change]).unwrap(), expected);
+        let path = Signals::table([0.0, 1.0], [[0.0, 0.5], [0.25, 0.5]]);
+        let phase = Phase::until(1.0).dipole_position("a", path).dipole_moment("a", [0.0, 2.0]);
+        let change = Rewritten { number: 0, phase, keys: ["drive"].into() };
+        let expected = "[[phase]]\nuntil = 1.0\ndrive = [\n    { dipole = \"a\", times = [0.0, 1.0], positions = [[0.0, 0.5], [0.25, 0.5]] },\n    \
+                        { dipole = \"a\", moment = [0.0, 2.0] },\n]\n";
+        assert_eq!(rewritten("[[phase]]\nuntil = 1.0\n", &scene, &[change]).unwrap(), expected);
     }
 }

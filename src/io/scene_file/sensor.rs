@@ -96,6 +96,12 @@ pub(super) const SENSOR: TableKeys = TableKeys::new(
         keys: &[],
     },
     Kind {
+        word: "dipole-force",
+        about: "the force of a dipole on all magnets; that on the dipole is minus this (N)",
+        keys: &[DIPOLE],
+    },
+    Kind { word: "dipole-position", about: "where a dipole is (m)", keys: &[DIPOLE] },
+    Kind {
         word: "fluid-force",
         about: "the force of a fluid, its drag and pressure, on all nodes, on some of them or on those of one body (N)",
         keys: &[
@@ -183,6 +189,7 @@ const POINT: Key =
 const SPRING: Key = Key::new("spring", Holds::Text, "the name of the spring or cable").required();
 const MUSCLE: Key = Key::new("muscle", Holds::Text, "the name of the muscle").required();
 const CHAMBER: Key = Key::new("chamber", Holds::Text, "the name of the chamber").required();
+const DIPOLE: Key = Key::new("dipole", Holds::Text, "the name of the dipole").required();
 const UNIT: Key = Key::new("unit", Holds::Word(|| vec!["rad", "deg"]), "the unit").default("rad");
 const BODY: Key =
     Key::new("body", Holds::Text, "the name of one of several bodies").default("all together");
@@ -221,6 +228,8 @@ pub(super) fn sensor(value: &Value, scene: &Scene) -> Result<(String, Reading), 
         "muscle-stress" => Reading::muscle_stress(named("muscle")?),
         "muscle-stretch" => Reading::muscle_stretch(named("muscle")?),
         "magnetic-moment" => Reading::magnetic_moment(),
+        "dipole-force" => Reading::dipole_force(named("dipole")?),
+        "dipole-position" => Reading::dipole_position(named("dipole")?),
         "fluid-force" => {
             let force = of_body(&table, Reading::fluid_force(named("fluid")?))?;
             table.added(force, "nodes", |value| selection(value, mesh), Reading::on)?

@@ -2,6 +2,7 @@
 
 use super::body::{self, BODY, POINT};
 use super::contents::{OutputRequest, SceneFile};
+use super::dipole::{self, DIPOLE};
 use super::fluid::{self, FLUID};
 use super::gas::{self, GAS, LIQUID, ORIFICE, SUPPLY};
 use super::growth::{self, GROWTH};
@@ -36,7 +37,7 @@ pub(super) const TOP: TableKeys = TableKeys::new(
         Key::number("atmosphere", "the absolute pressure of the air around chambers with gas", "Pa")
             .default("101325"),
         Key::new("unusual", Holds::List(&Holds::Text), "quantities that are meant as they are, though they look like wrong units")
-            .law("Of `size`, `mass`, `density`, `young`, `wave-speed`, `thickness`, `weight`, `remanence`, `magnetic-field`: they are not [warned of](scene-files.md#warnings).")
+            .law("Of `size`, `mass`, `density`, `young`, `wave-speed`, `thickness`, `weight`, `remanence`, `magnetic-field`, `dipole-moment`: they are not [warned of](scene-files.md#warnings).")
             .default("none"),
         Key::new("body", Holds::Tables(&BODY), "what moves").required(),
         Key::new("point", Holds::Tables(&POINT), "point masses"),
@@ -48,6 +49,7 @@ pub(super) const TOP: TableKeys = TableKeys::new(
         Key::new("muscle", Holds::Tables(&MUSCLE), "muscles in the bodies"),
         Key::new("growth", Holds::Tables(&GROWTH), "cells that grow, by swelling or heat"),
         Key::new("magnet", Holds::Tables(&MAGNET), "magnets in the bodies"),
+        Key::new("dipole", Holds::Tables(&DIPOLE), "magnets outside of the bodies"),
         Key::new("chamber", Holds::Tables(&CHAMBER), "chambers"),
         Key::new("gas", Holds::Tables(&GAS), "gas in chambers"),
         Key::new("supply", Holds::Tables(&SUPPLY), "what gas is drawn from"),
@@ -97,7 +99,7 @@ pub(super) fn scene_file(top: &Table) -> Result<SceneFile, Error> {
         Some(Err(_)) => initial,
         None => None,
     };
-    let parts: [(&str, Add); 14] = [
+    let parts: [(&str, Add); 15] = [
         ("tie", tie::add_tie),
         ("touch", touch::add_touch),
         ("spring", surroundings::add_spring),
@@ -105,6 +107,7 @@ pub(super) fn scene_file(top: &Table) -> Result<SceneFile, Error> {
         ("muscle", muscle::add_muscle),
         ("growth", growth::add_growth),
         ("magnet", magnet::add_magnet),
+        ("dipole", dipole::add_dipole),
         ("chamber", surroundings::add_chamber),
         ("gas", gas::add_gas),
         ("supply", gas::add_supply),

@@ -3,7 +3,7 @@
 use super::signal::{TimeTable, VectorSignal, finite_at};
 use crate::base::input::{InputError, finite};
 use crate::base::sparse::BlockMatrix;
-use crate::elements::body::{Body, CellSelection, Magnets};
+use crate::elements::body::{Body, CellSelection, MagnetizedPoints, Magnets};
 use crate::elements::force::{Force, NodalForces, Tangents};
 use crate::integrators::ode::Failure;
 
@@ -70,10 +70,7 @@ impl Magnet {
         number: usize,
         magnets: &mut Magnets,
     ) -> Result<(), InputError> {
-        let blamed = |error: InputError| InputError {
-            input: format!("magnet {number} {}", error.input),
-            ..error
-        };
+        let blamed = |error| blamed(number, error);
         let dimension = body.dimension();
         if self.remanence.len() != dimension {
             let help = format!("it needs {dimension} component(s) (T)");
@@ -81,10 +78,34 @@ impl Magnet {
             return Err(blamed(InputError::new("remanence", value, help)));
         }
         finite("remanence", &self.remanence).map_err(blamed)?;
-        let cells =
-            CellSelection::cells_or_all(self.cells.as_ref(), body.mesh()).map_err(blamed)?;
+        let cells = self.cells_in(body, number)?;
         body.magnetize(&cells, &self.remanence, magnets).map_err(blamed)
     }
+
+    /// Adds its strain points to those on which dipoles act; its remanence has been [checked](Self::add_to).
+    ///
+    /// # Errors
+    /// Cells that the body does not have.
+    pub(crate) fn add_points_to(
+        &self,
+        body: &Body,
+        number: usize,
+        points: &mut Vec<Box<dyn MagnetizedPoints>>,
+    ) -> Result<(), InputError> {
+        body.add_magnetized_points(&self.cells_in(body, number)?, &self.remanence, points);
+        Ok(())
+    }
+
+    /// Its cells, counted from 0.
+    fn cells_in(&self, body: &Body, number: usize) -> Result<Vec<usize>, InputError> {
+        let cells = CellSelection::cells_or_all(self.cells.as_ref(), body.mesh());
+        cells.map_err(|error| blamed(number, error))
+    }
+}
+
+/// An error of the magnet with a `number`, from 1.
+fn blamed(number: usize, error: InputError) -> InputError {
+    InputError { input: format!("magnet {number} {}", error.input), ..error }
 }
 
 /// A magnetic field (T) that acts on the magnets of a scene: one vector, constant or changing with time, everywhere, and a gradient that

@@ -4,6 +4,7 @@ mod chamber;
 mod closed;
 mod contact;
 mod content;
+mod dipole;
 mod faces;
 mod fluid;
 mod followed;
@@ -22,6 +23,7 @@ mod passage;
 mod pressure;
 mod shape;
 mod signal;
+mod signals;
 mod spring;
 mod surface;
 #[cfg(test)]
@@ -34,6 +36,8 @@ pub(crate) use chamber::{ChamberForce, TURNED};
 pub(crate) use closed::Closed;
 pub(crate) use contact::Contact;
 pub(crate) use content::Content;
+pub use dipole::Dipole;
+pub(crate) use dipole::{DipoleForce, DipolePart};
 pub(crate) use faces::{areas, shares};
 pub use fluid::Fluid;
 pub(crate) use fluid::FluidForce;
@@ -57,6 +61,7 @@ pub use signal::Signal;
 #[cfg(any(feature = "checkpoint", feature = "play"))]
 pub(crate) use signal::SignalKind;
 pub(crate) use signal::{Live, TimeTable, VectorSignal};
+pub use signals::Signals;
 #[cfg(feature = "output")]
 pub(crate) use spring::Joint;
 pub(crate) use spring::SpringGauge;

@@ -348,6 +348,14 @@ impl VectorSignal {
         }
     }
 
+    /// The same vector; a constant becomes numbers that a command can set.
+    pub(crate) fn thawed(self) -> Self {
+        match self {
+            Self::Constant(values) => Self::Live(Live::new(&values)),
+            other => other,
+        }
+    }
+
     /// The same vector; numbers that a command can set become constants.
     pub(crate) fn frozen(&self) -> Self {
         self.live().map_or_else(|| self.clone(), |live| Self::Constant(live.get()))

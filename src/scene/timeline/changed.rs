@@ -7,7 +7,9 @@ use super::phase::{ContactWith, Phase};
 use crate::base::input::InputError;
 use crate::elements::mesh::{Mesh, Selection};
 use crate::scene::constraint::{Constrained, Constraint};
-use crate::scene::forces::{Live, MagneticField, Obstacle, Signal, VectorSignal};
+use crate::scene::forces::{
+    Dipole, DipolePart, Live, MagneticField, Obstacle, Signal, VectorSignal,
+};
 
 impl Phase {
     /// Lets an obstacle of the scene move on with `velocity` (m/s) from where it is at time `t` (s).
@@ -68,6 +70,9 @@ impl Phase {
         if let Some(field) = &mut frozen.magnetic_field {
             field.field = field.field.frozen();
         }
+        for (.., value) in &mut frozen.dipoles {
+            *value = value.frozen();
+        }
         let actuations = frozen.actuations.iter_mut().map(|(_, force)| force);
         let openings = frozen.openings.iter_mut().map(|(_, opening)| opening);
         let pressures = frozen.pressures.iter_mut().map(|(_, pressure)| pressure);
@@ -79,9 +84,14 @@ impl Phase {
     }
 
     /// The phase at rest under a `fraction` of its load: loads, pressures and the forces of actuators are
-    /// constant, this fraction of those at the end, as the magnetic field is, and `obstacles` stand where they are at this fraction of
+    /// constant, this fraction of those at the end, as the magnetic field and the moments of `dipoles` are, and `obstacles` stand where they are at this fraction of
     /// the end time.
-    pub(crate) fn at_rest(&self, fraction: f64, obstacles: &[Obstacle], dimension: usize) -> Self {
+    pub(crate) fn at_rest(
+        &self,
+        fraction: f64,
+        (obstacles, dipoles): (&[Obstacle], &[Dipole]),
+        dimension: usize,
+    ) -> Self {
         let (mut rest, end) = (self.clone(), self.until);
         for (_, load) in &mut rest.loads {
             let force = load.value.components(end, dimension);
@@ -96,6 +106,13 @@ impl Phase {
         }
         let field = self.magnetic_field.as_ref();
         rest.magnetic_field = field.map(|field| field.at_rest(fraction, end, dimension));
+        for dipole in dipoles.iter().map(|dipole| self.with_dipole(dipole)) {
+            for (part, factor) in [(DipolePart::Position, 1.0), (DipolePart::Moment, fraction)] {
+                let vector = dipole.part(part).components(end, dimension);
+                let vector = vector.iter().map(|x| factor * x).collect();
+                rest.set_dipole(dipole.name(), part, VectorSignal::Constant(vector));
+            }
+        }
         let reached = fraction * end;
         for obstacle in obstacles {
             if self.moving(obstacle).velocity_at(reached) != [0.0; 3] {
@@ -113,6 +130,7 @@ impl Phase {
             || self.openings.iter().any(|(_, opening)| opening.live().is_some())
             || self.flows.iter().any(|(_, flow)| flow.live().is_some())
             || self.live_field().is_some()
+            || self.dipoles.iter().any(|(.., value)| value.live().is_some())
     }
 
     /// Replaces the pressure in a chamber.

@@ -46,6 +46,7 @@ impl Scene {
             };
             forces.push(Arc::new(field.force(&self.body, magnets, input)?));
         }
+        self.add_dipoles(phase, &mut forces)?;
         self.add_chambers(phase, &mut forces)?;
         self.add_amounts(phase, &mut forces)?;
         for (nodes, pressure) in &phase.face_pressures {

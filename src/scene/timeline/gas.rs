@@ -7,7 +7,8 @@ use super::{Phase, Scene, unique};
 use crate::base::input::{InputError, find, not_negative, unknown_among};
 use crate::elements::force::Forces;
 use crate::scene::forces::{
-    AmountFlow, Chamber, Closed, End, Filled, Gas, Live, Orifice, OrificeFlow, Signal, Supply,
+    AmountFlow, Chamber, Closed, DipolePart, End, Filled, Gas, Live, Orifice, OrificeFlow, Signal,
+    Supply,
 };
 
 /// What an end of an orifice in the open is called.
@@ -214,12 +215,15 @@ impl Scene {
         Ok(())
     }
 
-    /// Times (s, ascending) at which what `phase` prescribes, the pressure of a supply and the velocity of a fluid change their laws.
+    /// Times (s, ascending) at which what `phase` prescribes, the pressure of a supply, the velocity of a fluid and dipoles change their laws.
     pub(crate) fn breaks_in(&self, phase: &Phase) -> Vec<f64> {
         let mut breaks = phase.breaks(&self.obstacles);
         let supplies = self.supplies.iter().flat_map(|supply| supply.pressure.breaks());
         breaks.extend(supplies);
         breaks.extend(self.fluids.iter().flat_map(|fluid| fluid.breaks()));
+        for dipole in self.dipoles.iter().map(|dipole| phase.with_dipole(dipole)) {
+            breaks.extend(DipolePart::ALL.iter().flat_map(|part| dipole.part(*part).breaks()));
+        }
         breaks.sort_by(f64::total_cmp);
         breaks.dedup();
         breaks

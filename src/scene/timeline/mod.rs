@@ -3,6 +3,7 @@
 mod body_state;
 mod changed;
 mod contacts;
+mod dipole;
 mod finer;
 mod fluid;
 mod forces;
@@ -41,8 +42,8 @@ use crate::scene::constraint::{
     Constrained, Constraint, ConstraintRow, PhaseStart, prescribe, rows,
 };
 use crate::scene::forces::{
-    ATMOSPHERE, Chamber, Contact, Fluid, Gas, Growth, Liquid, Magnet, Muscle, Obstacle, Orifice,
-    Spring, Supply, Touch, TouchForce,
+    ATMOSPHERE, Chamber, Contact, Dipole, Fluid, Gas, Growth, Liquid, Magnet, Muscle, Obstacle,
+    Orifice, Spring, Supply, Touch, TouchForce,
 };
 use crate::scene::reduced_model::ReducedModel;
 
@@ -69,6 +70,7 @@ pub struct Scene {
     springs: Vec<Spring>,
     muscles: Vec<Muscle>,
     magnets: Vec<Magnet>,
+    dipoles: Vec<Dipole>,
     growths: Vec<Growth>,
     fluids: Vec<Fluid>,
     chambers: Vec<Chamber>,
@@ -93,7 +95,7 @@ pub struct Scene {
 }
 
 /// The quantities of a scene that may be [unusual](Scene::unusual): the names of the indicators of its units.
-pub(crate) const UNITS: [&str; 9] = [
+pub(crate) const UNITS: [&str; 10] = [
     "size",
     "mass",
     "density",
@@ -103,6 +105,7 @@ pub(crate) const UNITS: [&str; 9] = [
     "weight",
     "remanence",
     "magnetic-field",
+    "dipole-moment",
 ];
 
 impl Scene {
@@ -115,6 +118,7 @@ impl Scene {
             springs: Vec::new(),
             muscles: Vec::new(),
             magnets: Vec::new(),
+            dipoles: Vec::new(),
             growths: Vec::new(),
             fluids: Vec::new(),
             chambers: Vec::new(),
@@ -212,7 +216,7 @@ impl Scene {
     /// Quantities that are meant as they are, although such values are rare for a soft body in SI units.
     ///
     /// They are among `size`, `mass`, `density`, `young`, `wave-speed`, `thickness`, `weight` (the strain
-    /// of a column as high as the body under its own weight), `remanence` and `magnetic-field`. [Indicators](Self::indicators) with these names
+    /// of a column as high as the body under its own weight), `remanence`, `magnetic-field` and `dipole-moment`. [Indicators](Self::indicators) with these names
     /// keep their numbers and do not warn.
     ///
     /// ```
@@ -343,6 +347,9 @@ impl Scene {
     pub(crate) fn forces_from_start(&self) -> Result<Vec<Forces>, InputError> {
         let forces = self.forces()?;
         let (u, v) = (self.initial_displacements(), self.initial_velocities()?);
+        for force in self.dipole_forces(self.first_phase()?)? {
+            force.check(0.0, u)?;
+        }
         let mut nodal = NodalForces::zeros(self.body.dofs());
         let mut first = forces.iter().take(1).flatten();
         match first.try_for_each(|force| force.add_forces(0.0, u, &v, &mut nodal)) {

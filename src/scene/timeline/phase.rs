@@ -10,7 +10,7 @@ use crate::elements::mesh::Selection;
 use crate::scene::constraint::{
     Axes, Axis, Constrained, Constraint, Motion, Prescribed, Spline, Turn,
 };
-use crate::scene::forces::{MagneticField, Obstacle, Signal};
+use crate::scene::forces::{DipolePart, MagneticField, Obstacle, Signal, VectorSignal};
 
 /// A stretch of time with its own constraints, loads and contacts. Displacements and velocities
 /// carry over from phase to phase.
@@ -38,6 +38,8 @@ pub struct Phase {
     pub(crate) redirected: Vec<Obstacle>,
     /// What acts on magnets.
     pub(crate) magnetic_field: Option<MagneticField>,
+    /// Names of dipoles, and what is otherwise of them than in the scene.
+    pub(crate) dipoles: Vec<(String, DipolePart, VectorSignal)>,
 }
 
 /// The obstacles that act.
@@ -68,6 +70,7 @@ impl Phase {
             contact: ContactWith::All,
             redirected: Vec::new(),
             magnetic_field: None,
+            dipoles: Vec::new(),
         }
     }
 

@@ -62,8 +62,10 @@ const sensors = data.sensors.map((sensor, number) => ({ ...sensor, number, times
 const quantities = data.quantities.map((quantity) => ({ ...quantity, scale: 0, peak: 0 }));
 // marks are explained as soon as an actuator can act
 const springs = data.springs.map((spring) => ({ ...spring, forces: [-1, 1] }));
+/** Their numbers. */
+const dipoles = data.dipoles.map((_, number) => number);
 /** The present, as the simulation told it last. */
-let frame = { time: 0, phase: 0, actuations: springs.map(() => 0), colours: null };
+let frame = { time: 0, phase: 0, dipoles: data.dipoles, actuations: springs.map(() => 0), colours: null };
 let colouring = new Uint8Array(0);
 
 /** Points of the chart at most. */
@@ -116,6 +118,11 @@ function seriesAt(_, { values }) {
 /** Force of the actuator of a spring (N). */
 function actuationAt(_, spring) {
   return frame.actuations[springs.indexOf(spring)];
+}
+
+/** Where a dipole is (m), and its moment (A m^2). */
+function dipoleAt(_, number) {
+  return frame.dipoles[number];
 }
 
 function phaseAt() {

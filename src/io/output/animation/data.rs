@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 
 use super::colours::{Fields, Quantity};
 use super::geometry::{Geometry, in_view};
-use super::{contacts, pack};
+use super::{contacts, dipoles, pack};
 use crate::base::input::InputError;
 use crate::dynamics::error::Error;
 use crate::dynamics::system::Energy;
@@ -49,6 +49,7 @@ pub(super) fn gather(trajectory: &Trajectory, name: &str) -> Result<Value, Error
         "energies": energies(&frames),
         "sensors": sensors(trajectory, &frames),
         "contacts": contacts::resultants(trajectory, &frames)?,
+        "dipoles": dipoles::tracks(trajectory, &frames)?,
         "obstacles": obstacles_in(trajectory, &frames)?,
         "springs": springs(trajectory, &frames, &geometry, &ends)?,
         "points": geometry.places(&points),
@@ -66,8 +67,9 @@ fn thinned(samples: &[Sample], bytes_per_frame: usize) -> Vec<&Sample> {
 fn bytes_per_frame(trajectory: &Trajectory, geometry: &Geometry) -> usize {
     let axes = trajectory.body().dimension().max(2);
     let sensors = trajectory.sensors().len();
-    // a place and a force of each
-    let contacts = 2 * axes * trajectory.scene().obstacles().len();
+    // a place and a force, or a moment, of each
+    let scene = trajectory.scene();
+    let contacts = 2 * axes * (scene.obstacles().len() + scene.dipoles().len());
     let singles = size_of::<f32>() * (sensors + contacts);
     let quantities = Quantity::of(trajectory.scene()).len();
     2 * axes * geometry.count() + quantities * geometry.cells.len() + singles

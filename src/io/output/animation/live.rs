@@ -4,7 +4,7 @@ use serde_json::{Value, json};
 
 use super::colours::{Fields, Quantity};
 use super::geometry::Geometry;
-use super::{STYLE, data, filled, pack};
+use super::{STYLE, data, dipoles, filled, pack};
 use crate::dynamics::error::Error;
 use crate::dynamics::simulate::View;
 use crate::dynamics::system::Energy;
@@ -20,6 +20,7 @@ const DRAWING: &str = concat!(
     include_str!("page/colour.js"),
     include_str!("page/plane.js"),
     include_str!("page/space.js"),
+    include_str!("page/dipoles.js"),
     include_str!("page/stage.js"),
     include_str!("page/chart.js"),
     include_str!("page/sensors.js"),
@@ -55,6 +56,7 @@ impl Picture {
             "quantities": told.collect::<Vec<_>>(),
             "energies": data::ENERGIES,
             "absent": absent(scene),
+            "dipoles": dipoles::at(scene, scene.first_phase()?, 0.0),
             "obstacles": data::obstacles(scene),
             "springs": springs.collect::<Vec<_>>(),
             "points": geometry.places(&points),
@@ -92,6 +94,11 @@ impl Picture {
         }
         numbers.extend(self.geometry.anchors(d));
         pack::singles(numbers)
+    }
+
+    /// The positions (m) and the moments (A m^2) of all dipoles.
+    pub(crate) fn dipoles(&self, view: &View) -> Value {
+        json!(dipoles::drawn(view.dipoles()))
     }
 
     /// The values of a quantity in each face, and the end of their scale; `None` for a number that no quantity has, and

@@ -3,6 +3,7 @@
 mod colours;
 mod contacts;
 mod data;
+mod dipoles;
 mod geometry;
 #[cfg(feature = "play")]
 mod live;
@@ -54,6 +55,7 @@ const OF_EACH: &str = concat!(
     include_str!("page/space.js"),
     include_str!("page/stage.js"),
     include_str!("page/contacts.js"),
+    include_str!("page/dipoles.js"),
 );
 /// What stands before and after the data of a page.
 const DATA: [&str; 2] = ["<script type=\"application/json\" id=\"data\">", "</script>"];
@@ -61,7 +63,7 @@ const DATA: [&str; 2] = ["<script type=\"application/json\" id=\"data\">", "</sc
 /// Writes the motion as one HTML file that a web browser plays, without a network.
 ///
 /// It shows the body coloured by stress, strain energy density, stretch, contact pressure or what sticks, obstacles, springs (coloured while an
-/// actuator pulls or pushes), point masses, held and moved nodes, forces of obstacles as arrows; below it the
+/// actuator pulls or pushes), point masses, held and moved nodes, dipoles as bars along their moments, forces of obstacles as arrows; below it the
 /// energies and what sensors have read over time, and how the motion was computed, with the warnings of the
 /// report. The shown frame can be saved as PNG or SVG. `title` is its heading. Obstacles that are given by a
 /// function are not drawn.

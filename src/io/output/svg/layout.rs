@@ -28,16 +28,19 @@ pub(in crate::io::output) struct View {
     tops: Vec<f64>,
     /// The obstacles of each panel.
     pub(super) obstacles: Vec<Vec<Outline>>,
+    /// Places and moments of the dipoles of each panel.
+    pub(super) dipoles: Vec<Vec<[Point; 2]>>,
 }
 
 impl View {
-    /// All that `samples` show of the body, and the obstacles that are near.
+    /// All that `samples` show of the body, and the obstacles and dipoles that are near.
     pub(in crate::io::output) fn of(trajectory: &Trajectory, samples: &[&Sample]) -> Self {
         let mut view = Self {
             low: [f64::INFINITY; 2],
             high: [f64::NEG_INFINITY; 2],
             tops: Vec::new(),
             obstacles: samples.iter().map(|sample| outlines(trajectory, sample)).collect(),
+            dipoles: samples.iter().map(|sample| dipoles(trajectory, sample)).collect(),
         };
         for sample in samples {
             let points = positions(trajectory, sample);
@@ -55,7 +58,14 @@ impl View {
         let near = |outlines: &Vec<Outline>| -> Vec<Point> {
             outlines.iter().flat_map(|outline| outline.near(centre, size)).collect()
         };
-        let near: Vec<Vec<Point>> = view.obstacles.iter().map(near).collect();
+        let is_near = |x: &Point| (x[0] - centre[0]).hypot(x[1] - centre[1]) < 2.0 * size;
+        let places =
+            |dipoles: &Vec<[Point; 2]>| dipoles.iter().map(|[x, _]| *x).filter(is_near).collect();
+        let mut near: Vec<Vec<Point>> = view.obstacles.iter().map(near).collect();
+        for (near, dipoles) in near.iter_mut().zip(&view.dipoles) {
+            let places: Vec<Point> = places(dipoles);
+            near.extend(places);
+        }
         for (number, points) in near.into_iter().enumerate() {
             for point in points {
                 view.include(point);
@@ -105,6 +115,15 @@ impl View {
         let inside = clip(&corners, |x| -distance(x));
         clip(&inside, |x| distance(x) + depth)
     }
+}
+
+/// Where dipoles are at a sample (m), and their moments.
+fn dipoles(trajectory: &Trajectory, sample: &Sample) -> Vec<[Point; 2]> {
+    let all = trajectory.phase_of(sample).map(|phase| {
+        let dipoles = trajectory.scene().dipoles_at(phase, sample.time).into_iter();
+        dipoles.map(|vectors| vectors.map(|vector| drawn(&vector))).collect()
+    });
+    all.unwrap_or_default()
 }
 
 /// The points of space (m) that springs are joined to, dimension coordinates each.

@@ -25,6 +25,8 @@ const PAINTS: [Paint; 6] = [
 ];
 /// Thickness of the hatched band along the surface of a half-plane (px).
 const BAND: f64 = 14.0;
+/// Half the length of the bar that is a dipole (px).
+const POLE: f64 = 8.0;
 
 /// The colours of a body.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -85,6 +87,9 @@ impl Panel<'_> {
         for (&node, mark) in self.marks.iter().filter(|(node, _)| !hidden.contains(*node)) {
             panel = panel.add(mark.draw(points[node][0], points[node][1]));
         }
+        for dipole in &self.view.dipoles[self.number] {
+            panel = panel.add(self.dipole(*dipole));
+        }
         let [x, y] = self.layout.caption(self.number);
         panel.add(text(self.caption, x, y).set("text-anchor", "middle").set("fill", INK))
     }
@@ -131,6 +136,25 @@ impl Panel<'_> {
 
     fn placed(&self, points: &[Point]) -> Vec<Point> {
         points.iter().map(|&x| self.layout.place(self.number, x)).collect()
+    }
+
+    /// A dipole within the view: a bar along its moment, with a north pole and a south pole, or a dot if it is off.
+    fn dipole(&self, [place, moment]: [Point; 2]) -> Group {
+        let mut group = Group::new().set("class", "dipole");
+        if self.view.clip(&[place, place], self.layout.top(self.number)).is_empty() {
+            return group;
+        }
+        let [x, y] = self.layout.place(self.number, place);
+        let size = moment[0].hypot(moment[1]);
+        let poles = [(POLE, "#d55e00"), (-POLE, "#0072b2")];
+        for (end, colour) in poles.into_iter().filter(|_| size > 0.0) {
+            let mut data = Data::default();
+            let [dx, dy] = moment.map(|part| end * part / size);
+            data.polyline(&[[x, y], [x + dx, y - dy]], false);
+            let path = Path::new().set("d", data.0).set("fill", "none");
+            group = group.add(path.set("stroke", colour).set("stroke-width", 5));
+        }
+        group.add(Mark::Held.draw(x, y).set("r", 2.0))
     }
 
     /// The springs and cables, as straight lines.

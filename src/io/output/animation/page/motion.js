@@ -12,6 +12,7 @@ const overTime = (series) => ({ ...series, times, values: singles(series.values)
 const energies = data.energies.map(overTime);
 const sensors = data.sensors.map(overTime);
 const contacts = data.contacts.map(({ at, forces }) => ({ at: singles(at), forces: singles(forces) }));
+const dipoles = data.dipoles.map(({ at, along }) => ({ at: singles(at), along: singles(along) }));
 const springs = data.springs.map((spring) => ({ ...spring, forces: singles(spring.forces) }));
 
 function momentAt(time) {
@@ -42,6 +43,12 @@ function valueAt({ before, after, share }, { values, own, scale, signed }, face)
 /** Force of the actuator of a spring (N): that of the sample at hand or, between two, of the next. */
 function actuationAt({ before, after, share }, { forces }) {
   return forces[share > 0 ? after : before];
+}
+
+/** Where a dipole is (m), and its moment (A m^2). */
+function dipoleAt({ before, after, share }, { at, along }) {
+  return [at, along].map((values) => Array.from({ length: axes }, (_, axis) =>
+    between(values, before * axes + axis, after * axes + axis, share)));
 }
 
 /** The phase at `time`; its end belongs to it. */

@@ -57,6 +57,7 @@ function drawPlane(sheet, moment, quantity) {
   drawBody(context, layout, points, moment, quantity);
   drawSprings(context, points, moment);
   drawMarks(context, points, phaseAt(moment.time), () => true);
+  drawDipoles(context, ([x, y]) => [layout.x(x), layout.y(y)], ([x, y]) => [x, -y], moment);
   context.restore();
 }
 

@@ -54,6 +54,7 @@ function drawSpace(sheet, moment, quantity) {
   drawSprings(context, points, moment);
   drawMarks(context, points, phaseAt(moment.time), (node) => seen[node]);
   for (const obstacle of obstacles) if (obstacle.depth < depth) obstacle.draw(context, 0.45);
+  drawDipoles(context, eye.place, (m) => [dot(eye.right, m), -dot(eye.up, m)], moment);
   drawTriad(sheet, eye);
 }
 

@@ -1,0 +1,104 @@
+//! Dipoles of a simulation: where they are, what they do, and commands that move them.
+
+use super::changes::Change;
+use super::simulation::Simulation;
+use super::view::View;
+use crate::base::input::InputError;
+use crate::dynamics::error::Error;
+use crate::scene::forces::{Dipole, DipolePart, Signals, VectorSignal};
+use crate::scene::timeline::Phase;
+
+/// Dipoles.
+impl View<'_> {
+    /// Where a dipole is (m).
+    ///
+    /// # Errors
+    /// A name that no dipole has.
+    pub fn dipole_position(&self, dipole: &str) -> Result<Vec<f64>, InputError> {
+        self.part_of(dipole, DipolePart::Position)
+    }
+
+    /// The moment of a dipole (A m^2).
+    ///
+    /// # Errors
+    /// A name that no dipole has.
+    pub fn dipole_moment(&self, dipole: &str) -> Result<Vec<f64>, InputError> {
+        self.part_of(dipole, DipolePart::Moment)
+    }
+
+    /// The position (m) and the moment (A m^2) of each dipole.
+    #[cfg(feature = "play")]
+    pub(crate) fn dipoles(&self) -> Vec<[Vec<f64>; 2]> {
+        self.scene.dipoles_at(self.phase, self.time)
+    }
+
+    /// The force (N) of a dipole on all magnets together, one component per dimension; that on the dipole is minus this.
+    ///
+    /// # Errors
+    /// A name that no dipole has.
+    pub fn dipole_force(&self, dipole: &str) -> Result<Vec<f64>, InputError> {
+        let (d, mut force) = (self.body().dimension(), [0.0; 3]);
+        let now = self.dipole_named(dipole)?.at(self.time, d);
+        let magnets = self.gauges.magnetized.iter();
+        magnets.for_each(|magnet| magnet.add_force(&now, self.state.u, &mut force));
+        Ok(force[..d].to_vec())
+    }
+
+    fn part_of(&self, dipole: &str, part: DipolePart) -> Result<Vec<f64>, InputError> {
+        let dipole = self.dipole_named(dipole)?;
+        Ok(dipole.part(part).components(self.time, self.body().dimension()))
+    }
+
+    /// A dipole as it is in the phase.
+    fn dipole_named(&self, name: &str) -> Result<Dipole, InputError> {
+        let number = self.scene.dipole_number(name, "dipole")?;
+        Ok(self.phase.with_dipole(&self.scene.dipoles()[number]))
+    }
+}
+
+/// Commands for dipoles.
+impl Simulation {
+    /// Sets the position (m) of a dipole, in place of the present one: where it is at once, if it is a vector.
+    ///
+    /// # Errors
+    /// A name that no dipole has, a wrong number of components, numbers that are not finite.
+    pub fn dipole_position(
+        &mut self,
+        dipole: &str,
+        position: impl Into<Signals>,
+    ) -> Result<(), Error> {
+        self.set_dipole(dipole, DipolePart::Position, position.into().0)
+    }
+
+    /// Sets the moment (A m^2) of a dipole, in place of the present one.
+    ///
+    /// # Errors
+    /// As [`dipole_position`](Self::dipole_position).
+    pub fn dipole_moment(&mut self, dipole: &str, moment: impl Into<Signals>) -> Result<(), Error> {
+        self.set_dipole(dipole, DipolePart::Moment, moment.into().0)
+    }
+
+    /// Sets the position or the moment of a dipole.
+    pub(crate) fn set_dipole(
+        &mut self,
+        dipole: &str,
+        part: DipolePart,
+        value: VectorSignal,
+    ) -> Result<(), Error> {
+        let input = format!("{part} of dipole \"{dipole}\"");
+        self.scene().dipole_number(dipole, &input)?;
+        let dimension = self.scene().body().dimension();
+        if let VectorSignal::Constant(values) = &value
+            && values.len() == dimension
+        {
+            let live = |phase: &Phase| phase.live_dipole(dipole, part).cloned();
+            if self.set_live(live, &input, values)? {
+                return Ok(());
+            }
+        }
+        self.command(Change::Loads, |phase, _| {
+            phase.set_dipole(dipole, part, value.thawed());
+            Ok(())
+        })
+    }
+}

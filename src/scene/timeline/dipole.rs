@@ -1,0 +1,114 @@
+//! Dipoles near the magnets of a scene, and where phases have them.
+
+use std::sync::Arc;
+
+use super::{Phase, Scene, unique};
+use crate::base::input::{InputError, find};
+use crate::elements::body::MagnetizedPoints;
+use crate::elements::force::Forces;
+use crate::scene::forces::{Dipole, DipoleForce, DipolePart, Live, Signals, VectorSignal};
+
+impl Scene {
+    /// Adds a dipole, which acts on the [magnets](Self::magnet) in all phases.
+    pub fn dipole(mut self, dipole: Dipole) -> Self {
+        let number = self.dipoles.len() + 1;
+        self.dipoles.push(dipole.or_named(format!("dipole {number}")));
+        self
+    }
+
+    /// The dipoles.
+    pub fn dipoles(&self) -> &[Dipole] {
+        &self.dipoles
+    }
+
+    /// Number (from 0) of the dipole with a name; `input` is where that was given.
+    pub(crate) fn dipole_number(&self, name: &str, input: &str) -> Result<usize, InputError> {
+        find(name, self.dipoles.iter().map(Dipole::name), input, "dipoles")
+    }
+
+    /// The forces of all dipoles in `phase`.
+    ///
+    /// # Errors
+    /// Names that are taken or that no dipole has, a scene without magnets, vectors of another dimension, numbers out of range.
+    pub(crate) fn dipole_forces(&self, phase: &Phase) -> Result<Vec<DipoleForce>, InputError> {
+        for (name, ..) in &phase.dipoles {
+            self.dipole_number(name, &format!("dipole of phase \"{}\"", phase.name))?;
+        }
+        if self.dipoles.is_empty() {
+            return Ok(Vec::new());
+        }
+        unique("dipole", self.dipoles.iter().map(Dipole::name))?;
+        if self.magnets.is_empty() {
+            let help = "the scene has no magnet that feels it: add one";
+            return Err(InputError::new("dipole", format!("\"{}\"", self.dipoles[0].name()), help));
+        }
+        let points = self.magnetized_points()?;
+        let force = |dipole| phase.with_dipole(dipole).force(self.body.dimension(), points.clone());
+        self.dipoles.iter().map(force).collect()
+    }
+
+    /// The position (m) and the moment (A m^2) of each dipole in `phase` at time `t` (s).
+    #[cfg(feature = "output")]
+    pub(crate) fn dipoles_at(&self, phase: &Phase, t: f64) -> Vec<[Vec<f64>; 2]> {
+        let dipoles = self.dipoles.iter().map(|dipole| phase.with_dipole(dipole));
+        let vectors = |dipole: Dipole| {
+            DipolePart::ALL.map(|part| dipole.part(part).components(t, self.body.dimension()))
+        };
+        dipoles.map(vectors).collect()
+    }
+
+    /// What dipoles act on; nothing without dipoles.
+    pub(crate) fn magnetized_points(&self) -> Result<Arc<[Box<dyn MagnetizedPoints>]>, InputError> {
+        let mut points: Vec<Box<dyn MagnetizedPoints>> = Vec::new();
+        if !self.dipoles.is_empty() {
+            for (number, magnet) in (1..).zip(&self.magnets) {
+                magnet.add_points_to(&self.body, number, &mut points)?;
+            }
+        }
+        Ok(points.into())
+    }
+
+    /// Adds the forces of all dipoles.
+    pub(super) fn add_dipoles(&self, phase: &Phase, forces: &mut Forces) -> Result<(), InputError> {
+        for force in self.dipole_forces(phase)? {
+            forces.push(Arc::new(force));
+        }
+        Ok(())
+    }
+}
+
+impl Phase {
+    /// Where a dipole of the scene is in this phase (m), in place of its [position](Dipole::new) in the scene.
+    pub fn dipole_position(
+        mut self,
+        dipole: impl Into<String>,
+        position: impl Into<Signals>,
+    ) -> Self {
+        self.set_dipole(&dipole.into(), DipolePart::Position, position.into().0);
+        self
+    }
+
+    /// The moment (A m^2) of a dipole of the scene in this phase, in place of [that](Dipole::new) in the scene; 0 switches it off.
+    pub fn dipole_moment(mut self, dipole: impl Into<String>, moment: impl Into<Signals>) -> Self {
+        self.set_dipole(&dipole.into(), DipolePart::Moment, moment.into().0);
+        self
+    }
+
+    /// A dipole of the scene as it is in this phase.
+    pub(crate) fn with_dipole(&self, dipole: &Dipole) -> Dipole {
+        let own = self.dipoles.iter().filter(|(name, ..)| name == dipole.name());
+        own.fold(dipole.clone(), |dipole, (_, part, value)| dipole.with(*part, value.clone()))
+    }
+
+    /// Replaces the moment or the position of a dipole.
+    pub(crate) fn set_dipole(&mut self, dipole: &str, part: DipolePart, value: VectorSignal) {
+        self.dipoles.retain(|(name, other, _)| name != dipole || *other != part);
+        self.dipoles.push((dipole.to_owned(), part, value));
+    }
+
+    /// The moment or the position of a dipole, if that is numbers that a command can set.
+    pub(crate) fn live_dipole(&self, dipole: &str, part: DipolePart) -> Option<&Live> {
+        let is_it = |(name, other, _): &&(String, DipolePart, _)| name == dipole && *other == part;
+        self.dipoles.iter().find(is_it)?.2.live()
+    }
+}
