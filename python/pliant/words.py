@@ -2545,8 +2545,8 @@ def drive(
     positions: Sequence[Vector] | None = None,
     moments: Sequence[Vector] | None = None,
 ) -> dict:
-    r"""Where a [dipole](#dipole) is in this phase, or its moment, in place of what the scene says; a moment of 0 switches
-    it off. Those of tables are interpolated linearly, and constant before and after.
+    r"""Where a `[[dipole]]` is in this phase, or its moment, in place of what the scene says; a moment of 0 switches it
+    off. Those of tables are interpolated linearly, and constant before and after.
 
     Parameters
     ----------

@@ -273,7 +273,7 @@ pub(super) const ACTUATE: TableKeys = TableKeys::new(
 
 pub(super) const DRIVE: TableKeys = TableKeys::new(
     "drive",
-    "Where a [dipole](#dipole) is in this phase, or its moment, in place of what the scene says; a moment of 0 switches it off. Those of tables are interpolated linearly, \
+    "Where a `[[dipole]]` is in this phase, or its moment, in place of what the scene says; a moment of 0 switches it off. Those of tables are interpolated linearly, \
      and constant before and after.",
     &[
         Key::new("dipole", Holds::Text, "the name of the dipole").required(),

@@ -4,8 +4,10 @@ const data = JSON.parse(document.getElementById("data").textContent);
 const { body, phases, axes } = data;
 let places = singles(data.start);
 const nodeCount = places.length / axes;
+/** Position (m) and moment (A m^2) of each dipole. */
+let magnets = data.dipoles;
 
-/** From the least to the largest coordinate of the drawn nodes, axis by axis (m). */
+/** From the least to the largest coordinate of the drawn nodes, and of dipoles less than two sizes of the body away, axis by axis (m). */
 function extent() {
   const ranges = Array.from({ length: axes }, () => [Infinity, -Infinity]);
   places.forEach((x, k) => {
@@ -13,6 +15,14 @@ function extent() {
     range[0] = Math.min(range[0], x);
     range[1] = Math.max(range[1], x);
   });
+  const centre = ranges.map(([least, largest]) => (least + largest) / 2);
+  const far = 2 * Math.hypot(...ranges.map(([least, largest]) => largest - least));
+  for (const [at] of magnets) {
+    if (Math.hypot(...at.map((x, axis) => x - centre[axis])) > far) continue;
+    at.forEach((x, axis) => {
+      ranges[axis] = [Math.min(ranges[axis][0], x), Math.max(ranges[axis][1], x)];
+    });
+  }
   return ranges;
 }
 
@@ -63,9 +73,9 @@ const quantities = data.quantities.map((quantity) => ({ ...quantity, scale: 0, p
 // marks are explained as soon as an actuator can act
 const springs = data.springs.map((spring) => ({ ...spring, forces: [-1, 1] }));
 /** Their numbers. */
-const dipoles = data.dipoles.map((_, number) => number);
+const dipoles = magnets.map((_, number) => number);
 /** The present, as the simulation told it last. */
-let frame = { time: 0, phase: 0, dipoles: data.dipoles, actuations: springs.map(() => 0), colours: null };
+let frame = { time: 0, phase: 0, actuations: springs.map(() => 0), colours: null };
 let colouring = new Uint8Array(0);
 
 /** Points of the chart at most. */
@@ -76,6 +86,7 @@ function take(next) {
   if (next.time < last) forget();
   frame = next;
   places = singles(next.places);
+  magnets = next.dipoles;
   if (next.colours) {
     colouring = bytes(next.colours.values);
     const shown = quantities[next.colours.quantity];
@@ -122,7 +133,7 @@ function actuationAt(_, spring) {
 
 /** Where a dipole is (m), and its moment (A m^2). */
 function dipoleAt(_, number) {
-  return frame.dipoles[number];
+  return magnets[number];
 }
 
 function phaseAt() {
