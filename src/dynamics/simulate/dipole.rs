@@ -5,7 +5,7 @@ use super::simulation::Simulation;
 use super::view::View;
 use crate::base::input::InputError;
 use crate::dynamics::error::Error;
-use crate::scene::forces::{Dipole, DipolePart, Signals, VectorSignal};
+use crate::scene::forces::{DipolePart, Signals, VectorSignal, point_dipole};
 use crate::scene::timeline::Phase;
 
 /// Dipoles.
@@ -15,7 +15,8 @@ impl View<'_> {
     /// # Errors
     /// A name that no dipole has.
     pub fn dipole_position(&self, dipole: &str) -> Result<Vec<f64>, InputError> {
-        self.part_of(dipole, DipolePart::Position)
+        let [position, _] = self.parts_of(dipole)?;
+        Ok(position.components(self.time, self.body().dimension()))
     }
 
     /// The moment of a dipole (A m^2).
@@ -23,7 +24,8 @@ impl View<'_> {
     /// # Errors
     /// A name that no dipole has.
     pub fn dipole_moment(&self, dipole: &str) -> Result<Vec<f64>, InputError> {
-        self.part_of(dipole, DipolePart::Moment)
+        let [_, moment] = self.parts_of(dipole)?;
+        Ok(moment.components(self.time, self.body().dimension()))
     }
 
     /// The position (m) and the moment (A m^2) of each dipole.
@@ -38,21 +40,17 @@ impl View<'_> {
     /// A name that no dipole has.
     pub fn dipole_force(&self, dipole: &str) -> Result<Vec<f64>, InputError> {
         let (d, mut force) = (self.body().dimension(), [0.0; 3]);
-        let now = self.dipole_named(dipole)?.at(self.time, d);
+        let parts = self.parts_of(dipole)?;
+        let now = point_dipole(parts, self.time, d);
         let magnets = self.gauges.magnetized.iter();
         magnets.for_each(|magnet| magnet.add_force(&now, self.state.u, &mut force));
         Ok(force[..d].to_vec())
     }
 
-    fn part_of(&self, dipole: &str, part: DipolePart) -> Result<Vec<f64>, InputError> {
-        let dipole = self.dipole_named(dipole)?;
-        Ok(dipole.part(part).components(self.time, self.body().dimension()))
-    }
-
-    /// A dipole as it is in the phase.
-    fn dipole_named(&self, name: &str) -> Result<Dipole, InputError> {
-        let number = self.scene.dipole_number(name, "dipole")?;
-        Ok(self.phase.with_dipole(&self.scene.dipoles()[number]))
+    /// The position and the moment of a dipole in the phase.
+    fn parts_of(&self, name: &str) -> Result<[&VectorSignal; 2], InputError> {
+        let dipole = &self.scene.dipoles()[self.scene.dipole_number(name, "dipole")?];
+        Ok(DipolePart::ALL.map(|part| self.phase.part_of(dipole, part)))
     }
 }
 

@@ -25,7 +25,8 @@ use crate::integrators::ode::Failure;
 /// A body in the plane lies in the plane z = 0 of space, and m and p lie in it, too, so that the field does: it is that of a dipole in space, not of a line of
 /// them. The thickness of the body should be small beside the distance.
 ///
-/// Far away, 2 of its lengths say, a magnet is a dipole to some percent: a block of the remanence b and the volume V has the moment b V/mu_0, a ball exactly so.
+/// A magnet of the remanence b and the volume V has the moment b V/mu_0. A ball is a dipole; a block of the width a that is magnetized along its length 2 a
+/// pulls along its axis by 2.5 (a/r)^2 more than one, which is 2.5 % at r = 10 a.
 ///
 /// ```
 /// use pliant::{Body, Cells, Dipole, Magnet, Material, Mesh, Phase, Plane, Scene, Statics};
@@ -125,11 +126,8 @@ impl Dipole {
     }
 
     /// It as it is at time `t` (s).
-    pub(crate) fn at(&self, t: f64, dimension: usize) -> PointDipole {
-        let mut now = PointDipole { moment: [0.0; 3], position: [0.0; 3] };
-        self.moment.at(t, &mut now.moment[..dimension]);
-        self.position.at(t, &mut now.position[..dimension]);
-        now
+    fn at(&self, t: f64, dimension: usize) -> PointDipole {
+        point_dipole([&self.position, &self.moment], t, dimension)
     }
 
     /// Its force on `magnets` of a body in `dimension` dimensions.
@@ -147,6 +145,18 @@ impl Dipole {
         }
         Ok(DipoleForce { dipole: self.clone(), dimension, magnets })
     }
+}
+
+/// A dipole of this position and moment at time `t` (s).
+pub(crate) fn point_dipole(
+    [position, moment]: [&VectorSignal; 2],
+    t: f64,
+    dimension: usize,
+) -> PointDipole {
+    let mut now = PointDipole { moment: [0.0; 3], position: [0.0; 3] };
+    moment.at(t, &mut now.moment[..dimension]);
+    position.at(t, &mut now.position[..dimension]);
+    now
 }
 
 /// The force of a dipole on the magnets of a body.

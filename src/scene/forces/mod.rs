@@ -37,7 +37,7 @@ pub(crate) use closed::Closed;
 pub(crate) use contact::Contact;
 pub(crate) use content::Content;
 pub use dipole::Dipole;
-pub(crate) use dipole::{DipoleForce, DipolePart};
+pub(crate) use dipole::{DipoleForce, DipolePart, point_dipole};
 pub(crate) use faces::{areas, shares};
 pub use fluid::Fluid;
 pub(crate) use fluid::FluidForce;

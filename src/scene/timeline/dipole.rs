@@ -50,11 +50,8 @@ impl Scene {
     /// The position (m) and the moment (A m^2) of each dipole in `phase` at time `t` (s).
     #[cfg(feature = "output")]
     pub(crate) fn dipoles_at(&self, phase: &Phase, t: f64) -> Vec<[Vec<f64>; 2]> {
-        let dipoles = self.dipoles.iter().map(|dipole| phase.with_dipole(dipole));
-        let vectors = |dipole: Dipole| {
-            DipolePart::ALL.map(|part| dipole.part(part).components(t, self.body.dimension()))
-        };
-        dipoles.map(vectors).collect()
+        let at = |dipole, part| phase.part_of(dipole, part).components(t, self.body.dimension());
+        self.dipoles.iter().map(|dipole| DipolePart::ALL.map(|part| at(dipole, part))).collect()
     }
 
     /// What dipoles act on; nothing without dipoles.
@@ -96,8 +93,19 @@ impl Phase {
 
     /// A dipole of the scene as it is in this phase.
     pub(crate) fn with_dipole(&self, dipole: &Dipole) -> Dipole {
-        let own = self.dipoles.iter().filter(|(name, ..)| name == dipole.name());
-        own.fold(dipole.clone(), |dipole, (_, part, value)| dipole.with(*part, value.clone()))
+        let parts = DipolePart::ALL.into_iter();
+        parts.fold(dipole.clone(), |own, part| own.with(part, self.part_of(dipole, part).clone()))
+    }
+
+    /// The moment or the position of a dipole of the scene in this phase.
+    pub(crate) fn part_of<'a>(&'a self, dipole: &'a Dipole, part: DipolePart) -> &'a VectorSignal {
+        self.own_part(dipole.name(), part).unwrap_or_else(|| dipole.part(part))
+    }
+
+    /// The moment or the position of a dipole, if the phase has one of its own.
+    fn own_part(&self, dipole: &str, part: DipolePart) -> Option<&VectorSignal> {
+        let is_it = |(name, other, _): &&(String, DipolePart, _)| name == dipole && *other == part;
+        self.dipoles.iter().find(is_it).map(|(.., value)| value)
     }
 
     /// Replaces the moment or the position of a dipole.
@@ -108,7 +116,6 @@ impl Phase {
 
     /// The moment or the position of a dipole, if that is numbers that a command can set.
     pub(crate) fn live_dipole(&self, dipole: &str, part: DipolePart) -> Option<&Live> {
-        let is_it = |(name, other, _): &&(String, DipolePart, _)| name == dipole && *other == part;
-        self.dipoles.iter().find(is_it)?.2.live()
+        self.own_part(dipole, part)?.live()
     }
 }

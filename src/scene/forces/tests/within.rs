@@ -112,7 +112,7 @@ fn dipoles() {
         let (d, is_solid) = (mesh.dimension(), mesh.has_inside());
         let body = Body::new(mesh, SQUARE_MATERIAL);
         let body = if is_solid && d == 3 { body } else { body.thickness(0.01) }.build().unwrap();
-        let (p, m) = ([0.7, 0.5, -0.4], [2e3, 9e3, -6e3]);
+        let (p, m) = ([0.7, 0.5, -0.4], [2e6, 9e6, -6e6]);
         let force = |m: [f64; 3], p: [f64; 3]| {
             let scene = Scene::new(body.clone()).magnet(Magnet::new(b.clone()));
             let scene = scene.dipole(Dipole::new(m[..d].to_vec(), p[..d].to_vec()));
