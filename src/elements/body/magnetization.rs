@@ -1,6 +1,7 @@
 //! A body whose cells are magnetized.
 
 use super::assembled::Body;
+use super::magnetized_points::MagnetizedPoints;
 use super::magnets::Magnets;
 use crate::base::input::InputError;
 use crate::base::sparse::NodeMatrix;
@@ -28,5 +29,23 @@ impl Body {
             own.elements.add_magnets(&inside, remanence, magnets)?;
         }
         Ok(())
+    }
+
+    /// Adds the points of some `cells`, counted from 0, with a `remanence` (T), one component per dimension, to `points`.
+    pub(crate) fn add_magnetized_points(
+        &self,
+        cells: &[usize],
+        remanence: &[f64],
+        points: &mut Vec<Box<dyn MagnetizedPoints>>,
+    ) {
+        for own in &self.continua {
+            let inside = cells.iter().filter(|cell| own.cells.contains(cell));
+            let inside: Vec<usize> = inside.map(|cell| cell - own.cells.start).collect();
+            if !inside.is_empty() {
+                let first = own.cells.start;
+                let elements = &own.elements;
+                points.push(elements.magnetized_points(&self.mesh, first, &inside, remanence));
+            }
+        }
     }
 }

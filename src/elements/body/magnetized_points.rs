@@ -9,8 +9,8 @@
 
 use std::f64::consts::PI;
 
+use super::elements::{ElementsOf, pairs};
 use super::magnets::{VACUUM, direction};
-use super::{Body, elements::ElementsOf, elements::pairs};
 use crate::base::sparse::BlockMatrix;
 use crate::base::tensor::dot;
 use crate::elements::mesh::Mesh;
@@ -280,25 +280,5 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> InDipoleFie
             });
         }
         Box::new(Magnetized { cells: magnetized, values: self.values })
-    }
-}
-
-impl Body {
-    /// Adds the points of some `cells`, counted from 0, with a `remanence` (T), one component per dimension, to `points`.
-    pub(crate) fn add_magnetized_points(
-        &self,
-        cells: &[usize],
-        remanence: &[f64],
-        points: &mut Vec<Box<dyn MagnetizedPoints>>,
-    ) {
-        for own in &self.continua {
-            let inside = cells.iter().filter(|cell| own.cells.contains(cell));
-            let inside: Vec<usize> = inside.map(|cell| cell - own.cells.start).collect();
-            if !inside.is_empty() {
-                let first = own.cells.start;
-                let elements = &own.elements;
-                points.push(elements.magnetized_points(&self.mesh, first, &inside, remanence));
-            }
-        }
     }
 }
