@@ -224,9 +224,8 @@ impl Force for DipoleForce {
         }
         let applied = &mut forces.applied;
         let mut all = self.magnets.iter();
-        all.try_for_each(|magnet| magnet.add_forces(&now, u, applied)).map_err(|near| {
-            Failure::Recoverable(format!("dipole \"{name}\" at t = {t} s: {near}").into())
-        })
+        all.try_for_each(|magnet| magnet.add_forces(&now, u, applied))
+            .map_err(|near| Failure::Recoverable(format!("dipole \"{name}\" at t = {t} s: {near}")))
     }
 
     fn add_tangents(
