@@ -110,7 +110,7 @@ const TOP: [(f64, usize); 10] = [
     (6e-7, 5000),
     (2e-7, 500),
     (2e-7, 1400),
-    (2e-7, 600),
+    (1.5e-8, 600),
 ];
 
 /// Two bars, one on a pin and one hinged to its end: both turn as the equations of Lagrange say.
