@@ -172,8 +172,7 @@ impl FromStr for Method {
 
 /// How contact events are handled: nodes touch an obstacle or leave it, and with friction stick or slip.
 ///
-/// Those of a [`Touch`](crate::Touch) are always stepped over: its barrier has no kink, and takes fewer evaluations than springs
-/// with located events.
+/// Those of a [`Touch`](crate::Touch) are always stepped over: its barrier has no kink.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum ContactEvents {
     /// Locates them where that is faster: [`Method::Auto`] does so while it uses explicit Runge-Kutta, and
