@@ -8,7 +8,7 @@ use pliant::{
 };
 
 /// The methods that have equations for rigid bodies.
-pub(crate) const METHODS: [Method; 7] = [
+pub(crate) const METHODS: [Method; 10] = [
     Method::CvodeBdf,
     Method::CvodeAdams,
     Method::Arkode,
@@ -16,6 +16,9 @@ pub(crate) const METHODS: [Method; 7] = [
     Method::Rk,
     Method::Auto,
     Method::CentralDifference,
+    Method::Ida,
+    Method::IdaKlu,
+    Method::IdaIndexTwo,
 ];
 
 /// The numbers that the equations y' = f(y) lead to, by the integrators alone.
@@ -97,8 +100,18 @@ fn an_asymmetric_top() {
         assert!(report.steps() < most, "{method} takes {} steps", report.steps());
     }
 }
-const TOP: [(f64, usize); 7] =
-    [(2e-7, 400), (1e-8, 500), (3e-7, 300), (4e-9, 2400), (1e-9, 2400), (1e-8, 3000), (6e-7, 5000)];
+const TOP: [(f64, usize); 10] = [
+    (2e-7, 400),
+    (1e-8, 500),
+    (3e-7, 300),
+    (4e-9, 2400),
+    (1e-9, 2400),
+    (1e-8, 3000),
+    (6e-7, 5000),
+    (2e-7, 500),
+    (2e-7, 1400),
+    (1.5e-8, 600),
+];
 
 /// Two bars, one on a pin and one hinged to its end: both turn as the equations of Lagrange say.
 #[test]
@@ -144,7 +157,7 @@ fn a_double_pendulum() {
         assert!(off < tolerance, "{method} is {off} m off");
     }
 }
-const PENDULUM: [f64; 7] = [2e-7, 2e-7, 1e-6, 6e-9, 3e-10, 2e-7, 4e-6];
+const PENDULUM: [f64; 10] = [2e-7, 2e-7, 1e-6, 6e-9, 3e-10, 2e-7, 4e-6, 3e-7, 7e-8, 6e-7];
 
 /// Rigid squares of one mass that meet head on exchange their velocities, whatever stands between them.
 #[test]
@@ -160,7 +173,8 @@ fn rigid_squares_exchange_their_velocities() {
         .touch(Touch::all().distance(2e-3).stiffness_density(1e8))
         .initial_velocity(|x| vec![if x[0] < 0.025 { 0.5 } else { 0.0 }, 0.0])
         .phase(Phase::until(0.05));
-    for method in METHODS {
+    // the Jacobian of ida-klu has no room for contact
+    for method in METHODS.into_iter().filter(|&method| method != Method::IdaKlu) {
         let motion = run(&scene, method, 1e-8);
         let off = |node: usize, speed: f64| {
             let [along, across] = [0, 1].map(|axis| motion.last().v[2 * node + axis]);
@@ -173,12 +187,10 @@ fn rigid_squares_exchange_their_velocities() {
     }
 }
 
-/// A rigid block falls askew on a soft one with a rigid insert: central differences, whose edges hold at the ends of steps,
-/// come to where ARKODE does with its stabilized ones.
-#[test]
-fn central_differences_land_a_block() {
+/// A rigid block falls askew on a soft one with a rigid insert.
+fn landing(inertia: Inertia) -> Scene {
     let soft = Material { density: 1000.0, young: 1e5, poisson: 0.3, viscosity: 20.0 };
-    for inertia in [Inertia::Lumped, Inertia::Consistent] {
+    {
         let mesh = Mesh::rectangle([0.06, 0.02], [13, 5], Cells::Rectangles).unwrap();
         let cells = pliant::body::CellSelection::inside([0.02, 0.004], [0.03, 0.011]);
         let pad = Body::new(mesh, soft).thickness(0.01).region(cells, Material::rigid(5000.0));
@@ -186,14 +198,22 @@ fn central_differences_land_a_block() {
         let block = Body::new(mesh.translated(&[0.015, 0.0215]).unwrap(), Material::rigid(2000.0));
         let block = block.thickness(0.01).named("block");
         let pad = pad.named("pad").inertia(inertia).build().unwrap();
-        let scene = Scene::new(Body::join([pad, block.build().unwrap()]).unwrap())
+        Scene::new(Body::join([pad, block.build().unwrap()]).unwrap())
             .gravity([0.0, -9.8])
             .touch(Touch::all().distance(1e-3).stiffness_density(1e8))
             .initial_velocity(|x| match x[1] < 0.021 {
                 true => vec![0.0; 2],
                 false => vec![8.0 * (0.0265 - x[1]), 8.0 * (x[0] - 0.025)],
             })
-            .phase(Phase::until(0.06).hold("pad/bottom"));
+            .phase(Phase::until(0.06).hold("pad/bottom"))
+    }
+}
+
+/// Central differences, whose edges hold at the ends of steps, land a block where ARKODE does with its stabilized ones.
+#[test]
+fn central_differences_land_a_block() {
+    for inertia in [Inertia::Lumped, Inertia::Consistent] {
+        let scene = landing(inertia);
         let exact = run(&scene, Method::Arkode, 1e-9);
         // it has hit the pad
         assert!(exact.last().energy.strain > 1e-3 * exact.report().energy_scale);
@@ -214,6 +234,72 @@ fn central_differences_land_a_block() {
         assert!(report.energy_error < 3e-4 * report.energy_scale);
     }
 }
+
+/// IDA, to which the multipliers of edges are unknowns, lands a block where ARKODE does.
+#[test]
+fn differential_algebraic_forms_land_a_block() {
+    let scene = landing(Inertia::Consistent);
+    let exact = run(&scene, Method::Arkode, 1e-9);
+    for (method, tolerance, drift) in DAE_FORMS {
+        let motion = run(&scene, method, 1e-7);
+        let off = motion.last().u.iter().zip(&exact.last().u).map(|(a, b)| (a - b).abs());
+        let off = off.fold(0.0, f64::max);
+        let report = motion.report();
+        println!(
+            "{method}: {off:.2e} m, {} steps, {} rejected, drift {:.1e} m, balance {:.1e} of {:.1e}",
+            report.steps(),
+            report.phases[0].counts.convergence_failures,
+            report.constraint_drift,
+            report.energy_error,
+            report.energy_scale
+        );
+        assert!(off < tolerance, "{method}: {off} m off");
+        assert!(report.constraint_drift < drift, "{method}: {}", report.constraint_drift);
+        assert!(report.energy_error < 5e-5 * report.energy_scale);
+    }
+}
+const DAE_FORMS: [(Method, f64, f64); 2] =
+    [(Method::Ida, 1.2e-8, 1.5e-10), (Method::IdaIndexTwo, 1.2e-8, 2e-9)];
+
+/// What flies freely keeps its momenta: a soft bar with a rigid end, which turns and vibrates, in space and by the whole
+/// Jacobian, too.
+#[test]
+fn differential_algebraic_forms_keep_momenta() {
+    let soft = Material { density: 1000.0, young: 1e5, poisson: 0.3, viscosity: 5.0 };
+    let mesh = Mesh::cuboid([0.06, 0.01, 0.01], [7, 2, 2], SolidCells::Hexahedra).unwrap();
+    let cells = pliant::body::CellSelection::inside([0.0, 0.0, 0.0], [0.021, 0.01, 0.01]);
+    let body = Body::new(mesh, soft).region(cells, Material::rigid(4000.0)).build().unwrap();
+    let scene = Scene::new(body).spin([5.0, 10.0, 20.0]).phase(Phase::until(0.2));
+    let exact = run(&scene, Method::Rosenbrock, 1e-8);
+    let momenta = |motion: &Trajectory, sample: usize| {
+        let sample = &motion.samples()[sample];
+        let [along, about] = [motion.momentum(sample), motion.angular_momentum(sample)];
+        [along, about].concat()
+    };
+    for (method, tolerance, lost) in FREE {
+        let motion = run(&scene, method, 1e-7);
+        let off = motion.last().u.iter().zip(&exact.last().u).map(|(a, b)| (a - b).abs());
+        let off = off.fold(0.0, f64::max);
+        let (before, after) = (momenta(&motion, 0), momenta(&motion, motion.samples().len() - 1));
+        let change = before.iter().zip(&after).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        let report = motion.report();
+        println!(
+            "{method}: {off:.2e} m, momenta {change:.1e}, {} steps, balance {:.1e} of {:.1e}",
+            report.steps(),
+            report.energy_error,
+            report.energy_scale
+        );
+        // some five times what was measured, as in the other tables
+        assert!(off < tolerance, "{method}: {off} m off");
+        assert!(change < lost, "{method}: {before:?} {after:?}");
+        assert!(report.energy_error < 2e-6 * report.energy_scale);
+    }
+}
+const FREE: [(Method, f64, f64); 3] = [
+    (Method::Ida, 1.2e-8, 3e-11),
+    (Method::IdaKlu, 1e-7, 9e-11),
+    (Method::IdaIndexTwo, 1.2e-8, 1.5e-11),
+];
 
 /// A beam with an insert of its own material times 100 and 1000 comes near one with a rigid insert, in proportion to the
 /// flexibility of the insert.
@@ -246,10 +332,16 @@ fn a_held_side_carries_the_weight() {
         .phase(Phase::until(0.1).hold("left"));
     let weight = 9.8 * scene.body().mass();
     let still = scene.equilibrium(&Statics::default()).unwrap();
-    let [moving, stepped] =
-        [Method::CvodeBdf, Method::CentralDifference].map(|method| run(&scene, method, 1e-6));
+    let moving = [
+        Method::CvodeBdf,
+        Method::CentralDifference,
+        Method::Ida,
+        Method::IdaKlu,
+        Method::IdaIndexTwo,
+    ]
+    .map(|method| run(&scene, method, 1e-6));
     assert_eq!(scene.summary().unwrap()[0].constraints, 4);
-    for motion in [still.trajectory(), &moving, &stepped] {
+    for motion in std::iter::once(still.trajectory()).chain(&moving) {
         let forces = motion.constraint_forces(motion.last()).unwrap();
         let sum = |axis: usize| forces.iter().skip(axis).step_by(2).sum::<f64>();
         let moment: f64 = (0..15)
@@ -262,7 +354,7 @@ fn a_held_side_carries_the_weight() {
         assert!(sum(0).abs() < 1e-6 * weight && (sum(1) / weight - 1.0).abs() < 1e-6);
         assert!((moment / (0.05 * weight) - 1.0).abs() < 1e-4, "{moment}");
     }
-    for motion in [moving, stepped] {
+    for motion in moving {
         assert!(motion.last().u.iter().all(|u| u.abs() < 1e-9), "{:?}", motion.last().u);
     }
 }
@@ -272,8 +364,12 @@ fn a_held_side_carries_the_weight() {
 fn a_rigid_body_is_moved_as_a_whole() {
     let moved = |phase: Phase, place: &dyn Fn(&[f64]) -> [f64; 2]| {
         let scene = Scene::new(bar("bar", 0.0).build().unwrap()).phase(phase);
-        for method in [Method::CvodeBdf, Method::CentralDifference] {
+        let of_edges = [Method::CvodeBdf, Method::CentralDifference, Method::Ida];
+        for method in of_edges.into_iter().chain([Method::IdaKlu, Method::IdaIndexTwo]) {
             let motion = run(&scene, method, 1e-8);
+            let failures = motion.report().phases[0].counts.convergence_failures;
+            println!("{method}: {} steps, {failures} failures", motion.report().steps());
+            assert!(failures == 0, "{method}: {failures} failures");
             for (node, u) in motion.last().u.chunks_exact(2).enumerate() {
                 let x = motion.body().mesh().position(node);
                 let off = (0..2).map(|i| (x[i] + u[i] - place(x)[i]).abs()).fold(0.0, f64::max);
@@ -282,6 +378,8 @@ fn a_rigid_body_is_moved_as_a_whole() {
         }
     };
     moved(Phase::until(0.1).move_nodes("all", [0.3, -0.1]), &|x| [x[0] + 0.03, x[1] - 0.01]);
+    // three corners, which hold all of the frame
+    moved(Phase::until(0.1).move_nodes([1, 5, 15], [0.3, -0.1]), &|x| [x[0] + 0.03, x[1] - 0.01]);
     let pin = [0.05, 0.005];
     let turned = |x: &[f64]| {
         let (r, (sin, cos)) = ([x[0] - pin[0], x[1] - pin[1]], 0.4_f64.sin_cos());
@@ -338,8 +436,6 @@ fn impossible_rigid_bodies() {
     let free = || Phase::until(0.1);
     let cauchy = bar("bar", 0.0).strain(Strain::Cauchy).build().unwrap_err().to_string();
     assert!(cauchy.contains("measure strain by Green's"), "{cauchy}");
-    let told = error(scene().phase(free()), Method::Ida);
-    assert!(told.contains("method = ida") && told.contains("cvode-bdf"), "{told}");
     let torn = free().move_nodes("left", [-0.1, 0.0]).move_nodes("right", [0.1, 0.0]);
     let told = error(scene().phase(torn), Method::Auto);
     assert!(told.contains("apart") && told.contains("keeps its shape"), "{told}");

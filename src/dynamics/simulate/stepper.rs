@@ -171,18 +171,14 @@ pub(super) fn start(
     let longest = settings.max_step.unwrap_or(f64::INFINITY);
     match settings.method {
         Method::Ida | Method::IdaKlu | Method::IdaIndexTwo => {
-            let (rows, unknowns) = (system.rows().len(), system.unknowns());
-            tolerances.resize(unknowns + rows, atol.force);
             let index = match settings.method {
                 Method::IdaIndexTwo => Index::Two,
                 _ => Index::One,
             };
-            if index == Index::Two {
-                tolerances.resize(unknowns + 2 * rows, atol.momentum);
-            }
             let mut equations = DaeForm::new(system, index);
+            tolerances.extend(equations.tolerances([atol.force, atol.momentum]));
             let (y, yp) = equations.consistent(t, state).map_err(Failure::into_error)?;
-            let options = ida_options(settings, tolerances, &equations)?.max_step(longest);
+            let options = ida_options(settings, tolerances, &mut equations)?.max_step(longest);
             until(end, Ida::new(equations, t, &y, &yp, &options)?)
         }
         Method::CentralDifference => {
@@ -315,7 +311,7 @@ fn rosenbrock_options(
 fn ida_options(
     settings: &Settings,
     tolerances: Vec<f64>,
-    equations: &DaeForm,
+    equations: &mut DaeForm,
 ) -> Result<IdaOptions, Failed> {
     // What is not marked as differential stays out of the error test: energies and multipliers.
     let (motion, unknowns) = (2 * equations.system.dofs(), equations.system.unknowns());
@@ -340,12 +336,7 @@ fn ida_options(
     })
 }
 
-fn jacobian_pattern(equations: &DaeForm) -> Result<Pattern, Failed> {
-    let size = equations.size();
-    let (mut offsets, mut row_indices) = (vec![0; size + 1], Vec::new());
-    equations.visit_jacobian(1.0, |row, column, _| {
-        row_indices.push(row);
-        offsets[column + 1] = row_indices.len();
-    });
+fn jacobian_pattern(equations: &mut DaeForm) -> Result<Pattern, Failed> {
+    let (offsets, row_indices) = equations.sparse_pattern();
     Ok(Pattern::from_csc(&offsets, &row_indices)?)
 }

@@ -21,9 +21,14 @@
 //! ```
 //!
 //! In both, amounts of gas that flows come before the multipliers, with the residuals m' - q.
+//!
+//! Edges of rigid pieces (`edges.rs`) have multipliers behind those of the rows, which press with x at their nodes, and in the
+//! form of index 2 second ones behind eta. Their residuals are x.x'' + x'.x' + 2 alpha x.x' + alpha^2 g, or x.x' and g. The
+//! forces on dependent nodes are moved to their frames, W^T (M v' - f), and what these nodes have in place of both rows of theirs
+//! is where they are and how they move, u - W u and v - W v, so that nothing strays.
 
 use super::System;
-use crate::dynamics::state::{self, State, StateMut};
+use crate::dynamics::state::{State, StateMut};
 use crate::integrators::ode::{Dae, Failure};
 use crate::scene::constraint::Prescribed;
 
@@ -42,28 +47,42 @@ pub(crate) struct DaeForm {
     index: Index,
     /// u' - v
     mismatch: Vec<f64>,
-    /// For each degree of freedom, the constraint rows it is in and its coefficients there.
-    constraints_of: Vec<Vec<(usize, f64)>>,
+    /// Where each entry that [`visit_jacobian`](Self::visit_jacobian) visits is in the pattern; empty until that is asked for.
+    pub(super) slots: Vec<usize>,
 }
 
 impl DaeForm {
     pub(crate) fn new(system: System, index: Index) -> Self {
-        let mut constraints_of = vec![Vec::new(); system.dofs()];
-        for (k, row) in system.rows.iter().enumerate() {
-            row.terms
-                .iter()
-                .for_each(|&(dof, coefficient)| constraints_of[dof].push((k, coefficient)));
-        }
-        Self { mismatch: vec![0.0; system.dofs()], system, index, constraints_of }
+        Self { mismatch: vec![0.0; system.dofs()], system, index, slots: Vec::new() }
+    }
+
+    /// Number of multipliers of rows and edges.
+    fn constraints(&self) -> usize {
+        self.system.rows.len() + self.system.edges.list.len()
     }
 
     /// Number of unknowns.
     pub(crate) fn size(&self) -> usize {
         let multipliers = match self.index {
-            Index::One => self.system.rows.len(),
-            Index::Two => 2 * self.system.rows.len(),
+            Index::One => self.constraints(),
+            Index::Two => 2 * self.constraints(),
         };
         self.system.unknowns() + multipliers
+    }
+
+    /// Absolute tolerances of the multipliers, those of `force` (N) and, in the form of index 2, of `momentum` (N s): what
+    /// edges have is over their lengths.
+    pub(crate) fn tolerances(&self, [force, momentum]: [f64; 2]) -> Vec<f64> {
+        let System { rows, edges, .. } = &self.system;
+        let of = |least: f64| {
+            let of_edges =
+                edges.list.iter().map(move |edge| least / (2.0 * edge.half_square()).sqrt());
+            std::iter::repeat_n(least, rows.len()).chain(of_edges)
+        };
+        match self.index {
+            Index::One => of(force).collect(),
+            Index::Two => of(force).chain(of(momentum)).collect(),
+        }
     }
 
     /// y and y' with which the residual vanishes, from (u, v) and the energies at the beginning of `state`.
@@ -75,7 +94,8 @@ impl DaeForm {
         let State { u, v, others, .. } = State::of(state, self.system.dofs());
         self.system.evaluate(t, u, v, others)?;
         let (dissipated, supplied) = self.system.powers(v, &self.system.at.multipliers);
-        let mut y = [state, &self.system.at.multipliers].concat();
+        let of_edges = &self.system.edges.multipliers;
+        let mut y = [state, &self.system.at.multipliers, of_edges].concat();
         y.resize(self.size(), 0.0);
         let flowing = &self.system.at.flowing[0];
         let mut yp = [v, &self.system.at.acceleration, &[dissipated, supplied], flowing].concat();
@@ -83,46 +103,17 @@ impl DaeForm {
         Ok((y, yp))
     }
 
-    /// Visits all entries of dF/dy + cj dF/dy' of the form of index 1 as (row, column, value), column by column, rows
-    /// ascending; the same entries at every call.
-    pub(crate) fn visit_jacobian(&self, cj: f64, mut visit: impl FnMut(usize, usize, f64)) {
-        let System { matrices, rows, alpha, .. } = &self.system;
-        let (n, d) = (self.system.dofs(), matrices.dimension);
-        let (stiffness, damping) = self.system.tangents();
-        let (inertia, pattern) = (&matrices.inertia, matrices.pattern());
-        let lambda = state::length(n);
-        // entry (column, row) of the pattern; the one that is wanted is (row, column)
-        let block = |matrix: &[f64], entry: usize, row_axis: usize, column_axis: usize| {
-            matrix[(pattern.transposed(entry) * d + row_axis) * d + column_axis]
-        };
-        for dof in 0..n {
-            visit(dof, dof, cj);
-            for (entry, node) in pattern.row(dof / d) {
-                for axis in 0..d {
-                    let kt = block(&stiffness.values, entry, axis, dof % d);
-                    visit(n + node * d + axis, dof, kt);
-                }
-            }
-            let constraints = self.constraints_of[dof].iter();
-            constraints.for_each(|(k, c)| visit(lambda + k, dof, alpha * alpha * c));
-        }
-        for dof in 0..n {
-            visit(dof, n + dof, -1.0);
-            for (entry, node) in pattern.row(dof / d) {
-                for axis in 0..d {
-                    let mass = if axis == dof % d { cj * inertia.values[entry] } else { 0.0 };
-                    let damped = block(&damping.values, entry, axis, dof % d);
-                    visit(n + node * d + axis, n + dof, mass + damped);
-                }
-            }
-            let constraints = self.constraints_of[dof].iter();
-            constraints.for_each(|(k, c)| visit(lambda + k, n + dof, (cj + 2.0 * alpha) * c));
-        }
-        (2 * n..lambda).for_each(|energy| visit(energy, energy, cj));
-        for (k, row) in rows.iter().enumerate() {
-            row.terms.iter().for_each(|&(dof, c)| visit(n + dof, lambda + k, -c));
-            visit(lambda + k, lambda + k, 0.0);
-        }
+    /// Takes the state for that in which rigid pieces enter the Newton matrix.
+    fn linearize_edges(&mut self, y: &[f64], yp: &[f64]) {
+        let n = self.system.dofs();
+        let internal = self.system.internal();
+        let System { edges, linear_edges, rows, alpha, .. } = &mut self.system;
+        let State { u, v, others, .. } = State::of(y, n);
+        edges.move_to(*alpha, u, v);
+        edges.accelerate(State::of(yp, n).v);
+        let of_edges = &others[internal + rows.len()..][..edges.list.len()];
+        edges.multipliers.copy_from_slice(of_edges);
+        linear_edges.copy_from(edges);
     }
 }
 
@@ -137,17 +128,21 @@ impl Dae for DaeForm {
         let n = self.system.dofs();
         let (State { u, v, others, .. }, rates) = (State::of(y, n), State::of(yp, n));
         let (amounts, multipliers) = others.split_at(self.system.internal());
-        let (multipliers, eta) = multipliers.split_at(self.system.rows.len());
+        let (multipliers, slips) = multipliers.split_at(self.constraints());
+        let of_rows = &multipliers[..self.system.rows.len()];
         self.system.evaluate_forces(t, u, v, amounts)?;
         self.system.evaluate_rows(t, u, v)?;
-        let (dissipated, supplied) = self.system.powers(v, multipliers);
-        let System { matrices, rows, at, .. } = &mut self.system;
-        at.multipliers.copy_from_slice(multipliers);
+        self.system.edges.accelerate(rates.v);
+        let (dissipated, supplied) = self.system.powers(v, of_rows);
+        let System { matrices, rows, edges, at, .. } = &mut self.system;
+        at.multipliers.copy_from_slice(of_rows);
 
         let subtract_pull = |multipliers: &[f64], momentum: &mut [f64]| {
-            for (row, multiplier) in rows.iter().zip(multipliers) {
+            let (of_rows, of_edges) = multipliers.split_at(rows.len());
+            for (row, multiplier) in rows.iter().zip(of_rows) {
                 row.terms.iter().for_each(|&(dof, c)| momentum[dof] -= c * multiplier);
             }
+            edges.subtract_pull(of_edges, momentum);
         };
         let residual = StateMut::of(residual, n);
         let (kinematic, dynamic) = (residual.u, residual.v);
@@ -161,7 +156,15 @@ impl Dae for DaeForm {
             self.mismatch.copy_from_slice(kinematic);
             kinematic.fill(0.0);
             matrices.inertia.add_product(matrices.dimension, 1.0, &self.mismatch, kinematic);
-            subtract_pull(eta, kinematic);
+            subtract_pull(slips, kinematic);
+        }
+        if let Some(rigid) = &matrices.rigid {
+            if self.index == Index::Two {
+                rigid.gather(kinematic);
+            }
+            rigid.gather(dynamic);
+            rigid.replace_by_strays(u, kinematic);
+            rigid.replace_by_strays(v, dynamic);
         }
         *residual.dissipated = rates.dissipated - dissipated;
         *residual.supplied = rates.supplied - supplied;
@@ -170,7 +173,7 @@ impl Dae for DaeForm {
         {
             *residual = rate - flow;
         }
-        let (of_rates, of_positions) = of_rows.split_at_mut(rows.len());
+        let (of_rates, of_positions) = of_rows.split_at_mut(multipliers.len());
         for (k, row) in rows.iter().enumerate() {
             match self.index {
                 Index::One => of_rates[k] = row.apply(rates.v) - at.demands[k],
@@ -178,6 +181,17 @@ impl Dae for DaeForm {
                     let Prescribed { displacement, velocity, .. } = row.prescribed(t);
                     of_rates[k] = at.rates[k] - velocity;
                     of_positions[k] = row.apply(u) - displacement;
+                }
+            }
+        }
+        match self.index {
+            Index::One => {
+                let of_edges = of_rates[rows.len()..].iter_mut();
+                of_edges.zip(edges.imbalances()).for_each(|(residual, off)| *residual = off);
+            }
+            Index::Two => {
+                for (k, [off, rate]) in (rows.len()..).zip(edges.remainders(u, v)) {
+                    (of_positions[k], of_rates[k]) = (off, rate);
                 }
             }
         }
@@ -189,21 +203,23 @@ impl Dae for DaeForm {
         t: f64,
         cj: f64,
         y: &[f64],
-        _yp: &[f64],
+        yp: &[f64],
         values: &mut [f64],
     ) -> Result<(), Failure> {
+        self.linearize_edges(y, yp);
         let State { u, v, .. } = State::of(y, self.system.dofs());
         self.system.update_tangents(t, u, v, false);
-        let mut values = values.iter_mut();
+        let mut slots = self.slots.iter();
         self.visit_jacobian(cj, |_, _, value| {
-            if let Some(slot) = values.next() {
-                *slot = value;
+            if let Some(&slot) = slots.next() {
+                values[slot] += value;
             }
         });
         Ok(())
     }
 
-    fn newton_setup(&mut self, t: f64, cj: f64, y: &[f64], _yp: &[f64]) -> Result<(), Failure> {
+    fn newton_setup(&mut self, t: f64, cj: f64, y: &[f64], yp: &[f64]) -> Result<(), Failure> {
+        self.linearize_edges(y, yp);
         let State { u, v, others, .. } = State::of(y, self.system.dofs());
         self.system.update_tangents(t, u, v, false);
         self.system.add_flow_tangents(t, u, &others[..self.system.internal()]);
@@ -215,7 +231,7 @@ impl Dae for DaeForm {
         let gamma = self.system.gamma();
         let (amounts, of_rows) = r.others.split_at_mut(self.system.internal());
         amounts.iter_mut().for_each(|r| *r *= gamma);
-        let (r3, r4) = of_rows.split_at_mut(self.system.rows.len());
+        let (r3, r4) = of_rows.split_at_mut(self.constraints());
         match self.index {
             Index::One => self.system.solve_newton_index_one(r.u, r.v, amounts, r3),
             Index::Two => self.system.solve_newton_index_two(r.u, r.v, amounts, [r3, r4]),

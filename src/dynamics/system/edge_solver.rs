@@ -36,6 +36,8 @@ pub(super) struct EdgeSolver {
     pub(super) frames: Vec<usize>,
     pub(super) z: Mat<f64>,
     pub(super) of_rows: Mat<f64>,
+    /// The diagonal of X^-1 at the frames, as it is without the general rows.
+    pub(super) lightness: Vec<f64>,
     pieces: Vec<Piece>,
     rows: Vec<[f64; 3]>,
     columns: Vec<[f64; 3]>,
@@ -169,6 +171,7 @@ impl EdgeSolver {
             places: edges.iter().map(|edge| edge.nodes.map(place)).collect(),
             z: Mat::zeros(free, count),
             of_rows: Mat::zeros(general, count),
+            lightness: vec![0.0; count],
             frames,
             pieces: Vec::new(),
             rows: vec![[0.0; 3]; edges.len()],
@@ -257,12 +260,12 @@ impl EdgeSolver {
         sum
     }
 
-    /// Sets R and G.
-    pub(super) fn turn(&mut self, edges: &Edges, step: Option<[f64; 2]>) {
+    /// Sets G, and R: G itself, or with the factors of x, x' and x'' in a `step`.
+    pub(super) fn turn(&mut self, edges: &Edges, step: Option<[f64; 3]>) {
         self.arrival.weight = None;
         self.columns.copy_from_slice(&edges.arms);
         match step {
-            Some([gamma, alpha]) => edges.rows(gamma, alpha, &mut self.rows),
+            Some(factors) => edges.rows(factors, &mut self.rows),
             None => self.rows.copy_from_slice(&edges.arms),
         }
         let mut pieces = std::mem::take(&mut self.pieces);
@@ -305,11 +308,11 @@ impl EdgeSolver {
         is_kept
     }
 
-    /// The scale of the entry of an edge: that of its nodes by themselves, which are light.
+    /// The scale of the entry of an edge: that of its nodes by themselves, which are light, and without constraints, which may
+    /// hold all of a frame.
     fn largest(&self, edge: usize) -> f64 {
         let square = dot(&self.columns[edge], &self.columns[edge]);
-        let all = self.frames.iter().enumerate().map(|(column, &at)| self.z[(at, column)].abs());
-        square * all.fold(0.0, f64::max)
+        square * self.lightness.iter().fold(0.0_f64, |most, x| most.max(x.abs()))
     }
 
     /// Corrects the solution `x` = X^-1 f, and the multipliers `mu` of the general rows `numbers`, by the multipliers that

@@ -47,6 +47,12 @@ fn difference_at([a, b]: [usize; 2], dimension: usize, values: &[f64]) -> [f64; 
     std::array::from_fn(|axis| if axis < dimension { apart(axis) } else { 0.0 })
 }
 
+/// The factors of x, x' and x'' in R, in a step of the parameter `gamma` (s) with the stabilization rate `alpha` (1/s).
+pub(super) fn stabilized(gamma: f64, alpha: f64) -> [f64; 3] {
+    let decay = 1.0 + alpha * gamma;
+    [decay * decay, 2.0 * gamma * decay, gamma * gamma]
+}
+
 /// All edges in a state, with what the stabilization requires of them.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Edges {
@@ -145,10 +151,8 @@ impl Edges {
         }
     }
 
-    /// The rows R of a step of the parameter `gamma`.
-    pub(super) fn rows(&self, gamma: f64, alpha: f64, rows: &mut Vec<[f64; 3]>) {
-        let decay = 1.0 + alpha * gamma;
-        let factors = [decay * decay, 2.0 * gamma * decay, gamma * gamma];
+    /// The rows R of a step, with the `factors` of x, x' and x''.
+    pub(super) fn rows(&self, factors: [f64; 3], rows: &mut Vec<[f64; 3]>) {
         rows.clear();
         let all = self.arms.iter().zip(&self.rates).zip(&self.accelerations);
         rows.extend(all.map(|((x, rate), acceleration)| {
@@ -168,11 +172,65 @@ impl Edges {
     ) {
         for (k, Edge { nodes, .. }) in self.list.iter().enumerate() {
             let [su, sv] = [ru, rv].map(|r| difference_at(*nodes, self.dimension, r));
-            let (x, rate, acceleration) = (&self.arms[k], &self.rates[k], &self.accelerations[k]);
-            let lag =
-                dot(acceleration, &su) + 2.0 * alpha * dot(rate, &su) + alpha * alpha * dot(x, &su);
-            demands[k] = dot(x, &sv) + share * self.demands[k] - gamma * lag;
+            let lag = self.lag(k, alpha, &su);
+            demands[k] = dot(&self.arms[k], &sv) + share * self.demands[k] - gamma * lag;
         }
+    }
+
+    /// (x'' + 2 alpha x' + alpha^2 x).s of the edge `k`.
+    fn lag(&self, k: usize, alpha: f64, s: &[f64; 3]) -> f64 {
+        let (x, rate, acceleration) = (&self.arms[k], &self.rates[k], &self.accelerations[k]);
+        dot(acceleration, s) + 2.0 * alpha * dot(rate, s) + alpha * alpha * dot(x, s)
+    }
+
+    /// What a Newton step of the DAE form of index 1 is to make of R xv, given gamma times the residuals of displacements,
+    /// `ru`, and the residuals of the edges.
+    pub(super) fn index_one_demands(
+        &self,
+        [gamma, alpha]: [f64; 2],
+        ru: &[f64],
+        residuals: &[f64],
+        demands: &mut [f64],
+    ) {
+        for (k, edge) in self.list.iter().enumerate() {
+            let lag = self.lag(k, alpha, &edge.apart(ru, self.dimension));
+            demands[k] = gamma * (residuals[k] - lag);
+        }
+    }
+
+    /// x'.s of each edge.
+    pub(super) fn turned(&self, s: &[f64]) -> impl Iterator<Item = f64> {
+        let all = self.list.iter().zip(&self.rates);
+        all.map(move |(edge, rate)| dot(rate, &edge.apart(s, self.dimension)))
+    }
+
+    /// x.x'' less what the stabilization requires of it, edge by edge (m^2/s^2).
+    pub(super) fn imbalances(&self) -> impl Iterator<Item = f64> {
+        let all = self.arms.iter().zip(&self.accelerations).zip(&self.demands);
+        all.map(|((x, acceleration), demand)| dot(x, acceleration) - demand)
+    }
+
+    /// Subtracts G^T `multipliers` from nodal `forces`.
+    pub(super) fn subtract_pull(&self, multipliers: &[f64], forces: &mut [f64]) {
+        let d = self.dimension;
+        for ((Edge { nodes: [a, b], .. }, x), multiplier) in
+            self.list.iter().zip(&self.arms).zip(multipliers)
+        {
+            for (axis, x) in x.iter().enumerate().take(d) {
+                forces[a * d + axis] -= multiplier * x;
+                forces[b * d + axis] += multiplier * x;
+            }
+        }
+    }
+
+    /// The derivatives of what [`imbalances`](Self::imbalances) has of the edge `k` by the displacements, and by the
+    /// velocities in a step in which x'' changes by `cj` times as much as x'.
+    pub(super) fn slopes(&self, k: usize, alpha: f64, cj: f64) -> [[f64; 3]; 2] {
+        let (x, rate, acceleration) = (&self.arms[k], &self.rates[k], &self.accelerations[k]);
+        [
+            std::array::from_fn(|i| acceleration[i] + 2.0 * alpha * rate[i] + alpha * alpha * x[i]),
+            std::array::from_fn(|i| (cj + 2.0 * alpha) * x[i] + 2.0 * rate[i]),
+        ]
     }
 
     /// Adds -df/du of the forces of the multipliers to `stiffness`.

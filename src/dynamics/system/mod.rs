@@ -23,6 +23,7 @@
 mod at_rest;
 mod cholesky;
 mod dae;
+mod dae_jacobian;
 mod differences;
 mod edge_solver;
 mod edges;

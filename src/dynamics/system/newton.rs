@@ -22,6 +22,7 @@
 use std::sync::Arc;
 
 use super::System;
+use super::edges::stabilized;
 use super::newton_matrix::{ITERATED, NewtonMatrix, SOLVED_ONCE};
 use super::reduced::nodal_multipliers;
 use super::source::EntrySource;
@@ -137,7 +138,7 @@ impl System {
         });
         let factorized = factorized.or_else(|_| self.newton.solver.factorize_indefinite());
         if let (Ok(()), Some(solver)) = (&factorized, &mut self.newton.solver.edges) {
-            solver.turn(&self.linear_edges, Some([gamma, self.alpha]));
+            solver.turn(&self.linear_edges, Some(stabilized(gamma, self.alpha)));
         }
         if factorized.is_ok() {
             self.condense_flow();
@@ -219,7 +220,7 @@ impl System {
             let factors = [*gamma, self.alpha, share];
             edges.newton_demands(factors, [ru, rv], &mut solver.demands);
             if !is_fixed {
-                solver.turn(edges, Some([*gamma, self.alpha]));
+                solver.turn(edges, Some(stabilized(*gamma, self.alpha)));
             }
         }
         if let Some(rigid) = &self.matrices.rigid {
@@ -239,7 +240,8 @@ impl System {
     }
 
     /// The Newton system of the index-1 form, cj dF/dy' + dF/dy with cj = 1/gamma: the residuals
-    /// `r1`, `r2`, `r3` become xu, xv and the change of lambda. `amounts` are gamma times those of the amounts of gas.
+    /// `r1`, `r2`, `r3` become xu, xv and the changes of lambda and of the multipliers of edges. `amounts` are gamma times
+    /// those of the amounts of gas.
     pub(super) fn solve_newton_index_one(
         &mut self,
         r1: &mut [f64],
@@ -248,27 +250,38 @@ impl System {
         r3: &mut [f64],
     ) {
         let gamma = self.newton.gamma;
+        self.take_strays([r1, r2]);
         r1.iter_mut().for_each(|r| *r *= gamma);
-        let NewtonMatrix { stiffness, right, demands, flow, .. } = &mut self.newton;
+        self.matrices.rigid.iter().for_each(|rigid| rigid.carry(r1));
+        self.add_strays(r1);
+        let NewtonMatrix { stiffness, right, demands, flow, solver, .. } = &mut self.newton;
         right.iter_mut().zip(&*r2).for_each(|(f, r)| *f = gamma * r);
         stiffness.get().add_product(-gamma, r1, right);
         if let Some(flow) = flow {
             flow.add_residuals(gamma, r1, amounts, right);
         }
         demands.iter_mut().zip(&*r3).for_each(|(d, r)| *d = gamma * r);
+        if let Some(solver) = &mut solver.edges {
+            let of_edges = &r3[self.rows.len()..];
+            self.edges.index_one_demands([gamma, self.alpha], r1, of_edges, &mut solver.demands);
+            solver.turn(&self.edges, Some(stabilized(gamma, self.alpha)));
+        }
         self.stabilize_demands(r1);
         self.solve_newton(r1);
         r2.copy_from_slice(&self.newton.xv);
-        r3.iter_mut().zip(&self.newton.mu).for_each(|(x, mu)| *x = mu / gamma);
+        self.changes(r3);
     }
 
-    /// The Newton system of the form of index 2 likewise; `r4` becomes the change of eta. With xu = s + gamma
+    /// The Newton system of the form of index 2 likewise; `r4` becomes the changes of eta and zeta. With xu = s + gamma
     /// xv it splits into
     ///
     /// ```text
     /// M s - gamma A xeta = gamma r1,   A^T s = r4 - gamma r3
     /// (M + gamma D + gamma^2 Kt) xv - A mu = gamma r2 - gamma Kt s,   A^T xv = r3
     /// ```
+    ///
+    /// For edges G stands with A^T in the first row, G + gamma x' in the second, whose demands are r3 - x'.s; those of the
+    /// first lack gamma x'.xu, which is not known yet: iterations converge by the angle of a piece in a time gamma.
     pub(super) fn solve_newton_index_two(
         &mut self,
         r1: &mut [f64],
@@ -277,25 +290,73 @@ impl System {
         [r3, r4]: [&mut [f64]; 2],
     ) {
         let gamma = self.newton.gamma;
-        let NewtonMatrix { stiffness, right, demands, flow, .. } = &mut self.newton;
+        self.take_strays([r1, r2]);
+        let NewtonMatrix { right, demands, .. } = &mut self.newton;
         right.iter_mut().zip(&*r1).for_each(|(f, r)| *f = gamma * r);
         let of_slip = r4.iter().zip(&*r3).map(|(r4, r3)| r4 - gamma * r3);
-        demands.iter_mut().zip(of_slip).for_each(|(d, of_slip)| *d = of_slip);
+        demands.iter_mut().zip(of_slip.clone()).for_each(|(d, of_slip)| *d = of_slip);
+        let rows = self.rows.len();
+        if let Some(solver) = &mut self.inertia.edges {
+            let of_edges = solver.demands.iter_mut().zip(of_slip.skip(rows));
+            of_edges.for_each(|(d, of_slip)| *d = of_slip);
+            solver.turn(&self.edges, None);
+        }
         self.inertia.solve(&self.rows, right, demands, r1, r4);
         let Matrices { inertia, dimension, .. } = &*self.matrices;
-        nodal_multipliers(&self.rows, r4, |dof| {
+        nodal_multipliers(&self.rows, &mut r4[..rows], |dof| {
             inertia.row_product(*dimension, dof, r1) - right[dof]
         });
+        if let Some(solver) = &self.inertia.edges {
+            r4[rows..].copy_from_slice(&solver.multipliers);
+        }
+        self.add_strays(r1);
+        let NewtonMatrix { stiffness, right, demands, flow, solver, .. } = &mut self.newton;
         right.iter_mut().zip(&*r2).for_each(|(f, r)| *f = gamma * r);
         stiffness.get().add_product(-gamma, r1, right);
         if let Some(flow) = flow {
             flow.add_residuals(gamma, r1, amounts, right);
         }
-        demands.copy_from_slice(r3);
+        demands.copy_from_slice(&r3[..rows]);
+        if let Some(solver) = &mut solver.edges {
+            let turned = r3[rows..].iter().zip(self.edges.turned(r1));
+            let of_edges = solver.demands.iter_mut().zip(turned);
+            of_edges.for_each(|(d, (r3, turned))| *d = r3 - turned);
+            solver.turn(&self.edges, Some([1.0, gamma, 0.0]));
+        }
         self.solve_newton(r1);
         r2.copy_from_slice(&self.newton.xv);
-        r3.iter_mut().zip(&self.newton.mu).for_each(|(x, mu)| *x = mu / gamma);
+        self.changes(r3);
         r4.iter_mut().for_each(|x| *x /= gamma);
+    }
+
+    /// Takes from the residuals `r1` and `r2` of a DAE form by how much dependent nodes of rigid pieces have strayed, on
+    /// which no force acts.
+    fn take_strays(&mut self, [r1, r2]: [&mut [f64]; 2]) {
+        let Some(rigid) = &self.matrices.rigid else { return };
+        let (d, NewtonMatrix { stray, xv, gamma, .. }) =
+            (self.matrices.dimension, &mut self.newton);
+        for at in rigid.dependents().flat_map(|(node, _)| node * d..(node + 1) * d) {
+            stray[at] = std::mem::take(&mut r2[at]);
+            // xv, with what has strayed of it, adds to xu
+            xv[at] = std::mem::take(&mut r1[at]) - *gamma * stray[at];
+        }
+    }
+
+    /// Adds to `xu`, in which dependent nodes move as their frames do, what the last call of
+    /// [`take_strays`](Self::take_strays) has taken from `r1`.
+    fn add_strays(&self, xu: &mut [f64]) {
+        let (Some(rigid), d) = (&self.matrices.rigid, self.matrices.dimension) else { return };
+        for at in rigid.dependents().flat_map(|(node, _)| node * d..(node + 1) * d) {
+            xu[at] += self.newton.xv[at];
+        }
+    }
+
+    /// Writes the changes of lambda and of the multipliers of edges that the last solution has found.
+    fn changes(&self, changes: &mut [f64]) {
+        let NewtonMatrix { mu, solver, gamma, .. } = &self.newton;
+        let of_edges = solver.edges.iter().flat_map(|solver| &solver.multipliers);
+        let all = mu.iter().chain(of_edges);
+        changes.iter_mut().zip(all).for_each(|(x, mu)| *x = mu / gamma);
     }
 
     /// Changes of the powers dissipated and supplied along the last solution of the Newton system: exact

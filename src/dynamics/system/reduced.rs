@@ -236,6 +236,7 @@ impl Reduced {
             z.fill(0.0);
             z[edges.frames[column]] = 1.0;
             self.symmetric.solve(z);
+            edges.lightness[column] = z[edges.frames[column]];
             self.general.right.fill(0.0);
             self.general.correct(z);
             edges.of_rows.col_as_slice_mut(column).copy_from_slice(&self.general.right);

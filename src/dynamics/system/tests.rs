@@ -38,14 +38,14 @@ fn system() -> System {
     first_phase(&scene, &start).unwrap()
 }
 
-fn first_phase(scene: &Scene, start: &PhaseStart) -> Result<System, InputError> {
+pub(super) fn first_phase(scene: &Scene, start: &PhaseStart) -> Result<System, InputError> {
     let mut forces = scene.forces()?;
     let matrices = scene.matrices(&forces);
     scene.system(&matrices, &scene.phases()[0], forces.remove(0), start, ALPHA)
 }
 
 /// Numbers between -1 and 1 without a pattern (a linear congruential generator).
-fn noise(length: usize, seed: u64) -> Vec<f64> {
+pub(super) fn noise(length: usize, seed: u64) -> Vec<f64> {
     let mut x = seed;
     let mut next = || {
         x = x.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
@@ -63,7 +63,7 @@ fn state(system: &System) -> Vec<f64> {
 
 /// df/dy of a function, column by column, by central differences: exact up to round-off where
 /// `f` is linear or quadratic, as all forces here are away from d = 0.
-fn derivative(y: &[f64], step: f64, mut f: impl FnMut(&[f64]) -> Vec<f64>) -> Mat<f64> {
+pub(super) fn derivative(y: &[f64], step: f64, mut f: impl FnMut(&[f64]) -> Vec<f64>) -> Mat<f64> {
     let columns: Vec<Vec<f64>> = (0..y.len())
         .map(|j| {
             let mut at = |shift: f64| {
@@ -78,13 +78,13 @@ fn derivative(y: &[f64], step: f64, mut f: impl FnMut(&[f64]) -> Vec<f64>) -> Ma
     Mat::from_fn(columns[0].len(), y.len(), |i, j| columns[j][i])
 }
 
-fn solve(matrix: &Mat<f64>, right: &[f64]) -> Vec<f64> {
+pub(super) fn solve(matrix: &Mat<f64>, right: &[f64]) -> Vec<f64> {
     let solution = matrix.partial_piv_lu().solve(&Mat::from_fn(right.len(), 1, |i, _| right[i]));
     solution.col_as_slice(0).to_vec()
 }
 
 /// Differences relative to the size of the block they are in.
-fn assert_close(found: &[f64], expected: &[f64], tolerance: f64, blocks: &[usize]) {
+pub(super) fn assert_close(found: &[f64], expected: &[f64], tolerance: f64, blocks: &[usize]) {
     let mut start = 0;
     for &end in blocks {
         let scale = expected[start..end].iter().fold(0.0_f64, |s, x| s.max(x.abs()));
@@ -211,7 +211,11 @@ fn structured_solve_is_that_of_the_index_one_jacobian() {
 }
 
 /// dF/dy and dF/dy' at t = 0.1.
-fn residual_derivatives(equations: &mut DaeForm, y: &[f64], yp: &[f64]) -> [Mat<f64>; 2] {
+pub(super) fn residual_derivatives(
+    equations: &mut DaeForm,
+    y: &[f64],
+    yp: &[f64],
+) -> [Mat<f64>; 2] {
     let mut residual = |y: &[f64], yp: &[f64]| {
         let mut residual = vec![0.0; y.len()];
         equations.residual(0.1, y, yp, &mut residual).unwrap();

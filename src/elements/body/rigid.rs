@@ -140,9 +140,25 @@ impl RigidPieces {
     /// Writes by how much `x`, displacements or velocities, differ from those of rigid pieces that move as their frames
     /// do.
     pub(crate) fn stray(&self, x: &[f64], stray: &mut [f64]) {
-        stray.copy_from_slice(x);
-        self.carry(stray);
-        stray.iter_mut().zip(x).for_each(|(stray, x)| *stray = x - *stray);
+        stray.fill(0.0);
+        self.replace_by_strays(x, stray);
+    }
+
+    /// Writes by how much the dependent nodes differ in `x`, as [`stray`](Self::stray), and leaves `values` of others as
+    /// they are.
+    pub(crate) fn replace_by_strays(&self, x: &[f64], values: &mut [f64]) {
+        let d = self.dimension;
+        for (node, shares) in self.dependents() {
+            for axis in 0..d {
+                let carried: f64 = shares.iter().map(|(a, w)| w * x[a * d + axis]).sum();
+                values[node * d + axis] = x[node * d + axis] - carried;
+            }
+        }
+    }
+
+    /// The nodes that move with others: each with those of its frame and their shares.
+    pub(crate) fn dependents(&self) -> impl Iterator<Item = (usize, &[(usize, f64)])> {
+        self.dependent.iter().map(|Dependent { node, shares }| (*node, &shares[..]))
     }
 
     /// How far `x`, displacements or velocities, are from those of rigid pieces that move as their frames do: the

@@ -82,13 +82,6 @@ impl Method {
     /// Why it has no equations for what is in a scene, if it has none.
     pub(crate) fn why_not(self, scene: &Scene) -> Option<&'static str> {
         match self {
-            Self::Ida | Self::IdaKlu | Self::IdaIndexTwo
-                if scene.body().rigid_pieces().is_some() =>
-            {
-                Some(
-                    "the edges of rigid pieces are constraints for cvode-bdf, cvode-adams, arkode, rosenbrock, rk and central-difference: take one of them, or auto",
-                )
-            }
             Self::IdaKlu if !scene.touches().is_empty() => Some(
                 "its Jacobian has a fixed pattern, and bodies that touch couple ever other nodes: take ida",
             ),
@@ -178,6 +171,8 @@ impl FromStr for Method {
 }
 
 /// How contact events are handled: nodes touch an obstacle or leave it, and with friction stick or slip.
+///
+/// Those of a [`Touch`](crate::Touch) are always stepped over: its barrier has no kink.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum ContactEvents {
     /// Locates them where that is faster: [`Method::Auto`] does so while it uses explicit Runge-Kutta, and

@@ -1,0 +1,110 @@
+//! The sparse Jacobian of the differential-algebraic form of index 1, for linear solvers that take the whole of it.
+
+#[cfg(test)]
+mod tests;
+
+use super::System;
+use super::dae::DaeForm;
+use crate::dynamics::state;
+
+impl DaeForm {
+    /// The pattern of the Jacobian: where its columns begin, and the rows of their entries, ascending. What
+    /// [`visit_jacobian`](Self::visit_jacobian) visits has its slots from now on.
+    pub(crate) fn sparse_pattern(&mut self) -> (Vec<usize>, Vec<usize>) {
+        let mut visited = Vec::new();
+        self.visit_jacobian(1.0, |row, column, _| visited.push((column, row)));
+        let mut entries = visited.clone();
+        entries.sort_unstable();
+        entries.dedup();
+        let slot = |entry: &(usize, usize)| entries.partition_point(|other| other < entry);
+        self.slots = visited.iter().map(slot).collect();
+        let mut offsets = vec![0; self.size() + 1];
+        entries.iter().for_each(|(column, _)| offsets[column + 1] += 1);
+        for column in 0..self.size() {
+            offsets[column + 1] += offsets[column];
+        }
+        (offsets, entries.into_iter().map(|(_, row)| row).collect())
+    }
+
+    /// Visits all parts of the entries of dF/dy + cj dF/dy' as (row, column, value); the same ones at every call. An entry
+    /// is the sum of its parts.
+    pub(super) fn visit_jacobian(&self, cj: f64, mut visit: impl FnMut(usize, usize, f64)) {
+        let System { matrices, rows, edges, alpha, .. } = &self.system;
+        let (n, d) = (self.system.dofs(), matrices.dimension);
+        let (stiffness, damping) = self.system.tangents();
+        let (inertia, pattern) = (&matrices.inertia, matrices.pattern());
+        let lambda = state::length(n);
+        let of_edges = lambda + rows.len();
+        // entry (column, row) of the pattern; the one that is wanted is (row, column)
+        let block = |matrix: &[f64], entry: usize, row_axis: usize, column_axis: usize| {
+            matrix[(pattern.transposed(entry) * d + row_axis) * d + column_axis]
+        };
+        let rigid = matrices.rigid.as_deref();
+        let is_dependent = |node: usize| rigid.is_some_and(|rigid| rigid.is_dependent(node));
+        // the nodes at which a force on a node acts
+        let bearers = |node: usize| {
+            let itself = rigid.is_none().then_some((node, 1.0));
+            itself.into_iter().chain(rigid.into_iter().flat_map(move |rigid| rigid.shares(node)))
+        };
+        for dof in 0..n {
+            visit(dof, dof, if is_dependent(dof / d) { 1.0 } else { cj });
+            for (entry, node) in pattern.row(dof / d) {
+                for axis in 0..d {
+                    let kt = block(&stiffness.values, entry, axis, dof % d);
+                    for (bearer, share) in bearers(node) {
+                        visit(n + bearer * d + axis, dof, share * kt);
+                    }
+                }
+            }
+        }
+        for dof in 0..n {
+            let strays = is_dependent(dof / d);
+            if strays {
+                visit(n + dof, n + dof, 1.0);
+            } else {
+                visit(dof, n + dof, -1.0);
+            }
+            for (entry, node) in pattern.row(dof / d) {
+                for axis in 0..d {
+                    let mass = if axis == dof % d { cj * inertia.values[entry] } else { 0.0 };
+                    let damped = block(&damping.values, entry, axis, dof % d);
+                    for (bearer, share) in bearers(node) {
+                        visit(n + bearer * d + axis, n + dof, share * (mass + damped));
+                    }
+                }
+            }
+        }
+        (2 * n..lambda).for_each(|energy| visit(energy, energy, cj));
+        for (k, row) in rows.iter().enumerate() {
+            for &(dof, c) in &row.terms {
+                visit(lambda + k, dof, alpha * alpha * c);
+                visit(lambda + k, n + dof, (cj + 2.0 * alpha) * c);
+                for (bearer, share) in bearers(dof / d) {
+                    visit(n + bearer * d + dof % d, lambda + k, -share * c);
+                }
+            }
+            visit(lambda + k, lambda + k, 0.0);
+        }
+        for (node, shares) in rigid.iter().flat_map(|rigid| rigid.dependents()) {
+            for &(of_frame, share) in shares {
+                for axis in 0..d {
+                    let [row, column] = [node, of_frame].map(|node| node * d + axis);
+                    visit(row, column, -share);
+                    visit(n + row, n + column, -share);
+                }
+            }
+        }
+        for (k, edge) in edges.list.iter().enumerate() {
+            let [by_place, by_rate] = edges.slopes(k, *alpha, cj);
+            for (node, sign) in edge.nodes.into_iter().zip([1.0, -1.0]) {
+                for axis in 0..d {
+                    let dof = node * d + axis;
+                    visit(of_edges + k, dof, sign * by_place[axis]);
+                    visit(of_edges + k, n + dof, sign * by_rate[axis]);
+                    visit(n + dof, of_edges + k, -sign * edges.arms[k][axis]);
+                }
+            }
+            visit(of_edges + k, of_edges + k, 0.0);
+        }
+    }
+}
