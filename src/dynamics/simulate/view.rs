@@ -8,10 +8,10 @@ use crate::dynamics::state::State;
 use crate::elements::body::{Body, CellField, Contraction, Grown, MagnetizedPoints, Strands};
 use crate::elements::force::{Force, Forces, NodalForces};
 use crate::elements::mesh::Selection;
-use crate::scene::forces::{
-    ChamberForce, Contact, Content, Filled, NodalContact, Poured, Signal, SpringGauge,
-};
-use crate::scene::timeline::{ContactReader, LoadKind, Phase, Scene};
+use crate::scene::forces::{ChamberForce, Contact, Content, Filled, Poured, Signal, SpringGauge};
+use crate::scene::timeline::{LoadKind, Phase, Scene};
+#[cfg(feature = "play")]
+use crate::scene::{forces::NodalContact, timeline::ContactReader};
 
 /// The motion of a [`Simulation`](super::Simulation) or at a [sample](crate::Sampling::sensor), without copies.
 pub struct View<'a> {
@@ -332,6 +332,7 @@ impl<'a> View<'a> {
     }
 
     /// What contact does at each node; `None` where it is undefined.
+    #[cfg(feature = "play")]
     pub(crate) fn nodal_contacts(&self, reader: &ContactReader) -> Option<Vec<NodalContact>> {
         let obstacles = self.scene.contacts(self.phase).ok()?;
         reader.read(&obstacles, self.time, [self.state.u, self.state.v]).ok()

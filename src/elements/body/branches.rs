@@ -119,13 +119,14 @@ impl<'a, const N: usize, const M: usize, const D: usize> Site<'a, N, M, D> {
 }
 
 impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<N, M, D, Q> {
-    /// Visits all branches at all points, with the strains that `strains` returns for each.
+    /// Visits all branches at all points, with the strains that `strains` returns for each. The loop is compiled once for
+    /// a kind of cell, not for each use of it.
     fn visit<const K: usize>(
         &self,
         regions: &Regions,
         u: &[f64],
-        strains: impl Fn(&Site<'_, N, M, D>) -> [Components; K],
-        mut work: impl FnMut(&Site<'_, N, M, D>, [Stretch; K]),
+        strains: &dyn Fn(&Site<'_, N, M, D>) -> [Components; K],
+        work: &mut dyn FnMut(&Site<'_, N, M, D>, [Stretch; K]),
     ) {
         let u = u.as_chunks::<D>().0;
         let mut of_cells = 0;
@@ -207,30 +208,25 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<
         stiffness: &mut Rows<'_, D>,
     ) {
         let (mut swelling, mut volume, mut points) = ([[[0.0; D]; N]; COEFFICIENTS], 0.0, 0);
-        self.visit(
-            regions,
-            u,
-            |_| [],
-            |Site { branch, point, at, cell, .. }, []| {
-                let of_point = at.swelling(&point.gradients, point.volume);
-                let modes = self.modes_of(*cell, points);
-                let values = std::iter::once(1.0).chain(modes.into_iter().flatten());
-                for (value, sums) in values.zip(&mut swelling) {
-                    let sums = sums.as_flattened_mut().iter_mut();
-                    sums.zip(of_point.as_flattened()).for_each(|(sum, part)| *sum += value * part);
+        self.visit(regions, u, &|_| [], &mut |Site { branch, point, at, cell, .. }, []| {
+            let of_point = at.swelling(&point.gradients, point.volume);
+            let modes = self.modes_of(*cell, points);
+            let values = std::iter::once(1.0).chain(modes.into_iter().flatten());
+            for (value, sums) in values.zip(&mut swelling) {
+                let sums = sums.as_flattened_mut().iter_mut();
+                sums.zip(of_point.as_flattened()).for_each(|(sum, part)| *sum += value * part);
+            }
+            (volume, points) = (volume + point.volume, points + 1);
+            if points == Q {
+                // flow above a yield stress keeps the volume: the part is that without strain
+                let part = branch.step::<M>(gamma, &Components::default()).part;
+                let share = part * branch.lambda() / volume;
+                for swelling in swelling.into_iter().take(self.coefficients()) {
+                    add_blocks(&self.entries[*cell], stiffness, &OfVolume { swelling, share });
                 }
-                (volume, points) = (volume + point.volume, points + 1);
-                if points == Q {
-                    // flow above a yield stress keeps the volume: the part is that without strain
-                    let part = branch.step::<M>(gamma, &Components::default()).part;
-                    let share = part * branch.lambda() / volume;
-                    for swelling in swelling.into_iter().take(self.coefficients()) {
-                        add_blocks(&self.entries[*cell], stiffness, &OfVolume { swelling, share });
-                    }
-                    (swelling, volume, points) = ([[[0.0; D]; N]; COEFFICIENTS], 0.0, 0);
-                }
-            },
-        );
+                (swelling, volume, points) = ([[[0.0; D]; N]; COEFFICIENTS], 0.0, 0);
+            }
+        });
     }
 }
 
@@ -258,7 +254,7 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Branched
 
     fn relax(&self, regions: &Regions, u: &[f64], internal: &mut [f64]) {
         let strain = |site: &Site<'_, N, M, D>| [site.at.strain()];
-        self.visit(regions, u, strain, |site, [Stretch { strain, .. }]| {
+        self.visit(regions, u, &strain, &mut |site, [Stretch { strain, .. }]| {
             site.own_mut(internal).iter_mut().zip(strain).for_each(|(g, e)| *g = e);
         });
     }
@@ -273,7 +269,7 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Branched
     ) -> f64 {
         let mut power = 0.0;
         let apart = |site: &Site<'_, N, M, D>| [site.apart(internal)];
-        self.visit(regions, u, apart, |site, [apart]| {
+        self.visit(regions, u, &apart, &mut |site, [apart]| {
             let (branch, volume) = (site.branch, site.point.volume);
             self.pull(site, &branch.stress(&site.at, &apart, volume), -1.0, forces);
             power += volume * branch.loss::<M>(&apart) / branch.time;
@@ -286,7 +282,7 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Branched
     fn branch_energy(&self, regions: &Regions, u: &[f64], internal: &[f64]) -> f64 {
         let mut twice = 0.0;
         let apart = |site: &Site<'_, N, M, D>| [site.apart(internal)];
-        self.visit(regions, u, apart, |site, [apart]| {
+        self.visit(regions, u, &apart, &mut |site, [apart]| {
             twice += site.point.volume * site.branch.twice_energy::<M>(&apart);
         });
         0.5 * twice
@@ -304,7 +300,7 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Branched
             [] => [Components::default()],
             internal => [site.apart(internal)],
         };
-        self.visit(regions, u, apart, |site, [apart]| {
+        self.visit(regions, u, &apart, &mut |site, [apart]| {
             let Site { branch, point, at, cell, .. } = site;
             let step = branch.step::<M>(gamma, &apart.strain);
             let lambda = if self.is_projected() { 0.0 } else { branch.lambda() };
@@ -331,7 +327,7 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Branched
             let passed = step.passed::<M>(&site.own(residuals));
             [passed, passed.map(|passed| step.part * passed)]
         };
-        self.visit(regions, u, passed, |site, [mut passed, whole]| {
+        self.visit(regions, u, &passed, &mut |site, [mut passed, whole]| {
             let part = site.step(gamma, internal).part;
             if self.is_projected() {
                 passed.trace = whole.trace / part;
@@ -355,19 +351,14 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Branched
             let of_nodes = relative(&self.nodes[site.cell], xu);
             site.at.change(&gradient(1, &of_nodes, &site.point.gradients))
         };
-        self.visit(
-            regions,
-            u,
-            |site| [change(site)],
-            |site, [Stretch { strain, .. }]| {
-                let step = site.step(gamma, internal);
-                let [passed, left] = [site.own(x), strain].map(|strain| step.passed::<M>(&strain));
-                for (v, x) in site.own_mut(x).iter_mut().enumerate() {
-                    let flows = step.part * (left[v] - strain[v]);
-                    *x = step.part * passed[v] + (1.0 - step.part) * strain[v] - flows;
-                }
-            },
-        );
+        self.visit(regions, u, &|site| [change(site)], &mut |site, [Stretch { strain, .. }]| {
+            let step = site.step(gamma, internal);
+            let [passed, left] = [site.own(x), strain].map(|strain| step.passed::<M>(&strain));
+            for (v, x) in site.own_mut(x).iter_mut().enumerate() {
+                let flows = step.part * (left[v] - strain[v]);
+                *x = step.part * passed[v] + (1.0 - step.part) * strain[v] - flows;
+            }
+        });
         let mut power = 0.0;
         let apart = |site: &Site<'_, N, M, D>| {
             // with a yield stress the rates do not determine E - G: below it they are 0
@@ -378,7 +369,7 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Branched
             let (strain, x) = (change(site), site.own(x));
             [before, std::array::from_fn(|v| before[v] + strain[v] - x[v])]
         };
-        self.visit(regions, u, apart, |site, [before, after]| {
+        self.visit(regions, u, &apart, &mut |site, [before, after]| {
             let change = site.branch.loss_change::<M>(&before, &after);
             power += site.point.volume * change / site.branch.time;
         });

@@ -120,7 +120,7 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Reinforced
 impl<const N: usize, const D: usize, const Q: usize> Strings for ElementsOf<N, 1, D, Q> {
     fn add_forces(&self, law: &Fibre, u: &[f64], forces: &mut [f64]) -> Result<(), Failure> {
         let u = u.as_chunks::<D>().0;
-        self.share_out(forces, |run, first, forces| {
+        self.shares.each_force(forces, &|run, first, forces| {
             self.add(run.clone(), [u], first, forces, ElasticStress { law, is_projected: false })
         })
     }
@@ -157,7 +157,7 @@ impl<const N: usize, const D: usize, const Q: usize> Strings for ElementsOf<N, 1
         forces: &mut [f64],
     ) -> Result<(), Failure> {
         let fields = [u.as_chunks::<D>().0, v.as_chunks::<D>().0];
-        self.share_out(forces, |run, first, forces| {
+        self.shares.each_force(forces, &|run, first, forces| {
             self.add(run.clone(), fields, first, forces, contraction)
         })
     }

@@ -14,7 +14,6 @@
 use std::ops::Range;
 
 use pulp::{Arch, Simd, WithSimd};
-use rayon::prelude::*;
 
 use super::contiguous;
 use super::elements::{ElementsOf, gradients};
@@ -81,7 +80,7 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Forces
     ) -> Result<(), Failure> {
         let (u, v) = (u.as_chunks::<D>().0, v.as_chunks::<D>().0);
         if terms.elastic {
-            self.share_out(&mut forces.conservative, |run, first, forces| {
+            self.shares.each_force(&mut forces.conservative, &|run, first, forces| {
                 regions.runs(run).try_for_each(|(cells, laws)| {
                     let is_projected = self.is_projected();
                     match &laws.elastic {
@@ -103,7 +102,7 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Forces
             })?;
         }
         if terms.viscous {
-            self.share_out(&mut forces.dissipative, |run, first, forces| {
+            self.shares.each_force(&mut forces.dissipative, &|run, first, forces| {
                 regions.runs(run).try_for_each(|(cells, laws)| {
                     let pull =
                         ViscousStress { law: &laws.viscous, is_projected: self.is_projected() };
@@ -124,7 +123,7 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Forces
     ) -> Result<(), Failure> {
         let add = |x: &[f64], hooke: fn(&Laws) -> Hooke, forces: &mut [f64]| {
             let x = x.as_chunks::<D>().0;
-            self.share_out(forces, |run, first, forces| {
+            self.shares.each_force(forces, &|run, first, forces| {
                 regions.runs(run).try_for_each(|(cells, laws)| {
                     let law: Linear = Hookean(hooke(laws));
                     self.add(
@@ -148,25 +147,6 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Forces
 }
 
 impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<N, M, D, Q> {
-    /// Calls `add` for all runs of cells of each share of the nodes, with the first of these nodes and the
-    /// forces on them; on threads if there are several shares.
-    pub(super) fn share_out(
-        &self,
-        forces: &mut [f64],
-        add: impl Fn(&Range<usize>, usize, &mut [[f64; D]]) -> Result<(), Failure> + Sync,
-    ) -> Result<(), Failure> {
-        let add_share = |number: usize, forces: &mut [f64]| {
-            let (first, forces) = (number * self.shares.nodes, forces.as_chunks_mut::<D>().0);
-            self.shares.cells[number].iter().try_for_each(|run| add(run, first, forces))
-        };
-        if self.shares.cells.len() == 1 {
-            return add_share(0, forces);
-        }
-        let shares = forces.par_chunks_mut(D * self.shares.nodes).enumerate();
-        let failed = shares.find_map_first(|(number, forces)| add_share(number, forces).err());
-        failed.map_or(Ok(()), Err)
-    }
-
     /// Adds the forces of `cells` to those on the nodes from `first` on, by the `fields` that `pull`
     /// requires: in the order of cells, however many the machine computes at once.
     pub(super) fn add<const K: usize>(

@@ -7,13 +7,25 @@
 
 use std::ops::Range;
 
+use rayon::prelude::*;
+
 use crate::base::sparse::Rows;
+use crate::integrators::ode::Failure;
 
 /// Number of nodes from which threads pay off: some 100 microseconds of work.
 const LARGE: usize = 4000;
 /// Numbers of shares that are tried, and the part of the cells that may be computed twice.
 const NUMBERS: [usize; 4] = [64, 32, 16, 8];
 const TWICE: f64 = 0.25;
+
+/// Adds the forces of a run of cells to those on the nodes from one on: called once for each run of a share, so that the
+/// code around it, that of threads above all, is compiled once and not for each kind of cell.
+pub(super) type AddForces<'f, const D: usize> =
+    dyn Fn(&Range<usize>, usize, &mut [[f64; D]]) -> Result<(), Failure> + Sync + 'f;
+
+/// Adds the tangents of a share, told by its number, to the rows of a stiffness and of a damping.
+pub(super) type AddTangents<'f, const D: usize> =
+    dyn Fn(usize, Rows<'_, D>, Rows<'_, D>) + Sync + 'f;
 
 /// The shares of a mesh: one, if it is small or its nodes are numbered in no good order.
 #[derive(Debug)]
@@ -40,15 +52,34 @@ impl Partition {
         NUMBERS.into_iter().map(divided).find(few_twice).unwrap_or(whole)
     }
 
-    /// Calls `work` with each share's number and its rows of two matrices, on threads if there are
+    /// Calls `add` for all runs of cells of each share of the nodes, with the first of these nodes and the
+    /// forces on them; on threads if there are several shares.
+    pub(super) fn each_force<const D: usize>(
+        &self,
+        forces: &mut [f64],
+        add: &AddForces<'_, D>,
+    ) -> Result<(), Failure> {
+        let add_share = |number: usize, forces: &mut [f64]| {
+            let (first, forces) = (number * self.nodes, forces.as_chunks_mut::<D>().0);
+            self.cells[number].iter().try_for_each(|run| add(run, first, forces))
+        };
+        if self.cells.len() == 1 {
+            return add_share(0, forces);
+        }
+        let shares = forces.par_chunks_mut(D * self.nodes).enumerate();
+        let failed = shares.find_map_first(|(number, forces)| add_share(number, forces).err());
+        failed.map_or(Ok(()), Err)
+    }
+
+    /// Calls `add` with each share's number and its rows of two matrices, on threads if there are
     /// several.
     pub(super) fn each<const D: usize>(
         &self,
         stiffness: Rows<'_, D>,
         damping: Rows<'_, D>,
-        work: &(impl Fn(usize, Rows<'_, D>, Rows<'_, D>) + Sync),
+        add: &AddTangents<'_, D>,
     ) {
-        self.each_of(0..self.cells.len(), stiffness, damping, work);
+        self.each_of(0..self.cells.len(), stiffness, damping, add);
     }
 
     fn each_of<const D: usize>(
@@ -56,17 +87,17 @@ impl Partition {
         shares: Range<usize>,
         stiffness: Rows<'_, D>,
         damping: Rows<'_, D>,
-        work: &(impl Fn(usize, Rows<'_, D>, Rows<'_, D>) + Sync),
+        add: &AddTangents<'_, D>,
     ) {
         if shares.len() == 1 {
-            return work(shares.start, stiffness, damping);
+            return add(shares.start, stiffness, damping);
         }
         let middle = shares.start + shares.len() / 2;
         let (low, high) = stiffness.split_at(middle * self.nodes);
         let (low_damping, high_damping) = damping.split_at(middle * self.nodes);
         rayon::join(
-            || self.each_of(shares.start..middle, low, low_damping, work),
-            || self.each_of(middle..shares.end, high, high_damping, work),
+            || self.each_of(shares.start..middle, low, low_damping, add),
+            || self.each_of(middle..shares.end, high, high_damping, add),
         );
     }
 

@@ -103,6 +103,7 @@ impl Quantity {
     }
 
     /// Whether it needs the fields of contact.
+    #[cfg(feature = "play")]
     pub(super) fn is_of_contact(&self) -> bool {
         matches!(self.of, Of::Contact(_) | Of::ContactStatus)
     }
