@@ -58,6 +58,7 @@ mod start;
 mod sticking;
 mod surfaces;
 mod threads;
+mod ticks;
 mod touching;
 mod tunnelling;
 mod turning;

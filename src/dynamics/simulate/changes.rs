@@ -1,6 +1,6 @@
 //! Changes of a run between two steps: other forces or constraints, another state, or an earlier one.
 
-use std::mem::take;
+use std::mem::{replace, take};
 use std::sync::Arc;
 
 use super::auto::Plan;
@@ -32,7 +32,7 @@ pub(super) enum Change {
     Constraints,
 }
 
-/// Number of commands in a phase after each of which a multistep method is restarted.
+/// Number of commands in a phase that are taken for single ones.
 const NEW_STARTS: usize = 3;
 
 impl Run {
@@ -167,11 +167,15 @@ impl Run {
         Ok(())
     }
 
-    /// Leaves a multistep method that was chosen automatically, if commands keep coming.
+    /// Leaves a method that was chosen automatically for another, if commands keep coming.
     fn expect_commands(&mut self) -> Result<(), Error> {
         self.phase_run.commands += 1;
+        let period = self.time - replace(&mut self.phase_run.commanded, self.time);
+        // several commands at one time are one
+        let part = self.next_step().filter(|_| period > 0.0).map_or(1.0, |step| step / period);
         if self.phase_run.commands > NEW_STARTS
-            && let Some(plan) = self.phase_run.plan.under_commands()
+            && let Some(system) = self.system()
+            && let Some(plan) = self.phase_run.plan.under_commands(system, part)
         {
             let system = self.rest()?;
             self.phase_run.follow(plan);

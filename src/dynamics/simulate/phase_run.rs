@@ -22,6 +22,8 @@ pub(super) struct PhaseRun {
     pub(super) ended: Option<Ending>,
     /// Changes of the forces by commands.
     pub(super) commands: usize,
+    /// Time (s) of the last one.
+    pub(super) commanded: f64,
     /// First step of the next integrator (s), if it is known.
     pub(super) first_step: Option<f64>,
     pub(super) mean_steps: MeanSteps,
@@ -94,6 +96,7 @@ impl PhaseRun {
             stops: stops.into_iter().rev().collect(),
             ended: Some(Ending::Reached),
             commands: 0,
+            commanded: f64::NAN,
             first_step: None,
             mean_steps: MeanSteps::default(),
             counts: Counts::default(),

@@ -211,7 +211,8 @@ fn ode<S: Lead>(
             S::lead(end, Arkode::new(equations, t, y, &options)?)
         }
         Method::Rosenbrock => {
-            let options = rosenbrock_options(settings, tolerances, is_linear).max_step(longest);
+            let options = rosenbrock_options(settings, tolerances, equations.system(), is_linear);
+            let options = options.max_step(longest);
             let options = first.into_iter().fold(options, rosenbrock::Options::initial_step);
             S::lead(end, Rosenbrock::new(equations, t, y, &options)?)
         }
@@ -298,14 +299,24 @@ fn arkode_options(
     })
 }
 
+/// Steps, one after each command, that one factorization serves at most: where bodies change their shape it is the error that
+/// asks for another.
+const STEPS_UNDER_COMMANDS: u32 = 20;
+
 fn rosenbrock_options(
     settings: &Settings,
     tolerances: Vec<f64>,
+    system: &System,
     is_linear: bool,
 ) -> rosenbrock::Options {
     let options = rosenbrock::Options::new(settings.rtol, tolerances).newton(LinearSolver::Custom);
     let options = settings.max_order.into_iter().fold(options, rosenbrock::Options::order);
-    if is_linear { options.linear() } else { options }
+    match settings.max_order {
+        _ if is_linear => options.linear(),
+        // edges turn with their pieces
+        Some(3) if !system.has_edges() => options.max_steps_between_jacobians(STEPS_UNDER_COMMANDS),
+        _ => options,
+    }
 }
 
 fn ida_options(

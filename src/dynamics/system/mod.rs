@@ -248,6 +248,11 @@ impl System {
         self.matrices.dofs()
     }
 
+    /// Dimension of space.
+    pub(crate) fn dimension(&self) -> usize {
+        self.matrices.dimension
+    }
+
     /// Replaces the forces, if the Newton matrix has room for their tangents; all else is unchanged. Returns
     /// whether it has.
     pub(crate) fn change_forces(&mut self, forces: Forces) -> bool {

@@ -23,6 +23,7 @@ pub struct Options {
     pub(super) solver: LinearSolver,
     pub(super) trusts_jacobian: bool,
     pub(super) linear: bool,
+    pub(super) steps_between_jacobians: u32,
 }
 
 impl Default for Options {
@@ -40,7 +41,14 @@ impl Options {
     pub fn new(rtol: f64, atol: impl Into<AbsoluteTolerance>) -> Self {
         let forward = ExplicitOptions::new(rtol, atol);
         let solver = LinearSolver::Dense(Jacobian::DifferenceQuotients);
-        Self { forward, order: 4, solver, trusts_jacobian: false, linear: false }
+        Self {
+            forward,
+            order: 4,
+            solver,
+            trusts_jacobian: false,
+            linear: false,
+            steps_between_jacobians: 1,
+        }
     }
 
     /// Order of the method: 4 (RODASP2, the default) or 3 (ROS34PW2, which has its order with any matrix).
@@ -71,6 +79,14 @@ impl Options {
         self
     }
 
+    /// Steps, at most, that one factorization serves after [`resume`](super::Integrator::resume), as long as the step size stays
+    /// the same: for control loops, whose commands come at equal times. Default: 1. A step that fails with an old matrix is
+    /// repeated with a new one. Above 1 the order has to be 3: that method has its order with any matrix.
+    pub fn max_steps_between_jacobians(mut self, steps: u32) -> Self {
+        self.steps_between_jacobians = steps;
+        self
+    }
+
     /// Size of the first step. Default: estimated.
     pub fn initial_step(mut self, h: f64) -> Self {
         self.forward = self.forward.initial_step(h);
@@ -91,7 +107,13 @@ impl Options {
 
     /// The method of that order.
     pub(super) fn tableau(&self) -> Result<&'static Tableau, InputError> {
+        let steps = self.steps_between_jacobians;
+        let refused = |help| Err(InputError::new("max_steps_between_jacobians", steps, help));
         match self.order {
+            _ if steps == 0 => refused("give 1 or more"),
+            4 if steps > 1 => {
+                refused("order 4 takes the Jacobian of each step: give 1, or order 3")
+            }
             3 => Ok(&ROS34PW2),
             4 => Ok(&RODASP2),
             order => Err(InputError::new("order", order, "there are methods of order 3 and 4")),

@@ -36,7 +36,23 @@ pub struct LinearlyImplicit {
     pub(super) known: Known,
     /// gamma h of the present factorization.
     pub(super) factored: Option<f64>,
+    /// How long that serves.
+    pub(super) service: Service,
     controller: Controller,
+}
+
+/// Part of the tolerance above which the error of a step asks for a new matrix.
+const TOO_OLD: f64 = 0.2;
+
+/// The steps of a factorization.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Service {
+    /// Steps that it may serve.
+    pub(super) most: u32,
+    /// Steps that it has served.
+    pub(super) steps: u32,
+    /// Whether the integration was resumed, and the step size has stayed the same since.
+    pub(super) is_resumed: bool,
 }
 
 /// What has been evaluated at (t, y), in addition to f.
@@ -76,19 +92,37 @@ impl<S: Ode> Rosenbrock<S> {
             bends: [zeros(), zeros()],
             known: Known::default(),
             factored: None,
+            service: Service { most: options.steps_between_jacobians, ..Service::default() },
             controller: Controller::new(tableau.order, options.linear),
         };
         Self::start(system, t, y, &options.forward, (tableau.name, tableau.order, method))
     }
 }
 
+impl LinearlyImplicit {
+    /// Drops a matrix of another step, with which this one has failed; `false` if it is of this step.
+    fn drops_old(&mut self) -> bool {
+        let is_old = self.service.steps > 0 && self.factored.is_some() && !self.is_linear;
+        if is_old {
+            self.factored = None;
+        }
+        is_old
+    }
+}
+
 impl StepMethod for LinearlyImplicit {
     fn restart(&mut self) {
+        self.factored = None;
         self.controller = Controller::new(self.tableau.order, self.is_linear);
     }
 
+    /// A matrix that may serve several steps may serve after a change of the state and of the forces, too.
     fn forget(&mut self) {
-        (self.known, self.factored) = (Known::default(), None);
+        self.known = Known::default();
+        self.service.is_resumed = true;
+        if self.service.most == 1 || self.is_linear {
+            self.factored = None;
+        }
     }
 
     /// Root mean square with the error weights, without the integrals.
@@ -108,15 +142,19 @@ impl StepMethod for LinearlyImplicit {
 
     fn accept<S: Ode>(&mut self, _: &March<S>, _: f64, h: f64, error: f64) -> f64 {
         self.known = Known::default();
+        self.service.steps += 1;
+        if error > TOO_OLD {
+            self.service.steps = self.service.most;
+        }
         self.controller.accept(h, error)
     }
 
     fn reject(&mut self, h: f64, error: f64) -> f64 {
-        self.controller.reject(h, error)
+        if self.drops_old() { h } else { self.controller.reject(h, error) }
     }
 
     fn refuse(&mut self, h: f64) -> f64 {
-        self.controller.refuse(h)
+        if self.drops_old() { h } else { self.controller.refuse(h) }
     }
 
     fn interpolate<S: Ode>(&self, march: &March<S>, t: f64, y: &mut [f64]) {

@@ -1,11 +1,14 @@
 //! The inside of a step: matrix, stages, error, the new solution.
 
 use super::matrix::Matrix;
-use super::solver::{LinearlyImplicit, interpolate};
+use super::solver::{LinearlyImplicit, Service, interpolate};
 use crate::integrators::common::{
     Callback, Cause, Error, March, Point, StepMethod, Wanted, not_finite,
 };
 use crate::integrators::ode::{Ode, call};
+
+/// Relative difference of step sizes that one factorization may serve: that by which a step stretches to end at a time.
+const SAME_SIZE: f64 = 0.01;
 
 impl LinearlyImplicit {
     /// [`StepMethod::try_step`].
@@ -50,6 +53,9 @@ impl LinearlyImplicit {
         if self.factored == Some(gamma) && (is_kept || self.known.jacobian) {
             return Ok(None);
         }
+        if self.still_serves(gamma) {
+            return Ok(None);
+        }
         let (t, reuse) = (march.t, is_kept || self.known.jacobian);
         let March { system, y, slope, statistics, .. } = march;
         statistics.linear_setups += 1;
@@ -79,8 +85,17 @@ impl LinearlyImplicit {
             return Err(march.stopped(cause, h).into());
         }
         self.known.jacobian = true;
+        self.service.steps = 0;
         self.factored = is_regular.then_some(gamma);
         Ok((!is_regular).then_some(Cause::LinearSolver))
+    }
+
+    /// Whether the factors of another step are good enough for one of this `gamma`.
+    fn still_serves(&mut self, gamma: f64) -> bool {
+        let Service { most, steps, .. } = self.service;
+        let is_same = |factored: f64| (factored - gamma).abs() <= SAME_SIZE * gamma;
+        self.service.is_resumed &= self.factored.is_some_and(is_same);
+        self.service.is_resumed && (1..most).contains(&steps)
     }
 
     /// What is wrong with the Jacobian that the system has just supplied, if its check is due.

@@ -32,7 +32,8 @@ pub enum Method {
     /// need not resolve. `max_order` is their order; default: 4.
     Arkode,
     /// The internal Rosenbrock methods of order 3 and 4, implicit without an iteration, L-stable: for
-    /// vibrations that steps need not resolve. `max_order` is their order; default: 4.
+    /// vibrations that steps need not resolve, and for commands at equal times. `max_order` is their order; default: 4; with 3
+    /// one factorization serves many commands.
     Rosenbrock,
     /// The internal explicit Runge-Kutta method, Dormand-Prince 5(4): for motion that is not stiff,
     /// and as a check of the others.

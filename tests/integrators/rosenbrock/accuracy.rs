@@ -48,6 +48,32 @@ fn a_matrix_that_is_not_the_jacobian() {
     }
 }
 
+/// One matrix for a tenth of the time, in steps that end at given times, where each time the integration is resumed: the
+/// order stays.
+#[test]
+fn one_matrix_for_many_steps() {
+    let run = |steps: u32| {
+        let h = 2.0 / f64::from(steps);
+        let options = fixed_step(3, h).max_steps_between_jacobians(steps / 10);
+        let mut solver = Rosenbrock::new(logistic, 0.0, &[0.1], &options).unwrap();
+        let mut error: f64 = 0.0;
+        for step in 1..=steps {
+            let t = f64::from(step) * h;
+            solver.set_stop_time(Some(t)).unwrap();
+            solver.solve_to(t).unwrap();
+            let y = solver.y().to_vec();
+            error = error.max((y[0] - logistic_exact(t)).abs());
+            assert!(solver.resume(t, &y).unwrap());
+        }
+        let counts = solver.statistics();
+        assert_eq!((counts.steps, counts.linear_setups), (steps.into(), 10));
+        error
+    };
+    let (coarse, fine) = (run(100), run(200));
+    let found = measured(coarse, fine);
+    assert!((found - 3.0).abs() < 0.25, "{coarse:e} {fine:e} {found}");
+}
+
 /// y' = -lambda (y - cos t) - sin t with y = cos t (A. Prothero, A. Robinson, Math. Comp. 28 (1974) 145-162): at h lambda far above
 /// 1 the order is reduced.
 #[test]

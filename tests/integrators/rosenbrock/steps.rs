@@ -83,6 +83,42 @@ fn constant_jacobians_are_kept() {
     }
 }
 
+/// y' = -k (y - 1), where k is set from outside.
+struct Pull {
+    k: f64,
+}
+
+impl Ode for Pull {
+    fn rhs(&mut self, _t: f64, y: &[f64], ydot: &mut [f64]) -> Rhs {
+        ydot[0] = -self.k * (y[0] - 1.0);
+        Ok(())
+    }
+}
+
+/// A matrix that serves many steps is renewed where it is no longer good enough: when k becomes 1e5 times as large, the step with
+/// the old one fails, and is repeated at once.
+#[test]
+fn old_matrices_are_renewed_where_steps_fail() {
+    let options =
+        Options::new(1e-4, 1e-6).order(3).initial_step(0.1).max_steps_between_jacobians(50);
+    let mut solver = Rosenbrock::new(Pull { k: 0.1 }, 0.0, &[0.0], &options).unwrap();
+    for tick in 1..=20 {
+        if tick == 11 {
+            let counts = solver.statistics();
+            assert_eq!((counts.linear_setups, counts.error_test_failures), (1, 0), "{counts:?}");
+            solver.system_mut().k = 1e4;
+        }
+        let (start, y) = (solver.t(), solver.y().to_vec());
+        assert!(solver.resume(start, &y).unwrap());
+        let t = 0.1 * f64::from(tick);
+        solver.set_stop_time(Some(t)).unwrap();
+        solver.solve_to(t).unwrap();
+    }
+    let counts = solver.statistics();
+    assert!(counts.error_test_failures > 0 && counts.linear_setups > 1, "{counts:?}");
+    assert!((solver.y()[0] - 1.0).abs() < 1e-5, "{}", solver.y()[0]);
+}
+
 /// A step takes one factorization, an evaluation for each stage but the first, one for df/dt and one at its end, which is the first
 /// of the next step. One that is repeated has its Jacobian and df/dt already, and no end.
 #[test]
