@@ -268,3 +268,47 @@ fn files_have_several_bodies() {
         assert!(error.contains(told) && error.contains("arm.toml"), "{told}: {error}");
     }
 }
+
+/// On finer meshes a scene of several bodies is the one that is built on the meshes halved, bit by bit: what is rigid keeps its mesh,
+/// nodes by number stay where they are, a held edge gets the new nodes between them, ties are found anew.
+#[test]
+fn several_bodies_on_finer_meshes() {
+    let scene = |is_halved: bool| {
+        let soft = |name, x: f64| {
+            let mesh = Mesh::rectangle([0.1, 0.05], [5, 3], Cells::Rectangles).unwrap();
+            let mesh = mesh.translated(&[x, 0.0]).unwrap();
+            let mesh = if is_halved { mesh.halved() } else { mesh };
+            Body::new(mesh, SOFT).thickness(0.01).strain(Strain::Green).named(name)
+        };
+        let plate = Mesh::rectangle([0.1, 0.05], [2, 2], Cells::Rectangles).unwrap();
+        let plate = Body::new(plate.translated(&[0.1, 0.0]).unwrap(), Material::rigid(500.0));
+        let plate = plate.thickness(0.01).strain(Strain::Green).named("plate");
+        let bodies = [soft("left", 0.0), plate, soft("right", 0.2)];
+        let body = Body::join(bodies.map(|body| body.build().unwrap())).unwrap();
+        // nodes of the coarse meshes, row by row
+        let first: Vec<usize> = body.parts().map(|part| part.nodes.start + 1).collect();
+        let phase = match is_halved {
+            true => Phase::until(0.05).hold("left/left"),
+            false => Phase::until(0.05).hold([first[0], first[0] + 5, first[0] + 10]),
+        };
+        Scene::new(body)
+            .tie("left/right", "plate")
+            .tie("right/left", "plate")
+            .spring(Spring::between([first[0] + 12], [first[2] + 2]).stiffness(5.0))
+            .gravity([0.0, -9.8])
+            .phase(phase.load([first[2] + 14], [0.02, 0.03]))
+    };
+    let settings = Settings { rtol: 1e-4, ..Settings::default() };
+    let finer = run(&scene(false).halved().unwrap(), &settings);
+    let built = run(&scene(true), &settings);
+    assert_eq!(finer.body().parts().nth(1).unwrap().nodes.len(), 4);
+    assert!(finer.last().u.iter().any(|u| u.abs() > 1e-3));
+    assert_eq!(finer.last().u, built.last().u);
+
+    let weighted = block([0.0, 0.0], [0.1, 0.1], [2, 2], Cells::Triangles);
+    let weighted = weighted.point_mass("weight", [0.2, 0.2], 0.1).named("weighted");
+    let other = block([0.3, 0.0], [0.1, 0.1], [2, 2], Cells::Triangles);
+    let both = Body::join([weighted, other].map(|body| body.build().unwrap())).unwrap();
+    let refused = Scene::new(both).phase(Phase::until(0.1)).halved().unwrap_err().to_string();
+    assert!(refused.contains("point mass") && refused.contains("weight"), "{refused}");
+}

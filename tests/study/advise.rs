@@ -243,3 +243,33 @@ fn numbers_that_are_none_are_said_to_be_none() -> Outcome {
     }
     Ok(())
 }
+
+/// Advice for two bodies: all but their meshes is tried, and that is said; what it sets are keys of each table.
+#[test]
+fn several_bodies() -> Outcome {
+    let soft = Material { density: 1000.0, young: 2e4, poisson: 0.3, viscosity: 20.0 };
+    let block = |name, x, material| {
+        let mesh =
+            Mesh::rectangle([0.1, 0.1], [4, 4], Cells::Rectangles)?.translated(&[x, 0.02])?;
+        Body::new(mesh, material).thickness(0.01).strain(Strain::Green).named(name).build()
+    };
+    let bodies = [block("left", 0.0, soft)?, block("right", 0.3, soft)?];
+    let floor = Obstacle::half_plane([0.0, 0.0], [0.0, 1.0]).stiffness(50.0).damping(0.5);
+    let scene = Scene::new(Body::join(bodies)?)
+        .obstacle(floor.named("floor"))
+        .gravity([0.0, -9.8])
+        .phase(Phase::until(0.1));
+    let advice = advise(&scene, 0.05)?;
+    println!("{advice}");
+    assert!(
+        advice.not_tried.iter().any(|what| what.starts_with("finer meshes, as there are several"))
+    );
+    let enough = advice.enough.as_ref().unwrap();
+    assert!(enough.error.unwrap() < 0.05);
+    let lumped =
+        advice.candidates.iter().find(|one| one.choice.inertia == Inertia::Lumped).unwrap();
+    for key in ["body.1.inertia=lumped", "body.2.inertia=lumped"] {
+        assert!(lumped.set.iter().any(|set| set == key), "{:?}", lumped.set);
+    }
+    Ok(())
+}

@@ -8,13 +8,15 @@ use super::with_element;
 use crate::base::input::InputError;
 use crate::elements::mesh::{CellKind, Mesh};
 
-/// A mesh made finer: nodes keep their numbers, and new ones follow.
+mod joined;
+
+/// A mesh made finer: nodes keep their numbers, and new ones follow. Of several bodies both do in each.
 pub(crate) struct Finer {
     pub(crate) mesh: Mesh,
     /// Where the cells begin into which each cell is divided, and their number at the end.
     first_child: Vec<usize>,
-    /// Number of nodes of the first mesh, and the place of every node in it.
-    old: usize,
+    /// The numbers of the nodes of the first mesh, and the place of every node in it.
+    olds: Vec<usize>,
     places: Vec<Place>,
     /// Node numbers by their places.
     numbers: BTreeMap<Corners, usize>,
@@ -152,7 +154,7 @@ impl Finer {
         let mut finer = Self {
             mesh: mesh.clone(),
             first_child: vec![0],
-            old,
+            olds: (0..old).collect(),
             places: Vec::new(),
             numbers: BTreeMap::new(),
             is_boundary: Vec::new(),
@@ -167,13 +169,8 @@ impl Finer {
             }
         }
         // nodes of no cell keep their places
-        let alone = |(node, place): (usize, Option<Place>)| {
-            place.unwrap_or_else(|| Place {
-                corners: vec![(node, WHOLE as u32)],
-                shares: vec![(node, 1.0)],
-            })
-        };
-        finer.places = places.into_iter().enumerate().map(alone).collect();
+        let placed = |(node, place): (_, Option<_>)| place.unwrap_or_else(|| Place::at(node));
+        finer.places = places.into_iter().enumerate().map(placed).collect();
         let mut connectivity = Vec::new();
         for (number, cell) in mesh.cells().enumerate() {
             let children = children(number);
@@ -224,17 +221,20 @@ impl Finer {
     /// Nodes (from 0) of the first mesh in the given order, with the new ones between them. If all given
     /// nodes are on the boundary, only new ones on the boundary are added.
     pub(crate) fn extended(&self, nodes: &[usize]) -> Vec<usize> {
-        let mut is_given = vec![false; self.old];
+        let mut is_given = vec![false; self.olds.len()];
         nodes.iter().for_each(|&node| is_given[node] = true);
-        let all_outside = nodes.iter().all(|&node| self.is_boundary[node]);
-        let mut is_new: Vec<bool> = self.places.iter().map(|_| false).collect();
-        for (number, place) in self.places.iter().enumerate().skip(self.old) {
+        let all_outside = nodes.iter().all(|&node| self.is_boundary[self.olds[node]]);
+        let between = |(place, &is_outside): (&Place, &bool)| {
             let is_between = place.corners.iter().all(|(corner, _)| is_given[*corner]);
-            is_new[number] = is_between && (self.is_boundary[number] || !all_outside);
-        }
+            is_between && (is_outside || !all_outside)
+        };
+        let mut is_new: Vec<bool> =
+            self.places.iter().zip(&self.is_boundary).map(between).collect();
+        self.olds.iter().for_each(|&node| is_new[node] = false);
         let mut run = Vec::with_capacity(2 * nodes.len());
         let next = nodes.iter().skip(1).chain(nodes.first());
         for (&node, &next) in nodes.iter().zip(next) {
+            let [node, next] = [node, next].map(|node| self.olds[node]);
             run.push(node);
             let middle = middle(&self.places[node].corners, &self.places[next].corners);
             if let Some(&number) = self.numbers.get(&middle).filter(|number| is_new[**number]) {
@@ -242,36 +242,38 @@ impl Finer {
                 is_new[number] = false;
             }
         }
-        run.extend((self.old..is_new.len()).filter(|&number| is_new[number]));
+        run.extend((0..is_new.len()).filter(|&number| is_new[number]));
         run
     }
 
     /// The new number (from 0) of a node of the first mesh or of a point mass; point masses come last.
-    #[cfg(feature = "study")]
     pub(crate) fn number(&self, node: usize) -> usize {
-        if node < self.old { node } else { node + self.places.len() - self.old }
+        let point = || node + self.places.len() - self.olds.len();
+        self.olds.get(node).copied().unwrap_or_else(point)
     }
 
-    /// The nodes (from 0) that the first mesh did not have.
+    /// The nodes (from 0) that the first mesh, that of a single body, did not have.
     #[cfg(feature = "study")]
     pub(crate) fn new_nodes(&self) -> std::ops::Range<usize> {
-        self.old..self.places.len()
+        self.olds.len()..self.places.len()
     }
 
     /// Interpolates a vector field from the nodes of the first mesh to all nodes. The vectors of point masses
     /// stay last.
     pub(crate) fn interpolated(&self, field: &[f64], dimension: usize) -> Vec<f64> {
-        let (field, points) = field.split_at((self.old * dimension).min(field.len()));
-        let mut values = field.to_vec();
-        for place in &self.places[self.old..] {
-            let part = |axis| {
-                place
-                    .shares
-                    .iter()
-                    .map(|(node, share)| share * field[node * dimension + axis])
-                    .sum::<f64>()
-            };
-            values.extend((0..dimension).map(part));
+        let (field, points) = field.split_at((self.olds.len() * dimension).min(field.len()));
+        let mut values = vec![0.0; self.places.len() * dimension];
+        let mut is_old = vec![false; self.places.len()];
+        for (&node, own) in self.olds.iter().zip(field.chunks_exact(dimension)) {
+            values[node * dimension..][..dimension].copy_from_slice(own);
+            is_old[node] = true;
+        }
+        let nodes = values.chunks_exact_mut(dimension).zip(&self.places).zip(&is_old);
+        for ((values, place), _) in nodes.filter(|(_, is_old)| !**is_old) {
+            for (axis, value) in values.iter_mut().enumerate() {
+                let part = |(node, share): &(usize, f64)| share * field[node * dimension + axis];
+                *value = place.shares.iter().map(part).sum();
+            }
         }
         values.extend_from_slice(points);
         values
@@ -279,6 +281,11 @@ impl Finer {
 }
 
 impl Place {
+    /// That of a node of the first mesh.
+    fn at(node: usize) -> Self {
+        Self { corners: vec![(node, WHOLE as u32)], shares: vec![(node, 1.0)] }
+    }
+
     /// The place of the point `at` of the reference cell, in a `cell` of this `kind`.
     fn new(kind: CellKind, cell: &[usize], at: &Point) -> Self {
         let parts = shape_functions(linear(kind), at);

@@ -1,5 +1,6 @@
 //! The builder of a body: options, checks, assembly.
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use super::assembled::Body;
@@ -98,17 +99,43 @@ impl BodyBuilder {
         &self.bodies[0].0
     }
 
-    /// The same single body on a finer mesh.
+    /// The same bodies on finer meshes, which `make` makes of each mesh and the numbers of its cells among those of all; also the
+    /// mesh of all before, without point masses, and how that becomes finer. What is rigid keeps its mesh beside others.
     ///
     /// # Errors
-    /// Regions of cells that the mesh does not have.
-    pub(crate) fn on(mut self, finer: &Finer) -> Result<Self, InputError> {
-        let (mesh, recipe) = &mut self.bodies[0];
-        for (cells, _) in &mut recipe.regions {
-            *cells = cells.on(mesh, finer)?;
+    /// Regions of cells that the mesh does not have; several bodies with point masses; as `make`.
+    pub(crate) fn finer(
+        mut self,
+        make: impl Fn(&Mesh, Range<usize>) -> Result<Finer, InputError>,
+    ) -> Result<(Self, Mesh, Finer), InputError> {
+        let (mut meshes, mut finer, mut first) = (Vec::new(), Vec::new(), 0);
+        let is_single = self.bodies.len() == 1;
+        for (mesh, recipe) in &mut self.bodies {
+            let cells = first..first + mesh.cell_count();
+            first = cells.end;
+            if let (false, Some((name, ..))) = (is_single, recipe.points.first()) {
+                let help =
+                    "on finer meshes of several bodies it would have another number: leave it out";
+                return Err(InputError::new("point mass", format!("\"{name}\""), help));
+            }
+            let own = match recipe.material.is_rigid && !is_single {
+                true => Finer::none(mesh),
+                false => make(mesh, cells)?,
+            };
+            for (cells, _) in &mut recipe.regions {
+                *cells = cells.on(mesh, &own)?;
+            }
+            meshes.push(std::mem::replace(mesh, own.mesh.clone()));
+            finer.push(own);
         }
-        *mesh = finer.mesh.clone();
-        Ok(self)
+        if is_single {
+            return Ok((self, meshes.remove(0), finer.remove(0)));
+        }
+        let names: Vec<&str> =
+            self.bodies.iter().filter_map(|(_, recipe)| recipe.name.as_deref()).collect();
+        let coarse = Mesh::join(names.iter().copied().zip(&meshes));
+        let finer = Finer::join(names.iter().copied().zip(finer).collect());
+        Ok((self, coarse, finer))
     }
 
     /// The same without viscosity, in its regions, too.

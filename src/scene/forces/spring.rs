@@ -98,12 +98,20 @@ pub(crate) enum Joint {
 }
 
 impl Spring {
-    /// The nodes that it is joined to.
-    pub(crate) fn selections(&self) -> impl Iterator<Item = &Selection> {
-        self.path.iter().filter_map(|guide| match &guide.0 {
-            Place::Nodes(nodes) => Some(nodes),
-            Place::Point(_) => None,
-        })
+    /// The same spring with the nodes that `change` makes of those that it is joined to.
+    ///
+    /// # Errors
+    /// As `change`.
+    pub(crate) fn with_nodes(
+        mut self,
+        change: impl Fn(&Selection) -> Result<Selection, InputError>,
+    ) -> Result<Self, InputError> {
+        for Guide(place) in &mut self.path {
+            if let Place::Nodes(nodes) = place {
+                *nodes = change(nodes)?;
+            }
+        }
+        Ok(self)
     }
 
     /// A spring from the node that `first` selects to the one that `second` selects.

@@ -1,12 +1,13 @@
 //! The same scene on a finer mesh, or with another body.
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use super::load::LoadKind;
 use super::{Phase, Scene};
 use crate::base::input::{InputError, check_memory};
 use crate::elements::basis::Finer;
-use crate::elements::body::{Body, BodyBuilder};
+use crate::elements::body::{Body, BodyBuilder, Part};
 use crate::elements::mesh::{BYTES_PER_NODE, Mesh, Selection};
 use crate::scene::constraint::Constrained;
 use crate::scene::forces::{Obstacle, Touch};
@@ -46,13 +47,14 @@ impl Scene {
     /// Node sets, and lists of nodes that are held or moved together, are extended by the new nodes between
     /// them. What acts on single nodes stays there: forces on each node, springs, sensors. Stiffness and
     /// damping of obstacles per node are divided by the factor by which the number of nodes on the boundary
-    /// grows. A [reduced model](Self::reduced) is left behind.
+    /// grows. A [reduced model](Self::reduced) is left behind. Of several bodies each gets a finer mesh, but those that are rigid;
+    /// numbers of nodes become those that the same nodes have then.
     ///
     /// # Errors
-    /// Point masses that are named by number, forces that are not of this crate: which nodes they mean is
-    /// unknown.
+    /// Point masses that are named by number, or beside several bodies; forces that are not of this crate: which nodes they mean
+    /// is unknown.
     pub fn halved(&self) -> Result<Self, InputError> {
-        Ok(self.on(|mesh| Ok(mesh.divided()))?.0)
+        Ok(self.on(|mesh, _| Ok(mesh.divided()))?.0)
     }
 
     /// The same scene with quadratic cells: see [`Mesh::quadratic`], and [`halved`](Self::halved) for what
@@ -61,7 +63,7 @@ impl Scene {
     /// # Errors
     /// As [`halved`](Self::halved); cells of a kind that has no quadratic one.
     pub fn quadratic(&self) -> Result<Self, InputError> {
-        Ok(self.on(Mesh::elevated)?.0)
+        Ok(self.on(|mesh, _| mesh.elevated())?.0)
     }
 
     /// The same scene with these cells of the mesh (counted from 0) divided, and cells around them as far as it takes: see
@@ -72,7 +74,19 @@ impl Scene {
     /// # Errors
     /// As [`halved`](Self::halved) and [`Mesh::halved_in`].
     pub fn halved_in(&self, cells: &[usize]) -> Result<Self, InputError> {
-        Ok(self.on(|mesh| mesh.bisected(cells))?.0)
+        let count = self.body.mesh().cell_count();
+        if let Some(cell) = cells.iter().find(|cell| **cell >= count) {
+            let help = format!("the mesh has the cells 1 to {count}");
+            return Err(InputError::new("cell to be divided", cell + 1, help));
+        }
+        let bisected = |mesh: &Mesh, all: Range<usize>| {
+            let own = cells.iter().filter(|cell| all.contains(cell)).map(|cell| cell - all.start);
+            match own.collect::<Vec<_>>() {
+                own if own.is_empty() => Ok(Finer::none(mesh)),
+                own => mesh.bisected(&own),
+            }
+        };
+        Ok(self.on(bisected)?.0)
     }
 
     /// The same scene with quadratic triangles or tetrahedra that have bubbles: see [`Mesh::with_bubbles`], and
@@ -81,19 +95,20 @@ impl Scene {
     /// # Errors
     /// As [`halved`](Self::halved); cells of other shapes, or that have bubbles already.
     pub fn with_bubbles(&self) -> Result<Self, InputError> {
-        Ok(self.on(Mesh::bubbled)?.0)
+        Ok(self.on(|mesh, _| mesh.bubbled())?.0)
     }
 
     /// The same scene on the next finer mesh, and how its nodes follow from the old ones. Its cells are
     /// quadratic, or halved if they were quadratic before or there are no quadratic ones of their kind.
     #[cfg(feature = "study")]
     pub(crate) fn enriched(&self) -> Result<(Self, Finer), InputError> {
-        self.on(|mesh| mesh.elevated().or_else(|_| Ok(mesh.divided())))
+        self.body.single("an estimate by a finer mesh")?;
+        self.on(|mesh, _| mesh.elevated().or_else(|_| Ok(mesh.divided())))
     }
 
     fn on(
         &self,
-        make: impl FnOnce(&Mesh) -> Result<Finer, InputError>,
+        make: impl Fn(&Mesh, Range<usize>) -> Result<Finer, InputError>,
     ) -> Result<(Self, Finer), InputError> {
         if !self.forces.is_empty() {
             let help =
@@ -104,9 +119,9 @@ impl Scene {
                 help,
             ));
         }
-        self.body.single("the same scene on a finer mesh")?;
-        let builder = self.body.to_builder();
-        let nodes = builder.own_mesh().node_count() << builder.own_mesh().kind().dimension();
+        let grown =
+            |part: Part| part.body.mesh().node_count() << part.body.mesh().kind().dimension();
+        let nodes: usize = self.body.parts().map(grown).sum();
         let help = "take coarser cells, or halve them less often";
         check_memory(
             "finer mesh",
@@ -114,9 +129,8 @@ impl Scene {
             BYTES_PER_NODE * nodes as f64,
             help,
         )?;
-        let coarse = builder.own_mesh().clone();
-        let finer = make(&coarse)?;
-        let body = builder.on(&finer)?.build()?;
+        let (builder, coarse, finer) = self.body.to_builder().finer(make)?;
+        let body = builder.build()?;
         let change = Change { body: &self.body, coarse: &coarse, finer: &finer };
         let mut scene = self.clone().unreduced();
         scene.start = change.start(self, &body)?;
@@ -145,9 +159,16 @@ impl Scene {
             .iter()
             .map(|magnet| magnet.with_cells(|cells| cells.on(&coarse, &finer)))
             .collect::<Result<_, _>>()?;
-        for spring in &self.springs {
-            spring.selections().try_for_each(|nodes| change.check(nodes))?;
-        }
+        scene.springs = self
+            .springs
+            .iter()
+            .map(|spring| spring.clone().with_nodes(|nodes| change.moved(nodes)))
+            .collect::<Result<_, _>>()?;
+        scene.ties = self
+            .ties
+            .iter()
+            .map(|tie| tie.on(&body, |nodes| change.extended(nodes)))
+            .collect::<Result<_, _>>()?;
         let count = |mesh: &Mesh| mesh.boundary_nodes().len() as f64;
         let share = count(&coarse) / count(&finer.mesh);
         let shared = |obstacle: &Obstacle| obstacle.clone().shared_out(share);
@@ -183,13 +204,24 @@ impl Change<'_> {
         }
     }
 
+    /// The same nodes by their new numbers; names and boxes include new nodes without a change.
+    fn moved(&self, nodes: &Selection) -> Result<Selection, InputError> {
+        self.check(nodes)?;
+        let Selection::Numbers(numbers) = nodes else { return Ok(nodes.clone()) };
+        let moved = numbers.iter().map(|number| match number.checked_sub(1) {
+            Some(node) => self.finer.number(node) + 1,
+            None => 0, // there is no such node, which is told where it is asked for
+        });
+        Ok(moved.collect::<Vec<_>>().into())
+    }
+
     /// Numbers with those of the new nodes between them; names and boxes include these without a change.
     fn extended(&self, nodes: &Selection) -> Result<Selection, InputError> {
         self.check(nodes)?;
         let Selection::Numbers(numbers) = nodes else { return Ok(nodes.clone()) };
         let nodes = self.body.mesh().select(nodes)?;
         Ok(match numbers.len() {
-            1 => numbers.clone().into(),
+            1 => self.moved(&numbers.clone().into())?,
             _ => self.finer.extended(&nodes).iter().map(|node| node + 1).collect::<Vec<_>>().into(),
         })
     }
@@ -206,7 +238,7 @@ impl Change<'_> {
                 help,
             ));
         }
-        Ok(nodes.iter().map(|node| node + 1).collect::<Vec<_>>().into())
+        Ok(nodes.iter().map(|node| self.finer.number(*node) + 1).collect::<Vec<_>>().into())
     }
 
     fn phase(&self, phase: &mut Phase) -> Result<(), InputError> {
@@ -216,8 +248,12 @@ impl Change<'_> {
                     *nodes = self.extended(nodes)?;
                 }
                 Constrained::Row(terms) => {
-                    let numbers: Vec<usize> = terms.iter().map(|(node, ..)| *node).collect();
-                    self.check(&numbers.into())?;
+                    for (node, ..) in terms {
+                        let moved = self.moved(&vec![*node].into())?;
+                        if let Selection::Numbers(numbers) = moved {
+                            *node = numbers[0];
+                        }
+                    }
                 }
             }
         }

@@ -30,7 +30,7 @@ pub(crate) use phase::ContactWith;
 pub use phase::Phase;
 use start::Start;
 pub use term::Term;
-use tie::tied;
+use tie::Tie;
 
 use crate::base::input::{InputError, find, finite};
 use crate::base::vector::largest;
@@ -82,8 +82,7 @@ pub struct Scene {
     atmosphere: f64,
     /// Whether amounts of gas and liquids are constants.
     is_shut: bool,
-    /// The constraints of each tie, found once: its nodes are those of this mesh.
-    ties: Vec<Result<Arc<[Constraint]>, InputError>>,
+    ties: Vec<Tie>,
     touches: Vec<Touch>,
     obstacles: Vec<Obstacle>,
     /// Other forces.
@@ -183,7 +182,7 @@ impl Scene {
     /// # Ok::<(), pliant::Error>(())
     /// ```
     pub fn tie(mut self, nodes: impl Into<Selection>, to: impl Into<String>) -> Self {
-        self.ties.push(tied(&self.body, &nodes.into(), &to.into()));
+        self.ties.push(Tie::new(&self.body, nodes.into(), to.into()));
         self
     }
 
@@ -464,7 +463,7 @@ impl Scene {
     pub(crate) fn tied(&self) -> Result<Vec<&Constraint>, InputError> {
         let mut constraints = Vec::new();
         for tie in &self.ties {
-            constraints.extend(tie.as_ref().map_err(Clone::clone)?.iter());
+            constraints.extend(tie.constraints.as_ref().map_err(Clone::clone)?.iter());
         }
         Ok(constraints)
     }

@@ -16,15 +16,34 @@ const MOST_APART: f64 = 0.2;
 /// Shares of nodes below this are round-off.
 const NO_SHARE: f64 = 1e-12;
 
+/// Nodes that are glued to the body with the name `to`, with the constraints of that, found once: they are of one mesh.
+#[derive(Debug, Clone)]
+pub(super) struct Tie {
+    nodes: Selection,
+    to: String,
+    pub(super) constraints: Result<Arc<[Constraint]>, InputError>,
+}
+
+impl Tie {
+    pub(super) fn new(body: &Body, nodes: Selection, to: String) -> Self {
+        Self { constraints: tied(body, &nodes, &to), nodes, to }
+    }
+
+    /// The same on a `body` with another mesh, where its nodes are those that `change` makes of them.
+    pub(super) fn on(
+        &self,
+        body: &Body,
+        change: impl FnOnce(&Selection) -> Result<Selection, InputError>,
+    ) -> Result<Self, InputError> {
+        Ok(Self::new(body, change(&self.nodes)?, self.to.clone()))
+    }
+}
+
 /// The constraints by which `nodes` move with the points of the body with the name `to` at which they are.
 ///
 /// # Errors
 /// Nodes or a body that do not exist, nodes of the body itself, nodes that are not at it.
-pub(super) fn tied(
-    body: &Body,
-    nodes: &Selection,
-    to: &str,
-) -> Result<Arc<[Constraint]>, InputError> {
+fn tied(body: &Body, nodes: &Selection, to: &str) -> Result<Arc<[Constraint]>, InputError> {
     let to = body.part_named(to, "body of a tie")?;
     let target = Target::new(&to);
     let mut constraints = Vec::new();

@@ -100,7 +100,6 @@ impl<'a> Adviser<'a> {
         positive("budget", *budget, "s")?;
         settings.validate()?;
         self.scene.validate()?;
-        self.scene.body().single("advice")?;
         quantity.check(self.scene)?;
         let runs = Runs::open(self.file.as_deref())?;
         let look = Look::of(self.scene, settings, LOOK.min(LOOK_SHARE * budget))?;

@@ -99,12 +99,17 @@ impl Choice {
     pub(super) fn overrides(&self, written: &Scene, settings: &Settings) -> Vec<String> {
         let mut sets = Vec::new();
         let body = written.body();
+        // the tables of several bodies have numbers
+        let tables: Vec<String> = match body.is_single() {
+            true => vec!["body".into()],
+            false => (1..=body.parts().count()).map(|number| format!("body.{number}")).collect(),
+        };
         if self.strain != body.strain() {
             let strain = match self.strain {
                 Strain::Cauchy => "cauchy",
                 Strain::Green => "green",
             };
-            sets.push(format!("body.strain={strain}"));
+            sets.extend(tables.iter().map(|table| format!("{table}.strain={strain}")));
         }
         if let Some(RicherCells { bubbles, linear }) = self.richer {
             let key = if bubbles { "bubbles" } else { "quadratic" };
@@ -128,7 +133,7 @@ impl Choice {
                 Inertia::Consistent => "consistent",
                 Inertia::Lumped => "lumped",
             };
-            sets.push(format!("body.inertia={inertia}"));
+            sets.extend(tables.iter().map(|table| format!("{table}.inertia={inertia}")));
         }
         let numbers = |count: usize| (1..=count).map(|number| number.to_string());
         for term in &self.without {
@@ -141,9 +146,12 @@ impl Choice {
                     sets.extend(own.map(|(number, _)| format!("phase.{number}.{zero}")));
                 }
                 Term::Viscosity => {
-                    sets.push("body.material.viscosity=0".into());
-                    let regions = numbers(body.region_count());
-                    sets.extend(regions.map(|k| format!("body.region.{k}.material.viscosity=0")));
+                    for (table, part) in tables.iter().zip(body.parts()) {
+                        sets.push(format!("{table}.material.viscosity=0"));
+                        let regions = numbers(part.body.region_count());
+                        let own = |k| format!("{table}.region.{k}.material.viscosity=0");
+                        sets.extend(regions.map(own));
+                    }
                 }
                 Term::Friction => {
                     for (number, obstacle) in numbers(usize::MAX).zip(written.obstacles()) {

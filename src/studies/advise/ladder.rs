@@ -31,6 +31,9 @@ const MOST_LOCAL: usize = 8;
 /// What alpha is multiplied by, and the largest (1/s) that is tried.
 const FIRMER: f64 = 10.0;
 const FIRMEST: f64 = 1e6;
+/// What is said of the meshes of several bodies.
+const OF_SEVERAL: &str = "finer meshes, as there are several bodies: halve the cells of each (`halved` of its mesh, `Scene::halved`) and see \
+     what that changes";
 /// Tolerances that are swept.
 const TOLERANCES: [f64; 10] = [1e-2, 3e-3, 1e-3, 3e-4, 1e-4, 3e-5, 1e-5, 1e-6, 1e-7, 1e-8];
 /// A sweep ends where runs take this many times as long as the fastest that is right.
@@ -164,6 +167,10 @@ impl Search<'_> {
     /// two may agree by chance. Where halving all cells takes too long, triangles and tetrahedra are divided where their strains
     /// jump most.
     fn refine(&mut self, rich: &Solved, found: &mut Found) -> Result<(), Stop> {
+        if !self.scene.body().is_single() {
+            found.not_tried.push(OF_SEVERAL.into());
+            return Ok(());
+        }
         let richest = RicherCells::of(self.scene.body());
         let finer = |richer, halved| Choice { richer, halved, ..rich.choice.clone() };
         let first = if richest.is_some() { 0 } else { 2 };

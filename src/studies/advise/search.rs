@@ -126,7 +126,10 @@ impl<'a> Search<'a> {
         Self {
             request,
             scene: scene.clone(),
-            nodes: scene.body().to_builder().own_mesh().node_count(),
+            nodes: match scene.body().is_single() {
+                true => scene.body().to_builder().own_mesh().node_count(),
+                false => scene.body().mesh().node_count(),
+            },
             observer,
             began: Instant::now(),
             kept,
