@@ -143,7 +143,7 @@ def test_a_dipole_is_led():
         ),
         magnet=dict(remanence=[0.1, 0.0]),
         dipole=dict(name="lead", moment=[0.0, 0.3], position=[0.02, 1.0]),
-        phase=[dict(until=0.05, hold=dict(nodes="left"))],
+        phase=[dict(until=0.1, hold=dict(nodes="left"))],
     ).start()
     strip.set_dipole_position("lead", [0.02, 0.03])
     strip.advance_to(0.05)
