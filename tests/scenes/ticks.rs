@@ -3,14 +3,19 @@
 use pliant::samples::SQUARE_MATERIAL;
 use pliant::{
     Body, Cells, Chamber, Mesh, Method, Phase, Scene, Settings, Simulation, SolidCells, Strain,
+    Substance,
 };
 
 const PERIOD: f64 = 1e-3;
 
 /// A clamped beam of rubber in the plane, with a chamber.
 fn beam() -> Scene {
+    beam_of(SQUARE_MATERIAL.into())
+}
+
+fn beam_of(substance: Substance) -> Scene {
     let mesh = Mesh::rectangle([0.1, 0.02], [11, 3], Cells::Rectangles).unwrap();
-    let body = Body::new(mesh, SQUARE_MATERIAL).thickness(0.01).strain(Strain::Green);
+    let body = Body::new(mesh, substance).thickness(0.01).strain(Strain::Green);
     Scene::new(body.build().unwrap())
         .chamber(Chamber::within("inside", [1, 11, 33, 23]))
         .phase(Phase::until(1.0).hold("left"))
@@ -71,6 +76,10 @@ fn the_method_is_chosen_for_ticks() {
     assert_eq!(method, Method::Rosenbrock);
     assert!(reason.ends_with("as commands change forces"), "{reason}");
     let (method, _) = chosen(&beam(), 1e-6, 10, PERIOD);
+    assert_eq!(method, Method::Arkode);
+    // Rosenbrock methods do not take Maxwell branches
+    let relaxing = Substance::from(SQUARE_MATERIAL).maxwell(0.5, 0.02);
+    let (method, _) = chosen(&beam_of(relaxing), 1e-3, 10, PERIOD);
     assert_eq!(method, Method::Arkode);
     let solid = Mesh::cuboid([0.1, 0.02, 0.02], [21, 7, 7], SolidCells::Hexahedra).unwrap();
     let solid = Body::new(solid, SQUARE_MATERIAL).strain(Strain::Green).build().unwrap();

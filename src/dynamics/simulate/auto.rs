@@ -238,7 +238,8 @@ impl Plan {
         if !self.is_on_trial() {
             return None;
         }
-        if self.asked.max_order.is_some() || self.asked.rtol < COARSE {
+        let takes_all = Method::Rosenbrock.takes_branches() || system.relaxation_rate() == 0.0;
+        if self.asked.max_order.is_some() || self.asked.rtol < COARSE || !takes_all {
             let reason = "commands change forces";
             let starts_anew = method == Method::CvodeBdf;
             return starts_anew
