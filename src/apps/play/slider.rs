@@ -227,9 +227,8 @@ impl Target {
             Self::Opening(_) if self.signals_in(phase).next().is_none() => 1.0,
             Self::Field(axis) => field_in(phase)
                 .map_or(0.0, |field| field.components(t, scene.body().dimension())[*axis]),
-            Self::Dipole(name, part, axis) => dipole_in(scene, phase, name).map_or(0.0, |dipole| {
-                dipole.part(*part).components(t, scene.body().dimension())[*axis]
-            }),
+            Self::Dipole(name, part, axis) => part_of_dipole(scene, phase, name, *part)
+                .map_or(0.0, |value| value.components(t, scene.body().dimension())[*axis]),
             _ => self.signals_in(phase).map(|signal| signal.at(t)).sum(),
         }
     }
@@ -239,8 +238,8 @@ impl Target {
         match self {
             Self::Load(nodes, ..) => ascending(loads_in(phase, nodes).flat_map(breaks)),
             Self::Field(_) => field_in(phase).map_or_else(Vec::new, |field| field.breaks().into()),
-            Self::Dipole(name, part, _) => dipole_in(scene, phase, name)
-                .map_or_else(Vec::new, |dipole| dipole.part(*part).breaks().into()),
+            Self::Dipole(name, part, _) => part_of_dipole(scene, phase, name, *part)
+                .map_or_else(Vec::new, |value| value.breaks().into()),
             _ => ascending(self.signals_in(phase).flat_map(Signal::breaks)),
         }
     }
@@ -301,10 +300,15 @@ fn field_in(phase: &Phase) -> Option<&VectorSignal> {
     phase.magnetic_field.as_ref().map(|field| &field.field)
 }
 
-/// The dipole with a `name` as it is in `phase`.
-fn dipole_in(scene: &Scene, phase: &Phase, name: &str) -> Option<Dipole> {
+/// The position or the moment of the dipole with a `name` in `phase`.
+fn part_of_dipole<'a>(
+    scene: &'a Scene,
+    phase: &'a Phase,
+    name: &str,
+    part: DipolePart,
+) -> Option<&'a VectorSignal> {
     let dipole = scene.dipoles().iter().find(|dipole| dipole.name() == name)?;
-    Some(phase.with_dipole(dipole))
+    Some(phase.part_of(dipole, part))
 }
 
 fn breaks(load: &Load) -> &[f64] {

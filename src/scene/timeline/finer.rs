@@ -192,43 +192,42 @@ struct Change<'a> {
 }
 
 impl Change<'_> {
-    /// Checks that numbers mean nodes of the coarse mesh, not point masses.
-    fn check(&self, nodes: &Selection) -> Result<(), InputError> {
-        let Selection::Numbers(numbers) = nodes else { return Ok(()) };
-        match numbers.iter().find(|number| **number > self.coarse.node_count()) {
-            None => Ok(()),
-            Some(number) => {
-                let help = "it is a point mass, which has another number on a finer mesh: name it by its name";
-                Err(InputError::new("node", number, help))
-            }
+    /// The new number of a node of the coarse mesh.
+    ///
+    /// # Errors
+    /// A point mass.
+    fn number(&self, number: usize) -> Result<usize, InputError> {
+        if number > self.coarse.node_count() {
+            let help =
+                "it is a point mass, which has another number on a finer mesh: name it by its name";
+            return Err(InputError::new("node", number, help));
         }
+        // 0 is no node, which is told where it is asked for
+        Ok(number.checked_sub(1).map_or(0, |node| self.finer.number(node) + 1))
     }
 
     /// The same nodes by their new numbers; names and boxes include new nodes without a change.
     fn moved(&self, nodes: &Selection) -> Result<Selection, InputError> {
-        self.check(nodes)?;
         let Selection::Numbers(numbers) = nodes else { return Ok(nodes.clone()) };
-        let moved = numbers.iter().map(|number| match number.checked_sub(1) {
-            Some(node) => self.finer.number(node) + 1,
-            None => 0, // there is no such node, which is told where it is asked for
-        });
-        Ok(moved.collect::<Vec<_>>().into())
+        let moved = numbers.iter().map(|number| self.number(*number));
+        Ok(moved.collect::<Result<Vec<_>, _>>()?.into())
     }
 
     /// Numbers with those of the new nodes between them; names and boxes include these without a change.
     fn extended(&self, nodes: &Selection) -> Result<Selection, InputError> {
-        self.check(nodes)?;
-        let Selection::Numbers(numbers) = nodes else { return Ok(nodes.clone()) };
+        let moved = self.moved(nodes)?;
+        let Selection::Numbers(numbers) = nodes else { return Ok(moved) };
         let nodes = self.body.mesh().select(nodes)?;
-        Ok(match numbers.len() {
-            1 => self.moved(&numbers.clone().into())?,
-            _ => self.finer.extended(&nodes).iter().map(|node| node + 1).collect::<Vec<_>>().into(),
-        })
+        if numbers.len() == 1 {
+            return Ok(moved);
+        }
+        let extended = self.finer.extended(&nodes);
+        Ok(extended.iter().map(|node| node + 1).collect::<Vec<_>>().into())
     }
 
     /// The nodes of the coarse mesh, by number.
     fn same(&self, nodes: &Selection) -> Result<Selection, InputError> {
-        self.check(nodes)?;
+        self.moved(nodes)?;
         let nodes = self.body.mesh().select(nodes)?;
         if nodes.iter().any(|&node| node >= self.coarse.node_count()) {
             let help = "it holds point masses: give those by themselves";
@@ -249,10 +248,7 @@ impl Change<'_> {
                 }
                 Constrained::Row(terms) => {
                     for (node, ..) in terms {
-                        let moved = self.moved(&vec![*node].into())?;
-                        if let Selection::Numbers(numbers) = moved {
-                            *node = numbers[0];
-                        }
+                        *node = self.number(*node)?;
                     }
                 }
             }
