@@ -96,8 +96,8 @@ impl<S: Simd> Real for Lane<S> {
     #[inline(always)]
     fn sign(self) -> Self {
         let Self { simd, numbers } = self;
-        let [zero, one, other] = [0.0, 1.0, -1.0].map(|number| simd.splat_f64s(number));
-        let numbers = simd.select_f64s(simd.less_than_f64s(numbers, zero), other, one);
+        let is_below = simd.less_than_f64s(numbers, simd.splat_f64s(0.0));
+        let numbers = simd.select_f64s(is_below, simd.splat_f64s(-1.0), simd.splat_f64s(1.0));
         Self { simd, numbers }
     }
 
@@ -118,12 +118,20 @@ impl<S: Simd> Real for Lane<S> {
         }
         let mut made = [Packed([0.0; SIDE_BY_SIDE]); O];
         for lane in 0..S::F64_LANES {
-            let of_lane = f(std::array::from_fn(|i| given[i].0[lane]));
+            let mut of_lane = [0.0; I];
+            for i in 0..I {
+                of_lane[i] = given[i].0[lane];
+            }
+            let of_lane = f(of_lane);
             for o in 0..O {
                 made[o].0[lane] = of_lane[o];
             }
         }
-        std::array::from_fn(|o| Self::load(simd, &made[o].0, 0))
+        let mut results = [Self::splat(simd, 0.0); O];
+        for o in 0..O {
+            results[o] = Self::load(simd, &made[o].0, 0);
+        }
+        results
     }
 
     /// Called through `vectorize`: otherwise it would be compiled for the oldest supported processor.

@@ -385,9 +385,10 @@ fn block_product<const D: usize>(
     for (node, y) in y.iter_mut().enumerate() {
         let mut sum = [0.0; D];
         for (entry, column) in pattern.row(first + node) {
-            for (sum, row) in sum.iter_mut().zip(&rows[entry * D..][..D]) {
-                for axis in 0..D {
-                    *sum += row[axis] * x[column][axis];
+            let (block, x) = (&rows[entry * D..][..D], x[column]);
+            for axis in 0..D {
+                for other in 0..D {
+                    sum[axis] += block[axis][other] * x[other];
                 }
             }
         }

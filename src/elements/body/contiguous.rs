@@ -36,24 +36,30 @@ fn order<const N: usize>(cells: &[[usize; N]; SIDE_BY_SIDE]) -> Option<Order<N>>
     cells.windows(2).all(numbered_on).then_some(order)
 }
 
-/// As many of `vectors` as a register holds, minus as many of `others`, by their components.
+/// [`SIDE_BY_SIDE`] vectors or less, one after the other: the numbers of `D` registers of any machine. (A slice of vectors is flattened by
+/// a function that is not inlined.)
+pub(super) type Vectors<const D: usize> = [[f64; SIDE_BY_SIDE]; D];
+
+/// As many vectors as a register holds, the first of `vectors`, minus as many of `others`, by their components.
 #[inline(always)]
 pub(super) fn differences<S: Simd, const D: usize>(
     simd: S,
-    vectors: &[[f64; D]],
-    others: &[[f64; D]],
+    vectors: &[f64],
+    others: &[f64],
 ) -> [Lane<S>; D] {
-    let [vectors, others] = [vectors, others].map(|all| all[..S::F64_LANES].as_flattened());
-    let mut differences = [[0.0; D]; SIDE_BY_SIDE];
+    let (vectors, others) = (&vectors[..D * S::F64_LANES], &others[..D * S::F64_LANES]);
+    let mut differences: Vectors<D> = [[0.0; SIDE_BY_SIDE]; D];
     for part in 0..D {
         let difference = Lane::load(simd, vectors, part) - Lane::load(simd, others, part);
-        difference.store(differences.as_flattened_mut(), part);
+        let [row, part] = place::<S>(part);
+        difference.store(&mut differences[row], part);
     }
     let mut components = [Lane::splat(simd, 0.0); D];
     for i in 0..D {
         let mut numbers = [0.0; SIDE_BY_SIDE];
         for lane in 0..SIDE_BY_SIDE {
-            numbers[lane] = differences[lane][i];
+            let number = D * lane + i;
+            numbers[lane] = differences[number / SIDE_BY_SIDE][number % SIDE_BY_SIDE];
         }
         components[i] = Lane::load(simd, &numbers, 0);
     }
@@ -62,15 +68,14 @@ pub(super) fn differences<S: Simd, const D: usize>(
 
 /// The vectors of as many cells as a register holds, given by their components.
 #[inline(always)]
-pub(super) fn vectors<S: Simd, const D: usize>(
-    components: &[Lane<S>; D],
-) -> [[f64; D]; SIDE_BY_SIDE] {
-    let mut vectors = [[0.0; D]; SIDE_BY_SIDE];
+pub(super) fn vectors<S: Simd, const D: usize>(components: &[Lane<S>; D]) -> Vectors<D> {
+    let mut vectors = [[0.0; SIDE_BY_SIDE]; D];
     for i in 0..D {
         let mut numbers = [0.0; SIDE_BY_SIDE];
         components[i].store(&mut numbers, 0);
         for lane in 0..S::F64_LANES {
-            vectors[lane][i] = numbers[lane];
+            let number = D * lane + i;
+            vectors[number / SIDE_BY_SIDE][number % SIDE_BY_SIDE] = numbers[lane];
         }
     }
     vectors
@@ -78,16 +83,20 @@ pub(super) fn vectors<S: Simd, const D: usize>(
 
 /// Subtracts `vectors` from the first of `from`, as many as a register holds.
 #[inline(always)]
-pub(super) fn subtract<S: Simd, const D: usize>(
-    simd: S,
-    vectors: &[[f64; D]; SIDE_BY_SIDE],
-    from: &mut [[f64; D]],
-) {
-    let (vectors, from) = (vectors.as_flattened(), from[..S::F64_LANES].as_flattened_mut());
+pub(super) fn subtract<S: Simd, const D: usize>(simd: S, vectors: &Vectors<D>, from: &mut [f64]) {
+    let from = &mut from[..D * S::F64_LANES];
     for part in 0..D {
-        let difference = Lane::load(simd, from, part) - Lane::load(simd, vectors, part);
+        let [row, of_row] = place::<S>(part);
+        let difference = Lane::load(simd, from, part) - Lane::load(simd, &vectors[row], of_row);
         difference.store(from, part);
     }
+}
+
+/// The row of [`Vectors`] in which register `part` of its numbers stands, and which register of that row it is.
+#[inline(always)]
+fn place<S: Simd>(part: usize) -> [usize; 2] {
+    let of_row = SIDE_BY_SIDE / S::F64_LANES;
+    [part / of_row, part % of_row]
 }
 
 #[cfg(test)]

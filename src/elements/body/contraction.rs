@@ -10,7 +10,7 @@
 use super::elements::{ElementsOf, gradients};
 use super::forces::{StressTerm, relative};
 use super::tangents::TangentTerm;
-use crate::base::tensor::{Matrix, Real, dot};
+use crate::base::tensor::{Matrix, Real, dot, times};
 use crate::elements::basis::StrainPoint;
 use crate::elements::material::{Block, Blocks, Deformation, Hill};
 
@@ -48,7 +48,8 @@ impl Contraction<'_> {
         }
         let rate = dot(&direction, &rates[0]);
         let pull = T::each([stretch, rate], |[stretch, rate]| {
-            self.law.factors(stretch, rate).map(|factor| self.stress * factor)
+            let [of_force, by_stretch, by_rate] = self.law.factors(stretch, rate);
+            [self.stress * of_force, self.stress * by_stretch, self.stress * by_rate]
         });
         AtPoint { stretch, rate, direction, pull }
     }
@@ -70,8 +71,10 @@ impl StressTerm<2> for Contraction<'_> {
     ) -> (Matrix<T, D, M>, T) {
         let AtPoint { stretch, direction, pull: [pull, ..], .. } = self.at(at, fields);
         let mut stress = [direction; M];
-        for x in stress.as_flattened_mut() {
-            *x = *x * pull * volume;
+        for column in &mut stress {
+            for x in column {
+                *x = *x * pull * volume;
+            }
         }
         (stress, stretch)
     }
@@ -111,11 +114,7 @@ impl<T: Real, const N: usize, const M: usize, const D: usize> Blocks<T, D>
     #[inline(always)]
     fn block(&self, a: usize, b: usize) -> Block<T, D> {
         let product = self.gradients[a][0] * self.gradients[b][0];
-        let mut block = self.matrix;
-        for x in block.as_flattened_mut() {
-            *x = *x * product;
-        }
-        block
+        times(self.matrix, product)
     }
 }
 

@@ -31,7 +31,7 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<
         u: &[f64],
         sum: f64,
     ) -> f64 {
-        Arch::new().dispatch(Pass { elements: self, cells, u: u.as_chunks::<D>().0, law, sum })
+        Arch::new().dispatch(Pass { elements: self, cells, u, law, sum })
     }
 }
 
@@ -39,7 +39,7 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<
 struct Pass<'a, L, const N: usize, const M: usize, const D: usize, const Q: usize> {
     elements: &'a ElementsOf<N, M, D, Q>,
     cells: Range<usize>,
-    u: &'a [[f64; D]],
+    u: &'a [f64],
     law: &'a L,
     /// The energy of the cells before.
     sum: f64,

@@ -119,8 +119,7 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Reinforced
 
 impl<const N: usize, const D: usize, const Q: usize> Strings for ElementsOf<N, 1, D, Q> {
     fn add_forces(&self, law: &Fibre, u: &[f64], forces: &mut [f64]) -> Result<(), Failure> {
-        let u = u.as_chunks::<D>().0;
-        self.shares.each_force(forces, &|run, first, forces| {
+        self.shares.each_force(D, forces, &|run, first, forces| {
             self.add(run.clone(), [u], first, forces, ElasticStress { law, is_projected: false })
         })
     }
@@ -132,7 +131,6 @@ impl<const N: usize, const D: usize, const Q: usize> Strings for ElementsOf<N, 1
         stiffness: &mut BlockMatrix,
         damping: &mut BlockMatrix,
     ) {
-        let u = u.as_chunks::<D>().0;
         self.shares.each(stiffness.rows_mut::<D>(), damping.rows_mut(), &|share, mut rows, _| {
             for run in &self.shares.cells[share] {
                 self.add_to(
@@ -156,9 +154,8 @@ impl<const N: usize, const D: usize, const Q: usize> Strings for ElementsOf<N, 1
         v: &[f64],
         forces: &mut [f64],
     ) -> Result<(), Failure> {
-        let fields = [u.as_chunks::<D>().0, v.as_chunks::<D>().0];
-        self.shares.each_force(forces, &|run, first, forces| {
-            self.add(run.clone(), fields, first, forces, contraction)
+        self.shares.each_force(D, forces, &|run, first, forces| {
+            self.add(run.clone(), [u, v], first, forces, contraction)
         })
     }
 
@@ -170,14 +167,13 @@ impl<const N: usize, const D: usize, const Q: usize> Strings for ElementsOf<N, 1
         stiffness: &mut BlockMatrix,
         damping: &mut BlockMatrix,
     ) {
-        let fields = [u.as_chunks::<D>().0, v.as_chunks::<D>().0];
         let rows = (stiffness.rows_mut(), damping.rows_mut());
         self.shares.each(rows.0, rows.1, &|share, mut stiffness, mut damping| {
             for run in &self.shares.cells[share] {
                 let by_shape = ContractionTangent::<false>(contraction);
-                self.add_to(&mut stiffness, run.clone(), fields, by_shape);
+                self.add_to(&mut stiffness, run.clone(), [u, v], by_shape);
                 let by_rate = ContractionTangent::<true>(contraction);
-                self.add_to(&mut damping, run.clone(), fields, by_rate);
+                self.add_to(&mut damping, run.clone(), [u, v], by_rate);
             }
         });
     }

@@ -15,7 +15,7 @@ use std::ops::Range;
 
 use pulp::{Arch, Simd, WithSimd};
 
-use super::contiguous;
+use super::contiguous::{self, Vectors};
 use super::elements::{ElementsOf, gradients};
 use super::projection::Projected;
 use super::regions::{Laws, Regions};
@@ -78,9 +78,8 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Forces
         v: &[f64],
         forces: &mut NodalForces,
     ) -> Result<(), Failure> {
-        let (u, v) = (u.as_chunks::<D>().0, v.as_chunks::<D>().0);
         if terms.elastic {
-            self.shares.each_force(&mut forces.conservative, &|run, first, forces| {
+            self.shares.each_force(D, &mut forces.conservative, &|run, first, forces| {
                 regions.runs(run).try_for_each(|(cells, laws)| {
                     let is_projected = self.is_projected();
                     match &laws.elastic {
@@ -102,7 +101,7 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Forces
             })?;
         }
         if terms.viscous {
-            self.shares.each_force(&mut forces.dissipative, &|run, first, forces| {
+            self.shares.each_force(D, &mut forces.dissipative, &|run, first, forces| {
                 regions.runs(run).try_for_each(|(cells, laws)| {
                     let pull =
                         ViscousStress { law: &laws.viscous, is_projected: self.is_projected() };
@@ -122,8 +121,7 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Forces
         forces: &mut NodalForces,
     ) -> Result<(), Failure> {
         let add = |x: &[f64], hooke: fn(&Laws) -> Hooke, forces: &mut [f64]| {
-            let x = x.as_chunks::<D>().0;
-            self.shares.each_force(forces, &|run, first, forces| {
+            self.shares.each_force(D, forces, &|run, first, forces| {
                 regions.runs(run).try_for_each(|(cells, laws)| {
                     let law: Linear = Hookean(hooke(laws));
                     self.add(
@@ -152,9 +150,9 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<
     pub(super) fn add<const K: usize>(
         &self,
         cells: Range<usize>,
-        fields: [&[[f64; D]]; K],
+        fields: [&[f64]; K],
         first: usize,
-        forces: &mut [[f64; D]],
+        forces: &mut [f64],
         pull: impl StressTerm<K>,
     ) -> Result<(), Failure> {
         Arch::new().dispatch(Pass { elements: self, cells, fields, first, forces, pull })
@@ -165,13 +163,13 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<
     fn outside<const K: usize>(
         &self,
         cells: Range<usize>,
-        fields: [&[[f64; D]]; K],
+        fields: [&[f64]; K],
         pull: &impl StressTerm<K>,
     ) -> Result<(), Failure> {
         for cell in cells {
             let nodes = &self.nodes[cell];
             let mut x = [[[0.0; D]; N]; K];
-            (0..K).for_each(|k| x[k] = relative(nodes, fields[k]));
+            (0..K).for_each(|k| x[k] = relative(nodes, fields[k].as_chunks::<D>().0));
             for point in self.points(cell) {
                 let gradients = gradients(1, &x, &point.gradients);
                 let at = Deformation::new(point.frame, gradients[0]);
@@ -194,9 +192,9 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<
 struct Pass<'a, P, const N: usize, const M: usize, const D: usize, const Q: usize, const K: usize> {
     elements: &'a ElementsOf<N, M, D, Q>,
     cells: Range<usize>,
-    fields: [&'a [[f64; D]]; K],
+    fields: [&'a [f64]; K],
     first: usize,
-    forces: &'a mut [[f64; D]],
+    forces: &'a mut [f64],
     pull: P,
 }
 
@@ -215,6 +213,7 @@ impl<
     fn with_simd<S: Simd>(self, simd: S) -> Result<(), Failure> {
         let Self { elements, cells, fields, first, forces, pull } = self;
         let (nodes, abreast) = (&elements.nodes[..], elements.abreast());
+        let count = forces.len() / D;
         let zero = Lane::splat(simd, 0.0);
         for register in cells.start / S::F64_LANES..cells.end.div_ceil(S::F64_LANES) {
             let start = register * S::F64_LANES;
@@ -268,20 +267,20 @@ impl<
             if !is_inside {
                 elements.outside(active.clone(), fields, &pull)?;
             }
-            let is_of_share =
-                |&node: &usize| first <= node && node + S::F64_LANES <= first + forces.len();
+            let is_of_share = |&node: &usize| first <= node && node + S::F64_LANES <= first + count;
             if let Some(order) = elements.rows.at(block)
                 && active.len() == S::F64_LANES
                 && nodes[start].iter().all(is_of_share)
             {
                 balance(&mut pulls);
-                let mut vectors = [[[0.0; D]; SIDE_BY_SIDE]; N];
+                let mut vectors: [Vectors<D>; N] = [[[0.0; SIDE_BY_SIDE]; D]; N];
                 for a in 0..N {
                     vectors[a] = contiguous::vectors(&pulls[a]);
                 }
                 for &a in order {
                     let a = usize::from(a);
-                    contiguous::subtract(simd, &vectors[a], &mut forces[nodes[start][a] - first..]);
+                    let node = nodes[start][a] - first;
+                    contiguous::subtract(simd, &vectors[a], &mut forces[D * node..]);
                 }
                 continue;
             }
@@ -352,8 +351,9 @@ fn subtract<const N: usize, const D: usize>(
     pulls: &[[[f64; SIDE_BY_SIDE]; D]; N],
     lane: usize,
     first: usize,
-    forces: &mut [[f64; D]],
+    forces: &mut [f64],
 ) {
+    let forces = forces.as_chunks_mut::<D>().0;
     let mut sum = [-0.0; D];
     for a in 1..N {
         for i in 0..D {

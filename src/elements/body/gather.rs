@@ -12,16 +12,12 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<
     /// The vectors `x` of the nodes of as many cells as a register holds, from cell `start` on, minus those
     /// of their first nodes. Cells that are missing at the end repeat the last one.
     #[inline(always)]
-    pub(super) fn gather<S: Simd>(
-        &self,
-        simd: S,
-        start: usize,
-        x: &[[f64; D]],
-    ) -> [[Lane<S>; D]; N] {
+    pub(super) fn gather<S: Simd>(&self, simd: S, start: usize, x: &[f64]) -> [[Lane<S>; D]; N] {
         if self.rows.at(start / SIDE_BY_SIDE).is_some() {
             return self.gather_row(simd, start, x);
         }
         let (nodes, last) = (&self.nodes[..], self.nodes.len() - 1);
+        let x = x.as_chunks::<D>().0;
         let mut cells = [&nodes[start]; SIDE_BY_SIDE];
         for lane in 1..S::F64_LANES {
             cells[lane] = &nodes[last.min(start + lane)];
@@ -51,11 +47,11 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<
 
     /// The same for cells in a row.
     #[inline(always)]
-    fn gather_row<S: Simd>(&self, simd: S, start: usize, x: &[[f64; D]]) -> [[Lane<S>; D]; N] {
+    fn gather_row<S: Simd>(&self, simd: S, start: usize, x: &[f64]) -> [[Lane<S>; D]; N] {
         let nodes = &self.nodes[start];
         let mut gathered = [[Lane::splat(simd, 0.0); D]; N];
         for a in 1..N {
-            gathered[a] = differences(simd, &x[nodes[a]..], &x[nodes[0]..]);
+            gathered[a] = differences(simd, &x[D * nodes[a]..], &x[D * nodes[0]..]);
         }
         gathered
     }

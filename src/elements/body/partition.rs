@@ -20,8 +20,8 @@ const TWICE: f64 = 0.25;
 
 /// Adds the forces of a run of cells to those on the nodes from one on: called once for each run of a share, so that the
 /// code around it, that of threads above all, is compiled once and not for each kind of cell.
-pub(super) type AddForces<'f, const D: usize> =
-    dyn Fn(&Range<usize>, usize, &mut [[f64; D]]) -> Result<(), Failure> + Sync + 'f;
+pub(super) type AddForces<'f> =
+    dyn Fn(&Range<usize>, usize, &mut [f64]) -> Result<(), Failure> + Sync + 'f;
 
 /// Adds the tangents of a share, told by its number, to the rows of a stiffness and of a damping.
 pub(super) type AddTangents<'f, const D: usize> =
@@ -53,20 +53,21 @@ impl Partition {
     }
 
     /// Calls `add` for all runs of cells of each share of the nodes, with the first of these nodes and the
-    /// forces on them; on threads if there are several shares.
-    pub(super) fn each_force<const D: usize>(
+    /// `dimension` forces on each of them; on threads if there are several shares.
+    pub(super) fn each_force(
         &self,
+        dimension: usize,
         forces: &mut [f64],
-        add: &AddForces<'_, D>,
+        add: &AddForces<'_>,
     ) -> Result<(), Failure> {
         let add_share = |number: usize, forces: &mut [f64]| {
-            let (first, forces) = (number * self.nodes, forces.as_chunks_mut::<D>().0);
+            let first = number * self.nodes;
             self.cells[number].iter().try_for_each(|run| add(run, first, forces))
         };
         if self.cells.len() == 1 {
             return add_share(0, forces);
         }
-        let shares = forces.par_chunks_mut(D * self.nodes).enumerate();
+        let shares = forces.par_chunks_mut(dimension * self.nodes).enumerate();
         let failed = shares.find_map_first(|(number, forces)| add_share(number, forces).err());
         failed.map_or(Ok(()), Err)
     }

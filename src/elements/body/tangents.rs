@@ -84,7 +84,6 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Tangents
         stiffness: &mut BlockMatrix,
         damping: &mut BlockMatrix,
     ) {
-        let (u, v) = (u.as_chunks::<D>().0, v.as_chunks::<D>().0);
         let add = |share: usize, mut stiffness: Rows<'_, D>, mut damping: Rows<'_, D>| {
             for (cells, laws) in self.shares.cells[share].iter().flat_map(|run| regions.runs(run)) {
                 let is_projected = self.is_projected();
@@ -166,7 +165,7 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<
         &self,
         rows: &mut Rows<'_, D>,
         cells: Range<usize>,
-        fields: [&[[f64; D]]; K],
+        fields: [&[f64]; K],
         slope: impl TangentTerm<K>,
     ) {
         Arch::new().dispatch(Pass { elements: self, rows, cells, fields, slope });
@@ -187,7 +186,9 @@ pub(super) fn add_blocks<const N: usize, const D: usize>(
 }
 
 fn add<const R: usize, const C: usize>(sum: &mut Matrix<f64, R, C>, part: &Matrix<f64, R, C>) {
-    for (sum, part) in sum.as_flattened_mut().iter_mut().zip(part.as_flattened()) {
-        *sum += part;
+    for j in 0..C {
+        for i in 0..R {
+            sum[j][i] += part[j][i];
+        }
     }
 }

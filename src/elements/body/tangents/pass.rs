@@ -28,7 +28,7 @@ pub(super) struct Pass<
     pub(super) elements: &'a ElementsOf<N, M, D, Q>,
     pub(super) rows: &'a mut Rows<'r, D>,
     pub(super) cells: Range<usize>,
-    pub(super) fields: [&'a [[f64; D]]; K],
+    pub(super) fields: [&'a [f64]; K],
     pub(super) slope: P,
 }
 

@@ -35,7 +35,6 @@ fn is_the_same_on_all_machines<
     let is_projected = elements.is_projected();
     let dofs = mesh.node_count() * D;
     let (u, v) = (noise(dofs, 0.01, 1.0), noise(dofs, 1.0, 2.0));
-    let (u, v) = (u.as_chunks().0, v.as_chunks().0);
     let law = ObjectiveViscosity(Hooke::new(Lame { lambda: 2.0, mu: 1.0 }, M, Plane::Strain));
     let cells = 3..mesh.cell_count() - 1;
     let tangents =
@@ -48,14 +47,14 @@ fn is_the_same_on_all_machines<
                     elements,
                     rows: &mut by_place.rows_mut(),
                     cells: cells.clone(),
-                    fields: [u, v],
+                    fields: [&u, &v],
                     slope: ViscousTangent { law: &law, is_projected },
                 },
                 Pass {
                     elements,
                     rows: &mut by_rate.rows_mut(),
                     cells,
-                    fields: [u],
+                    fields: [&u],
                     slope: RateTangent { law: &law, is_projected },
                 },
             );

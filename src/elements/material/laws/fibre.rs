@@ -26,6 +26,7 @@ const LARGEST: f64 = 300.0;
 
 impl Fibre {
     /// W, S and dS/dE.
+    #[inline]
     fn slopes(&self, twice: f64) -> [f64; 3] {
         let (young, stiffening) = match *self {
             Self::Passive { young, stiffening } => (young, stiffening),

@@ -34,45 +34,49 @@ pub(super) enum Kind {
 
 impl Kind {
     /// W_shape (J/m^3) at the principal values of 2E, l_i^2 - 1.
+    #[inline]
     fn energy_of_shape(self, twice: [f64; 3]) -> f64 {
         match self {
             Self::Ogden { terms, .. } => {
-                let x = twice.map(logarithm);
+                let x = each(twice, logarithm);
                 let mean = (x[0] + x[1] + x[2]) / 3.0;
                 let of_term = |[modulus, power]: [f64; 2]| {
                     // the exponents add up to 0
-                    let sum: f64 = x.map(|x| less_exponential(power * (x - mean))).iter().sum();
+                    let sum: f64 = each(x, |x| less_exponential(power * (x - mean))).iter().sum();
                     modulus / power * sum
                 };
-                terms.map(of_term).iter().sum()
+                terms.into_iter().map(of_term).sum()
             }
             Self::Corotated(Lame { mu, .. }) => {
-                let squares = twice.map(|twice| longer(twice) * longer(twice));
+                let squares = each(twice, |twice| longer(twice) * longer(twice));
                 mu * squares.iter().sum::<f64>()
             }
         }
     }
 
     /// g
+    #[inline]
     fn dilatation(self, twice: [f64; 3]) -> f64 {
         match self {
-            Self::Ogden { .. } => twice.map(logarithm).iter().sum::<f64>().exp_m1(),
-            Self::Corotated(_) => twice.map(longer).iter().sum(),
+            Self::Ogden { .. } => each(twice, logarithm).iter().sum::<f64>().exp_m1(),
+            Self::Corotated(_) => each(twice, longer).iter().sum(),
         }
     }
 
     /// dg/dE_i
+    #[inline]
     fn swelling(self, twice: [f64; 3]) -> [f64; 3] {
         let stretch = match self {
             Self::Ogden { .. } => {
-                return twice.map(|own| (self.dilatation(twice) + 1.0) / (own + 1.0));
+                return each(twice, |own| (self.dilatation(twice) + 1.0) / (own + 1.0));
             }
-            Self::Corotated(_) => twice.map(|twice| longer(twice) + 1.0),
+            Self::Corotated(_) => each(twice, |twice| longer(twice) + 1.0),
         };
-        stretch.map(|stretch| 1.0 / stretch)
+        each(stretch, |stretch| 1.0 / stretch)
     }
 
     /// U (J/m^3), U' and U'' at g.
+    #[inline]
     fn of_volume(self, dilatation: f64) -> [f64; 3] {
         match self {
             Self::Ogden { bulk, .. } => swollen(bulk, dilatation),
@@ -84,6 +88,7 @@ impl Kind {
     }
 
     /// U' and U''; with a `pull`, which is constant, it and 0.
+    #[inline]
     fn volume(self, twice: [f64; 3], pull: Option<f64>) -> [f64; 2] {
         match pull {
             Some(pull) => [pull, 0.0],
@@ -99,7 +104,7 @@ impl Kind {
     fn stress(self, twice: [f64; 3], pull: Option<f64>) -> [f64; 3] {
         match self {
             Self::Ogden { terms, bulk } => {
-                let x = twice.map(logarithm);
+                let x = each(twice, logarithm);
                 let dilatation = (x[0] + x[1] + x[2]).exp_m1();
                 let pull = match pull {
                     Some(pull) => (dilatation + 1.0) * pull,
@@ -110,12 +115,13 @@ impl Kind {
                     let (more, mean) = more_of(power, x);
                     (0..3).for_each(|i| kirchhoff[i] += modulus * (more[i] - mean));
                 }
-                std::array::from_fn(|i| kirchhoff[i] / (twice[i] + 1.0))
+                (0..3).for_each(|i| kirchhoff[i] /= twice[i] + 1.0);
+                kirchhoff
             }
             // S_i l_i = U' + 2 mu (l_i - 1)
             Self::Corotated(Lame { mu, .. }) => {
                 let [pull, _] = self.volume(twice, pull);
-                twice.map(longer).map(|longer| (pull + 2.0 * mu * longer) / (longer + 1.0))
+                each(each(twice, longer), |longer| (pull + 2.0 * mu * longer) / (longer + 1.0))
             }
         }
     }
@@ -161,12 +167,20 @@ impl Kind {
     }
 }
 
+/// What `of` returns for each number. (The `map` of arrays is a function that is not inlined.)
+#[inline(always)]
+fn each([x, y, z]: [f64; 3], of: impl Fn(f64) -> f64) -> [f64; 3] {
+    [of(x), of(y), of(z)]
+}
+
 /// ln l, given l^2 - 1
+#[inline]
 fn logarithm(twice: f64) -> f64 {
     0.5 * twice.ln_1p()
 }
 
 /// l - 1, given l^2 - 1
+#[inline]
 fn longer(twice: f64) -> f64 {
     twice / ((twice + 1.0).sqrt() + 1.0)
 }
@@ -174,7 +188,7 @@ fn longer(twice: f64) -> f64 {
 /// e_i - 1 of e_i = (l_i / J^(1/3))^power, and their mean.
 fn more_of(power: f64, x: [f64; 3]) -> ([f64; 3], f64) {
     let third = (x[0] + x[1] + x[2]) / 3.0;
-    let more = x.map(|x| (power * (x - third)).exp_m1());
+    let more = each(x, |x| (power * (x - third)).exp_m1());
     (more, (more[0] + more[1] + more[2]) / 3.0)
 }
 
@@ -185,9 +199,9 @@ fn ogden(
     stress: [f64; 3],
     [pull, stiff]: [f64; 2],
 ) -> Slopes {
-    let x = twice.map(logarithm);
+    let x = each(twice, logarithm);
     let stretch = (x[0] + x[1] + x[2]).exp();
-    let squares = twice.map(|twice| twice + 1.0);
+    let squares = each(twice, |twice| twice + 1.0);
     // dt_i/dx_j, and (t_j - t_k) / (l_j^2 - l_k^2)
     let mut by = [[stretch * (pull + stretch * stiff); 3]; 3];
     let mut apart = [0.0; 3];
@@ -230,7 +244,7 @@ fn growth(a: f64, d: f64) -> f64 {
 
 /// Hooke's law of the stretches: S_i = 2 mu + c / l_i with c = U' - 2 mu.
 fn corotated(mu: f64, twice: [f64; 3], stress: [f64; 3], [pull, stiff]: [f64; 2]) -> Slopes {
-    let inverse = twice.map(|twice| 1.0 / (longer(twice) + 1.0));
+    let inverse = each(twice, |twice| 1.0 / (longer(twice) + 1.0));
     let c = pull - 2.0 * mu;
     let mut slopes = Slopes { stress, ..Slopes::default() };
     for i in 0..3 {

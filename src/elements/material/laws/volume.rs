@@ -1,6 +1,7 @@
 //! The energy of a change of volume of rubber, to all digits where the change is small.
 
 /// U = (kappa/4) (J^2 - 1 - 2 ln J), U' and U'' by g = J - 1, `bulk` being kappa (Pa).
+#[inline]
 pub(super) fn swollen(bulk: f64, dilatation: f64) -> [f64; 3] {
     let swelling = dilatation * (dilatation + 2.0);
     let share = 1.0 / (dilatation + 1.0);
