@@ -41,6 +41,20 @@ impl Formula<1, 1, 0> for Sum {
     }
 }
 
+/// y += factor x
+pub(crate) fn add_multiple(factor: f64, x: &[f64], y: &mut [f64]) {
+    each(Multiple(factor), [x], [y]);
+}
+
+struct Multiple(f64);
+
+impl Formula<1, 1, 0> for Multiple {
+    #[inline(always)]
+    fn at<T: Real>(&self, [x]: [T; 1], [y]: [T; 1]) -> ([T; 1], [T; 0]) {
+        ([y + x * self.0], [])
+    }
+}
+
 type Chunks = [[f64; SIDE_BY_SIDE]];
 
 /// The loop over vectors: whole chunks, and the components left over.

@@ -440,6 +440,11 @@ impl Reading {
         if self.in_degrees { 360.0 } else { TAU }
     }
 
+    /// Whether it reads forces of constraints, which take an evaluation of all forces.
+    pub(super) fn is_of_constraints(&self) -> bool {
+        matches!(self.what, What::ConstraintForce(_) | What::ConstraintMoment(..))
+    }
+
     /// Whether it is continuous over whole turns, for a body in `dimension` dimensions.
     pub(super) fn turns(&self, dimension: usize) -> bool {
         dimension == 2 && self.is_angle()

@@ -14,6 +14,26 @@ use crate::scene::constraint::ConstraintRow;
 use crate::scene::settings::{Method, Settings};
 use crate::scene::timeline::{Phase, Scene};
 
+/// What `state` = (u, v, energies, ...) at `time` says by itself: a sample without forces of constraints, energies that
+/// have to be evaluated, and readings of sensors.
+pub(super) fn of_state(phase: usize, system: &System, time: f64, state: &[f64]) -> Sample {
+    let State { u, v, dissipated, supplied, others } = State::of(state, system.dofs());
+    let internal = internal(system, others);
+    let amounts = internal[internal.len().saturating_sub(system.amounts().len())..].to_vec();
+    Sample {
+        time,
+        phase,
+        u: u.to_vec(),
+        v: v.to_vec(),
+        multipliers: Vec::new(),
+        amounts,
+        energy: Energy { dissipated, supplied, ..Energy::default() },
+        constraint_drift: 0.0,
+        sensors: Vec::new(),
+        commanded: Commanded::default(),
+    }
+}
+
 /// The sample of `state` = (u, v, energies, ...) at `time`, without readings of sensors.
 pub(super) fn sample(
     phase: usize,
@@ -22,23 +42,10 @@ pub(super) fn sample(
     state: &[f64],
 ) -> Result<Sample, Failure> {
     let State { u, v, others, .. } = State::of(state, system.dofs());
-    let internal = internal(system, others);
-    let amounts = internal[internal.len().saturating_sub(system.amounts().len())..].to_vec();
-    let multipliers = system.multipliers(time, u, v, internal)?.to_vec();
+    let multipliers = system.multipliers(time, u, v, internal(system, others))?.to_vec();
     let energy = energy(system, time, state);
     let constraint_drift = system.drift(time, u);
-    Ok(Sample {
-        time,
-        phase,
-        u: u.to_vec(),
-        v: v.to_vec(),
-        multipliers,
-        amounts,
-        energy,
-        constraint_drift,
-        sensors: Vec::new(),
-        commanded: Commanded::default(),
-    })
+    Ok(Sample { multipliers, energy, constraint_drift, ..of_state(phase, system, time, state) })
 }
 
 /// Adds to a sample what `sensors` read, and the phase in force if commands have changed it.

@@ -39,6 +39,8 @@ pub(super) struct Sensors {
     pub(super) quantities: Vec<Quantity>,
     reads: Vec<Arc<Read>>,
     angles: Vec<Angle>,
+    /// Whether one reads forces of constraints or energies of a sample, for which all forces are evaluated.
+    need_forces: bool,
 }
 
 /// An angle that is continuous over whole turns.
@@ -75,6 +77,7 @@ impl Sensors {
         let reading = match source {
             SensorKind::Own(unit, read) => {
                 self.quantities.push(Quantity { name: name.clone(), unit: unit.clone() });
+                self.need_forces = true; // it may read them
                 let read = read.clone();
                 self.reads
                     .push(Arc::new(move |view, sample, numbers| numbers.push(read(view, sample))));
@@ -84,6 +87,7 @@ impl Sensors {
         };
         let components = reading.components(scene.body().dimension())?;
         let gauge = reading.gauge(scene)?;
+        self.need_forces |= reading.is_of_constraints();
         let unit = reading.unit();
         if reading.turns(scene.body().dimension()) {
             let (gauge, full_turn) = (reading.angle_gauge(scene)?, reading.full_turn());
@@ -105,6 +109,10 @@ impl Sensors {
 
     pub(super) fn is_empty(&self) -> bool {
         self.reads.is_empty()
+    }
+
+    pub(super) fn need_forces(&self) -> bool {
+        self.need_forces
     }
 
     /// Their readings, with angles continued from the last ones, `angles`.

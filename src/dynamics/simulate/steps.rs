@@ -195,8 +195,11 @@ impl Run {
                 _ => self.time + (time - self.time) * k as f64 / PARTS as f64,
             };
             stepper.interpolate(t, state)?;
-            let seen = records::sample(self.number, stepper.system_mut(), t, state);
-            let mut seen = seen.map_err(Failure::into_error)?;
+            let mut seen = match self.sensors.need_forces() {
+                true => records::sample(self.number, stepper.system_mut(), t, state)
+                    .map_err(Failure::into_error)?,
+                false => records::of_state(self.number, stepper.system(), t, state),
+            };
             self.complete(&mut seen);
             self.trajectory.note_peaks(&seen.sensors);
         }

@@ -1,6 +1,7 @@
 //! The shapes of a reduced model as one matrix Psi: those that are free, and behind them those that constraints move. For
 //! the degrees of freedom that forces see, the active ones, there is a copy of their rows.
 
+use crate::base::simd::add_multiple;
 use crate::base::sparse::BlockMatrix;
 use crate::base::vector::dot;
 use crate::scene::reduced_model::ReducedPhase;
@@ -192,19 +193,6 @@ impl Shapes {
         {
             sum.iter_mut().zip(own.as_flattened()).for_each(|(sum, x)| *sum += x);
         }
-    }
-}
-
-/// y += factor x
-fn add_multiple(factor: f64, x: &[f64], y: &mut [f64]) {
-    let ((x, x_rest), (y, y_rest)) = (x.as_chunks::<8>(), y.as_chunks_mut::<8>());
-    for (x, y) in x.iter().zip(y) {
-        for i in 0..8 {
-            y[i] += factor * x[i];
-        }
-    }
-    for (x, y) in x_rest.iter().zip(y_rest) {
-        *y += factor * x;
     }
 }
 

@@ -9,6 +9,7 @@ use super::dilatation::Dilatation;
 use super::fields::{CellField, NodalField, Probe, Tensors, nodal_fields};
 use super::forces::Terms;
 use super::inertia::Inertia;
+use super::nodal_masses::NodalMasses;
 use super::recipe::Recipe;
 use super::reinforcement::Reinforcement;
 use super::relaxing::Branches;
@@ -48,6 +49,7 @@ pub struct Body {
     /// The bodies as they were before they were joined; none in a single one.
     pub(super) joined: Arc<[Joined]>,
     pub(super) inertia: Arc<NodeMatrix>,
+    pub(super) masses: Arc<NodalMasses>,
     pub(super) stiffness: Arc<BlockMatrix>,
     pub(super) damping: Arc<BlockMatrix>,
     /// The part a M of the damping, if there is one.

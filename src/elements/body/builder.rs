@@ -9,6 +9,7 @@ use super::continuum::Continuum;
 use super::dilatation::Dilatation;
 use super::inertia::Inertia;
 use super::joined::Part;
+use super::nodal_masses::NodalMasses;
 use super::recipe::Recipe;
 use super::regions::{CellSelection, Laws, Regions};
 use super::reinforcement::{add_at_rest, families};
@@ -245,6 +246,7 @@ impl Body {
             recipe: Arc::new(recipe),
         };
         let body = Self {
+            masses: Arc::new(NodalMasses::new(&inertia, &mesh)),
             mesh,
             continua: vec![continuum],
             joined: Arc::default(),

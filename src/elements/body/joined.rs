@@ -10,6 +10,7 @@ use std::sync::Arc;
 use super::assembled::{Body, Joined};
 use super::continuum::Continuum;
 use super::elements::{Offset, too_many};
+use super::nodal_masses::NodalMasses;
 use super::rigid::RigidPieces;
 use crate::base::input::{InputError, find};
 use crate::base::sparse::{BlockMatrix, NodeMatrix};
@@ -118,6 +119,7 @@ impl Body {
         });
         let inertia = Arc::new(inertia);
         let body = Self {
+            masses: Arc::new(NodalMasses::new(&inertia, &mesh)),
             mesh,
             continua,
             joined: joined.into(),

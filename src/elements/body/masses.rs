@@ -5,31 +5,23 @@ use super::assembled::Body;
 impl Body {
     /// Total mass (kg).
     pub fn mass(&self) -> f64 {
-        self.inertia.values.iter().sum()
+        self.masses.total
     }
 
     /// Mass that moves with each node (kg): the row sums of m. Unless inertia is lumped, those of corners of
     /// quadratic cells may be 0 or below.
     pub fn nodal_masses(&self) -> Vec<f64> {
-        let pattern = self.inertia.pattern();
-        let row_sum = |row| pattern.row(row).map(|(entry, _)| self.inertia.values[entry]).sum();
-        (0..pattern.nodes()).map(row_sum).collect()
+        self.masses.of_nodes.clone()
     }
 
     /// Mean of `x` (dimension components per node), weighted by mass.
     pub(crate) fn mass_average(&self, x: &[f64]) -> Vec<f64> {
-        let (dimension, mass) = (self.dimension(), self.mass());
-        let mut average = vec![0.0; dimension];
-        for (nodal_mass, x) in self.nodal_masses().iter().zip(x.chunks_exact(dimension)) {
-            average.iter_mut().zip(x).for_each(|(a, x)| *a += nodal_mass * x / mass);
-        }
-        average
+        self.masses.average(x, self.dimension())
     }
 
     /// Centre of mass (m) under the displacements `u` (m).
     pub fn centre_of_mass(&self, u: &[f64]) -> Vec<f64> {
-        let natural = self.mass_average(self.mesh.positions()).into_iter();
-        natural.zip(self.mass_average(u)).map(|(x, u)| x + u).collect()
+        self.masses.centre.iter().zip(self.mass_average(u)).map(|(x, u)| x + u).collect()
     }
 
     /// Velocity (m/s) of the centre of mass, where nodes have the velocities `v` (m/s).
@@ -50,8 +42,7 @@ impl Body {
     /// The mass of each node of a body in the plane, times its natural position relative to the centre of
     /// mass (kg m). They add up to 0.
     pub(crate) fn arms(&self) -> Vec<[f64; 2]> {
-        let positions = self.mesh().positions();
-        let centre = self.mass_average(positions);
+        let (positions, centre) = (self.mesh().positions(), &self.masses.centre);
         if self.substances().any(|substance| substance.mass.is_some()) {
             // all mass is at the nodes of a frame, where row sums may be below 0: the whole matrix counts
             let from_centre = self.mesh().field(|x| vec![x[0] - centre[0], x[1] - centre[1]]);
@@ -59,9 +50,8 @@ impl Body {
             self.inertia.add_product(2, 1.0, &from_centre, &mut arms);
             return arms.as_chunks::<2>().0.to_vec();
         }
-        let masses = self.nodal_masses();
         let arm = |(mass, x): (&f64, &[f64])| [0, 1].map(|i| mass * (x[i] - centre[i]));
-        masses.iter().zip(positions.chunks_exact(2)).map(arm).collect()
+        self.masses.of_nodes.iter().zip(positions.chunks_exact(2)).map(arm).collect()
     }
 
     /// The [`rotation`](Self::rotation) of a body in the plane, by its `arms`.

@@ -23,6 +23,7 @@ mod magnetization;
 mod magnetized_points;
 mod magnets;
 mod masses;
+mod nodal_masses;
 mod partition;
 mod polynomial;
 mod projection;

@@ -18,7 +18,7 @@ use faer::{Accum, Mat, Par};
 use super::elements::{ElementsOf, gradient};
 use super::forces::{Terms, relative};
 use super::regions::Regions;
-use crate::base::simd::{Formula, each};
+use crate::base::simd::{Formula, add_multiple, each};
 use crate::base::tensor::{Matrix, Real, dot};
 use crate::elements::force::{GeneralizedForce, NodalForces};
 use crate::elements::material::{Deformation, Elastic, Lame};
@@ -238,7 +238,7 @@ impl StrainModes {
             let singles = std::iter::once((1 + m, single));
             let pairs = z.iter().enumerate().map(|(l, z)| (pair(self.shapes, m, l), *z));
             for (mode, factor) in singles.chain(pairs).filter(|(_, factor)| *factor != 0.0) {
-                each(Multiple(factor), [product.col_as_slice(mode)], [&mut *change]);
+                add_multiple(factor, product.col_as_slice(mode), change);
             }
         }
     }
@@ -317,16 +317,6 @@ impl Formula<2, 0, 1> for Product {
     #[inline(always)]
     fn at<T: Real>(&self, [x, y]: [T; 2], _: [T; 0]) -> ([T; 0], [T; 1]) {
         ([], [x * y])
-    }
-}
-
-/// y + a x
-struct Multiple(f64);
-
-impl Formula<1, 1, 0> for Multiple {
-    #[inline(always)]
-    fn at<T: Real>(&self, [x]: [T; 1], [y]: [T; 1]) -> ([T; 1], [T; 0]) {
-        ([y + x * self.0], [])
     }
 }
 
