@@ -1,6 +1,7 @@
 //! The search for an equilibrium: Newton's method with falling energy, load step by load step.
 
 use super::options::Statics;
+use crate::base::simd::add_multiple;
 use crate::base::vector::{dot, largest};
 use crate::dynamics::equilibrium::Stability;
 use crate::dynamics::system::{AtRest, ForceBalance};
@@ -309,7 +310,7 @@ impl<'a> Search<'a> {
         let mut refused = None;
         for _ in 0..40 {
             self.work.copy_from_slice(&self.u);
-            self.work.iter_mut().zip(&self.x).for_each(|(u, x)| *u += factor * x);
+            add_multiple(factor, &self.x, &mut self.work);
             if let Some(part) = self.rest.passage(&self.u, &self.work) {
                 refused = Some(PASSED.to_owned());
                 factor *= part.clamp(0.1, 0.9);

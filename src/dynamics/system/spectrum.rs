@@ -8,6 +8,7 @@ use super::reduced::Reduced;
 use super::rigid::{self, Shape};
 use super::shapes::Shapes;
 use super::source::Coupling;
+use crate::base::simd::add_multiple;
 use crate::base::sparse::{BlockMatrix, NodeMatrix};
 use crate::base::vector::{dot, noise};
 use crate::dynamics::matrices::Matrices;
@@ -316,7 +317,7 @@ impl System {
         let combined = |&mode: &usize| {
             let mut x = vec![0.0; dofs];
             for (vector, &part) in basis.iter().zip(eigen.eigenvectors.column(mode).iter()) {
-                x.iter_mut().zip(vector).for_each(|(x, v)| *x += part * v);
+                add_multiple(part, vector, &mut x);
             }
             x
         };

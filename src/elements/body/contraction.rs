@@ -70,13 +70,7 @@ impl StressTerm<2> for Contraction<'_> {
         volume: T,
     ) -> (Matrix<T, D, M>, T) {
         let AtPoint { stretch, direction, pull: [pull, ..], .. } = self.at(at, fields);
-        let mut stress = [direction; M];
-        for column in &mut stress {
-            for x in column {
-                *x = *x * pull * volume;
-            }
-        }
-        (stress, stretch)
+        (times(times([direction; M], pull), volume), stretch)
     }
 
     /// Fibres have no volume of their own.

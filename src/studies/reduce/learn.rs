@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use crate::base::input::InputError;
 use crate::base::pod::{orthonormal, pod};
+use crate::base::simd::add_multiple;
 use crate::base::vector::dot;
 use crate::dynamics::error::Error;
 use crate::dynamics::system::System;
@@ -147,7 +148,7 @@ impl LearnedPhase {
         let mut u: Vec<f64> = start.collect();
         for (shape, weighted) in self.shapes.iter().zip(&self.weighted).take(count) {
             let amplitude = dot(weighted, &state.own);
-            u.iter_mut().zip(shape).for_each(|(u, shape)| *u += amplitude * shape);
+            add_multiple(amplitude, shape, &mut u);
         }
         u
     }
@@ -199,7 +200,7 @@ fn states_of(
             let mut by_rows = vec![0.0; own.len()];
             for (row, lift) in moved.iter().zip(lifts) {
                 let by = row.apply(&own);
-                by_rows.iter_mut().zip(lift).for_each(|(x, lift)| *x += by * lift);
+                add_multiple(by, lift, &mut by_rows);
             }
             own.iter_mut().zip(&by_rows).for_each(|(x, moved)| *x -= moved);
             // without the drift of the constraints
