@@ -127,6 +127,18 @@ class Simulation:
         """How much longer the fibres of a muscle are than in the undeformed shape, as a factor."""
         return self._simulation.muscle_stretch(muscle)
 
+    def activation(self, muscle: str) -> float:
+        """Activation (0 to 1) of a muscle with Hill's law."""
+        return self._simulation.activation(muscle)
+
+    def actuation(self, actuator: str) -> float:
+        """What drives a spring, a cable (N), a winch (m), a muscle (Pa) or a growth (1), behind its lag if it has one."""
+        return self._simulation.actuation(actuator)
+
+    def temperature(self, actuator: str) -> float:
+        """By how much a heated actuator is warmer than what is around it (K)."""
+        return self._simulation.temperature(actuator)
+
     def magnetic_moment(self) -> Array:
         """Magnetic moment (A m^2) of all magnets."""
         return self._simulation.magnetic_moment()
@@ -214,7 +226,7 @@ class Simulation:
 
     def actuate(self, spring: str, force: float) -> None:
         """Sets the force (N) of the actuator of a spring, the tension (N) of a cable, the length (m) that a winch has drawn in, or the stress
-        (Pa) of a muscle, or the strain of a growth."""
+        (Pa) of a muscle, or the strain of a growth; of what is heated the power (W)."""
         self._simulation.actuate(spring, force)
 
     def load(self, nodes: Nodes, force: Sequence[float]) -> None:

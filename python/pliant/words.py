@@ -1293,6 +1293,55 @@ def growth(
     )
 
 
+def lag(
+    *,
+    actuators: str | Sequence[str],
+    time: float | None = None,
+    rise: float | None = None,
+    fall: float | None = None,
+    activation: bool | None = None,
+    capacity: float | None = None,
+    loss: float | None = None,
+    per_kelvin: float | None = None,
+) -> dict:
+    r"""Actuators that follow their commands with a delay: a' = (s - a)/T, with the command s of `actuate` and the state
+    a, 0 at first, which drives the actuator. T is a `time`, or one for rising and one for falling. With `activation`,
+    the muscle's a by its largest stress, T is `rise` (0.5 + 1.5 a) and `fall`/(0.5 + 1.5 a) (D. G. Thelen (2003)).
+    What is heated is commanded by a power: `capacity` theta' = power - `loss` theta, and `per_kelvin` theta drives
+    it.
+
+    Parameters
+    ----------
+    actuators
+        names of springs, cables, muscles and growths, each with a state of its own. Required.
+    time
+        the time after which 1/e of a step is left (s). Default: none.
+    rise
+        that for commands above the state (s). Default: none.
+    fall
+        that for commands below the state (s). Default: none.
+    activation
+        whether it is the activation of muscles by Hill's law. Default: false.
+    capacity
+        the heat of a kelvin (J/K). Default: none.
+    loss
+        the power that a kelvin gives away (W/K). Default: none.
+    per_kelvin
+        what drives it per kelvin: a force, a tension, a length of a winch, a stress or a strain (N, m, Pa or 1 by K).
+        Default: none. Of a spring below 0 if it contracts as it gets warm.
+    """
+    return _table(
+        actuators=actuators,
+        time=time,
+        rise=rise,
+        fall=fall,
+        activation=activation,
+        capacity=capacity,
+        loss=loss,
+        per_kelvin=per_kelvin,
+    )
+
+
 def magnet(
     *,
     remanence: Vector,
@@ -2478,18 +2527,22 @@ def actuate(
     springs: str | Sequence[str] | None = None,
     muscles: str | Sequence[str] | None = None,
     growths: str | Sequence[str] | None = None,
+    heated: str | Sequence[str] | None = None,
     force: Formula | None = None,
     length: Formula | None = None,
     stress: Formula | None = None,
     strain: Formula | None = None,
+    power: Formula | None = None,
     times: Sequence[float] | None = None,
     forces: Sequence[float] | None = None,
     lengths: Sequence[float] | None = None,
     strains: Sequence[float] | None = None,
     stresses: Sequence[float] | None = None,
+    powers: Sequence[float] | None = None,
 ) -> dict:
     r"""Forces of the actuators in springs, tensions of cables, lengths that winches have drawn in, stresses of muscles,
-    and strains of growth. Those of a table are interpolated linearly, and are constant before and after.
+    strains of growth, and powers of what is heated. Those of a table are interpolated linearly, and are constant
+    before and after.
 
     Parameters
     ----------
@@ -2499,6 +2552,8 @@ def actuate(
         names of muscles. Default: none.
     growths
         names of growths. Default: none.
+    heated
+        names of springs, cables, muscles and growths that a `[[lag]]` heats. Default: none.
     force
         the force: of a spring positive if it extends, of a cable if it pulls (N). Default: none.
     length
@@ -2509,6 +2564,8 @@ def actuate(
     strain
         of a growth: by how much what is free gets longer; of heat the coefficient of expansion times the change of
         temperature (no unit). Default: none.
+    power
+        the power that heats them, each by itself (W). Default: none.
     times
         times in ascending order (s). Default: none.
     forces
@@ -2519,20 +2576,25 @@ def actuate(
         strains at these times (no unit). Default: none.
     stresses
         stresses at these times (Pa). Default: none.
+    powers
+        powers at these times (W). Default: none.
     """
     return _table(
         springs=springs,
         muscles=muscles,
         growths=growths,
+        heated=heated,
         force=force,
         length=length,
         stress=stress,
         strain=strain,
+        power=power,
         times=times,
         forces=forces,
         lengths=lengths,
         strains=strains,
         stresses=stresses,
+        powers=powers,
     )
 
 
@@ -3022,6 +3084,58 @@ def sensor_muscle_stretch(
         kind="muscle-stretch",
         name=name,
         muscle=muscle,
+        component=component,
+    )
+
+
+def sensor_activation(
+    *,
+    name: str,
+    muscle: str,
+    component: Literal["x", "y", "z", "norm", "xx", "yy", "zz", "xy", "yz", "xz", "von-mises"] | None = None,
+) -> dict:
+    r"""Sensor of the kind "activation": the activation of a muscle with Hill's law, from 0 to 1.
+
+    Parameters
+    ----------
+    name
+        the name of the sensor. Required.
+    muscle
+        the name of the muscle. Required.
+    component
+        one component alone. Default: all, each a column. Vectors have `x`, `y`, `z` and their length `norm`; tensors
+        `xx` and so on; stress has `von-mises` besides.
+    """
+    return _table(
+        kind="activation",
+        name=name,
+        muscle=muscle,
+        component=component,
+    )
+
+
+def sensor_temperature(
+    *,
+    name: str,
+    actuator: str,
+    component: Literal["x", "y", "z", "norm", "xx", "yy", "zz", "xy", "yz", "xz", "von-mises"] | None = None,
+) -> dict:
+    r"""Sensor of the kind "temperature": by how much a heated actuator is warmer than what is around it (K).
+
+    Parameters
+    ----------
+    name
+        the name of the sensor. Required.
+    actuator
+        the name of the actuator. Required.
+    component
+        one component alone. Default: all, each a column. Vectors have `x`, `y`, `z` and their length `norm`; tensors
+        `xx` and so on; stress has `von-mises` besides.
+    """
+    return _table(
+        kind="temperature",
+        name=name,
+        actuator=actuator,
         component=component,
     )
 
@@ -3707,6 +3821,7 @@ __all__ = [
     "hold_combination",
     "initial",
     "initial_nodes",
+    "lag",
     "law_corotated",
     "law_mooney_rivlin",
     "law_neo_hookean",
@@ -3749,6 +3864,7 @@ __all__ = [
     "region",
     "rotate",
     "sensor_absolute_pressure",
+    "sensor_activation",
     "sensor_angle",
     "sensor_centre_of_mass",
     "sensor_constraint_force",
@@ -3777,6 +3893,7 @@ __all__ = [
     "sensor_spring_pull",
     "sensor_strain",
     "sensor_stress",
+    "sensor_temperature",
     "sensor_tension_at_end",
     "sensor_velocity",
     "sensor_volume",

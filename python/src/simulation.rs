@@ -187,6 +187,21 @@ impl Simulation {
         self.lock()?.view().muscle_stretch(muscle).map_err(raised)
     }
 
+    /// Activation (0 to 1) of a muscle with Hill's law.
+    fn activation(&self, muscle: &str) -> PyResult<f64> {
+        self.lock()?.view().activation(muscle).map_err(raised)
+    }
+
+    /// What drives an actuator, behind its lag if it has one.
+    fn actuation(&self, actuator: &str) -> PyResult<f64> {
+        self.lock()?.view().actuation(actuator).map_err(raised)
+    }
+
+    /// By how much a heated actuator is warmer than what is around it (K).
+    fn temperature(&self, actuator: &str) -> PyResult<f64> {
+        self.lock()?.view().temperature(actuator).map_err(raised)
+    }
+
     /// Magnetic moment (A m^2) of all magnets.
     fn magnetic_moment<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
         Ok(PyArray1::from_vec(py, self.lock()?.view().magnetic_moment()))

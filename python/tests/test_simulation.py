@@ -134,6 +134,34 @@ def test_what_acts_within_the_material_is_driven():
     assert moment[1] > 0.01 * moment[0] > 0.0
 
 
+def test_actuators_lag():
+    strip = pliant.Scene(
+        body=dict(
+            mesh=dict(kind="bar", length=0.1, nodes=3),
+            area=1e-4,
+            material=dict(density=1000.0, young=1e5, poisson=0.3, viscosity=2e3),
+        ),
+        muscle=dict(name="biceps", along=[1.0], hill=dict(largest=1e4)),
+        spring=dict(name="coil", ends=["right", dict(point=[0.2])], stiffness=5.0),
+        lag=[
+            dict(actuators="biceps", rise=0.015, fall=0.05, activation=True),
+            dict(actuators="coil", capacity=0.2, loss=0.1, per_kelvin=-0.01),
+        ],
+        sensor=[
+            dict(name="a", kind="activation", muscle="biceps"),
+            dict(name="warmth", kind="temperature", actuator="coil"),
+        ],
+        phase=[dict(until=0.2, hold=dict(nodes="left"))],
+    ).start()
+    strip.actuate("biceps", 5e3)
+    strip.actuate("coil", 1.0)
+    strip.advance_to(0.1)
+    assert 0.45 < strip.activation("biceps") < 0.5
+    warmth = 10.0 * (1.0 - np.exp(-0.05))
+    assert abs(strip.temperature("coil") - warmth) < 1e-4
+    assert abs(strip.actuation("coil") + 0.01 * warmth) < 1e-6
+
+
 def test_a_dipole_is_led():
     strip = pliant.Scene(
         body=dict(

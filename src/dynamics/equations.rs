@@ -63,6 +63,10 @@ impl Scene {
             let help = "equations are given for amounts of liquids that stay: leave it out";
             return Err(InputError::new("flow of a phase", "into a chamber", help));
         }
+        if let Some((name, _)) = self.lags().next() {
+            let help = "equations have no unknowns for it: leave it out";
+            return Err(InputError::new("lag", format!("of \"{name}\""), help));
+        }
         if !self.orifices().is_empty() {
             let help = "equations are given for amounts of gas that stay: leave orifices out";
             return Err(InputError::new("number of orifices", self.orifices().len(), help));

@@ -404,11 +404,17 @@ pub trait GeneralizedForce: Send {
 }
 
 /// Amounts m (kg) of what flows between rooms of the volumes V(u) (m^3), and what it does to the nodes: forces p(m, V)
-/// dV/du and rates q(t, m, V).
+/// dV/du and rates q(t, m, V). Behind them the states a of actuators that lag: forces f(u, v, a) and rates q(t, a).
 #[doc(hidden)]
 pub trait Flow: Send + Sync {
     /// The amounts at the start.
     fn start(&self) -> &[f64];
+
+    /// Sizes of the amounts, by which their tolerances are told.
+    fn sizes(&self) -> Vec<f64>;
+
+    /// Brings forces of actuators that lag to the `amounts` at time `t`, before they are evaluated.
+    fn set(&self, t: f64, amounts: &[f64]);
 
     /// Adds the forces `at` (u, m) and time `t`, and writes the rates (kg/s) of the amounts; the second vector has room for
     /// as many numbers. Returns the power (W) that is supplied with what flows.
@@ -432,11 +438,11 @@ pub trait Flow: Send + Sync {
     /// A state at which the run ends.
     fn check(&self, t: f64, u: &[f64], amounts: &[f64]) -> Result<(), Failure>;
 
-    /// Adds -p d^2V/du^2 to `stiffness`, and writes all other derivatives.
+    /// Adds -p d^2V/du^2 to `stiffness`, and writes all other derivatives, `at` (u, v, m).
     fn linearize(
         &self,
         t: f64,
-        at: [&[f64]; 2],
+        at: [&[f64]; 3],
         stiffness: &mut BlockMatrix,
         derivatives: &mut FlowDerivatives,
     );
@@ -444,11 +450,11 @@ pub trait Flow: Send + Sync {
 
 /// Derivatives of a [`Flow`] at one state; matrices row by row.
 #[doc(hidden)]
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone)]
 pub struct FlowDerivatives {
-    /// dV/du (m^2), of one room after the other.
+    /// dV/du (m^2), of one room after the other; df/da of actuators that lag.
     pub gradients: Vec<f64>,
-    /// -dp/dV (Pa/m^3) and dp/dm (Pa/kg) of each room.
+    /// -dp/dV (Pa/m^3) and dp/dm (Pa/kg) of each room; 0 and 1 of actuators that lag.
     pub pressures: [Vec<f64>; 2],
     /// dq/dV (kg/s/m^3) and dq/dm (1/s).
     pub rates: [Vec<f64>; 2],
@@ -456,6 +462,8 @@ pub struct FlowDerivatives {
     pub power: [Vec<f64>; 2],
     /// Rates of the amounts (kg/s), and room for as many numbers.
     pub work: [Vec<f64>; 2],
+    /// Room for two evaluations of a force.
+    pub trial: [NodalForces; 2],
 }
 
 impl FlowDerivatives {
@@ -468,6 +476,7 @@ impl FlowDerivatives {
             rates: pair(count * count),
             power: pair(count),
             work: pair(count),
+            trial: [NodalForces::zeros(dofs), NodalForces::zeros(dofs)],
         }
     }
 }

@@ -219,8 +219,9 @@ fn all_scenes_are_run() {
         "wheel-over-stones",
         // where fluids are tested
         "fish",
-        // where muscles are tested
+        // where muscles and lags are tested
         "hill-muscle",
+        "coiled-finger",
         // where robots are tested
         "inchworm",
         "rolling-robot",

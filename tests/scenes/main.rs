@@ -30,6 +30,7 @@ mod growth;
 mod hill;
 mod index_two;
 mod indicators;
+mod lags;
 mod large;
 mod liquids;
 mod magnets;

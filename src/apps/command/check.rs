@@ -140,6 +140,7 @@ fn surroundings(scene: &Scene) -> Result<(), Failure> {
     let springs = scene.springs().iter().map(|spring| spring.name()).collect();
     let muscles = scene.muscles().iter().map(|muscle| muscle.name()).collect();
     let growths = scene.growths().iter().map(|growth| growth.name()).collect();
+    let lags = scene.lags().map(|(name, _)| name).collect();
     let magnets = scene.magnets().iter().map(|magnet| format!("{:?} T", magnet.remanence()));
     let magnets: Vec<String> = magnets.collect();
     let dipoles = scene.dipoles().iter().map(|dipole| dipole.name()).collect();
@@ -153,6 +154,7 @@ fn surroundings(scene: &Scene) -> Result<(), Failure> {
         ("springs", springs),
         ("muscles", muscles),
         ("growths", growths),
+        ("lags of", lags),
         ("magnets", magnets.iter().map(String::as_str).collect()),
         ("dipoles", dipoles),
         ("chambers", chambers),

@@ -40,6 +40,9 @@ pub(super) struct Slider {
     unit: &'static str,
 }
 
+/// The end of sliders of powers that phases do not give: one that warms by this much at last (K).
+const USUAL_WARMTH: f64 = 50.0;
+
 /// Pressure (in Young's moduli) and strain that give a useful range of a slider where the scene has no
 /// values.
 const USUAL: f64 = 0.05;
@@ -79,7 +82,16 @@ impl Slider {
             let range = [target.largest_in(scene), pumped];
             Self::new(target, "flow".into(), range, "m^3/s")
         });
-        let springs = scene.springs().iter().map(|spring| {
+        let heated = |name: &str| scene.lag_of(name)?.loss();
+        let heaters = scene.actuators().filter_map(|name| Some((name, heated(name)?)));
+        let heaters = heaters.map(|(name, loss)| {
+            let target = Target::Actuation(name.to_owned());
+            let most = round_up(2.0 * target.largest_in(scene).max(loss * USUAL_WARMTH));
+            Self { target, least: 0.0, most, what: "power".into(), unit: "W" }
+        });
+        let is_cold = |name: &str| heated(name).is_none();
+        let springs = scene.springs().iter().filter(|spring| is_cold(spring.name()));
+        let springs = springs.map(|spring| {
             let target = Target::Actuation(spring.name().to_owned());
             let (what, usual, unit) = match (spring.is_winch(), spring.is_cable()) {
                 (true, _) => ("drawn in", USUAL * scene.body().size(), "m"),
@@ -89,7 +101,8 @@ impl Slider {
             let range = [target.largest_in(scene), usual];
             Self::new(target, what.into(), range, unit)
         });
-        let muscles = scene.muscles().iter().map(|muscle| {
+        let muscles = scene.muscles().iter().filter(|muscle| is_cold(muscle.name()));
+        let muscles = muscles.map(|muscle| {
             let target = Target::Actuation(muscle.name().to_owned());
             let what = "stress".into();
             if let Some(hill) = muscle.law() {
@@ -106,7 +119,8 @@ impl Slider {
         }
         let loads =
             loaded.into_iter().flat_map(|nodes| Self::of_load(scene, nodes, [force, pressure]));
-        let growths = scene.growths().iter().map(|growth| {
+        let growths = scene.growths().iter().filter(|growth| is_cold(growth.name()));
+        let growths = growths.map(|growth| {
             let target = Target::Actuation(growth.name().to_owned());
             let range = [target.largest_in(scene), USUAL];
             Self::new(target, "growth".into(), range, "1")
@@ -124,6 +138,7 @@ impl Slider {
             .chain(springs)
             .chain(muscles)
             .chain(growths)
+            .chain(heaters)
             .chain(fields)
             .chain(scene.dipoles().iter().flat_map(|dipole| Self::of_dipole(scene, dipole)))
             .chain(loads)
@@ -188,7 +203,7 @@ impl Slider {
             Target::Pressure(chamber) => simulation.view().pressure(chamber)?,
             Target::Opening(orifice) => simulation.view().opening(orifice)?,
             Target::Flow(chamber) => simulation.view().liquid_flow(chamber)?,
-            Target::Actuation(spring) => simulation.view().actuation(spring)?,
+            Target::Actuation(spring) => simulation.view().command(spring)?,
             Target::Field(axis) => simulation.view().magnetic_field()[*axis],
             Target::Dipole(name, DipolePart::Position, axis) => {
                 simulation.view().dipole_position(name)?[*axis]

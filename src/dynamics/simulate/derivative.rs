@@ -73,6 +73,7 @@ impl Reading {
             What::GasAmount(_) | What::GasFlow(_) => false,
             What::LiquidVolume(_) | What::LiquidFlow(_) => false,
             What::MuscleStress(_) | What::MuscleStretch(_) | What::MagneticMoment => false,
+            What::Activation(_) | What::Temperature(_) => false,
             What::FluidForce(..) | What::DipoleForce(_) | What::DipolePosition(_) => false,
             What::SpringPull(_) | What::SpringLength(_) | What::Stress(_) | What::Strain(_) => {
                 false

@@ -155,6 +155,14 @@ impl Reading {
                 scene.muscle_number(muscle, "muscle")?;
                 number(muscle, |view, muscle| view.muscle_stretch(muscle))
             }
+            What::Activation(muscle) => {
+                scene.largest_stress(muscle, "muscle")?;
+                number(muscle, |view, muscle| view.activation(muscle))
+            }
+            What::Temperature(actuator) => {
+                scene.per_kelvin(actuator, "actuator")?;
+                number(actuator, |view, actuator| view.temperature(actuator))
+            }
             What::Pressure(chamber) => {
                 scene.chamber_number(chamber, "chamber")?;
                 number(chamber, |view, chamber| view.pressure(chamber))

@@ -35,6 +35,8 @@ pub(super) enum What {
     SpringLength(String),
     MuscleStress(String),
     MuscleStretch(String),
+    Activation(String),
+    Temperature(String),
     MagneticMoment,
     DipoleForce(String),
     DipolePosition(String),
@@ -276,6 +278,16 @@ impl Reading {
         What::MuscleStretch(muscle.into()).into()
     }
 
+    /// Activation of a muscle with [Hill's law](crate::Hill), from 0 to 1: see [`View::activation`](crate::View::activation).
+    pub fn activation(muscle: impl Into<String>) -> Self {
+        What::Activation(muscle.into()).into()
+    }
+
+    /// By how much a [heated](crate::Lag::heated) actuator is warmer than what is around it (K).
+    pub fn temperature(actuator: impl Into<String>) -> Self {
+        What::Temperature(actuator.into()).into()
+    }
+
     /// Magnetic moment of all magnets (A m^2).
     pub fn magnetic_moment() -> Self {
         What::MagneticMoment.into()
@@ -429,7 +441,8 @@ impl Reading {
             What::GasFlow(_) => "kg/s",
             What::ChamberVolume(_) | What::LiquidVolume(_) => "m^3",
             What::LiquidFlow(_) => "m^3/s",
-            What::Strain(_) | What::MuscleStretch(_) => "1",
+            What::Temperature(_) => "K",
+            What::Strain(_) | What::MuscleStretch(_) | What::Activation(_) => "1",
             What::Angle(_) | What::Rotation if self.in_degrees => DEGREES,
             What::Angle(_) | What::Rotation => "rad",
         }

@@ -8,7 +8,7 @@ use crate::dynamics::state::State;
 use crate::elements::body::{Body, CellField, Contraction, Grown, MagnetizedPoints, Strands};
 use crate::elements::force::{Force, Forces, NodalForces};
 use crate::elements::mesh::Selection;
-use crate::scene::forces::{ChamberForce, Contact, Content, Filled, Poured, Signal, SpringGauge};
+use crate::scene::forces::{ChamberForce, Contact, Content, Filled, Poured, SpringGauge};
 use crate::scene::timeline::{LoadKind, Phase, Scene};
 #[cfg(feature = "play")]
 use crate::scene::{forces::NodalContact, timeline::ContactReader};
@@ -214,12 +214,12 @@ impl<'a> View<'a> {
         Ok(own.map(|(_, flow)| flow.at(self.time)).sum())
     }
 
-    /// The amount (kg) of the gas of that number: amounts are the last unknowns of the state, of gases and then of liquids.
+    /// The amount (kg) of the gas of that number: amounts are the last unknowns of the state, of gases and then of liquids, before what lags.
     fn amount(&self, number: usize) -> f64 {
         let Gauges { gases, liquids, .. } = self.gauges;
         let others = self.state.others;
         // where there are none, amounts stay what they are
-        let first = others.len().checked_sub(gases.len() + liquids.len());
+        let first = others.len().checked_sub(gases.len() + liquids.len() + self.scene.lags().len());
         match (first, number.checked_sub(gases.len())) {
             (Some(first), _) => others[first + number],
             (None, None) => gases[number].amount(),
@@ -239,7 +239,7 @@ impl<'a> View<'a> {
 
     /// Force of the actuator of a spring (N), above 0 where it extends the spring; of a cable its tension, of a winch the
     /// length (m) that it has drawn in, of a muscle its stress (Pa), of a
-    /// growth its strain (1).
+    /// growth its strain (1). What [lags](crate::Lag) is behind its [command](Self::command).
     ///
     /// # Errors
     /// A name that no spring, no muscle and no growth has.
@@ -248,12 +248,26 @@ impl<'a> View<'a> {
         Ok(self.actuation_with_rate(spring)[0])
     }
 
+    /// What phases and commands [actuate](Phase::actuate) it by: of what is [heated](crate::Lag::heated) a power (W), else as [`actuation`](Self::actuation).
+    ///
+    /// # Errors
+    /// As [`actuation`](Self::actuation).
+    pub fn command(&self, actuator: &str) -> Result<f64, InputError> {
+        self.scene.actuator_number(actuator, "actuator")?;
+        Ok(self.phase.command(actuator, self.time)[0])
+    }
+
+    /// By how much a [heated](crate::Lag::heated) actuator is warmer than what is around it (K).
+    ///
+    /// # Errors
+    /// A name that no heated actuator has.
+    pub fn temperature(&self, actuator: &str) -> Result<f64, InputError> {
+        let per_kelvin = self.scene.per_kelvin(actuator, "actuator")?;
+        Ok(self.actuation_with_rate(actuator)[0] / per_kelvin)
+    }
+
     fn actuation_with_rate(&self, spring: &str) -> [f64; 2] {
-        let named = |(names, _): &&(Vec<String>, Signal)| names.iter().any(|name| name == spring);
-        let signals = self.phase.actuations.iter().filter(named);
-        signals.fold([0.0; 2], |[value, rate], (_, signal)| {
-            [value + signal.at(self.time), rate + signal.rate(self.time)]
-        })
+        self.scene.drive_at(spring, self.phase, self.time, self.state.others)
     }
 
     /// Force (N) on each of the nodes of `selection`, as the mean over them, one component per dimension.
@@ -388,6 +402,15 @@ impl<'a> View<'a> {
         Ok(self.gauges.muscles[number].mean_pull(contraction, self.state.u, self.state.v))
     }
 
+    /// Activation of a muscle with [Hill's law](crate::Hill), from 0 to 1: what actuates it by the largest stress.
+    ///
+    /// # Errors
+    /// A name that no muscle has, or one without that law.
+    pub fn activation(&self, muscle: &str) -> Result<f64, InputError> {
+        let largest = self.scene.largest_stress(muscle, "muscle")?;
+        Ok((self.actuation_with_rate(muscle)[0] / largest).clamp(0.0, 1.0))
+    }
+
     /// How much longer the fibres of a muscle are than in the undeformed shape, as a factor (1): the mean over their
     /// volume.
     ///
@@ -427,7 +450,7 @@ impl<'a> View<'a> {
     /// The cells that have grown, and to how many times their size.
     pub(super) fn grown(&self) -> Vec<Grown> {
         // errors were found when the phase began
-        self.scene.grown(self.phase, self.time).unwrap_or_default()
+        self.scene.grown(self.phase, self.time, self.state.others).unwrap_or_default()
     }
 
     fn mean(&self, selection: &Selection, x: &[f64]) -> Result<Vec<f64>, InputError> {

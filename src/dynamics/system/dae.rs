@@ -221,8 +221,10 @@ impl Dae for DaeForm {
     fn newton_setup(&mut self, t: f64, cj: f64, y: &[f64], yp: &[f64]) -> Result<(), Failure> {
         self.linearize_edges(y, yp);
         let State { u, v, others, .. } = State::of(y, self.system.dofs());
+        let amounts = &others[..self.system.internal()];
+        self.system.set_lagging(t, amounts);
         self.system.update_tangents(t, u, v, false);
-        self.system.add_flow_tangents(t, u, &others[..self.system.internal()]);
+        self.system.add_flow_tangents(t, [u, v, amounts]);
         self.system.factorize_newton(1.0 / cj)
     }
 

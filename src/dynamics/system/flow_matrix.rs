@@ -1,4 +1,4 @@
-//! Amounts of gas in the Newton system, eliminated.
+//! Amounts of gas, and states of actuators that lag, in the Newton system, eliminated.
 //!
 //! With the volumes V(u) of the chambers, their gradients G = dV/du (a column each), the pressures p(m, V) and the flows
 //! q(t, m, V), a step of the parameter gamma has, beside the system of `newton.rs`,
@@ -78,6 +78,11 @@ impl FlowMatrix {
             let row = at / k;
             *x = unit(at, k) * stiff[row] - pressing[row] * following[at];
         }
+    }
+
+    /// Whether that room resists: a column of H matters only where C has one.
+    pub(super) fn is_stiff(&self, room: usize) -> bool {
+        self.stiffness.chunks(self.count).any(|row| row[room] != 0.0)
     }
 
     /// Sets gamma^2 C (I + gamma^2 H C)^-1.

@@ -1,4 +1,4 @@
-//! Gas that flows in the equations of a phase, and in their Newton systems.
+//! Gas that flows, and actuators that lag, in the equations of a phase and in their Newton systems.
 
 use super::{System, flow_of};
 use crate::base::vector::dot;
@@ -11,13 +11,21 @@ impl System {
         amounts.copy_from_slice(&self.at.flowing[0]);
     }
 
-    /// Adds to Kt, just updated, the tangent of gas that flows under constant pressures, and takes its other derivatives.
-    pub(super) fn add_flow_tangents(&mut self, t: f64, u: &[f64], amounts: &[f64]) {
+    /// Brings forces of actuators that lag to the `internal` unknowns at time `t`.
+    pub(super) fn set_lagging(&self, t: f64, internal: &[f64]) {
+        if let (Some(flow), (_, amounts @ [_, ..])) = (flow_of(&self.flow), self.parts_of(internal))
+        {
+            flow.set(t, amounts);
+        }
+    }
+
+    /// Adds to Kt, just updated, the tangent of gas that flows under constant pressures, and takes its other derivatives, `at` (u, v, m).
+    pub(super) fn add_flow_tangents(&mut self, t: f64, at: [&[f64]; 3]) {
         let (Some(flow), Some(matrix)) = (flow_of(&self.flow), &mut self.newton.flow) else {
             return;
         };
         if let Some(stiffness) = self.newton.stiffness.own() {
-            flow.linearize(t, [u, amounts], stiffness, &mut matrix.derivatives);
+            flow.linearize(t, at, stiffness, &mut matrix.derivatives);
         }
     }
 
@@ -32,6 +40,9 @@ impl System {
         }
         let (dofs, k) = (matrix.column.len(), matrix.count);
         for column in 0..k {
+            if !matrix.is_stiff(column) {
+                continue;
+            }
             let gradients = &matrix.derivatives.gradients;
             let (own, x) = (&gradients[column * dofs..][..dofs], &mut matrix.column);
             newton.solver.solve(&self.rows, own, &newton.demands, x, &mut newton.mu);

@@ -53,7 +53,7 @@ impl System {
         let missing = [
             (self.matrices.rigid.is_some(), "rigid pieces"),
             (self.matrices.branches.is_some(), "Maxwell branches"),
-            (self.flow.is_some(), "gas or a liquid that flows"),
+            (self.flow.is_some(), "gas or a liquid that flows, or an actuator that lags"),
         ];
         match missing.iter().find(|(is_there, _)| *is_there) {
             Some((_, what)) => {

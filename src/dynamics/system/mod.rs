@@ -14,7 +14,7 @@
 //! motion. The first two solve their Newton systems with the one symmetric matrix of [`newton`], half as
 //! large as the state.
 //!
-//! Maxwell branches and gas that flows have unknowns beside u and v: internal strains and amounts, in this order.
+//! Maxwell branches, gas that flows and actuators that lag have unknowns beside u and v: internal strains and amounts, in this order.
 //!
 //! Two more unknowns are integrated: the energy dissipated and the energy supplied since t = 0. They cost two
 //! dot products, nothing depends on them, and the error control leaves them out; they make the energy balance
@@ -442,6 +442,7 @@ impl System {
             ..Energy::default()
         };
         let (strains, amounts) = self.parts_of(internal);
+        self.set_lagging(t, internal);
         if let (Some(branches), [_, ..]) = (branches, strains) {
             energy.strain += branches.energy(u, strains);
         }
@@ -488,6 +489,7 @@ impl System {
         v: &[f64],
         internal: &[f64],
     ) -> Result<(), Failure> {
+        self.set_lagging(t, internal);
         self.collect_forces(t, u, v)?;
         let (strains, amounts) = self.parts_of(internal);
         let Evaluation { nodal, relaxing, relaxed, flowing, brought, .. } = &mut self.at;
@@ -578,14 +580,19 @@ impl System {
         state::length(self.dofs()) + self.internal()
     }
 
-    /// Number of internal unknowns: strains of Maxwell branches, and behind them amounts of gas.
+    /// Number of internal unknowns: strains of Maxwell branches, and behind them amounts of gas and states of actuators that lag.
     pub(crate) fn internal(&self) -> usize {
         self.at.relaxing.len() + self.amounts().len()
     }
 
-    /// The amounts of gas (kg) at the start of the scene; none if no gas flows.
+    /// The amounts of gas (kg) and the states of actuators at the start of the scene; none if no gas flows and none lags.
     pub(crate) fn amounts(&self) -> &[f64] {
         flow_of(&self.flow).map_or(&[], |flow| flow.start())
+    }
+
+    /// Sizes of these amounts, by which their tolerances are told.
+    pub(crate) fn sizes(&self) -> Vec<f64> {
+        flow_of(&self.flow).map_or_else(Vec::new, |flow| flow.sizes())
     }
 
     /// The internal strains and the amounts among the `internal` unknowns, if these are given.

@@ -33,10 +33,11 @@ impl Ode for System {
         self.linearize_edges(t, u, v, others)?;
         // what Maxwell branches add depends on gamma
         let (strains, amounts) = self.parts_of(others);
+        self.set_lagging(t, others);
         let current = self.update_tangents(t, u, v, reuse && strains.is_empty());
         self.add_branch_tangents(gamma, u, strains);
         if current {
-            self.add_flow_tangents(t, u, amounts);
+            self.add_flow_tangents(t, [u, v, amounts]);
         }
         self.factorize_newton(gamma)?;
         Ok(current)

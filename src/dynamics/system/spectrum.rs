@@ -76,10 +76,10 @@ const ROUND_OFF: f64 = 1e-10;
 impl System {
     /// The spectrum at (t, u, v).
     pub(crate) fn spectrum(&mut self, t: f64, u: &[f64], v: &[f64]) -> Spectrum {
+        let amounts = self.amounts().to_vec();
         self.update_tangents(t, u, v, false);
         self.add_branch_tangents(0.0, u, &[]);
-        let amounts = self.amounts().to_vec();
-        self.add_flow_tangents(t, u, &amounts);
+        self.add_flow_tangents(t, [u, v, &amounts]);
         if let Some(reduction) = &self.reduction {
             return self.spectrum_along(&reduction.shapes);
         }

@@ -72,7 +72,7 @@ impl Trajectory {
     }
 
     fn grown(&self, sample: &Sample) -> Result<Vec<Grown>, InputError> {
-        self.scene.grown(self.phase_of(sample)?, sample.time)
+        self.scene.grown(self.phase_of(sample)?, sample.time, &sample.amounts)
     }
 
     /// The forces of bodies that touch.

@@ -77,6 +77,9 @@ impl Identity {
         if !scene.growths().is_empty() {
             parts.push(("growths".into(), text(of_text(scene.growths()))));
         }
+        if scene.lags().len() > 0 {
+            parts.push(("lags".into(), text(of_text(&scene.lags().collect::<Vec<_>>()))));
+        }
         if !scene.magnets().is_empty() {
             parts.push(("magnets".into(), text(of_text(scene.magnets()))));
         }

@@ -131,7 +131,7 @@ impl Record {
             ("displacements", &self.displacements, dofs),
             ("velocities", &self.velocities, dofs),
             ("internal strains", &self.internal_strains, internal),
-            ("amounts of gas", &self.amounts, scene.flowing_amounts()),
+            ("amounts of gas and states of lags", &self.amounts, scene.flowing_amounts()),
         ] {
             if numbers.len() != needed {
                 let found = numbers.len();

@@ -243,16 +243,31 @@ fn flow(phase: Phase, table: &Table, scene: &Scene) -> Result<Phase, Error> {
 }
 
 fn actuate(phase: Phase, table: &Table, scene: &Scene) -> Result<Phase, Error> {
+    let heated: Vec<&str> =
+        scene.lags().filter(|(_, lag)| lag.per_kelvin().is_some()).map(|(name, _)| name).collect();
+    if let Some(actuators) = table.optional("heated", |value| names(value, &heated))? {
+        return Ok(phase.actuate(actuators, course(table, "power", "powers")?));
+    }
+    let by_other = |names: &[String]| match names.iter().find(|name| heated.contains(&&***name)) {
+        None => Ok(()),
+        Some(name) => {
+            let help = "it is heated: give a power, { heated = ..., power = ... }";
+            Err(table.blame(InputError::new("actuation", format!("of \"{name}\""), help)))
+        }
+    };
     let muscles: Vec<&str> = scene.muscles().iter().map(|muscle| muscle.name()).collect();
     if let Some(muscles) = table.optional("muscles", |value| names(value, &muscles))? {
+        by_other(&muscles)?;
         return Ok(phase.actuate(muscles, course(table, "stress", "stresses")?));
     }
     let growths: Vec<&str> = scene.growths().iter().map(|growth| growth.name()).collect();
     if let Some(growths) = table.optional("growths", |value| names(value, &growths))? {
+        by_other(&growths)?;
         return Ok(phase.actuate(growths, course(table, "strain", "strains")?));
     }
     let known: Vec<&str> = scene.springs().iter().map(|spring| spring.name()).collect();
     let springs = table.required("springs", |value| names(value, &known))?;
+    by_other(&springs)?;
     let is_length = ["length", "lengths"].into_iter().any(|key| table.get(key).is_some());
     let is_winch = |name: &String| {
         scene.springs().iter().any(|spring| spring.name() == name && spring.is_winch())
@@ -337,6 +352,6 @@ fn named(value: &Value, known: &[&str]) -> Result<String, Error> {
     }
 }
 
-fn names(value: &Value, known: &[&str]) -> Result<Vec<String>, Error> {
+pub(super) fn names(value: &Value, known: &[&str]) -> Result<Vec<String>, Error> {
     value.one_or_more()?.iter().map(|value| named(value, known)).collect()
 }

@@ -240,23 +240,26 @@ pub(super) const FLOW: TableKeys = TableKeys::new(
 
 pub(super) const ACTUATE: TableKeys = TableKeys::new(
     "actuate",
-    "Forces of the actuators in springs, tensions of cables, lengths that winches have drawn in, stresses of muscles, and strains of growth. Those of a table are \
+    "Forces of the actuators in springs, tensions of cables, lengths that winches have drawn in, stresses of muscles, strains of growth, and powers of what is heated. Those of a table are \
      interpolated linearly, and are constant before and after.",
     &[
         Key::new("springs", Holds::OneOrMore(&Holds::Text), "names of springs and cables"),
         Key::new("muscles", Holds::OneOrMore(&Holds::Text), "names of muscles"),
         Key::new("growths", Holds::OneOrMore(&Holds::Text), "names of growths"),
+        Key::new("heated", Holds::OneOrMore(&Holds::Text), "names of springs, cables, muscles and growths that a `[[lag]]` heats"),
         Key::new("force", Holds::Changing, "the force: of a spring positive if it extends, of a cable if it pulls").in_unit("N"),
         Key::new("length", Holds::Changing, "of a winch: the length that it has drawn in").in_unit("m"),
         Key::new("stress", Holds::Changing, "of a muscle: the force per section of the undeformed shape by which it pulls; below 0 it pushes")
             .in_unit("Pa"),
         Key::new("strain", Holds::Changing, "of a growth: by how much what is free gets longer; of heat the coefficient of expansion times the change of temperature")
             .in_unit("1"),
+        Key::new("power", Holds::Changing, "the power that heats them, each by itself").in_unit("W"),
         TIMES,
         Key::new("forces", Holds::List(&Holds::Number), "forces at these times").in_unit("N"),
         Key::new("lengths", Holds::List(&Holds::Number), "lengths at these times").in_unit("m"),
         Key::new("strains", Holds::List(&Holds::Number), "strains at these times").in_unit("1"),
         Key::new("stresses", Holds::List(&Holds::Number), "stresses at these times").in_unit("Pa"),
+        Key::new("powers", Holds::List(&Holds::Number), "powers at these times").in_unit("W"),
     ],
     "actuate = [{ springs = \"down\", times = [0.2, 0.3], forces = [0.0, -0.8] }]",
 )
@@ -269,6 +272,8 @@ pub(super) const ACTUATE: TableKeys = TableKeys::new(
     &["muscles", "times", "stresses"],
     &["growths", "strain"],
     &["growths", "times", "strains"],
+    &["heated", "power"],
+    &["heated", "times", "powers"],
 ]);
 
 pub(super) const DRIVE: TableKeys = TableKeys::new(

@@ -9,7 +9,7 @@ use toml::de::{DeTable, DeValue};
 use super::set_value::quoted;
 use super::written::insertion;
 use crate::elements::mesh::Selection;
-use crate::scene::forces::{DipolePart, MagneticField, Signal, SignalKind, VectorSignal};
+use crate::scene::forces::{DipolePart, Lag, MagneticField, Signal, SignalKind, VectorSignal};
 use crate::scene::timeline::{Load, Phase, Scene};
 
 /// A phase whose signals differ from those in the file.
@@ -122,7 +122,10 @@ fn actuations(phase: &Phase, scene: &Scene) -> String {
             .iter()
             .any(|spring| spring.is_winch() && springs.iter().any(|name| name == spring.name()));
         let are = |name: &str| springs.iter().any(|other| other == name);
-        let (key, keys) = if scene.muscles().iter().any(|muscle| are(muscle.name())) {
+        let is_heated = |(name, lag): (&str, &Lag)| lag.per_kelvin().is_some() && are(name);
+        let (key, keys) = if scene.lags().any(is_heated) {
+            ("heated", ["power", "powers"])
+        } else if scene.muscles().iter().any(|muscle| are(muscle.name())) {
             ("muscles", ["stress", "stresses"])
         } else if scene.growths().iter().any(|growth| are(growth.name())) {
             ("growths", ["strain", "strains"])

@@ -8,6 +8,7 @@ use super::gas::{self, GAS, LIQUID, ORIFICE, SUPPLY};
 use super::growth::{self, GROWTH};
 use super::initial::{self, INITIAL};
 use super::keys::{Holds, Key, TableKeys};
+use super::lag::{self, LAG};
 use super::magnet::{self, MAGNET};
 use super::muscle::{self, MUSCLE};
 use super::obstacle::{self, OBSTACLE};
@@ -48,6 +49,7 @@ pub(super) const TOP: TableKeys = TableKeys::new(
         Key::new("cable", Holds::Tables(&CABLE), "cables"),
         Key::new("muscle", Holds::Tables(&MUSCLE), "muscles in the bodies"),
         Key::new("growth", Holds::Tables(&GROWTH), "cells that grow, by swelling or heat"),
+        Key::new("lag", Holds::Tables(&LAG), "actuators that follow their commands with a delay"),
         Key::new("magnet", Holds::Tables(&MAGNET), "magnets in the bodies"),
         Key::new("dipole", Holds::Tables(&DIPOLE), "magnets outside of the bodies"),
         Key::new("chamber", Holds::Tables(&CHAMBER), "chambers"),
@@ -99,13 +101,14 @@ pub(super) fn scene_file(top: &Table) -> Result<SceneFile, Error> {
         Some(Err(_)) => initial,
         None => None,
     };
-    let parts: [(&str, Add); 15] = [
+    let parts: [(&str, Add); 16] = [
         ("tie", tie::add_tie),
         ("touch", touch::add_touch),
         ("spring", surroundings::add_spring),
         ("cable", surroundings::add_cable),
         ("muscle", muscle::add_muscle),
         ("growth", growth::add_growth),
+        ("lag", lag::add_lag),
         ("magnet", magnet::add_magnet),
         ("dipole", dipole::add_dipole),
         ("chamber", surroundings::add_chamber),

@@ -103,6 +103,9 @@ pub(crate) enum SignalKind {
     Formula(Arc<Formula>),
     #[cfg_attr(feature = "checkpoint", serde(skip))]
     Live(Live),
+    /// An unknown of a run and its rate, as they are at the time for which forces are evaluated.
+    #[cfg_attr(feature = "checkpoint", serde(skip))]
+    State(Live),
 }
 
 /// Numbers that stay until a command sets others, even while forces read them.
@@ -140,6 +143,23 @@ impl Signal {
     /// A function of time (s), smooth except at its [breaks](Self::with_breaks).
     pub fn function(f: impl Fn(f64) -> f64 + Send + Sync + 'static) -> Self {
         Self(SignalKind::Function { function: Arc::new(f), breaks: Vec::new() })
+    }
+
+    /// An unknown of a run: `state` and its rate.
+    pub(crate) fn of_state(state: Live) -> Self {
+        Self(SignalKind::State(state))
+    }
+
+    /// The same signal, times a `factor`.
+    pub(crate) fn times(self, factor: f64) -> Self {
+        match self.value() {
+            _ if factor == 1.0 => self,
+            Some(value) => Self::constant(factor * value),
+            None => {
+                let breaks = self.breaks().to_vec();
+                Self::function(move |t| factor * self.at(t)).with_breaks(breaks)
+            }
+        }
     }
 
     /// A formula of time `t` (s): `"2000 * sin(2*pi*3*t)"`.
@@ -185,7 +205,7 @@ impl Signal {
             SignalKind::Function { function, .. } => function(t),
             SignalKind::TimeTable(table) => table.at(t, 0),
             SignalKind::Formula(formula) => formula.at(t).0[0],
-            SignalKind::Live(live) => live.at(0),
+            SignalKind::Live(live) | SignalKind::State(live) => live.at(0),
         }
     }
 
@@ -199,6 +219,7 @@ impl Signal {
             }
             SignalKind::TimeTable(table) => table.rate(t, 0),
             SignalKind::Formula(formula) => formula.at(t).0[1],
+            SignalKind::State(state) => state.at(1),
         }
     }
 
@@ -241,7 +262,8 @@ impl Signal {
     /// Times (s) at which the signal changes its law.
     pub(crate) fn breaks(&self) -> &[f64] {
         match &self.0 {
-            SignalKind::Constant(_) | SignalKind::Formula(_) | SignalKind::Live(_) => &[],
+            SignalKind::Constant(_) | SignalKind::Formula(_) => &[],
+            SignalKind::Live(_) | SignalKind::State(_) => &[],
             SignalKind::Function { breaks, .. } => breaks,
             SignalKind::TimeTable(table) => &table.times,
         }
@@ -254,7 +276,7 @@ impl Signal {
             SignalKind::Function { breaks, .. } => finite(&format!("breaks of {input}"), breaks),
             SignalKind::TimeTable(table) => table.validate(input, 1),
             SignalKind::Formula(_) => Ok(()),
-            SignalKind::Live(live) => finite(input, &[live.at(0)]),
+            SignalKind::Live(live) | SignalKind::State(live) => finite(input, &[live.at(0)]),
         }
     }
 }
@@ -272,7 +294,7 @@ impl fmt::Debug for Signal {
             SignalKind::Function { .. } => f.write_str("function of time"),
             SignalKind::TimeTable(table) => table.fmt(f),
             SignalKind::Formula(formula) => formula.fmt(f),
-            SignalKind::Live(live) => write!(f, "{}", live.at(0)),
+            SignalKind::Live(live) | SignalKind::State(live) => write!(f, "{}", live.at(0)),
         }
     }
 }

@@ -10,8 +10,12 @@ use crate::elements::body::Grown;
 use crate::elements::force::Forces;
 use crate::elements::mesh::Selection;
 use crate::scene::forces::{
-    Contact, FacePressure, Gravity, Growth, Load, Signal, VaryingLoad, VectorSignal, areas, shares,
+    Contact, FacePressure, Gravity, Growth, Lagging, Load, Signal, VaryingLoad, VectorSignal,
+    areas, shares,
 };
+
+/// What makes the forces of an actuator of its signals.
+type Build<'a> = &'a dyn Fn(Vec<Signal>) -> Result<Forces, InputError>;
 
 impl Scene {
     /// The forces in one phase, except those of constant matrices.
@@ -37,7 +41,7 @@ impl Scene {
             forces.push(Arc::new(Gravity::new(&self.body, gravity)));
         }
         self.add_loads(phase, &mut forces)?;
-        self.add_actuators(phase, &mut forces)?;
+        let lagging = self.add_actuators(phase, &mut forces)?;
         if let Some(field) = &phase.magnetic_field {
             let input = format!("magnetic field of phase \"{}\"", phase.name);
             let Some(magnets) = self.magnetization()? else {
@@ -48,7 +52,7 @@ impl Scene {
         }
         self.add_dipoles(phase, &mut forces)?;
         self.add_chambers(phase, &mut forces)?;
-        self.add_amounts(phase, &mut forces)?;
+        self.add_amounts(phase, lagging, &mut forces)?;
         for (nodes, pressure) in &phase.face_pressures {
             forces.push(Arc::new(FacePressure::new(&self.body, nodes, pressure.clone())?));
         }
@@ -165,27 +169,40 @@ impl Scene {
         Ok(sum)
     }
 
-    fn add_actuators(&self, phase: &Phase, forces: &mut Forces) -> Result<(), InputError> {
+    /// Adds the forces of springs, muscles and growths, and returns those that lag, in the order of the lags.
+    fn add_actuators(
+        &self,
+        phase: &Phase,
+        forces: &mut Forces,
+    ) -> Result<Vec<Lagging>, InputError> {
+        let mut lags: Vec<Option<Lagging>> = self.lags().map(|_| None).collect();
+        let mut drive = |name: &str, signals: Vec<Signal>, build: Build| {
+            let Some((number, mut lagging)) = self.lagging(name, &signals)? else {
+                forces.extend(build(signals)?);
+                return Ok::<(), InputError>(());
+            };
+            let driven = build(vec![lagging.signal()])?;
+            // that of its elasticity comes before it
+            driven.last().into_iter().for_each(|force| lagging.drive(force.clone()));
+            forces.extend(driven);
+            lags[number] = Some(lagging);
+            Ok(())
+        };
         let mut actuations = self.actuation_signals(phase)?.into_iter();
         for (spring, actuation) in self.springs.iter().zip(&mut actuations) {
-            forces.extend(spring.forces(self.body.mesh(), actuation)?);
+            drive(spring.name(), actuation, &|signals| spring.forces(self.body.mesh(), signals))?;
         }
         for (muscle, stress) in self.muscles.iter().zip(&mut actuations) {
             if !stress.is_empty() {
-                forces.push(Arc::new(muscle.force(&self.body, stress)?));
+                let force = |stress| Ok(vec![Arc::new(muscle.force(&self.body, stress)?) as _]);
+                drive(muscle.name(), stress, &force)?;
             }
         }
         for (growth, strain) in self.growing(phase)? {
-            forces.push(Arc::new(growth.force(&self.body, strain)?));
+            let force = |strain| Ok(vec![Arc::new(growth.force(&self.body, strain)?) as _]);
+            drive(growth.name(), strain, &force)?;
         }
-        Ok(())
-    }
-
-    /// Forces (N) of the actuators of all springs at time `t` (s) in `phase`.
-    #[cfg(feature = "output")]
-    pub(crate) fn actuations(&self, phase: &Phase, t: f64) -> Result<Vec<f64>, InputError> {
-        let signals = self.actuation_signals(phase)?.into_iter().take(self.springs.len());
-        Ok(signals.map(|signals| signals.iter().map(|signal| signal.at(t)).sum()).collect())
+        Ok(lags.into_iter().flatten().collect())
     }
 
     /// What grows in `phase`, with its strains.
@@ -215,17 +232,22 @@ impl Scene {
         Ok(all)
     }
 
-    /// The cells that have grown in `phase` at time `t` (s), and to how many times their size.
-    pub(crate) fn grown(&self, phase: &Phase, t: f64) -> Result<Vec<Grown>, InputError> {
+    /// The cells that have grown in `phase` at time `t` (s), and to how many times their size; `states` as [`drive_at`](Self::drive_at) takes them.
+    pub(crate) fn grown(
+        &self,
+        phase: &Phase,
+        t: f64,
+        states: &[f64],
+    ) -> Result<Vec<Grown>, InputError> {
         let all = self.growing(phase)?.into_iter();
-        let grown = all.map(|(growth, strain)| {
-            let strain: f64 = strain.iter().map(|signal| signal.at(t)).sum();
+        let grown = all.map(|(growth, _)| {
+            let [strain, _] = self.drive_at(growth.name(), phase, t, states);
             Ok((growth.cells(&self.body)?, 1.0 + strain))
         });
         grown.collect()
     }
 
-    /// What actuates each spring, then each muscle, then each growth, in `phase`.
+    /// What actuates each spring, then each muscle, then each growth, in `phase`; of those that lag what drives them at last.
     fn actuation_signals(&self, phase: &Phase) -> Result<Vec<Vec<Signal>>, InputError> {
         let input = format!("actuation of phase \"{}\"", phase.name);
         let mut actuations: Vec<Vec<Signal>> = vec![Vec::new(); self.actuators().count()];
@@ -235,7 +257,8 @@ impl Scene {
                 actuations[self.actuator_number(name, &input)?].push(force.clone());
             }
         }
-        Ok(actuations)
+        let named = self.actuators().zip(actuations);
+        Ok(named.map(|(name, signals)| self.driven(name, signals)).collect())
     }
 
     fn add_chambers(&self, phase: &Phase, forces: &mut Forces) -> Result<(), InputError> {

@@ -7,8 +7,8 @@ use super::{Phase, Scene, unique};
 use crate::base::input::{InputError, find, not_negative, unknown_among};
 use crate::elements::force::Forces;
 use crate::scene::forces::{
-    AmountFlow, Chamber, Closed, DipolePart, End, Filled, Gas, Live, Orifice, OrificeFlow, Signal,
-    Supply,
+    AmountFlow, Chamber, Closed, DipolePart, End, Filled, Gas, Lagging, Live, Orifice, OrificeFlow,
+    Signal, Supply,
 };
 
 /// What an end of an orifice in the open is called.
@@ -70,10 +70,10 @@ impl Scene {
         !self.gases.is_empty()
     }
 
-    /// Number of amounts of gas and liquids that are unknowns.
+    /// Number of amounts of gas and liquids, and of states of actuators that lag, that are unknowns.
     #[cfg(feature = "checkpoint")]
     pub(crate) fn flowing_amounts(&self) -> usize {
-        if self.is_shut { 0 } else { self.gases.len() + self.liquids.len() }
+        if self.is_shut { 0 } else { self.gases.len() + self.liquids.len() + self.lags.len() }
     }
 
     /// All that gas is and flows through, for comparison with another scene.
@@ -82,9 +82,9 @@ impl Scene {
         (&self.gases, &self.orifices, &self.supplies, self.atmosphere)
     }
 
-    /// The same scene with constant amounts of gas and liquids, without orifices: for what has no unknowns for amounts.
+    /// The same scene with constant amounts of gas and liquids, without orifices and lags: for what has no unknowns for them.
     pub(crate) fn shut(&self) -> Cow<'_, Self> {
-        if !self.has_gas() && self.liquids.is_empty() {
+        if !self.has_gas() && self.liquids.is_empty() && self.lags.is_empty() {
             return Cow::Borrowed(self);
         }
         let mut shut = Self { is_shut: true, ..self.clone() };
@@ -178,8 +178,13 @@ impl Scene {
         supplies.chain(self.chambers.iter().map(Chamber::name)).chain([OPEN])
     }
 
-    /// Adds the forces of all gases and liquids: together where their amounts are unknowns, else one by one.
-    pub(super) fn add_amounts(&self, phase: &Phase, forces: &mut Forces) -> Result<(), InputError> {
+    /// Adds the forces of all gases and liquids: together, and with the unknowns of what lags, where their amounts are unknowns, else one by one.
+    pub(super) fn add_amounts(
+        &self,
+        phase: &Phase,
+        lagging: Vec<Lagging>,
+        forces: &mut Forces,
+    ) -> Result<(), InputError> {
         let input = format!("open of phase \"{}\"", phase.name);
         for (name, opening) in &phase.openings {
             self.orifice_number(name, &input)?;
@@ -209,8 +214,8 @@ impl Scene {
             for liquid in liquids {
                 forces.push(Arc::new(Closed::new(liquid, dofs)));
             }
-        } else if !(gases.is_empty() && liquids.is_empty()) {
-            forces.push(Arc::new(AmountFlow::new(gases, orifices, liquids)));
+        } else if !(gases.is_empty() && liquids.is_empty() && lagging.is_empty()) {
+            forces.push(Arc::new(AmountFlow::new(gases, orifices, liquids, lagging)));
         }
         Ok(())
     }

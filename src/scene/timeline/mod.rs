@@ -9,6 +9,7 @@ mod fluid;
 mod forces;
 mod gas;
 mod initial;
+mod lag;
 mod liquid;
 mod load;
 mod loading;
@@ -42,8 +43,8 @@ use crate::scene::constraint::{
     Constrained, Constraint, ConstraintRow, PhaseStart, prescribe, rows,
 };
 use crate::scene::forces::{
-    ATMOSPHERE, Chamber, Contact, Dipole, Fluid, Gas, Growth, Liquid, Magnet, Muscle, Obstacle,
-    Orifice, Spring, Supply, Touch, TouchForce,
+    ATMOSPHERE, Chamber, Contact, Dipole, Fluid, Gas, Growth, Lag, Liquid, Magnet, Muscle,
+    Obstacle, Orifice, Spring, Supply, Touch, TouchForce,
 };
 use crate::scene::reduced_model::ReducedModel;
 
@@ -72,6 +73,8 @@ pub struct Scene {
     magnets: Vec<Magnet>,
     dipoles: Vec<Dipole>,
     growths: Vec<Growth>,
+    /// By the names of actuators.
+    lags: Vec<(String, Lag)>,
     fluids: Vec<Fluid>,
     chambers: Vec<Chamber>,
     gases: Vec<Gas>,
@@ -80,7 +83,7 @@ pub struct Scene {
     supplies: Vec<Supply>,
     /// Absolute pressure (Pa) around chambers with gas.
     atmosphere: f64,
-    /// Whether amounts of gas and liquids are constants.
+    /// Whether amounts of gas and liquids, and what drives actuators that lag, are no unknowns.
     is_shut: bool,
     ties: Vec<Tie>,
     touches: Vec<Touch>,
@@ -119,6 +122,7 @@ impl Scene {
             magnets: Vec::new(),
             dipoles: Vec::new(),
             growths: Vec::new(),
+            lags: Vec::new(),
             fluids: Vec::new(),
             chambers: Vec::new(),
             gases: Vec::new(),
@@ -398,6 +402,7 @@ impl Scene {
         if !(self.muscles.is_empty() && self.growths.is_empty()) {
             unique("spring, muscle or growth", self.actuators())?;
         }
+        self.check_lags()?;
         unique("chamber", self.chambers.iter().map(Chamber::name))?;
         unique("obstacle", self.obstacles.iter().map(Obstacle::name))?;
         unique("touch", self.touches.iter().map(Touch::name))?;

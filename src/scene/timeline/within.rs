@@ -57,6 +57,15 @@ impl Scene {
         find(name, self.muscles.iter().map(Muscle::name), input, "muscles")
     }
 
+    /// The stress (Pa) of full activation of a muscle with Hill's law; `input` is where its name was given.
+    pub(crate) fn largest_stress(&self, name: &str, input: &str) -> Result<f64, InputError> {
+        let muscle = &self.muscles[self.muscle_number(name, input)?];
+        muscle.law().map(|hill| hill.largest).ok_or_else(|| {
+            let help = "it has no Hill's law, whose largest stress is full activation: give it one";
+            InputError::new(input, format!("\"{name}\""), help)
+        })
+    }
+
     /// Number (from 0) of the spring, muscle or growth with a name, in this order; `input` is where that was given.
     pub(crate) fn actuator_number(&self, name: &str, input: &str) -> Result<usize, InputError> {
         if self.muscles.is_empty() && self.growths.is_empty() {
@@ -66,7 +75,7 @@ impl Scene {
     }
 
     /// Names of all springs, muscles and growths.
-    pub(super) fn actuators(&self) -> impl Iterator<Item = &str> + Clone {
+    pub(crate) fn actuators(&self) -> impl Iterator<Item = &str> + Clone {
         let springs = self.springs.iter().map(Spring::name);
         let muscles = self.muscles.iter().map(Muscle::name);
         springs.chain(muscles).chain(self.growths.iter().map(Growth::name))

@@ -15,7 +15,7 @@ use crate::dynamics::trajectory::{Sample, Trajectory};
 use crate::elements::mesh::Mesh;
 use crate::io::output::role::Role;
 use crate::io::output::svg::{View, displaced, positions};
-use crate::scene::forces::{Joint, Obstacle, Shape, ShapeKind};
+use crate::scene::forces::{Joint, Obstacle, Shape, ShapeKind, Spring};
 use crate::scene::timeline::{Phase, Scene};
 
 /// Most samples that a page holds, the bytes that they may take together before encoding, and the number of
@@ -297,8 +297,12 @@ fn springs(
     ends: &[Vec<Joint>],
 ) -> Result<Value, Error> {
     let scene = trajectory.scene();
-    let forces =
-        frames.iter().map(|sample| scene.actuations(trajectory.phase_of(sample)?, sample.time));
+    let forces = frames.iter().map(|sample| {
+        let phase = trajectory.phase_of(sample)?;
+        let drive =
+            |spring: &Spring| scene.drive_at(spring.name(), phase, sample.time, &sample.amounts)[0];
+        Ok(scene.springs().iter().map(drive).collect())
+    });
     let forces: Vec<Vec<f64>> = forces.collect::<Result<_, InputError>>()?;
     let packed = scene.springs().iter().zip(ends).enumerate().map(|(number, (spring, ends))| {
         json!({

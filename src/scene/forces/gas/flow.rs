@@ -1,4 +1,4 @@
-//! The gases and liquids of a scene whose amounts are unknowns.
+//! The gases and liquids of a scene whose amounts are unknowns, and the actuators that lag.
 
 use super::Filled;
 use super::orifice::{End, OrificeFlow};
@@ -6,13 +6,15 @@ use crate::base::sparse::BlockMatrix;
 use crate::elements::force::{Flow, FlowDerivatives, Force, NodalForces, Tangents};
 use crate::integrators::ode::Failure;
 use crate::scene::forces::content::Content;
+use crate::scene::forces::lag::Lagging;
 use crate::scene::forces::liquid::Poured;
 
-/// All gases of a scene and the orifices between them, and behind them all liquids.
+/// All gases of a scene and the orifices between them, behind them all liquids, and then what lags.
 pub(crate) struct AmountFlow {
     gases: Vec<Filled>,
     orifices: Vec<OrificeFlow>,
     liquids: Vec<Poured>,
+    lagging: Vec<Lagging>,
     start: Vec<f64>,
 }
 
@@ -21,10 +23,17 @@ impl AmountFlow {
         gases: Vec<Filled>,
         orifices: Vec<OrificeFlow>,
         liquids: Vec<Poured>,
+        lagging: Vec<Lagging>,
     ) -> Self {
         let mut start: Vec<f64> = gases.iter().map(Content::amount).collect();
         start.extend(liquids.iter().map(Content::amount));
-        Self { start, gases, orifices, liquids }
+        start.resize(start.len() + lagging.len(), 0.0);
+        Self { start, gases, orifices, liquids, lagging }
+    }
+
+    /// Numbers of the first liquid and of what lags first.
+    fn parts(&self) -> [usize; 2] {
+        [self.gases.len(), self.gases.len() + self.liquids.len()]
     }
 
     /// All gases, and then all liquids.
@@ -37,6 +46,17 @@ impl AmountFlow {
 impl Flow for AmountFlow {
     fn start(&self) -> &[f64] {
         &self.start
+    }
+
+    fn sizes(&self) -> Vec<f64> {
+        let amounts = self.all().map(Content::amount);
+        amounts.chain(self.lagging.iter().map(Lagging::size)).collect()
+    }
+
+    fn set(&self, t: f64, amounts: &[f64]) {
+        let [_, first] = self.parts();
+        let each = self.lagging.iter().zip(amounts.iter().skip(first));
+        each.for_each(|(lagging, &state)| lagging.set(t, state));
     }
 
     fn add_forces_of(
@@ -60,14 +80,18 @@ impl Flow for AmountFlow {
         }
         let each = self.gases.iter().zip(&*rates).zip(&*pressures);
         let mut power = each.map(|((gas, rate), &pressure)| gas.brought(pressure)[0] * rate).sum();
-        let count = self.gases.len();
-        let each = amounts[count..].iter().zip(&mut rates[count..]);
+        let [liquids, lagging] = self.parts();
+        let each = amounts[liquids..].iter().zip(&mut rates[liquids..]);
         for (liquid, (&amount, rate)) in self.liquids.iter().zip(each) {
             liquid.press(u, amount, forces)?;
             *rate = liquid.rate(t)?;
             if *rate != 0.0 {
                 power += liquid.brought(u, amount)?[0] * *rate;
             }
+        }
+        let each = amounts[lagging..].iter().zip(&mut rates[lagging..]);
+        for (lagging, (&state, rate)) in self.lagging.iter().zip(each) {
+            *rate = lagging.rate(t, state)?;
         }
         Ok(power)
     }
@@ -84,12 +108,12 @@ impl Flow for AmountFlow {
     fn linearize(
         &self,
         t: f64,
-        [u, amounts]: [&[f64]; 2],
+        [u, v, amounts]: [&[f64]; 3],
         stiffness: &mut BlockMatrix,
         derivatives: &mut FlowDerivatives,
     ) {
-        let FlowDerivatives { gradients, pressures: [stiff, pressing], rates, power, work } =
-            derivatives;
+        let FlowDerivatives { gradients, pressures, rates, power, work, trial } = derivatives;
+        let [stiff, pressing] = pressures;
         let ([by_volumes, by_amounts], [flows, pressures]) = (rates, work);
         let count = self.start.len();
         gradients.fill(0.0);
@@ -131,6 +155,13 @@ impl Flow for AmountFlow {
             // d^2E/dm du is less the derivative of the forces by the amount
             power_by_volumes[at] = -rate * pressing[at];
             power_by_amounts[at] = rate * slope;
+        }
+        let [_, first] = self.parts();
+        for (at, lagging) in (first..).zip(&self.lagging) {
+            let gradient = &mut gradients[at * u.len()..][..u.len()];
+            pressing[at] = 1.0;
+            [by_amounts[at * count + at], power_by_amounts[at]] =
+                lagging.linearize(t, [u, v], amounts[at], trial, gradient);
         }
     }
 }
