@@ -11,6 +11,7 @@ use super::forces::Forces;
 use super::inertia::Masses;
 use super::magnetized_points::InDipoleField;
 use super::magnets::Magnetized;
+use super::oriented::Orientable;
 use super::recovery::Recovery;
 use super::strain_modes::StrainProducts;
 use super::tangents::Tangents;
@@ -25,6 +26,7 @@ pub(super) trait Elements:
     + Forces
     + Branched
     + Reinforced
+    + Orientable
     + Magnetized
     + InDipoleField
     + Tangents

@@ -215,12 +215,12 @@ impl Scene {
         Ok(all)
     }
 
-    /// The cells that have grown in `phase` at time `t` (s), and to how many times their size.
+    /// The cells that have grown in `phase` at time `t` (s).
     pub(crate) fn grown(&self, phase: &Phase, t: f64) -> Result<Vec<Grown>, InputError> {
         let all = self.growing(phase)?.into_iter();
         let grown = all.map(|(growth, strain)| {
             let strain: f64 = strain.iter().map(|signal| signal.at(t)).sum();
-            Ok((growth.cells(&self.body)?, 1.0 + strain))
+            Ok(growth.grown(growth.cells(&self.body)?, strain))
         });
         grown.collect()
     }
