@@ -6,7 +6,7 @@ use super::branches::Branched;
 use super::dilatation::Dilatation;
 use super::elements::{ElementsOf, Offset};
 use super::fibres::Reinforced;
-use super::fields::Fields;
+use super::fields::{Fields, GrownFields};
 use super::forces::Forces;
 use super::inertia::Masses;
 use super::magnetized_points::InDipoleField;
@@ -31,6 +31,7 @@ pub(super) trait Elements:
     + InDipoleField
     + Tangents
     + Fields
+    + GrownFields
     + Recovery
     + StrainProducts
     + Send

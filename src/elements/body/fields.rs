@@ -16,17 +16,16 @@ mod nodal;
 #[cfg(test)]
 mod tests;
 
+pub(super) use grown::GrownFields;
 use nalgebra::{Matrix3, SMatrix, SVD, Vector3};
 pub use nodal::NodalField;
 pub(super) use nodal::{Probe, nodal_fields};
 
 use super::elements::{ElementsOf, gradient};
-use super::oriented::Grown;
 use super::projection::Projected;
 use super::regions::Regions;
 use crate::base::vector::norm;
-use crate::elements::material::{Deformation, ElasticLaw, FibreDirection, Strain, with_law};
-use crate::elements::mesh::Mesh;
+use crate::elements::material::{Deformation, ElasticLaw, Strain, with_law};
 
 /// Strain, stress and strain energy density of one cell: means over its natural volume.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -97,25 +96,6 @@ pub(super) trait Fields {
         see: &mut dyn FnMut(usize, usize, &Tensors),
     );
 
-    /// Those of one cell that has grown along a `course`.
-    fn grown_field(
-        &self,
-        grown: Grown,
-        course: (&Mesh, Option<&FibreDirection>),
-        u: &[f64],
-        cell: usize,
-    ) -> CellField;
-
-    /// As [`each_node`](Self::each_node), likewise.
-    fn each_grown_node(
-        &self,
-        grown: Grown,
-        course: (&Mesh, Option<&FibreDirection>),
-        u: &[f64],
-        cell: usize,
-        see: &mut dyn FnMut(usize, usize, &Tensors),
-    );
-
     /// Angle (rad) by which each cell has turned.
     fn rotations(&self, u: &[f64]) -> Vec<f64>;
 
@@ -168,34 +148,6 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Fields
         });
         for (a, tensors) in at_nodes.iter().enumerate() {
             see(self.nodes[cell][a], a, tensors);
-        }
-    }
-
-    fn grown_field(
-        &self,
-        grown: Grown,
-        course: (&Mesh, Option<&FibreDirection>),
-        u: &[f64],
-        cell: usize,
-    ) -> CellField {
-        mean(self.grown_points(grown, course, u, cell).into_iter())
-    }
-
-    fn each_grown_node(
-        &self,
-        grown: Grown,
-        course: (&Mesh, Option<&FibreDirection>),
-        u: &[f64],
-        cell: usize,
-        see: &mut dyn FnMut(usize, usize, &Tensors),
-    ) {
-        let points = self.grown_points(grown, course, u, cell);
-        for (a, factors) in self.extrapolation.iter().enumerate() {
-            let mut at_node = Tensors::default();
-            for ((_, point), factor) in points.iter().zip(factors) {
-                at_node.add(&point.tensors, *factor);
-            }
-            see(self.nodes[cell][a], a, &at_node);
         }
     }
 

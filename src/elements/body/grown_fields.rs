@@ -15,7 +15,7 @@ pub(crate) struct Grown {
 }
 
 /// Cells that have grown, with the displacements (m) that are left of those of the nodes where they grow alike in all directions.
-type Left<'g> = (&'g Grown, Vec<f64>);
+type Shrunk<'g> = (&'g Grown, Vec<f64>);
 
 impl Body {
     /// As [`cell_fields`](Self::cell_fields), where cells have `grown`.
@@ -58,7 +58,7 @@ impl Body {
         probe.read(|cell, see| self.each_node_of(u, &left, cell, see))
     }
 
-    fn left<'g>(&self, u: &[f64], grown: &'g [Grown]) -> Vec<Left<'g>> {
+    fn left<'g>(&self, u: &[f64], grown: &'g [Grown]) -> Vec<Shrunk<'g>> {
         let shrunk = |grown: &'g Grown| {
             let mut own = vec![0.0; u.len()];
             shrink(self.mesh().positions(), u, grown.stretches.along, &mut own);
@@ -71,7 +71,7 @@ impl Body {
     fn each_node_of(
         &self,
         u: &[f64],
-        left: &[Left],
+        left: &[Shrunk],
         cell: usize,
         see: &mut dyn FnMut(usize, usize, &Tensors),
     ) {

@@ -226,7 +226,7 @@ impl GrowthForce {
 
     /// Checks that something is left in all directions at time `t` (s).
     fn check(&self, t: f64, Stretches { along, across }: Stretches) -> Result<(), Failure> {
-        let (name, strain) = (&self.growth.name, along - 1.0);
+        let (name, strain) = (&self.growth.name, signal::sum(&self.strain, t));
         finite_at(t, format_args!("the strain of growth \"{name}\""), strain)?;
         if along <= 0.0 {
             let help = format!(

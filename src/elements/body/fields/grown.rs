@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix3, SMatrix};
 
-use super::{OfVolume, PointField, Tensors, in_space, normal_part};
+use super::{CellField, OfVolume, PointField, Tensors, in_space, mean, normal_part};
 use crate::base::tensor::{Matrix, dot, product};
 use crate::elements::body::elements::ElementsOf;
 use crate::elements::body::oriented::Grown;
@@ -10,6 +10,60 @@ use crate::elements::material::{
     Deformation, ElasticLaw, FibreDirection, Stretches, along_cell, with_law,
 };
 use crate::elements::mesh::Mesh;
+
+/// Elements as carriers of strain and stress where they have grown along a `course`.
+pub(in crate::elements::body) trait GrownFields {
+    /// The fields of one cell.
+    fn grown_field(
+        &self,
+        grown: Grown,
+        course: (&Mesh, Option<&FibreDirection>),
+        u: &[f64],
+        cell: usize,
+    ) -> CellField;
+
+    /// As [`each_node`](super::Fields::each_node).
+    fn each_grown_node(
+        &self,
+        grown: Grown,
+        course: (&Mesh, Option<&FibreDirection>),
+        u: &[f64],
+        cell: usize,
+        see: &mut dyn FnMut(usize, usize, &Tensors),
+    );
+}
+
+impl<const N: usize, const M: usize, const D: usize, const Q: usize> GrownFields
+    for ElementsOf<N, M, D, Q>
+{
+    fn grown_field(
+        &self,
+        grown: Grown,
+        course: (&Mesh, Option<&FibreDirection>),
+        u: &[f64],
+        cell: usize,
+    ) -> CellField {
+        mean(self.grown_points(grown, course, u, cell).into_iter())
+    }
+
+    fn each_grown_node(
+        &self,
+        grown: Grown,
+        course: (&Mesh, Option<&FibreDirection>),
+        u: &[f64],
+        cell: usize,
+        see: &mut dyn FnMut(usize, usize, &Tensors),
+    ) {
+        let points = self.grown_points(grown, course, u, cell);
+        for (a, factors) in self.extrapolation.iter().enumerate() {
+            let mut at_node = Tensors::default();
+            for ((_, point), factor) in points.iter().zip(factors) {
+                at_node.add(&point.tensors, *factor);
+            }
+            see(self.nodes[cell][a], a, &at_node);
+        }
+    }
+}
 
 /// The state of a point that has grown.
 pub(in crate::elements::body) struct Left<const M: usize> {
@@ -152,7 +206,7 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<
     }
 
     /// The fields at the points of a cell that has grown along a `course`, with their volumes.
-    pub(super) fn grown_points(
+    fn grown_points(
         &self,
         grown: Grown,
         (mesh, course): (&Mesh, Option<&FibreDirection>),
