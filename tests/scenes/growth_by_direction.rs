@@ -187,6 +187,14 @@ fn an_active_bar_pulls() {
     let pull = area * YOUNG / 3.0 * (left - left.powi(-2)) / g;
     println!("{left} times as long as it is then, by {pull} N, off by {:.1e}", pull / load - 1.0);
     assert!(left > 1.2 && (pull / load - 1.0).abs() < 1e-5, "{pull}");
+    // its section is as much smaller as it is longer
+    let fields = equilibrium.trajectory().cell_fields(equilibrium.sample()).unwrap();
+    let [stress, strain] = [fields[0].stress, fields[0].strain].map(|tensor| tensor[0][0]);
+    let (expected, long) = (load / area * length / 0.1, length / 0.1);
+    assert!((stress / expected - 1.0).abs() < 1e-5, "{stress} {expected}");
+    assert!((strain - 0.5 * (long * long - 1.0)).abs() < 1e-12, "{strain}");
+    let thick = (1.0 + 2.0 * fields[0].strain[1][1]) * long;
+    assert!((thick - 1.0).abs() < 1e-5, "{thick}");
 }
 
 /// What grows by g in plane strain is pressed across the plane, by E_e = (1/g^2 - 1)/2 there. Where it is free in the plane, St. Venant and Kirchhoff's material has

@@ -14,7 +14,7 @@ pub(crate) struct Grown {
     pub(crate) stretches: Stretches,
 }
 
-/// Cells that have grown, with the displacements (m) that are left of those of the nodes where they grow alike in all directions.
+/// Cells that have grown, with the displacements (m) that are left of those of the nodes where they grow alike in all directions; none if none do.
 type Shrunk<'g> = (&'g Grown, Vec<f64>);
 
 impl Body {
@@ -22,7 +22,7 @@ impl Body {
     pub(crate) fn cell_fields_of(&self, u: &[f64], grown: &[Grown]) -> Vec<CellField> {
         let mut fields = self.cell_fields(u);
         for (grown, left) in self.left(u, grown) {
-            let alike = self.cell_fields(&left);
+            let alike = if left.is_empty() { Vec::new() } else { self.cell_fields(&left) };
             for &cell in &grown.cells {
                 let own = self.continuum_of(cell);
                 let (course, stretches) = (grown.course.as_ref(), grown.stretches);
@@ -60,6 +60,10 @@ impl Body {
 
     fn left<'g>(&self, u: &[f64], grown: &'g [Grown]) -> Vec<Shrunk<'g>> {
         let shrunk = |grown: &'g Grown| {
+            let course = grown.course.as_ref();
+            if !grown.cells.iter().any(|cell| self.continuum_of(*cell).grows_alike(course)) {
+                return (grown, Vec::new());
+            }
             let mut own = vec![0.0; u.len()];
             shrink(self.mesh().positions(), u, grown.stretches.along, &mut own);
             (grown, own)

@@ -97,7 +97,7 @@ fn growth() {
     }
 }
 
-/// Growth by direction, and in plane strain, in all kinds of cells, with several laws and dilatations: likewise.
+/// Growth by direction, and in plane strain, in all kinds of cells, with several laws and dilatations: likewise, and the fields have its energy.
 #[test]
 fn growth_by_direction() {
     let plane = |cells| Mesh::rectangle([0.1, 0.2], [2, 3], cells).unwrap();
@@ -133,7 +133,7 @@ fn growth_by_direction() {
         let body = body.build().unwrap();
         let d = body.dimension();
         let strain = vec![Signal::constant(0.1), Signal::ramp(0.0, 0.3, 0.0, 1.0)];
-        let force = growth.named("g").force(&body, strain).unwrap();
+        let force = growth.clone().named("g").force(&body, strain).unwrap();
         let cells: Vec<&[usize]> = body.mesh().cells().collect();
         let (u, v) = (noise(body.dofs(), 0.01, 1.0), noise(body.dofs(), 1.0, 2.0));
         assert!(check(&force, (d, &cells), 0.7, &u, &v, 1e-6) > 10.0);
@@ -142,6 +142,11 @@ fn growth_by_direction() {
         let power = nodal_forces(&force, 0.7, &u, &v).carried_power;
         println!("{number}: {power} W, off by {:.1e}", power / gain - 1.0);
         assert!(gain.abs() > 0.01 && (power / gain - 1.0).abs() < 1e-7, "{power} {gain}");
+        let fields = body.cell_fields_of(&u, &[growth.grown((0..cells.len()).collect(), 0.31)]);
+        let stored =
+            fields.iter().zip(body.cell_volumes()).map(|(field, v)| field.energy_density * v);
+        let off = stored.sum::<f64>() / force.potential(0.7, &u) - 1.0;
+        assert!(off.abs() < 1e-12, "{number}: {off:e}");
     }
 }
 
