@@ -1266,18 +1266,38 @@ def hill(
 def growth(
     *,
     name: str | None = None,
+    along: Vector | None = None,
+    centre: Vector | None = None,
+    axis: Vector | None = None,
+    pitch: float | None = None,
+    across: float | None = None,
+    keeps_volume: bool | None = None,
     box: Sequence[Vector] | None = None,
     group: str | None = None,
     cells: Sequence[int] | None = None,
 ) -> dict:
-    r"""Cells that swell, or expand by heat, alike in all directions, by the strain that `actuate` in a phase gives: what
-    is free gets 1 + strain times as long, without stress. All of the body, or the cells of a `box`, a `group` or a
-    list. For Green's strain with any law, in solids, plane stress, membranes and strings.
+    r"""Cells that swell, expand by heat or change their shape as active materials do, by the strain that `actuate` in a
+    phase gives: what is free gets 1 + strain times as long, without stress. Alike in all directions, or along a
+    vector or around an axis, as fibres run; across that they keep their size, or change it by a share of the strain
+    or so that their volume stays. All of the body, or the cells of a `box`, a `group` or a list. For Green's strain
+    with any law.
 
     Parameters
     ----------
     name
         the name of the growth, which no spring and no muscle has. Default: growth 1, growth 2, ...
+    along
+        a vector along which they grow, of any length. Default: alike in all directions.
+    centre
+        a point of the axis around which they grow (m). Default: none.
+    axis
+        direction of the axis, of any length; none in the plane. Default: across the plane.
+    pitch
+        angle by which the direction of growth climbs along the axis: 0 are rings, others helices (rad). Default: 0.
+    across
+        growth across the direction, by that along it: 0 is none, 1 is alike (no unit). Default: 0.
+    keeps_volume
+        whether they get thinner across the direction as they grow along it, and keep their volume. Default: false.
     box
         the lower and the upper corner (m). Default: none.
     group
@@ -1287,6 +1307,12 @@ def growth(
     """
     return _table(
         name=name,
+        along=along,
+        centre=centre,
+        axis=axis,
+        pitch=pitch,
+        across=across,
+        keeps_volume=keeps_volume,
         box=box,
         group=group,
         cells=cells,

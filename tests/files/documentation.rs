@@ -44,14 +44,16 @@ fn all_scenes_are_run() {
         ninth,
         led,
         tenth,
+        curl,
         eleventh,
         sensors,
     ] = blocks("toml")[..]
     else {
-        panic!("thirteen blocks")
+        panic!("fourteen blocks")
     };
     assert_eq!([fourth, fifth, sixth, seventh], [GLUED_ARM, GRIPPER, WHEEL, FINGER]);
-    assert_eq!([eighth, ninth, led, tenth, eleventh], [MUSCLES, MAGNETS, LED, GEL, FOAM]);
+    assert_eq!([eighth, ninth, led, tenth, curl], [MUSCLES, MAGNETS, LED, GEL, CURL]);
+    assert_eq!(eleventh, FOAM);
     let with_sensors = first.to_owned() + sensors;
     for text in [
         &with_sensors,
@@ -65,6 +67,7 @@ fn all_scenes_are_run() {
         ninth,
         led,
         tenth,
+        curl,
         eleventh,
     ] {
         let file = SceneFile::parse(text, Path::new("scene.toml")).unwrap();
@@ -89,6 +92,7 @@ const MUSCLES: &str = include_str!("../../scenes/muscle-strip.toml");
 const MAGNETS: &str = include_str!("../../scenes/magnetic-strip.toml");
 const LED: &str = include_str!("../../scenes/led-strip.toml");
 const GEL: &str = include_str!("../../scenes/swelling-strip.toml");
+const CURL: &str = include_str!("../../scenes/curling-strip.toml");
 const FOAM: &str = include_str!("../../scenes/float.toml");
 const CABLE: &str = include_str!("../../scenes/cable.toml");
 

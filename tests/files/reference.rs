@@ -73,9 +73,6 @@ fn with(example: &str, mesh: &str) -> String {
     if !PARTS.iter().any(|(part, _)| *part == place) {
         text += example; // a table of its own
     }
-    if key == "[[growth]]" {
-        text = text.replace("[body]\n", "[body]\nplane = \"stress\"\n");
-    }
     if key == "[[tie]]" {
         let beside = mesh.replace(" }", ", origin = [0.1, 0.0] }");
         let tip = format!("[[body]]\nname = \"tip\"\nthickness = 0.01\n{beside}{MATERIAL}");

@@ -214,6 +214,7 @@ fn all_scenes_are_run() {
         "magnetic-strip",
         "led-strip",
         "swelling-strip",
+        "curling-strip",
         "float",
         "gripper",
         "wheel-over-stones",

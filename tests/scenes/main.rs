@@ -27,6 +27,7 @@ mod friction;
 mod gas;
 mod gripping;
 mod growth;
+mod growth_by_direction;
 mod hill;
 mod index_two;
 mod indicators;

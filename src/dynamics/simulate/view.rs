@@ -447,7 +447,7 @@ impl<'a> View<'a> {
         self.body().cell_fields_of(self.state.u, &self.grown())
     }
 
-    /// The cells that have grown, and to how many times their size.
+    /// The cells that have grown.
     pub(super) fn grown(&self) -> Vec<Grown> {
         // errors were found when the phase began
         self.scene.grown(self.phase, self.time, self.state.others).unwrap_or_default()

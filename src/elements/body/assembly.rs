@@ -6,11 +6,12 @@ use super::branches::Branched;
 use super::dilatation::Dilatation;
 use super::elements::{ElementsOf, Offset};
 use super::fibres::Reinforced;
-use super::fields::Fields;
+use super::fields::{Fields, GrownFields};
 use super::forces::Forces;
 use super::inertia::Masses;
 use super::magnetized_points::InDipoleField;
 use super::magnets::Magnetized;
+use super::oriented::Orientable;
 use super::recovery::Recovery;
 use super::strain_modes::StrainProducts;
 use super::tangents::Tangents;
@@ -25,10 +26,12 @@ pub(super) trait Elements:
     + Forces
     + Branched
     + Reinforced
+    + Orientable
     + Magnetized
     + InDipoleField
     + Tangents
     + Fields
+    + GrownFields
     + Recovery
     + StrainProducts
     + Send

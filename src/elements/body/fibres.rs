@@ -81,39 +81,56 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Reinforced
         course: &FibreDirection,
     ) -> Result<Box<dyn Strings>, InputError> {
         course.validate_in(D)?;
-        let positions = mesh.positions().as_chunks::<D>().0;
         let mut points = Vec::with_capacity(Q * cells.len());
         for &cell in cells {
-            let of_nodes = self.nodes[cell].map(|node| positions[node]);
-            for (point, values) in self.points(cell).zip(&self.values) {
-                let mut position = [0.0; D];
-                for (value, of_node) in values.iter().zip(&of_nodes) {
-                    position.iter_mut().zip(of_node).for_each(|(x, of_node)| *x += value * of_node);
-                }
-                let direction = course.at(&position);
-                let mut own: [f64; M] = std::array::from_fn(|j| {
-                    point.frame[j].iter().zip(&direction).map(|(e, d)| e * d).sum()
-                });
-                let length = dot(&own, &own).sqrt();
-                // round-off of the components of a unit vector
-                if length < 1e-9 {
-                    let help = "fibres have no direction there: move their axis out of the cell, turn them into the membrane, or \
-                                give them a region of their own";
-                    return Err(InputError::new("fibres in cell", cell + 1, help));
-                }
-                own.iter_mut().for_each(|x| *x /= length);
-                // fibres have no sign, and the frame of a cell that fills a line is the identity
-                if D == 1 {
-                    own = own.map(f64::abs);
-                }
-                points.push(StrainPoint {
-                    gradients: std::array::from_fn(|a| [dot(&point.gradients[a], &own)]),
-                    frame: [apply(&point.frame, &own)],
-                    volume: point.volume,
-                });
-            }
+            let directions = self.directions(mesh, cell, course)?;
+            points.extend(self.points(cell).zip(directions).map(|(point, own)| StrainPoint {
+                gradients: std::array::from_fn(|a| [dot(&point.gradients[a], &own)]),
+                frame: [apply(&point.frame, &own)],
+                volume: point.volume,
+            }));
         }
         Ok(Box::new(self.with_points(cells, &points, mesh.node_count())))
+    }
+}
+
+impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<N, M, D, Q> {
+    /// The directions of a `course` at the points of a cell, of length 1 and in its coordinates.
+    ///
+    /// # Errors
+    /// A point where it has none.
+    pub(super) fn directions(
+        &self,
+        mesh: &Mesh,
+        cell: usize,
+        course: &FibreDirection,
+    ) -> Result<[[f64; M]; Q], InputError> {
+        let positions = mesh.positions().as_chunks::<D>().0;
+        let of_nodes = self.nodes[cell].map(|node| positions[node]);
+        let mut directions = [[0.0; M]; Q];
+        for ((point, values), own) in self.points(cell).zip(&self.values).zip(&mut directions) {
+            let mut position = [0.0; D];
+            for (value, of_node) in values.iter().zip(&of_nodes) {
+                position.iter_mut().zip(of_node).for_each(|(x, of_node)| *x += value * of_node);
+            }
+            let direction = course.at(&position);
+            *own = std::array::from_fn(|j| {
+                point.frame[j].iter().zip(&direction).map(|(e, d)| e * d).sum()
+            });
+            let length = dot(own, own).sqrt();
+            // round-off of the components of a unit vector
+            if length < 1e-9 {
+                let help = "fibres have no direction there: move their axis out of the cell, turn them into the membrane, or \
+                            give them a region of their own";
+                return Err(InputError::new("fibres in cell", cell + 1, help));
+            }
+            own.iter_mut().for_each(|x| *x /= length);
+            // fibres have no sign, and the frame of a cell that fills a line is the identity
+            if D == 1 {
+                *own = own.map(f64::abs);
+            }
+        }
+        Ok(directions)
     }
 }
 

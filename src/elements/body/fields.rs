@@ -11,10 +11,12 @@
 //! Across a cell there is either no strain (plane strain: e = 0, s = lambda tr E) or no stress (plane
 //! stress and segments: s = 0, e = -lambda tr E / (2 mu) with their reduced lambda).
 
+mod grown;
 mod nodal;
 #[cfg(test)]
 mod tests;
 
+pub(super) use grown::GrownFields;
 use nalgebra::{Matrix3, SMatrix, SVD, Vector3};
 pub use nodal::NodalField;
 pub(super) use nodal::{Probe, nodal_fields};
@@ -117,7 +119,7 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Fields
     fn fields(&self, regions: &Regions, u: &[f64]) -> Vec<CellField> {
         let of_cell = |cell| {
             with_law!(regions.of(cell).elastic, law => {
-                let of_volume = self.of_volume(&law, cell, u);
+                let of_volume = self.of_volume(&law, cell, self.dilatations(&law, cell, u));
                 mean(self.deformed(cell, u).enumerate().map(|(q, (volume, at))| {
                     (volume, PointField::new(&law, &at, of_volume.map(|points| points[q])))
                 }))
@@ -135,7 +137,7 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Fields
     ) {
         let mut at_nodes = [Tensors::default(); N];
         with_law!(regions.of(cell).elastic, law => {
-            let of_volume = self.of_volume(&law, cell, u);
+            let of_volume = self.of_volume(&law, cell, self.dilatations(&law, cell, u));
             for (q, (_, at)) in self.deformed(cell, u).enumerate() {
                 let PointField { tensors, .. } =
                     PointField::new(&law, &at, of_volume.map(|points| points[q]));
@@ -209,16 +211,31 @@ struct OfVolume {
 }
 
 impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<N, M, D, Q> {
-    /// The values at the points of a cell, if it has a projected dilatation.
-    fn of_volume<L: ElasticLaw>(&self, law: &L, cell: usize, u: &[f64]) -> Option<[OfVolume; Q]> {
+    /// The dilatations at the points of a cell.
+    fn dilatations<L: ElasticLaw>(
+        &self,
+        law: &L,
+        cell: usize,
+        u: &[f64],
+    ) -> impl Iterator<Item = f64> {
+        let deformed = self.deformed(cell, u);
+        deformed.map(|(_, at)| law.dilatation(&law.point(L::twice_strain(&at))))
+    }
+
+    /// The values at the points of a cell with these `dilatations`, if they are projected.
+    fn of_volume<L: ElasticLaw>(
+        &self,
+        law: &L,
+        cell: usize,
+        dilatations: impl Iterator<Item = f64>,
+    ) -> Option<[OfVolume; Q]> {
         if !self.is_projected() {
             return None;
         }
         let (mut sum, mut whole) = (Projected::new(0.0), 0.0);
-        for (q, (volume, at)) in self.deformed(cell, u).enumerate() {
-            let point = law.point(L::twice_strain(&at));
-            sum.add(volume * law.dilatation(&point), self.modes_of(cell, q).as_ref());
-            whole += volume;
+        for (q, (point, dilatation)) in self.points(cell).zip(dilatations).enumerate() {
+            sum.add(point.volume * dilatation, self.modes_of(cell, q).as_ref());
+            whole += point.volume;
         }
         let dilatation = sum.over(whole);
         let (mut pull, mut points) = (Projected::new(0.0), [OfVolume::default(); Q]);
@@ -249,9 +266,9 @@ impl Tensors {
         self.stress += other.stress * share;
     }
 
-    /// This strain with the stress of `other`.
-    pub(super) fn stressed_as(&self, other: &Self) -> Self {
-        Self { stress: other.stress, ..*self }
+    /// The same with the strain of what has grown to `stretch` times its size before.
+    pub(super) fn after_growth(&self, stretch: f64) -> Self {
+        Self { strain: after_growth(self.strain, stretch), ..*self }
     }
 
     /// Strain and stress: this sum divided by `weight`.
@@ -259,6 +276,12 @@ impl Tensors {
         let tensor = |sum: Matrix3<f64>| ((sum + sum.transpose()) / (2.0 * weight)).into();
         [tensor(self.strain), tensor(self.stress)]
     }
+}
+
+/// Green's strain of what has grown to `stretch` times its size and is then strained by `left`: (g^2 (2 E_e + I) - I) / 2.
+pub(super) fn after_growth(left: Matrix3<f64>, stretch: f64) -> Matrix3<f64> {
+    let more = (stretch - 1.0) * (stretch + 1.0);
+    left * (stretch * stretch) + Matrix3::identity() * (0.5 * more)
 }
 
 /// The fields at one strain point.

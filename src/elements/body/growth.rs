@@ -1,32 +1,50 @@
-//! The elasticity of cells that grow: F = F_e F_g with F_g = g I, and the energy g^3 W(F_e) per natural volume.
+//! The elasticity of cells that grow: F = F_e G, and the energy det(G) W(F_e) per natural volume.
 //!
-//! F_e = F / g is the gradient of the positions x / g, so that forces, tangents and energies are those of the elements as they are, at the
-//! displacements u' = x / g - X, times powers of g: g^3 U(u') has the forces g^2 f(u') and the tangents g K(u').
+//! Where they grow alike in all directions, G = g I, F_e = F / g is the gradient of the positions x / g, so that forces, tangents and energies are those of
+//! the elements as they are, at the displacements u' = x / g - X, times powers of g: g^3 U(u') has the forces g^2 f(u') and the tangents g K(u').
+//!
+//! Where they grow by direction, or are pressed across their plane as they grow, they have a [law](crate::elements::material::GrownLaw) of
+//! that.
 
 use std::sync::{Arc, Mutex, PoisonError};
 
 use super::assembled::Body;
 use super::continuum::Continuum;
 use super::elastic::Elastic;
-use super::fields::{CellField, NodalField, Probe, Tensors, nodal_fields};
 use super::forces::Terms;
+use super::oriented::{Grown, Oriented};
+use super::regions::Regions;
 use crate::base::input::InputError;
 use crate::base::sparse::{BlockMatrix, NodePattern};
 use crate::base::vector::dot;
 use crate::elements::force::NodalForces;
-use crate::elements::material::{Plane, Strain};
+use crate::elements::material::{FibreDirection, Plane, Strain, Stretches};
 use crate::integrators::ode::Failure;
 
 /// The elasticity of some cells of a body, which grow.
 pub(crate) struct Growing {
-    /// Bodies with the elasticity of these cells alone.
+    /// Bodies with the elasticity of those of these cells alone that grow alike in all directions.
     bodies: Vec<Continuum>,
+    oriented: Vec<OrientedPart>,
     /// Undeformed positions of the nodes (m).
     positions: Vec<f64>,
     pattern: Arc<NodePattern>,
     /// Room that no evaluation has at the moment. The lock is not held while one runs: its threads may meanwhile begin
     /// that of another fork.
     free: Mutex<Vec<Scratch>>,
+}
+
+/// Cells of one body that grow by direction.
+struct OrientedPart {
+    cells: Box<dyn Oriented>,
+    regions: Regions,
+    is_pressed: bool,
+}
+
+impl OrientedPart {
+    fn grown(&self, stretches: Stretches) -> Grown<'_> {
+        Grown { regions: &self.regions, stretches, is_pressed: self.is_pressed }
+    }
 }
 
 /// Room for an evaluation.
@@ -50,29 +68,47 @@ impl Scratch {
 const ELASTIC: Terms = Terms { elastic: true, viscous: false };
 
 impl Growing {
-    /// Strain energy (J) of cells that have grown to `stretch` (1) times their size.
-    pub(crate) fn energy(&self, stretch: f64, u: &[f64]) -> f64 {
+    /// Strain energy (J) of cells that have grown.
+    pub(crate) fn energy(&self, stretches: Stretches, u: &[f64]) -> f64 {
+        let parts = self.oriented.iter();
+        let oriented: f64 = parts.map(|part| part.cells.energy(part.grown(stretches), u)).sum();
+        if self.bodies.is_empty() {
+            return oriented;
+        }
         let mut scratch = self.scratch();
-        let own = &mut scratch.u;
+        let (stretch, own) = (stretches.along, &mut scratch.u);
         shrink(&self.positions, u, stretch, own);
         let energy = stretch.powi(3) * energy(&self.bodies, own);
         self.give_back(scratch);
-        energy
+        energy + oriented
     }
 
-    /// Adds their forces (N), and the power (W) that growth at a `rate` (1/s) supplies.
+    /// Adds their forces (N), and the power (W) that growth supplies as the stretches along the direction and across it change by these `rates` (1/s).
     pub(crate) fn add_forces(
         &self,
-        [stretch, rate]: [f64; 2],
+        stretches: Stretches,
+        rates: [f64; 2],
         u: &[f64],
         forces: &mut NodalForces,
     ) -> Result<(), Failure> {
+        for part in &self.oriented {
+            let grown = part.grown(stretches);
+            part.cells.add_forces(grown, u, &mut forces.conservative)?;
+            if rates != [0.0; 2] {
+                let by_themselves = [rates[0] / stretches.along, rates[1] / stretches.across];
+                forces.carried_power += part.cells.power(grown, by_themselves, u);
+            }
+        }
+        if self.bodies.is_empty() {
+            return Ok(());
+        }
         let mut scratch = self.scratch();
-        let added = self.add_forces_in(&mut scratch, [stretch, rate], u, forces);
+        let added = self.add_forces_in(&mut scratch, [stretches.along, rates[0]], u, forces);
         self.give_back(scratch);
         added
     }
 
+    /// Those of what grows alike in all directions.
     fn add_forces_in(
         &self,
         Scratch { u: own, forces: inner, .. }: &mut Scratch,
@@ -99,9 +135,21 @@ impl Growing {
         Ok(())
     }
 
-    /// Adds their tangents to the stiffness.
-    pub(crate) fn add_tangents(&self, stretch: f64, u: &[f64], stiffness: &mut BlockMatrix) {
-        let mut scratch = self.scratch();
+    /// Adds their tangents to the stiffness. The damping does not change: its rows are only divided among threads with those of the stiffness.
+    pub(crate) fn add_tangents(
+        &self,
+        stretches: Stretches,
+        u: &[f64],
+        stiffness: &mut BlockMatrix,
+        damping: &mut BlockMatrix,
+    ) {
+        for part in &self.oriented {
+            part.cells.add_tangents(part.grown(stretches), u, stiffness, damping);
+        }
+        if self.bodies.is_empty() {
+            return;
+        }
+        let (stretch, mut scratch) = (stretches.along, self.scratch());
         let Scratch { u: own, matrices: [inner, damping], .. } = &mut scratch;
         shrink(&self.positions, u, stretch, own);
         inner.values.fill(0.0);
@@ -131,7 +179,7 @@ impl Growing {
 }
 
 /// Writes the displacements u' = (X + u) / `stretch` - X.
-fn shrink(positions: &[f64], u: &[f64], stretch: f64, own: &mut [f64]) {
+pub(super) fn shrink(positions: &[f64], u: &[f64], stretch: f64, own: &mut [f64]) {
     for ((own, x), u) in own.iter_mut().zip(positions).zip(u) {
         *own = (x + u) / stretch - x;
     }
@@ -141,20 +189,39 @@ fn energy(bodies: &[Continuum], u: &[f64]) -> f64 {
     bodies.iter().map(|Continuum { elements, regions, .. }| elements.energy(regions, u)).sum()
 }
 
-/// Cells (counted from 0) that have grown, and to how many times their size (1).
-pub(crate) type Grown = (Vec<usize>, f64);
+impl Continuum {
+    /// Whether its cells cannot grow across their plane.
+    fn is_pressed(&self) -> bool {
+        self.kind.dimension() == 2 && self.plane == Plane::Strain
+    }
+
+    /// Its cells as they are after growth.
+    pub(super) fn grown(&self, stretches: Stretches) -> Grown<'_> {
+        Grown { regions: &self.regions, stretches, is_pressed: self.is_pressed() }
+    }
+
+    /// Whether its cells grow alike in all directions, those across them included.
+    pub(super) fn grows_alike(&self, course: Option<&FibreDirection>) -> bool {
+        course.is_none() && !self.is_pressed()
+    }
+}
 
 impl Body {
-    /// The elasticity of `cells` (counted from 0), which grow.
+    /// The elasticity of `cells` (counted from 0), which grow along and across the directions of a `course`, or alike in all directions.
     ///
     /// # Errors
-    /// Cells that are rigid, whose strain is Cauchy's, in plane strain, or whose material relaxes.
-    pub(crate) fn growing(&self, cells: &[usize]) -> Result<Growing, InputError> {
+    /// Cells that are rigid, whose strain is Cauchy's, or whose material relaxes; a course that is none there.
+    pub(crate) fn growing(
+        &self,
+        cells: &[usize],
+        course: Option<&FibreDirection>,
+    ) -> Result<Growing, InputError> {
         let grows = self.marked(cells);
-        let mut bodies = Vec::new();
+        let (mut bodies, mut oriented) = (Vec::new(), Vec::new());
         for own in &self.continua {
             let inside = |cell: usize| grows[own.cells.start + cell];
-            if !(0..own.cells.len()).any(inside) {
+            let cells: Vec<usize> = (0..own.cells.len()).filter(|cell| inside(*cell)).collect();
+            if cells.is_empty() {
                 continue;
             }
             let wrong =
@@ -162,18 +229,22 @@ impl Body {
             if own.strain == Strain::Cauchy {
                 return wrong("strain", "Cauchy", "growth is not small: measure strain by Green's");
             }
-            if own.kind.dimension() == 2 && own.plane == Plane::Strain {
-                let help = "what cannot grow across the plane is pressed there, which cells in the plane do not know: take plane stress, or a solid";
-                return wrong("plane", "strain", help);
-            }
-            let is_rigid = |cell: &usize| own.regions.of(*cell).of_rigid.is_some();
-            if let Some(cell) = (0..own.cells.len()).find(|cell| inside(*cell) && is_rigid(cell)) {
+            if let Some(cell) = cells.iter().find(|cell| own.regions.of(**cell).of_rigid.is_some())
+            {
                 let number = (own.cells.start + cell + 1).to_string();
                 return wrong("cell", &number, "it is rigid: name cells that are soft");
             }
             if own.regions.branches().next().is_some() {
                 let help = "what relaxes does not know of growth: leave the Maxwell branches out";
                 return wrong("material.branch", "given", help);
+            }
+            if !own.grows_alike(course) {
+                oriented.push(OrientedPart {
+                    cells: own.elements.oriented(&self.mesh, &cells, course)?,
+                    regions: own.regions.sampled(&cells),
+                    is_pressed: own.is_pressed(),
+                });
+                continue;
             }
             let regions =
                 own.regions.parted(own.cells.len(), own.kind.dimension(), own.plane, inside);
@@ -182,8 +253,11 @@ impl Body {
         }
         let positions = self.mesh.positions().to_vec();
         let pattern = self.inertia.pattern().clone();
-        let free = vec![Scratch::new(&pattern, positions.len())];
-        Ok(Growing { bodies, positions, pattern, free: free.into() })
+        let free = match bodies.is_empty() {
+            true => Vec::new(),
+            false => vec![Scratch::new(&pattern, positions.len())],
+        };
+        Ok(Growing { bodies, oriented, positions, pattern, free: free.into() })
     }
 
     /// The elastic and viscous forces that have no constant matrix, without those of rigid pieces and without the elasticity of `cells` (counted from 0).
@@ -209,61 +283,5 @@ impl Body {
         let mut marked = vec![false; self.mesh.cell_count()];
         cells.iter().for_each(|cell| marked[*cell] = true);
         marked
-    }
-
-    /// The displacements whose strains are those that are left of `u` (m) where cells have grown to `stretch` times their size.
-    fn shrunk(&self, u: &[f64], stretch: f64) -> Vec<f64> {
-        let mut own = vec![0.0; u.len()];
-        shrink(self.mesh.positions(), u, stretch, &mut own);
-        own
-    }
-
-    /// As [`cell_fields`](Self::cell_fields), with the stress and the energy of cells that have `grown`.
-    pub(crate) fn cell_fields_of(&self, u: &[f64], grown: &[Grown]) -> Vec<CellField> {
-        let mut fields = self.cell_fields(u);
-        for (cells, stretch) in grown {
-            let own = self.cell_fields(&self.shrunk(u, *stretch));
-            for &cell in cells {
-                fields[cell].stress = own[cell].stress;
-                fields[cell].energy_density = stretch.powi(3) * own[cell].energy_density;
-            }
-        }
-        fields
-    }
-
-    /// As [`nodal_fields`](Self::nodal_fields), likewise.
-    pub(crate) fn nodal_fields_of(&self, u: &[f64], grown: &[Grown]) -> Vec<NodalField> {
-        let (volumes, shrunk) = (self.cell_volumes(), self.all_shrunk(u, grown));
-        nodal_fields(self.mesh.node_count(), &volumes, |cell, see| {
-            self.each_node_of(u, &shrunk, cell, see);
-        })
-    }
-
-    /// What `probe` reads under the displacements `u` (m), likewise.
-    pub(crate) fn probed(&self, probe: &Probe, u: &[f64], grown: &[Grown]) -> NodalField {
-        let shrunk = self.all_shrunk(u, grown);
-        probe.read(|cell, see| self.each_node_of(u, &shrunk, cell, see))
-    }
-
-    fn all_shrunk<'a>(&self, u: &[f64], grown: &'a [Grown]) -> Vec<(&'a [usize], Vec<f64>)> {
-        grown.iter().map(|(cells, stretch)| (&cells[..], self.shrunk(u, *stretch))).collect()
-    }
-
-    /// The tensors at the nodes of a cell: its strain, and the stress of what is left where it has grown.
-    fn each_node_of(
-        &self,
-        u: &[f64],
-        shrunk: &[(&[usize], Vec<f64>)],
-        cell: usize,
-        see: &mut dyn FnMut(usize, usize, &Tensors),
-    ) {
-        let Some((_, own)) = shrunk.iter().find(|(cells, _)| cells.contains(&cell)) else {
-            return self.each_node(u, cell, see);
-        };
-        let mut strains = Vec::new();
-        self.each_node(u, cell, &mut |_, _, tensors| strains.push(*tensors));
-        self.each_node(own, cell, &mut |node, a, tensors| {
-            see(node, a, &strains[a].stressed_as(tensors))
-        });
     }
 }

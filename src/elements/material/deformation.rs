@@ -27,6 +27,22 @@ impl<T: Real, const M: usize, const D: usize> Deformation<T, M, D> {
         self.frame
     }
 
+    /// The direction with which the frame begins, in the coordinates of the cell. Where the cell fills space, its coordinates are those of space, and
+    /// a frame is stored for this direction alone.
+    #[inline(always)]
+    pub(crate) fn first_axis(&self) -> [T; M] {
+        let zero = self.h[0][0].constant(0.0);
+        let mut axis = [zero; M];
+        if M < D {
+            axis[0] = zero.constant(1.0);
+        } else {
+            for j in 0..M {
+                axis[j] = self.frame[0][j];
+            }
+        }
+        axis
+    }
+
     /// F = F_0 + H
     #[inline(always)]
     pub(crate) fn gradient(&self) -> Matrix<T, D, M> {

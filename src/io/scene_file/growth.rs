@@ -2,7 +2,9 @@
 
 use super::cells::{BOX, CELLS, GROUP, cells};
 use super::keys::{Holds, Key, TableKeys};
+use super::material::{AXIS, course};
 use super::surroundings::unique;
+use super::table::Table;
 use super::value::Value;
 use crate::dynamics::error::Error;
 use crate::scene::forces::{Growth, Muscle, Spring};
@@ -10,11 +12,20 @@ use crate::scene::timeline::Scene;
 
 pub(super) const GROWTH: TableKeys = TableKeys::new(
     "[[growth]]",
-    "Cells that swell, or expand by heat, alike in all directions, by the strain that `actuate` in a phase gives: what is free gets 1 + strain times as long, \
-     without stress. All of the body, or the cells of a `box`, a `group` or a list. For Green's strain with any law, in solids, plane stress, membranes and strings.",
+    "Cells that swell, expand by heat or change their shape as active materials do, by the strain that `actuate` in a phase gives: what is free gets 1 + strain times as long, \
+     without stress. Alike in all directions, or along a vector or around an axis, as fibres run; across that they keep their size, or change it by a share of the strain \
+     or so that their volume stays. All of the body, or the cells of a `box`, a `group` or a list. For Green's strain with any law.",
     &[
         Key::new("name", Holds::Text, "the name of the growth, which no spring and no muscle has")
             .default("growth 1, growth 2, ..."),
+        Key::new("along", Holds::Vector, "a vector along which they grow, of any length")
+            .default("alike in all directions"),
+        Key::new("centre", Holds::Vector, "a point of the axis around which they grow").in_unit("m"),
+        AXIS,
+        Key::number("pitch", "angle by which the direction of growth climbs along the axis: 0 are rings, others helices", "rad").default("0"),
+        Key::number("across", "growth across the direction, by that along it: 0 is none, 1 is alike", "1").default("0"),
+        Key::new("keeps_volume", Holds::Flag, "whether they get thinner across the direction as they grow along it, and keep their volume")
+            .default("false"),
         BOX,
         GROUP,
         CELLS,
@@ -34,7 +45,24 @@ pub(super) fn add_growth(scene: Scene, value: &Value) -> Result<Scene, Error> {
         Some(cells) => Growth::within(cells),
         None => Growth::everywhere(),
     };
-    let growth = growth.named(name);
+    let growth = directed(growth.named(name), table)?;
     growth.growing(scene.body()).map_err(|error| table.blame(error))?;
     Ok(scene.growth(growth))
+}
+
+/// The growth with the direction that a table gives, if it gives one.
+fn directed(mut growth: Growth, table: &Table<'_>) -> Result<Growth, Error> {
+    let has = |key: &str| table.get(key).is_some();
+    if has("along") && has("centre") {
+        return Err(table.error("expected one alone of along and centre"));
+    }
+    if ["along", "centre", "axis", "pitch"].into_iter().any(has) {
+        growth = growth.along_course(course(table)?);
+    }
+    growth = table.added(growth, "across", Value::number, Growth::across)?;
+    match (table.flag("keeps_volume")?, has("across")) {
+        (true, true) => Err(table.error("expected one alone of across and keeps_volume")),
+        (true, false) => Ok(growth.keeping_volume()),
+        (false, _) => Ok(growth),
+    }
 }

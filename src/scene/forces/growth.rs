@@ -1,21 +1,27 @@
 //! Growth: cells that swell, or expand by heat.
 
 use super::signal::{self, Signal, finite_at};
-use crate::base::input::InputError;
+use crate::base::input::{InputError, finite};
 use crate::base::sparse::BlockMatrix;
-use crate::elements::body::{Body, CellSelection, Growing};
+use crate::elements::body::{Body, CellSelection, Growing, Grown};
 use crate::elements::force::{Force, NodalForces, Reservoir, Tangents};
+use crate::elements::material::{FibreDirection, Stretches};
 use crate::integrators::ode::Failure;
 
-/// Cells of a body that grow alike in all directions: by swelling, or by heat.
+/// Cells of a body that grow: by swelling, by heat, or as an active material does.
 ///
-/// Phases give the strain e by which they grow ([`Phase::actuate`](crate::Phase::actuate)): what is free gets 1 + e times as long, without stress. Of heat it is the coefficient
-/// of thermal expansion times the change of temperature. With g = 1 + e the deformation gradient is F = F_e g, and g^3 W(F_e) the energy
+/// Phases give the strain e by which they grow ([`Phase::actuate`](crate::Phase::actuate)): what is free gets g = 1 + e times as long, without stress. Of
+/// heat it is the coefficient of thermal expansion times the change of temperature. They grow alike in all directions, or along
+/// [one](Self::along) that may turn [around](Self::around) an axis; across it they [keep their size](Self::across), or [that of their
+/// volume](Self::keeping_volume).
+///
+/// The deformation gradient is F = F_e G with G = g a a^T + g_t (I - a a^T), and det(G) W(F_e) the energy
 /// per natural volume, W being that of the material's law (E. K. Rodriguez, A. Hoger, A. D. McCulloch, Journal of Biomechanics 27 (1994)
-/// 455-467). What growth adds to the energy counts as supplied. Mass stays, and so do fibres and viscosity.
+/// 455-467; of muscles "active strain": D. Ambrosi, S. Pezzuto, Journal of Elasticity 107 (2012) 199-212). What growth adds to the energy counts
+/// as supplied. Mass stays, and so do fibres and viscosity.
 ///
-/// For Green's strain with any law, in solids, plane stress, membranes and strings; not in plane strain, where what cannot grow across the plane is
-/// pressed there, and not with Maxwell branches.
+/// For Green's strain with any law; not with Maxwell branches. In plane strain what grows across the plane is pressed there; in plane stress, membranes and
+/// strings it gets thicker.
 ///
 /// ```
 /// use pliant::{Body, Cells, CellSelection, Growth, Material, Mesh, Phase, Plane, Scene, Statics};
@@ -37,17 +43,73 @@ use crate::integrators::ode::Failure;
 pub struct Growth {
     name: String,
     cells: Option<CellSelection>,
+    course: Option<FibreDirection>,
+    across: Option<Across>,
+}
+
+/// How what grows along a direction changes across it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Across {
+    /// By the strain along the direction times this (1).
+    Share(f64),
+    /// So that its volume does not change.
+    KeepsVolume,
 }
 
 impl Growth {
     /// Growth of the whole body.
     pub fn everywhere() -> Self {
-        Self { name: String::new(), cells: None }
+        Self { name: String::new(), cells: None, course: None, across: None }
     }
 
     /// Growth of these cells.
     pub fn within(cells: impl Into<CellSelection>) -> Self {
         Self { cells: Some(cells.into()), ..Self::everywhere() }
+    }
+
+    /// The same along a `direction`, of any length above 0, in the undeformed shape. In membranes its component along them counts.
+    ///
+    /// ```
+    /// use pliant::{Body, Growth, Law, Material, Mesh, Phase, Scene, SolidCells, Statics};
+    ///
+    /// // an elastomer of liquid crystals shrinks along them by a third, and gets thicker
+    /// let mesh = Mesh::cuboid([0.1, 0.01, 0.01], [11, 2, 2], SolidCells::Hexahedra20)?;
+    /// let rubber = Material { density: 1100.0, young: 1e6, poisson: 0.49, viscosity: 0.0 };
+    /// let body = Body::new(mesh, rubber.law(Law::NeoHookean)).build()?;
+    /// let scene = Scene::new(body)
+    ///     .growth(Growth::everywhere().along([1.0, 0.0, 0.0]).keeping_volume())
+    ///     .phase(Phase::until(1.0).hold_axes("left", [pliant::Axis::X]).hold([1, 2]).actuate(["growth 1"], -1.0 / 3.0));
+    /// # assert!(scene.validate().is_ok());
+    /// # Ok::<(), pliant::Error>(())
+    /// ```
+    pub fn along(self, direction: impl Into<Vec<f64>>) -> Self {
+        self.along_course(FibreDirection::Along(direction.into()))
+    }
+
+    /// The same along rings around the axis through `centre` (m), in the direction of `axis`; in the plane `axis` is empty.
+    pub fn around(self, centre: impl Into<Vec<f64>>, axis: impl Into<Vec<f64>>) -> Self {
+        self.along_course(FibreDirection::around(centre.into(), axis.into()))
+    }
+
+    /// The same along a course as fibres of a material have.
+    pub(crate) fn along_course(self, course: FibreDirection) -> Self {
+        Self { course: Some(course), ..self }
+    }
+
+    /// Helices in place of rings, which climb along the axis by the angle `pitch` (rad); a vector does not change.
+    pub fn pitch(self, angle: f64) -> Self {
+        Self { course: self.course.map(|course| course.with_pitch(angle)), ..self }
+    }
+
+    /// Growth across the direction by the strain along it times this (1, default 0): g_t = 1 + `share` e. With 1 it is alike in all directions.
+    pub fn across(self, share: f64) -> Self {
+        Self { across: Some(Across::Share(share)), ..self }
+    }
+
+    /// Growth across the direction that keeps the volume, g_t = g^(-1/2): of muscles and of elastomers of liquid crystals, which change their shape and not
+    /// their volume.
+    pub fn keeping_volume(self) -> Self {
+        Self { across: Some(Across::KeepsVolume), ..self }
     }
 
     /// Name of the growth (default: "growth 1", "growth 2", ... in the order of the scene). Springs and muscles have other names.
@@ -84,9 +146,53 @@ impl Growth {
     /// The elasticity of its cells.
     ///
     /// # Errors
-    /// Cells that the body does not have, or that cannot grow.
+    /// Cells that the body does not have, or that cannot grow; a direction that is none there; growth across one that is not given.
     pub(crate) fn growing(&self, body: &Body) -> Result<Growing, InputError> {
-        body.growing(&self.cells(body)?).map_err(|error| self.blamed(error))
+        let cells = self.cells(body)?;
+        let course = self.course.as_ref();
+        let growing = self.check_across().and_then(|()| {
+            course.map_or(Ok(()), FibreDirection::validate)?;
+            body.growing(&cells, course)
+        });
+        growing.map_err(|error| self.blamed(error))
+    }
+
+    fn check_across(&self) -> Result<(), InputError> {
+        let help = "growth without a direction is alike in all: give along or centre, too";
+        match (&self.across, &self.course) {
+            (Some(Across::KeepsVolume), None) => Err(InputError::new("keeps_volume", true, help)),
+            (Some(Across::Share(share)), None) => Err(InputError::new("across", share, help)),
+            (Some(Across::Share(share)), Some(_)) => finite("across", &[*share]),
+            _ => Ok(()),
+        }
+    }
+
+    /// Its `cells` (counted from 0), as they have grown by a `strain` (1).
+    pub(crate) fn grown(&self, cells: Vec<usize>, strain: f64) -> Grown {
+        Grown { cells, course: self.course.clone(), stretches: self.stretches(strain) }
+    }
+
+    /// How many times as long what is free is along the direction and across it, after a `strain` (1).
+    fn stretches(&self, strain: f64) -> Stretches {
+        let along = 1.0 + strain;
+        let across = match (&self.course, self.across) {
+            (None, _) => along,
+            (_, None) => 1.0,
+            (_, Some(Across::Share(share))) => 1.0 + share * strain,
+            (_, Some(Across::KeepsVolume)) => 1.0 / along.sqrt(),
+        };
+        Stretches { along, across }
+    }
+
+    /// How fast these grow (1/s) by the `rate` of the strain.
+    fn rates(&self, Stretches { along, across }: Stretches, rate: f64) -> [f64; 2] {
+        let of_across = match (&self.course, self.across) {
+            (None, _) => rate,
+            (_, None) => 0.0,
+            (_, Some(Across::Share(share))) => share * rate,
+            (_, Some(Across::KeepsVolume)) => -0.5 * across / along * rate,
+        };
+        [rate, of_across]
     }
 
     fn blamed(&self, error: InputError) -> InputError {
@@ -102,21 +208,40 @@ impl Growth {
         body: &Body,
         strain: Vec<Signal>,
     ) -> Result<GrowthForce, InputError> {
-        Ok(GrowthForce { name: self.name.clone(), growing: self.growing(body)?, strain })
+        Ok(GrowthForce { growth: self.clone(), growing: self.growing(body)?, strain })
     }
 }
 
 /// The elastic force of cells that grow.
 pub(crate) struct GrowthForce {
-    name: String,
+    growth: Growth,
     growing: Growing,
     strain: Vec<Signal>,
 }
 
 impl GrowthForce {
-    /// How many times as long what is free is.
-    fn stretch(&self, t: f64) -> f64 {
-        1.0 + signal::sum(&self.strain, t)
+    fn stretches(&self, t: f64) -> Stretches {
+        self.growth.stretches(signal::sum(&self.strain, t))
+    }
+
+    /// Checks that something is left in all directions at time `t` (s).
+    fn check(&self, t: f64, Stretches { along, across }: Stretches) -> Result<(), Failure> {
+        let (name, strain) = (&self.growth.name, signal::sum(&self.strain, t));
+        finite_at(t, format_args!("the strain of growth \"{name}\""), strain)?;
+        if along <= 0.0 {
+            let help = format!(
+                "the strain of growth \"{name}\" is {strain} at t = {t} s: nothing is left, it must be above -1"
+            );
+            return Err(Failure::Fatal(help.into()));
+        }
+        if across <= 0.0 {
+            let across = across - 1.0;
+            let help = format!(
+                "the strain of growth \"{name}\" is {strain} at t = {t} s, and {across} across: nothing is left there, it must be above -1"
+            );
+            return Err(Failure::Fatal(help.into()));
+        }
+        Ok(())
     }
 }
 
@@ -128,19 +253,12 @@ impl Force for GrowthForce {
         _v: &[f64],
         forces: &mut NodalForces,
     ) -> Result<(), Failure> {
-        let stretch = self.stretch(t);
-        let name = &self.name;
-        finite_at(t, format_args!("the strain of growth \"{name}\""), stretch - 1.0)?;
-        if stretch <= 0.0 {
-            let strain = stretch - 1.0;
-            let help = format!(
-                "the strain of growth \"{name}\" is {strain} at t = {t} s: nothing is left, it must be above -1"
-            );
-            return Err(Failure::Fatal(help.into()));
-        }
+        let stretches = self.stretches(t);
+        self.check(t, stretches)?;
         // steps end at kinks, and the power there is that of the way to them
         let rate = self.strain.iter().map(|signal| signal.rate_before(t)).sum();
-        self.growing.add_forces([stretch, rate], u, forces)
+        let rates = self.growth.rates(stretches, rate);
+        self.growing.add_forces(stretches, rates, u, forces)
     }
 
     fn add_tangents(
@@ -149,14 +267,14 @@ impl Force for GrowthForce {
         u: &[f64],
         _v: &[f64],
         stiffness: &mut BlockMatrix,
-        _damping: &mut BlockMatrix,
+        damping: &mut BlockMatrix,
     ) -> Tangents {
-        self.growing.add_tangents(self.stretch(t), u, stiffness);
+        self.growing.add_tangents(self.stretches(t), u, stiffness, damping);
         Tangents::Added
     }
 
     fn potential(&self, t: f64, u: &[f64]) -> f64 {
-        self.growing.energy(self.stretch(t), u)
+        self.growing.energy(self.stretches(t), u)
     }
 
     fn reservoir(&self) -> Reservoir {

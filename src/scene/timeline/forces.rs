@@ -232,7 +232,7 @@ impl Scene {
         Ok(all)
     }
 
-    /// The cells that have grown in `phase` at time `t` (s), and to how many times their size; `states` as [`drive_at`](Self::drive_at) takes them.
+    /// The cells that have grown in `phase` at time `t` (s); `states` as [`drive_at`](Self::drive_at) takes them.
     pub(crate) fn grown(
         &self,
         phase: &Phase,
@@ -242,7 +242,7 @@ impl Scene {
         let all = self.growing(phase)?.into_iter();
         let grown = all.map(|(growth, _)| {
             let [strain, _] = self.drive_at(growth.name(), phase, t, states);
-            Ok((growth.cells(&self.body)?, 1.0 + strain))
+            Ok(growth.grown(growth.cells(&self.body)?, strain))
         });
         grown.collect()
     }

@@ -3,10 +3,11 @@
 //! What a law computes from a strain depends on the dimension of the cell alone, and not on its nodes and
 //! points. So these formulas are compiled for each dimension and kind of register, and loops for each kind of
 //! cell, but not for each pair of law and cell. (Hooke's laws are so short that a call would cost more than
-//! they do; loops are compiled for each of them.)
+//! they do; loops are compiled for each of them, and call one only in cells that grow by direction.)
 
 use pulp::NullaryFnOnce;
 
+use super::hookean::StVenantKirchhoff;
 use super::rivlin::Rivlin;
 use super::stretches::ByStretches;
 use crate::base::tensor::{Matrix, Real};
@@ -16,6 +17,7 @@ use crate::elements::material::response::Response;
 /// A law that is called as a function. All are of Green's strain.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum ByPoint {
+    Hooke(StVenantKirchhoff),
     Rivlin(Rivlin),
     Stretches(ByStretches),
 }
@@ -24,6 +26,7 @@ pub(crate) enum ByPoint {
 macro_rules! with_called_law {
     ($called:expr, $law:ident => $expression:expr) => {
         match $called {
+            ByPoint::Hooke($law) => $expression,
             ByPoint::Rivlin($law) => $expression,
             ByPoint::Stretches($law) => $expression,
         }

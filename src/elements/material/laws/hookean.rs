@@ -4,8 +4,9 @@
 #![allow(clippy::needless_range_loop, reason = "closures would not be compiled in place")]
 
 use crate::base::tensor::{Matrix, Real, dot, product, symmetric, times, trace};
-use crate::elements::material::hooke::{Hooke, Spread};
+use crate::elements::material::hooke::{Hooke, Lame, Spread};
 use crate::elements::material::law::{Block, Blocks, ElasticLaw};
+use crate::elements::material::response::{Elasticity, Response, axes};
 
 /// W = lambda tr(E)^2 / 2 + mu E : E and S = lambda tr(E) I + 2 mu E, with g = tr(E): P = F_0 S and
 /// E = sym(F_0^T H) for `SMALL` strain, else P = F S and E = (F^T F - I) / 2.
@@ -14,6 +15,37 @@ pub(crate) struct Hookean<const SMALL: bool>(pub(crate) Hooke);
 
 pub(crate) type Linear = Hookean<true>;
 pub(crate) type StVenantKirchhoff = Hookean<false>;
+
+impl StVenantKirchhoff {
+    /// S and dS/dE
+    #[inline(always)]
+    pub(super) fn response<T: Real, const M: usize>(
+        &self,
+        twice: &Matrix<T, M, M>,
+        pull: Option<T>,
+    ) -> Response<T, M> {
+        let Lame { mut lambda, mu } = self.0.lame;
+        if pull.is_some() {
+            lambda = 0.0;
+        }
+        let zero = twice[0][0].constant(0.0);
+        let mut elasticity: Elasticity<T> = [[zero; 6]; 6];
+        for v in 0..M * (M + 1) / 2 {
+            let (j, l) = axes::<M>(v);
+            for w in 0..M * (M + 1) / 2 {
+                let (k, n) = axes::<M>(w);
+                let volume = if j == l && k == n { lambda } else { 0.0 };
+                let shear = match (v == w, j == l) {
+                    (false, _) => 0.0,
+                    (true, true) => 2.0 * mu,
+                    (true, false) => mu,
+                };
+                elasticity[v][w] = zero.constant(volume + shear);
+            }
+        }
+        Response { stress: self.0.stress(twice, pull, zero.constant(1.0)), elasticity }
+    }
+}
 
 impl<const SMALL: bool> ElasticLaw for Hookean<SMALL> {
     const SMALL_STRAIN: bool = SMALL;

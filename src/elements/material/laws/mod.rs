@@ -192,6 +192,15 @@ impl Elastic {
             (Some(Law::Yeoh { second, third }), _) => rivlin([c1, c1 * second, c1 * third], 0.0),
         }
     }
+
+    /// The same as a function that loops call; none of small strain.
+    pub(crate) fn called(&self) -> Option<ByPoint> {
+        match self {
+            Self::Linear(_) => None,
+            Self::StVenantKirchhoff(law) => Some(ByPoint::Hooke(*law)),
+            Self::ByPoint(law) => Some(*law),
+        }
+    }
 }
 
 /// Evaluates an expression with the law that an [`Elastic`] holds, compiled for each law by itself.
@@ -200,6 +209,9 @@ macro_rules! with_law {
         match $elastic {
             $crate::elements::material::Elastic::Linear($law) => $expression,
             $crate::elements::material::Elastic::StVenantKirchhoff($law) => $expression,
+            $crate::elements::material::Elastic::ByPoint(
+                $crate::elements::material::ByPoint::Hooke($law),
+            ) => $expression,
             $crate::elements::material::Elastic::ByPoint(
                 $crate::elements::material::ByPoint::Rivlin($law),
             ) => $expression,

@@ -1,6 +1,6 @@
 //! What acts within the material: magnets, dipoles beside them, and growth.
 
-use super::{check, nodal_forces, noise};
+use super::{bar, check, nodal_forces, noise};
 use crate::elements::body::{Body, BodyBuilder, Dilatation};
 use crate::elements::force::Force;
 use crate::elements::material::{Law, Plane};
@@ -94,6 +94,83 @@ fn growth() {
         let gain = (force.potential(0.7 + h, &u) - force.potential(0.7 - h, &u)) / (2.0 * h);
         let power = nodal_forces(&force, 0.7, &u, &v).carried_power;
         assert!(gain.abs() > 1.0 && (power / gain - 1.0).abs() < 1e-7, "{power} {gain}");
+    }
+}
+
+/// Growth by direction, and in plane strain, in all kinds of cells, with several laws and dilatations: likewise, and the fields have its energy.
+#[test]
+fn growth_by_direction() {
+    let plane = |cells| Mesh::rectangle([0.1, 0.2], [2, 3], cells).unwrap();
+    let solid = |cells| Mesh::cuboid([0.1, 0.2, 0.3], [2, 2, 2], cells).unwrap();
+    let skin = || plane(Cells::Rectangles).mapped(|x| [x[0], x[1], 0.3 * x[0]]).unwrap();
+    let soft = SQUARE_MATERIAL;
+    let rubber = || soft.law(Law::NeoHookean);
+    let ogden = || soft.law(Law::Ogden { exponents: [1.3, 5.0, -2.0], shares: [0.7, 0.1, 0.2] });
+    let stress = |body: BodyBuilder| body.thickness(0.01).plane(Plane::Stress);
+    let strain = |body: BodyBuilder| body.thickness(0.01).plane(Plane::Strain);
+    let all = Growth::everywhere;
+    let along = |direction: &[f64]| all().along(direction);
+    let around = || all().around([-0.1, -0.2], []);
+    let helix = || all().around([-0.1, -0.2, 0.0], [0.2, 0.0, 1.0]).pitch(0.4);
+    let (mean, linear) = (Dilatation::Mean, Dilatation::Linear);
+    let cases = [
+        (Body::new(bar(1), soft).area(1e-2), along(&[-1.0])),
+        (Body::new(bar(3), soft).area(1e-2), along(&[1.0, 0.0, 0.0]).keeping_volume()),
+        (stress(Body::new(plane(Cells::Triangles6), soft)), along(&[0.4, 1.0])),
+        (stress(Body::new(plane(Cells::Rectangles), rubber())), around().keeping_volume()),
+        (stress(Body::new(skin(), ogden())), along(&[1.0, 1.0, 0.0]).across(0.3)),
+        (strain(Body::new(skin(), rubber())), all()),
+        (strain(Body::new(plane(Cells::Triangles6), soft)), all()),
+        (strain(Body::new(plane(Cells::Rectangles), soft)).dilatation(mean), all()),
+        (strain(Body::new(plane(Cells::Rectangles9), rubber())).dilatation(linear), all()),
+        (strain(Body::new(plane(Cells::Rectangles), ogden())), around().across(-0.4)),
+        (strain(Body::new(plane(Cells::Triangles), soft.law(Law::Corotated))), all()),
+        (Body::new(solid(SolidCells::Hexahedra), rubber()).dilatation(mean), helix()),
+        (Body::new(solid(SolidCells::Hexahedra), soft), helix().keeping_volume()),
+        (Body::new(solid(SolidCells::Tetrahedra10), ogden()), along(&[1.0, 2.0, 3.0]).across(2.0)),
+    ];
+    for (number, (body, growth)) in cases.into_iter().enumerate() {
+        let body = body.build().unwrap();
+        let d = body.dimension();
+        let strain = vec![Signal::constant(0.1), Signal::ramp(0.0, 0.3, 0.0, 1.0)];
+        let force = growth.clone().named("g").force(&body, strain).unwrap();
+        let cells: Vec<&[usize]> = body.mesh().cells().collect();
+        let (u, v) = (noise(body.dofs(), 0.01, 1.0), noise(body.dofs(), 1.0, 2.0));
+        assert!(check(&force, (d, &cells), 0.7, &u, &v, 1e-6) > 10.0);
+        let h = 1e-5;
+        let gain = (force.potential(0.7 + h, &u) - force.potential(0.7 - h, &u)) / (2.0 * h);
+        let power = nodal_forces(&force, 0.7, &u, &v).carried_power;
+        println!("{number}: {power} W, off by {:.1e}", power / gain - 1.0);
+        assert!(gain.abs() > 0.01 && (power / gain - 1.0).abs() < 1e-7, "{power} {gain}");
+        let fields = body.cell_fields_of(&u, &[growth.grown((0..cells.len()).collect(), 0.31)]);
+        let stored =
+            fields.iter().zip(body.cell_volumes()).map(|(field, v)| field.energy_density * v);
+        let off = stored.sum::<f64>() / force.potential(0.7, &u) - 1.0;
+        assert!(off.abs() < 1e-12, "{number}: {off:e}");
+    }
+}
+
+/// Growth along a direction and as much across it is growth alike in all directions.
+#[test]
+fn growth_across_as_along() {
+    let solid = Mesh::cuboid([0.1, 0.2, 0.3], [2, 2, 2], SolidCells::Hexahedra20).unwrap();
+    let body = Body::new(solid, SQUARE_MATERIAL.law(Law::NeoHookean)).build().unwrap();
+    let u = noise(body.dofs(), 0.01, 1.0);
+    let strain = || vec![Signal::ramp(0.0, 0.3, 0.0, 1.0)];
+    let helix = Growth::everywhere().around([-0.1, -0.2, 0.0], [0.2, 0.0, 1.0]).pitch(0.4);
+    let [alike, by_direction] = [Growth::everywhere(), helix.across(1.0)].map(|growth| {
+        let force = growth.named("g").force(&body, strain()).unwrap();
+        let forces = nodal_forces(&force, 0.7, &u, &u);
+        let energy = force.potential(0.7, &u);
+        (forces.conservative.to_vec(), [energy, forces.carried_power])
+    });
+    let largest = alike.0.iter().fold(0.0_f64, |largest, f| largest.max(f.abs()));
+    let apart = alike.0.iter().zip(&by_direction.0).map(|(a, b)| (a - b).abs() / largest);
+    let apart = apart.fold(0.0, f64::max);
+    println!("{apart:.1e} apart");
+    assert!(apart < 1e-13, "{apart:e}");
+    for (a, b) in alike.1.into_iter().zip(by_direction.1) {
+        assert!((a / b - 1.0).abs() < 1e-13, "{a} {b}");
     }
 }
 
