@@ -76,6 +76,7 @@ fn every_kind_reads_what_the_api_reads() -> Result<(), Error> {
         (r#"kind = "gas-flow", orifice = "leak""#, Reading::gas_flow("leak")),
         (r#"kind = "liquid-volume", chamber = "bag""#, Reading::liquid_volume("bag")),
         (r#"kind = "liquid-flow", chamber = "bag""#, Reading::liquid_flow("bag")),
+        (r#"kind = "liquid-level", chamber = "cup""#, Reading::liquid_level("cup")),
         (r#"kind = "volume", chamber = "inside""#, Reading::chamber_volume("inside")),
         (
             r#"kind = "stress", nodes = 5, component = "von-mises""#,

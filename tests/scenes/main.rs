@@ -31,6 +31,7 @@ mod hill;
 mod index_two;
 mod indicators;
 mod large;
+mod levels;
 mod liquids;
 mod magnets;
 mod moving_obstacles;

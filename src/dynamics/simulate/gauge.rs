@@ -147,6 +147,10 @@ impl Reading {
                 scene.liquid_number(chamber, "chamber")?;
                 number(chamber, |view, chamber| view.liquid_flow(chamber))
             }
+            What::LiquidLevel(chamber) => {
+                scene.surface_number(chamber, "chamber")?;
+                number(chamber, |view, chamber| view.liquid_level(chamber))
+            }
             What::MuscleStress(muscle) => {
                 scene.muscle_number(muscle, "muscle")?;
                 number(muscle, |view, muscle| view.muscle_stress(muscle))

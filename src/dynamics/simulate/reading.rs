@@ -48,6 +48,7 @@ pub(super) enum What {
     GasFlow(String),
     LiquidVolume(String),
     LiquidFlow(String),
+    LiquidLevel(String),
     Stress(Place),
     Strain(Place),
     Distance([Selection; 2]),
@@ -297,7 +298,8 @@ impl Reading {
         What::FluidForce(fluid.into(), None).into()
     }
 
-    /// Pressure in a chamber (Pa): of gas and of a liquid what it exceeds that outside by, of a liquid with weight the mean.
+    /// Pressure in a chamber (Pa): of gas and of a liquid what it exceeds that outside by, of a liquid with weight the mean,
+    /// of one with a surface that at the lowest place of the walls.
     pub fn pressure(chamber: impl Into<String>) -> Self {
         What::Pressure(chamber.into()).into()
     }
@@ -325,6 +327,11 @@ impl Reading {
     /// Flow of liquid into a chamber (m^3/s).
     pub fn liquid_flow(chamber: impl Into<String>) -> Self {
         What::LiquidFlow(chamber.into()).into()
+    }
+
+    /// Height (m) of the surface of the liquid in a chamber above the origin, against gravity: see [`Liquid::surface`](crate::Liquid::surface).
+    pub fn liquid_level(chamber: impl Into<String>) -> Self {
+        What::LiquidLevel(chamber.into()).into()
     }
 
     /// Volume that the walls of a chamber enclose (m^3).
@@ -429,6 +436,7 @@ impl Reading {
             What::GasFlow(_) => "kg/s",
             What::ChamberVolume(_) | What::LiquidVolume(_) => "m^3",
             What::LiquidFlow(_) => "m^3/s",
+            What::LiquidLevel(_) => "m",
             What::Strain(_) | What::MuscleStretch(_) => "1",
             What::Angle(_) | What::Rotation if self.in_degrees => DEGREES,
             What::Angle(_) | What::Rotation => "rad",

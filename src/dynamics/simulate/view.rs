@@ -132,7 +132,8 @@ impl<'a> View<'a> {
         Ok(self.gauges.chambers[number].volume(self.state.u))
     }
 
-    /// Pressure in a chamber (Pa): of gas and of a liquid what it exceeds that outside by, NaN where it has none; of a liquid with weight the mean.
+    /// Pressure in a chamber (Pa): of gas and of a liquid what it exceeds that outside by, NaN where it has none; of a liquid with weight the mean,
+    /// of one with a surface that at the lowest place of the walls.
     ///
     /// # Errors
     /// A name that no chamber has.
@@ -143,8 +144,12 @@ impl<'a> View<'a> {
             return Ok(gas.gauge(self.state.u, self.amount(number)).unwrap_or(f64::NAN));
         }
         if let Some(number) = self.scene.liquid_in(chamber) {
-            let (liquid, amount) = (&self.gauges.liquids[number], self.liquid_amount(number));
-            return Ok(liquid.gauge(self.state.u, amount).unwrap_or(f64::NAN));
+            let amount = self.liquid_amount(number);
+            let pressure = match self.scene.liquids()[number].has_surface() {
+                true => self.with_surface(number)?.gauge(self.state.u, amount),
+                false => self.gauges.liquids[number].gauge(self.state.u, amount),
+            };
+            return Ok(pressure.unwrap_or(f64::NAN));
         }
         let pressures = self.phase.pressures.iter().filter(|(name, _)| name == chamber);
         Ok(pressures.map(|(_, pressure)| pressure.at(self.time)).sum())
@@ -212,6 +217,20 @@ impl<'a> View<'a> {
         self.scene.liquid_number(chamber, "chamber")?;
         let own = self.phase.flows.iter().filter(|(name, _)| name == chamber);
         Ok(own.map(|(_, flow)| flow.at(self.time)).sum())
+    }
+
+    /// Height (m) above the origin, against gravity, of the surface of the liquid in a chamber; NaN where the chamber has no room for the liquid.
+    ///
+    /// # Errors
+    /// A name that no chamber has, one without liquid, a liquid without a [surface](crate::Liquid::surface).
+    pub fn liquid_level(&self, chamber: &str) -> Result<f64, InputError> {
+        let number = self.scene.surface_number(chamber, "chamber")?;
+        Ok(self.with_surface(number)?.level(self.state.u, self.liquid_amount(number)))
+    }
+
+    /// The liquid of that number, which has a surface, under the gravity of the phase.
+    fn with_surface(&self, number: usize) -> Result<Poured, InputError> {
+        self.scene.poured_in(Some(self.phase), &self.scene.liquids()[number])
     }
 
     /// The amount (kg) of the gas of that number: amounts are the last unknowns of the state, of gases and then of liquids.

@@ -62,7 +62,7 @@ pub(super) const ORIFICE: TableKeys = TableKeys::new(
 
 pub(super) const LIQUID: TableKeys = TableKeys::new(
     "[[liquid]]",
-    "A liquid that fills a chamber, in place of a `pressure` of phases. Above that outside it has the pressure p = K (V_m - V)/V_m, with the volume V of the \
+    "A liquid that fills a chamber, or stands in it with a `surface`, in place of a `pressure` of phases. Above that outside it has the pressure p = K (V_m - V)/V_m, with the volume V of the \
      chamber and the volume V_m that it would have without pressure, which a `flow` in phases changes. Where there is gravity it has weight: p is the mean, and the \
      pressure on the walls grows with depth. Its own motion, its inertia, is left out.",
     &[
@@ -74,8 +74,15 @@ pub(super) const LIQUID: TableKeys = TableKeys::new(
             "V_m at the start, as a part of the volume of the undeformed chamber",
             "1",
         )
-        .law("With 1 there is no pressure at first.")
+        .law("With 1 there is no pressure at first; with a `surface` it has to be below 1.")
         .default("1"),
+        Key::new(
+            "surface",
+            Holds::Flag,
+            "whether it has a level surface under air of the pressure outside, in a chamber that is open or vented and not full",
+        )
+        .law("It is not compressed: walls feel rho g (h - z) below the level h, which follows from the volume, and nothing above it. Needs gravity.")
+        .default("false"),
     ],
     "[[liquid]]\nchamber = \"inside\"\nbulk_modulus = 2.2e9\ndensity = 1000.0",
 );
@@ -98,6 +105,12 @@ pub(super) fn add_liquid(scene: Scene, value: &Value) -> Result<Scene, Error> {
     liquid = table.added(liquid, "bulk_modulus", Value::number, Liquid::bulk_modulus)?;
     liquid = table.added(liquid, "density", Value::number, Liquid::density)?;
     liquid = table.added(liquid, "fill", Value::number, Liquid::fill)?;
+    if table.optional("surface", Value::flag)?.unwrap_or(false) {
+        if let Some(value) = table.get("bulk_modulus") {
+            return Err(value.error("a liquid with a surface is not compressed: leave it out"));
+        }
+        liquid = liquid.surface();
+    }
     let scene = scene.liquid(liquid);
     scene.poured(None).map_err(|error| table.blame(error))?;
     Ok(scene)

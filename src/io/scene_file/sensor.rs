@@ -110,7 +110,7 @@ pub(super) const SENSOR: TableKeys = TableKeys::new(
             BODY,
         ],
     },
-    Kind { word: "pressure", about: "the pressure in a chamber, of gas and of a liquid what it exceeds that outside by, of a liquid with weight the mean (Pa)", keys: &[CHAMBER] },
+    Kind { word: "pressure", about: "the pressure in a chamber, of gas and of a liquid what it exceeds that outside by, of a liquid with weight the mean, of one with a surface that at the lowest place of the walls (Pa)", keys: &[CHAMBER] },
     Kind {
         word: "absolute-pressure",
         about: "the absolute pressure of the gas in a chamber (Pa)",
@@ -128,6 +128,11 @@ pub(super) const SENSOR: TableKeys = TableKeys::new(
         keys: &[CHAMBER],
     },
     Kind { word: "liquid-flow", about: "the flow of liquid into a chamber (m^3/s)", keys: &[CHAMBER] },
+    Kind {
+        word: "liquid-level",
+        about: "the height of the surface of the liquid in a chamber above the origin, against gravity (m)",
+        keys: &[CHAMBER],
+    },
     Kind {
         word: "volume",
         about: "the volume that the walls of a chamber enclose (m^3)",
@@ -240,6 +245,7 @@ pub(super) fn sensor(value: &Value, scene: &Scene) -> Result<(String, Reading), 
         "gas-flow" => Reading::gas_flow(named("orifice")?),
         "liquid-volume" => Reading::liquid_volume(named("chamber")?),
         "liquid-flow" => Reading::liquid_flow(named("chamber")?),
+        "liquid-level" => Reading::liquid_level(named("chamber")?),
         "volume" => Reading::chamber_volume(named("chamber")?),
         "stress" => field(&table, mesh, Reading::stress, Reading::stress_at)?,
         "strain" => field(&table, mesh, Reading::strain, Reading::strain_at)?,

@@ -1,5 +1,6 @@
 //! Forces on a body from outside: one file per kind of force.
 
+mod basin;
 mod chamber;
 mod closed;
 mod contact;
