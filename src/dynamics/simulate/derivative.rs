@@ -72,6 +72,7 @@ impl Reading {
             What::Rotation | What::Pressure(_) | What::AbsolutePressure(_) => false,
             What::GasAmount(_) | What::GasFlow(_) => false,
             What::LiquidVolume(_) | What::LiquidFlow(_) | What::LiquidLevel(_) => false,
+            What::PipeFlow(_) => false,
             What::MuscleStress(_) | What::MuscleStretch(_) | What::MagneticMoment => false,
             What::FluidForce(..) | What::DipoleForce(_) | What::DipolePosition(_) => false,
             What::SpringPull(_) | What::SpringLength(_) | What::Stress(_) | What::Strain(_) => {

@@ -49,6 +49,7 @@ pub(super) enum What {
     LiquidVolume(String),
     LiquidFlow(String),
     LiquidLevel(String),
+    PipeFlow(String),
     Stress(Place),
     Strain(Place),
     Distance([Selection; 2]),
@@ -334,6 +335,11 @@ impl Reading {
         What::LiquidLevel(chamber.into()).into()
     }
 
+    /// Flow of liquid (m^3/s) through a [pipe](crate::Pipe), from its first end to its second.
+    pub fn pipe_flow(pipe: impl Into<String>) -> Self {
+        What::PipeFlow(pipe.into()).into()
+    }
+
     /// Volume that the walls of a chamber enclose (m^3).
     pub fn chamber_volume(chamber: impl Into<String>) -> Self {
         What::ChamberVolume(chamber.into()).into()
@@ -435,7 +441,7 @@ impl Reading {
             What::GasAmount(_) => "kg",
             What::GasFlow(_) => "kg/s",
             What::ChamberVolume(_) | What::LiquidVolume(_) => "m^3",
-            What::LiquidFlow(_) => "m^3/s",
+            What::LiquidFlow(_) | What::PipeFlow(_) => "m^3/s",
             What::LiquidLevel(_) => "m",
             What::Strain(_) | What::MuscleStretch(_) => "1",
             What::Angle(_) | What::Rotation if self.in_degrees => DEGREES,

@@ -233,12 +233,23 @@ impl<'a> View<'a> {
         self.scene.poured_in(Some(self.phase), &self.scene.liquids()[number])
     }
 
-    /// The amount (kg) of the gas of that number: amounts are the last unknowns of the state, of gases and then of liquids.
+    /// Flow (m^3/s) through a pipe, from its first end to its second.
+    ///
+    /// # Errors
+    /// A name that no pipe has.
+    pub fn pipe_flow(&self, pipe: &str) -> Result<f64, InputError> {
+        let number = self.scene.pipe_number(pipe, "pipe")?;
+        let (others, count) = (self.state.others, self.scene.pipes().len());
+        Ok(others.len().checked_sub(count).map_or(0.0, |first| others[first + number]))
+    }
+
+    /// The amount (kg) of the gas of that number: amounts of gases, of liquids and the flows of pipes are the last unknowns of the state.
     fn amount(&self, number: usize) -> f64 {
         let Gauges { gases, liquids, .. } = self.gauges;
         let others = self.state.others;
         // where there are none, amounts stay what they are
-        let first = others.len().checked_sub(gases.len() + liquids.len());
+        let first =
+            others.len().checked_sub(gases.len() + liquids.len() + self.scene.pipes().len());
         match (first, number.checked_sub(gases.len())) {
             (Some(first), _) => others[first + number],
             (None, None) => gases[number].amount(),

@@ -48,6 +48,7 @@ mod gas;
 mod growth;
 mod initial;
 mod keys;
+mod liquid;
 mod listed;
 mod magnet;
 mod material;

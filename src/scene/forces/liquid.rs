@@ -53,7 +53,7 @@ const WATER: [f64; 2] = [2.2e9, 1000.0];
 pub struct Liquid {
     chamber: String,
     bulk_modulus: f64,
-    density: f64,
+    pub(crate) density: f64,
     fill: f64,
     has_surface: bool,
 }
@@ -201,6 +201,9 @@ trait Held: Content {
     /// As [`Content::press`].
     fn brought(&self, u: &[f64], amount: f64) -> Result<[f64; 2], Failure>;
 
+    /// g z (J/kg) of its middle, or of its surface, in the undeformed shape.
+    fn lifted(&self) -> f64;
+
     /// The level of its surface (m) above the origin; NaN without one.
     fn level(&self, _u: &[f64], _amount: f64) -> f64 {
         f64::NAN
@@ -236,6 +239,11 @@ impl Poured {
     /// As [`Content::press`].
     pub(crate) fn brought(&self, u: &[f64], amount: f64) -> Result<[f64; 2], Failure> {
         self.held.brought(u, amount)
+    }
+
+    /// g z (J/kg) of its middle, or of its surface, in the undeformed shape, above the origin.
+    pub(crate) fn lifted(&self) -> f64 {
+        self.held.lifted()
     }
 
     /// The level (m) of the surface of an `amount` (kg) above the origin; NaN where there is none.

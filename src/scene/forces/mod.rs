@@ -21,6 +21,7 @@ mod muscle;
 mod nodal;
 mod obstacle;
 mod passage;
+mod pipe;
 mod pressure;
 mod shape;
 mod signal;
@@ -54,6 +55,8 @@ pub use muscle::Muscle;
 pub(crate) use nodal::Tributary;
 pub use nodal::{ContactStatus, NodalContact};
 pub use obstacle::Obstacle;
+pub use pipe::Pipe;
+pub(crate) use pipe::{Mouth, PipeFlow};
 pub(crate) use pressure::FacePressure;
 #[cfg(feature = "output")]
 pub(crate) use shape::Kind as ShapeKind;

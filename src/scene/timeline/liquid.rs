@@ -20,9 +20,9 @@ impl Scene {
         &self.liquids
     }
 
-    /// Whether any phase changes the amount of a liquid.
+    /// Whether any phase, or a pipe, changes the amount of a liquid.
     pub(crate) fn pours(&self) -> bool {
-        self.phases.iter().any(|phase| !phase.flows.is_empty())
+        !self.pipes.is_empty() || self.phases.iter().any(|phase| !phase.flows.is_empty())
     }
 
     /// Number (from 0) of the liquid in a chamber, if there is any.

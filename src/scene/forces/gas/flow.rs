@@ -1,4 +1,4 @@
-//! The gases and liquids of a scene whose amounts are unknowns.
+//! The gases and liquids of a scene whose amounts are unknowns, and the pipes between them.
 
 use super::Filled;
 use super::orifice::{End, OrificeFlow};
@@ -7,13 +7,15 @@ use crate::elements::force::{Flow, FlowDerivatives, Force, NodalForces, Tangents
 use crate::integrators::ode::Failure;
 use crate::scene::forces::content::Content;
 use crate::scene::forces::liquid::Poured;
+use crate::scene::forces::pipe::PipeFlow;
 
-/// All gases of a scene and the orifices between them, and behind them all liquids.
+/// All gases of a scene and the orifices between them, behind them all liquids, and the pipes between these, whose flows are the last unknowns.
 pub(crate) struct AmountFlow {
-    gases: Vec<Filled>,
+    pub(super) gases: Vec<Filled>,
     orifices: Vec<OrificeFlow>,
-    liquids: Vec<Poured>,
-    start: Vec<f64>,
+    pub(super) liquids: Vec<Poured>,
+    pub(super) pipes: Vec<PipeFlow>,
+    pub(super) start: Vec<f64>,
 }
 
 impl AmountFlow {
@@ -21,10 +23,12 @@ impl AmountFlow {
         gases: Vec<Filled>,
         orifices: Vec<OrificeFlow>,
         liquids: Vec<Poured>,
+        pipes: Vec<PipeFlow>,
     ) -> Self {
         let mut start: Vec<f64> = gases.iter().map(Content::amount).collect();
         start.extend(liquids.iter().map(Content::amount));
-        Self { start, gases, orifices, liquids }
+        start.extend(pipes.iter().map(|_| 0.0));
+        Self { start, gases, orifices, liquids, pipes }
     }
 
     /// All gases, and then all liquids.
@@ -35,6 +39,17 @@ impl AmountFlow {
 }
 
 impl Flow for AmountFlow {
+    fn rooms(&self) -> usize {
+        self.gases.len() + self.liquids.len()
+    }
+
+    /// Of flows those of speeds in their pipes.
+    fn tolerances(&self, strain: f64, velocity: f64) -> Vec<f64> {
+        let (amounts, _) = self.start.split_at(self.rooms());
+        let of_amounts = amounts.iter().map(|amount| strain * amount);
+        of_amounts.chain(self.pipes.iter().map(|pipe| velocity * pipe.area)).collect()
+    }
+
     fn start(&self) -> &[f64] {
         &self.start
     }
@@ -59,7 +74,8 @@ impl Flow for AmountFlow {
             }
         }
         let each = self.gases.iter().zip(&*rates).zip(&*pressures);
-        let mut power = each.map(|((gas, rate), &pressure)| gas.brought(pressure)[0] * rate).sum();
+        let mut power: f64 =
+            each.map(|((gas, rate), &pressure)| gas.brought(pressure)[0] * rate).sum();
         let count = self.gases.len();
         let each = amounts[count..].iter().zip(&mut rates[count..]);
         for (liquid, (&amount, rate)) in self.liquids.iter().zip(each) {
@@ -69,11 +85,16 @@ impl Flow for AmountFlow {
                 power += liquid.brought(u, amount)?[0] * *rate;
             }
         }
-        Ok(power)
+        Ok(power + self.add_pipes(t, [u, amounts], forces, rates)?)
     }
 
     fn potential_of(&self, u: &[f64], amounts: &[f64]) -> f64 {
         self.all().zip(amounts).map(|(content, &amount)| content.potential(u, amount)).sum()
+    }
+
+    fn kinetic_of(&self, unknowns: &[f64]) -> f64 {
+        let flows = &unknowns[self.rooms()..];
+        self.pipes.iter().zip(flows).map(|(pipe, &flow)| pipe.kinetic(flow)).sum()
     }
 
     fn check(&self, t: f64, u: &[f64], amounts: &[f64]) -> Result<(), Failure> {
@@ -88,10 +109,10 @@ impl Flow for AmountFlow {
         stiffness: &mut BlockMatrix,
         derivatives: &mut FlowDerivatives,
     ) {
-        let FlowDerivatives { gradients, pressures: [stiff, pressing], rates, power, work } =
-            derivatives;
+        let FlowDerivatives { gradients, pressures: [stiff, pressing], rates, power, work, .. } =
+            &mut *derivatives;
         let ([by_volumes, by_amounts], [flows, pressures]) = (rates, work);
-        let count = self.start.len();
+        let (rooms, count) = (self.rooms(), self.start.len());
         gradients.fill(0.0);
         [&mut *by_volumes, by_amounts, stiff, pressing, flows].iter_mut().for_each(|x| x.fill(0.0));
         for (number, (content, &amount)) in self.all().zip(amounts).enumerate() {
@@ -109,7 +130,7 @@ impl Flow for AmountFlow {
                 flows[*row] += sign * flow;
                 for (end, slope) in orifice.ends.iter().zip([by_first, by_second]) {
                     let End::Gas(column) = end else { continue };
-                    by_volumes[row * count + column] -= sign * slope * stiff[*column];
+                    by_volumes[row * rooms + column] -= sign * slope * stiff[*column];
                     by_amounts[row * count + column] += sign * slope * pressing[*column];
                 }
             }
@@ -121,7 +142,7 @@ impl Flow for AmountFlow {
             power_by_amounts[column] = slope * pressing[column];
             for (row, gas) in self.gases.iter().enumerate() {
                 let [brought, _] = gas.brought(pressures[row]);
-                power_by_volumes[column] += brought * by_volumes[row * count + column];
+                power_by_volumes[column] += brought * by_volumes[row * rooms + column];
                 power_by_amounts[column] += brought * by_amounts[row * count + column];
             }
         }
@@ -132,6 +153,8 @@ impl Flow for AmountFlow {
             power_by_volumes[at] = -rate * pressing[at];
             power_by_amounts[at] = rate * slope;
         }
+        // as above
+        let _ = self.linearize_pipes(t, [u, amounts], derivatives);
     }
 }
 

@@ -115,7 +115,7 @@ impl Content for Pool {
     fn potential(&self, u: &[f64], amount: f64) -> f64 {
         let Ok(Level { height, .. }) = self.level_of(u, amount) else { return f64::NAN };
         let weight = (height - self.first) * self.natural(amount) - self.basin.moment(height, u);
-        self.heaviness() * weight - self.zero
+        self.heaviness() * weight - self.zero + self.lifted() * (amount - self.amount)
     }
 
     /// At the lowest place of the walls.
@@ -129,7 +129,11 @@ impl Content for Pool {
 impl Held for Pool {
     fn brought(&self, u: &[f64], amount: f64) -> Result<[f64; 2], Failure> {
         let Level { height, area } = self.level_of(u, amount)?;
-        Ok([self.gravity * (height - self.first), self.gravity / (self.density * area)])
+        Ok([self.gravity * height, self.gravity / (self.density * area)])
+    }
+
+    fn lifted(&self) -> f64 {
+        self.gravity * self.first
     }
 
     fn level(&self, u: &[f64], amount: f64) -> f64 {

@@ -8,7 +8,8 @@
 //! p dV/du + b s,   s = dS/du - (S/V) dV/du.
 //! ```
 //!
-//! What flows in brings dE/dm = (p - p^2/(2 K))/rho - g S/V for each kilogram, wherever the inlet is: pressure and height make up for each other.
+//! What flows in brings dE/dm = (p - p^2/(2 K))/rho - g S/V for each kilogram, and g z of the middle of the undeformed
+//! chamber, from which depths count, above the origin, wherever the inlet is: pressure and height make up for each other.
 //!
 //! The pressure acts on dV/du, but with the density m/V the weight changes, too: with q = -dp/dV both are q (dV/du + b/(q V) s) for a change of the volume or the
 //! amount. The tangent has the square of that vector; -(b/V)^2/q s s^T is left out of it, which is b L/K times the tangent of the weight for a chamber L high:
@@ -31,6 +32,8 @@ pub(super) struct Whole {
     amount: f64,
     zero: f64,
     weight: Option<(Moment, f64)>,
+    /// g z (J/kg) of the middle of the undeformed chamber.
+    lifted: f64,
 }
 
 /// What an amount has in a state.
@@ -55,11 +58,13 @@ impl Whole {
         let rest = vec![0.0; dofs];
         let volume = walls.volume(&rest);
         // depths count from the middle of the undeformed chamber
+        let mut lifted = 0.0;
         let weight = weight.map(|(moment, gravity)| {
             let middle = moment.value(&rest) / volume;
+            lifted = -gravity * middle;
             (moment.deeper(-middle), gravity)
         });
-        let mut whole = Self { walls, bulk, density, amount, zero: 0.0, weight };
+        let mut whole = Self { walls, bulk, density, amount, zero: 0.0, weight, lifted };
         whole.zero = whole.strain_energy(volume, amount);
         whole
     }
@@ -141,7 +146,8 @@ impl Content for Whole {
         let Ok(Full { volume, heaviness, middle, .. }) = self.full(u, amount) else {
             return f64::NAN;
         };
-        self.strain_energy(volume, amount) - self.zero - heaviness * volume * middle
+        let weight = self.lifted * (amount - self.amount) - heaviness * volume * middle;
+        self.strain_energy(volume, amount) - self.zero + weight
     }
 
     fn gauge(&self, u: &[f64], amount: f64) -> Result<f64, Failure> {
@@ -156,6 +162,10 @@ impl Held for Whole {
         let compressed = pressure * (1.0 - 0.5 * part) / self.density;
         let gravity = self.weight.as_ref().map_or(0.0, |(_, gravity)| *gravity);
         let slope = (1.0 - part) / self.density * self.pressing(volume, amount);
-        Ok([compressed - gravity * middle, slope])
+        Ok([compressed + self.lifted - gravity * middle, slope])
+    }
+
+    fn lifted(&self) -> f64 {
+        self.lifted
     }
 }
