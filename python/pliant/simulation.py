@@ -107,6 +107,14 @@ class Simulation:
         """Volume (m^3) of the liquid in a chamber, as it is without pressure."""
         return self._simulation.liquid_volume(chamber)
 
+    def liquid_level(self, chamber: str) -> float:
+        """Height (m) of the surface of the liquid in a chamber above the origin, against gravity."""
+        return self._simulation.liquid_level(chamber)
+
+    def pipe_flow(self, pipe: str) -> float:
+        """Flow of liquid (m^3/s) through a pipe, from its first end to its second."""
+        return self._simulation.pipe_flow(pipe)
+
     def liquid_flow(self, chamber: str) -> float:
         """Flow of liquid (m^3/s) into a chamber."""
         return self._simulation.liquid_flow(chamber)

@@ -162,6 +162,16 @@ impl Simulation {
         self.lock()?.view().liquid_volume(chamber).map_err(raised)
     }
 
+    /// Height (m) of the surface of the liquid in a chamber above the origin, against gravity.
+    fn liquid_level(&self, chamber: &str) -> PyResult<f64> {
+        self.lock()?.view().liquid_level(chamber).map_err(raised)
+    }
+
+    /// Flow of liquid (m^3/s) through a pipe, from its first end to its second.
+    fn pipe_flow(&self, pipe: &str) -> PyResult<f64> {
+        self.lock()?.view().pipe_flow(pipe).map_err(raised)
+    }
+
     /// Flow of liquid (m^3/s) into a chamber.
     fn liquid_flow(&self, chamber: &str) -> PyResult<f64> {
         self.lock()?.view().liquid_flow(chamber).map_err(raised)

@@ -216,6 +216,27 @@ def test_a_syringe():
         ring.flow("bog", 1e-5)
 
 
+def test_a_level_and_a_pipe():
+    scene = pliant.Scene(
+        gravity=[0.0, -9.8],
+        body={
+            "mesh": {"kind": "ring", "inner": 0.02, "outer": 0.03, "nodes": [16, 3], "cells": "rectangles"},
+            "thickness": 0.02,
+            "material": {"density": 1000.0, "young": 1e6, "poisson": 0.4, "viscosity": 2e3},
+        },
+        chamber={"name": "cup", "nodes": "inner"},
+        liquid={"chamber": "cup", "fill": 0.5, "surface": True},
+        supply={"name": "basin", "pressure": 101325.0 + 50.0},
+        pipe={"name": "tube", "from": "basin", "to": "cup", "length": 0.1, "area": 1e-5},
+        phase={"until": 0.1, "hold": [{"nodes": "all"}]},
+    )
+    cup = scene.start()
+    before = cup.liquid_level("cup")
+    assert before == pytest.approx(0.0, abs=1e-6) and cup.pipe_flow("tube") == 0.0
+    cup.advance_to(0.1)
+    assert cup.pipe_flow("tube") > 0.0 and cup.liquid_level("cup") > before
+
+
 def test_a_valve():
     scene = pliant.Scene(
         body={

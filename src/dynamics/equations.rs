@@ -61,7 +61,7 @@ impl Scene {
         }
         if self.pours() {
             let help = "equations are given for amounts of liquids that stay: leave it out";
-            return Err(InputError::new("flow of a phase", "into a chamber", help));
+            return Err(InputError::new("flow of a phase, or a pipe,", "into a chamber", help));
         }
         if let Some((name, _)) = self.lags().next() {
             let help = "equations have no unknowns for it: leave it out";

@@ -28,8 +28,8 @@ pub struct Sample {
     /// which the phase names them, node by node, axis by axis. [`Trajectory::constraint_force`] returns them
     /// by nodes.
     pub multipliers: Vec<f64>,
-    /// Amounts of gas (kg) in the chambers with gas, in the order of the scene, then of liquids, then the states of [lags](crate::Lag); none where they are
-    /// constants: in equilibria, by `ida-klu` and by `central-difference`.
+    /// Amounts (kg) of the gases in chambers and then of the liquids, the states of [lags](crate::Lag), and the flows of pipes (m^3/s), each in the order of the scene; none where
+    /// they are constants: in equilibria, by `ida-klu` and by `central-difference`.
     pub amounts: Vec<f64>,
     /// Energies (J).
     pub energy: Energy,

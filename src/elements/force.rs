@@ -404,19 +404,23 @@ pub trait GeneralizedForce: Send {
 }
 
 /// Amounts m (kg) of what flows between rooms of the volumes V(u) (m^3), and what it does to the nodes: forces p(m, V)
-/// dV/du and rates q(t, m, V). Behind them the states a of actuators that lag: forces f(u, v, a) and rates q(t, a).
+/// dV/du and rates q(t, m, V). Among the amounts, one for each room, are the states a of actuators that lag, with forces f(u, v, a); behind them there may be more unknowns that flow has: those of pipes (m^3/s). They have rates,
+/// too, and no forces.
 #[doc(hidden)]
 pub trait Flow: Send + Sync {
-    /// The amounts at the start.
-    fn start(&self) -> &[f64];
+    /// Number of rooms.
+    fn rooms(&self) -> usize;
 
-    /// Sizes of the amounts, by which their tolerances are told.
-    fn sizes(&self) -> Vec<f64>;
+    /// Absolute tolerances of the unknowns, where those of strains (1) and velocities (m/s) are these.
+    fn tolerances(&self, strain: f64, velocity: f64) -> Vec<f64>;
+
+    /// The amounts at the start, and behind them the other unknowns.
+    fn start(&self) -> &[f64];
 
     /// Brings forces of actuators that lag to the `amounts` at time `t`, before they are evaluated.
     fn set(&self, t: f64, amounts: &[f64]);
 
-    /// Adds the forces `at` (u, m) and time `t`, and writes the rates (kg/s) of the amounts; the second vector has room for
+    /// Adds the forces `at` (u, m) and time `t`, and writes the rates of the unknowns (kg/s those of amounts); the second vector has room for
     /// as many numbers. Returns the power (W) that is supplied with what flows.
     ///
     /// # Errors
@@ -431,6 +435,9 @@ pub trait Flow: Send + Sync {
 
     /// Potential energy (J) of the amounts.
     fn potential_of(&self, u: &[f64], amounts: &[f64]) -> f64;
+
+    /// Kinetic energy (J) of what flows.
+    fn kinetic_of(&self, unknowns: &[f64]) -> f64;
 
     /// Checks a step after it was taken, to time `t`, with what it has led to.
     ///
@@ -456,10 +463,12 @@ pub struct FlowDerivatives {
     pub gradients: Vec<f64>,
     /// -dp/dV (Pa/m^3) and dp/dm (Pa/kg) of each room; 0 and 1 of actuators that lag.
     pub pressures: [Vec<f64>; 2],
-    /// dq/dV (kg/s/m^3) and dq/dm (1/s).
+    /// dq/dV (kg/s/m^3) and dq/dm (1/s), a row for each unknown.
     pub rates: [Vec<f64>; 2],
     /// Derivatives of the power that is supplied, by V (W/m^3) and by m (W/kg).
     pub power: [Vec<f64>; 2],
+    /// Derivatives of the power that becomes heat, by m (W/kg).
+    pub heat: Vec<f64>,
     /// Rates of the amounts (kg/s), and room for as many numbers.
     pub work: [Vec<f64>; 2],
     /// Room for two evaluations of a force.
@@ -467,15 +476,16 @@ pub struct FlowDerivatives {
 }
 
 impl FlowDerivatives {
-    /// Zeros for `count` rooms whose walls are among `dofs` displacement components.
-    pub(crate) fn zeros(count: usize, dofs: usize) -> Self {
-        let pair = |length: usize| [vec![0.0; length], vec![0.0; length]];
+    /// Zeros for so many rooms and unknowns; walls are among `dofs` displacement components.
+    pub(crate) fn zeros([rooms, unknowns]: [usize; 2], dofs: usize) -> Self {
+        let pair = |first: usize, second: usize| [vec![0.0; first], vec![0.0; second]];
         Self {
-            gradients: vec![0.0; count * dofs],
-            pressures: pair(count),
-            rates: pair(count * count),
-            power: pair(count),
-            work: pair(count),
+            gradients: vec![0.0; rooms * dofs],
+            pressures: pair(rooms, rooms),
+            rates: pair(unknowns * rooms, unknowns * unknowns),
+            power: pair(rooms, unknowns),
+            heat: vec![0.0; unknowns],
+            work: pair(unknowns, unknowns),
             trial: [NodalForces::zeros(dofs), NodalForces::zeros(dofs)],
         }
     }

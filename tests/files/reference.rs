@@ -51,11 +51,12 @@ fn with(example: &str, mesh: &str) -> String {
         let is_whole = part == place && (key == place || key == "title");
         let is_needed = match part {
             "[[chamber]]" => {
-                ["pressure", "[[gas]]", "[[orifice]]", "open", "[[liquid]]", "flow"].contains(&key)
+                ["pressure", "[[gas]]", "[[orifice]]", "open", "[[liquid]]", "flow", "[[pipe]]"]
+                    .contains(&key)
             }
             "[[gas]]" | "[[supply]]" => ["[[orifice]]", "open"].contains(&key),
             "[[orifice]]" => key == "open",
-            "[[liquid]]" => key == "flow",
+            "[[liquid]]" => ["flow", "[[pipe]]"].contains(&key),
             "[[spring]]" => key == "actuate",
             "[[magnet]]" => ["magnetic_field", "[[dipole]]", "drive"].contains(&key),
             "[[dipole]]" => key == "drive",

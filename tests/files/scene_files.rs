@@ -179,6 +179,7 @@ const LONG: &[&str] = &[
     "heap",
     "hydraulic-finger",
     "pneumatic-finger",
+    "raised-flask",
     "two-squares",
 ];
 

@@ -34,8 +34,22 @@ name = "bag"
 nodes = [1, 2, 5, 4]
 [[liquid]]
 chamber = "bag"
+[[chamber]]
+name = "cup"
+nodes = [5, 6, 9, 8]
+[[liquid]]
+chamber = "cup"
+fill = 0.5
+surface = true
+[[pipe]]
+name = "tube"
+from = "cup"
+to = "atmosphere"
+length = 0.1
+area = 1e-7
 [[phase]]
 until = 0.01
+gravity = [0.0, -1e-6]
 hold = [{ nodes = "left" }]
 flow = [{ chamber = "bag", rate = 1e-9 }]
 "#;
@@ -76,6 +90,8 @@ fn every_kind_reads_what_the_api_reads() -> Result<(), Error> {
         (r#"kind = "gas-flow", orifice = "leak""#, Reading::gas_flow("leak")),
         (r#"kind = "liquid-volume", chamber = "bag""#, Reading::liquid_volume("bag")),
         (r#"kind = "liquid-flow", chamber = "bag""#, Reading::liquid_flow("bag")),
+        (r#"kind = "liquid-level", chamber = "cup""#, Reading::liquid_level("cup")),
+        (r#"kind = "pipe-flow", pipe = "tube""#, Reading::pipe_flow("tube")),
         (r#"kind = "volume", chamber = "inside""#, Reading::chamber_volume("inside")),
         (
             r#"kind = "stress", nodes = 5, component = "von-mises""#,

@@ -147,6 +147,7 @@ fn surroundings(scene: &Scene) -> Result<(), Failure> {
     let chambers = scene.chambers().iter().map(|chamber| chamber.name()).collect();
     let orifices = scene.orifices().iter().map(|orifice| orifice.name()).collect();
     let liquids = scene.liquids().iter().map(|liquid| liquid.chamber()).collect();
+    let pipes = scene.pipes().iter().map(|pipe| pipe.name()).collect();
     let fluids = scene.fluids().iter().map(|fluid| fluid.name()).collect();
     let obstacles = scene.obstacles().iter().map(|obstacle| obstacle.name()).collect();
     let touches = scene.touches().iter().map(|touch| touch.name()).collect();
@@ -160,6 +161,7 @@ fn surroundings(scene: &Scene) -> Result<(), Failure> {
         ("chambers", chambers),
         ("orifices", orifices),
         ("liquids", liquids),
+        ("pipes", pipes),
         ("fluids", fluids),
         ("obstacles", obstacles),
         ("touches", touches),

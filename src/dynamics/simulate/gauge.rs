@@ -147,6 +147,14 @@ impl Reading {
                 scene.liquid_number(chamber, "chamber")?;
                 number(chamber, |view, chamber| view.liquid_flow(chamber))
             }
+            What::PipeFlow(pipe) => {
+                scene.pipe_number(pipe, "pipe")?;
+                number(pipe, |view, pipe| view.pipe_flow(pipe))
+            }
+            What::LiquidLevel(chamber) => {
+                scene.surface_number(chamber, "chamber")?;
+                number(chamber, |view, chamber| view.liquid_level(chamber))
+            }
             What::MuscleStress(muscle) => {
                 scene.muscle_number(muscle, "muscle")?;
                 number(muscle, |view, muscle| view.muscle_stress(muscle))

@@ -50,6 +50,8 @@ pub(super) enum What {
     GasFlow(String),
     LiquidVolume(String),
     LiquidFlow(String),
+    LiquidLevel(String),
+    PipeFlow(String),
     Stress(Place),
     Strain(Place),
     Distance([Selection; 2]),
@@ -309,7 +311,8 @@ impl Reading {
         What::FluidForce(fluid.into(), None).into()
     }
 
-    /// Pressure in a chamber (Pa): of gas and of a liquid what it exceeds that outside by, of a liquid with weight the mean.
+    /// Pressure in a chamber (Pa): of gas and of a liquid what it exceeds that outside by, of a liquid with weight the mean,
+    /// of one with a surface that at the lowest place of the walls.
     pub fn pressure(chamber: impl Into<String>) -> Self {
         What::Pressure(chamber.into()).into()
     }
@@ -337,6 +340,16 @@ impl Reading {
     /// Flow of liquid into a chamber (m^3/s).
     pub fn liquid_flow(chamber: impl Into<String>) -> Self {
         What::LiquidFlow(chamber.into()).into()
+    }
+
+    /// Height (m) of the surface of the liquid in a chamber above the origin, against gravity: see [`Liquid::surface`](crate::Liquid::surface).
+    pub fn liquid_level(chamber: impl Into<String>) -> Self {
+        What::LiquidLevel(chamber.into()).into()
+    }
+
+    /// Flow of liquid (m^3/s) through a [pipe](crate::Pipe), from its first end to its second.
+    pub fn pipe_flow(pipe: impl Into<String>) -> Self {
+        What::PipeFlow(pipe.into()).into()
     }
 
     /// Volume that the walls of a chamber enclose (m^3).
@@ -440,7 +453,8 @@ impl Reading {
             What::GasAmount(_) => "kg",
             What::GasFlow(_) => "kg/s",
             What::ChamberVolume(_) | What::LiquidVolume(_) => "m^3",
-            What::LiquidFlow(_) => "m^3/s",
+            What::LiquidFlow(_) | What::PipeFlow(_) => "m^3/s",
+            What::LiquidLevel(_) => "m",
             What::Temperature(_) => "K",
             What::Strain(_) | What::MuscleStretch(_) | What::Activation(_) => "1",
             What::Angle(_) | What::Rotation if self.in_degrees => DEGREES,

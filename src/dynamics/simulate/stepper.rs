@@ -166,7 +166,7 @@ pub(super) fn start(
     tolerances.resize(2 * n, atol.velocity);
     tolerances.resize(2 * n + ENERGIES, atol.energy);
     tolerances.resize(system.unknowns() - system.amounts().len(), atol.strain);
-    tolerances.extend(system.sizes().iter().map(|size| atol.strain * size));
+    tolerances.extend(system.flow_tolerances(atol.strain, atol.velocity));
     system.expect_iteration(iterates(settings.method, &system));
     let longest = settings.max_step.unwrap_or(f64::INFINITY);
     match settings.method {

@@ -132,7 +132,8 @@ impl<'a> View<'a> {
         Ok(self.gauges.chambers[number].volume(self.state.u))
     }
 
-    /// Pressure in a chamber (Pa): of gas and of a liquid what it exceeds that outside by, NaN where it has none; of a liquid with weight the mean.
+    /// Pressure in a chamber (Pa): of gas and of a liquid what it exceeds that outside by, NaN where it has none; of a liquid with weight the mean,
+    /// of one with a surface that at the lowest place of the walls.
     ///
     /// # Errors
     /// A name that no chamber has.
@@ -143,8 +144,12 @@ impl<'a> View<'a> {
             return Ok(gas.gauge(self.state.u, self.amount(number)).unwrap_or(f64::NAN));
         }
         if let Some(number) = self.scene.liquid_in(chamber) {
-            let (liquid, amount) = (&self.gauges.liquids[number], self.liquid_amount(number));
-            return Ok(liquid.gauge(self.state.u, amount).unwrap_or(f64::NAN));
+            let amount = self.liquid_amount(number);
+            let pressure = match self.scene.liquids()[number].has_surface() {
+                true => self.with_surface(number)?.gauge(self.state.u, amount),
+                false => self.gauges.liquids[number].gauge(self.state.u, amount),
+            };
+            return Ok(pressure.unwrap_or(f64::NAN));
         }
         let pressures = self.phase.pressures.iter().filter(|(name, _)| name == chamber);
         Ok(pressures.map(|(_, pressure)| pressure.at(self.time)).sum())
@@ -214,12 +219,38 @@ impl<'a> View<'a> {
         Ok(own.map(|(_, flow)| flow.at(self.time)).sum())
     }
 
-    /// The amount (kg) of the gas of that number: amounts are the last unknowns of the state, of gases and then of liquids, before what lags.
+    /// Height (m) above the origin, against gravity, of the surface of the liquid in a chamber; NaN where the chamber has no room for the liquid.
+    ///
+    /// # Errors
+    /// A name that no chamber has, one without liquid, a liquid without a [surface](crate::Liquid::surface).
+    pub fn liquid_level(&self, chamber: &str) -> Result<f64, InputError> {
+        let number = self.scene.surface_number(chamber, "chamber")?;
+        Ok(self.with_surface(number)?.level(self.state.u, self.liquid_amount(number)))
+    }
+
+    /// The liquid of that number, which has a surface, under the gravity of the phase.
+    fn with_surface(&self, number: usize) -> Result<Poured, InputError> {
+        self.scene.poured_in(Some(self.phase), &self.scene.liquids()[number])
+    }
+
+    /// Flow (m^3/s) through a pipe, from its first end to its second.
+    ///
+    /// # Errors
+    /// A name that no pipe has.
+    pub fn pipe_flow(&self, pipe: &str) -> Result<f64, InputError> {
+        let number = self.scene.pipe_number(pipe, "pipe")?;
+        let (others, count) = (self.state.others, self.scene.pipes().len());
+        Ok(others.len().checked_sub(count).map_or(0.0, |first| others[first + number]))
+    }
+
+    /// The amount (kg) of the gas of that number: amounts of gases, of liquids, states of what lags and the flows of pipes are the last unknowns of the state.
     fn amount(&self, number: usize) -> f64 {
         let Gauges { gases, liquids, .. } = self.gauges;
         let others = self.state.others;
         // where there are none, amounts stay what they are
-        let first = others.len().checked_sub(gases.len() + liquids.len() + self.scene.lags().len());
+        let scene = self.scene;
+        let unknowns = gases.len() + liquids.len() + scene.lags().len() + scene.pipes().len();
+        let first = others.len().checked_sub(unknowns);
         match (first, number.checked_sub(gases.len())) {
             (Some(first), _) => others[first + number],
             (None, None) => gases[number].amount(),

@@ -93,6 +93,10 @@ impl Scene {
                 help,
             ));
         }
+        if let [pipe, ..] = self.pipes() {
+            let help = "an equilibrium keeps the amounts of liquids as they are: leave the pipes out, or run the scene until it is at rest";
+            return Err(InputError::new("pipe of statics", format!("\"{}\"", pipe.name()), help));
+        }
         if self.pours() {
             let help = "an equilibrium keeps the amounts of liquids as they are: leave it out and give a fill, or run the scene";
             return Err(InputError::new("flow of statics", "into a chamber", help));

@@ -239,8 +239,8 @@ impl Dae for DaeForm {
             Index::Two => self.system.solve_newton_index_two(r.u, r.v, amounts, [r3, r4]),
         }
         let (dissipated, supplied) = self.system.power_changes();
-        let brought = self.system.solve_amounts(r.u, amounts);
-        *r.dissipated = gamma * (*r.dissipated + dissipated);
+        let [heated, brought] = self.system.solve_amounts(r.u, amounts);
+        *r.dissipated = gamma * (*r.dissipated + dissipated + heated);
         *r.supplied = gamma * (*r.supplied + supplied + brought);
         Ok(())
     }

@@ -1,4 +1,4 @@
-//! Amounts of gas, and states of actuators that lag, in the Newton system, eliminated.
+//! Amounts of gas and liquids, and states of actuators that lag, in the Newton system, eliminated, and with them the flows of pipes.
 //!
 //! With the volumes V(u) of the chambers, their gradients G = dV/du (a column each), the pressures p(m, V) and the flows
 //! q(t, m, V), a step of the parameter gamma has, beside the system of `newton.rs`,
@@ -8,7 +8,7 @@
 //! ... - gamma G (Pm xm - Pv w) = ...         Pv = -dp/dV, Pm = dp/dm, Qm = dq/dm, Qv = dq/dV
 //! ```
 //!
-//! so that, with S = (I - gamma Qm)^-1 and C = Pv - gamma Pm S Qv,
+//! where xm has the changes of all unknowns of the flow, those of pipes behind the amounts, and Pm a column of 0 for each pipe; so that, with S = (I - gamma Qm)^-1 and C = Pv - gamma Pm S Qv,
 //!
 //! ```text
 //! xm = S (rm + gamma Qv w)
@@ -23,9 +23,11 @@
 use crate::base::vector::dot;
 use crate::elements::force::FlowDerivatives;
 
-/// What amounts of gas add to the Newton system; matrices row by row.
+/// What amounts of gas and liquids add to the Newton system; matrices row by row.
 pub(super) struct FlowMatrix {
-    pub(super) count: usize,
+    /// Rooms, and unknowns: the amounts in them, and flows of pipes.
+    pub(super) rooms: usize,
+    unknowns: usize,
     pub(super) derivatives: FlowDerivatives,
     /// S, and its product with gamma Qv.
     response: Vec<f64>,
@@ -44,35 +46,36 @@ pub(super) struct FlowMatrix {
 }
 
 impl FlowMatrix {
-    /// For `count` chambers of a body with `dofs` displacement components.
-    pub(super) fn new(count: usize, dofs: usize) -> Self {
-        let square = vec![0.0; count * count];
+    /// For so many rooms and unknowns of a body with `dofs` displacement components.
+    pub(super) fn new([rooms, unknowns]: [usize; 2], dofs: usize) -> Self {
+        let square = vec![0.0; rooms * rooms];
         Self {
-            count,
-            derivatives: FlowDerivatives::zeros(count, dofs),
-            response: square.clone(),
-            following: square.clone(),
+            rooms,
+            unknowns,
+            derivatives: FlowDerivatives::zeros([rooms, unknowns], dofs),
+            response: vec![0.0; unknowns * unknowns],
+            following: vec![0.0; unknowns * rooms],
             stiffness: square.clone(),
             resistance: square.clone(),
-            compliance: square.clone(),
-            work: square,
-            volumes: vec![0.0; count],
-            changes: vec![0.0; count],
+            compliance: square,
+            work: vec![0.0; unknowns * unknowns],
+            volumes: vec![0.0; rooms],
+            changes: vec![0.0; unknowns],
             column: vec![0.0; dofs],
         }
     }
 
     /// Sets S, S gamma Qv and C for a step of the parameter `gamma`.
     pub(super) fn condense(&mut self, gamma: f64) {
-        let Self { count, derivatives, response, following, stiffness, work, .. } = self;
-        let (k, FlowDerivatives { pressures: [stiff, pressing], rates, .. }) =
-            (*count, &*derivatives);
+        let Self { rooms, unknowns, derivatives, response, following, stiffness, work, .. } = self;
+        let (k, n) = (*rooms, *unknowns);
+        let FlowDerivatives { pressures: [stiff, pressing], rates, .. } = &*derivatives;
         let [by_volumes, by_amounts] = rates;
         for (at, x) in work.iter_mut().enumerate() {
-            *x = unit(at, k) - gamma * by_amounts[at];
+            *x = unit(at, n) - gamma * by_amounts[at];
         }
-        invert(work, response, k);
-        multiply(response, by_volumes, following, k);
+        invert(work, response, n);
+        multiply(response, by_volumes, following, [n, k]);
         following.iter_mut().for_each(|x| *x *= gamma);
         for (at, x) in stiffness.iter_mut().enumerate() {
             let row = at / k;
@@ -82,27 +85,28 @@ impl FlowMatrix {
 
     /// Whether that room resists: a column of H matters only where C has one.
     pub(super) fn is_stiff(&self, room: usize) -> bool {
-        self.stiffness.chunks(self.count).any(|row| row[room] != 0.0)
+        self.stiffness.chunks(self.rooms).any(|row| row[room] != 0.0)
     }
 
     /// Sets gamma^2 C (I + gamma^2 H C)^-1.
     pub(super) fn resist_by(&mut self, gamma: f64) {
-        let Self { count, stiffness, resistance, compliance, work, .. } = self;
-        let (k, square) = (*count, gamma * gamma);
-        multiply(compliance, stiffness, work, k);
+        let Self { rooms, stiffness, resistance, compliance, work, .. } = self;
+        let (k, square) = (*rooms, gamma * gamma);
+        let work = &mut work[..k * k];
+        multiply(compliance, stiffness, work, [k, k]);
         for (at, x) in work.iter_mut().enumerate() {
             *x = unit(at, k) + square * *x;
         }
         invert(work, resistance, k);
-        multiply(stiffness, resistance, work, k);
+        multiply(stiffness, resistance, work, [k, k]);
         resistance.iter_mut().zip(&*work).for_each(|(x, product)| *x = square * product);
     }
 
     /// Takes from the right-hand side the pressures that resist its solution `xv` without them.
     pub(super) fn resist(&mut self, xv: &[f64], right: &mut [f64]) {
         self.swell(xv);
-        let Self { count, derivatives, resistance, volumes, changes, .. } = self;
-        apply(resistance, volumes, changes, *count);
+        let Self { derivatives, resistance, volumes, changes, .. } = self;
+        apply(resistance, volumes, changes);
         push(derivatives, changes, -1.0, right);
     }
 
@@ -115,26 +119,26 @@ impl FlowMatrix {
         right: &mut [f64],
     ) {
         self.swell(ru);
-        let Self { count, derivatives, response, stiffness, volumes, changes, .. } = self;
-        apply(stiffness, volumes, changes, *count);
+        let Self { derivatives, response, stiffness, volumes, changes, .. } = self;
+        apply(stiffness, volumes, changes);
         push(derivatives, changes, -gamma, right);
-        apply(response, amounts, changes, *count);
+        apply(response, amounts, changes);
         let [_, pressing] = &derivatives.pressures;
         changes.iter_mut().zip(pressing).for_each(|(x, p)| *x *= p);
         push(derivatives, changes, gamma, right);
     }
 
-    /// Turns the residuals `x` of the amounts into their changes, by those of the displacements, `xu`. Returns the change
-    /// of the power (W) that is supplied with them.
-    pub(super) fn solve(&mut self, xu: &[f64], x: &mut [f64]) -> f64 {
+    /// Turns the residuals `x` of the unknowns of the flow into their changes, by those of the displacements, `xu`. Returns the changes
+    /// of the power (W) that becomes heat and of that which is supplied with them.
+    pub(super) fn solve(&mut self, xu: &[f64], x: &mut [f64]) -> [f64; 2] {
         self.swell(xu);
-        let Self { count, derivatives, response, following, volumes, changes, .. } = self;
-        apply(response, x, changes, *count);
+        let Self { derivatives, response, following, volumes, changes, .. } = self;
+        apply(response, x, changes);
         x.copy_from_slice(changes);
-        apply(following, volumes, changes, *count);
+        apply(following, volumes, changes);
         x.iter_mut().zip(&*changes).for_each(|(x, follows)| *x += follows);
         let [by_volumes, by_amounts] = &derivatives.power;
-        dot(by_volumes, volumes) + dot(by_amounts, x)
+        [dot(&derivatives.heat, x), dot(by_volumes, volumes) + dot(by_amounts, x)]
     }
 
     /// Sets `volumes` to G^T x.
@@ -156,13 +160,16 @@ fn unit(at: usize, k: usize) -> f64 {
     if at / k == at % k { 1.0 } else { 0.0 }
 }
 
-fn apply(matrix: &[f64], x: &[f64], product: &mut [f64], k: usize) {
-    product.iter_mut().zip(matrix.chunks(k)).for_each(|(y, row)| *y = dot(row, x));
+/// A product with as many rows as the matrix has.
+fn apply(matrix: &[f64], x: &[f64], product: &mut [f64]) {
+    product.iter_mut().zip(matrix.chunks(x.len())).for_each(|(y, row)| *y = dot(row, x));
 }
 
-fn multiply(a: &[f64], b: &[f64], product: &mut [f64], k: usize) {
+/// The product of a matrix with `inner` columns and one with so many rows and `columns`.
+fn multiply(a: &[f64], b: &[f64], product: &mut [f64], [inner, columns]: [usize; 2]) {
     for (at, x) in product.iter_mut().enumerate() {
-        *x = (0..k).map(|j| a[at / k * k + j] * b[j * k + at % k]).sum();
+        let (row, column) = (at / columns * inner, at % columns);
+        *x = (0..inner).map(|j| a[row + j] * b[j * columns + column]).sum();
     }
 }
 

@@ -38,7 +38,7 @@ impl System {
         if let Some(edges) = &mut newton.solver.edges {
             edges.demands.fill(0.0);
         }
-        let (dofs, k) = (matrix.column.len(), matrix.count);
+        let (dofs, k) = (matrix.column.len(), matrix.rooms);
         for column in 0..k {
             if !matrix.is_stiff(column) {
                 continue;
@@ -54,9 +54,9 @@ impl System {
         matrix.resist_by(newton.gamma);
     }
 
-    /// Turns the residuals `x` of the amounts into their changes, by those of the displacements, `xu`. Returns the change
-    /// of the power (W) that is supplied with them.
-    pub(super) fn solve_amounts(&mut self, xu: &[f64], x: &mut [f64]) -> f64 {
-        self.newton.flow.as_mut().map_or(0.0, |flow| flow.solve(xu, x))
+    /// Turns the residuals `x` of the amounts and flows into their changes, by those of the displacements, `xu`. Returns the changes
+    /// of the power (W) that becomes heat and of that which is supplied with them.
+    pub(super) fn solve_amounts(&mut self, xu: &[f64], x: &mut [f64]) -> [f64; 2] {
+        self.newton.flow.as_mut().map_or([0.0; 2], |flow| flow.solve(xu, x))
     }
 }

@@ -124,7 +124,7 @@ struct Evaluation {
     /// Rates (1/s) of the internal strains, and the power (W) that they dissipate.
     relaxing: Vec<f64>,
     relaxed: f64,
-    /// Rates (kg/s) of the amounts of gas, room for as many numbers, and the power (W) supplied with them.
+    /// Rates of the amounts of gas (kg/s) and of the flows of pipes, room for as many numbers, and the power (W) supplied with them.
     flowing: [Vec<f64>; 2],
     brought: f64,
 }
@@ -132,7 +132,7 @@ struct Evaluation {
 /// Energies of a state (J).
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Energy {
-    /// (1/2) v.M v
+    /// (1/2) v.M v, and that of liquids in pipes.
     pub kinetic: f64,
     /// Strain energy.
     pub strain: f64,
@@ -140,9 +140,10 @@ pub struct Energy {
     pub gravity: f64,
     /// Stored in the penalty springs of contacts.
     pub contact: f64,
-    /// Stored in springs between nodes, and in gas in chambers and the air around them; of liquids that of their compression and their weight.
+    /// Stored in springs between nodes, and in gas in chambers and the air around them; of liquids that of their compression and
+    /// their weight.
     pub springs: f64,
-    /// Turned into heat since t = 0 by viscosity, damping and friction of contacts.
+    /// Turned into heat since t = 0 by viscosity, damping and friction of contacts and pipes.
     pub dissipated: f64,
     /// Supplied since t = 0 by loads and constraints, and with gas and liquids that flow in.
     pub supplied: f64,
@@ -221,7 +222,8 @@ impl System {
             brought: 0.0,
         };
         let mut newton = newton;
-        newton.hold_amounts(amounts, dofs);
+        let rooms = flow_of(&flow).map_or(0, |flow| flow.rooms());
+        newton.hold_amounts([rooms, amounts], dofs);
         let (base, refusal) = (matrices.clone(), String::new());
         let linear_edges = edges.clone();
         Ok(Self {
@@ -448,6 +450,7 @@ impl System {
         }
         if let (Some(flow), [_, ..]) = (flow_of(&self.flow), amounts) {
             energy.springs += flow.potential_of(u, amounts);
+            energy.kinetic += flow.kinetic_of(amounts);
         }
         let sampled = self.reduction.as_ref().map(|reduction| &reduction.forces);
         for force in sampled.unwrap_or(&self.forces) {
@@ -585,14 +588,14 @@ impl System {
         self.at.relaxing.len() + self.amounts().len()
     }
 
-    /// The amounts of gas (kg) and the states of actuators at the start of the scene; none if no gas flows and none lags.
-    pub(crate) fn amounts(&self) -> &[f64] {
-        flow_of(&self.flow).map_or(&[], |flow| flow.start())
+    /// Absolute tolerances of the amounts and flows, where those of strains (1) and velocities (m/s) are these.
+    pub(crate) fn flow_tolerances(&self, strain: f64, velocity: f64) -> Vec<f64> {
+        flow_of(&self.flow).map_or_else(Vec::new, |flow| flow.tolerances(strain, velocity))
     }
 
-    /// Sizes of these amounts, by which their tolerances are told.
-    pub(crate) fn sizes(&self) -> Vec<f64> {
-        flow_of(&self.flow).map_or_else(Vec::new, |flow| flow.sizes())
+    /// The amounts of gas (kg) the states of actuators that lag and the flows of pipes (m^3/s) at the start of the scene; none without any.
+    pub(crate) fn amounts(&self) -> &[f64] {
+        flow_of(&self.flow).map_or(&[], |flow| flow.start())
     }
 
     /// The internal strains and the amounts among the `internal` unknowns, if these are given.

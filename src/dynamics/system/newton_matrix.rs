@@ -124,9 +124,9 @@ impl NewtonMatrix {
         }
     }
 
-    /// Makes room for what `count` amounts of gas add.
-    pub(super) fn hold_amounts(&mut self, count: usize, dofs: usize) {
-        self.flow = (count > 0).then(|| FlowMatrix::new(count, dofs));
+    /// Makes room for what so many rooms of gas and liquids with so many unknowns add.
+    pub(super) fn hold_amounts(&mut self, [rooms, unknowns]: [usize; 2], dofs: usize) {
+        self.flow = (rooms > 0).then(|| FlowMatrix::new([rooms, unknowns], dofs));
     }
 
     /// Continues with matrices on another pattern, without tangents yet.

@@ -68,8 +68,8 @@ impl Ode for System {
         let (dissipated, supplied) = self.power_changes();
         let (strains, amounts) = r.others.split_at_mut(self.at.relaxing.len());
         let relaxed = self.solve_branches(r.u, strains);
-        let brought = self.solve_amounts(r.u, amounts);
-        *r.dissipated += self.gamma() * (dissipated + relaxed);
+        let [heated, brought] = self.solve_amounts(r.u, amounts);
+        *r.dissipated += self.gamma() * (dissipated + relaxed + heated);
         *r.supplied += self.gamma() * (supplied + brought);
         Ok(())
     }

@@ -11,7 +11,7 @@ use crate::scene::constraint::{Axis, PhaseStart};
 use crate::studies::samples::SQUARE_MATERIAL;
 use crate::{
     Body, CellSelection, Cells, Chamber, Dilatation, Gas, InputError, Liquid, Mesh, Obstacle,
-    Orifice, Phase, Plane, Scene, SolidCells, Strain, Substance, Viscosity,
+    Orifice, Phase, Pipe, Plane, Scene, SolidCells, Strain, Substance, Viscosity,
 };
 
 const ALPHA: f64 = 30.0;
@@ -328,7 +328,8 @@ fn a_row_that_follows_from_others_is_named() {
     assert!(message.contains("follows from the other constraints"), "{message}");
 }
 
-/// Two rooms of gas within a body, with an orifice between them, from a supply and into the open, and one full of a light liquid that is pumped in.
+/// Two rooms of gas within a body, with an orifice between them, from a supply and into the open, one full of a light liquid that is pumped in, and one half full, with pipes between
+/// them and from a supply.
 fn with_gas() -> System {
     let mesh = Mesh::rectangle([0.3, 0.2], [4, 3], Cells::Triangles).unwrap();
     let body =
@@ -343,7 +344,11 @@ fn with_gas() -> System {
         .chamber(Chamber::within("b", [3, 4, 12, 11]))
         .chamber(Chamber::within("c", [6, 7, 11, 10]))
         .gravity([3.0, -9.0])
+        .chamber(Chamber::within("d", [2, 3, 7, 6]))
         .liquid(Liquid::in_chamber("c").bulk_modulus(3e5).density(50.0))
+        .liquid(Liquid::in_chamber("d").density(50.0).fill(0.5).surface())
+        .pipe(Pipe::new("flat", "c", "d", 0.3, 1e-3).viscosity(0.02).loss(0.7))
+        .pipe(Pipe::new("fed", "pump", "c", 0.2, 2e-3).loss(1.2))
         .gas(Gas::in_chamber("a").pressure(1.3e5).exponent(1.4))
         .gas(Gas::in_chamber("b").pressure(2.0e5).exponent(1.1))
         .supply("pump", 4e5)
@@ -358,7 +363,10 @@ fn with_gas() -> System {
 fn state_with_gas(system: &System) -> Vec<f64> {
     let mut y = state(system);
     y[..system.dofs()].iter_mut().for_each(|u| *u *= 0.2);
-    y.extend(system.amounts().iter().map(|amount| 1.1 * amount));
+    // flows are 0 at the start
+    y.extend(
+        system.amounts().iter().map(|amount| if *amount == 0.0 { 0.02 } else { 1.1 * amount }),
+    );
     y
 }
 

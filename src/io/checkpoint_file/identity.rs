@@ -65,6 +65,9 @@ impl Identity {
         if !scene.liquids().is_empty() {
             parts.push(("liquids".into(), text(of_text(scene.liquids()))));
         }
+        if !scene.pipes().is_empty() {
+            parts.push(("pipes".into(), text(of_text(scene.pipes()))));
+        }
         // as in files that were written before there were several bodies
         let tied = scene.tied().unwrap_or_default();
         let [ties, touches] = [of_text(&tied), of_text(&scene.touches())].map(text);

@@ -42,10 +42,11 @@ const ABSENT: [(&[&str], &str); 8] = [
             "pump",
             "valve",
             "syringe",
+            "tube",
             "hydraulics",
         ],
         "what surrounds bodies, with its drag and its pressure by depth, is a [[fluid]]; a phase gives the pressure in a [[chamber]] over time (pressure = [...]), or \
-         there is [[gas]] in it, which flows through an [[orifice]] from a [[supply]], or a [[liquid]], of which a phase lets flow = [...] in",
+         there is [[gas]] in it, which flows through an [[orifice]] from a [[supply]], or a [[liquid]], of which a phase lets flow = [...] in, and which a [[pipe]] leads to another chamber",
     ),
     (
         &["motor", "actuator", "actuators"],

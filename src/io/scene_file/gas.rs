@@ -1,11 +1,11 @@
-//! `[[gas]]`, `[[supply]]`, `[[orifice]]` and `[[liquid]]`.
+//! `[[gas]]`, `[[supply]]` and `[[orifice]]`.
 
 use super::keys::{Holds, Key, TableKeys};
 use super::surroundings::unique;
 use super::value::Value;
 use crate::base::input::{InputError, not_negative};
 use crate::dynamics::error::Error;
-use crate::scene::forces::{Gas, Liquid, Orifice};
+use crate::scene::forces::{Gas, Orifice};
 use crate::scene::timeline::{Phase, Scene};
 
 pub(super) const GAS: TableKeys = TableKeys::new(
@@ -60,26 +60,6 @@ pub(super) const ORIFICE: TableKeys = TableKeys::new(
 )
 .one_of(&[&["conductance"], &["area"]]);
 
-pub(super) const LIQUID: TableKeys = TableKeys::new(
-    "[[liquid]]",
-    "A liquid that fills a chamber, in place of a `pressure` of phases. Above that outside it has the pressure p = K (V_m - V)/V_m, with the volume V of the \
-     chamber and the volume V_m that it would have without pressure, which a `flow` in phases changes. Where there is gravity it has weight: p is the mean, and the \
-     pressure on the walls grows with depth. Its own motion, its inertia, is left out.",
-    &[
-        Key::new("chamber", Holds::Text, "the name of the chamber").required(),
-        Key::number("bulk_modulus", "the bulk modulus K", "Pa").default("2.2e9, water"),
-        Key::number("density", "the density without pressure", "kg/m^3").default("1000"),
-        Key::number(
-            "fill",
-            "V_m at the start, as a part of the volume of the undeformed chamber",
-            "1",
-        )
-        .law("With 1 there is no pressure at first.")
-        .default("1"),
-    ],
-    "[[liquid]]\nchamber = \"inside\"\nbulk_modulus = 2.2e9\ndensity = 1000.0",
-);
-
 /// The scene with the gas that `value` describes.
 pub(super) fn add_gas(scene: Scene, value: &Value) -> Result<Scene, Error> {
     let table = &value.table(&GAS)?;
@@ -88,18 +68,6 @@ pub(super) fn add_gas(scene: Scene, value: &Value) -> Result<Scene, Error> {
     gas = table.added(gas, "exponent", Value::number, Gas::exponent)?;
     let scene = scene.gas(gas);
     scene.filled().map_err(|error| table.blame(error))?;
-    Ok(scene)
-}
-
-/// The scene with the liquid that `value` describes.
-pub(super) fn add_liquid(scene: Scene, value: &Value) -> Result<Scene, Error> {
-    let table = &value.table(&LIQUID)?;
-    let mut liquid = Liquid::in_chamber(table.required("chamber", Value::string)?);
-    liquid = table.added(liquid, "bulk_modulus", Value::number, Liquid::bulk_modulus)?;
-    liquid = table.added(liquid, "density", Value::number, Liquid::density)?;
-    liquid = table.added(liquid, "fill", Value::number, Liquid::fill)?;
-    let scene = scene.liquid(liquid);
-    scene.poured(None).map_err(|error| table.blame(error))?;
     Ok(scene)
 }
 

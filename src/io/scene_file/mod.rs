@@ -49,6 +49,7 @@ mod growth;
 mod initial;
 mod keys;
 mod lag;
+mod liquid;
 mod listed;
 mod magnet;
 mod material;

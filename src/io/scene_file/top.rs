@@ -4,11 +4,12 @@ use super::body::{self, BODY, POINT};
 use super::contents::{OutputRequest, SceneFile};
 use super::dipole::{self, DIPOLE};
 use super::fluid::{self, FLUID};
-use super::gas::{self, GAS, LIQUID, ORIFICE, SUPPLY};
+use super::gas::{self, GAS, ORIFICE, SUPPLY};
 use super::growth::{self, GROWTH};
 use super::initial::{self, INITIAL};
 use super::keys::{Holds, Key, TableKeys};
 use super::lag::{self, LAG};
+use super::liquid::{self, LIQUID, PIPE};
 use super::magnet::{self, MAGNET};
 use super::muscle::{self, MUSCLE};
 use super::obstacle::{self, OBSTACLE};
@@ -57,6 +58,7 @@ pub(super) const TOP: TableKeys = TableKeys::new(
         Key::new("supply", Holds::Tables(&SUPPLY), "what gas is drawn from"),
         Key::new("orifice", Holds::Tables(&ORIFICE), "what gas flows through"),
         Key::new("liquid", Holds::Tables(&LIQUID), "liquids in chambers"),
+        Key::new("pipe", Holds::Tables(&PIPE), "pipes between liquids in chambers"),
         Key::new("fluid", Holds::Tables(&FLUID), "fluids around bodies"),
         Key::new("obstacle", Holds::Tables(&OBSTACLE), "obstacles"),
         Key::new("phase", Holds::Tables(&PHASE), "the phases, one after the other").required(),
@@ -101,7 +103,7 @@ pub(super) fn scene_file(top: &Table) -> Result<SceneFile, Error> {
         Some(Err(_)) => initial,
         None => None,
     };
-    let parts: [(&str, Add); 16] = [
+    let parts: [(&str, Add); 17] = [
         ("tie", tie::add_tie),
         ("touch", touch::add_touch),
         ("spring", surroundings::add_spring),
@@ -115,7 +117,8 @@ pub(super) fn scene_file(top: &Table) -> Result<SceneFile, Error> {
         ("gas", gas::add_gas),
         ("supply", gas::add_supply),
         ("orifice", gas::add_orifice),
-        ("liquid", gas::add_liquid),
+        ("liquid", liquid::add_liquid),
+        ("pipe", liquid::add_pipe),
         ("fluid", fluid::add_fluid),
         ("obstacle", obstacle::add_obstacle),
     ];

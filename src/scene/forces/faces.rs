@@ -33,10 +33,7 @@ pub(super) fn volume_parts<const N: usize>(kind: FaceKind) -> Vec<([usize; N], f
         FaceKind::Triangle7 => 7,
         FaceKind::Quadrilateral8 => 8,
         FaceKind::Quadrilateral9 => 9,
-        _ => {
-            let parts = pieces(kind);
-            return parts.map(|(part, w)| (std::array::from_fn(|k| part[k]), w)).collect();
-        }
+        _ => return straight_parts(kind),
     };
     let points = face_points(kind);
     let weight = |nodes: &[usize; N]| -> f64 {
@@ -54,6 +51,11 @@ pub(super) fn volume_parts<const N: usize>(kind: FaceKind) -> Vec<([usize; N], f
         .map(|number| std::array::from_fn(|k| number / count.pow(k as u32) % count));
     let weighed = all.filter(ascending).map(|nodes| (nodes, weight(&nodes)));
     weighed.filter(|(_, w)| w.abs() > NO_PART).collect()
+}
+
+/// The straight [pieces] of a face, each with its weight.
+pub(super) fn straight_parts<const N: usize>(kind: FaceKind) -> Vec<([usize; N], f64)> {
+    pieces(kind).map(|(part, w)| (std::array::from_fn(|k| part[k]), w)).collect()
 }
 
 /// Weights of parts, which are of the order of 1, are round-off of 0 below this.

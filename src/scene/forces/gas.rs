@@ -7,6 +7,7 @@
 
 mod flow;
 mod orifice;
+mod pipes;
 #[cfg(test)]
 mod tests;
 

@@ -1,23 +1,13 @@
-//! Liquids in chambers, of nearly constant volume.
-//!
-//! An amount m has the natural volume V_m = m/rho, and in a chamber of the volume V the mean pressure p = K (V_m - V)/V_m above that outside, and the energy
-//! K (V_m - V)^2/(2 V_m), whose derivative by V is -p. Its weight has the energy -m g S/V, with the integral S of the depth over the chamber: that of the
-//! amount in the middle of the chamber. With b = m g/V the pressure at the depth d is then p + b (d - S/V), and the forces on the nodes are
-//!
-//! ```text
-//! p dV/du + b s,   s = dS/du - (S/V) dV/du.
-//! ```
-//!
-//! What flows in brings dE/dm = (p - p^2/(2 K))/rho - g S/V for each kilogram, wherever the inlet is: pressure and height make up for each other.
-//!
-//! The pressure acts on dV/du, but with the density m/V the weight changes, too: with q = -dp/dV both are q (dV/du + b/(q V) s) for a change of the volume or the
-//! amount. The tangent has the square of that vector; -(b/V)^2/q s s^T is left out of it, which is b L/K times the tangent of the weight for a chamber L high:
-//! 4e-7 for 0.1 m of water.
+//! Liquids in chambers, and what flows in and out of them.
 
+mod surface;
 #[cfg(test)]
 mod tests;
+mod whole;
 
-use super::chamber::{ChamberForce, TURNED};
+use std::fmt;
+
+use super::chamber::ChamberForce;
 use super::content::Content;
 use super::moment::Moment;
 use super::signal::{self, Signal, finite_at};
@@ -25,11 +15,17 @@ use crate::base::input::{InputError, positive};
 use crate::base::sparse::BlockMatrix;
 use crate::elements::force::NodalForces;
 use crate::integrators::ode::Failure;
+use crate::scene::forces::basin::Basin;
+use surface::Pool;
+use whole::Whole;
+
+/// What a liquid with a surface is told that fills its chamber.
+const FULL: &str = "with a surface it must be below 1: fill less, or leave the surface out";
 
 /// Bulk modulus (Pa) and density (kg/m^3) of water.
 const WATER: [f64; 2] = [2.2e9, 1000.0];
 
-/// A liquid that fills a [chamber](crate::Chamber) whole, in place of a pressure that phases give it.
+/// A liquid in a [chamber](crate::Chamber), in place of a pressure that phases give it: it fills the chamber whole, or has a [surface](Self::surface).
 ///
 /// Its volume hardly changes: the pressure is p = K (V_m - V)/V_m, with the bulk modulus K, the volume V of the chamber and the natural volume V_m that is in
 /// it, which [phases](crate::Phase::flow) change, as a syringe or a pump does. Where there is gravity, it has weight: p is the mean, and the pressure
@@ -53,27 +49,41 @@ const WATER: [f64; 2] = [2.2e9, 1000.0];
 /// assert!((last - first - 1e-6).abs() < 1e-9);
 /// # Ok::<(), pliant::Error>(())
 /// ```
-#[derive(Debug, Clone)]
+#[derive(Clone)]
 pub struct Liquid {
     chamber: String,
     bulk_modulus: f64,
-    density: f64,
+    pub(crate) density: f64,
     fill: f64,
+    has_surface: bool,
+}
+
+/// As it was before liquids had surfaces, where this one has none: checkpoints tell scenes apart by it.
+impl fmt::Debug for Liquid {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut parts = f.debug_struct("Liquid");
+        parts.field("chamber", &self.chamber).field("bulk_modulus", &self.bulk_modulus);
+        parts.field("density", &self.density).field("fill", &self.fill);
+        if self.has_surface {
+            parts.field("has_surface", &true);
+        }
+        parts.finish()
+    }
 }
 
 impl Liquid {
     /// Water in the chamber of that name.
     pub fn in_chamber(chamber: impl Into<String>) -> Self {
         let [bulk_modulus, density] = WATER;
-        Self { chamber: chamber.into(), bulk_modulus, density, fill: 1.0 }
+        Self { chamber: chamber.into(), bulk_modulus, density, fill: 1.0, has_surface: false }
     }
 
-    /// Name of the chamber that it fills.
+    /// Name of the chamber that it is in.
     pub fn chamber(&self) -> &str {
         &self.chamber
     }
 
-    /// Bulk modulus K (Pa). Default: 2.2e9.
+    /// Bulk modulus K (Pa). Default: 2.2e9. One with a [surface](Self::surface) is not compressed.
     pub fn bulk_modulus(mut self, modulus: f64) -> Self {
         self.bulk_modulus = modulus;
         self
@@ -85,73 +95,126 @@ impl Liquid {
         self
     }
 
-    /// The natural volume that is in the chamber at the start, as a part of its undeformed volume. Default: 1, with which there is no pressure at first.
+    /// The natural volume that is in the chamber at the start, as a part of its undeformed volume. Default: 1, with which there is no pressure at first;
+    /// with a [surface](Self::surface) it has to be below 1.
     pub fn fill(mut self, fill: f64) -> Self {
         self.fill = fill;
         self
     }
 
-    /// The liquid within `walls` of `dofs` displacement components, with its weight where there is one, and what flows in (m^3/s).
+    /// Lets it have a level surface under air of the pressure outside, which fills the rest of the chamber: a vessel that is open or vented, and not full. Default: it
+    /// fills the chamber whole.
+    ///
+    /// Its volume is [`fill`](Self::fill) times that of the undeformed chamber and what has flowed in, whatever the pressure. The walls feel rho g (h - z) at the height z below
+    /// the level h, which follows from that volume, and nothing above it; faces with mid nodes count as straight between the nodes. It needs
+    /// gravity. The level is that of a liquid at rest: it does not slosh. A lid or a line that closes the chamber is a wall, over which nothing spills. Where the
+    /// chamber becomes too small for the liquid, the run ends with an error: [`Reading::liquid_level`](crate::simulate::Reading::liquid_level) shows how near that is.
+    ///
+    /// ```
+    /// use pliant::simulate::Reading;
+    /// use pliant::{Body, Cells, Chamber, Liquid, Material, Mesh, Phase, Sampling, Scene, Settings};
+    ///
+    /// let rubber = Material { density: 1000.0, young: 1e6, poisson: 0.3, viscosity: 1e4 };
+    /// let ring = Mesh::ring(0.02, 0.03, [16, 3], Cells::Rectangles)?;
+    /// let ring = Body::new(ring, rubber).thickness(0.01).build()?;
+    /// let scene = Scene::new(ring)
+    ///     .gravity([0.0, -9.8])
+    ///     .chamber(Chamber::within("bottle", "inner"))
+    ///     .liquid(Liquid::in_chamber("bottle").fill(0.5).surface())
+    ///     .phase(Phase::until(0.1).hold([1, 2, 3]));
+    /// let sampling = Sampling::phase_ends().read("level", Reading::liquid_level("bottle"));
+    /// let motion = scene.simulate(&Settings::default(), &sampling)?;
+    /// assert!(motion.last().sensors[0].abs() < 1e-3); // the middle of the ring
+    /// # Ok::<(), pliant::Error>(())
+    /// ```
+    pub fn surface(mut self) -> Self {
+        self.has_surface = true;
+        self
+    }
+
+    /// Whether it has a surface.
+    pub(crate) fn has_surface(&self) -> bool {
+        self.has_surface
+    }
+
+    /// The liquid within `walls` of `dofs` displacement components, by what its weight takes, and what flows in (m^3/s).
     ///
     /// # Errors
-    /// Numbers that are not above 0; a chamber without volume in the undeformed shape.
+    /// Numbers that are not above 0; a chamber without volume in the undeformed shape, or full to the rim with a surface.
     pub(crate) fn pour(
         &self,
         walls: ChamberForce,
         dofs: usize,
-        weight: Option<Weight>,
+        weight: Weight,
         flow: Vec<Signal>,
     ) -> Result<Poured, InputError> {
         let input = |key: &str| format!("liquid in chamber \"{}\" {key}", self.chamber);
         let bulk = positive(&input("bulk_modulus"), self.bulk_modulus, "Pa")?;
         let density = positive(&input("density"), self.density, "kg/m^3")?;
         let fill = positive(&input("fill"), self.fill, "1")?;
+        let full = |help: &str| InputError::new(input("fill"), fill, help);
+        if self.has_surface && fill >= 1.0 {
+            return Err(full(FULL));
+        }
         let walls = walls.anchored();
-        let rest = vec![0.0; dofs];
-        let volume = walls.volume(&rest);
+        let volume = walls.volume(&vec![0.0; dofs]);
         if !walls.has_room() {
             let help = "in the undeformed shape the chamber must enclose a volume (m^3), which the liquid fills";
             return Err(InputError::new(input("volume"), format!("{volume:.1e}"), help));
         }
-        // depths count from the middle of the undeformed chamber
-        let weight = weight.map(|Weight { moment, gravity }| {
-            let middle = moment.value(&rest) / volume;
-            Weight { moment: moment.deeper(-middle), gravity }
-        });
         let amount = density * fill * volume;
-        let mut poured = Poured { walls, bulk, density, amount, zero: 0.0, weight, flow };
-        poured.zero = poured.strain_energy(volume, amount);
-        Ok(poured)
+        let held: Box<dyn Held> = match weight {
+            Weight::OfSurface { basin, gravity } => {
+                let pool = Pool::new(walls, basin, gravity, [amount, density], dofs);
+                Box::new(pool.map_err(|_| full(FULL))?)
+            }
+            Weight::None => Box::new(Whole::new(walls, bulk, [amount, density], None, dofs)),
+            Weight::Whole { moment, gravity } => {
+                let weight = Some((moment, gravity));
+                Box::new(Whole::new(walls, bulk, [amount, density], weight, dofs))
+            }
+        };
+        Ok(Poured { held, density, flow })
     }
 }
 
-/// The weight of a liquid.
-pub(crate) struct Weight {
-    pub(crate) moment: Moment,
-    /// Strength of gravity (m/s^2).
-    pub(crate) gravity: f64,
+/// What the weight of a liquid takes, with the strength of gravity (m/s^2).
+pub(crate) enum Weight {
+    None,
+    /// Of one that fills its chamber whole.
+    Whole {
+        moment: Moment,
+        gravity: f64,
+    },
+    /// Of one with a surface.
+    OfSurface {
+        basin: Basin,
+        gravity: f64,
+    },
+}
+
+/// What a liquid in a chamber has beside the forces of its content.
+trait Held: Content {
+    /// dE/dm (J/kg) of an `amount` (kg), and its derivative by the amount in a chamber that stays (J/kg^2).
+    ///
+    /// # Errors
+    /// As [`Content::press`].
+    fn brought(&self, u: &[f64], amount: f64) -> Result<[f64; 2], Failure>;
+
+    /// g z (J/kg) of its middle, or of its surface, in the undeformed shape.
+    fn lifted(&self) -> f64;
+
+    /// The level of its surface (m) above the origin; NaN without one.
+    fn level(&self, _u: &[f64], _amount: f64) -> f64 {
+        f64::NAN
+    }
 }
 
 /// A liquid within walls.
 pub(crate) struct Poured {
-    walls: ChamberForce,
-    bulk: f64,
+    held: Box<dyn Held>,
     density: f64,
-    /// The amount (kg) at the start, and the energy (J) that its compression stores there.
-    amount: f64,
-    zero: f64,
-    weight: Option<Weight>,
     flow: Vec<Signal>,
-}
-
-/// What an amount has in a state.
-struct Full {
-    /// p (Pa) and V (m^3).
-    pressure: f64,
-    volume: f64,
-    /// b (Pa/m) and S/V (m).
-    heaviness: f64,
-    middle: f64,
 }
 
 impl Poured {
@@ -166,7 +229,7 @@ impl Poured {
     /// A rate that is not finite.
     pub(crate) fn rate(&self, t: f64) -> Result<f64, Failure> {
         let rate = signal::sum(&self.flow, t);
-        let name = self.walls.name();
+        let name = self.walls().name();
         Ok(self.density * finite_at(t, format_args!("the flow into chamber \"{name}\""), rate)?)
     }
 
@@ -175,61 +238,31 @@ impl Poured {
     /// # Errors
     /// As [`Content::press`].
     pub(crate) fn brought(&self, u: &[f64], amount: f64) -> Result<[f64; 2], Failure> {
-        let Full { pressure, volume, middle, .. } = self.full(u, amount)?;
-        let part = pressure / self.bulk;
-        let compressed = pressure * (1.0 - 0.5 * part) / self.density;
-        let gravity = self.weight.as_ref().map_or(0.0, |weight| weight.gravity);
-        let slope = (1.0 - part) / self.density * self.pressing(volume, amount);
-        Ok([compressed - gravity * middle, slope])
+        self.held.brought(u, amount)
     }
 
-    /// dp/dm (Pa/kg)
-    fn pressing(&self, volume: f64, amount: f64) -> f64 {
-        self.bulk * volume / self.natural(amount) / amount
+    /// g z (J/kg) of its middle, or of its surface, in the undeformed shape, above the origin.
+    pub(crate) fn lifted(&self) -> f64 {
+        self.held.lifted()
     }
 
-    fn strain_energy(&self, volume: f64, amount: f64) -> f64 {
-        let natural = self.natural(amount);
-        0.5 * self.bulk * (natural - volume).powi(2) / natural
-    }
-
-    fn full(&self, u: &[f64], amount: f64) -> Result<Full, Failure> {
-        let (volume, name) = (self.walls.volume(u), self.walls.name());
-        let refused = |words: String| {
-            Err(Failure::Recoverable(format!("chamber \"{name}\" with a liquid {words}")))
-        };
-        if volume <= 0.0 {
-            return refused(format!("encloses {volume:.1e} m^3: {TURNED}"));
-        }
-        if amount <= 0.0 {
-            return refused(format!("has {amount:.1e} kg of it: let less flow out"));
-        }
-        let natural = self.natural(amount);
-        let pressure = self.bulk * (natural - volume) / natural;
-        let [heaviness, middle] = self.weight.as_ref().map_or([0.0; 2], |weight| {
-            [amount * weight.gravity / volume, weight.moment.value(u) / volume]
-        });
-        Ok(Full { pressure, volume, heaviness, middle })
+    /// The level (m) of the surface of an `amount` (kg) above the origin; NaN where there is none.
+    pub(crate) fn level(&self, u: &[f64], amount: f64) -> f64 {
+        self.held.level(u, amount)
     }
 }
 
 impl Content for Poured {
     fn walls(&self) -> &ChamberForce {
-        &self.walls
+        self.held.walls()
     }
 
     fn amount(&self) -> f64 {
-        self.amount
+        self.held.amount()
     }
 
     fn press(&self, u: &[f64], amount: f64, forces: &mut NodalForces) -> Result<(), Failure> {
-        let Full { pressure, heaviness, middle, .. } = self.full(u, amount)?;
-        let forces = &mut forces.conservative;
-        self.walls.add_gradient(pressure - heaviness * middle, u, forces);
-        if let Some(weight) = &self.weight {
-            weight.moment.add_gradient(heaviness, u, forces);
-        }
-        Ok(())
+        self.held.press(u, amount, forces)
     }
 
     fn linearize(
@@ -239,26 +272,14 @@ impl Content for Poured {
         stiffness: &mut BlockMatrix,
         gradient: &mut [f64],
     ) -> Option<[f64; 3]> {
-        let Full { pressure, volume, heaviness, middle } = self.full(u, amount).ok()?;
-        let stiff = self.bulk / self.natural(amount);
-        let part = heaviness / (stiff * volume);
-        self.walls.add_hessian(heaviness * middle - pressure, u, stiffness);
-        self.walls.add_gradient(1.0 - part * middle, u, gradient);
-        if let Some(weight) = &self.weight {
-            weight.moment.add_hessian(-heaviness, u, stiffness);
-            weight.moment.add_gradient(part, u, gradient);
-        }
-        Some([pressure, stiff, self.pressing(volume, amount)])
+        self.held.linearize(u, amount, stiffness, gradient)
     }
 
     fn potential(&self, u: &[f64], amount: f64) -> f64 {
-        let Ok(Full { volume, heaviness, middle, .. }) = self.full(u, amount) else {
-            return f64::NAN;
-        };
-        self.strain_energy(volume, amount) - self.zero - heaviness * volume * middle
+        self.held.potential(u, amount)
     }
 
     fn gauge(&self, u: &[f64], amount: f64) -> Result<f64, Failure> {
-        Ok(self.full(u, amount)?.pressure)
+        self.held.gauge(u, amount)
     }
 }

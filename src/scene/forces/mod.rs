@@ -1,5 +1,6 @@
 //! Forces on a body from outside: one file per kind of force.
 
+mod basin;
 mod chamber;
 mod closed;
 mod contact;
@@ -21,6 +22,7 @@ mod muscle;
 mod nodal;
 mod obstacle;
 mod passage;
+mod pipe;
 mod pressure;
 mod shape;
 mod signal;
@@ -56,6 +58,8 @@ pub use muscle::Muscle;
 pub(crate) use nodal::Tributary;
 pub use nodal::{ContactStatus, NodalContact};
 pub use obstacle::Obstacle;
+pub use pipe::Pipe;
+pub(crate) use pipe::{Mouth, PipeFlow};
 pub(crate) use pressure::FacePressure;
 #[cfg(feature = "output")]
 pub(crate) use shape::Kind as ShapeKind;

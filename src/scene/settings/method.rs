@@ -90,7 +90,7 @@ impl Method {
                 "it has no unknowns for the amounts of gas that flow through orifices: take another method, or auto",
             ),
             Self::IdaKlu | Self::CentralDifference if scene.pours() => Some(
-                "it has no unknowns for the amounts of liquids that flow into chambers: take another method, or auto",
+                "it has no unknowns for the amounts of liquids that flow into chambers or through pipes: take another method, or auto",
             ),
             Self::IdaKlu | Self::CentralDifference if scene.lags().len() > 0 => Some(
                 "it has no unknowns for the states of actuators that lag: take another method, or auto",

@@ -11,8 +11,8 @@ use crate::scene::forces::{
     Signal, Supply,
 };
 
-/// What an end of an orifice in the open is called.
-const OPEN: &str = "atmosphere";
+/// What an end of an orifice or a pipe in the open is called.
+pub(super) const OPEN: &str = "atmosphere";
 
 impl Scene {
     /// Adds an amount of gas in a chamber, in place of a pressure that phases give it.
@@ -70,10 +70,11 @@ impl Scene {
         !self.gases.is_empty()
     }
 
-    /// Number of amounts of gas and liquids, and of states of actuators that lag, that are unknowns.
+    /// Number of amounts of gas and liquids, of states of actuators that lag and of flows of pipes that are unknowns.
     #[cfg(feature = "checkpoint")]
     pub(crate) fn flowing_amounts(&self) -> usize {
-        if self.is_shut { 0 } else { self.gases.len() + self.liquids.len() + self.lags.len() }
+        let amounts = self.gases.len() + self.liquids.len();
+        if self.is_shut { 0 } else { amounts + self.lags.len() + self.pipes.len() }
     }
 
     /// All that gas is and flows through, for comparison with another scene.
@@ -82,13 +83,14 @@ impl Scene {
         (&self.gases, &self.orifices, &self.supplies, self.atmosphere)
     }
 
-    /// The same scene with constant amounts of gas and liquids, without orifices and lags: for what has no unknowns for them.
+    /// The same scene with constant amounts of gas and liquids, without orifices, pipes and lags: for what has no unknowns for them.
     pub(crate) fn shut(&self) -> Cow<'_, Self> {
         if !self.has_gas() && self.liquids.is_empty() && self.lags.is_empty() {
             return Cow::Borrowed(self);
         }
         let mut shut = Self { is_shut: true, ..self.clone() };
         shut.orifices.clear();
+        shut.pipes.clear();
         shut.phases.iter_mut().for_each(|phase| {
             phase.openings.clear();
             phase.flows.clear();
@@ -207,6 +209,7 @@ impl Scene {
         let orifices = (0..self.orifices.len()).map(|number| self.orifice_flow(number, phase));
         let (orifices, gases) = (orifices.collect::<Result<Vec<_>, _>>()?, self.filled()?);
         let (liquids, dofs) = (self.poured(Some(phase))?, self.body.dofs());
+        let pipes = self.pipe_flows()?;
         if self.is_shut {
             for gas in gases {
                 forces.push(Arc::new(Closed::new(gas, dofs)));
@@ -215,7 +218,7 @@ impl Scene {
                 forces.push(Arc::new(Closed::new(liquid, dofs)));
             }
         } else if !(gases.is_empty() && liquids.is_empty() && lagging.is_empty()) {
-            forces.push(Arc::new(AmountFlow::new(gases, orifices, liquids, lagging)));
+            forces.push(Arc::new(AmountFlow::new(gases, orifices, liquids, lagging, pipes)));
         }
         Ok(())
     }

@@ -113,7 +113,8 @@ impl Scene {
         let Some(lag) = self.lag_of(actuator) else { return sum };
         let sum = sum.map(|x| lag.gain() * x);
         let number = self.lags().position(|(name, _)| name == actuator);
-        let first = states.len().checked_sub(self.lags.len());
+        // behind them are the flows of pipes
+        let first = states.len().checked_sub(self.lags.len() + self.pipes.len());
         match (first, number) {
             (Some(first), Some(number)) => {
                 let state = states[first + number];

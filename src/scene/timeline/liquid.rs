@@ -20,9 +20,9 @@ impl Scene {
         &self.liquids
     }
 
-    /// Whether any phase changes the amount of a liquid.
+    /// Whether any phase, or a pipe, changes the amount of a liquid.
     pub(crate) fn pours(&self) -> bool {
-        self.phases.iter().any(|phase| !phase.flows.is_empty())
+        !self.pipes.is_empty() || self.phases.iter().any(|phase| !phase.flows.is_empty())
     }
 
     /// Number (from 0) of the liquid in a chamber, if there is any.
@@ -39,10 +39,22 @@ impl Scene {
         })
     }
 
+    /// Number (from 0) of the liquid with a surface in the chamber with a name; `input` is where that was given.
+    pub(crate) fn surface_number(&self, chamber: &str, input: &str) -> Result<usize, InputError> {
+        let number = self.liquid_number(chamber, input)?;
+        match self.liquids[number].has_surface() {
+            true => Ok(number),
+            false => {
+                let help = "its liquid fills it whole, and has no level: let it have a surface, or name another one";
+                Err(InputError::new(input, format!("\"{chamber}\""), help))
+            }
+        }
+    }
+
     /// The liquids within their walls, as they are in a phase; without one they have no weight, and nothing flows.
     ///
     /// # Errors
-    /// A chamber that does not exist, or has two contents; numbers out of range; a flow where amounts are constants.
+    /// A chamber that does not exist, or has two contents; numbers out of range; a flow where amounts are constants; a surface without gravity.
     pub(crate) fn poured(&self, phase: Option<&Phase>) -> Result<Vec<Poured>, InputError> {
         for (chamber, flow) in phase.into_iter().flat_map(|phase| &phase.flows) {
             let input = format!("flow of phase \"{}\"", phase.map_or("", Phase::name));
@@ -60,7 +72,12 @@ impl Scene {
         self.liquids.iter().map(|liquid| self.poured_in(phase, liquid)).collect()
     }
 
-    fn poured_in(&self, phase: Option<&Phase>, liquid: &Liquid) -> Result<Poured, InputError> {
+    /// One of them.
+    pub(crate) fn poured_in(
+        &self,
+        phase: Option<&Phase>,
+        liquid: &Liquid,
+    ) -> Result<Poured, InputError> {
         let name = liquid.chamber();
         let chamber = &self.chambers[self.chamber_number(name, "chamber of liquid")?];
         if self.gas_in(name).is_some() {
@@ -70,13 +87,30 @@ impl Scene {
         let walls = chamber.force(&self.body, Vec::new())?;
         let gravity =
             phase.and_then(|phase| self.gravity_in(phase)).map(|gravity| (gravity, norm(gravity)));
-        let weight = match gravity.filter(|(_, strength)| *strength > 0.0) {
-            None => None,
-            Some((along, strength)) => {
-                let down = |axis: usize| along.get(axis).map_or(0.0, |g| g / strength);
-                let moment = chamber.moment(&self.body, &walls, std::array::from_fn(down))?;
-                Some(Weight { moment, gravity: strength })
+        let weight = match (gravity.filter(|(_, strength)| *strength > 0.0), phase) {
+            (Some((along, gravity)), _) => {
+                let down = |axis: usize| along.get(axis).map_or(0.0, |g| g / gravity);
+                let down = std::array::from_fn(down);
+                match liquid.has_surface() {
+                    true => {
+                        let basin = chamber.basin(&self.body, &walls, down)?;
+                        Weight::OfSurface { basin, gravity }
+                    }
+                    false => {
+                        let moment = chamber.moment(&self.body, &walls, down)?;
+                        Weight::Whole { moment, gravity }
+                    }
+                }
             }
+            (None, Some(phase)) if liquid.has_surface() => {
+                let help = "there is no gravity, by which it is level: give the scene gravity, or leave the surface out";
+                let input = format!(
+                    "surface of the liquid in chamber \"{name}\" in phase \"{}\"",
+                    phase.name
+                );
+                return Err(InputError::new(input, true, help));
+            }
+            (None, _) => Weight::None,
         };
         let flows = phase.into_iter().flat_map(|phase| &phase.flows);
         let flows =

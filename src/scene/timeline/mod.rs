@@ -14,6 +14,7 @@ mod liquid;
 mod load;
 mod loading;
 mod phase;
+mod pipe;
 mod reduced;
 mod start;
 mod term;
@@ -44,7 +45,7 @@ use crate::scene::constraint::{
 };
 use crate::scene::forces::{
     ATMOSPHERE, Chamber, Contact, Dipole, Fluid, Gas, Growth, Lag, Liquid, Magnet, Muscle,
-    Obstacle, Orifice, Spring, Supply, Touch, TouchForce,
+    Obstacle, Orifice, Pipe, Spring, Supply, Touch, TouchForce,
 };
 use crate::scene::reduced_model::ReducedModel;
 
@@ -80,6 +81,7 @@ pub struct Scene {
     gases: Vec<Gas>,
     liquids: Vec<Liquid>,
     orifices: Vec<Orifice>,
+    pipes: Vec<Pipe>,
     supplies: Vec<Supply>,
     /// Absolute pressure (Pa) around chambers with gas.
     atmosphere: f64,
@@ -128,6 +130,7 @@ impl Scene {
             gases: Vec::new(),
             liquids: Vec::new(),
             orifices: Vec::new(),
+            pipes: Vec::new(),
             supplies: Vec::new(),
             atmosphere: ATMOSPHERE,
             is_shut: false,

@@ -1,9 +1,11 @@
-//! How deep what is in a chamber lies.
+//! How deep what is in a chamber lies, and how high it stands.
 
+use super::walls::{Shape, edge_parts};
 use super::{Chamber, ChamberForce, Geometry, Walls};
 use crate::base::input::InputError;
 use crate::elements::body::Body;
 use crate::elements::mesh::{Face, FaceKind};
+use crate::scene::forces::basin::Basin;
 use crate::scene::forces::faces::LoadedFace;
 use crate::scene::forces::followed::FollowedFaces;
 use crate::scene::forces::moment::Moment;
@@ -45,5 +47,33 @@ impl Chamber {
         let faces = FollowedFaces::new(mesh, faces.collect());
         let faces = faces.map_err(|help| InputError::new(self.input("walls"), "flat", help))?;
         Ok(Moment::new(faces, down, factor.signum()))
+    }
+
+    /// The walls, whose force is `force`, as what a liquid with a level surface stands in; `down`, of length 1, is where gravity leads.
+    ///
+    /// # Errors
+    /// As [`force`](Self::force).
+    pub(crate) fn basin(
+        &self,
+        body: &Body,
+        force: &ChamberForce,
+        down: [f64; 3],
+    ) -> Result<Basin, InputError> {
+        let mesh = body.mesh();
+        let factor = match &force.geometry {
+            Geometry::Polygon(_, factor) | Geometry::Surface(_, factor) => *factor,
+        };
+        Ok(match (&self.walls, body.dimension()) {
+            (Walls::Nodes(nodes), 2) => {
+                let edges = edge_parts(&self.edges(mesh, nodes)?, Shape::Straight);
+                Basin::new(mesh, edges, factor, down)
+            }
+            (Walls::Nodes(nodes), _) => {
+                Basin::new(mesh, self.faces(mesh, nodes, Shape::Straight)?, factor, down)
+            }
+            (Walls::Triangles(triangles), _) => {
+                Basin::new(mesh, self.triangles(mesh, triangles)?, factor, down)
+            }
+        })
     }
 }

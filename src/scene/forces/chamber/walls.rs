@@ -6,7 +6,25 @@ use super::Chamber;
 use super::enclosure::Part;
 use crate::base::input::InputError;
 use crate::elements::mesh::{CellKind, Face, FaceKind, Mesh, Selection};
-use crate::scene::forces::faces::{between, list, number_of, volume_parts};
+use crate::scene::forces::faces::{between, list, number_of, straight_parts, volume_parts};
+
+/// What walls with mid nodes are taken for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Shape {
+    /// Curved, by the shape functions.
+    Curved,
+    /// Straight pieces between the nodes.
+    Straight,
+}
+
+impl Shape {
+    fn parts<const N: usize>(self, kind: FaceKind) -> Vec<([usize; N], f64)> {
+        match self {
+            Self::Curved => volume_parts(kind),
+            Self::Straight => straight_parts(kind),
+        }
+    }
+}
 
 impl Chamber {
     /// The edges of closed polygons: their ends and, of curved ones, the node in their middle.
@@ -49,13 +67,15 @@ impl Chamber {
         &self,
         mesh: &Mesh,
         selection: &Selection,
+        shape: Shape,
     ) -> Result<Vec<Part<3>>, InputError> {
         let faces = self.boundary(mesh, selection)?;
         let outlines = faces.iter().map(|face| outline(face, face.len() > 4));
-        let lids = self.lids(outlines).map_err(|problem| self.bad_walls(selection, &problem))?;
+        let lids =
+            self.lids(outlines, shape).map_err(|problem| self.bad_walls(selection, &problem))?;
         let (mut all, mut by_kind) = (Vec::new(), Vec::new());
         for face in &faces {
-            let kind = number_of(mesh.face_kind(face), &mut by_kind, volume_parts::<3>);
+            let kind = number_of(mesh.face_kind(face), &mut by_kind, |kind| shape.parts::<3>(kind));
             let part = |&(part, weight): &Part<3>| (part.map(|local| face[local]), weight);
             all.extend(by_kind[kind].1.iter().map(part));
         }
@@ -74,7 +94,8 @@ impl Chamber {
         }
         let triangles: Vec<[usize; 3]> =
             triangles.iter().map(|triangle| triangle.map(|number| number - 1)).collect();
-        let lids = self.lids(triangles.iter().map(|triangle| outline(triangle, false)));
+        let outlines = triangles.iter().map(|triangle| outline(triangle, false));
+        let lids = self.lids(outlines, Shape::Straight);
         let lids = lids.map_err(|problem| {
             InputError::new(self.input("number of triangles"), triangles.len(), problem)
         })?;
@@ -84,7 +105,11 @@ impl Chamber {
     /// The lids on the rims of faces with these outlines. A lid goes from the mean of the nodes of its rim to
     /// each of its edges, curved or not. Volumes are linear in that mean, so that of a lid is the mean of
     /// those of fans from each of the nodes.
-    fn lids(&self, outlines: impl Iterator<Item = Vec<Face>>) -> Result<Vec<Part<3>>, String> {
+    fn lids(
+        &self,
+        outlines: impl Iterator<Item = Vec<Face>>,
+        shape: Shape,
+    ) -> Result<Vec<Part<3>>, String> {
         let open = open_edges(outlines)?;
         if !open.is_empty() && !self.is_closed_by_lid {
             let rim: BTreeSet<usize> = open.into_iter().flatten().collect();
@@ -120,7 +145,7 @@ impl Chamber {
             let on_it = |edge: &Face| [&edge[..1], &edge[2..]].concat();
             let apexes: Vec<usize> = rim.iter().flat_map(on_it).collect();
             let share = 1.0 / apexes.len() as f64;
-            for ([a, b], part) in edge_parts(&rim) {
+            for ([a, b], part) in edge_parts(&rim, shape) {
                 let others = apexes.iter().filter(|apex| **apex != a && **apex != b);
                 triangles.extend(others.map(|apex| ([*apex, b, a], share * part)));
             }
@@ -158,8 +183,9 @@ fn polygon(mesh: &Mesh, nodes: &[usize]) -> Vec<Face> {
 }
 
 /// The parts of edges in the area that they enclose.
-pub(super) fn edge_parts(edges: &[Face]) -> Vec<Part<2>> {
-    let [straight, curved] = [FaceKind::Segment, FaceKind::Segment3].map(volume_parts::<2>);
+pub(super) fn edge_parts(edges: &[Face], shape: Shape) -> Vec<Part<2>> {
+    let [straight, curved] =
+        [FaceKind::Segment, FaceKind::Segment3].map(|kind| shape.parts::<2>(kind));
     let of_edge = |edge: &Face| {
         let parts = if edge.len() == 2 { &straight } else { &curved };
         let part = |&(part, weight): &Part<2>| (part.map(|local| edge[local]), weight);

@@ -1,4 +1,4 @@
-//! The gases and liquids of a scene whose amounts are unknowns, and the actuators that lag.
+//! The gases and liquids of a scene whose amounts are unknowns, the actuators that lag, and the pipes between liquids.
 
 use super::Filled;
 use super::orifice::{End, OrificeFlow};
@@ -8,14 +8,16 @@ use crate::integrators::ode::Failure;
 use crate::scene::forces::content::Content;
 use crate::scene::forces::lag::Lagging;
 use crate::scene::forces::liquid::Poured;
+use crate::scene::forces::pipe::PipeFlow;
 
-/// All gases of a scene and the orifices between them, behind them all liquids, and then what lags.
+/// All gases of a scene and the orifices between them, behind them all liquids, what lags, and the pipes between liquids, whose flows are the last unknowns.
 pub(crate) struct AmountFlow {
-    gases: Vec<Filled>,
+    pub(super) gases: Vec<Filled>,
     orifices: Vec<OrificeFlow>,
-    liquids: Vec<Poured>,
+    pub(super) liquids: Vec<Poured>,
     lagging: Vec<Lagging>,
-    start: Vec<f64>,
+    pub(super) pipes: Vec<PipeFlow>,
+    pub(super) start: Vec<f64>,
 }
 
 impl AmountFlow {
@@ -24,11 +26,12 @@ impl AmountFlow {
         orifices: Vec<OrificeFlow>,
         liquids: Vec<Poured>,
         lagging: Vec<Lagging>,
+        pipes: Vec<PipeFlow>,
     ) -> Self {
         let mut start: Vec<f64> = gases.iter().map(Content::amount).collect();
         start.extend(liquids.iter().map(Content::amount));
-        start.resize(start.len() + lagging.len(), 0.0);
-        Self { start, gases, orifices, liquids, lagging }
+        start.resize(start.len() + lagging.len() + pipes.len(), 0.0);
+        Self { start, gases, orifices, liquids, lagging, pipes }
     }
 
     /// Numbers of the first liquid and of what lags first.
@@ -44,13 +47,20 @@ impl AmountFlow {
 }
 
 impl Flow for AmountFlow {
-    fn start(&self) -> &[f64] {
-        &self.start
+    fn rooms(&self) -> usize {
+        self.gases.len() + self.liquids.len() + self.lagging.len()
     }
 
-    fn sizes(&self) -> Vec<f64> {
+    /// Of flows those of speeds in their pipes.
+    fn tolerances(&self, strain: f64, velocity: f64) -> Vec<f64> {
         let amounts = self.all().map(Content::amount);
-        amounts.chain(self.lagging.iter().map(Lagging::size)).collect()
+        let sizes = amounts.chain(self.lagging.iter().map(Lagging::size));
+        let of_amounts = sizes.map(|size| strain * size);
+        of_amounts.chain(self.pipes.iter().map(|pipe| velocity * pipe.area)).collect()
+    }
+
+    fn start(&self) -> &[f64] {
+        &self.start
     }
 
     fn set(&self, t: f64, amounts: &[f64]) {
@@ -79,7 +89,8 @@ impl Flow for AmountFlow {
             }
         }
         let each = self.gases.iter().zip(&*rates).zip(&*pressures);
-        let mut power = each.map(|((gas, rate), &pressure)| gas.brought(pressure)[0] * rate).sum();
+        let mut power: f64 =
+            each.map(|((gas, rate), &pressure)| gas.brought(pressure)[0] * rate).sum();
         let [liquids, lagging] = self.parts();
         let each = amounts[liquids..].iter().zip(&mut rates[liquids..]);
         for (liquid, (&amount, rate)) in self.liquids.iter().zip(each) {
@@ -93,11 +104,16 @@ impl Flow for AmountFlow {
         for (lagging, (&state, rate)) in self.lagging.iter().zip(each) {
             *rate = lagging.rate(t, state)?;
         }
-        Ok(power)
+        Ok(power + self.add_pipes(t, [u, amounts], forces, rates)?)
     }
 
     fn potential_of(&self, u: &[f64], amounts: &[f64]) -> f64 {
         self.all().zip(amounts).map(|(content, &amount)| content.potential(u, amount)).sum()
+    }
+
+    fn kinetic_of(&self, unknowns: &[f64]) -> f64 {
+        let flows = &unknowns[self.rooms()..];
+        self.pipes.iter().zip(flows).map(|(pipe, &flow)| pipe.kinetic(flow)).sum()
     }
 
     fn check(&self, t: f64, u: &[f64], amounts: &[f64]) -> Result<(), Failure> {
@@ -112,10 +128,11 @@ impl Flow for AmountFlow {
         stiffness: &mut BlockMatrix,
         derivatives: &mut FlowDerivatives,
     ) {
-        let FlowDerivatives { gradients, pressures, rates, power, work, trial } = derivatives;
+        let FlowDerivatives { gradients, pressures, rates, power, work, trial, .. } =
+            &mut *derivatives;
         let [stiff, pressing] = pressures;
         let ([by_volumes, by_amounts], [flows, pressures]) = (rates, work);
-        let count = self.start.len();
+        let (rooms, count) = (self.rooms(), self.start.len());
         gradients.fill(0.0);
         [&mut *by_volumes, by_amounts, stiff, pressing, flows].iter_mut().for_each(|x| x.fill(0.0));
         for (number, (content, &amount)) in self.all().zip(amounts).enumerate() {
@@ -133,7 +150,7 @@ impl Flow for AmountFlow {
                 flows[*row] += sign * flow;
                 for (end, slope) in orifice.ends.iter().zip([by_first, by_second]) {
                     let End::Gas(column) = end else { continue };
-                    by_volumes[row * count + column] -= sign * slope * stiff[*column];
+                    by_volumes[row * rooms + column] -= sign * slope * stiff[*column];
                     by_amounts[row * count + column] += sign * slope * pressing[*column];
                 }
             }
@@ -145,7 +162,7 @@ impl Flow for AmountFlow {
             power_by_amounts[column] = slope * pressing[column];
             for (row, gas) in self.gases.iter().enumerate() {
                 let [brought, _] = gas.brought(pressures[row]);
-                power_by_volumes[column] += brought * by_volumes[row * count + column];
+                power_by_volumes[column] += brought * by_volumes[row * rooms + column];
                 power_by_amounts[column] += brought * by_amounts[row * count + column];
             }
         }
@@ -163,6 +180,8 @@ impl Flow for AmountFlow {
             [by_amounts[at * count + at], power_by_amounts[at]] =
                 lagging.linearize(t, [u, v], amounts[at], trial, gradient);
         }
+        // as above
+        let _ = self.linearize_pipes(t, [u, amounts], derivatives);
     }
 }
 

@@ -102,7 +102,7 @@ fn energies_belong_to_the_pressures() {
         let (body, gas) = filled(1.3e5, exponent);
         let orifice = Orifice::new("o", "supply", "room", 1e-6);
         let orifice = orifice.flow([End::Given(2e5.into()), End::Gas(0)], Vec::new()).unwrap();
-        let flow = AmountFlow::new(vec![gas], vec![orifice], Vec::new(), Vec::new());
+        let flow = AmountFlow::new(vec![gas], vec![orifice], Vec::new(), Vec::new(), Vec::new());
         let first = flow.start()[0];
         let at = |swelling: f64, amount: f64| -> ([f64; 4], FlowDerivatives) {
             // the upper nodes rise
@@ -112,7 +112,7 @@ fn energies_belong_to_the_pressures() {
             let power = flow
                 .add_forces_of(0.0, [&u, &amounts], &mut forces, [&mut rates, &mut work])
                 .unwrap();
-            let mut derivatives = FlowDerivatives::zeros(1, 8);
+            let mut derivatives = FlowDerivatives::zeros([1, 1], 8);
             let mut stiffness = BlockMatrix::zeros(body.inertia().pattern(), 2);
             flow.linearize(0.0, [&u, &[], &amounts], &mut stiffness, &mut derivatives);
             let lifting = forces.conservative[5] + forces.conservative[7];

@@ -1,4 +1,4 @@
-//! Liquids against their own derivatives, and against the weight that they have.
+//! Liquids that fill their chamber against their own derivatives, and against the weight that they have.
 
 use std::sync::Arc;
 
@@ -41,7 +41,10 @@ fn poured(dimension: usize, gravity: f64) -> (Body, Poured, Vec<f64>) {
     let walls = chamber.force(&body, Vec::new()).unwrap();
     let moment = chamber.moment(&body, &walls, DOWN[dimension - 2]).unwrap();
     let liquid = Liquid::in_chamber("bag").bulk_modulus(BULK).density(900.0).fill(1.05);
-    let weight = (gravity > 0.0).then_some(Weight { moment, gravity });
+    let weight = match gravity > 0.0 {
+        true => Weight::Whole { moment, gravity },
+        false => Weight::None,
+    };
     let poured = liquid.pour(walls, body.dofs(), weight, vec![1e-3.into()]).unwrap();
     let bent = |k: usize| 0.01 * (1.3 * k as f64).sin();
     let u = (0..body.dofs()).map(bent).collect();
