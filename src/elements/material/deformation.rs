@@ -33,12 +33,9 @@ impl<T: Real, const M: usize, const D: usize> Deformation<T, M, D> {
     pub(crate) fn first_axis(&self) -> [T; M] {
         let zero = self.h[0][0].constant(0.0);
         let mut axis = [zero; M];
-        if M < D {
-            axis[0] = zero.constant(1.0);
-        } else {
-            for j in 0..M {
-                axis[j] = self.frame[0][j];
-            }
+        for j in 0..M {
+            let own = if j == 0 { 1.0 } else { 0.0 };
+            axis[j] = if M < D { zero.constant(own) } else { self.frame[0][j] };
         }
         axis
     }
