@@ -1502,11 +1502,12 @@ def liquid(
     bulk_modulus: float | None = None,
     density: float | None = None,
     fill: float | None = None,
+    surface: bool | None = None,
 ) -> dict:
-    r"""A liquid that fills a chamber, in place of a `pressure` of phases. Above that outside it has the pressure p = K
-    (V_m - V)/V_m, with the volume V of the chamber and the volume V_m that it would have without pressure, which a
-    `flow` in phases changes. Where there is gravity it has weight: p is the mean, and the pressure on the walls grows
-    with depth. Its own motion, its inertia, is left out.
+    r"""A liquid that fills a chamber, or stands in it with a `surface`, in place of a `pressure` of phases. Above that
+    outside it has the pressure p = K (V_m - V)/V_m, with the volume V of the chamber and the volume V_m that it would
+    have without pressure, which a `flow` in phases changes. Where there is gravity it has weight: p is the mean, and
+    the pressure on the walls grows with depth. Its own motion, its inertia, is left out.
 
     Parameters
     ----------
@@ -1518,13 +1519,63 @@ def liquid(
         the density without pressure (kg/m^3). Default: 1000.
     fill
         V_m at the start, as a part of the volume of the undeformed chamber (no unit). Default: 1. With 1 there is no
-        pressure at first.
+        pressure at first; with a `surface` it has to be below 1.
+    surface
+        whether it has a level surface under air of the pressure outside, in a chamber that is open or vented and not
+        full. Default: false. It is not compressed: walls feel rho g (h - z) below the level h, which follows from the
+        volume, and nothing above it. Needs gravity.
     """
     return _table(
         chamber=chamber,
         bulk_modulus=bulk_modulus,
         density=density,
         fill=fill,
+        surface=surface,
+    )
+
+
+def pipe(
+    *,
+    name: str,
+    from_: str,
+    to: str,
+    length: float,
+    area: float,
+    viscosity: float | None = None,
+    loss: float | None = None,
+) -> dict:
+    r"""A pipe or a tube between two chambers with liquids of the same density, or between one and a `[[supply]]` or the
+    atmosphere. Its flow q, from the first end to the second, follows (rho l/A) dq/dt = p_1 - p_2 + rho g (z_1 - z_2)
+    - R q - zeta rho q |q|/(2 A^2), R = 8 pi mu l/A^2. Of a chamber that is full p is the mean pressure and z the
+    height of its middle, of one with a `surface` p is 0 and z the level; a supply and the atmosphere are at the
+    height that the chamber at the other end has in the undeformed shape.
+
+    Parameters
+    ----------
+    name
+        the name of the pipe. Required.
+    from_
+        one end: a chamber with a liquid, a supply, or `atmosphere`. Required.
+    to
+        the other end, likewise. Required.
+    length
+        the length l (m). Required.
+    area
+        the area A of its section (m^2). Required. A tube 4 mm wide has 1.26e-5.
+    viscosity
+        the viscosity mu of the liquid (Pa s). Default: 1e-3, water.
+    loss
+        the coefficient zeta of losses at ends, bends and valves (no unit). Default: 0. Some 0.5 where it begins with
+        sharp edges, 1 where it ends in a chamber.
+    """
+    return _table(
+        name=name,
+        from_=from_,
+        to=to,
+        length=length,
+        area=area,
+        viscosity=viscosity,
+        loss=loss,
     )
 
 
@@ -3142,7 +3193,7 @@ def sensor_pressure(
     component: Literal["x", "y", "z", "norm", "xx", "yy", "zz", "xy", "yz", "xz", "von-mises"] | None = None,
 ) -> dict:
     r"""Sensor of the kind "pressure": the pressure in a chamber, of gas and of a liquid what it exceeds that outside by,
-    of a liquid with weight the mean (Pa).
+    of a liquid with weight the mean, of one with a surface that at the lowest place of the walls (Pa).
 
     Parameters
     ----------
@@ -3288,6 +3339,59 @@ def sensor_liquid_flow(
         kind="liquid-flow",
         name=name,
         chamber=chamber,
+        component=component,
+    )
+
+
+def sensor_liquid_level(
+    *,
+    name: str,
+    chamber: str,
+    component: Literal["x", "y", "z", "norm", "xx", "yy", "zz", "xy", "yz", "xz", "von-mises"] | None = None,
+) -> dict:
+    r"""Sensor of the kind "liquid-level": the height of the surface of the liquid in a chamber above the origin, against
+    gravity (m).
+
+    Parameters
+    ----------
+    name
+        the name of the sensor. Required.
+    chamber
+        the name of the chamber. Required.
+    component
+        one component alone. Default: all, each a column. Vectors have `x`, `y`, `z` and their length `norm`; tensors
+        `xx` and so on; stress has `von-mises` besides.
+    """
+    return _table(
+        kind="liquid-level",
+        name=name,
+        chamber=chamber,
+        component=component,
+    )
+
+
+def sensor_pipe_flow(
+    *,
+    name: str,
+    pipe: str,
+    component: Literal["x", "y", "z", "norm", "xx", "yy", "zz", "xy", "yz", "xz", "von-mises"] | None = None,
+) -> dict:
+    r"""Sensor of the kind "pipe-flow": the flow of liquid through a pipe, from its first end to its second (m^3/s).
+
+    Parameters
+    ----------
+    name
+        the name of the sensor. Required.
+    pipe
+        the name of the pipe. Required.
+    component
+        one component alone. Default: all, each a column. Vectors have `x`, `y`, `z` and their length `norm`; tensors
+        `xx` and so on; stress has `von-mises` besides.
+    """
+    return _table(
+        kind="pipe-flow",
+        name=name,
+        pipe=pipe,
         component=component,
     )
 
@@ -3743,6 +3847,7 @@ __all__ = [
     "output",
     "path",
     "phase",
+    "pipe",
     "point",
     "pressure",
     "pressure_on",
@@ -3765,11 +3870,13 @@ __all__ = [
     "sensor_gas_amount",
     "sensor_gas_flow",
     "sensor_liquid_flow",
+    "sensor_liquid_level",
     "sensor_liquid_volume",
     "sensor_magnetic_moment",
     "sensor_momentum",
     "sensor_muscle_stress",
     "sensor_muscle_stretch",
+    "sensor_pipe_flow",
     "sensor_position",
     "sensor_pressure",
     "sensor_rotation",
