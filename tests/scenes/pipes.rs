@@ -157,7 +157,7 @@ fn levels_swing_and_become_equal() {
         println!("{method}: off by {apart:e}, balance {:e}", imbalance(&motion));
         assert!(apart < 1e-3 && imbalance(&motion) < 1e-3, "{method}: {apart:e}");
     }
-    let braked = communicating(0.03, [0.6, 0.35], pipe().viscosity(0.2).loss(1.5));
+    let braked = communicating(0.03, [0.6, 0.35], pipe().viscosity(0.01).loss(1.5));
     let braked = braked.phase(Phase::until(10.0 * end).hold("all"));
     let motion = braked.simulate(&settings(Method::CvodeBdf, 1e-6), &sampling).unwrap();
     let [first, second] = motion.last().sensors[..] else { panic!("two levels") };
