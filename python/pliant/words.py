@@ -2444,6 +2444,7 @@ def load(
     total: Sequence[Formula] | None = None,
     traction: Sequence[Formula] | None = None,
     times: Sequence[float] | None = None,
+    period: float | None = None,
     forces: Sequence[Vector] | None = None,
     totals: Sequence[Vector] | None = None,
     tractions: Sequence[Vector] | None = None,
@@ -2464,6 +2465,9 @@ def load(
         the force per undeformed area of the faces (N/m^2). Default: none.
     times
         times in ascending order (s). Default: none.
+    period
+        the time after which the table is repeated, up to the end of the phase (s). Default: once. From its last time
+        a line leads to the first value, a period after the first time.
     forces
         the force on each node at these times (N). Default: none.
     totals
@@ -2477,6 +2481,7 @@ def load(
         total=total,
         traction=traction,
         times=times,
+        period=period,
         forces=forces,
         totals=totals,
         tractions=tractions,
@@ -2488,6 +2493,7 @@ def pressure(
     chamber: str,
     value: Formula | None = None,
     times: Sequence[float] | None = None,
+    period: float | None = None,
     values: Sequence[float] | None = None,
 ) -> dict:
     r"""The pressure in a chamber, positive if it blows it up. That of a table is interpolated linearly, and is constant
@@ -2501,6 +2507,9 @@ def pressure(
         the pressure (Pa). Default: none.
     times
         times in ascending order (s). Default: none.
+    period
+        the time after which the table is repeated, up to the end of the phase (s). Default: once. From its last time
+        a line leads to the first value, a period after the first time.
     values
         pressures at these times (Pa). Default: none.
     """
@@ -2508,6 +2517,7 @@ def pressure(
         chamber=chamber,
         value=value,
         times=times,
+        period=period,
         values=values,
     )
 
@@ -2517,6 +2527,7 @@ def pressure_on(
     nodes: Nodes,
     value: Formula | None = None,
     times: Sequence[float] | None = None,
+    period: float | None = None,
     values: Sequence[float] | None = None,
 ) -> dict:
     r"""A pressure on the faces of the boundary (edges in the plane) between nodes, positive if it presses onto the body.
@@ -2530,6 +2541,9 @@ def pressure_on(
         the pressure (Pa). Default: none.
     times
         times in ascending order (s). Default: none.
+    period
+        the time after which the table is repeated, up to the end of the phase (s). Default: once. From its last time
+        a line leads to the first value, a period after the first time.
     values
         pressures at these times (Pa). Default: none.
     """
@@ -2537,6 +2551,7 @@ def pressure_on(
         nodes=nodes,
         value=value,
         times=times,
+        period=period,
         values=values,
     )
 
@@ -2546,6 +2561,7 @@ def open(
     orifice: str,
     opening: Formula | None = None,
     times: Sequence[float] | None = None,
+    period: float | None = None,
     openings: Sequence[float] | None = None,
 ) -> dict:
     r"""How far an orifice is open, from 0 (shut) to 1. The opening of a table is interpolated linearly, and is constant
@@ -2559,6 +2575,9 @@ def open(
         how far it is open (no unit). Default: none.
     times
         times in ascending order (s). Default: none.
+    period
+        the time after which the table is repeated, up to the end of the phase (s). Default: once. From its last time
+        a line leads to the first value, a period after the first time.
     openings
         openings at these times (no unit). Default: none.
     """
@@ -2566,6 +2585,7 @@ def open(
         orifice=orifice,
         opening=opening,
         times=times,
+        period=period,
         openings=openings,
     )
 
@@ -2575,6 +2595,7 @@ def flow(
     chamber: str,
     rate: Formula | None = None,
     times: Sequence[float] | None = None,
+    period: float | None = None,
     rates: Sequence[float] | None = None,
 ) -> dict:
     r"""How much liquid flows into a chamber, as from a syringe or a pump; below 0 it flows out. That of a table is
@@ -2588,6 +2609,9 @@ def flow(
         the volume, without pressure, that flows in per time (m^3/s). Default: none.
     times
         times in ascending order (s). Default: none.
+    period
+        the time after which the table is repeated, up to the end of the phase (s). Default: once. From its last time
+        a line leads to the first value, a period after the first time.
     rates
         rates at these times (m^3/s). Default: none.
     """
@@ -2595,6 +2619,7 @@ def flow(
         chamber=chamber,
         rate=rate,
         times=times,
+        period=period,
         rates=rates,
     )
 
@@ -2611,6 +2636,7 @@ def actuate(
     strain: Formula | None = None,
     power: Formula | None = None,
     times: Sequence[float] | None = None,
+    period: float | None = None,
     forces: Sequence[float] | None = None,
     lengths: Sequence[float] | None = None,
     strains: Sequence[float] | None = None,
@@ -2645,6 +2671,9 @@ def actuate(
         the power that heats them, each by itself (W). Default: none.
     times
         times in ascending order (s). Default: none.
+    period
+        the time after which the table is repeated, up to the end of the phase (s). Default: once. From its last time
+        a line leads to the first value, a period after the first time.
     forces
         forces at these times (N). Default: none.
     lengths
@@ -2667,6 +2696,7 @@ def actuate(
         strain=strain,
         power=power,
         times=times,
+        period=period,
         forces=forces,
         lengths=lengths,
         strains=strains,
@@ -2681,6 +2711,7 @@ def drive(
     position: Sequence[Formula] | None = None,
     moment: Sequence[Formula] | None = None,
     times: Sequence[float] | None = None,
+    period: float | None = None,
     positions: Sequence[Vector] | None = None,
     moments: Sequence[Vector] | None = None,
 ) -> dict:
@@ -2697,6 +2728,9 @@ def drive(
         its moment (A m^2). Default: none.
     times
         times in ascending order (s). Default: none.
+    period
+        the time after which the table is repeated, up to the end of the phase (s). Default: once. From its last time
+        a line leads to the first value, a period after the first time.
     positions
         its positions at these times (m). Default: none.
     moments
@@ -2707,6 +2741,7 @@ def drive(
         position=position,
         moment=moment,
         times=times,
+        period=period,
         positions=positions,
         moments=moments,
     )
@@ -2716,6 +2751,7 @@ def magnetic_field(
     *,
     field: Sequence[Formula] | None = None,
     times: Sequence[float] | None = None,
+    period: float | None = None,
     fields: Sequence[Vector] | None = None,
     gradient: Sequence[Vector] | None = None,
     centre: Vector | None = None,
@@ -2729,6 +2765,9 @@ def magnetic_field(
         the field (T). Default: none.
     times
         times in ascending order (s). Default: none.
+    period
+        the time after which the table is repeated, up to the end of the phase (s). Default: once. From its last time
+        a line leads to the first value, a period after the first time.
     fields
         the field at these times (T). Default: none.
     gradient
@@ -2739,6 +2778,7 @@ def magnetic_field(
     return _table(
         field=field,
         times=times,
+        period=period,
         fields=fields,
         gradient=gradient,
         centre=centre,

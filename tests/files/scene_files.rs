@@ -227,6 +227,8 @@ fn all_scenes_are_run() {
         // where robots are tested
         "inchworm",
         "rolling-robot",
+        "quadruped",
+        "jumping-robot",
         // where contact is tested
         "cradle",
         "ring-on-table",

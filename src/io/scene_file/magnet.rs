@@ -2,6 +2,7 @@
 
 use super::cells::{BOX, CELLS, GROUP, cells};
 use super::keys::{Holds, Key, TableKeys};
+use super::phase::repeated;
 use super::phase_keys::MAGNETIC_FIELD;
 use super::value::Value;
 use crate::dynamics::error::Error;
@@ -39,8 +40,12 @@ pub(super) fn add_magnet(scene: Scene, value: &Value) -> Result<Scene, Error> {
     Ok(scene.magnet(magnet))
 }
 
-/// The magnetic field that `value` describes.
-pub(super) fn magnetic_field(value: &Value, scene: &Scene) -> Result<MagneticField, Error> {
+/// The magnetic field that `value` describes, of a phase that ends at the time `until` (s).
+pub(super) fn magnetic_field(
+    value: &Value,
+    until: f64,
+    scene: &Scene,
+) -> Result<MagneticField, Error> {
     let (table, dimension) = (&value.table(&MAGNETIC_FIELD)?, scene.body().dimension());
     let vector = |value: &Value| value.vector(dimension);
     let field = match table.optional("field", |value| value.vector_signal(dimension))? {
@@ -51,6 +56,7 @@ pub(super) fn magnetic_field(value: &Value, scene: &Scene) -> Result<MagneticFie
             VectorSignal::TimeTable(TimeTable::new(times, table.required("fields", fields)?))
         }
     };
+    let field = repeated(table, field, |field, period| field.repeated(period, until))?;
     let field = MagneticField::of(field);
     let rows = table.optional("gradient", |value| value.list_of("rows", vector))?;
     let centre = table.optional("centre", vector)?;

@@ -80,7 +80,7 @@ fn add_phase(scene: Scene, value: &Value, check: &Check) -> Result<Scene, Error>
         }
     }
     if let Some(value) = table.get("magnetic_field") {
-        phase = phase.magnetic_field(magnetic_field(&value, &scene)?);
+        phase = phase.magnetic_field(magnetic_field(&value, until, &scene)?);
         check(&scene, &phase).map_err(|error| value.error(error))?;
     }
     if table.flag("project_velocity")? {
@@ -185,6 +185,8 @@ fn load(phase: Phase, table: &Table, scene: &Scene) -> Result<Phase, Error> {
     let nodes = nodes(table, scene)?;
     for kind in LoadKind::ALL {
         if let Some(value) = vectors(table, kind.word(), scene.body().dimension())? {
+            let value =
+                repeated(table, value, |value, period| value.repeated(period, phase.end()))?;
             return Ok(phase.loaded(nodes, kind, value));
         }
     }
@@ -196,6 +198,8 @@ fn drive(mut phase: Phase, table: &Table, scene: &Scene) -> Result<Phase, Error>
     let dipole = table.required("dipole", |value| named(value, &known))?;
     for part in DipolePart::ALL {
         if let Some(value) = vectors(table, part.word(), scene.body().dimension())? {
+            let value =
+                repeated(table, value, |value, period| value.repeated(period, phase.end()))?;
             phase.set_dipole(&dipole, part, value);
         }
     }
@@ -220,33 +224,37 @@ pub(super) fn vectors(
 }
 
 fn pressure(phase: Phase, table: &Table, scene: &Scene) -> Result<Phase, Error> {
+    let end = phase.end();
     let known: Vec<&str> = scene.chambers().iter().map(|chamber| chamber.name()).collect();
     let chamber = table.required("chamber", |v| named(v, &known))?;
-    Ok(phase.pressure(chamber, course(table, "value", "values")?))
+    Ok(phase.pressure(chamber, course(table, end, "value", "values")?))
 }
 
 fn pressure_on(phase: Phase, table: &Table, scene: &Scene) -> Result<Phase, Error> {
-    let nodes = nodes(table, scene)?;
-    Ok(phase.pressure_on(nodes, course(table, "value", "values")?))
+    let (nodes, end) = (nodes(table, scene)?, phase.end());
+    Ok(phase.pressure_on(nodes, course(table, end, "value", "values")?))
 }
 
 fn open(phase: Phase, table: &Table, scene: &Scene) -> Result<Phase, Error> {
+    let end = phase.end();
     let known: Vec<&str> = scene.orifices().iter().map(|orifice| orifice.name()).collect();
     let orifice = table.required("orifice", |v| named(v, &known))?;
-    Ok(phase.open(orifice, course(table, "opening", "openings")?))
+    Ok(phase.open(orifice, course(table, end, "opening", "openings")?))
 }
 
 fn flow(phase: Phase, table: &Table, scene: &Scene) -> Result<Phase, Error> {
+    let end = phase.end();
     let known: Vec<&str> = scene.liquids().iter().map(|liquid| liquid.chamber()).collect();
     let chamber = table.required("chamber", |v| named(v, &known))?;
-    Ok(phase.flow(chamber, course(table, "rate", "rates")?))
+    Ok(phase.flow(chamber, course(table, end, "rate", "rates")?))
 }
 
 fn actuate(phase: Phase, table: &Table, scene: &Scene) -> Result<Phase, Error> {
+    let end = phase.end();
     let heated: Vec<&str> =
         scene.lags().filter(|(_, lag)| lag.per_kelvin().is_some()).map(|(name, _)| name).collect();
     if let Some(actuators) = table.optional("heated", |value| names(value, &heated))? {
-        return Ok(phase.actuate(actuators, course(table, "power", "powers")?));
+        return Ok(phase.actuate(actuators, course(table, end, "power", "powers")?));
     }
     let by_other = |names: &[String]| match names.iter().find(|name| heated.contains(&&***name)) {
         None => Ok(()),
@@ -258,12 +266,12 @@ fn actuate(phase: Phase, table: &Table, scene: &Scene) -> Result<Phase, Error> {
     let muscles: Vec<&str> = scene.muscles().iter().map(|muscle| muscle.name()).collect();
     if let Some(muscles) = table.optional("muscles", |value| names(value, &muscles))? {
         by_other(&muscles)?;
-        return Ok(phase.actuate(muscles, course(table, "stress", "stresses")?));
+        return Ok(phase.actuate(muscles, course(table, end, "stress", "stresses")?));
     }
     let growths: Vec<&str> = scene.growths().iter().map(|growth| growth.name()).collect();
     if let Some(growths) = table.optional("growths", |value| names(value, &growths))? {
         by_other(&growths)?;
-        return Ok(phase.actuate(growths, course(table, "strain", "strains")?));
+        return Ok(phase.actuate(growths, course(table, end, "strain", "strains")?));
     }
     let known: Vec<&str> = scene.springs().iter().map(|spring| spring.name()).collect();
     let springs = table.required("springs", |value| names(value, &known))?;
@@ -284,7 +292,7 @@ fn actuate(phase: Phase, table: &Table, scene: &Scene) -> Result<Phase, Error> {
         )));
     }
     let keys = if is_length { ["length", "lengths"] } else { ["force", "forces"] };
-    Ok(phase.actuate(springs, course(table, keys[0], keys[1])?))
+    Ok(phase.actuate(springs, course(table, end, keys[0], keys[1])?))
 }
 
 fn contact(phase: Phase, value: &Value, scene: &Scene) -> Result<Phase, Error> {
@@ -298,14 +306,26 @@ fn contact(phase: Phase, value: &Value, scene: &Scene) -> Result<Phase, Error> {
 }
 
 /// The signal of the key `one`, a number or formula, or of the keys `times` and `many`, lists of numbers.
-fn course(table: &Table, one: &str, many: &str) -> Result<Signal, Error> {
-    Ok(match table.optional(one, Value::signal)? {
+/// A table may be repeated up to the time `until` (s).
+fn course(table: &Table, until: f64, one: &str, many: &str) -> Result<Signal, Error> {
+    let signal = match table.optional(one, Value::signal)? {
         Some(signal) => signal,
         None => Signal::table(
             table.required("times", Value::numbers)?,
             table.required(many, Value::numbers)?,
         ),
-    })
+    };
+    repeated(table, signal, |signal, period| signal.repeated(period, until))
+}
+
+/// What `repeat` makes of a `signal`, if the table has a period.
+pub(super) fn repeated<S>(
+    table: &Table,
+    signal: S,
+    repeat: impl FnOnce(S, f64) -> Result<S, InputError>,
+) -> Result<S, Error> {
+    let Some(value) = table.get("period") else { return Ok(signal) };
+    repeat(signal, value.finite()?).map_err(|error| value.error(error))
 }
 
 fn nodes(table: &Table, scene: &Scene) -> Result<Selection, Error> {

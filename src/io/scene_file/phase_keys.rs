@@ -53,6 +53,14 @@ const AXES: Key =
     Key::new("axes", Holds::Axes, "the axes that are prescribed").default("all of them");
 const TIMES: Key =
     Key::new("times", Holds::List(&Holds::Number), "times in ascending order").in_unit("s");
+const PERIOD: Key = Key::new(
+    "period",
+    Holds::Number,
+    "the time after which the table is repeated, up to the end of the phase",
+)
+.in_unit("s")
+.law("From its last time a line leads to the first value, a period after the first time.")
+.default("once");
 
 pub(super) const HOLD: TableKeys = TableKeys::new(
     "hold",
@@ -162,6 +170,7 @@ pub(super) const LOAD: TableKeys = TableKeys::new(
         Key::new("traction", Holds::ChangingVector, "the force per undeformed area of the faces")
             .in_unit("N/m^2"),
         TIMES,
+        PERIOD,
         Key::new("forces", Holds::List(&Holds::Vector), "the force on each node at these times")
             .in_unit("N"),
         Key::new("totals", Holds::List(&Holds::Vector), "the force on all nodes at these times")
@@ -191,6 +200,7 @@ pub(super) const PRESSURE: TableKeys = TableKeys::new(
         Key::new("chamber", Holds::Text, "the name of a chamber").required(),
         VALUE,
         TIMES,
+        PERIOD,
         VALUES,
     ],
     "pressure = [{ chamber = \"inside\", times = [0.0, 0.1], values = [0.0, 500.0] }]",
@@ -205,7 +215,7 @@ pub(super) const PRESSURE_ON: TableKeys = TableKeys::new(
     "pressure_on",
     "A pressure on the faces of the boundary (edges in the plane) between nodes, positive if it presses onto the body. It \
      follows the body: it acts on the deformed area, along its normal.",
-    &[NODES, VALUE, TIMES, VALUES],
+    &[NODES, VALUE, TIMES, PERIOD, VALUES],
     "pressure_on = [{ nodes = \"right\", value = \"500*sin(20*t)\" }]",
 )
 .one_of(&[&["value"], &["times", "values"]]);
@@ -218,6 +228,7 @@ pub(super) const OPEN: TableKeys = TableKeys::new(
         Key::new("orifice", Holds::Text, "the name of an orifice").required(),
         Key::new("opening", Holds::Changing, "how far it is open").in_unit("1"),
         TIMES,
+        PERIOD,
         Key::new("openings", Holds::List(&Holds::Number), "openings at these times").in_unit("1"),
     ],
     "open = [{ orifice = \"valve\", times = [0.0, 0.1], openings = [0.0, 1.0] }]",
@@ -232,6 +243,7 @@ pub(super) const FLOW: TableKeys = TableKeys::new(
         Key::new("chamber", Holds::Text, "the name of a chamber with a liquid").required(),
         Key::new("rate", Holds::Changing, "the volume, without pressure, that flows in per time").in_unit("m^3/s"),
         TIMES,
+        PERIOD,
         Key::new("rates", Holds::List(&Holds::Number), "rates at these times").in_unit("m^3/s"),
     ],
     "flow = [{ chamber = \"inside\", times = [0.0, 0.1], rates = [0.0, 1.0e-6] }]",
@@ -255,6 +267,7 @@ pub(super) const ACTUATE: TableKeys = TableKeys::new(
             .in_unit("1"),
         Key::new("power", Holds::Changing, "the power that heats them, each by itself").in_unit("W"),
         TIMES,
+        PERIOD,
         Key::new("forces", Holds::List(&Holds::Number), "forces at these times").in_unit("N"),
         Key::new("lengths", Holds::List(&Holds::Number), "lengths at these times").in_unit("m"),
         Key::new("strains", Holds::List(&Holds::Number), "strains at these times").in_unit("1"),
@@ -285,6 +298,7 @@ pub(super) const DRIVE: TableKeys = TableKeys::new(
         Key::new("position", Holds::ChangingVector, "its position").in_unit("m"),
         Key::new("moment", Holds::ChangingVector, "its moment").in_unit("A m^2"),
         TIMES,
+        PERIOD,
         Key::new("positions", Holds::List(&Holds::Vector), "its positions at these times").in_unit("m"),
         Key::new("moments", Holds::List(&Holds::Vector), "its moments at these times").in_unit("A m^2"),
     ],
@@ -299,6 +313,7 @@ pub(super) const MAGNETIC_FIELD: TableKeys = TableKeys::new(
     &[
         Key::new("field", Holds::ChangingVector, "the field").in_unit("T"),
         TIMES,
+        PERIOD,
         Key::new("fields", Holds::List(&Holds::Vector), "the field at these times").in_unit("T"),
         Key::new("gradient", Holds::List(&Holds::Vector), "rows of dB_i/dx_j, a symmetric matrix, in space without trace").in_unit("T/m"),
         Key::new("centre", Holds::Vector, "where the gradient adds nothing").in_unit("m").default("the origin"),

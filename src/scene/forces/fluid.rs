@@ -12,7 +12,8 @@ use traction::{Depth, Drag};
 
 use super::faces::{loaded_faces, on_no_face};
 use super::followed::FollowedFaces;
-use super::signal::{TimeTable, VectorSignal};
+use super::signal::VectorSignal;
+use super::time_table::TimeTable;
 use crate::base::input::{InputError, finite, not_negative, positive};
 use crate::base::vector::{cross, norm};
 use crate::elements::body::{Body, Inertia};

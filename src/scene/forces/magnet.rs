@@ -1,6 +1,7 @@
 //! Hard magnets in a body, and the field that acts on them.
 
-use super::signal::{TimeTable, VectorSignal, finite_at};
+use super::signal::{VectorSignal, finite_at};
+use super::time_table::TimeTable;
 use crate::base::input::{InputError, finite};
 use crate::base::sparse::BlockMatrix;
 use crate::elements::body::{Body, CellSelection, MagnetizedPoints, Magnets};

@@ -31,6 +31,7 @@ mod spring;
 mod surface;
 #[cfg(test)]
 mod tests;
+mod time_table;
 mod touch;
 mod travel;
 
@@ -67,7 +68,7 @@ pub use shape::Shape;
 pub use signal::Signal;
 #[cfg(any(feature = "checkpoint", feature = "play"))]
 pub(crate) use signal::SignalKind;
-pub(crate) use signal::{Live, TimeTable, VectorSignal};
+pub(crate) use signal::{Live, VectorSignal};
 pub use signals::Signals;
 #[cfg(feature = "output")]
 pub(crate) use spring::Joint;
@@ -76,5 +77,6 @@ pub use spring::{Guide, Spring};
 pub(crate) use surface::{
     SurfacePoint, boundary_nodes, edge_points, face_centre, pieces, weighted,
 };
+pub(crate) use time_table::TimeTable;
 pub use touch::Touch;
 pub(crate) use touch::TouchForce;

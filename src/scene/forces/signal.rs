@@ -4,82 +4,10 @@ use std::fmt;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
+use super::time_table::TimeTable;
 use crate::base::formula::Formula;
 use crate::base::input::{InputError, finite};
 use crate::integrators::ode::Failure;
-
-/// Vectors at given times (s). In between they are interpolated linearly; before the first time
-/// and after the last they are constant.
-#[derive(Debug, Clone)]
-#[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
-pub(crate) struct TimeTable {
-    pub(crate) times: Vec<f64>,
-    /// The components at each time.
-    pub(crate) values: Vec<Vec<f64>>,
-}
-
-impl TimeTable {
-    pub(crate) fn new(times: Vec<f64>, values: Vec<Vec<f64>>) -> Self {
-        Self { times, values }
-    }
-
-    /// One component at time `t`.
-    fn at(&self, t: f64, component: usize) -> f64 {
-        let value = |k: usize| self.values[k][component];
-        match self.times.partition_point(|&time| time <= t) {
-            0 => value(0),
-            next if next == self.times.len() => value(next - 1),
-            next => {
-                let (from, to) = (self.times[next - 1], self.times[next]);
-                let share = (t - from) / (to - from);
-                value(next - 1) + share * (value(next) - value(next - 1))
-            }
-        }
-    }
-
-    /// The rate of one component at time `t`; at a kink that of the line behind it.
-    fn rate(&self, t: f64, component: usize) -> f64 {
-        self.rate_of(self.times.partition_point(|&time| time <= t), component)
-    }
-
-    /// The rate of one component on the line to the time with number `next`, from 0.
-    fn rate_of(&self, next: usize, component: usize) -> f64 {
-        match next {
-            0 => 0.0,
-            next if next == self.times.len() => 0.0,
-            next => {
-                let change = self.values[next][component] - self.values[next - 1][component];
-                change / (self.times[next] - self.times[next - 1])
-            }
-        }
-    }
-
-    /// Checks that there are vectors of `dimension` at ascending times.
-    fn validate(&self, input: &str, dimension: usize) -> Result<(), InputError> {
-        let Self { times, values } = self;
-        let input_times = format!("times of {input}");
-        finite(&input_times, times)?;
-        if times.is_empty() || values.len() != times.len() {
-            let help = format!("one value is needed for each time, there are {}", values.len());
-            return Err(InputError::new(input_times, format!("{times:?}"), help));
-        }
-        if let Some(pair) = times.windows(2).find(|pair| pair[0] >= pair[1]) {
-            let help = format!(
-                "times must ascend: it must lie after {} s (for a jump, begin another phase)",
-                pair[0]
-            );
-            return Err(InputError::new(input_times, format!("{} s", pair[1]), help));
-        }
-        for value in values {
-            if value.len() != dimension {
-                let help = format!("it needs {dimension} component(s)");
-                return Err(InputError::new(input, format!("{value:?}"), help));
-            }
-            finite(input, value)?;
-        }
-        Ok(())
-    }
-}
 
 /// A number, constant or changing with time (s): a pressure (Pa), the force of an actuator (N).
 ///
@@ -184,6 +112,19 @@ impl Signal {
         Self(SignalKind::TimeTable(TimeTable::new(times.into(), values)))
     }
 
+    /// The same table over and over, each time `period` (s) later, up to the time `until` (s). Between its last time and its first one a period later it is
+    /// interpolated linearly, too.
+    ///
+    /// # Errors
+    /// What is no table, a table that is longer than the period (as long as it, with different values at its ends), or one repeated more than a million times.
+    pub fn repeated(mut self, period: f64, until: f64) -> Result<Self, InputError> {
+        match &mut self.0 {
+            SignalKind::TimeTable(table) => table.repeat(period, until)?,
+            _ => return Err(not_repeated(period)),
+        }
+        Ok(self)
+    }
+
     /// A straight line from the value `from` at time `start` (s) to the value `to`, which it keeps,
     /// `duration` (s) later.
     pub fn ramp(from: f64, to: f64, start: f64, duration: f64) -> Self {
@@ -226,9 +167,7 @@ impl Signal {
     /// Its rate up to time `t` (s); at a kink of a table that of the line before it, where a step ends.
     pub(crate) fn rate_before(&self, t: f64) -> f64 {
         match &self.0 {
-            SignalKind::TimeTable(table) => {
-                table.rate_of(table.times.partition_point(|&time| time < t), 0)
-            }
+            SignalKind::TimeTable(table) => table.rate_before(t, 0),
             _ => self.rate(t),
         }
     }
@@ -299,6 +238,12 @@ impl fmt::Debug for Signal {
     }
 }
 
+/// What is no table has a `period` (s).
+fn not_repeated(period: f64) -> InputError {
+    let help = "only a table is repeated: formulas and functions say themselves how they go on";
+    InputError::new("period", format!("{period} s"), help)
+}
+
 /// The sum of `signals` at time `t`.
 pub(super) fn sum(signals: &[Signal], t: f64) -> f64 {
     signals.iter().map(|signal| signal.at(t)).sum()
@@ -343,6 +288,15 @@ impl VectorSignal {
     ) -> Self {
         let write = move |t: f64, vector: &mut [f64]| vector.copy_from_slice(&f(t));
         Self::Function { dimension: D, write: Arc::new(write) }
+    }
+
+    /// The same table over and over, each time `period` (s) later, up to the time `until` (s).
+    pub(crate) fn repeated(mut self, period: f64, until: f64) -> Result<Self, InputError> {
+        match &mut self {
+            Self::TimeTable(table) => table.repeat(period, until)?,
+            _ => return Err(not_repeated(period)),
+        }
+        Ok(self)
     }
 
     /// Writes it at time `t`.

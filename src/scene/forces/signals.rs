@@ -1,6 +1,8 @@
 //! Vectors that change with time, as programs give them.
 
-use super::signal::{TimeTable, VectorSignal};
+use super::signal::VectorSignal;
+use super::time_table::TimeTable;
+use crate::base::input::InputError;
 
 /// A vector with one component per dimension of space, constant or changing with time (s).
 ///
@@ -21,6 +23,14 @@ impl Signals {
     ) -> Self {
         let values = values.into_iter().map(Into::into).collect();
         Self(VectorSignal::TimeTable(TimeTable::new(times.into(), values)))
+    }
+
+    /// The same table over and over, as [`Signal::repeated`](super::Signal::repeated) has it.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn repeated(self, period: f64, until: f64) -> Result<Self, InputError> {
+        self.0.repeated(period, until).map(Self)
     }
 }
 
