@@ -270,6 +270,10 @@ fn mistakes_are_named() {
         println!("{told}");
         assert!(told.contains(words), "{told}: {words}");
     }
+    // a flow that goes on beyond its phase
+    let times = [0.2, 0.25, 0.65, 0.7];
+    let pumped = Signal::table(times, [0.0, 1e-6, 1e-6, 0.0]);
+    one().phase(phase(0.45, true, 1).flow("0", pumped)).validate().unwrap();
     let poured = one().phase(free().flow("0", 1e-6));
     let told = poured.equilibrium(&Statics::default()).unwrap_err().to_string();
     assert!(told.contains("flow of statics"), "{told}");

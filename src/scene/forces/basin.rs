@@ -106,8 +106,7 @@ impl Basin {
             }
         }
         let [_, area] = self.below(height, u);
-        // also where it is not finite
-        if !(area > 0.0) {
+        if area.is_nan() || area <= 0.0 {
             return Err(NoLevel::Turned(whole));
         }
         Ok(Level { height, area })

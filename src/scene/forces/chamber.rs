@@ -12,7 +12,6 @@ mod walls;
 use std::fmt;
 
 use enclosure::{Polygon, Surface};
-use walls::Shape;
 
 use super::signal::Signal;
 use crate::base::input::{InputError, positive};
@@ -181,8 +180,10 @@ impl Chamber {
         let geometry = match (&self.walls, body.dimension()) {
             (Walls::Nodes(nodes), 2) => self.polygon(body, nodes)?,
             (Walls::Nodes(nodes), 3) => {
-                let surface =
-                    Surface::new(body.mesh(), self.faces(body.mesh(), nodes, Shape::Curved)?);
+                let surface = Surface::new(
+                    body.mesh(),
+                    self.faces(body.mesh(), nodes, walls::Shape::Curved)?,
+                );
                 // faces are oriented as seen from outside the body, and so from inside the chamber
                 let sign = match self.fill_space(body, nodes)? {
                     true => -1.0,
@@ -239,7 +240,7 @@ impl Chamber {
     fn polygon(&self, body: &Body, selection: &Selection) -> Result<Geometry, InputError> {
         let mesh = body.mesh();
         let edges = self.edges(mesh, selection)?;
-        let polygon = Polygon::new(mesh, walls::edge_parts(&edges, Shape::Curved));
+        let polygon = Polygon::new(mesh, walls::edge_parts(&edges, walls::Shape::Curved));
         let area = polygon.measure(&vec![0.0; body.dofs()]);
         let by_area = orientation(area, body);
         let by_boundary = || walls::against_boundary(mesh, &edges);

@@ -1,5 +1,6 @@
 //! Liquids in chambers, and what flows in and out of them.
 
+mod held;
 mod surface;
 #[cfg(test)]
 mod tests;
@@ -16,6 +17,7 @@ use crate::base::sparse::BlockMatrix;
 use crate::elements::force::NodalForces;
 use crate::integrators::ode::Failure;
 use crate::scene::forces::basin::Basin;
+use held::Held;
 use surface::Pool;
 use whole::Whole;
 
@@ -191,23 +193,6 @@ pub(crate) enum Weight {
         basin: Basin,
         gravity: f64,
     },
-}
-
-/// What a liquid in a chamber has beside the forces of its content.
-trait Held: Content {
-    /// dE/dm (J/kg) of an `amount` (kg), and its derivative by the amount in a chamber that stays (J/kg^2).
-    ///
-    /// # Errors
-    /// As [`Content::press`].
-    fn brought(&self, u: &[f64], amount: f64) -> Result<[f64; 2], Failure>;
-
-    /// g z (J/kg) of its middle, or of its surface, in the undeformed shape.
-    fn lifted(&self) -> f64;
-
-    /// The level of its surface (m) above the origin; NaN without one.
-    fn level(&self, _u: &[f64], _amount: f64) -> f64 {
-        f64::NAN
-    }
 }
 
 /// A liquid within walls.

@@ -132,7 +132,8 @@ impl Scene {
             for phase in &self.phases {
                 let flows = phase.flows.iter().filter(|(name, _)| name == liquid.chamber());
                 for end in self.breaks_in(phase).into_iter().chain([phase.until]) {
-                    let part = (end.clamp(start, phase.until) - start) / PARTS as f64;
+                    // `start` is off by round-off
+                    let part = (end.min(phase.until) - start).max(0.0) / PARTS as f64;
                     for _ in 0..PARTS {
                         let end = start + part;
                         let flows = flows.clone().map(|(_, flow)| added(flow, [start, end]));

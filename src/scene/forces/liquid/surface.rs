@@ -12,7 +12,7 @@
 #[cfg(test)]
 mod tests;
 
-use super::Held;
+use super::held::Held;
 use crate::base::sparse::BlockMatrix;
 use crate::elements::force::NodalForces;
 use crate::integrators::ode::Failure;

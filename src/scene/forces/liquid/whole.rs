@@ -15,7 +15,7 @@
 //! amount. The tangent has the square of that vector; -(b/V)^2/q s s^T is left out of it, which is b L/K times the tangent of the weight for a chamber L high:
 //! 4e-7 for 0.1 m of water.
 
-use super::Held;
+use super::held::Held;
 use crate::base::sparse::BlockMatrix;
 use crate::elements::force::NodalForces;
 use crate::integrators::ode::Failure;

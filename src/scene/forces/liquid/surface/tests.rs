@@ -128,9 +128,9 @@ fn forces_are_its_weight() {
         let liquid = poured(body, chamber, 0.6, down);
         let weight = liquid.amount() * GRAVITY;
         let found = forces(&liquid, &u, liquid.amount());
-        for axis in 0..d {
+        for (axis, down) in down.iter().enumerate().take(d) {
             let sum: f64 = found.iter().skip(axis).step_by(d).sum();
-            let off = (sum / weight - down[axis]).abs();
+            let off = (sum / weight - down).abs();
             assert!(off < 1e-12, "{number}, {axis}: {off:e}");
         }
         let far: Vec<f64> = u.iter().enumerate().map(|(k, u)| u - 0.5 * down[k % d]).collect();

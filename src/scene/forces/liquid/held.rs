@@ -1,0 +1,21 @@
+//! What liquids in chambers have beside the forces of their content.
+
+use crate::integrators::ode::Failure;
+use crate::scene::forces::content::Content;
+
+/// A liquid in a chamber.
+pub(super) trait Held: Content {
+    /// dE/dm (J/kg) of an `amount` (kg), and its derivative by the amount in a chamber that stays (J/kg^2).
+    ///
+    /// # Errors
+    /// As [`Content::press`].
+    fn brought(&self, u: &[f64], amount: f64) -> Result<[f64; 2], Failure>;
+
+    /// g z (J/kg) of its middle, or of its surface, in the undeformed shape.
+    fn lifted(&self) -> f64;
+
+    /// The level of its surface (m) above the origin; NaN without one.
+    fn level(&self, _u: &[f64], _amount: f64) -> f64 {
+        f64::NAN
+    }
+}
