@@ -172,6 +172,7 @@ fn scenes_of_the_page() {
 /// Scenes that take seconds and more to their ends.
 const LONG: &[&str] = &[
     "air-gripper",
+    "air-gripper-ball",
     "ball-in-hand",
     "ball-in-hand-3d",
     "ball-in-bowl",
@@ -229,6 +230,7 @@ fn all_scenes_are_run() {
         "rolling-robot",
         "quadruped",
         "jumping-robot",
+        "jellyfish",
         // where contact is tested
         "cradle",
         "ring-on-table",
