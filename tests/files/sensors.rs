@@ -13,6 +13,11 @@ thickness = 0.01
 [[spring]]
 name = "tendon"
 ends = [1, 9]
+[[lag]]
+actuators = "tendon"
+capacity = 1.0
+loss = 1.0
+per_kelvin = -1e-3
 [[chamber]]
 name = "inside"
 nodes = [1, 3, 9, 7]
@@ -84,6 +89,7 @@ fn every_kind_reads_what_the_api_reads() -> Result<(), Error> {
         ),
         (r#"kind = "spring-pull", spring = "tendon""#, Reading::spring_pull("tendon")),
         (r#"kind = "spring-length", spring = "tendon""#, Reading::spring_length("tendon")),
+        (r#"kind = "temperature", actuator = "tendon""#, Reading::temperature("tendon")),
         (r#"kind = "pressure", chamber = "inside""#, Reading::pressure("inside")),
         (r#"kind = "absolute-pressure", chamber = "inside""#, Reading::absolute_pressure("inside")),
         (r#"kind = "gas-amount", chamber = "inside""#, Reading::gas_amount("inside")),
@@ -126,7 +132,8 @@ fn every_kind_reads_what_the_api_reads() -> Result<(), Error> {
     }
     let motion = file.scene.simulate(&file.settings, &file.output.sampling())?;
     // vectors of two and tensors of four components
-    let columns = [2, 1, 2, 1, 2, 2, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 4, 4, 4, 1, 1, 1, 1, 1];
+    let columns =
+        [2, 1, 2, 1, 2, 2, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 4, 4, 4, 1, 1, 1, 1, 1];
     assert_eq!(motion.sensors().len(), columns.iter().sum::<usize>());
     assert!(motion.last().sensors.iter().all(|number| number.is_finite()));
     assert!(parse("")?.output.sensors.is_empty());
