@@ -70,7 +70,7 @@ fn two_vessels_swing_through_a_pipe() {
                 "{damping}, {method}: off by {apart:?}, balance {energy:e}, {} steps",
                 motion.report().steps()
             );
-            // the water itself is compressed by 1e-5 of what the springs yield
+            // the methods, and the compression of the water itself
             assert!(apart.iter().all(|apart| *apart < 1e-3), "{method}: {apart:?}");
             assert!(energy < 1e-3, "{method}: {energy:e}");
         }

@@ -112,7 +112,7 @@ fn forces_and_tangents_belong_to_the_energy() {
             let difference = (ahead - behind) / (2.0 * more);
             assert!((slope / difference - 1.0).abs() < 1e-4, "{number}: {slope} {difference}");
             let closed = Closed::new(liquid, n);
-            // measured: up to 3e-6, where a corner is near the level, at which the tangent has a kink
+            // the tangent has a kink where a corner is at the level
             let size = check(&closed, (d, &cells), 0.0, &u, &vec![0.0; n], 1e-5);
             assert!(size > 1.0, "{number}: {size}");
         }
