@@ -47,6 +47,7 @@ pub(super) fn of(present: &Present, colours: Option<usize>, since: Option<f64>) 
         "past": past.after(since),
         "sliders": values.collect::<Vec<_>>(),
         "dipoles": picture.dipoles(&view),
+        "water": picture.water(&view),
         "actuations": actuations.collect::<Vec<_>>(),
         "pull": hand.map(Hand::to_json),
         "speed": pace.speed,

@@ -228,6 +228,15 @@ impl<'a> View<'a> {
         Ok(self.with_surface(number)?.level(self.state.u, self.liquid_amount(number)))
     }
 
+    /// What `see` makes of the scene, the phase, the displacements and the last unknowns of the state.
+    #[cfg(feature = "play")]
+    pub(crate) fn with_states<R>(
+        &self,
+        see: impl FnOnce(&Scene, &Phase, &[f64], &[f64]) -> R,
+    ) -> R {
+        see(self.scene, self.phase, self.state.u, self.state.others)
+    }
+
     /// The liquid of that number, which has a surface, under the gravity of the phase.
     fn with_surface(&self, number: usize) -> Result<Poured, InputError> {
         self.scene.poured_in(Some(self.phase), &self.scene.liquids()[number])

@@ -123,6 +123,32 @@ impl Basin {
         extent
     }
 
+    /// Lines along which a level (m) meets the walls; in the plane from wall to wall.
+    #[cfg(feature = "output")]
+    pub(super) fn waterline(&self, level: f64, u: &[f64]) -> Vec<[[f64; 3]; 2]> {
+        let mut met: Vec<[f64; 3]> = Vec::new();
+        for piece in &self.pieces {
+            let places = self.places(piece, u);
+            let depths = self.depths(level, &places);
+            for from in 0..self.dimension {
+                let to = (from + 1) % self.dimension;
+                // a segment has one edge
+                let is_met = (depths[from] > 0.0) != (depths[to] > 0.0);
+                if is_met && (self.dimension == 3 || from == 0) {
+                    let part = depths[from] / (depths[from] - depths[to]);
+                    let [a, b] = [places[from], places[to]];
+                    met.push(std::array::from_fn(|i| a[i] + part * (b[i] - a[i])));
+                }
+            }
+        }
+        if self.dimension == 2 {
+            let [x, y, _] = self.down;
+            let along = |p: &[f64; 3]| x * p[1] - y * p[0];
+            met.sort_by(|a, b| along(a).total_cmp(&along(b)));
+        }
+        met.as_chunks().0.to_vec()
+    }
+
     /// V (m^3) and A (m^2) of a level (m).
     fn below(&self, level: f64, u: &[f64]) -> [f64; 2] {
         let (mut volume, mut area) = (0.0, 0.0);

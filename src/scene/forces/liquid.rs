@@ -235,6 +235,12 @@ impl Poured {
     pub(crate) fn level(&self, u: &[f64], amount: f64) -> f64 {
         self.held.level(u, amount)
     }
+
+    /// Lines along which that surface meets the walls (m); in the plane from wall to wall.
+    #[cfg(feature = "output")]
+    pub(crate) fn waterline(&self, u: &[f64], amount: f64) -> Vec<[[f64; 3]; 2]> {
+        self.held.waterline(u, amount)
+    }
 }
 
 impl Content for Poured {

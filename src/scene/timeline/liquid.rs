@@ -118,6 +118,30 @@ impl Scene {
         liquid.pour(walls, self.body.dofs(), weight, flows)
     }
 
+    /// Lines along which surfaces of liquids meet the walls (m) under the displacements `u` (m); `states` are the last unknowns of a state, or none where amounts are
+    /// constants.
+    #[cfg(feature = "output")]
+    pub(crate) fn waterlines(
+        &self,
+        phase: &Phase,
+        u: &[f64],
+        states: &[f64],
+    ) -> Vec<[[f64; 3]; 2]> {
+        let amounts = self.gases.len() + self.liquids.len();
+        let first = states.len().checked_sub(amounts + self.lags.len() + self.pipes.len());
+        let each = self.liquids.iter().enumerate().filter(|(_, liquid)| liquid.has_surface());
+        let lines = each.filter_map(|(number, liquid)| {
+            // errors were found when the phase began
+            let poured = self.poured_in(Some(phase), liquid).ok()?;
+            let amount = match first {
+                Some(first) => states[first + self.gases.len() + number],
+                None => poured.amount(),
+            };
+            Some(poured.waterline(u, amount))
+        });
+        lines.flatten().collect()
+    }
+
     /// Checks that no flow empties a chamber.
     ///
     /// # Errors

@@ -75,7 +75,7 @@ const springs = data.springs.map((spring) => ({ ...spring, forces: [-1, 1] }));
 /** Their numbers. */
 const dipoles = magnets.map((_, number) => number);
 /** The present, as the simulation told it last. */
-let frame = { time: 0, phase: 0, actuations: springs.map(() => 0), colours: null };
+let frame = { time: 0, phase: 0, actuations: springs.map(() => 0), water: "", colours: null };
 let colouring = new Uint8Array(0);
 
 /** Points of the chart at most. */
@@ -134,6 +134,11 @@ function actuationAt(_, spring) {
 /** Where a dipole is (m), and its moment (A m^2). */
 function dipoleAt(_, number) {
   return magnets[number];
+}
+
+/** The ends of the lines along which surfaces of liquids meet walls (m). */
+function waterAt() {
+  return singles(frame.water);
 }
 
 function phaseAt() {

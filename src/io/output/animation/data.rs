@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 
 use super::colours::{Fields, Quantity};
 use super::geometry::{Geometry, in_view};
-use super::{contacts, dipoles, pack};
+use super::{contacts, dipoles, pack, water};
 use crate::base::input::InputError;
 use crate::dynamics::error::Error;
 use crate::dynamics::system::Energy;
@@ -50,6 +50,7 @@ pub(super) fn gather(trajectory: &Trajectory, name: &str) -> Result<Value, Error
         "sensors": sensors(trajectory, &frames),
         "contacts": contacts::resultants(trajectory, &frames)?,
         "dipoles": dipoles::tracks(trajectory, &frames)?,
+        "water": water::tracks(trajectory, &frames)?,
         "obstacles": obstacles_in(trajectory, &frames)?,
         "springs": springs(trajectory, &frames, &geometry, &ends)?,
         "points": geometry.places(&points),

@@ -4,7 +4,7 @@ use serde_json::{Value, json};
 
 use super::colours::{Fields, Quantity};
 use super::geometry::Geometry;
-use super::{STYLE, data, dipoles, filled, pack};
+use super::{STYLE, data, dipoles, filled, pack, water};
 use crate::dynamics::error::Error;
 use crate::dynamics::simulate::View;
 use crate::dynamics::system::Energy;
@@ -21,6 +21,7 @@ const DRAWING: &str = concat!(
     include_str!("page/plane.js"),
     include_str!("page/space.js"),
     include_str!("page/dipoles.js"),
+    include_str!("page/water.js"),
     include_str!("page/stage.js"),
     include_str!("page/chart.js"),
     include_str!("page/sensors.js"),
@@ -94,6 +95,11 @@ impl Picture {
         }
         numbers.extend(self.geometry.anchors(d));
         pack::singles(numbers)
+    }
+
+    /// The ends of all lines along which surfaces of liquids meet walls (m), one after the other.
+    pub(crate) fn water(&self, view: &View) -> Value {
+        view.with_states(water::at)
     }
 
     /// The positions (m) and the moments (A m^2) of all dipoles.

@@ -8,6 +8,7 @@ mod geometry;
 #[cfg(feature = "play")]
 mod live;
 mod pack;
+mod water;
 
 use std::fs;
 use std::path::Path;
@@ -56,6 +57,7 @@ const OF_EACH: &str = concat!(
     include_str!("page/stage.js"),
     include_str!("page/contacts.js"),
     include_str!("page/dipoles.js"),
+    include_str!("page/water.js"),
 );
 /// What stands before and after the data of a page.
 const DATA: [&str; 2] = ["<script type=\"application/json\" id=\"data\">", "</script>"];

@@ -30,6 +30,8 @@ pub(in crate::io::output) struct View {
     pub(super) obstacles: Vec<Vec<Outline>>,
     /// Places and moments of the dipoles of each panel.
     pub(super) dipoles: Vec<Vec<[Point; 2]>>,
+    /// Where surfaces of liquids meet walls in each panel.
+    pub(super) waterlines: Vec<Vec<[Point; 2]>>,
 }
 
 impl View {
@@ -41,6 +43,7 @@ impl View {
             tops: Vec::new(),
             obstacles: samples.iter().map(|sample| outlines(trajectory, sample)).collect(),
             dipoles: samples.iter().map(|sample| dipoles(trajectory, sample)).collect(),
+            waterlines: samples.iter().map(|sample| waterlines(trajectory, sample)).collect(),
         };
         for sample in samples {
             let points = positions(trajectory, sample);
@@ -122,6 +125,16 @@ fn dipoles(trajectory: &Trajectory, sample: &Sample) -> Vec<[Point; 2]> {
     let all = trajectory.phase_of(sample).map(|phase| {
         let dipoles = trajectory.scene().dipoles_at(phase, sample.time).into_iter();
         dipoles.map(|vectors| vectors.map(|vector| drawn(&vector))).collect()
+    });
+    all.unwrap_or_default()
+}
+
+/// Lines along which surfaces of liquids meet walls at a sample (m).
+fn waterlines(trajectory: &Trajectory, sample: &Sample) -> Vec<[Point; 2]> {
+    let d = trajectory.body().dimension();
+    let all = trajectory.phase_of(sample).map(|phase| {
+        let lines = trajectory.scene().waterlines(phase, &sample.u, &sample.amounts).into_iter();
+        lines.map(|line| line.map(|end| drawn(&end[..d]))).collect()
     });
     all.unwrap_or_default()
 }

@@ -18,4 +18,10 @@ pub(super) trait Held: Content {
     fn level(&self, _u: &[f64], _amount: f64) -> f64 {
         f64::NAN
     }
+
+    /// Lines along which its surface meets the walls (m).
+    #[cfg(feature = "output")]
+    fn waterline(&self, _u: &[f64], _amount: f64) -> Vec<[[f64; 3]; 2]> {
+        Vec::new()
+    }
 }

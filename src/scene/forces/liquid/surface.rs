@@ -139,4 +139,10 @@ impl Held for Pool {
     fn level(&self, u: &[f64], amount: f64) -> f64 {
         self.level_of(u, amount).map_or(f64::NAN, |level| level.height)
     }
+
+    #[cfg(feature = "output")]
+    fn waterline(&self, u: &[f64], amount: f64) -> Vec<[[f64; 3]; 2]> {
+        let level = self.level_of(u, amount);
+        level.map_or_else(|_| Vec::new(), |level| self.basin.waterline(level.height, u))
+    }
 }

@@ -13,6 +13,7 @@ const energies = data.energies.map(overTime);
 const sensors = data.sensors.map(overTime);
 const contacts = data.contacts.map(({ at, forces }) => ({ at: singles(at), forces: singles(forces) }));
 const dipoles = data.dipoles.map(({ at, along }) => ({ at: singles(at), along: singles(along) }));
+const water = data.water.map(singles);
 const springs = data.springs.map((spring) => ({ ...spring, forces: singles(spring.forces) }));
 
 function momentAt(time) {
@@ -49,6 +50,11 @@ function actuationAt({ before, after, share }, { forces }) {
 function dipoleAt({ before, after, share }, { at, along }) {
   return [at, along].map((values) => Array.from({ length: axes }, (_, axis) =>
     between(values, before * axes + axis, after * axes + axis, share)));
+}
+
+/** The ends of the lines along which surfaces of liquids meet walls (m), at the sample at hand or, between two, at the next. */
+function waterAt({ before, after, share }) {
+  return water[share > 0 ? after : before] ?? [];
 }
 
 /** The phase at `time`; its end belongs to it. */
