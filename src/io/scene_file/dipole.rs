@@ -1,7 +1,7 @@
 //! `[[dipole]]`.
 
+use super::course::vectors;
 use super::keys::{Holds, Key, TableKeys};
-use super::phase::vectors;
 use super::surroundings::unique;
 use super::table::Table;
 use super::value::Value;

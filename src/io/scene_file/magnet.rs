@@ -1,12 +1,12 @@
 //! `[[magnet]]`, and the magnetic field of a phase.
 
 use super::cells::{BOX, CELLS, GROUP, cells};
+use super::course::vectors_until;
 use super::keys::{Holds, Key, TableKeys};
-use super::phase::repeated;
 use super::phase_keys::MAGNETIC_FIELD;
 use super::value::Value;
 use crate::dynamics::error::Error;
-use crate::scene::forces::{Magnet, MagneticField, TimeTable, VectorSignal};
+use crate::scene::forces::{Magnet, MagneticField};
 use crate::scene::timeline::Scene;
 
 pub(super) const MAGNET: TableKeys = TableKeys::new(
@@ -48,15 +48,8 @@ pub(super) fn magnetic_field(
 ) -> Result<MagneticField, Error> {
     let (table, dimension) = (&value.table(&MAGNETIC_FIELD)?, scene.body().dimension());
     let vector = |value: &Value| value.vector(dimension);
-    let field = match table.optional("field", |value| value.vector_signal(dimension))? {
-        Some(field) => field,
-        None => {
-            let times = table.required("times", Value::numbers)?;
-            let fields = |value: &Value| value.list_of("vectors, one per time", vector);
-            VectorSignal::TimeTable(TimeTable::new(times, table.required("fields", fields)?))
-        }
-    };
-    let field = repeated(table, field, |field, period| field.repeated(period, until))?;
+    let field = vectors_until(table, until, "field", dimension)?;
+    let field = field.ok_or_else(|| table.missing("field", "a magnetic field needs it"))?;
     let field = MagneticField::of(field);
     let rows = table.optional("gradient", |value| value.list_of("rows", vector))?;
     let centre = table.optional("centre", vector)?;

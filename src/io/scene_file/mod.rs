@@ -41,6 +41,7 @@ mod auto;
 mod body;
 mod cells;
 mod contents;
+mod course;
 mod dipole;
 mod fluid;
 mod friction;

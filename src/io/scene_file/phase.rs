@@ -2,6 +2,7 @@
 
 use toml::de::DeValue;
 
+use super::course::{course, vectors_until};
 use super::keys::TableKeys;
 use super::magnet::magnetic_field;
 use super::phase_keys::{
@@ -16,7 +17,7 @@ use crate::base::vector::norm;
 use crate::dynamics::error::Error;
 use crate::elements::mesh::Selection;
 use crate::scene::constraint::Axis;
-use crate::scene::forces::{Dipole, DipolePart, Signal, TimeTable, VectorSignal};
+use crate::scene::forces::{Dipole, DipolePart};
 use crate::scene::timeline::{LoadKind, Phase, Scene};
 
 /// Adds a table inside of a phase.
@@ -184,9 +185,8 @@ fn hold_combination(phase: Phase, table: &Table, scene: &Scene) -> Result<Phase,
 fn load(phase: Phase, table: &Table, scene: &Scene) -> Result<Phase, Error> {
     let nodes = nodes(table, scene)?;
     for kind in LoadKind::ALL {
-        if let Some(value) = vectors(table, kind.word(), scene.body().dimension())? {
-            let value =
-                repeated(table, value, |value, period| value.repeated(period, phase.end()))?;
+        let value = vectors_until(table, phase.end(), kind.word(), scene.body().dimension())?;
+        if let Some(value) = value {
             return Ok(phase.loaded(nodes, kind, value));
         }
     }
@@ -197,30 +197,12 @@ fn drive(mut phase: Phase, table: &Table, scene: &Scene) -> Result<Phase, Error>
     let known: Vec<&str> = scene.dipoles().iter().map(Dipole::name).collect();
     let dipole = table.required("dipole", |value| named(value, &known))?;
     for part in DipolePart::ALL {
-        if let Some(value) = vectors(table, part.word(), scene.body().dimension())? {
-            let value =
-                repeated(table, value, |value, period| value.repeated(period, phase.end()))?;
+        let value = vectors_until(table, phase.end(), part.word(), scene.body().dimension())?;
+        if let Some(value) = value {
             phase.set_dipole(&dipole, part, value);
         }
     }
     Ok(phase)
-}
-
-/// The vector of the key `word`, constant or by formulas, or of the keys `times` and `word` with an s, if there is any.
-pub(super) fn vectors(
-    table: &Table,
-    word: &str,
-    dimension: usize,
-) -> Result<Option<VectorSignal>, Error> {
-    if let Some(value) = table.optional(word, |value| value.vector_signal(dimension))? {
-        return Ok(Some(value));
-    }
-    let many = table.optional(&format!("{word}s"), |value| {
-        value.list_of("vectors, one per time", |vector| vector.vector(dimension))
-    })?;
-    let Some(values) = many else { return Ok(None) };
-    let times = table.required("times", Value::numbers)?;
-    Ok(Some(VectorSignal::TimeTable(TimeTable::new(times, values))))
 }
 
 fn pressure(phase: Phase, table: &Table, scene: &Scene) -> Result<Phase, Error> {
@@ -303,29 +285,6 @@ fn contact(phase: Phase, value: &Value, scene: &Scene) -> Result<Phase, Error> {
         DeValue::String(_) | DeValue::Array(_) => Ok(phase.contact_with(names(value, &known)?)),
         _ => Err(value.unexpected("true, false, or a list of names")),
     }
-}
-
-/// The signal of the key `one`, a number or formula, or of the keys `times` and `many`, lists of numbers.
-/// A table may be repeated up to the time `until` (s).
-fn course(table: &Table, until: f64, one: &str, many: &str) -> Result<Signal, Error> {
-    let signal = match table.optional(one, Value::signal)? {
-        Some(signal) => signal,
-        None => Signal::table(
-            table.required("times", Value::numbers)?,
-            table.required(many, Value::numbers)?,
-        ),
-    };
-    repeated(table, signal, |signal, period| signal.repeated(period, until))
-}
-
-/// What `repeat` makes of a `signal`, if the table has a period.
-pub(super) fn repeated<S>(
-    table: &Table,
-    signal: S,
-    repeat: impl FnOnce(S, f64) -> Result<S, InputError>,
-) -> Result<S, Error> {
-    let Some(value) = table.get("period") else { return Ok(signal) };
-    repeat(signal, value.finite()?).map_err(|error| value.error(error))
 }
 
 fn nodes(table: &Table, scene: &Scene) -> Result<Selection, Error> {
