@@ -21,7 +21,7 @@ use crate::integrators::ode::Failure;
 ///
 /// ```
 /// use pliant::simulate::Reading;
-/// use pliant::{Body, Cells, Lag, Material, Mesh, Phase, Sampling, Scene, Settings, Spring};
+/// use pliant::{Axis, Body, Cells, Lag, Material, Mesh, Phase, Sampling, Scene, Settings, Spring};
 ///
 /// // a coiled thread of nylon lifts 10 g by heat: 0.3 W, 0.2 J/K, 0.01 W/K, 0.02 N/K
 /// let mesh = Mesh::rectangle([0.02, 0.02], [2, 2], Cells::Triangles)?;
@@ -31,7 +31,7 @@ use crate::integrators::ode::Failure;
 ///     .gravity([0.0, -9.8])
 ///     .spring(Spring::between([1], "weight").named("coil").stiffness(20.0).damping(0.5))
 ///     .lag(Lag::heated(0.2, 0.01, -0.02), ["coil"])
-///     .phase(Phase::until(5.0).hold([1, 2, 3, 4]).hold_axis("weight", 0).actuate(["coil"], 0.3));
+///     .phase(Phase::until(5.0).hold([1, 2, 3, 4]).hold_axes("weight", [Axis::X]).actuate(["coil"], 0.3));
 /// let sampling = Sampling::phase_ends().read("warmer", Reading::temperature("coil"));
 /// let motion = scene.simulate(&Settings::default(), &sampling)?;
 /// let warmer = 30.0 * (1.0 - (-5.0_f64 / 20.0).exp()); // K
