@@ -53,7 +53,10 @@ pub use dynamics::{
     equations::Equations,
     equilibrium::{Equilibrium, MeshEstimate, NoEquilibrium, Stability},
     error::{Error, Panicked},
-    report::{Achieved, Counts, Indicator, PhaseReport, ReducedReport, Report, SlipEvent, Verdict},
+    report::{
+        Achieved, Counts, Indicator, PhaseReport, ReducedReport, Report, SlipEvent, ToldReading,
+        Verdict,
+    },
     simulate::{Checkpoint, Sampling, Simulation, View},
     statics::Statics,
     system::{Energy, PhaseSummary, Spectrum},

@@ -21,6 +21,7 @@ class ReducedModel:
     unknowns = property(lambda self: self._reduced.unknowns, doc="Number of unknowns.")
     cells = property(lambda self: self._reduced.cells, doc="Number of cells whose forces are computed; 0 where these are exact along the shapes.")
     error = property(lambda self: self._reduced.error, doc="Largest error of a displacement where it was checked, as a part of the largest one.")
+    is_estimate = property(lambda self: self.data["is_estimate"], doc="Whether the error is what runs by the model told, as it was checked with none of all unknowns.")
     is_within = property(lambda self: self._reduced.is_within, doc="Whether that is within what was wanted.")
 
     @property
@@ -51,7 +52,7 @@ class ReducedModel:
         return f"<pliant.ReducedModel: {self.unknowns} unknowns, {self.cells} cells, error {self.error:.2g}>"
 
 
-def reduce(scene, within=0.02, *, vary=None, hold_out=2, most=64):
+def reduce(scene, within=0.02, *, vary=None, hold_out=2, most=64, modes=False):
     """Learns a reduced model of a scene, as `pliant reduce` does: a :class:`ReducedModel`.
 
     Parameters
@@ -67,9 +68,12 @@ def reduce(scene, within=0.02, *, vary=None, hold_out=2, most=64):
         Points of the ranges that models are checked with, and not learned from.
     most : int
         Most unknowns of a model.
+    modes : bool
+        Run nothing with all unknowns: begin with equilibria, free vibrations and their derivatives, and go on with what runs by
+        the model lack. The error is what these runs tell.
     """
     ranges = [(key, float(least), float(most), *(count or [None])) for key, (least, most, *count) in (vary or {}).items()]
-    model = ReducedModel(scene._scene.reduce(within, ranges, hold_out, most))
+    model = ReducedModel(scene._scene.reduce(within, ranges, hold_out, most, modes))
     if not model.is_within:
         told = f"no model of {most} unknowns at most is within {within}: the best one is off by {model.error:.2g}"
         warnings.warn(f"{told}; learn from more runs, or take more unknowns", ModelWarning, stacklevel=2)

@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 use std::path::PathBuf;
 
-use pliant::reduce::{Reduced as Learned, Training, VariedKey, reduce, words};
+use pliant::reduce::{Reduced as Learned, Training, VariedKey, reduce, reduce_by_modes, words};
 use pliant::{Error, Scene, SceneFile};
 use pyo3::prelude::*;
 
@@ -27,6 +27,7 @@ impl Reduced {
         within: f64,
         vary: Vec<Range>,
         [hold_out, most_unknowns]: [usize; 2],
+        modes: bool,
         observer: &mut dyn FnMut(&str) -> ControlFlow<()>,
     ) -> Result<Self, Error> {
         let keys = vary.into_iter().map(|(key, least, most, count)| {
@@ -36,7 +37,10 @@ impl Reduced {
         let keys: Vec<VariedKey> = keys.collect();
         let training = Training::varied(read, &keys, hold_out)?;
         let training = Training { within, most_unknowns, ..training };
-        let mut learned = reduce(&training, observer)?;
+        let mut learned = match modes {
+            true => reduce_by_modes(&training, observer)?,
+            false => reduce(&training, observer)?,
+        };
         if !keys.is_empty() {
             learned.model = learned.model.learned_over(&words(&keys));
         }

@@ -98,12 +98,14 @@ impl Scene {
         vary: Vec<(String, f64, f64, Option<usize>)>,
         hold_out: usize,
         most: usize,
+        modes: bool,
     ) -> PyResult<Reduced> {
         let Self { text, path, overrides, .. } = self;
         let read = |set: &[String]| SceneFile::parse_with(text, path, &[overrides, set].concat());
         let mut watch = Watch::new(None);
         let observer = &mut |_: &str| watch.see(0.0);
-        let learned = py.detach(|| Reduced::learn(&read, within, vary, [hold_out, most], observer));
+        let sizes = [hold_out, most];
+        let learned = py.detach(|| Reduced::learn(&read, within, vary, sizes, modes, observer));
         watch.check(py)?;
         learned.map_err(raised)
     }

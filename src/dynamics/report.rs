@@ -7,7 +7,7 @@ use std::fmt;
 
 pub(crate) use indicator::warnings;
 pub use indicator::{Indicator, Verdict};
-pub use reduced::ReducedReport;
+pub use reduced::{ReducedReport, ToldReading};
 
 use crate::base::input::told;
 use crate::scene::settings::Method;

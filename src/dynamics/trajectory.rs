@@ -8,7 +8,7 @@ use std::sync::{Arc, OnceLock};
 
 use crate::base::input::{InputError, told};
 use crate::dynamics::report::Report;
-use crate::dynamics::system::Energy;
+use crate::dynamics::system::{Energy, Lacking};
 use crate::elements::body::Body;
 use crate::scene::settings::Method;
 use crate::scene::timeline::{BodyState, ContactReader, Phase, Scene};
@@ -94,6 +94,8 @@ pub struct Trajectory {
     pub(crate) report: Report,
     /// What reads contact, once that was asked for.
     contact: OnceLock<Arc<ContactReader>>,
+    /// What a reduced model lacks, as the run has told.
+    pub(crate) lacking: Vec<Arc<Lacking>>,
 }
 
 /// Short: errors hold trajectories, and a program that ends with one prints it.
@@ -113,6 +115,7 @@ impl Trajectory {
             peaks: Vec::new(),
             report,
             contact: OnceLock::new(),
+            lacking: Vec::new(),
         };
         trajectory.push(first);
         trajectory
@@ -239,7 +242,8 @@ impl Trajectory {
         let samples = self.samples[first.min(self.samples.len() - 1)..].to_vec();
         let (scene, sensors) = (self.scene.clone(), self.sensors.clone());
         let (peaks, contact) = (self.peaks.clone(), self.contact.clone());
-        Self { scene, samples, sensors, peaks, report: self.report.clone(), contact }
+        let report = self.report.clone();
+        Self { scene, samples, sensors, peaks, report, contact, lacking: Vec::new() }
     }
 
     /// The scene that was run.

@@ -31,6 +31,9 @@ pub struct ReducedModel {
     pub(crate) within: f64,
     /// That error for an [imbalance](crate::Report) of 1 that a run tells.
     pub(crate) error_per_imbalance: f64,
+    /// Whether that is not the error of a run with all unknowns, but what its own runs told.
+    #[cfg_attr(feature = "checkpoint", serde(default))]
+    pub(crate) is_estimate: bool,
     /// What it was learned from, in words.
     pub(crate) learned_from: String,
 }
@@ -67,6 +70,12 @@ impl ReducedModel {
         self.error
     }
 
+    /// Whether its [error](Self::error) is what its own runs told, as it was checked with none of all unknowns: see
+    /// [`reduce_by_modes`](crate::reduce::reduce_by_modes).
+    pub fn is_estimate(&self) -> bool {
+        self.is_estimate
+    }
+
     /// What it was learned from, in words.
     pub fn learned_from(&self) -> &str {
         &self.learned_from
@@ -86,6 +95,7 @@ impl fmt::Display for ReducedModel {
         if self.cells() > 0 {
             write!(f, " and {} of {} cells", self.cells(), self.cell_count)?;
         }
-        write!(f, ", off by {}", percent(self.error))
+        write!(f, ", off by {}", percent(self.error))?;
+        if self.is_estimate { write!(f, " as its own runs tell") } else { Ok(()) }
     }
 }

@@ -6,6 +6,7 @@ mod actuated;
 mod auto;
 mod beam_bend;
 mod beam_jump;
+mod by_modes;
 mod cables;
 mod chambers;
 mod checkpoint_file;

@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use pliant::reduce::{Training, VariedKey, reduce, verify, words};
+use pliant::reduce::{Training, VariedKey, reduce, reduce_by_modes, verify, words};
 use pliant::{Fraction, ReducedModel};
 
 use crate::failure::{Failure, print};
@@ -41,6 +41,10 @@ pub struct Arguments {
     /// Most unknowns of a model
     #[arg(long, value_name = "UNKNOWNS", default_value_t = 64)]
     most: usize,
+    /// Run nothing with all unknowns: begin with free vibrations, what the loads would do and their derivatives, and go on with what runs
+    /// by the model leave over. The error is what these runs tell
+    #[arg(long, conflicts_with = "verify")]
+    modes: bool,
     /// Learn nothing: run the scene, or the held-out points of --vary, with all unknowns and by this model, and print its errors
     #[arg(long, value_name = "MODEL")]
     verify: Option<PathBuf>,
@@ -70,7 +74,8 @@ fn varied(text: &str) -> Result<VariedKey, String> {
 }
 
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let Arguments { scene, settings, within, vary, hold_out, most, verify, quiet, .. } = arguments;
+    let Arguments { scene, settings, within, vary, hold_out, most, modes, verify, quiet, .. } =
+        arguments;
     let read = |set: &[String]| scene.read_with(set);
     let mut training = Training {
         within: within.0,
@@ -89,10 +94,14 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let title = scene.title(if title.is_empty() { &stem } else { &title });
 
     let progress = spinner(*quiet);
-    let reduced = reduce(&training, &mut |what| {
+    let mut observer = |what: &str| {
         progress.set_message(what.to_owned());
         ControlFlow::Continue(())
-    });
+    };
+    let reduced = match modes {
+        true => reduce_by_modes(&training, &mut observer),
+        false => reduce(&training, &mut observer),
+    };
     progress.finish_and_clear();
     let mut reduced = reduced?;
     if !vary.is_empty() {

@@ -72,7 +72,7 @@ Those of `pliant reduce`, by default beside the scene file:
 | file | what is in it |
 | --- | --- |
 | `NAME.reduced` | the model (JSON): shapes, cells with their weights, errors, and hashes of what identifies the scene |
-| `NAME-reduced.json` | what was tried: `unknowns`, `cells`, `error`, `told` (the error that runs told), `seconds` of each; the same of the `full` model |
+| `NAME-reduced.json` | what was tried: `unknowns`, `cells`, `error`, `told` (the error that runs told), `seconds` of each; the same of the `full` model; `is_estimate`: whether no run of all unknowns was made (`--modes`) |
 | `NAME-reduced.svg`, `NAME-reduced.png` | error over time of all models that were tried |
 ";
 

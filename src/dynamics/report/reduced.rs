@@ -2,7 +2,8 @@
 
 use std::fmt;
 
-use crate::base::input::percent;
+use crate::base::input::{percent, told};
+use crate::dynamics::trajectory::Quantity;
 use crate::scene::reduced_model::ReducedModel;
 
 /// How a run by a reduced model went.
@@ -21,10 +22,23 @@ pub struct ReducedReport {
     pub told_error: f64,
     /// How far the motion was outside of those learned from, in parts of the widest range of a shape.
     pub outside: f64,
+    /// The errors of what sensors read that follows from where the nodes are, as this run tells them.
+    pub readings: Vec<ToldReading>,
+    /// Whether its error is not that of any run with all unknowns, but what its own runs told.
+    pub is_estimate: bool,
     per_imbalance: f64,
     /// Largest imbalance and largest displacement (m) that were seen.
     imbalance: f64,
     travel: f64,
+}
+
+/// The error of what a sensor reads, as a run by a reduced model tells it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ToldReading {
+    /// What it reads.
+    pub quantity: Quantity,
+    /// The largest error at the times that were looked at, in the unit of the quantity.
+    pub error: f64,
 }
 
 impl ReducedReport {
@@ -37,6 +51,8 @@ impl ReducedReport {
             within: model.within,
             told_error: 0.0,
             outside: 0.0,
+            readings: Vec::new(),
+            is_estimate: model.is_estimate,
             per_imbalance: model.error_per_imbalance,
             imbalance: 0.0,
             travel: model.travel,
@@ -56,6 +72,22 @@ impl ReducedReport {
         self.told_error = self.per_imbalance * self.imbalance();
     }
 
+    /// Adds by how much an imbalance would change what sensors read.
+    pub(crate) fn note_changes(&mut self, changes: Vec<(Quantity, f64)>) {
+        for (quantity, change) in changes {
+            let error = self.per_imbalance * change;
+            match self.readings.iter_mut().find(|told| told.quantity == quantity) {
+                Some(told) => told.error = told.error.max(error),
+                None => self.readings.push(ToldReading { quantity, error }),
+            }
+        }
+    }
+
+    /// The largest imbalance (m), and the largest displacement (m).
+    pub(crate) fn lengths(&self) -> [f64; 2] {
+        [self.imbalance, self.travel]
+    }
+
     /// The largest imbalance relative to the largest displacement.
     pub(crate) fn imbalance(&self) -> f64 {
         if self.travel > 0.0 { self.imbalance / self.travel } else { 0.0 }
@@ -69,7 +101,19 @@ impl fmt::Display for ReducedReport {
         if *cells > 0 {
             write!(f, ", {cells} of {all} cells")?;
         }
-        let (checked, told) = (percent(*checked_error), percent(*told_error));
-        write!(f, "; error {checked} where it was checked, {told} as told by this run")
+        let (checked, said) = (percent(*checked_error), percent(*told_error));
+        match self.is_estimate {
+            true => {
+                write!(f, "; error {said} as told by this run, checked with none of all unknowns")?
+            }
+            false => {
+                write!(f, "; error {checked} where it was checked, {said} as told by this run")?
+            }
+        }
+        for ToldReading { quantity: Quantity { name, unit }, error } in &self.readings {
+            let unit = if unit == "1" { "" } else { unit };
+            write!(f, ", {name} {} {unit}", told(*error))?;
+        }
+        Ok(())
     }
 }

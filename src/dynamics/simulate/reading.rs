@@ -472,6 +472,24 @@ impl Reading {
         matches!(self.what, What::ConstraintForce(_) | What::ConstraintMoment(..))
     }
 
+    /// Whether it follows from the places of nodes alone.
+    pub(super) fn is_of_places(&self) -> bool {
+        use What::*;
+        matches!(
+            self.what,
+            Position(_)
+                | Displacement(_)
+                | Distance(_)
+                | Angle(_)
+                | CentreOfMass
+                | Rotation
+                | Strain(_)
+                | SpringLength(_)
+                | MuscleStretch(_)
+                | ChamberVolume(_)
+        )
+    }
+
     /// Whether it is continuous over whole turns, for a body in `dimension` dimensions.
     pub(super) fn turns(&self, dimension: usize) -> bool {
         dimension == 2 && self.is_angle()

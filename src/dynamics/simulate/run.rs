@@ -22,8 +22,8 @@ use crate::dynamics::indicators;
 use crate::dynamics::matrices::Matrices;
 use crate::dynamics::report::{Report, creation};
 use crate::dynamics::state::{ENERGIES, State};
-use crate::dynamics::system::System;
-use crate::dynamics::trajectory::{IntegrationFailure, Interrupted, Sample, Trajectory};
+use crate::dynamics::system::{LeftOver, System};
+use crate::dynamics::trajectory::{IntegrationFailure, Interrupted, Quantity, Sample, Trajectory};
 use crate::elements::body::{Body, Part};
 use crate::elements::force::Forces;
 use crate::integrators::ode::Failure;
@@ -338,16 +338,36 @@ impl Run {
         report.phases.push(phase);
         if let Some(checks) = &self.reduced {
             let mut checks = locked(checks);
-            checks.settle(|| self.equations(&self.phase, &self.state).ok());
+            let equations = || self.equations(&self.phase, &self.state).ok();
+            checks.settle(self.number, equations, |state, x| self.changes_by(state, x));
             report.indicators = indicators::reduced(&checks.report);
             report.reduced = Some(checks.report.clone());
         }
         report
     }
 
+    /// By how much what sensors read of the places of nodes changes where a state is moved by displacements (m).
+    fn changes_by(&self, at: &LeftOver, displacements: &[f64]) -> Vec<(Quantity, f64)> {
+        if !self.sensors.read_places() {
+            return Vec::new();
+        }
+        let [u, v, _] = &at.state;
+        let moved: Vec<f64> = u.iter().zip(displacements).map(|(u, x)| u + x).collect();
+        let Self { scene, phase, gauges, .. } = self;
+        let view = |u| {
+            let state = State { u, v, dissipated: 0.0, supplied: 0.0, others: &[] };
+            View { scene, phase, gauges, time: at.time, state }
+        };
+        let sample = self.trajectory.last();
+        self.sensors.changes([(&view(u), sample), (&view(&moved), sample)])
+    }
+
     /// The motion, at the end of the run.
     pub(super) fn into_trajectory(mut self) -> Trajectory {
         self.trajectory.report = self.report();
+        if let Some(checks) = &self.reduced {
+            self.trajectory.lacking.clone_from(&locked(checks).lacking);
+        }
         self.trajectory.report.indicators = indicators::of_motion(&self.trajectory);
         self.trajectory
     }

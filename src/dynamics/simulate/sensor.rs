@@ -1,6 +1,7 @@
 //! Sensors: named numbers that are read from the motion at each sample.
 
 use std::fmt;
+use std::ops::Range;
 use std::sync::Arc;
 
 use super::angles::Angles;
@@ -39,6 +40,8 @@ pub(super) struct Sensors {
     pub(super) quantities: Vec<Quantity>,
     reads: Vec<Arc<Read>>,
     angles: Vec<Angle>,
+    /// Those that follow from the places of nodes: numbers among `reads`, and their columns.
+    of_places: Vec<(usize, Range<usize>)>,
     /// Whether one reads forces of constraints or energies of a sample, for which all forces are evaluated.
     need_forces: bool,
 }
@@ -93,12 +96,16 @@ impl Sensors {
             let (gauge, full_turn) = (reading.angle_gauge(scene)?, reading.full_turn());
             self.angles.push(Angle { column: self.quantities.len(), gauge, full_turn });
         }
+        let first = self.quantities.len();
         let named = |name: String| Quantity { name, unit: unit.to_owned() };
         if reading.component.is_some() || components.is_empty() {
             self.quantities.push(named(name.clone()));
         } else {
             let column = |part: &Component| named(format!("{name}.{}", part.word()));
             self.quantities.extend(components.iter().map(column));
+        }
+        if reading.is_of_places() {
+            self.of_places.push((self.reads.len(), first..self.quantities.len()));
         }
         self.reads.push(Arc::new(move |view, sample, numbers| match gauge(view, sample) {
             Value::Number(number) => numbers.push(number),
@@ -124,6 +131,32 @@ impl Sensors {
             numbers[column] += full_turn * behind;
         }
         numbers
+    }
+
+    /// Whether one follows from the places of nodes.
+    pub(super) fn read_places(&self) -> bool {
+        !self.of_places.is_empty()
+    }
+
+    /// By how much what follows from the places of nodes differs in two states.
+    pub(super) fn changes(&self, states: [(&View, &Sample); 2]) -> Vec<(Quantity, f64)> {
+        let mut changes = Vec::new();
+        for (number, columns) in &self.of_places {
+            let read = |(view, sample): (&View, &Sample)| {
+                let mut numbers = Vec::new();
+                self.reads[*number](view, sample, &mut numbers);
+                numbers
+            };
+            let [one, other] = states.map(read);
+            for (column, (one, other)) in columns.clone().zip(one.into_iter().zip(other)) {
+                let turn = self.angles.iter().find(|angle| angle.column == column);
+                let whole = turn.map_or(0.0, |angle| {
+                    angle.full_turn * ((other - one) / angle.full_turn).round()
+                });
+                changes.push((self.quantities[column].clone(), (other - one - whole).abs()));
+            }
+        }
+        changes
     }
 
     /// Notes the present values of the angles among them.

@@ -17,14 +17,21 @@ use crate::scene::reduced_model::ReducedModel;
 #[derive(Debug, Clone)]
 pub(crate) struct LeftOver {
     /// Time (s), and how long the phase has lasted then (s).
-    time: f64,
+    pub(crate) time: f64,
     age: f64,
     /// Displacements (m), velocities (m/s) and accelerations (m/s^2) of all nodes.
-    state: [Vec<f64>; 3],
+    pub(crate) state: [Vec<f64>; 3],
     /// The nodal forces (N) of all but the cells.
     forces: Vec<f64>,
     /// How far the state is outside of those learned from, in parts of the widest range of a shape.
     pub(crate) outside: f64,
+}
+
+/// Displacements (m) of all nodes that a reduced model lacks, as a state in a phase tells.
+#[derive(Debug, PartialEq)]
+pub(crate) struct Lacking {
+    pub(crate) phase: usize,
+    pub(crate) displacement: Vec<f64>,
 }
 
 /// Parts of a phase after which states are looked at: often at first, where what acts has just changed.
@@ -132,20 +139,24 @@ impl System {
         Ok(())
     }
 
-    /// For each of some states of a phase the largest component (m) of the displacements by which what a reduced model leaves
-    /// over would be balanced; infinite where no tangents tell.
+    /// For each of some states of a phase the displacements (m) by which what a reduced model leaves over would be balanced; none
+    /// where no tangents tell.
     ///
     /// Of the tangents of the first and of the last state those tell that resist more: a body on the way to where it comes to
     /// rest may be about to buckle, and move far under any force.
-    pub(crate) fn imbalances(&mut self, states: &[LeftOver]) -> Vec<f64> {
-        let mut least = vec![f64::INFINITY; states.len()];
+    pub(crate) fn imbalances(&mut self, states: &[LeftOver]) -> Vec<Option<Vec<f64>>> {
+        let mut least = vec![None; states.len()];
         let residuals: Result<Vec<_>, Failure> =
             states.iter().map(|state| self.residual(state)).collect();
         let Ok(residuals) = residuals else { return least };
         let (first, others) = (states.first(), states.get(1..).unwrap_or_default());
         for at in first.into_iter().chain(others.last()) {
-            if let Ok(found) = self.imbalances_by(at, states, &residuals) {
-                least.iter_mut().zip(found).for_each(|(least, own)| *least = least.min(own));
+            let Ok(found) = self.imbalances_by(at, states, &residuals) else { continue };
+            for (least, own) in least.iter_mut().zip(found) {
+                let is_less = |least: &Vec<f64>| largest(&own) < largest(least);
+                if least.as_ref().is_none_or(is_less) {
+                    *least = Some(own);
+                }
             }
         }
         least
@@ -170,7 +181,7 @@ impl System {
         at: &LeftOver,
         states: &[LeftOver],
         residuals: &[Vec<f64>],
-    ) -> Result<Vec<f64>, Failure> {
+    ) -> Result<Vec<Vec<f64>>, Failure> {
         let LeftOver { time, state: [u, v, _], .. } = at;
         // a step so long that inertia hardly matters, except where nothing resists a motion
         let [size, speed] = self.matrices.scales;
@@ -189,7 +200,7 @@ impl System {
             }
             let right: Vec<f64> = residual.iter().map(|force| force * (gamma * gamma)).collect();
             self.newton.solver.solve(&self.rows, &right, &none, &mut x, &mut mu);
-            imbalances.push(largest(&x));
+            imbalances.push(x.clone());
         }
         Ok(imbalances)
     }

@@ -95,7 +95,7 @@ impl System {
             mass_damping_ratio: 0.0,
         };
         let rigid = self.rigid_motions(u, highest);
-        if let Some((eigenvalue, x)) = self.lowest(highest, &rigid) {
+        if let Some((eigenvalue, x)) = self.lowest(highest, &rigid, 1).pop() {
             let omega = eigenvalue.sqrt();
             spectrum.lowest_frequency = Some(omega);
             spectrum.lowest_damping_ratio = self.tangents().1.quadratic_form(&x) / (2.0 * omega);
@@ -145,7 +145,7 @@ impl System {
 
     /// Largest eigenvalue of X x = eigenvalue M x, X symmetric, by power iteration; 0 if nothing can
     /// move.
-    fn highest(&mut self, matrix: impl Fn(&Self) -> &BlockMatrix) -> f64 {
+    pub(super) fn highest(&mut self, matrix: impl Fn(&Self) -> &BlockMatrix) -> f64 {
         let (dofs, count) = (self.dofs(), self.rows.len());
         let (mut x, mut image) = (noise(dofs, 0), vec![0.0; dofs]);
         let (nowhere, mut mu) = (vec![0.0; count], vec![0.0; count]);
@@ -174,7 +174,7 @@ impl System {
     }
 
     /// The rigid motions of the body with displacements `u` that neither rows nor stiffness resist, orthonormal by M.
-    fn rigid_motions(&self, u: &[f64], highest: f64) -> Vec<Vec<f64>> {
+    pub(super) fn rigid_motions(&self, u: &[f64], highest: f64) -> Vec<Vec<f64>> {
         let Matrices { positions, size, stiffness, dimension, inertia, .. } = &*self.matrices;
         let mut positions = positions.clone();
         // with linear strain, turns along straight lines cause no strain
@@ -194,13 +194,18 @@ impl System {
         unresisted.map(|(motion, _)| motion).collect()
     }
 
-    /// Lowest eigenvalue of Kt x = eigenvalue M x above those of motions without stiffness, and its x of
-    /// length 1 in the norm of M, by subspace iteration orthogonal to the `rigid` motions, which are
+    /// The lowest eigenvalues of Kt x = eigenvalue M x above those of motions without stiffness, `count` at most and ascending, each
+    /// with its x of length 1 in the norm of M, by subspace iteration orthogonal to the `rigid` motions, which are
     /// orthonormal by M.
-    fn lowest(&mut self, highest: f64, rigid: &[Vec<f64>]) -> Option<(f64, Vec<f64>)> {
+    pub(super) fn lowest(
+        &mut self,
+        highest: f64,
+        rigid: &[Vec<f64>],
+        count: usize,
+    ) -> Vec<(f64, Vec<f64>)> {
         let (dofs, d) = (self.dofs(), self.matrices.dimension);
         if highest == 0.0 {
-            return None;
+            return Vec::new();
         }
         let mut solver =
             Reduced::new(&self.matrices, &self.rows, &self.edges.list, Coupling::AllAxes);
@@ -209,13 +214,13 @@ impl System {
         while !self.shift(&mut solver, shift) {
             shift *= 100.0;
             if shift > highest {
-                return None;
+                return Vec::new();
             }
         }
-        let mut block = (d * (d + 1) / 2 + 2).min(dofs);
+        let mut block = (d * (d + 1) / 2 + 2 * count).min(dofs);
         let mut basis: Vec<Vec<f64>> = (0..block).map(|k| noise(dofs, k)).collect();
         let (nowhere, mut mu) = (vec![0.0; self.rows.len()], vec![0.0; self.rows.len()]);
-        let mut found: Option<(f64, Vec<f64>)> = None;
+        let mut found: Vec<(f64, Vec<f64>)> = Vec::new();
         let mut can_be_lower = shift <= SHIFT * highest;
         let mut iterations = 0;
         while iterations < SUBSPACE_ITERATIONS {
@@ -226,12 +231,12 @@ impl System {
             }
             self.orthonormalize(rigid, &mut basis);
             if basis.is_empty() {
-                return None; // numbers beyond double precision
+                return Vec::new(); // numbers beyond double precision
             }
             let values = self.ritz(&mut basis);
             let Some(lowest) = values.iter().position(|&value| value > RIGID * highest) else {
                 if basis.len() < block || block == dofs {
-                    return None;
+                    return Vec::new();
                 }
                 // the block is full of mechanisms
                 let filled = block;
@@ -241,7 +246,9 @@ impl System {
             };
             iterations += 1;
             let value = values[lowest];
-            let before = found.replace((value, basis[lowest].clone()));
+            let above = values.into_iter().zip(&basis).skip(lowest).take(count);
+            let above = above.map(|(value, x)| (value, x.clone())).collect();
+            let before = std::mem::replace(&mut found, above);
             if can_be_lower && value < shift {
                 let lower = (LOWER_SHIFT * value).max(RIGID * highest);
                 can_be_lower = self.shift(&mut solver, lower);
@@ -253,7 +260,9 @@ impl System {
                 iterations = 0;
                 continue;
             }
-            if before.is_some_and(|(before, _)| (before - value).abs() < 1e-3 * before) {
+            let has_settled =
+                |(before, now): (&(f64, _), &(f64, _))| (before.0 - now.0).abs() < 1e-3 * before.0;
+            if before.len() == found.len() && before.iter().zip(&found).all(has_settled) {
                 break;
             }
         }

@@ -8,7 +8,7 @@ use super::write_file;
 use crate::dynamics::equilibrium::{Equilibrium, MeshEstimate, NoEquilibrium, Stability};
 use crate::dynamics::error::Error;
 use crate::dynamics::report::{
-    Achieved, Counts, Indicator, PhaseReport, ReducedReport, Report, SlipEvent,
+    Achieved, Counts, Indicator, PhaseReport, ReducedReport, Report, SlipEvent, ToldReading,
 };
 use crate::dynamics::trajectory::{IntegrationFailure, Quantity, Trajectory};
 use crate::integrators::sundials;
@@ -194,9 +194,20 @@ table! {
         "cells", "", "cells whose forces are computed, and all; the first is 0 where these are linear" => reduced.cells;
         "checked_error", "1", "largest error of a displacement in the runs that the model was checked with, relative to their largest one"
             => reduced.checked_error;
+        "is_estimate", "", "whether that is what its own runs told, as it was checked with none of all unknowns" => reduced.is_estimate;
         "within", "1", "the error that was wanted of it" => reduced.within;
         "told_error", "1", "the error that this run tells" => reduced.told_error;
+        "readings" [OfToldReading], "", "the errors that this run tells of sensors which follow from the places of nodes"
+            => reduced.readings.iter();
         "outside", "1", "how far the motion was outside of those learned from, in parts of their range" => reduced.outside;
+    }
+}
+
+table! {
+    OfToldReading(told: &ToldReading) {
+        "name", "", "name of the sensor" => told.quantity.name;
+        "unit", "", "its unit" => told.quantity.unit;
+        "error", "its own", "the largest error" => told.error;
     }
 }
 

@@ -3,18 +3,22 @@
 use std::sync::Arc;
 
 use crate::base::input::InputError;
-use crate::base::pod::{orthonormal, pod};
+use crate::base::pod::{Mass, orthonormal, pod};
 use crate::base::simd::add_multiple;
 use crate::base::vector::dot;
 use crate::dynamics::error::Error;
+use crate::dynamics::matrices::Matrices;
+use crate::dynamics::statics::Statics;
 use crate::dynamics::system::System;
 use crate::dynamics::trajectory::Trajectory;
 use crate::elements::body::Body;
 use crate::integrators::ode::Failure;
 use crate::scene::constraint::{ConstraintRow, PhaseStart};
 use crate::scene::reduced_model::ReducedPhase;
+use crate::scene::timeline::Scene;
 
 /// A phase in all runs.
+#[derive(Clone)]
 pub(super) struct LearnedPhase {
     name: String,
     rows: usize,
@@ -32,6 +36,7 @@ pub(super) struct LearnedPhase {
 }
 
 /// A state in a run.
+#[derive(Clone)]
 pub(super) struct State {
     /// Displacements (m) where the phase began.
     origin: Arc<Vec<f64>>,
@@ -43,26 +48,19 @@ pub(super) struct State {
 }
 
 impl LearnedPhase {
-    /// Phase `number` of the `runs` of scenes that have the same body and phases.
-    pub(super) fn new(runs: &[&Trajectory], number: usize, most: usize) -> Result<Self, Error> {
-        let scene = runs[0].scene();
+    /// Phase `number` of a scene, of the `runs` of scenes that have the same body and phases, and of displacements `beyond` those of
+    /// the runs.
+    pub(super) fn new(
+        scene: &Scene,
+        number: usize,
+        runs: &[&Trajectory],
+        beyond: &[Vec<f64>],
+        most: usize,
+    ) -> Result<Self, Error> {
         let (body, phase) = (scene.body(), &scene.phases()[number]);
-        let start = number.checked_sub(1).map_or(0.0, |before| scene.phases()[before].end());
-        let forces = scene.forces()?;
-        let matrices = scene.matrices(&forces);
-        let mut system = {
-            let rest = vec![0.0; body.dofs()];
-            let at = PhaseStart { time: start, u: &rest };
-            let own = forces.into_iter().nth(number).unwrap_or_default();
-            scene.clone().unreduced().system(&matrices, phase, own, &at, 0.0)?
-        };
+        let Undeformed { mut system, matrices, start } = Undeformed::new(scene, number)?;
         let lifts = system.lifts(start).map_err(|failure| failed(phase.name(), failure))?;
-        let moved: Vec<ConstraintRow> =
-            system.rows().iter().filter(|row| row.moves()).cloned().collect();
-        let mut states = Vec::new();
-        for run in runs {
-            states.extend(states_of(run, number, &mut system, &moved, &lifts));
-        }
+        let states = states_in(runs, number, &mut system, &lifts);
 
         let mass = |x: &[f64], y: &mut [f64]| {
             y.fill(0.0);
@@ -72,6 +70,10 @@ impl LearnedPhase {
         let turns = is_free && body.dimension() == 2;
         let mut snapshots: Vec<Vec<f64>> =
             spread(&states, MOST_SNAPSHOTS).map(|state| state.own.clone()).collect();
+        let moved = moving(&system);
+        snapshots.extend(
+            beyond.iter().map(|u| own_part(u.clone(), &mut system, &moved, &lifts)[0].clone()),
+        );
         let with_turned = |mut all: Vec<Vec<f64>>| {
             if turns {
                 let turned: Vec<Vec<f64>> = all.iter().map(|x| quarter_turned(x)).collect();
@@ -96,18 +98,9 @@ impl LearnedPhase {
         let found = pod(&snapshots, &mass);
         let count = most.saturating_sub(always.len()).min(found.shapes.len());
         let shapes = orthonormal(&[&always[..], &found.shapes[..count]].concat(), &mass);
-        let weighted: Vec<Vec<f64>> = shapes
-            .iter()
-            .map(|shape| {
-                let mut product = vec![0.0; shape.len()];
-                mass(shape, &mut product);
-                product
-            })
-            .collect();
-        let size = |weighted: &Vec<f64>| {
-            states.iter().map(|state| dot(weighted, &state.own).powi(2)).sum::<f64>().sqrt()
-        };
-        let sizes = weighted[..always.len()].iter().map(size).chain(found.sizes);
+        let weighted = weighted(&shapes, &mass);
+        let sizes = weighted[..always.len()].iter().map(|weighted| size(weighted, &states));
+        let sizes = sizes.chain(found.sizes);
         Ok(Self {
             name: phase.name().to_owned(),
             rows: system.rows().len(),
@@ -119,6 +112,28 @@ impl LearnedPhase {
             weighted,
             states,
         })
+    }
+
+    /// The first `count` shapes, and `added` ones of which `displacements` (m) are made beyond these.
+    pub(super) fn grown(
+        mut self,
+        count: usize,
+        displacements: &[Vec<f64>],
+        added: usize,
+        matrices: &Matrices,
+    ) -> Self {
+        let mass = |x: &[f64], y: &mut [f64]| {
+            y.fill(0.0);
+            matrices.inertia.add_product(matrices.dimension, 1.0, x, y);
+        };
+        self.shapes.truncate(count);
+        let mut beyond = displacements.to_vec();
+        beyond.iter_mut().for_each(|x| remove(&self.shapes, &mass, x));
+        let new = pod(&beyond, &mass).shapes.into_iter().take(added);
+        let all: Vec<Vec<f64>> = self.shapes.drain(..).chain(new).collect();
+        self.shapes = orthonormal(&all, &mass);
+        self.weighted = weighted(&self.shapes, &mass);
+        self
     }
 
     /// Number of shapes of a model of at most `unknowns`.
@@ -182,6 +197,109 @@ pub(super) fn spread<T>(all: &[T], most: usize) -> impl Iterator<Item = &T> {
     (0..count).map(move |k| &all[(2 * k + 1) * all.len() / (2 * count)])
 }
 
+/// M Phi, column by column.
+fn weighted(shapes: &[Vec<f64>], mass: Mass) -> Vec<Vec<f64>> {
+    let product = |shape: &Vec<f64>| {
+        let mut product = vec![0.0; shape.len()];
+        mass(shape, &mut product);
+        product
+    };
+    shapes.iter().map(product).collect()
+}
+
+/// Amplitude of a shape in all states, as the root of the sum of squares.
+fn size(weighted: &[f64], states: &[State]) -> f64 {
+    states.iter().map(|state| dot(weighted, &state.own).powi(2)).sum::<f64>().sqrt()
+}
+
+/// The equations of a phase with all unknowns, where the body is at rest in its undeformed shape.
+struct Undeformed {
+    system: System,
+    matrices: Arc<Matrices>,
+    /// The time (s) at which the phase begins.
+    start: f64,
+}
+
+impl Undeformed {
+    fn new(scene: &Scene, number: usize) -> Result<Self, Error> {
+        let phase = &scene.phases()[number];
+        let start = number.checked_sub(1).map_or(0.0, |before| scene.phases()[before].end());
+        let forces = scene.forces()?;
+        let matrices = scene.matrices(&forces);
+        let rest = vec![0.0; scene.body().dofs()];
+        let at = PhaseStart { time: start, u: &rest };
+        let own = forces.into_iter().nth(number).unwrap_or_default();
+        let system = scene.clone().unreduced().system(&matrices, phase, own, &at, 0.0)?;
+        Ok(Self { system, matrices, start })
+    }
+}
+
+/// Displacements (m) on the way to the equilibrium of phase `number` of a scene, as its loads grow; none where there is none.
+pub(super) fn equilibria(scene: &Scene, number: usize) -> Vec<Vec<f64>> {
+    let statics = Statics { load_steps: LOAD_STEPS, rtol: 1e-6, ..Statics::default() };
+    let Ok(found) = scene.equilibrium_of(scene.phases()[number].name(), &statics) else {
+        return Vec::new();
+    };
+    let samples = found.trajectory().samples();
+    let ways = samples.iter().map(|sample| sample.u.iter().zip(&samples[0].u));
+    ways.map(|way| way.map(|(u, first)| u - first).collect()).collect()
+}
+
+/// Steps of the loads on the way to an equilibrium.
+const LOAD_STEPS: usize = 8;
+
+/// The displacements (m) that are expected in phase `number` of a scene by what is linear and of second order, no larger than `most` (m) if
+/// that is known.
+pub(super) fn expected(
+    scene: &Scene,
+    number: usize,
+    most: Option<f64>,
+) -> Result<Vec<Vec<f64>>, Error> {
+    let phase = &scene.phases()[number];
+    let Undeformed { mut system, start, .. } = Undeformed::new(scene, number)?;
+    let velocities = match number {
+        0 => scene.initial_velocities()?,
+        _ => vec![0.0; scene.body().dofs()],
+    };
+    let lifts = system.lifts(start);
+    let found = lifts
+        .and_then(|lifts| system.expected_motions([start, phase.end()], &velocities, &lifts, most));
+    found.map_err(|failure| failed(phase.name(), failure))
+}
+
+/// The states of all runs in phase `number`, whose constraints move by `lifts`.
+fn states_in(
+    runs: &[&Trajectory],
+    number: usize,
+    system: &mut System,
+    lifts: &[Vec<f64>],
+) -> Vec<State> {
+    let moved = moving(system);
+    runs.iter().flat_map(|run| states_of(run, number, system, &moved, lifts)).collect()
+}
+
+/// The rows that move.
+fn moving(system: &System) -> Vec<ConstraintRow> {
+    system.rows().iter().filter(|row| row.moves()).cloned().collect()
+}
+
+/// The part of a displacement that constraints leave free, and that which those that are `moved` make by their `lifts`.
+fn own_part(
+    mut own: Vec<f64>,
+    system: &mut System,
+    moved: &[ConstraintRow],
+    lifts: &[Vec<f64>],
+) -> [Vec<f64>; 2] {
+    let mut by_rows = vec![0.0; own.len()];
+    for (row, lift) in moved.iter().zip(lifts) {
+        add_multiple(row.apply(&own), lift, &mut by_rows);
+    }
+    own.iter_mut().zip(&by_rows).for_each(|(x, moved)| *x -= moved);
+    // without the drift of the constraints
+    system.constrain(&mut own);
+    [own, by_rows]
+}
+
 /// The states of a run in phase `number`, whose constraints move by `lifts`.
 fn states_of(
     run: &Trajectory,
@@ -196,15 +314,8 @@ fn states_of(
     let states = samples[first..].iter().take_while(|sample| sample.phase == number);
     states
         .map(|sample| {
-            let mut own: Vec<f64> = sample.u.iter().zip(&*origin).map(|(u, u0)| u - u0).collect();
-            let mut by_rows = vec![0.0; own.len()];
-            for (row, lift) in moved.iter().zip(lifts) {
-                let by = row.apply(&own);
-                add_multiple(by, lift, &mut by_rows);
-            }
-            own.iter_mut().zip(&by_rows).for_each(|(x, moved)| *x -= moved);
-            // without the drift of the constraints
-            system.constrain(&mut own);
+            let way = sample.u.iter().zip(&*origin).map(|(u, u0)| u - u0).collect();
+            let [own, by_rows] = own_part(way, system, moved, lifts);
             let (u, v) = (sample.u.clone(), sample.v.clone());
             State { origin: origin.clone(), u, v, own, moved: by_rows }
         })

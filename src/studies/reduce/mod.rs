@@ -6,6 +6,7 @@
 //! sampling and weighting (`scene/reduced_model.rs`).
 
 mod alike;
+mod by_modes;
 mod error;
 mod learn;
 mod sample;
@@ -19,6 +20,7 @@ use std::ops::ControlFlow;
 use std::time::Instant;
 
 use alike::differing_part;
+pub use by_modes::reduce_by_modes;
 pub use error::error;
 use error::{distance, travel};
 use learn::LearnedPhase;
@@ -62,8 +64,8 @@ pub struct Reduced {
     pub is_within: bool,
     /// What was tried, from the smallest one.
     pub tried: Vec<Tried>,
-    /// Time (s) that a full run takes, the mean of those that were checked with.
-    pub full_seconds: f64,
+    /// Time (s) that a full run takes, the mean of those that were checked with; none where there was none.
+    pub full_seconds: Option<f64>,
     /// Time (s) that all of it has taken.
     pub training_seconds: f64,
     /// Unknowns and cells of the full model.
@@ -77,7 +79,8 @@ pub struct Tried {
     pub unknowns: usize,
     /// Number of cells whose forces it computes; 0 where these are exact along the shapes.
     pub cells: usize,
-    /// Largest error of a displacement, relative to the largest displacement in all runs; infinite where a run failed.
+    /// Largest error of a displacement, relative to the largest displacement in all runs; infinite where a run failed. With no run
+    /// of all unknowns it is the largest one to runs by the model before, or by a richer one.
     pub error: f64,
     /// The error that the runs themselves told (the largest one).
     pub told: f64,
@@ -113,7 +116,7 @@ pub fn reduce(
 ) -> Result<Reduced, Error> {
     let clock = Instant::now();
     check(training)?;
-    let Training { scenes, held_out, settings, within, most_unknowns } = training;
+    let Training { scenes, held_out, settings, .. } = training;
     let mut checks = Vec::new();
     for (scenes, what) in [(scenes, "training run"), (held_out, "run to check with")] {
         for (k, scene) in scenes.iter().enumerate() {
@@ -121,29 +124,38 @@ pub fn reduce(
             checks.push(timed(scene, settings, SAMPLES, &mut || observer(&what))?);
         }
     }
-    let runs: Vec<&Trajectory> = checks[..scenes.len()].iter().map(|(run, _)| run).collect();
-
+    let (model, tried) = learn_from(training, &checks, observer)?;
     let body = scenes[0].body();
+    Ok(Reduced {
+        is_within: model.error <= training.within,
+        model,
+        tried,
+        full_seconds: Some(mean(checks.iter().map(|(_, seconds)| *seconds))),
+        training_seconds: clock.elapsed().as_secs_f64(),
+        full: [body.dofs(), body.mesh().cell_count()],
+    })
+}
+
+/// The smallest model within what is wanted, or else the best one, and all that were tried: learned from the first of some runs, as many as
+/// there are scenes, and checked with all of them.
+fn learn_from(
+    training: &Training,
+    checks: &[(Trajectory, f64)],
+    observer: &mut dyn FnMut(&str) -> ControlFlow<()>,
+) -> Result<(ReducedModel, Vec<Tried>), Error> {
+    let Training { scenes, within, most_unknowns, .. } = training;
+    let runs: Vec<&Trajectory> = checks[..scenes.len()].iter().map(|(run, _)| run).collect();
     let numbers = 0..scenes[0].phases().len();
-    let phases: Result<Vec<LearnedPhase>, Error> =
-        numbers.map(|number| LearnedPhase::new(&runs, number, *most_unknowns)).collect();
+    let phases: Result<Vec<LearnedPhase>, Error> = numbers
+        .map(|number| LearnedPhase::new(&scenes[0], number, &runs, &[], *most_unknowns))
+        .collect();
     let phases = phases?;
-    let most = phases.iter().map(LearnedPhase::most).max().unwrap_or(0);
-    if most == 0 {
-        let help = "nothing moves in the training runs: there is nothing to learn";
-        return Err(InputError::new("training runs", "at rest", help).into());
-    }
-    let least = phases.iter().map(LearnedPhase::least).max().unwrap_or(0);
-    if least > *most_unknowns {
-        let help = format!("a body that nothing holds needs {least} at least");
-        return Err(InputError::new("most unknowns", most_unknowns, help).into());
-    }
+    let [least, most] = size_limits(&phases, *most_unknowns)?;
     let mut search = Search {
         training,
         phases: &phases,
-        checks: &checks,
-        by_cell: body.elastic().map(|elastic| elastic.by_cell(body.mesh())),
-        travel: checks.iter().map(|(run, _)| travel(run)).fold(0.0, f64::max),
+        checks,
+        kit: Kit::new(training, checks.iter().map(|(run, _)| travel(run)).fold(0.0, f64::max)),
         observer,
         tolerance: OF_CELLS[0] * within,
         tried: Vec::new(),
@@ -158,22 +170,85 @@ pub fn reduce(
         }
     }
     let Search { best, failure, tried, .. } = search;
-    let Some(model) = best else {
+    match best {
+        Some(model) => Ok((model, tried)),
         // no model could be run to the end
-        if let Some(problem) = failure {
-            return Err(problem);
-        }
-        let help = "it allows no shape: give more";
-        return Err(InputError::new("most unknowns", most_unknowns, help).into());
-    };
-    Ok(Reduced {
-        is_within: model.error <= *within,
-        model,
-        tried,
-        full_seconds: mean(checks.iter().map(|(_, seconds)| *seconds)),
-        training_seconds: clock.elapsed().as_secs_f64(),
-        full: [body.dofs(), body.mesh().cell_count()],
-    })
+        None => Err(failure.unwrap_or_else(|| no_shape(*most_unknowns))),
+    }
+}
+
+/// Fewest and most unknowns of a model of these phases.
+fn size_limits(phases: &[LearnedPhase], most_unknowns: usize) -> Result<[usize; 2], InputError> {
+    let most = phases.iter().map(LearnedPhase::most).max().unwrap_or(0);
+    if most == 0 {
+        let help = "nothing moves in the training runs: there is nothing to learn";
+        return Err(InputError::new("training runs", "at rest", help));
+    }
+    let least = phases.iter().map(LearnedPhase::least).max().unwrap_or(0);
+    if least > most_unknowns {
+        let help = format!("a body that nothing holds needs {least} at least");
+        return Err(InputError::new("most unknowns", most_unknowns, help));
+    }
+    Ok([least, most])
+}
+
+/// The error of a number of unknowns that allows no shape.
+fn no_shape(most_unknowns: usize) -> Error {
+    InputError::new("most unknowns", most_unknowns, "it allows no shape: give more").into()
+}
+
+/// What a model was learned from, in words.
+fn learned(runs: usize, by: &str) -> String {
+    format!("{runs} run{}{by}", if runs == 1 { "" } else { "s" })
+}
+
+/// What models are made with.
+struct Kit<'a> {
+    training: &'a Training,
+    by_cell: Option<ByCell>,
+    /// Largest displacement (m) in the checks.
+    travel: f64,
+}
+
+impl<'a> Kit<'a> {
+    fn new(training: &'a Training, travel: f64) -> Self {
+        let body = training.scenes[0].body();
+        let by_cell = body.elastic().map(|elastic| elastic.by_cell(body.mesh()));
+        Self { training, by_cell, travel }
+    }
+
+    /// A model of so many shapes of each phase, not checked yet, with cells that do the work of all to a `tolerance`.
+    fn model(
+        &self,
+        phases: &[LearnedPhase],
+        counts: &[usize],
+        tolerance: f64,
+    ) -> Result<ReducedModel, Error> {
+        let Self { training, by_cell, travel } = self;
+        let body = training.scenes[0].body();
+        let shapes =
+            phases.iter().zip(counts).map(|(phase, count)| count + phase.lifts.len()).max();
+        let is_exact = body.elastic().is_some_and(|own| own.has_strain_modes(shapes.unwrap_or(0)));
+        let cells = match by_cell.as_ref().filter(|_| !is_exact) {
+            Some(by_cell) if tolerance > 0.0 => {
+                sample::weights(by_cell, phases, counts, tolerance)?
+            }
+            Some(_) => (0..body.mesh().cell_count()).map(|cell| (cell, 1.0)).collect(),
+            None => BTreeMap::new(),
+        };
+        Ok(ReducedModel {
+            dofs: body.dofs(),
+            cell_count: body.mesh().cell_count(),
+            phases: phases.iter().zip(counts).map(|(phase, &count)| phase.reduced(count)).collect(),
+            cells,
+            travel: *travel,
+            error: f64::INFINITY,
+            within: training.within,
+            error_per_imbalance: 1.0,
+            is_estimate: false,
+            learned_from: learned(training.scenes.len(), ""),
+        })
+    }
 }
 
 /// The models that were tried, from what was learned.
@@ -181,9 +256,7 @@ struct Search<'a> {
     training: &'a Training,
     phases: &'a [LearnedPhase],
     checks: &'a [(Trajectory, f64)],
-    by_cell: Option<ByCell>,
-    /// Largest displacement (m) in the checks.
-    travel: f64,
+    kit: Kit<'a>,
     observer: &'a mut dyn FnMut(&str) -> ControlFlow<()>,
     /// Part by which the work of the sampled cells may differ from that of all.
     tolerance: f64,
@@ -208,7 +281,7 @@ impl Search<'_> {
         let what = format!("{unknowns} unknowns");
         let mut of_all_cells = None;
         loop {
-            let model = self.model(&counts, self.tolerance)?;
+            let model = self.kit.model(self.phases, &counts, self.tolerance)?;
             let has_all = model.cells() == 0 || model.cells() == model.cell_count;
             let (model, found) = self.checked(model, self.checks, &what)?;
             self.tried.push(found.tried);
@@ -226,7 +299,7 @@ impl Search<'_> {
                 Some(known) => known,
                 None => {
                     let worst = &self.checks[found.worst..=found.worst];
-                    let all = self.model(&counts, 0.0)?;
+                    let all = self.kit.model(self.phases, &counts, 0.0)?;
                     self.checked(all, worst, &what)?.0.error
                 }
             };
@@ -239,34 +312,6 @@ impl Search<'_> {
         }
         self.tolerance = self.tolerance.max(OF_CELLS[1] * within);
         Ok(())
-    }
-
-    /// A model of so many shapes of each phase, not checked yet, with cells that do the work of all to a `tolerance`.
-    fn model(&self, counts: &[usize], tolerance: f64) -> Result<ReducedModel, Error> {
-        let Self { training, phases, by_cell, travel, .. } = self;
-        let body = training.scenes[0].body();
-        let shapes =
-            phases.iter().zip(counts).map(|(phase, count)| count + phase.lifts.len()).max();
-        let is_exact = body.elastic().is_some_and(|own| own.has_strain_modes(shapes.unwrap_or(0)));
-        let cells = match by_cell.as_ref().filter(|_| !is_exact) {
-            Some(by_cell) if tolerance > 0.0 => {
-                sample::weights(by_cell, phases, counts, tolerance)?
-            }
-            Some(_) => (0..body.mesh().cell_count()).map(|cell| (cell, 1.0)).collect(),
-            None => BTreeMap::new(),
-        };
-        let runs = training.scenes.len();
-        Ok(ReducedModel {
-            dofs: body.dofs(),
-            cell_count: body.mesh().cell_count(),
-            phases: phases.iter().zip(counts).map(|(phase, &count)| phase.reduced(count)).collect(),
-            cells,
-            travel: *travel,
-            error: f64::INFINITY,
-            within: training.within,
-            error_per_imbalance: 1.0,
-            learned_from: format!("{runs} run{}", if runs == 1 { "" } else { "s" }),
-        })
     }
 
     /// A model with its errors in the runs that it is checked with.

@@ -20,7 +20,7 @@ impl Reduced {
 
     /// From which run on the time that learning has taken is won back; none if the model is not faster.
     pub fn pays_from(&self) -> Option<f64> {
-        pays_from(self.training_seconds, self.full_seconds - self.chosen()?.seconds)
+        pays_from(self.training_seconds, self.full_seconds? - self.chosen()?.seconds)
     }
 
     /// All numbers, as JSON.
@@ -40,6 +40,7 @@ impl Reduced {
             "unknowns": self.model.unknowns(),
             "cells": self.model.cells(),
             "error": self.model.error(),
+            "is_estimate": self.model.is_estimate(),
             "is_within": self.is_within,
             "learned_from": self.model.learned_from(),
             "training_seconds": self.training_seconds,
@@ -81,14 +82,21 @@ impl Reduced {
             [least, values.iter().copied().fold(0.0, f64::max)]
         };
         let (mut times, mut errors): (Vec<f64>, Vec<f64>) = points.iter().copied().unzip();
-        times.push(self.full_seconds);
+        times.extend(self.full_seconds);
         errors.push(within);
         let ([first, last], [least, most]) = (ends(&times), ends(&errors));
-        Chart::new(title)
-            .axes("time of a run (s)", "largest error of a displacement")
+        let error = match self.model.is_estimate() {
+            true => "largest error of a displacement, as runs tell",
+            false => "largest error of a displacement",
+        };
+        let mut chart = Chart::new(title)
+            .axes("time of a run (s)", error)
             .logarithmic(true, true)
-            .marked("reduced models", points.iter().copied())
-            .reference("all unknowns", [(self.full_seconds, least), (self.full_seconds, most)])
+            .marked("reduced models", points.iter().copied());
+        if let Some(full) = self.full_seconds {
+            chart = chart.reference("all unknowns", [(full, least), (full, most)]);
+        }
+        chart
             .reference(format!("wanted: {}", percent(within)), [(first, within), (last, within)])
             .write(path)
     }
@@ -99,12 +107,33 @@ pub(crate) fn pays_from(spent: f64, won: f64) -> Option<f64> {
     (won > 0.0).then(|| (spent / won).ceil().max(1.0))
 }
 
+impl Reduced {
+    /// As [`Display`](fmt::Display), where no run of all unknowns was made.
+    fn fmt_by_modes(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [unknowns, cells] = self.full;
+        writeln!(f, "unknowns     cells      error       told    time (s)")?;
+        for Tried { unknowns, cells, error, told: said, seconds } in &self.tried {
+            let cells = if *cells == 0 { "exact".into() } else { cells.to_string() };
+            let error = if error.is_finite() { percent(*error) } else { String::new() };
+            let (said, seconds) = (percent(*said), told(*seconds));
+            writeln!(f, "{unknowns:8} {cells:>9} {error:>10} {said:>10} {seconds:>11}")?;
+        }
+        writeln!(f, "{unknowns:8} {cells:>9}\n")?;
+        write!(
+            f,
+            "{}; it took {} s, and no run of all unknowns: `pliant reduce --verify` makes one",
+            self.model,
+            told(self.training_seconds)
+        )
+    }
+}
+
 impl fmt::Display for Reduced {
     /// A table of what was tried, and what was chosen.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(f, "unknowns     cells      error       told    time (s)  speed-up")?;
         let [unknowns, cells] = self.full;
-        let full = self.full_seconds;
+        let Some(full) = self.full_seconds else { return self.fmt_by_modes(f) };
+        writeln!(f, "unknowns     cells      error       told    time (s)  speed-up")?;
         for Tried { unknowns, cells, error, told: said, seconds } in &self.tried {
             let cells = if *cells == 0 { "exact".into() } else { cells.to_string() };
             if error.is_infinite() {

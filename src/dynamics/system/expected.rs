@@ -1,0 +1,167 @@
+//! The motions that a body is expected to make in a phase, found at rest without a run: what its loads would do, its free
+//! vibrations, what its constraints move, and the modal derivatives of all these, that is how the shapes change as the body moves
+//! along them (S. Idelsohn, A. Cardona, Comput. Methods Appl. Mech. Engng 49 (1985) 253-279).
+
+#[cfg(test)]
+mod tests;
+
+use super::System;
+use crate::base::simd::add_multiple;
+use crate::base::vector::{dot, largest};
+use crate::dynamics::matrices::Matrices;
+use crate::integrators::ode::Failure;
+use crate::scene::constraint::ConstraintRow;
+
+/// Free vibrations that are looked for, and motions whose derivatives are: those that move most.
+const VIBRATIONS: usize = 24;
+const CURVED: usize = 10;
+
+/// Parts of a phase at which loads are looked at.
+const TIMES: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
+
+/// Part of the largest motion that the lowest vibration makes at least, and each other as its period is shorter.
+const LEAST: f64 = 0.03;
+
+/// That part of the size of the body where nothing is known to move it.
+const UNKNOWN: f64 = 0.01;
+
+/// Largest displacement for differences, relative to the size of the body: they are of second order, so round-off is 1e-9 of
+/// the forces, and what they leave out 1e-6.
+const STEP: f64 = 1e-3;
+
+/// Times that a wave takes across the body, in which shapes reach equilibrium.
+const STATIC: f64 = 1e3;
+
+impl System {
+    /// Displacements (m) that are expected from `start` to `end` (s), about as large as they will be, where the phase begins with
+    /// `velocities` (m/s): no larger than `most` (m), if that is known. What the rows that move do by their `lifts` is not among them, but how that bends the body is.
+    pub(crate) fn expected_motions(
+        &mut self,
+        [start, end]: [f64; 2],
+        velocities: &[f64],
+        lifts: &[Vec<f64>],
+        most: Option<f64>,
+    ) -> Result<Vec<Vec<f64>>, Failure> {
+        let times = TIMES.map(|part| start + part * (end - start));
+        let (vibrations, rigid) = self.vibrations(start, VIBRATIONS);
+        let [size, speed] = self.matrices.scales;
+        self.factorize_newton(STATIC * size / speed)?;
+
+        let largest_of = |all: &[Vec<f64>]| all.iter().map(|x| largest(x)).fold(0.0, f64::max);
+        let moved = self.lifted(lifts, times);
+        let (mut motions, mut loads) = (Vec::new(), Vec::new());
+        for time in times {
+            let mut load = self.load_at_rest(time)?;
+            // what is left when the body moves as a whole
+            for motion in &rigid {
+                let part = -dot(motion, &load);
+                self.add_momentum(part, motion, &mut load);
+            }
+            motions.push(self.response(&load));
+            loads.push(load);
+        }
+        // what resists large motions is not among what is linear
+        let linear = largest_of(&motions);
+        let part = most.map_or(1.0, |most| if linear > most { most / linear } else { 1.0 });
+        motions.iter_mut().chain(&mut loads).flatten().for_each(|x| *x *= part);
+        let most = match largest_of(&motions).max(largest_of(&moved)) {
+            most if most > 0.0 => most.min(size),
+            _ => UNKNOWN * size,
+        };
+        let slowest = vibrations.first().map_or(0.0, |(value, _)| *value);
+        let mut momentum = vec![0.0; self.dofs()];
+        self.add_momentum(1.0, velocities, &mut momentum);
+        for (value, shape) in vibrations {
+            // how far it swings by each load that comes at once, and by the velocities
+            let by_loads = loads.iter().map(|load| dot(load, &shape).abs() / value);
+            let by_velocities = dot(&momentum, &shape).abs() / value.sqrt();
+            let least = LEAST * most * slowest / value / largest(&shape);
+            let amplitude = by_loads.fold(by_velocities.max(least), f64::max);
+            motions.push(shape.into_iter().map(|x| amplitude * x).collect());
+        }
+        motions.retain(|motion| largest(motion) > 0.0);
+
+        let mut curved = [&moved[..], &motions].concat();
+        let length =
+            |x: &Vec<f64>| self.matrices.inertia.quadratic_form(self.matrices.dimension, x);
+        curved.retain(|motion| length(motion) > 0.0);
+        curved.sort_by(|a, b| length(b).total_cmp(&length(a)));
+        curved.truncate(CURVED);
+        for (number, one) in curved.iter().enumerate() {
+            for other in &curved[..=number] {
+                let bent = self.curvature(start, one, other)?;
+                motions.push(self.response(&bent));
+            }
+        }
+        Ok(motions)
+    }
+
+    /// The lowest vibrations at rest, as squares of angular frequencies (rad^2/s^2) with shapes that are orthonormal by M, and the rigid motions that
+    /// nothing resists. Leaves the tangents there.
+    fn vibrations(&mut self, t: f64, count: usize) -> (Vec<(f64, Vec<f64>)>, Vec<Vec<f64>>) {
+        let rest = vec![0.0; self.dofs()];
+        self.newton.is_set = false;
+        self.update_tangents(t, &rest, &rest, false);
+        let highest = self.highest(|system| system.tangents().0);
+        let rigid = self.rigid_motions(&rest, highest);
+        (self.lowest(highest, &rigid, count), rigid)
+    }
+
+    /// What each row that moves does from the first of the `times` on, as far as it goes.
+    fn lifted(&self, lifts: &[Vec<f64>], times: [f64; TIMES.len()]) -> Vec<Vec<f64>> {
+        let rows = self.rows.iter().filter(|row| row.moves());
+        let scaled = |(row, lift): (&ConstraintRow, &Vec<f64>)| {
+            let place = |time: f64| row.prescribed(time).displacement;
+            let ways = times.map(|time| place(time) - place(times[0]));
+            let way = ways
+                .into_iter()
+                .fold(0.0, |most: f64, way| if way.abs() > most.abs() { way } else { most });
+            lift.iter().map(|x| way * x).collect()
+        };
+        rows.zip(lifts).map(scaled).collect()
+    }
+
+    /// Nodal forces (N) of all but the cells, at rest.
+    fn load_at_rest(&mut self, t: f64) -> Result<Vec<f64>, Failure> {
+        let rest = vec![0.0; self.dofs()];
+        self.at.nodal.clear();
+        self.add_forces_where(|force| !force.is_by_cells(), t, &rest, &rest)?;
+        let mut load = rest;
+        self.at.nodal.add_up(&mut load);
+        Ok(load)
+    }
+
+    /// y += factor M x
+    fn add_momentum(&self, factor: f64, x: &[f64], y: &mut [f64]) {
+        let Matrices { inertia, dimension, .. } = &*self.matrices;
+        inertia.add_product(*dimension, factor, x, y);
+    }
+
+    /// Displacements (m) in equilibrium with a load (N), by the tangents that are factorized.
+    fn response(&mut self, load: &[f64]) -> Vec<f64> {
+        let gamma = self.newton.gamma;
+        let right: Vec<f64> = load.iter().map(|force| force * (gamma * gamma)).collect();
+        let (mut x, mut mu) = (vec![0.0; load.len()], vec![0.0; self.rows.len()]);
+        let none = mu.clone();
+        self.newton.solver.solve(&self.rows, &right, &none, &mut x, &mut mu);
+        x
+    }
+
+    /// Second derivative at rest of the forces of cells (N) along two displacements, by differences.
+    fn curvature(&mut self, t: f64, one: &[f64], other: &[f64]) -> Result<Vec<f64>, Failure> {
+        let [size, _] = self.matrices.scales;
+        let steps = [one, other].map(|x| STEP * size / largest(x));
+        let rest = vec![0.0; self.dofs()];
+        let (mut sum, mut total) = (rest.clone(), rest.clone());
+        for signs in [[1.0, 1.0], [1.0, -1.0], [-1.0, 1.0], [-1.0, -1.0]] {
+            let mut u = rest.clone();
+            add_multiple(signs[0] * steps[0], one, &mut u);
+            add_multiple(signs[1] * steps[1], other, &mut u);
+            self.at.nodal.clear();
+            self.add_forces_where(|force| force.is_by_cells(), t, &u, &rest)?;
+            self.at.nodal.add_up(&mut total);
+            add_multiple(signs[0] * signs[1] / (4.0 * steps[0] * steps[1]), &total, &mut sum);
+        }
+        Ok(sum)
+    }
+}
