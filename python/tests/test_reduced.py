@@ -46,6 +46,14 @@ def test_a_model_is_learned_and_run(scene, tmp_path):
         other.run(reduced=str(tmp_path / "beam.reduced"))
 
 
+def test_a_model_without_a_full_run(scene):
+    model = pliant.reduce(scene, 0.1, modes=True)
+    assert model.is_within and model.is_estimate and model.data["full"]["seconds"] is None
+    full, short = (one.run(sampling=0.02).displacements for one in (scene, scene.reduced(model)))
+    off = np.linalg.norm(short - full, axis=2).max() / np.linalg.norm(full, axis=2).max()
+    assert off <= 0.1
+
+
 def test_what_cannot_be_varied(scene):
     with pytest.raises(pliant.InputError, match="materials"):
         pliant.reduce(scene, vary={"body.material.young": (1e5, 2e5)})

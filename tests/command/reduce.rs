@@ -88,6 +88,26 @@ fn a_model_is_learned_written_and_run() {
     says(&stdout(&verified), &["run 1: off by", "run 2: off by", "the run tells"]);
 }
 
+/// Without a run of all unknowns: the error is an estimate, and everything says so.
+#[test]
+fn a_model_is_found_without_a_full_run() {
+    let place = Place::new();
+    let scene = place.scene(SCENE);
+    let done = place.run(&["reduce", scene, "--within", "10%", "--modes"]);
+    assert!(done.status.success(), "{done:?}");
+    says(&stdout(&done), &["as its own runs tell", "no run of all unknowns", "--verify"]);
+    assert!(!stdout(&done).contains("speed"), "{done:?}");
+    let numbers: Value =
+        serde_json::from_slice(&fs::read(place.path("scene-reduced.json")).unwrap()).unwrap();
+    assert_eq!((&numbers["is_estimate"], &numbers["full"]["seconds"]), (&json!(true), &Value::Null));
+    let run = place.run(&["run", scene, "--step", "0.02", "--reduced", "scene.reduced"]);
+    says(&stdout(&run), &["as told by this run, checked with none of all unknowns"]);
+    let verified = place.run(&["reduce", scene, "--verify", "scene.reduced", "--within", "10%"]);
+    assert!(verified.status.success(), "{verified:?}");
+    let both = place.run(&["reduce", scene, "--modes", "--verify", "scene.reduced"]);
+    assert_eq!(both.status.code(), Some(2), "{both:?}");
+}
+
 /// One shape of a beam that is bent to large angles is not enough: the best model is written, and the code says so.
 #[test]
 fn a_model_that_is_not_good_enough_is_written_and_told_of() {

@@ -274,11 +274,16 @@ fn a_run_by_a_reduced_model() {
         .model;
     let [unknowns, error] = [model.unknowns() as f64, model.error()];
     let reduced = scene.reduced(model).unwrap();
-    let report = written(Ok(&reduced.simulate(&settings, &Sampling::every(0.1)).unwrap()));
+    let sampling = Sampling::every(0.1).read("top", pliant::Reading::position("top"));
+    let report = written(Ok(&reduced.simulate(&settings, &sampling).unwrap()));
     assert!(documented("run").iter().filter(|key| key.starts_with("reduced.")).all(|key| {
-        let (_, inner) = key.split_once('.').unwrap();
-        !report["reduced"][inner].is_null()
+        let pointer = format!("/{}", key.replace("[].", ".0.").replace('.', "/"));
+        report.pointer(&pointer).is_some_and(|value| !value.is_null())
     }));
+    assert_eq!(report["reduced"]["is_estimate"], false);
+    let told = &report["reduced"]["readings"][1];
+    assert_eq!((&told["name"], &told["unit"]), (&"top.y".into(), &"m".into()));
+    assert!(told["error"].as_f64().unwrap() > 0.0);
     assert_eq!(report["reduced"]["shapes"].as_f64(), Some(unknowns));
     assert_eq!(report["reduced"]["checked_error"].as_f64(), Some(error));
 }

@@ -69,9 +69,12 @@ pub fn reduce_by_modes(
     let to_told = |error: f64| error + rich.error;
     let told = |own: Tried| Tried { error: to_told(own.error), ..own };
     tried.extend(smaller.into_iter().map(told));
-    model.error = to_told(model.error);
-    // what a run leaves over may be less than its error, and is rarely more
+    // what runs by it leave over is to tell all of its error
+    let all = to_told(model.error);
+    let is_larger = model.error > 0.0 && model.error_per_imbalance > 0.0;
+    model.error_per_imbalance *= if is_larger { all / model.error } else { 0.0 };
     model.error_per_imbalance = model.error_per_imbalance.max(1.0);
+    model.error = all;
     (model.within, model.is_estimate) = (wanted, true);
     model.learned_from = learned(training.scenes.len(), " by richer models");
     let body = training.scenes[0].body();
