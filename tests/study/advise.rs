@@ -328,7 +328,7 @@ fn json_has(advice: &Advice, model: &str) -> bool {
 /// Half of a block that swings is told with what it changes, which is next to nothing, of the whole motion and of what the half has.
 #[test]
 fn half_of_what_is_symmetric_is_told() -> Outcome {
-    let soft = Material { density: 1000.0, young: 1e5, poisson: 0.3, viscosity: 100.0 };
+    let soft = Material { density: 1000.0, young: 1e5, poisson: 0.3, viscosity: 5.0 };
     let mesh = Mesh::rectangle([0.1, 0.05], [3, 2], Cells::Rectangles)?;
     let scene = Scene::new(Body::new(mesh, soft).thickness(0.01).build()?)
         .initial_velocity(|x| vec![2.0 * (x[0] - 0.05), 0.1 * x[1]])
@@ -338,7 +338,7 @@ fn half_of_what_is_symmetric_is_told() -> Outcome {
     for (quantity, has_half) in
         [(Quantity::motion(), true), (named("right.x")?, true), (named("bottom.y")?, false)]
     {
-        let adviser = Adviser::new(&scene, 0.2).quantity(quantity).budget(30.0);
+        let adviser = Adviser::new(&scene, 0.05).quantity(quantity).budget(30.0);
         let advice = adviser.run(&mut |_| ControlFlow::Continue(()))?;
         println!("{advice}");
         let half = advice.smaller.iter().find(|smaller| smaller.kind != Smaller::Rigid);
@@ -348,9 +348,10 @@ fn half_of_what_is_symmetric_is_told() -> Outcome {
             assert!(advice.not_tried.iter().any(refused));
             continue;
         };
-        assert_eq!(half.kind, Smaller::Half { axis: Axis::X, at: 0.05 });
-        // two runs that differ by the errors of their steps alone
-        assert!(half.change < 1e-3 && half.unknowns < half.full_unknowns, "{half}");
+        let is_cut = |at: f64| (at - 0.05).abs() < 1e-12;
+        assert!(matches!(half.kind, Smaller::Half { axis: Axis::X, at } if is_cut(at)), "{half}");
+        // two runs that differ by the errors of their steps alone, which are small beside the accuracy (measured: 0.6 %)
+        assert!(half.change < 0.02 && half.unknowns < half.full_unknowns, "{half}");
     }
     Ok(())
 }

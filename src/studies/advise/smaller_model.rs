@@ -13,7 +13,7 @@ use crate::studies::work_precision::time_text;
 pub struct SmallerModel {
     /// How it is smaller.
     pub kind: Smaller,
-    /// What it changes, with hardly any error of the integration, relative to the same scale as the accuracy.
+    /// What it changes, relative to the same scale as the accuracy, by runs whose errors of the integration are small beside that.
     pub change: f64,
     /// Time (s) of a run by it, and of one of what it is a model of.
     pub seconds: f64,
