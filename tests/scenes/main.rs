@@ -29,6 +29,7 @@ mod gas;
 mod gripping;
 mod growth;
 mod growth_by_direction;
+mod halves;
 mod hill;
 mod index_two;
 mod indicators;

@@ -1,7 +1,8 @@
 //! The motion of a body as a whole, and what is left without it. Means are over nodes.
 
-use nalgebra::{Matrix3, SVD, Vector3};
+use nalgebra::{Matrix3, Vector3};
 
+use crate::base::rotation::nearest_rotation;
 use crate::base::vector::norm;
 use crate::dynamics::trajectory::Sample;
 use crate::elements::body::Body;
@@ -12,16 +13,9 @@ pub(super) fn without_turn(body: &Body, u: &[f64]) -> Vec<f64> {
     let (d, positions) = (body.dimension(), body.mesh().positions());
     let now: Vec<f64> = positions.iter().zip(u).map(|(x, u)| x + u).collect();
     let (natural, now) = (arms(positions, d), arms(&now, d));
-    // Kabsch's rotation: the one that brings the natural shape nearest to the present one
+    // the rotation that brings the natural shape nearest to the present one
     let product: Matrix3<f64> = now.iter().zip(&natural).map(|(y, x)| y * x.transpose()).sum();
-    let turn = match product.try_svd(true, true, f64::EPSILON, 100) {
-        Some(SVD { u: Some(left), v_t: Some(right), .. }) if d > 1 => {
-            let mut mirror = Matrix3::identity();
-            mirror.m33 = (left * right).determinant().signum();
-            left * mirror * right
-        }
-        _ => Matrix3::identity(),
-    };
+    let turn = if d > 1 { nearest_rotation(product) } else { Matrix3::identity() };
     let left = now.iter().zip(&natural).map(|(y, x)| turn.transpose() * y - x);
     left.flat_map(|u| u.as_slice()[..d].to_vec()).collect()
 }

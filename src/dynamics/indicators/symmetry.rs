@@ -44,7 +44,7 @@ pub(super) fn plane(body: &Body, samples: &[&Sample]) -> Option<Indicator> {
 pub(super) fn mirrors(body: &Body, samples: &[&Sample]) -> Vec<Indicator> {
     let d = body.dimension();
     let Some(scale) = motion(body, samples).filter(|_| d > 1) else { return Vec::new() };
-    let images = (0..d).filter_map(|axis| Some((axis, partners(body.mesh(), axis)?)));
+    let images = (0..d).filter_map(|axis| Some((axis, body.mesh().mirror(axis)?.images)));
     let parts = images.map(|(axis, partner)| {
         let square = |sample: &&Sample| {
             let off = |dof: usize| {
@@ -113,22 +113,6 @@ fn across(body: &Body, samples: &[&Sample], axis: usize) -> Option<f64> {
         rows.values().map(of_row).sum::<f64>()
     };
     Some(samples.iter().map(square).sum::<f64>().sqrt())
-}
-
-/// For each node the one at its mirror image about the middle plane normal to an axis, if all have one.
-fn partners(mesh: &Mesh, axis: usize) -> Option<Vec<usize>> {
-    let (nodes, d) = (0..mesh.node_count(), mesh.dimension());
-    let along = || mesh.positions().iter().skip(axis).step_by(d).copied();
-    let twice_middle =
-        along().fold(f64::INFINITY, f64::min) + along().fold(f64::NEG_INFINITY, f64::max);
-    let places: HashMap<Place, usize> =
-        nodes.clone().map(|node| (rounded(mesh, mesh.position(node)), node)).collect();
-    let partner = |node: usize| {
-        let mut image = mesh.position(node).to_vec();
-        image[axis] = twice_middle - image[axis];
-        places.get(&rounded(mesh, &image)).copied()
-    };
-    nodes.map(partner).collect()
 }
 
 type Place = [i64; 3];

@@ -15,6 +15,8 @@ mod dipole;
 mod events;
 mod failure;
 mod gauge;
+#[cfg(feature = "study")]
+mod half_reading;
 mod interval;
 mod phase_run;
 mod progress;

@@ -14,7 +14,7 @@ pub struct Reading {
     pub(super) what: What,
     pub(super) component: Option<Component>,
     /// Whether angles are in degrees.
-    in_degrees: bool,
+    pub(super) in_degrees: bool,
     /// The name of the body that is read; all of them together without one.
     pub(super) body: Option<String>,
 }

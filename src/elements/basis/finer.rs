@@ -188,6 +188,9 @@ impl Finer {
         let positions = finer.interpolated(mesh.positions(), mesh.dimension());
         finer.mesh = mesh.with_cells(positions, kind, connectivity);
         finer.is_boundary = vec![false; finer.places.len()];
+        if !mesh.plane_of_symmetry().is_empty() {
+            finer.mesh.cut_at(finer.extended(mesh.plane_of_symmetry()));
+        }
         for &node in finer.mesh.boundary_nodes() {
             finer.is_boundary[node] = true;
         }

@@ -139,6 +139,17 @@ impl Body {
         })
     }
 
+    /// The number of what each cell of a single body is made of among its [`substances`](Self::substances).
+    pub(crate) fn substance_numbers(&self) -> Vec<usize> {
+        let count = self.mesh.cell_count();
+        let mut numbers = vec![0; count];
+        for (number, cells) in self.continua[0].regions.by_substance(count).into_iter().enumerate()
+        {
+            cells.into_iter().for_each(|cell| numbers[cell] = number);
+        }
+        numbers
+    }
+
     /// Its rigid pieces, if it has any.
     pub(crate) fn rigid_pieces(&self) -> Option<&Arc<RigidPieces>> {
         self.rigid.as_ref()

@@ -1,5 +1,6 @@
 //! The builder of a body: options, checks, assembly.
 
+use std::collections::BTreeSet;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -145,6 +146,50 @@ impl BodyBuilder {
             recipe.material.material.viscosity = 0.0;
             recipe.regions.iter_mut().for_each(|(_, region)| region.material.viscosity = 0.0);
         })
+    }
+
+    /// The same with all of it rigid, its regions, too.
+    pub(crate) fn all_rigid(self) -> Self {
+        self.strain(Strain::Green).each(|recipe| {
+            recipe.material.is_rigid = true;
+            recipe.regions.iter_mut().for_each(|(_, region)| region.is_rigid = true);
+        })
+    }
+
+    /// The part of a single body on one side of a plane of symmetry: the nodes, point masses among them, that `keeps` has, of which
+    /// those on the plane keep half of their point mass.
+    ///
+    /// # Errors
+    /// Regions of cells that the mesh does not have.
+    pub(crate) fn half(
+        mut self,
+        keeps: &[bool],
+        is_on_plane: impl Fn(usize) -> bool,
+    ) -> Result<Self, InputError> {
+        for (mesh, recipe) in &mut self.bodies {
+            let is_kept = |(_, cell): &(usize, &[usize])| cell.iter().all(|&node| keeps[node]);
+            let cells = mesh.cells().enumerate().filter(is_kept);
+            let cells: Vec<usize> = cells.map(|(number, _)| number).collect();
+            let mut regions = Vec::new();
+            for (selection, substance) in recipe.regions.drain(..) {
+                let own: BTreeSet<usize> = selection.cells(mesh)?.into_iter().collect();
+                let numbers = (1..).zip(&cells).filter(|(_, cell)| own.contains(cell));
+                let numbers: Vec<usize> = numbers.map(|(number, _)| number).collect();
+                if !numbers.is_empty() {
+                    regions.push((CellSelection::Numbers(numbers), substance));
+                }
+            }
+            recipe.regions = regions;
+            let points = (mesh.node_count()..).zip(recipe.points.drain(..));
+            let points = points.filter(|(node, _)| keeps[*node]);
+            recipe.points = points
+                .map(|(node, (name, position, mass))| {
+                    (name, position, if is_on_plane(node) { 0.5 * mass } else { mass })
+                })
+                .collect();
+            *mesh = mesh.part(&cells, |node| keeps[node], &is_on_plane);
+        }
+        Ok(self)
     }
 
     /// Another material, everywhere outside regions.

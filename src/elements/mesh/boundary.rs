@@ -14,7 +14,8 @@ impl Mesh {
     /// The faces that belong to one cell only, in the order of the cells.
     ///
     /// A body of lower dimension than space (string, membrane) is all boundary: its faces are its
-    /// cells.
+    /// cells. Faces on a plane of symmetry at which it was cut
+    /// ([`Scene::symmetric_half`](crate::Scene::symmetric_half)) are inside of it.
     pub fn boundary_faces(&self) -> Vec<Face> {
         self.boundary_faces_of_cells().into_iter().map(|(_, face)| face).collect()
     }
@@ -27,7 +28,7 @@ impl Mesh {
                 all.extend((first..).zip(block.cells().map(<[usize]>::to_vec)));
             } else {
                 let cell = |face| first + face / block.kind.faces().len();
-                let once = block.faces_of_one_cell(self.node_count()).into_iter();
+                let once = self.faces_of_one_cell(block);
                 all.extend(once.map(|face| (cell(face), block.face(face).collect())));
             }
             first += block.cells().len();
@@ -39,8 +40,7 @@ impl Mesh {
     /// a membrane, the ends of a string.
     pub(crate) fn outer_faces(&self) -> Vec<Face> {
         let of_block = |block: &Block| -> Vec<Face> {
-            let once = block.faces_of_one_cell(self.node_count()).into_iter();
-            once.map(|face| block.face(face).collect()).collect()
+            self.faces_of_one_cell(block).map(|face| block.face(face).collect()).collect()
         };
         self.blocks.iter().flat_map(of_block).collect()
     }
@@ -48,6 +48,18 @@ impl Mesh {
     /// The shape of a face of the boundary.
     pub(crate) fn face_kind(&self, face: &[usize]) -> FaceKind {
         FaceKind::of(self.dimension, face.len())
+    }
+
+    /// Numbers of the faces of a block that belong to one cell only, and are not on a plane of symmetry.
+    fn faces_of_one_cell(&self, block: &Block) -> impl Iterator<Item = usize> {
+        let mut is_on_plane =
+            vec![false; if self.plane.is_empty() { 0 } else { self.node_count() }];
+        self.plane.iter().for_each(|&node| is_on_plane[node] = true);
+        let mut once = block.faces_of_one_cell(self.node_count());
+        if !self.plane.is_empty() {
+            once.retain(|&face| !block.face(face).all(|node| is_on_plane[node]));
+        }
+        once.into_iter()
     }
 
     pub(super) fn find_boundary_nodes(&self) -> Vec<usize> {

@@ -8,6 +8,7 @@ mod cell;
 mod generate;
 #[cfg(feature = "gmsh")]
 mod gmsh;
+mod mirror;
 mod select;
 mod surface;
 
@@ -18,6 +19,7 @@ pub use cell::CellKind;
 pub(crate) use cell::FaceKind;
 pub(crate) use generate::BYTES_PER_NODE;
 pub use generate::{Cells, SolidCells};
+pub(crate) use mirror::Mirror;
 pub use select::Selection;
 pub(crate) use surface::Enclosed;
 
@@ -40,6 +42,8 @@ pub struct Mesh {
     blocks: Vec<Block>,
     sets: BTreeMap<String, Vec<usize>>,
     cell_groups: BTreeMap<String, Vec<usize>>,
+    /// Nodes of a plane of symmetry at which it was cut.
+    plane: Vec<usize>,
 }
 
 /// Cells of one kind. Different blocks share no nodes.
@@ -122,7 +126,8 @@ impl Mesh {
         let all = (0..positions.len() / dimension).collect();
         let (sets, cell_groups) = (BTreeMap::from([("all".into(), all)]), BTreeMap::new());
         let blocks = vec![Block { kind, connectivity, is_surface: false }];
-        let mut mesh = Self { dimension, positions, blocks, sets, cell_groups };
+        let plane = Vec::new();
+        let mut mesh = Self { dimension, positions, blocks, sets, cell_groups, plane };
         mesh.sets.insert("boundary".into(), mesh.find_boundary_nodes());
         mesh
     }
@@ -319,6 +324,7 @@ impl Mesh {
             blocks: Vec::new(),
             sets: BTreeMap::new(),
             cell_groups: BTreeMap::new(),
+            plane: Vec::new(),
         };
         let mut boundary = Vec::new();
         for (name, mesh) in bodies {
@@ -332,6 +338,7 @@ impl Mesh {
                 is_surface: block.is_surface,
             }));
             boundary.extend(mesh.boundary_nodes().iter().map(|node| first_node + node));
+            joined.plane.extend(mesh.plane.iter().map(|node| first_node + node));
             for (own, nodes) in mesh.sets.iter().filter(|(own, _)| *own != "all") {
                 joined.sets.insert(format!("{name}/{own}"), moved(nodes, first_node));
             }

@@ -389,6 +389,16 @@ impl Obstacle {
         self.friction.acts()
     }
 
+    /// Whether it is known to be its own mirror image in the plane at a place (m) on an axis at some `times` (s), to within
+    /// `tolerance` (m).
+    pub(crate) fn is_symmetric(&self, plane: (usize, f64), times: &[f64], tolerance: f64) -> bool {
+        let stays = |t: &f64| self.displacement(*t)[plane.0].abs() <= tolerance;
+        let is_skew = |of: &Bristles| of.direction.get(plane.0).is_some_and(|x| *x != 0.0);
+        self.shape.is_symmetric(plane, tolerance)
+            && times.iter().all(stays)
+            && !self.bristles.as_ref().is_some_and(is_skew)
+    }
+
     /// Whether its friction is larger one way.
     pub(crate) fn has_bristles(&self) -> bool {
         self.bristles.is_some()

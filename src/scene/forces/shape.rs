@@ -6,6 +6,9 @@ use std::sync::Arc;
 use crate::base::input::{InputError, finite, positive};
 use crate::base::vector::{dot, norm};
 
+/// Components of a normal below this part of its length are round-off.
+const ROUND_OFF: f64 = 1e-12;
+
 type Distance = dyn Fn(&[f64], &mut [f64]) -> f64 + Send + Sync;
 
 /// A signed distance d(x) (m), negative inside, in a space of any dimension.
@@ -115,6 +118,23 @@ impl Shape {
     /// iteration converges more slowly where the shape is strongly curved.
     pub fn custom(distance: impl Fn(&[f64], &mut [f64]) -> f64 + Send + Sync + 'static) -> Self {
         Self(Kind::Custom(Arc::new(distance)))
+    }
+
+    /// Whether it is known to be its own mirror image in the plane at a place (m) on an axis, to within `tolerance` (m).
+    pub(crate) fn is_symmetric(&self, (axis, at): (usize, f64), tolerance: f64) -> bool {
+        let is_same = |a: f64, b: f64| a == b || (a - b).abs() <= tolerance;
+        match &self.0 {
+            Kind::HalfPlane { normal, .. } => normal[axis].abs() <= ROUND_OFF * norm(normal),
+            Kind::Ball { centre, .. } => is_same(centre[axis], at),
+            Kind::Box { min, max } => is_same(at - min[axis], max[axis] - at),
+            Kind::Capsule { from, to, .. } => {
+                let image = |i: usize| if i == axis { 2.0 * at - from[i] } else { from[i] };
+                let is_across = (0..to.len()).all(|i| is_same(image(i), to[i]));
+                is_across || [from, to].iter().all(|end| is_same(end[axis], at))
+            }
+            Kind::Union(parts) => parts.iter().all(|part| part.is_symmetric((axis, at), tolerance)),
+            Kind::Custom(_) => false,
+        }
     }
 
     pub(crate) fn kind(&self) -> &Kind {

@@ -337,6 +337,38 @@ impl VectorSignal {
         self.live().map_or_else(|| self.clone(), |live| Self::Constant(live.get()))
     }
 
+    /// The same vector, times a `factor`.
+    pub(crate) fn times(&self, factor: f64) -> Self {
+        let scaled = |values: &[f64]| values.iter().map(|x| factor * x).collect::<Vec<f64>>();
+        match self {
+            Self::Constant(values) => Self::Constant(scaled(values)),
+            Self::TimeTable(TimeTable { times, values }) => {
+                let values = values.iter().map(|values| scaled(values)).collect();
+                Self::TimeTable(TimeTable::new(times.clone(), values))
+            }
+            _ if factor == 1.0 => self.clone(),
+            varying => {
+                let (varying, dimension) = (varying.clone(), varying.dimension());
+                let write = move |t: f64, vector: &mut [f64]| {
+                    varying.at(t, vector);
+                    vector.iter_mut().for_each(|x| *x *= factor);
+                };
+                Self::Function { dimension, write: Arc::new(write) }
+            }
+        }
+    }
+
+    /// Its number of components.
+    fn dimension(&self) -> usize {
+        match self {
+            Self::Constant(values) => values.len(),
+            Self::Function { dimension, .. } => *dimension,
+            Self::TimeTable(table) => table.values.first().map_or(0, Vec::len),
+            Self::Formulas(formulas) => formulas.len(),
+            Self::Live(live) => live.0.len(),
+        }
+    }
+
     /// Times (s) at which the vector changes its law.
     pub(crate) fn breaks(&self) -> &[f64] {
         match self {

@@ -13,7 +13,7 @@ pub(crate) struct SurfacePoint {
     count: usize,
     nodes: [usize; MOST_NODES],
     shares: [f64; MOST_NODES],
-    /// Area (m^2) of the boundary for which it stands; 1 for a node, 0 for a point of an edge or the middle
+    /// Area (m^2) of the boundary for which it stands; 1 for a node (1/2 on a plane of symmetry), 0 for a point of an edge or the middle
     /// of a face.
     pub(super) area: f64,
 }
@@ -45,10 +45,12 @@ pub(crate) fn weighted(
     sum
 }
 
-/// Each boundary node by itself.
+/// Each boundary node by itself; on a plane of symmetry at which the mesh was cut, half of it.
 pub(crate) fn boundary_nodes(body: &Body) -> Vec<SurfacePoint> {
-    let nodes = body.mesh().boundary_nodes().iter();
-    nodes.map(|&node| point(&[node], &[1.0], 1.0)).collect()
+    let mesh = body.mesh();
+    let mut parts = vec![1.0; mesh.node_count()];
+    mesh.plane_of_symmetry().iter().for_each(|&node| parts[node] = 0.5);
+    mesh.boundary_nodes().iter().map(|&node| point(&[node], &[1.0], parts[node])).collect()
 }
 
 /// Points along an edge of the boundary, between its nodes: two ends, and the middle of a quadratic one. They

@@ -123,7 +123,7 @@ impl Scene {
     }
 
     /// The factor of the value of a load of this `kind` at each of the `nodes`, which `selection` has named.
-    fn parts(
+    pub(super) fn parts(
         &self,
         kind: LoadKind,
         selection: &Selection,

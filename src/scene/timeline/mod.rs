@@ -8,6 +8,7 @@ mod finer;
 mod fluid;
 mod forces;
 mod gas;
+mod half;
 mod initial;
 mod lag;
 mod liquid;
@@ -26,6 +27,8 @@ use std::sync::Arc;
 
 pub use body_state::BodyState;
 pub(crate) use contacts::ContactReader;
+#[cfg(feature = "study")]
+pub(crate) use half::Half;
 pub(crate) use load::{Load, LoadKind};
 #[cfg(feature = "checkpoint")]
 pub(crate) use phase::ContactWith;

@@ -3,6 +3,7 @@
 use super::choice::Choice;
 use super::parts::Parts;
 use super::reduced_candidate::ReducedCandidate;
+use super::smaller_model::SmallerModel;
 use crate::dynamics::equilibrium::MeshEstimate;
 use crate::scene::timeline::Term;
 use crate::studies::work_precision::look::Look;
@@ -54,6 +55,8 @@ pub struct Advice {
     /// adjoint-weighted residuals; only where an equilibrium is enough. The errors of candidates come from
     /// comparing runs.
     pub mesh_estimate: Option<MeshEstimate>,
+    /// Smaller models that were run, each of the fastest motion that is right, on its mesh.
+    pub smaller: Vec<SmallerModel>,
     /// What a reduced model of what is enough would save.
     pub reduced: Option<ReducedCandidate>,
     /// What a coarse run has shown before all others.

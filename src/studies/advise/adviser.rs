@@ -173,6 +173,7 @@ impl<'a> Adviser<'a> {
             terms: found.terms,
             together: found.together,
             mesh_estimate: found.mesh_estimate,
+            smaller: found.smaller,
             reduced: found.reduced,
             look: None,
             known_until: found.known_until,

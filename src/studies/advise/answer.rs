@@ -32,7 +32,7 @@ impl Advice {
         for candidate in &self.candidates {
             let is_mesh = |rich: &Choice| {
                 let same = &candidate.choice;
-                same.strain == rich.strain
+                (same.strain, same.is_rigid) == (rich.strain, rich.is_rigid)
                     && same.inertia == rich.inertia
                     && same.without == rich.without
                     && same.settings == rich.settings
@@ -84,6 +84,7 @@ impl Advice {
                 paired.map_or_else(String::new, |paired| format!(" (by paired runs: {paired})"))
             ));
         }
+        reasons.extend(self.smaller.iter().map(ToString::to_string));
         reasons.extend(self.reduced.iter().map(ToString::to_string));
         reasons
     }

@@ -3,7 +3,7 @@
 use std::fmt;
 
 use crate::base::input::InputError;
-use crate::elements::body::{Body, Dilatation, Inertia, Strain};
+use crate::elements::body::{Body, BodyBuilder, Dilatation, Inertia, Strain};
 use crate::elements::material::Material;
 use crate::elements::mesh::CellKind;
 use crate::scene::settings::{ContactEvents, Settings};
@@ -22,6 +22,8 @@ pub struct Choice {
     pub halved_in: Vec<Vec<usize>>,
     /// How inertia is distributed to the nodes.
     pub inertia: Inertia,
+    /// Whether all bodies are rigid: see [`Material::rigid`].
+    pub is_rigid: bool,
     /// What is left out.
     pub without: Vec<Term>,
     /// Whether the equilibrium of the last phase, as `pliant static` finds it, replaces the end of the
@@ -41,6 +43,7 @@ impl Choice {
             halved: 0,
             halved_in: Vec::new(),
             inertia: body.inertia_kind(),
+            is_rigid: false,
             without: Vec::new(),
             is_static: false,
             settings: settings.clone(),
@@ -73,6 +76,9 @@ impl Choice {
         if linear {
             scene = scene.with_body(|body| body.dilatation(Dilatation::Linear))?;
         }
+        if self.is_rigid {
+            scene = scene.with_body(BodyBuilder::all_rigid)?;
+        }
         self.without.iter().try_fold(scene, |scene, term| scene.without(term))
     }
 
@@ -81,6 +87,11 @@ impl Choice {
         let settings = other.settings.clone();
         let alpha = self.settings.alpha == other.settings.alpha;
         alpha && Self { settings, ..self.clone() } == *other
+    }
+
+    /// Whether it is a motion of bodies that are not all rigid: one that may have a smaller model.
+    pub(super) fn is_of_soft_motion(&self) -> bool {
+        !self.is_static && !self.is_rigid
     }
 
     /// Whether it is on the mesh as it was written.
@@ -136,6 +147,14 @@ impl Choice {
             sets.extend(tables.iter().map(|table| format!("{table}.inertia={inertia}")));
         }
         let numbers = |count: usize| (1..=count).map(|number| number.to_string());
+        if self.is_rigid {
+            for (table, part) in tables.iter().zip(body.parts()) {
+                let regions = numbers(part.body.region_count());
+                let own = regions.map(|k| format!("{table}.region.{k}"));
+                let all = std::iter::once(table.clone()).chain(own);
+                sets.extend(all.map(|part| format!("{part}.material.rigid=true")));
+            }
+        }
         for term in &self.without {
             match term {
                 Term::Gravity => {
@@ -252,7 +271,10 @@ impl fmt::Display for Choice {
             Strain::Cauchy => "Cauchy",
             Strain::Green => "Green",
         };
-        write!(f, "{strain} strain")?;
+        match self.is_rigid {
+            true => f.write_str("all rigid")?,
+            false => write!(f, "{strain} strain")?,
+        }
         if !self.is_mesh_as_written() {
             write!(f, ", {}", self.mesh())?;
         }

@@ -1,8 +1,10 @@
 //! What the search has found so far.
 
+use super::choice::Choice;
 use super::parts::Parts;
 use super::reduced_candidate::ReducedCandidate;
 use super::search::Solved;
+use super::smaller_model::SmallerModel;
 use crate::dynamics::equilibrium::MeshEstimate;
 use crate::scene::timeline::Term;
 
@@ -33,6 +35,8 @@ pub(super) struct Found {
     pub(super) sweep: Vec<Solved>,
     /// By how much an equilibrium is off on the mesh as it was written.
     pub(super) mesh_estimate: Option<MeshEstimate>,
+    /// Smaller models of the fastest motion that is right.
+    pub(super) smaller: Vec<SmallerModel>,
     /// What a reduced model of what is enough would save.
     pub(super) reduced: Option<ReducedCandidate>,
     /// Time (s) until which two tight runs agree, if that is before the end.
@@ -129,10 +133,19 @@ impl Found {
         Some(self.finer.last()?.error(self.truth()?))
     }
 
-    /// The fastest of those that are right.
+    /// The fastest of those that are right; what is rigid, which has the fewest unknowns, before others.
     pub(super) fn best(&self, accuracy: f64) -> Option<&Solved> {
         let right = self.all().filter(|solved| self.is_right(solved, accuracy));
-        right.min_by(|a, b| a.seconds.total_cmp(&b.seconds))
+        let is_soft = |solved: &Solved| !solved.choice.is_rigid;
+        right.min_by(|a, b| is_soft(a).cmp(&is_soft(b)).then(a.seconds.total_cmp(&b.seconds)))
+    }
+
+    /// The run of the model of a `choice` with hardly any error of the integration, if it was made.
+    pub(super) fn exact(&self, choice: &Choice) -> Option<&Solved> {
+        let tight = &self.tight.as_ref()?.choice.settings;
+        self.all().chain(self.meshes.first()).find(|solved| {
+            solved.choice.is_model_of(choice) && solved.choice.settings.rtol <= tight.rtol
+        })
     }
 
     /// The parts of the error of a run, if the runs between it and the truth were made, too: its own model
@@ -140,10 +153,7 @@ impl Found {
     /// taken as it is.
     pub(super) fn parts(&self, of: &Solved) -> Option<Parts> {
         let truth = self.truth()?;
-        let tight = &self.tight.as_ref()?.choice.settings;
-        let own = self.all().chain(self.meshes.first()).find(|solved| {
-            solved.choice.is_model_of(&of.choice) && solved.choice.settings.rtol <= tight.rtol
-        })?;
+        let own = self.exact(&of.choice)?;
         let mesh = self.meshes.iter().find(|mesh| mesh.choice.is_mesh_of(&of.choice))?;
         let apart = |a: &Solved, b: &Solved| a.seen.distance(&b.seen).mean / truth.seen.scale;
         let parts @ [time, model, mesh] = [apart(of, own), apart(own, mesh), apart(mesh, truth)];
@@ -159,7 +169,7 @@ mod tests {
 
     use super::*;
     use crate::scene::settings::Settings;
-    use crate::studies::advise::{Choice, RicherCells};
+    use crate::studies::advise::RicherCells;
     use crate::studies::samples::beam_jump;
 
     /// Meshes on which a number is off by `errors` of its scale.

@@ -37,7 +37,7 @@ const OF_SEVERAL: &str = "finer meshes, as there are several bodies: halve the c
 /// Tolerances that are swept.
 const TOLERANCES: [f64; 10] = [1e-2, 3e-3, 1e-3, 3e-4, 1e-4, 3e-5, 1e-5, 1e-6, 1e-7, 1e-8];
 /// A sweep ends where runs take this many times as long as the fastest that is right.
-const PATIENCE: f64 = 2.0;
+pub(super) const PATIENCE: f64 = 2.0;
 
 impl Search<'_> {
     /// Runs all stages, until everything is known or there is no more time.
@@ -61,6 +61,8 @@ impl Search<'_> {
             self.rest(&enough, found)?;
         }
         self.sweep(&enough, found)?;
+        self.rigid(found)?;
+        self.half(found)?;
         self.reduce(found)
     }
 

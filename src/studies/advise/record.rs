@@ -6,6 +6,7 @@ use serde_json::{Value, json};
 
 use super::advice::{Advice, Candidate};
 use super::parts::Parts;
+use super::smaller_model::SmallerModel;
 use crate::dynamics::error::Error;
 use crate::io::output::write_file;
 use crate::studies::work_precision::look::Look;
@@ -15,7 +16,7 @@ impl Advice {
     ///
     /// The keys are `quantity`, `accuracy`, `scale`, `unit`, `written`, `enough`, `truth`, `resolution`, `has_rate`,
     /// `mesh`, `alphas`, `law`, `inertia`, `terms`, `together`, `candidates`, `known_until`, `end`, `mesh_estimate`,
-    /// `look`, `not_tried`, `is_cut_short`, `runs`, `seconds`, `known`, as the fields are; `null` means not
+    /// `smaller`, `reduced`, `look`, `not_tried`, `is_cut_short`, `runs`, `seconds`, `known`, as the fields are; `null` means not
     /// known. A candidate has `model` and `set`, what has to be set for it in the file of the scene.
     ///
     /// # Errors
@@ -70,6 +71,7 @@ impl Advice {
             "mesh_estimate": self.mesh_estimate.as_ref().map(|estimate| {
                 json!({ "value": estimate.value, "change": estimate.change, "correction": estimate.correction, "is_reliable": estimate.is_reliable() })
             }),
+            "smaller": self.smaller.iter().map(SmallerModel::to_json).collect::<Vec<_>>(),
             "reduced": self.reduced.as_ref().map(|reduced| {
                 json!({
                     "unknowns": reduced.unknowns,

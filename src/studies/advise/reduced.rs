@@ -20,7 +20,7 @@ const RUNS: f64 = 4.0;
 impl Search<'_> {
     /// Learns a reduced model of the fastest motion that is right, from that motion itself.
     pub(super) fn reduce(&mut self, found: &mut Found) -> Result<(), Stop> {
-        let best = found.best(self.request.accuracy).filter(|best| !best.choice.is_static);
+        let best = found.best(self.request.accuracy).filter(|best| best.choice.is_of_soft_motion());
         let Some(best) = best.cloned() else { return Ok(()) };
         if RUNS * best.seconds > SHARE * self.left() {
             found

@@ -100,7 +100,7 @@ pub(super) enum Cut {
 }
 
 /// A run this short (s) is timed again, this many times in all.
-const SHORT: f64 = 0.1;
+pub(super) const SHORT: f64 = 0.1;
 const REPETITIONS: usize = 3;
 /// Strains are compared from cell to cell at this many times, and the cells with this part of all jumps are divided next: more
 /// than half, so that two meshes differ by more than is left.
@@ -204,15 +204,27 @@ impl<'a> Search<'a> {
         self.measured(&scene, &choice.settings, &what)
     }
 
-    /// What is seen of a motion, and the time that it takes: the least of several runs, if it is short.
+    /// What is seen of a motion, and the time that it takes.
     pub(super) fn measured(
         &mut self,
         scene: &Scene,
         settings: &Settings,
         what: &str,
     ) -> Result<Outcome, Error> {
-        let nodes = (0..self.nodes).collect();
-        let probe = Probe::new(scene, self.request.quantity.clone(), nodes);
+        let (request, nodes) = (self.request, self.nodes);
+        self.observed(scene, (&request.quantity, nodes), settings, what)
+    }
+
+    /// What is seen of a `quantity` of a motion, of so many of the first nodes, and the time that it takes: the least of several
+    /// runs, if it is short.
+    pub(super) fn observed(
+        &mut self,
+        scene: &Scene,
+        (quantity, nodes): (&Quantity, usize),
+        settings: &Settings,
+        what: &str,
+    ) -> Result<Outcome, Error> {
+        let probe = Probe::new(scene, quantity.clone(), (0..nodes).collect());
         let first = self.once(scene, &probe, settings, what)?;
         let mut seconds = first.report().wall_seconds;
         for _ in 1..REPETITIONS {

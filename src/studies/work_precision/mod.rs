@@ -51,6 +51,7 @@ mod general;
 pub(super) mod look;
 mod mesh_estimate;
 pub(super) mod quantity;
+pub(super) mod rigid_motion;
 mod row;
 mod runner;
 mod scenes;

@@ -9,7 +9,7 @@ use crate::base::input::{InputError, unknown_among};
 use crate::dynamics::equilibrium::Equilibrium;
 use crate::dynamics::simulate::{Component, Reading, Sampling};
 use crate::dynamics::trajectory::{Sample, Trajectory};
-use crate::scene::timeline::Scene;
+use crate::scene::timeline::{Half, Scene};
 
 /// A quantity of interest: the whole motion, or a number that follows from it.
 ///
@@ -275,6 +275,20 @@ impl Quantity {
         matches!(self.part, Part::Largest | Part::Least)
     }
 
+    /// What has the same value in the `half` of a symmetric scene as it has in the `whole`: of the motion that of the half's nodes.
+    ///
+    /// # Errors
+    /// A reading that the half does not have.
+    pub(crate) fn in_half(&self, whole: &Scene, half: &Half) -> Result<Self, InputError> {
+        let reading = self.reading.as_ref().map(|reading| reading.in_half(whole, half));
+        Ok(Self { reading: reading.transpose()?, ..self.clone() })
+    }
+
+    /// Whether it is the whole motion.
+    pub(crate) fn is_motion(&self) -> bool {
+        self.reading.is_none()
+    }
+
     /// Whether all times count, and not one number.
     pub(crate) fn is_over_time(&self) -> bool {
         self.part == Part::OverTime
@@ -357,9 +371,9 @@ fn help(scene: &Scene, sensors: &[(String, Reading)]) -> String {
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub(crate) struct Seen {
     /// Components of a point.
-    dimension: usize,
+    pub(super) dimension: usize,
     /// Time by time; point by point.
-    values: Vec<Vec<f64>>,
+    pub(super) values: Vec<Vec<f64>>,
     /// What errors are relative to.
     pub(crate) scale: f64,
 }
@@ -374,6 +388,14 @@ pub(crate) struct Distance {
 }
 
 impl Seen {
+    /// What was seen of some of its points (from 0), with the same scale.
+    pub(crate) fn of_points(&self, points: &[usize]) -> Self {
+        let d = self.dimension;
+        let of_time =
+            |x: &Vec<f64>| points.iter().flat_map(|point| &x[point * d..][..d]).copied().collect();
+        Self { values: self.values.iter().map(of_time).collect(), ..self.clone() }
+    }
+
     pub(crate) fn distance(&self, other: &Self) -> Distance {
         self.size(|time, k, x| x - other.values[time][k])
     }

@@ -1,0 +1,54 @@
+//! What a reading of a symmetric scene is in its half.
+
+use super::reading::{Component, Reading, What};
+use crate::base::input::InputError;
+use crate::elements::mesh::Selection;
+use crate::scene::timeline::{Half, Scene};
+
+impl Reading {
+    /// The reading that has the same value in the `half` of a symmetric scene, `whole`, as this one has there.
+    ///
+    /// # Errors
+    /// Readings that the half does not have, or of which that is not known.
+    pub(crate) fn in_half(&self, whole: &Scene, half: &Half) -> Result<Self, InputError> {
+        let components = [Component::X, Component::Y, Component::Z];
+        let is_along = self.component.is_some_and(|component| {
+            components.contains(&component) && component != components[half.axis.index()]
+        });
+        let across = format!("{:?}", half.axis).to_lowercase();
+        let refused = |value: &str, help: String| InputError::new("quantity", value, help);
+        let means = |nodes: &Selection| {
+            let own = whole.body().mesh().select(nodes)?;
+            match half.standing_for(&own) {
+                Some((nodes, is_all)) if is_all || is_along => Ok(nodes),
+                Some(_) => {
+                    let help = format!(
+                        "the half has it along the plane alone: choose a component other than {across}"
+                    );
+                    Err(refused("of nodes on both sides", help))
+                }
+                None => {
+                    let help = "the half has no such mean: name nodes on one side";
+                    Err(refused("of nodes on both sides", help.into()))
+                }
+            }
+        };
+        let what = match &self.what {
+            What::Position(nodes) => What::Position(means(nodes)?),
+            What::Displacement(nodes) => What::Displacement(means(nodes)?),
+            What::Velocity(nodes) => What::Velocity(means(nodes)?),
+            What::CentreOfMass if is_along => What::CentreOfMass,
+            What::CentreOfMass => {
+                let help = format!(
+                    "the half has it along the plane alone: choose a component other than {across}"
+                );
+                return Err(refused("centre of mass", help));
+            }
+            _ => {
+                let help = "the half has positions, displacements, velocities and centres of mass: name one of them";
+                return Err(refused("of another kind", help.into()));
+            }
+        };
+        Ok(Self { what, ..self.clone() })
+    }
+}

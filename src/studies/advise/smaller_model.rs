@@ -1,0 +1,110 @@
+//! Smaller models of a motion that is right.
+
+use std::fmt;
+
+use serde_json::{Value, json};
+
+use crate::base::input::{percent, short, told};
+use crate::scene::constraint::Axis;
+use crate::studies::work_precision::time_text;
+
+/// A smaller model of a motion that is right, on the same mesh and with the same settings.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SmallerModel {
+    /// How it is smaller.
+    pub kind: Smaller,
+    /// What it changes, relative to the same scale as the accuracy, by runs whose errors of the integration are small beside that.
+    pub change: f64,
+    /// Time (s) of a run by it, and of one of what it is a model of.
+    pub seconds: f64,
+    /// See `seconds`.
+    pub full_seconds: f64,
+    /// Unknowns of the integrator, and those of what it is a model of; what is rigid counts with all its nodes, most of which move
+    /// with others.
+    pub unknowns: usize,
+    /// See `unknowns`.
+    pub full_unknowns: usize,
+}
+
+/// How a model is smaller.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub enum Smaller {
+    /// All bodies are rigid.
+    Rigid,
+    /// One half of a symmetric scene: see [`Scene::symmetric_half`](crate::Scene::symmetric_half).
+    Half {
+        /// The axis that the plane of symmetry is normal to.
+        axis: Axis,
+        /// Where on that axis the plane is (m).
+        at: f64,
+    },
+}
+
+impl SmallerModel {
+    /// It as data.
+    pub(super) fn to_json(&self) -> Value {
+        let Self { change, seconds, full_seconds, unknowns, full_unknowns, .. } = self;
+        json!({
+            "model": self.kind.to_string(),
+            "change": change,
+            "seconds": seconds,
+            "full_seconds": full_seconds,
+            "unknowns": unknowns,
+            "full_unknowns": full_unknowns,
+        })
+    }
+}
+
+impl fmt::Display for Smaller {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Rigid => f.write_str("all of it rigid"),
+            Self::Half { axis, at } => {
+                let axis = format!("{axis:?}").to_lowercase();
+                write!(f, "half of it, cut at {axis} = {} m", told(*at))
+            }
+        }
+    }
+}
+
+impl fmt::Display for SmallerModel {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { kind, change, seconds, full_seconds, unknowns, full_unknowns } = self;
+        if change.is_nan() {
+            return write!(f, "{kind} leaves nothing to compare");
+        }
+        write!(f, "{kind}")?;
+        if unknowns < full_unknowns {
+            write!(f, ", {unknowns} unknowns in place of {full_unknowns},")?;
+        }
+        f.write_str(" changes it by ")?;
+        let (ratio, time) = (full_seconds / seconds, time_text(*seconds));
+        match ratio > 1.0 {
+            true => write!(f, "{} at {} times the speed ({time})", percent(*change), short(ratio)),
+            false => write!(f, "{} and is no faster ({time})", percent(*change)),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn smaller_models_are_told() {
+        let half = SmallerModel {
+            kind: Smaller::Half { axis: Axis::X, at: 0.05 },
+            change: 3e-6,
+            seconds: 0.5,
+            full_seconds: 1.1,
+            unknowns: 102,
+            full_unknowns: 202,
+        };
+        let told = half.to_string();
+        let parts = ["half of it, cut at x = 0.05 m, 102 unknowns in place of 202", "2.2 times"];
+        assert!(parts.iter().all(|part| told.contains(part)), "{told}");
+        let slow = SmallerModel { seconds: 2.0, kind: Smaller::Rigid, ..half };
+        assert!(slow.to_string().contains("no faster"), "{slow}");
+    }
+}
