@@ -166,6 +166,7 @@ mod tests {
             error: 0.01,
             travel: 0.02,
             error_per_imbalance: 1.7,
+            is_estimate: true,
             within: 0.02,
             learned_from: "two runs".into(),
         }

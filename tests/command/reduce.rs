@@ -99,7 +99,10 @@ fn a_model_is_found_without_a_full_run() {
     assert!(!stdout(&done).contains("speed"), "{done:?}");
     let numbers: Value =
         serde_json::from_slice(&fs::read(place.path("scene-reduced.json")).unwrap()).unwrap();
-    assert_eq!((&numbers["is_estimate"], &numbers["full"]["seconds"]), (&json!(true), &Value::Null));
+    assert_eq!(
+        (&numbers["is_estimate"], &numbers["full"]["seconds"]),
+        (&json!(true), &Value::Null)
+    );
     let run = place.run(&["run", scene, "--step", "0.02", "--reduced", "scene.reduced"]);
     says(&stdout(&run), &["as told by this run, checked with none of all unknowns"]);
     let verified = place.run(&["reduce", scene, "--verify", "scene.reduced", "--within", "10%"]);

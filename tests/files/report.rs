@@ -274,7 +274,7 @@ fn a_run_by_a_reduced_model() {
         .model;
     let [unknowns, error] = [model.unknowns() as f64, model.error()];
     let reduced = scene.reduced(model).unwrap();
-    let sampling = Sampling::every(0.1).read("top", pliant::Reading::position("top"));
+    let sampling = Sampling::every(0.1).read("top", pliant::simulate::Reading::position("top"));
     let report = written(Ok(&reduced.simulate(&settings, &sampling).unwrap()));
     assert!(documented("run").iter().filter(|key| key.starts_with("reduced.")).all(|key| {
         let pointer = format!("/{}", key.replace("[].", ".0.").replace('.', "/"));

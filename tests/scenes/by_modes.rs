@@ -3,9 +3,8 @@
 use std::ops::ControlFlow;
 
 use pliant::reduce::{Reduced, Training, error, reduce_by_modes};
-use pliant::{
-    Body, Cells, Material, Mesh, Method, Phase, Reading, Sampling, Scene, Settings, Strain,
-};
+use pliant::simulate::Reading;
+use pliant::{Body, Cells, Material, Mesh, Method, Phase, Sampling, Scene, Settings, Strain};
 
 const RUBBER: Material = Material { density: 1000.0, young: 1e5, poisson: 0.4, viscosity: 100.0 };
 
