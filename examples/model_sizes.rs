@@ -40,7 +40,7 @@ fn scene(body: &str, cells: usize) -> Result<Scene, Error> {
         }
         _ => {
             let size = [0.1, 0.02, 0.02];
-            Body::new(Mesh::block(size, [along, across, across], SolidCells::Hexahedra)?, law)
+            Body::new(Mesh::cuboid(size, [along, across, across], SolidCells::Hexahedra)?, law)
                 .build()?
         }
     };
