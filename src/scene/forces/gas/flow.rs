@@ -221,7 +221,7 @@ impl Force for AmountFlow {
         for force in self.lagging.iter().filter_map(Lagging::force) {
             nodes.extend(force.nodes()?);
         }
-        Some(distinct(nodes.into_iter()))
+        Some(distinct(nodes))
     }
 
     fn flow(&self) -> Option<&dyn Flow> {
