@@ -1,9 +1,12 @@
 //! Stepping allocates nothing: not by itself, and a run of a scene with thousands of steps more makes as many
 //! allocations.
 
+use std::ops::ControlFlow;
+
 use allocation_counter::measure;
 use pliant::force::{Force, NodalForces, Reservoir};
 use pliant::ode::Failure;
+use pliant::reduce::{Training, reduce};
 use pliant::rk::{DormandPrince, Integrator, Options};
 use pliant::rosenbrock::{self, Rosenbrock};
 use pliant::samples::{SQUARE_MATERIAL, square_jump};
@@ -13,8 +16,8 @@ use pliant::sundials::{
     Side,
 };
 use pliant::{
-    Body, Cells, Chamber, ContactEvents, Mesh, Method, Obstacle, Phase, Sampling, Scene, Settings,
-    Signal, Spring, Strain,
+    Body, Cells, Chamber, ContactEvents, Gas, Growth, Lag, Liquid, Mesh, Method, Obstacle, Orifice,
+    Phase, Pipe, Sampling, Scene, Settings, Signal, Spring, Strain,
 };
 
 #[test]
@@ -40,6 +43,76 @@ fn steps_do_not_allocate() {
         // one path may set up something at first use; each change of method makes an integrator
         let slack = if method == Method::Auto { (many - few) as u64 / 20 } else { 5 };
         assert!(allocations_of_many <= allocations_of_few + slack, "{method}");
+    }
+}
+
+/// States of actuators that lag, flows of pipes, amounts of gas, also in a reduced model, and cells that grow by direction.
+#[test]
+fn steps_of_what_lags_flows_and_grows_do_not_allocate() {
+    let beam = || {
+        let mesh = Mesh::rectangle([0.1, 0.02], [9, 3], Cells::Rectangles).unwrap();
+        let body = Body::new(mesh, SQUARE_MATERIAL).thickness(0.01).strain(Strain::Green);
+        Scene::new(body.build().unwrap())
+    };
+    let phase = || Phase::until(1.0).named("p").hold("left");
+    let tendon = Spring::between([9], [27]).named("tendon").stiffness(1.0);
+    let lags = beam().spring(tendon).lag(Lag::first_order(0.1), ["tendon"]);
+    let rooms = beam()
+        .chamber(Chamber::within("root", [1, 4, 22, 19]))
+        .chamber(Chamber::within("tip", [6, 9, 27, 24]));
+    let pipes = ["root", "tip"].into_iter().fold(rooms.clone(), |scene, chamber| {
+        scene.liquid(Liquid::in_chamber(chamber).bulk_modulus(1e6))
+    });
+    let flows = Signal::function(|t| 1e-8 * (20.0 * t).sin());
+    let gas = rooms
+        .gas(Gas::in_chamber("root"))
+        .supply("pump", 1.05e5)
+        .orifice(Orifice::new("inlet", "pump", "root", 1e-12))
+        .phase(phase());
+    let training = Training {
+        scenes: vec![gas.clone()],
+        held_out: Vec::new(),
+        settings: Settings::default(),
+        within: 0.1,
+        most_unknowns: 6,
+    };
+    let model = reduce(&training, &mut |_| ControlFlow::Continue(())).unwrap().model;
+    let grows = Growth::everywhere().along([1.0, 0.0]).keeping_volume().named("gel");
+    let scenes = [
+        ("lags", lags.phase(phase().actuate(["tendon"], 0.02))),
+        (
+            "pipes",
+            pipes
+                .pipe(Pipe::new("between", "root", "tip", 0.05, 1e-3))
+                .phase(phase().flow("root", flows)),
+        ),
+        ("gas", gas.clone()),
+        ("gas, reduced", gas.reduced(model).unwrap()),
+        (
+            "growth",
+            beam().growth(grows).phase(phase().actuate(["gel"], Signal::function(|t| 0.1 * t))),
+        ),
+    ];
+    for (what, scene) in scenes {
+        for method in [Method::CvodeBdf, Method::Ida, Method::Rosenbrock] {
+            let run = |rtol: f64| {
+                let settings = Settings { method, rtol, ..Settings::default() };
+                let mut steps = 0;
+                let allocated = measure(|| {
+                    let run = scene.simulate(&settings, &Sampling::phase_ends()).unwrap();
+                    steps = run.report().steps();
+                });
+                (steps, allocated.count_total)
+            };
+            // what one path sets up at first use
+            run(1e-3);
+            let ((few, of_few), (many, of_many)) = (run(1e-3), run(1e-8));
+            println!("{what}, {method}: {of_few} in {few} steps, {of_many} in {many}");
+            assert!(many > few + 60, "{what}, {method}: {few} and {many} steps");
+            // what a reduced model leaves over is kept six times, or at fewer steps
+            let slack = if what == "gas, reduced" { 60 } else { 5 };
+            assert!(of_many <= of_few + slack, "{what}, {method}: {of_few} and {of_many}");
+        }
     }
 }
 

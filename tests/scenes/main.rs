@@ -48,6 +48,7 @@ mod planes;
 mod random_scenes;
 mod readings;
 mod reduced;
+mod reduced_flow;
 mod relaxing;
 mod rigid;
 mod rigid_mass;

@@ -101,8 +101,14 @@ fn methods_agree_on_a_reduced_model() {
     let model = learned(vec![scene.clone()], 1e-6, 0.02);
     let reduced = scene.reduced(model).unwrap();
     let exact = run(&reduced, 1e-10);
-    let methods =
-        [Method::CvodeBdf, Method::CvodeAdams, Method::Arkode, Method::Rosenbrock, Method::Rk];
+    let methods = [
+        Method::CvodeBdf,
+        Method::CvodeAdams,
+        Method::Arkode,
+        Method::Rosenbrock,
+        Method::Rk,
+        Method::Ida,
+    ];
     for method in methods {
         let settings = Settings { method, ..settings(1e-7) };
         let own = reduced.simulate(&settings, &Sampling::every(0.01)).unwrap();
@@ -266,7 +272,7 @@ fn what_cannot_be_reduced_is_told() {
     assert!(!best.is_within && best.model.unknowns() <= 6 && best.model.error() < 0.2, "{best}");
 
     let model = best.model;
-    let ida = Settings { method: Method::Ida, ..Settings::default() };
+    let ida = Settings { method: Method::IdaIndexTwo, ..Settings::default() };
     let reduced = scene.clone().reduced(model.clone()).unwrap();
     let message = reduced.simulate(&ida, &Sampling::every(0.1)).unwrap_err().to_string();
     assert!(message.contains("rosenbrock"), "{message}");

@@ -88,6 +88,11 @@ impl FlowMatrix {
         self.stiffness.chunks(self.rooms).any(|row| row[room] != 0.0)
     }
 
+    /// The rows of C.
+    pub(super) fn stiffness(&self) -> impl Iterator<Item = &[f64]> {
+        self.stiffness.chunks(self.rooms)
+    }
+
     /// Sets gamma^2 C (I + gamma^2 H C)^-1.
     pub(super) fn resist_by(&mut self, gamma: f64) {
         let Self { rooms, stiffness, resistance, compliance, work, .. } = self;
@@ -139,6 +144,14 @@ impl FlowMatrix {
         x.iter_mut().zip(&*changes).for_each(|(x, follows)| *x += follows);
         let [by_volumes, by_amounts] = &derivatives.power;
         [dot(&derivatives.heat, x), dot(by_volumes, volumes) + dot(by_amounts, x)]
+    }
+
+    /// Changes of the pressures (Pa) of the rooms, after those of the unknowns of the flow were [solved](Self::solve) for, `x`.
+    pub(super) fn pressure_changes(&self, x: &[f64]) -> impl Iterator<Item = f64> {
+        let [stiff, pressing] = &self.derivatives.pressures;
+        let by_volumes = stiff.iter().zip(&self.volumes).map(|(stiff, volume)| stiff * volume);
+        let by_amounts = pressing.iter().zip(x).map(|(pressing, x)| pressing * x);
+        by_amounts.zip(by_volumes).map(|(more, less)| more - less)
     }
 
     /// Sets `volumes` to G^T x.

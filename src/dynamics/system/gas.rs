@@ -1,7 +1,8 @@
 //! Gas that flows, and actuators that lag, in the equations of a phase and in their Newton systems.
 
-use super::{System, flow_of};
+use super::{Evaluation, System, flow_of};
 use crate::base::vector::dot;
+use crate::integrators::ode::Failure;
 
 impl System {
     /// Writes the rates of the internal unknowns.
@@ -17,6 +18,25 @@ impl System {
         {
             flow.set(t, amounts);
         }
+    }
+
+    /// Adds the forces of the `amounts`, if there are any.
+    pub(super) fn add_flow_forces(
+        &mut self,
+        t: f64,
+        u: &[f64],
+        amounts: &[f64],
+    ) -> Result<(), Failure> {
+        let Evaluation { nodal, flowing, brought, .. } = &mut self.at;
+        if let (Some(flow), [_, ..]) = (flow_of(&self.flow), amounts) {
+            let rates = flowing.each_mut().map(|rates| &mut rates[..]);
+            let added = flow.add_forces_of(t, [u, amounts], nodal, rates);
+            if let Err(Failure::Recoverable(reason)) = &added {
+                self.refusal.clone_from(reason);
+            }
+            *brought = added?;
+        }
+        Ok(())
     }
 
     /// Adds to Kt, just updated, the tangent of gas that flows under constant pressures, and takes its other derivatives, `at` (u, v, m).

@@ -21,6 +21,8 @@ pub(crate) struct LeftOver {
     age: f64,
     /// Displacements (m), velocities (m/s) and accelerations (m/s^2) of all nodes.
     pub(crate) state: [Vec<f64>; 3],
+    /// Amounts of what flows.
+    amounts: Vec<f64>,
     /// The nodal forces (N) of all but the cells.
     forces: Vec<f64>,
     /// How far the state is outside of those learned from, in parts of the widest range of a shape.
@@ -49,7 +51,8 @@ impl System {
         name: &str,
     ) -> Result<(), InputError> {
         self.check_reducible()?;
-        let own = Reduction::new(body, &self.matrices, &self.forces, &self.rows, model, name)?;
+        let forces = self.forces.iter().chain(&self.flow).cloned().collect();
+        let own = Reduction::new(body, &self.matrices, &forces, &self.rows, model, name)?;
         self.reduction = Some(Box::new(own));
         Ok(())
     }
@@ -60,7 +63,6 @@ impl System {
         let missing = [
             (self.matrices.rigid.is_some(), "rigid pieces"),
             (self.matrices.branches.is_some(), "Maxwell branches"),
-            (self.flow.is_some(), "gas or a liquid that flows, or an actuator that lags"),
         ];
         match missing.iter().find(|(is_there, _)| *is_there) {
             Some((_, what)) => {
@@ -105,29 +107,39 @@ impl System {
             }
             _ => return Ok(None),
         }
-        let State { u, v, .. } = State::of(state, self.dofs());
+        let State { u, v, others: amounts, .. } = State::of(state, self.dofs());
         self.at.nodal.clear();
+        self.set_lagging(t, amounts);
         self.add_forces_where(|force| !force.is_by_cells(), t, u, v)?;
+        self.add_flow_forces(t, u, amounts)?;
         self.at.nodal.add_up(&mut self.at.total);
         let forces = self.at.total.clone();
-        let a = self.reduced_accelerations(t, u, v)?;
+        let a = self.reduced_accelerations(t, [u, v, amounts])?;
         let outside = self.reduction.as_ref().map_or(0.0, |own| own.outside(u));
         let state = [u.to_vec(), v.to_vec(), a];
-        Ok(Some(LeftOver { time: t, age, state, forces, outside }))
+        Ok(Some(LeftOver { time: t, age, state, amounts: amounts.to_vec(), forces, outside }))
     }
 
     /// Accelerations (m/s^2) of all nodes as a reduced model has them.
-    fn reduced_accelerations(&mut self, t: f64, u: &[f64], v: &[f64]) -> Result<Vec<f64>, Failure> {
+    fn reduced_accelerations(
+        &mut self,
+        t: f64,
+        [u, v, amounts]: [&[f64]; 3],
+    ) -> Result<Vec<f64>, Failure> {
         let Some(reduction) = &mut self.reduction else { return Ok(vec![0.0; u.len()]) };
         let [q, p] = reduction.coordinates(&self.rows, t, [u, v]);
-        reduction.evaluate(&self.rows, t, [&q, &p])?;
+        reduction.evaluate(&self.rows, t, [&q, &p, amounts])?;
         Ok(reduction.accelerations())
     }
 
     /// Evaluates forces, accelerations and multipliers, with the accelerations that a reduced model has.
-    pub(super) fn evaluate_reduced(&mut self, t: f64, u: &[f64], v: &[f64]) -> Result<(), Failure> {
-        self.evaluate_forces(t, u, v, &[])?;
-        self.at.acceleration = self.reduced_accelerations(t, u, v)?;
+    pub(super) fn evaluate_reduced(
+        &mut self,
+        t: f64,
+        [u, v, amounts]: [&[f64]; 3],
+    ) -> Result<(), Failure> {
+        self.evaluate_forces(t, u, v, amounts)?;
+        self.at.acceleration = self.reduced_accelerations(t, [u, v, amounts])?;
         let Self { matrices, rows, inertia, at, .. } = self;
         let mut left_over = at.total.clone();
         matrices.inertia.add_product(matrices.dimension, -1.0, &at.acceleration, &mut left_over);
@@ -182,15 +194,15 @@ impl System {
         states: &[LeftOver],
         residuals: &[Vec<f64>],
     ) -> Result<Vec<Vec<f64>>, Failure> {
-        let LeftOver { time, state: [u, v, _], .. } = at;
+        let LeftOver { time, state: [u, v, _], amounts, .. } = at;
         // a step so long that inertia hardly matters, except where nothing resists a motion
         let [size, speed] = self.matrices.scales;
         let slow = SLOW * size / speed;
         self.newton.is_set = false;
+        self.set_lagging(*time, amounts);
         self.update_tangents(*time, u, v, false);
+        self.add_flow_tangents(*time, [u, v, amounts]);
         let mut gamma = 0.0;
-        let none = vec![0.0; self.rows.len()];
-        let (mut x, mut mu) = (vec![0.0; self.dofs()], none.clone());
         let mut imbalances = Vec::new();
         for (LeftOver { age, .. }, residual) in states.iter().zip(residuals) {
             // what has just begun to act has not moved the body far
@@ -198,9 +210,11 @@ impl System {
                 gamma = slow.min(*age);
                 self.factorize_newton(gamma)?;
             }
-            let right: Vec<f64> = residual.iter().map(|force| force * (gamma * gamma)).collect();
-            self.newton.solver.solve(&self.rows, &right, &none, &mut x, &mut mu);
-            imbalances.push(x.clone());
+            let right = self.newton.right.iter_mut().zip(residual);
+            right.for_each(|(right, force)| *right = force * (gamma * gamma));
+            self.newton.demands.fill(0.0);
+            self.solve_resisted();
+            imbalances.push(self.newton.xv.clone());
         }
         Ok(imbalances)
     }

@@ -40,6 +40,8 @@ mod newton_matrix;
 mod ode;
 mod rates;
 mod reduced;
+mod reduced_dae;
+mod reduced_flow;
 mod reduced_form;
 mod reduction;
 pub(crate) mod rigid;
@@ -64,7 +66,8 @@ pub(crate) use form::Form;
 pub(crate) use imbalance::{Lacking, LeftOver};
 use newton_matrix::NewtonMatrix;
 use reduced::{EXACT, Reduced, nodal_multipliers};
-pub(crate) use reduced_form::ReducedForm;
+pub(crate) use reduced_dae::ReducedDae;
+pub(crate) use reduced_form::{Lift, ReducedForm};
 use reduction::Reduction;
 pub(crate) use second_order::SecondOrderForm;
 use source::Coupling;
@@ -324,7 +327,7 @@ impl System {
         internal: &[f64],
     ) -> Result<&[f64], Failure> {
         match self.is_reduced() {
-            true => self.evaluate_reduced(t, u, v)?,
+            true => self.evaluate_reduced(t, [u, v, internal])?,
             false => self.evaluate(t, u, v, internal)?,
         }
         Ok(&self.at.multipliers)
@@ -496,18 +499,11 @@ impl System {
         self.set_lagging(t, internal);
         self.collect_forces(t, u, v)?;
         let (strains, amounts) = self.parts_of(internal);
-        let Evaluation { nodal, relaxing, relaxed, flowing, brought, .. } = &mut self.at;
+        let Evaluation { nodal, relaxing, relaxed, .. } = &mut self.at;
         if let (Some(branches), [_, ..]) = (&self.matrices.branches, strains) {
             *relaxed = branches.add_forces(u, strains, &mut nodal.conservative, relaxing);
         }
-        if let (Some(flow), [_, ..]) = (flow_of(&self.flow), amounts) {
-            let rates = flowing.each_mut().map(|rates| &mut rates[..]);
-            let added = flow.add_forces_of(t, [u, amounts], nodal, rates);
-            if let Err(Failure::Recoverable(reason)) = &added {
-                self.refusal.clone_from(reason);
-            }
-            *brought = added?;
-        }
+        self.add_flow_forces(t, u, amounts)?;
         self.at.nodal.add_up(&mut self.at.total);
         Ok(())
     }

@@ -156,15 +156,9 @@ impl System {
     /// nodal rows.
     fn solve_newton(&mut self, ru: &mut [f64]) {
         let gamma = self.newton.gamma;
-        let NewtonMatrix {
-            solver, stiffness, damping, right, xv, demands, mu, stray, flow, ..
-        } = &mut self.newton;
+        self.solve_resisted();
+        let NewtonMatrix { stiffness, damping, right, xv, mu, stray, .. } = &mut self.newton;
         let (stiffness, damping) = (stiffness.get(), damping.get());
-        solver.solve(&self.rows, right, demands, xv, mu);
-        if let Some(flow) = flow {
-            flow.resist(xv, right);
-            solver.solve(&self.rows, right, demands, xv, mu);
-        }
         let (inertia, dimension) = (&self.matrices.inertia, self.matrices.dimension);
         nodal_multipliers(&self.rows, mu, |dof| {
             let damped = damping.row_product(dof, xv) + gamma * stiffness.row_product(dof, xv);
@@ -172,6 +166,16 @@ impl System {
         });
         xv.iter_mut().zip(stray).for_each(|(x, stray)| *x += *stray);
         ru.iter_mut().zip(&*xv).for_each(|(x, xv)| *x += gamma * xv);
+    }
+
+    /// Sets xv, and mu of general rows, for the right-hand side and the demands, under the resistance of amounts.
+    pub(super) fn solve_resisted(&mut self) {
+        let NewtonMatrix { solver, right, xv, demands, mu, flow, .. } = &mut self.newton;
+        solver.solve(&self.rows, right, demands, xv, mu);
+        if let Some(flow) = flow {
+            flow.resist(xv, right);
+            solver.solve(&self.rows, right, demands, xv, mu);
+        }
     }
 
     /// Turns A^T rv in `self.newton.demands` into A^T xv.

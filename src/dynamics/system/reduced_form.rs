@@ -1,4 +1,5 @@
-//! The equations of a phase by a reduced model, as an ODE: y = (q, q', energy dissipated, energy supplied).
+//! The equations of a phase by a reduced model, as an ODE: y = (q, q', amounts, energy dissipated, energy supplied). Energies come last,
+//! where integrals have to be.
 
 #[cfg(test)]
 mod tests;
@@ -17,7 +18,7 @@ pub(crate) struct ReducedForm {
 }
 
 impl ReducedForm {
-    /// The equations of a `system` that has a reduced model, from its `state` = (u, v, energies) at time t on; with the
+    /// The equations of a `system` that has a reduced model, from its `state` = (u, v, energies, amounts) at time t on; with the
     /// unknowns of that state. What velocities lose that the model does not have is energy supplied.
     ///
     /// # Errors
@@ -35,39 +36,41 @@ impl ReducedForm {
         if let Some(y) = form.unknowns_of(t, state) {
             return Ok((form, y));
         }
-        let State { u, v, dissipated, supplied, .. } = State::of(state, form.system.dofs());
+        let State { u, v, dissipated, supplied, others } = State::of(state, form.system.dofs());
         let kinetic = form.system.energy(t, u, v, &[]).kinetic;
         let System { reduction, matrices, rows, .. } = &mut form.system;
         let p = match reduction {
             Some(own) => own.begin(matrices, rows, t, [u, v]),
             None => Vec::new(),
         };
-        let y = [&vec![0.0; free][..], &p, &[dissipated, supplied]].concat();
+        let mut y = [&vec![0.0; free][..], &p, others, &[dissipated, supplied]].concat();
         let mut lifted = vec![0.0; state.len()];
         form.lift(t, &y, &mut lifted);
         let n = form.system.dofs();
         let kept = form.system.energy(t, &lifted[..n], &lifted[n..2 * n], &[]).kinetic;
-        Ok((form, [&y[..=2 * free], &[supplied + kept - kinetic]].concat()))
+        parts_mut(&mut y, free)[3][1] += kept - kinetic;
+        Ok((form, y))
     }
 
-    /// Writes (u, v, energies) for the unknowns y at time t.
+    /// Writes (u, v, energies, amounts) for the unknowns y at time t.
     pub(crate) fn lift(&mut self, t: f64, y: &[f64], state: &mut [f64]) {
         let System { reduction, rows, matrices, .. } = &mut self.system;
-        let own = State::of(y, self.free);
+        let [q, p, amounts, energies] = parts(y, self.free);
         let all = StateMut::of(state, matrices.dofs());
         if let Some(reduction) = reduction {
-            reduction.lift(rows, t, [own.u, own.v], [all.u, all.v]);
+            reduction.lift(rows, t, [q, p], [all.u, all.v]);
         }
-        (*all.dissipated, *all.supplied) = (own.dissipated, own.supplied);
+        (*all.dissipated, *all.supplied) = (energies[0], energies[1]);
+        all.others.copy_from_slice(amounts);
     }
 
-    /// The unknowns of a state (u, v, energies) at time t, if the model has it.
+    /// The unknowns of a state (u, v, energies, amounts) at time t, if the model has it.
     pub(crate) fn unknowns_of(&mut self, t: f64, state: &[f64]) -> Option<Vec<f64>> {
         let n = self.system.dofs();
-        let State { u, v, dissipated, supplied, .. } = State::of(state, n);
+        let State { u, v, dissipated, supplied, others } = State::of(state, n);
         let reduction = self.system.reduction.as_ref().filter(|own| own.has_begun())?;
         let [q, p] = reduction.coordinates(&self.system.rows, t, [u, v]);
-        let y = [&q[..], &p, &[dissipated, supplied]].concat();
+        let y = [&q[..], &p, others, &[dissipated, supplied]].concat();
         let mut lifted = vec![0.0; state.len()];
         self.lift(t, &y, &mut lifted);
         let differs = |own: &[f64], lifted: &[f64]| {
@@ -78,14 +81,42 @@ impl ReducedForm {
     }
 
     fn evaluate(&mut self, t: f64, y: &[f64]) -> Result<(), Failure> {
-        let State { u: q, v: p, .. } = State::of(y, self.free);
+        let [q, p, amounts, _] = parts(y, self.free);
         let System { reduction, rows, refusal, .. } = &mut self.system;
         let Some(reduction) = reduction else { return Ok(()) };
-        let evaluated = reduction.evaluate(rows, t, [q, p]);
+        let evaluated = reduction.evaluate(rows, t, [q, p, amounts]);
         if let Err(Failure::Recoverable(reason)) = &evaluated {
             refusal.clone_from(reason);
         }
         evaluated
+    }
+}
+
+/// q, q', amounts and energies of y, or of y' or a residual.
+fn parts(y: &[f64], free: usize) -> [&[f64]; 4] {
+    let (q, rest) = y.split_at(free);
+    let (p, rest) = rest.split_at(free);
+    let (amounts, energies) = rest.split_at(rest.len() - ENERGIES);
+    [q, p, amounts, energies]
+}
+
+/// As [`parts`], to be written to.
+fn parts_mut(y: &mut [f64], free: usize) -> [&mut [f64]; 4] {
+    let (q, rest) = y.split_at_mut(free);
+    let (p, rest) = rest.split_at_mut(free);
+    let (amounts, energies) = rest.split_at_mut(rest.len() - ENERGIES);
+    [q, p, amounts, energies]
+}
+
+/// What holds the equations of a reduced model.
+pub(crate) trait Lift: Form {
+    /// Those.
+    fn reduced(&mut self) -> &mut ReducedForm;
+}
+
+impl Lift for ReducedForm {
+    fn reduced(&mut self) -> &mut ReducedForm {
+        self
     }
 }
 
@@ -110,10 +141,12 @@ impl Ode for ReducedForm {
     fn rhs(&mut self, t: f64, y: &[f64], ydot: &mut [f64]) -> Result<(), Failure> {
         self.evaluate(t, y)?;
         let Some(reduction) = &self.system.reduction else { return Ok(()) };
-        let rates = StateMut::of(ydot, self.free);
-        rates.u.copy_from_slice(State::of(y, self.free).v);
-        rates.v.copy_from_slice(reduction.acceleration());
-        [*rates.dissipated, *rates.supplied] = reduction.powers();
+        let [_, velocities, ..] = parts(y, self.free);
+        let [q, p, amounts, energies] = parts_mut(ydot, self.free);
+        q.copy_from_slice(velocities);
+        p.copy_from_slice(reduction.acceleration());
+        amounts.copy_from_slice(reduction.amount_rates());
+        energies.copy_from_slice(&reduction.powers());
         Ok(())
     }
 
@@ -144,11 +177,10 @@ impl Ode for ReducedForm {
     }
 
     fn newton_solve(&mut self, gamma: f64, r: &mut [f64]) -> Result<(), Failure> {
-        let r = StateMut::of(r, self.free);
+        let [ru, rv, amounts, energies] = parts_mut(r, self.free);
         let Some(reduction) = &mut self.system.reduction else { return Ok(()) };
-        let [dissipated, supplied] = reduction.solve([r.u, r.v]);
-        *r.dissipated += gamma * dissipated;
-        *r.supplied += gamma * supplied;
+        let powers = reduction.solve([ru, rv, amounts]);
+        energies.iter_mut().zip(powers).for_each(|(energy, power)| *energy += gamma * power);
         Ok(())
     }
 }

@@ -19,6 +19,7 @@ use faer::perm::PermRef;
 use faer::{Mat, MatMut, Par, Spec};
 
 use super::differences::Differences;
+use super::reduced_flow::ReducedFlow;
 use super::shapes::Shapes;
 use crate::base::input::InputError;
 use crate::base::sparse::{BlockMatrix, NodePattern};
@@ -47,6 +48,8 @@ pub(super) struct Reduction {
     /// ones.
     generalized: [Vec<Box<dyn GeneralizedForce>>; 2],
     acting: Forces,
+    /// That whose amounts are unknowns, if there is one.
+    flow: Option<ReducedFlow>,
     pattern: Arc<NodePattern>,
     constant: Constant,
     at: Place,
@@ -115,7 +118,7 @@ const ORTHONORMAL: f64 = 1e-6;
 const HELD: f64 = 1e-8;
 
 impl Reduction {
-    /// The phase `name` by a `model`, under `forces` and `rows`.
+    /// The phase `name` by a `model`, under `forces`, that of amounts among them, and `rows`.
     pub(super) fn new(
         body: &Body,
         matrices: &Matrices,
@@ -182,6 +185,7 @@ impl Reduction {
             forces: Forces::new(),
             generalized: [Vec::new(), Vec::new()],
             acting: Forces::new(),
+            flow: None,
             constant: Constant {
                 inertia,
                 stiffness: of_blocks(&matrices.stiffness),
@@ -239,8 +243,11 @@ impl Reduction {
                 true => None,
                 false => force.sample(weights, &self.pattern),
             };
+        let (flows, others): (Vec<_>, Vec<_>) =
+            forces.iter().partition(|force| force.flow().is_some());
         self.forces =
-            forces.iter().map(|force| sample(force).unwrap_or_else(|| force.clone())).collect();
+            others.iter().map(|force| sample(force).unwrap_or_else(|| (*force).clone())).collect();
+        self.flow = flows.first().map(|flow| ReducedFlow::new(flow, &self.shapes));
         let mut steady = NodalForces::zeros(self.origin.len());
         self.acting.clear();
         for force in &self.forces {
@@ -356,21 +363,25 @@ impl Reduction {
         }
     }
 
-    /// Evaluates the forces and q'' at (q, q').
+    /// Evaluates the forces and q'' at (q, q', amounts).
     pub(super) fn evaluate(
         &mut self,
         rows: &[ConstraintRow],
         t: f64,
-        state: [&[f64]; 2],
+        [q, p, amounts]: [&[f64]; 3],
     ) -> Result<(), Failure> {
-        self.place(rows, t, state);
-        let Self { at, shapes, origin, generalized, acting, constant, .. } = self;
+        self.place(rows, t, [q, p]);
+        let Self { at, shapes, origin, generalized, acting, flow, constant, .. } = self;
         let (s, free) = (shapes.count(), shapes.free());
         let Place { z: [z, rates], pushed, u, v, nodal, generalized: along, .. } = at;
         nodal.clear();
         along.clear();
-        if !acting.is_empty() {
+        if !acting.is_empty() || flow.is_some() {
             shapes.lift_active([z, rates], [u, v], origin);
+        }
+        let mut brought = 0.0;
+        if let Some(flow) = flow {
+            brought = flow.add_forces(t, u, amounts, nodal)?;
         }
         for force in &*acting {
             force.add_forces(t, u, v, nodal)?;
@@ -378,7 +389,7 @@ impl Reduction {
         for force in generalized.iter_mut().flatten() {
             force.add_forces(t, [z, rates], along)?;
         }
-        at.carried = [nodal.carried_heat, nodal.carried_power];
+        at.carried = [nodal.carried_heat, nodal.carried_power + brought];
 
         // what constant matrices do, and what is steady
         at.applied.copy_from_slice(&constant.steady[1]);
@@ -422,6 +433,11 @@ impl Reduction {
         &self.at.acceleration
     }
 
+    /// Rates of the amounts at the last evaluation; none without any.
+    pub(super) fn amount_rates(&self) -> &[f64] {
+        self.flow.as_ref().map_or(&[], |flow| flow.rates())
+    }
+
     /// u'' of all nodes at the last evaluation.
     pub(super) fn accelerations(&self) -> Vec<f64> {
         let all = [&self.at.acceleration[..], &self.at.pushed].concat();
@@ -439,12 +455,15 @@ impl Reduction {
 
     /// Updates the tangents to the state last evaluated.
     pub(super) fn update_tangents(&mut self, t: f64) {
-        let Self { at, shapes, generalized, acting, constant, tangents, .. } = self;
+        let Self { at, shapes, generalized, acting, flow, constant, tangents, .. } = self;
         let Tangents { nodal: [stiffness, damping], projected, differences, is_set } = tangents;
         stiffness.values.fill(0.0);
         damping.values.fill(0.0);
         for force in &*acting {
             differences.add_tangents(force, t, [&at.u, &at.v], [stiffness, damping]);
+        }
+        if let Some(flow) = flow {
+            flow.linearize(t, [&at.u, &at.v], stiffness, shapes);
         }
         let constants = [&constant.stiffness, &constant.damping];
         for ((projected, constant), matrix) in
@@ -477,7 +496,7 @@ impl Reduction {
     pub(super) fn factorize(&mut self, gamma: f64) {
         let (s, free) = (self.shapes.count(), self.shapes.free());
         let [stiffness, damping] = &self.tangents.projected;
-        let factors = &mut self.factors;
+        let (factors, flow) = (&mut self.factors, &mut self.flow);
         factors.gamma = gamma;
         for j in 0..free {
             for i in 0..free {
@@ -485,21 +504,27 @@ impl Reduction {
                 factors.matrix[(i, j)] = entry + if i == j { 1.0 } else { 0.0 };
             }
         }
+        if let Some(flow) = flow {
+            flow.add_stiffness(gamma, &mut factors.matrix);
+        }
         let memory = MemStack::new(&mut factors.memory);
         let (forward, inverse) = (&mut factors.forward, &mut factors.inverse);
         let matrix = factors.matrix.as_mut();
         factor::lu_in_place(matrix, forward, inverse, Par::Seq, memory, Spec::default());
     }
 
-    /// Solves (I - gamma J) x = r for the residuals `ru` and `rv`, which become x. Returns the changes of the powers
-    /// dissipated and supplied (W) along x.
-    pub(super) fn solve(&mut self, [ru, rv]: [&mut [f64]; 2]) -> [f64; 2] {
+    /// Solves (I - gamma J) x = r for the residuals `ru`, `rv` and those of `amounts`, which become x. Returns the changes of
+    /// the powers dissipated and supplied (W) along x.
+    pub(super) fn solve(&mut self, [ru, rv, amounts]: [&mut [f64]; 3]) -> [f64; 2] {
         let (s, free) = (self.shapes.count(), self.shapes.free());
         let [stiffness, damping] = &self.tangents.projected;
         let Factors { matrix, forward, inverse, memory, gamma, right, xv } = &mut self.factors;
         let gamma = *gamma;
         for i in 0..free {
             xv[i] = rv[i] - gamma * dot(&stiffness[i * s..][..free], ru);
+        }
+        if let Some(flow) = &mut self.flow {
+            flow.add_residuals(gamma, ru, amounts, xv);
         }
         solve::solve_in_place(
             matrix.as_ref(),
@@ -524,6 +549,11 @@ impl Reduction {
             let of = |matrix: &[f64], x: &[f64]| dot(&matrix[row * s..][..free], x);
             let change = of(&self.constant.inertia, right) + of(damping, xv) + of(stiffness, ru);
             supplied += rates[row] * change;
+        }
+        if let Some(flow) = &mut self.flow {
+            let [heated, brought] = flow.solve(ru, amounts, &rates[free..]);
+            dissipated += heated;
+            supplied += brought;
         }
         rv.copy_from_slice(xv);
         [dissipated, supplied]

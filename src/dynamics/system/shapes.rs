@@ -91,6 +91,11 @@ impl Shapes {
         self.active.dofs.len() == self.dofs
     }
 
+    /// Number of displacement components.
+    pub(super) fn dofs(&self) -> usize {
+        self.dofs
+    }
+
     /// Number of those that are free.
     pub(super) fn free(&self) -> usize {
         self.free

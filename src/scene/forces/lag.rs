@@ -193,6 +193,11 @@ impl Lagging {
         self.force = Some(force);
     }
 
+    /// The force that it drives.
+    pub(crate) fn force(&self) -> Option<&dyn Force> {
+        self.force.as_deref()
+    }
+
     pub(crate) fn size(&self) -> f64 {
         self.size
     }

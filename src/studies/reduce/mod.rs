@@ -385,6 +385,7 @@ fn check(training: &Training) -> Result<(), InputError> {
     }
     settings.validate()?;
     first.check_reducible()?;
+    // weights are found from the work of cells that have not grown
     if !first.growths().is_empty() {
         let help = "cells that grow cannot be reduced yet: run the scene unreduced";
         return Err(InputError::new("number of growths", first.growths().len(), help));

@@ -1,17 +1,19 @@
 //! The integrator of a phase that is run by a reduced model: it takes the unknowns of that, and shows all others.
 
-use super::{Failed, Lead, Stepper, ode};
+use super::{Failed, Lead, Stepper, ida_options_of, ode};
 use crate::base::input::InputError;
 use crate::dynamics::report::Counts;
 use crate::dynamics::state::ENERGIES;
-use crate::dynamics::system::{Form, ReducedForm, System};
+use crate::dynamics::system::{Form, Lift, ReducedDae, ReducedForm, System};
 use crate::integrators::common::Integrator;
+use crate::integrators::ode::Failure;
+use crate::integrators::sundials::{Ida, LinearSolver};
 use crate::scene::settings::{AbsoluteTolerances, Method, Settings};
 
 /// An integrator of a reduced model.
 struct Lifted<I> {
     integrator: I,
-    /// (u, v, energies) at the end of the last step.
+    /// (u, v, energies, amounts) at the end of the last step.
     state: Vec<f64>,
     /// Room for the unknowns of the model.
     seen: Vec<f64>,
@@ -27,46 +29,65 @@ pub(super) fn start(
     state: &[f64],
 ) -> Result<Box<dyn Stepper>, Failed> {
     let method = settings.method;
-    if let Method::Ida | Method::IdaKlu | Method::IdaIndexTwo | Method::CentralDifference = method {
-        let help = "a reduced model has no constraints left, and a matrix of its own: take cvode-bdf, arkode, rosenbrock or rk";
+    if let Method::IdaKlu | Method::IdaIndexTwo | Method::CentralDifference = method {
+        let help = "a reduced model has no constraints left, and a matrix of its own: take cvode-bdf, arkode, rosenbrock, rk or ida";
         return Err(InputError::new("method", method, help).into());
     }
     let (is_linear, mass) = (system.is_linear(), system.mass());
+    let of_amounts = system.flow_tolerances(atol.strain, atol.velocity);
     let Ok((equations, y)) = ReducedForm::new(system, t, state) else {
         return Err("the equations have no reduced model".into());
     };
     // shapes are orthonormal in M: a displacement of all nodes counts times the root of the mass
-    let free = (y.len() - ENERGIES) / 2;
+    let free = (y.len() - ENERGIES - of_amounts.len()) / 2;
     let mut tolerances = vec![atol.position * mass.sqrt(); free];
     tolerances.resize(2 * free, atol.velocity * mass.sqrt());
+    tolerances.extend(of_amounts);
     tolerances.resize(y.len(), atol.energy);
+    if method == Method::Ida {
+        let mut equations = ReducedDae::new(equations);
+        let yp = equations.consistent(t, &y).map_err(Failure::into_error)?;
+        // what is not marked as differential stays out of the error test
+        let motion = y.len() - ENERGIES;
+        let differential = (0..y.len()).map(|i| i < motion).collect();
+        let options = ida_options_of(settings, tolerances, differential, LinearSolver::Custom);
+        return lift(end, Ida::new(equations, t, &y, &yp, &options)?);
+    }
     ode(equations, is_linear, settings, tolerances, [t, end], first, &y)
 }
 
 impl Lead for ReducedForm {
-    fn lead<I>(end: f64, mut integrator: I) -> Result<Box<dyn Stepper>, Failed>
+    fn lead<I>(end: f64, integrator: I) -> Result<Box<dyn Stepper>, Failed>
     where
         I: Integrator<System = Self> + Send + 'static,
     {
-        integrator.set_stop_time(Some(end))?;
-        let seen = integrator.y().to_vec();
-        let state = vec![0.0; crate::dynamics::state::length(integrator.system().system().dofs())];
-        let mut lifted = Lifted { integrator, state, seen };
-        lifted.follow();
-        Ok(Box::new(lifted))
+        lift(end, integrator)
     }
 }
 
-impl<I: Integrator<System = ReducedForm>> Lifted<I> {
+/// The stepper of an integrator of a reduced model, which stops at `end` (s).
+fn lift<I>(end: f64, mut integrator: I) -> Result<Box<dyn Stepper>, Failed>
+where
+    I: Integrator<System: Lift> + Send + 'static,
+{
+    integrator.set_stop_time(Some(end))?;
+    let seen = integrator.y().to_vec();
+    let state = vec![0.0; integrator.system().system().unknowns()];
+    let mut lifted = Lifted { integrator, state, seen };
+    lifted.follow();
+    Ok(Box::new(lifted))
+}
+
+impl<I: Integrator<System: Lift>> Lifted<I> {
     /// Updates the state to the end of the last step.
     fn follow(&mut self) {
         let t = self.integrator.t();
         self.seen.copy_from_slice(self.integrator.y());
-        self.integrator.system_mut().lift(t, &self.seen, &mut self.state);
+        self.integrator.system_mut().reduced().lift(t, &self.seen, &mut self.state);
     }
 }
 
-impl<I: Integrator<System = ReducedForm> + Send> Stepper for Lifted<I> {
+impl<I: Integrator<System: Lift> + Send> Stepper for Lifted<I> {
     fn step(&mut self, end: f64) -> Result<f64, Failed> {
         let _ = self.integrator.step(end)?;
         self.follow();
@@ -81,7 +102,7 @@ impl<I: Integrator<System = ReducedForm> + Send> Stepper for Lifted<I> {
         // mostly where the last step has led to
         let y = match t == self.integrator.t() && state == self.state {
             true => Some(self.integrator.y().to_vec()),
-            false => self.integrator.system_mut().unknowns_of(t, state),
+            false => self.integrator.system_mut().reduced().unknowns_of(t, state),
         };
         let Some(y) = y else { return Ok(false) };
         let goes_on = self.integrator.resume(t, &y)?;
@@ -93,7 +114,7 @@ impl<I: Integrator<System = ReducedForm> + Send> Stepper for Lifted<I> {
 
     fn interpolate(&mut self, t: f64, state: &mut [f64]) -> Result<(), Failed> {
         self.integrator.interpolate(t, 0, &mut self.seen)?;
-        self.integrator.system_mut().lift(t, &self.seen, state);
+        self.integrator.system_mut().reduced().lift(t, &self.seen, state);
         Ok(())
     }
 

@@ -3,14 +3,18 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use super::super::ReducedDae;
 use super::*;
 use crate::base::pod::orthonormal;
 use crate::base::vector::{noise, norm};
-use crate::integrators::ode::Ode;
+use crate::integrators::ode::{Dae, Ode};
 use crate::scene::constraint::{Axis, PhaseStart, Prescribed};
 use crate::scene::reduced_model::{ReducedModel, ReducedPhase};
 use crate::studies::samples::SQUARE_MATERIAL;
-use crate::{Body, Cells, Mesh, Obstacle, Phase, Scene, Viscosity};
+use crate::{
+    Body, Cells, Chamber, Gas, Lag, Liquid, Mesh, Obstacle, Orifice, Phase, Pipe, Scene, Spring,
+    Viscosity,
+};
 
 const T: f64 = 0.3;
 const ALPHA: f64 = 30.0;
@@ -42,6 +46,45 @@ fn scene() -> Scene {
         .damping(20.0)
         .tangential_damping(30.0);
     Scene::new(body).gravity([0.0, -9.8]).obstacle(floor).phase(phase)
+}
+
+/// Two rooms of gas with orifices, two of liquids with weight, one of them with a surface, pipes, and a spring that lags, in a body
+/// with nodes that move.
+fn with_amounts() -> Scene {
+    let mesh = Mesh::rectangle([0.3, 0.2], [4, 3], Cells::Triangles).unwrap();
+    let body = Body::new(mesh, SQUARE_MATERIAL).thickness(1.0).build().unwrap();
+    let phase = Phase::until(1.0)
+        .named("p")
+        .hold_axes([1, 2], [Axis::Y])
+        .follow([11], Axis::X, |t| Prescribed {
+            displacement: 0.01 * (3.0 * t).sin(),
+            velocity: 0.03 * (3.0 * t).cos(),
+            acceleration: -0.09 * (3.0 * t).sin(),
+        })
+        .hold_combination([(10, Axis::X, 1.0), (12, Axis::X, -2.0)])
+        .load([7], [3.0, -2.0])
+        .open("out", 0.5)
+        .flow("c", 1e-3)
+        .actuate(["wire"], 30.0);
+    Scene::new(body)
+        .gravity([3.0, -9.0])
+        .chamber(Chamber::within("a", [1, 2, 6, 5]))
+        .chamber(Chamber::within("b", [3, 4, 12, 11]))
+        .chamber(Chamber::within("c", [6, 7, 11, 10]))
+        .chamber(Chamber::within("d", [2, 3, 7, 6]))
+        .gas(Gas::in_chamber("a").pressure(1.3e5).exponent(1.4))
+        .gas(Gas::in_chamber("b").pressure(2.0e5).exponent(1.1))
+        .liquid(Liquid::in_chamber("c").bulk_modulus(3e5).density(50.0))
+        .liquid(Liquid::in_chamber("d").density(50.0).fill(0.5).surface())
+        .pipe(Pipe::new("flat", "c", "d", 0.3, 1e-3).viscosity(0.02).loss(0.7))
+        .pipe(Pipe::new("fed", "pump", "c", 0.2, 2e-3).loss(1.2))
+        .supply("pump", 4e5)
+        .orifice(Orifice::new("in", "pump", "a", 1e-5))
+        .orifice(Orifice::new("between", "a", "b", 2e-5).critical_ratio(0.3))
+        .orifice(Orifice::new("out", "b", "atmosphere", 3e-5))
+        .spring(Spring::between([5], [8]).named("wire").stiffness(1e3).damping(2.0))
+        .lag(Lag::rise_and_fall(0.1, 0.2), ["wire"])
+        .phase(phase)
 }
 
 fn system(scene: &Scene) -> System {
@@ -88,12 +131,13 @@ fn model(scene: &Scene, most: usize) -> ReducedModel {
 }
 
 /// The reduced equations in a state without a pattern, with that state in all unknowns.
-fn reduced(most: usize) -> (ReducedForm, Vec<f64>, Vec<f64>) {
-    let scene = scene();
-    let model = Arc::new(model(&scene, most));
-    let mut own = system(&scene);
+fn reduced(scene: &Scene, most: usize) -> (ReducedForm, Vec<f64>, Vec<f64>) {
+    let model = Arc::new(model(scene, most));
+    let mut own = system(scene);
     own.reduce(scene.body(), &model, "p").unwrap();
-    let start = vec![0.0; own.unknowns()];
+    let mut start = vec![0.0; own.unknowns() - own.amounts().len()];
+    // states that lag and flows are 0 at the start
+    start.extend(own.amounts().iter().map(|x| if *x == 0.0 { 0.02 } else { 1.1 * x }));
     let (mut form, mut y) = ReducedForm::new(own, 0.0, &start).ok().unwrap();
     let free = form.free;
     for (k, y) in y.iter_mut().zip(noise(2 * free, 3)).enumerate() {
@@ -112,60 +156,87 @@ fn rhs(form: &mut impl Ode, y: &[f64]) -> Vec<f64> {
 
 #[test]
 fn with_all_shapes_and_cells_it_is_the_body() {
-    let (mut form, y, state) = reduced(usize::MAX);
-    let mut full = system(&scene());
-    let n = full.dofs();
-    let drift = full.drift(T, &state[..n]);
-    assert!(drift < 1e-15, "{drift:e} m");
-    let exact = rhs(&mut full, &state);
-    let own = rhs(&mut form, &y);
-    let accelerations = form.system.reduction.as_ref().unwrap().accelerations();
-    let off: Vec<f64> = exact[n..2 * n].iter().zip(&accelerations).map(|(a, b)| a - b).collect();
-    // a solve with M, and 20 projections
-    assert!(norm(&off) < 1e-12 * norm(&accelerations), "{:e}", norm(&off) / norm(&accelerations));
-    for k in 0..2 {
-        let [own, exact] = [own[2 * form.free + k], exact[2 * n + k]];
-        assert!((own / exact - 1.0).abs() < 1e-10, "power {k}: {own}, {exact}");
+    for scene in [scene(), with_amounts()] {
+        let (mut form, y, state) = reduced(&scene, usize::MAX);
+        let mut full = system(&scene);
+        let n = full.dofs();
+        let drift = full.drift(T, &state[..n]);
+        assert!(drift < 1e-15, "{drift:e} m");
+        let exact = rhs(&mut full, &state);
+        let own = rhs(&mut form, &y);
+        let accelerations = form.system.reduction.as_ref().unwrap().accelerations();
+        let exactly = exact[n..2 * n].iter();
+        let off: Vec<f64> = exactly.zip(&accelerations).map(|(a, b)| a - b).collect();
+        // a solve with M, and 20 projections
+        let off = norm(&off) / norm(&accelerations);
+        assert!(off < 1e-12, "{off:e}");
+        // powers, and rates of amounts
+        let [own, of_body] = [(&own, 2 * form.free), (&exact, 2 * n)].map(|(x, at)| &x[at..]);
+        let (amounts, powers) = own.split_at(own.len() - ENERGIES);
+        let own = powers.iter().chain(amounts);
+        for (k, (own, exact)) in own.zip(of_body).enumerate() {
+            assert!((own / exact - 1.0).abs() < 1e-10, "rate {k}: {own}, {exact}");
+        }
+        // nothing is left over, and the state is one of its own
+        let left_over = form.system.left_over(T, &state, [0.0, 1.0]).unwrap().unwrap();
+        let imbalance = largest(form.system.imbalances(&[left_over])[0].as_ref().unwrap());
+        assert!(imbalance < 1e-13, "{imbalance:e} m");
+        let again = form.unknowns_of(T, &state).unwrap();
+        let off: Vec<f64> = again.iter().zip(&y).map(|(a, b)| a - b).collect();
+        assert!(norm(&off) < 1e-12 * norm(&y), "{:e}", norm(&off));
     }
-    // nothing is left over, and the state is one of its own
-    let left_over = form.system.left_over(T, &state, [0.0, 1.0]).unwrap().unwrap();
-    let imbalance = largest(form.system.imbalances(&[left_over])[0].as_ref().unwrap());
-    assert!(imbalance < 1e-13, "{imbalance:e} m");
-    let again = form.unknowns_of(T, &state).unwrap();
-    let off: Vec<f64> = again.iter().zip(&y).map(|(a, b)| a - b).collect();
-    assert!(norm(&off) < 1e-12 * norm(&y), "{:e}", norm(&off));
 }
 
-/// The Newton systems, against differences of the equations; and the changes of the powers.
+/// The Newton systems, against differences of the equations, of the power supplied, too: those of constraints that move, and with what
+/// flows in.
 #[test]
 fn newton_systems_are_derivatives() {
-    let (mut form, y, _) = reduced(9);
-    let (free, gamma) = (form.free, 2e-3);
-    let ydot = rhs(&mut form, &y);
-    assert!(form.newton_setup(T, &y, &ydot, gamma, false).unwrap());
-    let residual = noise(y.len(), 5);
-    let mut x = residual.clone();
-    form.newton_solve(gamma, &mut x).unwrap();
-    let h = 1e-8;
-    let moved = |by: f64| y.iter().zip(&x).map(|(y, x)| y + by * x).collect::<Vec<_>>();
-    let [ahead, behind] = [h, -h].map(|by| rhs(&mut form, &moved(by)));
-    for i in 0..2 * free {
-        let slope = (ahead[i] - behind[i]) / (2.0 * h);
-        let off = x[i] - gamma * slope - residual[i];
-        let scale = x[i].abs() + gamma * slope.abs();
-        assert!(off.abs() < 1e-5 * scale, "row {i}: {off:e} of {scale:e}");
+    for scene in [scene(), with_amounts()] {
+        let (mut form, y, _) = reduced(&scene, 9);
+        let (free, gamma) = (form.free, 2e-3);
+        let ydot = rhs(&mut form, &y);
+        assert!(form.newton_setup(T, &y, &ydot, gamma, false).unwrap());
+        // of what is dissipated the solution has the part of second order, too
+        let rows = (0..y.len()).filter(|i| *i != y.len() - ENERGIES);
+        let mut residual = noise(y.len(), 5);
+        // small where a unit is large
+        (2 * free..y.len() - ENERGIES).for_each(|i| residual[i] *= y[i]);
+        let mut x = residual.clone();
+        form.newton_solve(gamma, &mut x).unwrap();
+        let h = 1e-8;
+        let moved = |by: f64| y.iter().zip(&x).map(|(y, x)| y + by * x).collect::<Vec<_>>();
+        let [ahead, behind] = [h, -h].map(|by| rhs(&mut form, &moved(by)));
+        for i in rows {
+            let slope = (ahead[i] - behind[i]) / (2.0 * h);
+            let off = x[i] - gamma * slope - residual[i];
+            let scale = x[i].abs() + gamma * slope.abs();
+            assert!(off.abs() < 1e-5 * scale, "row {i} of {free}: {off:e} of {scale:e}");
+        }
+        // what IDA takes: cj y' - J y
+        let mut equations = ReducedDae::new(form);
+        equations.newton_setup(T, 1.0 / gamma, &y, &ydot).unwrap();
+        let mut by_ida: Vec<f64> = residual.iter().map(|r| r / gamma).collect();
+        equations.newton_solve(&mut by_ida).unwrap();
+        let off: Vec<f64> = by_ida.iter().zip(&x).map(|(a, b)| a - b).collect();
+        assert!(norm(&off) < 1e-12 * norm(&x), "{:e}", norm(&off));
+        let mut left = vec![0.0; y.len()];
+        equations.residual(T, &y, &ydot, &mut left).unwrap();
+        assert_eq!(largest(&left), 0.0);
     }
 }
 
 #[test]
 fn a_state_that_the_model_does_not_have_is_none_of_its_own() {
-    let (mut form, _, mut state) = reduced(9);
-    assert!(form.unknowns_of(T, &state).is_some());
-    let other = noise(state.len(), 7);
-    state.iter_mut().zip(other).for_each(|(x, other)| *x += 1e-6 * other);
-    assert!(form.unknowns_of(T, &state).is_none());
-    // what is left out is told
-    let left_over = form.system.left_over(T, &state, [0.0, 1.0]).unwrap().unwrap();
-    let found = largest(form.system.imbalances(&[left_over])[0].as_ref().unwrap());
-    assert!(found > 1e-6, "{found:e} m");
+    for scene in [scene(), with_amounts()] {
+        let (mut form, _, mut state) = reduced(&scene, 9);
+        assert!(form.unknowns_of(T, &state).is_some());
+        let other = noise(state.len(), 7);
+        let motion = 2 * form.system.dofs();
+        state[..motion].iter_mut().zip(other).for_each(|(x, other)| *x += 1e-6 * other);
+        assert!(form.unknowns_of(T, &state).is_none());
+        // what is left out is told
+        let left_over = form.system.left_over(T, &state, [0.0, 1.0]).unwrap().unwrap();
+        let found = largest(form.system.imbalances(&[left_over])[0].as_ref().unwrap());
+        assert!(found > 1e-6, "{found:e} m");
+    }
 }

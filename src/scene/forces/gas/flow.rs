@@ -3,6 +3,7 @@
 use super::Filled;
 use super::orifice::{End, OrificeFlow};
 use crate::base::sparse::BlockMatrix;
+use crate::base::vector::distinct;
 use crate::elements::force::{Flow, FlowDerivatives, Force, NodalForces, Tangents};
 use crate::integrators::ode::Failure;
 use crate::scene::forces::content::Content;
@@ -212,6 +213,15 @@ impl Force for AmountFlow {
 
     fn couplings(&self) -> Vec<[usize; 2]> {
         self.all().flat_map(|content| content.walls().couplings()).collect()
+    }
+
+    /// Those of actuators that lag, too.
+    fn nodes(&self) -> Option<Vec<usize>> {
+        let mut nodes = self.couplings().concat();
+        for force in self.lagging.iter().filter_map(Lagging::force) {
+            nodes.extend(force.nodes()?);
+        }
+        Some(distinct(nodes))
     }
 
     fn flow(&self) -> Option<&dyn Flow> {
