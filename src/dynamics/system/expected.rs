@@ -43,7 +43,8 @@ impl System {
         most: Option<f64>,
     ) -> Result<Vec<Vec<f64>>, Failure> {
         let times = TIMES.map(|part| start + part * (end - start));
-        let (vibrations, rigid) = self.vibrations(start, VIBRATIONS);
+        let rigid = self.update_tangents_at_rest(start);
+        let vibrations = self.vibrations(&rigid, VIBRATIONS);
         let [size, speed] = self.matrices.scales;
         self.factorize_newton(STATIC * size / speed)?;
 
@@ -96,15 +97,19 @@ impl System {
         Ok(motions)
     }
 
-    /// The lowest vibrations at rest, as squares of angular frequencies (rad^2/s^2) with shapes that are orthonormal by M, and the rigid motions that
-    /// nothing resists. Leaves the tangents there.
-    fn vibrations(&mut self, t: f64, count: usize) -> (Vec<(f64, Vec<f64>)>, Vec<Vec<f64>>) {
+    /// Sets the tangents to those at rest, and returns the rigid motions that nothing resists there.
+    fn update_tangents_at_rest(&mut self, t: f64) -> Vec<Vec<f64>> {
         let rest = vec![0.0; self.dofs()];
         self.newton.is_set = false;
         self.update_tangents(t, &rest, &rest, false);
         let highest = self.highest(|system| system.tangents().0);
-        let rigid = self.rigid_motions(&rest, highest);
-        (self.lowest(highest, &rigid, count), rigid)
+        self.rigid_motions(&rest, highest)
+    }
+
+    /// The lowest vibrations by the present tangents, as squares of angular frequencies (rad^2/s^2) with shapes that are orthonormal by M.
+    fn vibrations(&mut self, rigid: &[Vec<f64>], count: usize) -> Vec<(f64, Vec<f64>)> {
+        let highest = self.highest(|system| system.tangents().0);
+        self.lowest(highest, rigid, count)
     }
 
     /// What each row that moves does from the first of the `times` on, as far as it goes.
