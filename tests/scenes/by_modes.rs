@@ -39,7 +39,7 @@ fn errors(scene: &Scene, within: f64) -> [[f64; 2]; 2] {
     let short = short.simulate(&settings(), &sampling).unwrap();
     let report = short.report().reduced.clone().unwrap();
     assert!(report.is_estimate);
-    let tip = report.readings.iter().find(|told| told.quantity.name == "tip.y").unwrap();
+    let tip = report.readings.iter().find(|told| told.name == "tip.y").unwrap();
     let pairs = full.samples().iter().zip(short.samples());
     let off = pairs.map(|(a, b)| (a.sensors[1] - b.sensors[1]).abs()).fold(0.0, f64::max);
     [[error(&full, &short), reduced.model.error()], [off, tip.error]]

@@ -3,7 +3,6 @@
 use std::fmt;
 
 use crate::base::input::{percent, told};
-use crate::dynamics::trajectory::Quantity;
 use crate::scene::reduced_model::ReducedModel;
 
 /// How a run by a reduced model went.
@@ -35,9 +34,11 @@ pub struct ReducedReport {
 /// The error of what a sensor reads, as a run by a reduced model tells it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ToldReading {
-    /// What it reads.
-    pub quantity: Quantity,
-    /// The largest error at the times that were looked at, in the unit of the quantity.
+    /// Name of its column.
+    pub name: String,
+    /// Its unit.
+    pub unit: String,
+    /// The largest error at the times that were looked at, in that unit.
     pub error: f64,
 }
 
@@ -73,12 +74,12 @@ impl ReducedReport {
     }
 
     /// Adds by how much an imbalance would change what sensors read.
-    pub(crate) fn note_changes(&mut self, changes: Vec<(Quantity, f64)>) {
-        for (quantity, change) in changes {
-            let error = self.per_imbalance * change;
-            match self.readings.iter_mut().find(|told| told.quantity == quantity) {
+    pub(crate) fn note_changes(&mut self, changes: Vec<ToldReading>) {
+        for change in changes {
+            let error = self.per_imbalance * change.error;
+            match self.readings.iter_mut().find(|told| told.name == change.name) {
                 Some(told) => told.error = told.error.max(error),
-                None => self.readings.push(ToldReading { quantity, error }),
+                None => self.readings.push(ToldReading { error, ..change }),
             }
         }
     }
@@ -110,7 +111,7 @@ impl fmt::Display for ReducedReport {
                 write!(f, "; error {checked} where it was checked, {said} as told by this run")?
             }
         }
-        for ToldReading { quantity: Quantity { name, unit }, error } in &self.readings {
+        for ToldReading { name, unit, error } in &self.readings {
             let unit = if unit == "1" { "" } else { unit };
             write!(f, ", {name} {} {unit}", told(*error))?;
         }

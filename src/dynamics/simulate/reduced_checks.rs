@@ -4,9 +4,8 @@
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use crate::base::vector::largest;
-use crate::dynamics::report::ReducedReport;
+use crate::dynamics::report::{ReducedReport, ToldReading};
 use crate::dynamics::system::{Lacking, LeftOver, System};
-use crate::dynamics::trajectory::Quantity;
 use crate::scene::reduced_model::ReducedModel;
 
 /// What is known, and what is not known yet.
@@ -38,7 +37,7 @@ impl ReducedChecks {
         &mut self,
         number: usize,
         equations: impl FnOnce() -> Option<System>,
-        change: impl Fn(&LeftOver, &[f64]) -> Vec<(Quantity, f64)>,
+        change: impl Fn(&LeftOver, &[f64]) -> Vec<ToldReading>,
     ) {
         if self.left_over.is_empty() {
             return;

@@ -20,10 +20,10 @@ use crate::base::input::InputError;
 use crate::dynamics::error::Error;
 use crate::dynamics::indicators;
 use crate::dynamics::matrices::Matrices;
-use crate::dynamics::report::{Report, creation};
+use crate::dynamics::report::{Report, ToldReading, creation};
 use crate::dynamics::state::{ENERGIES, State};
 use crate::dynamics::system::{LeftOver, System};
-use crate::dynamics::trajectory::{IntegrationFailure, Interrupted, Quantity, Sample, Trajectory};
+use crate::dynamics::trajectory::{IntegrationFailure, Interrupted, Sample, Trajectory};
 use crate::elements::body::{Body, Part};
 use crate::elements::force::Forces;
 use crate::integrators::ode::Failure;
@@ -347,7 +347,7 @@ impl Run {
     }
 
     /// By how much what sensors read of the places of nodes changes where a state is moved by displacements (m).
-    fn changes_by(&self, at: &LeftOver, displacements: &[f64]) -> Vec<(Quantity, f64)> {
+    fn changes_by(&self, at: &LeftOver, displacements: &[f64]) -> Vec<ToldReading> {
         if !self.sensors.read_places() {
             return Vec::new();
         }

@@ -9,6 +9,7 @@ use super::gauge::{AngleGauge, Value};
 use super::reading::{Component, Reading};
 use super::view::View;
 use crate::base::input::InputError;
+use crate::dynamics::report::ToldReading;
 use crate::dynamics::trajectory::{Quantity, Sample};
 use crate::scene::timeline::Scene;
 
@@ -139,7 +140,7 @@ impl Sensors {
     }
 
     /// By how much what follows from the places of nodes differs in two states.
-    pub(super) fn changes(&self, states: [(&View, &Sample); 2]) -> Vec<(Quantity, f64)> {
+    pub(super) fn changes(&self, states: [(&View, &Sample); 2]) -> Vec<ToldReading> {
         let mut changes = Vec::new();
         for (number, columns) in &self.of_places {
             let read = |(view, sample): (&View, &Sample)| {
@@ -153,7 +154,8 @@ impl Sensors {
                 let whole = turn.map_or(0.0, |angle| {
                     angle.full_turn * ((other - one) / angle.full_turn).round()
                 });
-                changes.push((self.quantities[column].clone(), (other - one - whole).abs()));
+                let Quantity { name, unit } = self.quantities[column].clone();
+                changes.push(ToldReading { name, unit, error: (other - one - whole).abs() });
             }
         }
         changes

@@ -205,8 +205,8 @@ table! {
 
 table! {
     OfToldReading(told: &ToldReading) {
-        "name", "", "name of the sensor" => told.quantity.name;
-        "unit", "", "its unit" => told.quantity.unit;
+        "name", "", "name of the sensor" => told.name;
+        "unit", "", "its unit" => told.unit;
         "error", "its own", "the largest error" => told.error;
     }
 }

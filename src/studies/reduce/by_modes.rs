@@ -88,6 +88,10 @@ pub fn reduce_by_modes(
     })
 }
 
+/// Multiple of the distance from the runs by the model before that an error is taken for: models of which each is off by two
+/// thirds of what the one before is off by have it.
+const TIMES_APART: f64 = 2.0;
+
 /// A model with the runs by it.
 #[derive(Clone)]
 struct Seen {
@@ -160,7 +164,7 @@ impl Enrichment<'_> {
         Ok(best)
     }
 
-    /// Runs all scenes by a model; none where one fails. Its error is what these runs tell, or how far they are from those by the model
+    /// Runs all scenes by a model; none where one fails. Its error is what these runs tell, or twice their distance from those by the model
     /// `before`, if that is more: small errors of a frequency, which no state tells, grow with time.
     fn run(
         &mut self,
@@ -194,7 +198,7 @@ impl Enrichment<'_> {
             let apart = pairs.map(|((before, _), (run, _))| distance(before, run));
             apart.fold(0.0, f64::max) / travel
         });
-        let error = told.max(apart);
+        let error = told.max(TIMES_APART * apart);
         let (unknowns, cells) = (model.unknowns(), model.cells());
         let seconds = mean(runs.iter().map(|(_, seconds)| *seconds));
         self.tried.push(Tried { unknowns, cells, error, told, seconds });
