@@ -14,7 +14,6 @@ use super::{
 use crate::base::input::InputError;
 use crate::base::vector::largest;
 use crate::dynamics::error::Error;
-use crate::dynamics::matrices::Matrices;
 use crate::dynamics::system::Lacking;
 use crate::dynamics::trajectory::Trajectory;
 use crate::scene::ReducedModel;
@@ -112,8 +111,7 @@ impl Enrichment<'_> {
     /// The best of models to which shapes are added that their own runs lack, with all cells.
     fn enriched(&mut self) -> Result<Seen, Error> {
         let Training { scenes, within, most_unknowns, .. } = self.training;
-        let (mut phases, matrices) =
-            (expected_phases(scenes, *most_unknowns)?, matrices(&scenes[0])?);
+        let mut phases = expected_phases(scenes, *most_unknowns)?;
         let [least, most] = size_limits(&phases, *most_unknowns)?;
         let after = |count: usize| SIZES.into_iter().find(|size| *size > count && *size >= least);
         let first = after(0).map_or(most, |size| size.min(*most_unknowns));
@@ -145,8 +143,8 @@ impl Enrichment<'_> {
                 let phase = phases[number].clone();
                 // a run that has failed tells nothing: take more of what was expected
                 if !own.is_empty() {
-                    phases[number] =
-                        phase.grown(*count, &own, next.saturating_sub(*count), &matrices);
+                    let added = next.saturating_sub(*count);
+                    phases[number] = phase.grown((&scenes[0], number), *count, &own, added)?;
                 }
                 *count = phases[number].count(next);
             }
@@ -223,9 +221,4 @@ fn expected_phases(scenes: &[Scene], most: usize) -> Result<Vec<LearnedPhase>, E
         LearnedPhase::new(&scenes[0], number, &[], &motions, most)
     };
     numbers.clone().map(of_phase).collect()
-}
-
-/// The matrices of a scene.
-fn matrices(scene: &Scene) -> Result<Arc<Matrices>, Error> {
-    Ok(scene.matrices(&scene.forces()?))
 }

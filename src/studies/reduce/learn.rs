@@ -114,14 +114,15 @@ impl LearnedPhase {
         })
     }
 
-    /// The first `count` shapes, and `added` ones of which `displacements` (m) are made beyond these.
+    /// The first `count` shapes, and `added` ones of which `displacements` (m) in phase `number` of a scene are made beyond these.
     pub(super) fn grown(
         mut self,
+        (scene, number): (&Scene, usize),
         count: usize,
         displacements: &[Vec<f64>],
         added: usize,
-        matrices: &Matrices,
-    ) -> Self {
+    ) -> Result<Self, Error> {
+        let Undeformed { mut system, matrices, .. } = Undeformed::new(scene, number)?;
         let mass = |x: &[f64], y: &mut [f64]| {
             y.fill(0.0);
             matrices.inertia.add_product(matrices.dimension, 1.0, x, y);
@@ -129,11 +130,13 @@ impl LearnedPhase {
         self.shapes.truncate(count);
         let mut beyond = displacements.to_vec();
         beyond.iter_mut().for_each(|x| remove(&self.shapes, &mass, x));
-        let new = pod(&beyond, &mass).shapes.into_iter().take(added);
+        let mut new: Vec<Vec<f64>> = pod(&beyond, &mass).shapes.into_iter().take(added).collect();
+        // what is small beside what was removed has its round-off
+        new.iter_mut().for_each(|shape| system.constrain(shape));
         let all: Vec<Vec<f64>> = self.shapes.drain(..).chain(new).collect();
         self.shapes = orthonormal(&all, &mass);
         self.weighted = weighted(&self.shapes, &mass);
-        self
+        Ok(self)
     }
 
     /// Number of shapes of a model of at most `unknowns`.
