@@ -155,20 +155,27 @@ impl System {
     /// where no tangents tell.
     ///
     /// Of the tangents of the first and of the last state those tell that resist more: a body on the way to where it comes to
-    /// rest may be about to buckle, and move far under any force.
+    /// rest may be about to buckle, and move far under any force. Those that do not resist every motion tell only where no others do.
     pub(crate) fn imbalances(&mut self, states: &[LeftOver]) -> Vec<Option<Vec<f64>>> {
         let mut least = vec![None; states.len()];
         let residuals: Result<Vec<_>, Failure> =
             states.iter().map(|state| self.residual(state)).collect();
         let Ok(residuals) = residuals else { return least };
         let (first, others) = (states.first(), states.get(1..).unwrap_or_default());
-        for at in first.into_iter().chain(others.last()) {
-            let Ok(found) = self.imbalances_by(at, states, &residuals) else { continue };
+        let at: Vec<&LeftOver> = first.into_iter().chain(others.last()).collect();
+        for are_definite in [true, false] {
+            let mut found = vec![None; states.len()];
+            for at in &at {
+                let by_these = self.imbalances_by(at, states, &residuals, are_definite);
+                found.iter_mut().zip(by_these).for_each(|(found, own)| take_less(found, own));
+            }
             for (least, own) in least.iter_mut().zip(found) {
-                let is_less = |least: &Vec<f64>| largest(&own) < largest(least);
-                if least.as_ref().is_none_or(is_less) {
-                    *least = Some(own);
+                if least.is_none() {
+                    *least = own;
                 }
+            }
+            if least.iter().all(Option::is_some) {
+                break;
             }
         }
         least
@@ -187,13 +194,14 @@ impl System {
         Ok(at.total.clone())
     }
 
-    /// The imbalances with the tangents of one of the states.
+    /// The imbalances with the tangents of one of the states, where these can be factorized: if they `are_definite`.
     fn imbalances_by(
         &mut self,
         at: &LeftOver,
         states: &[LeftOver],
         residuals: &[Vec<f64>],
-    ) -> Result<Vec<Vec<f64>>, Failure> {
+        are_definite: bool,
+    ) -> Vec<Option<Vec<f64>>> {
         let LeftOver { time, state: [u, v, _], amounts, .. } = at;
         // a step so long that inertia hardly matters, except where nothing resists a motion
         let [size, speed] = self.matrices.scales;
@@ -202,21 +210,28 @@ impl System {
         self.set_lagging(*time, amounts);
         self.update_tangents(*time, u, v, false);
         self.add_flow_tangents(*time, [u, v, amounts]);
-        let mut gamma = 0.0;
+        let (mut gamma, mut is_factorized) = (0.0, false);
         let mut imbalances = Vec::new();
         for (LeftOver { age, .. }, residual) in states.iter().zip(residuals) {
             // what has just begun to act has not moved the body far
             if gamma != slow.min(*age) {
                 gamma = slow.min(*age);
-                self.factorize_newton(gamma)?;
+                is_factorized = match are_definite {
+                    true => self.factorize_definite_newton(gamma),
+                    false => self.factorize_newton(gamma).is_ok(),
+                };
+            }
+            if !is_factorized {
+                imbalances.push(None);
+                continue;
             }
             let right = self.newton.right.iter_mut().zip(residual);
             right.for_each(|(right, force)| *right = force * (gamma * gamma));
             self.newton.demands.fill(0.0);
             self.solve_resisted();
-            imbalances.push(self.newton.xv.clone());
+            imbalances.push(Some(self.newton.xv.clone()));
         }
-        Ok(imbalances)
+        imbalances
     }
 
     /// The displacement nearest to `x`, in the sense of kinetic energy, that constraints at rest allow.
@@ -250,6 +265,14 @@ impl System {
             x
         };
         Ok(moved.iter().map(lift).collect())
+    }
+}
+
+/// Takes the smaller one of two displacements.
+fn take_less(least: &mut Option<Vec<f64>>, own: Option<Vec<f64>>) {
+    let Some(own) = own else { return };
+    if least.as_ref().is_none_or(|least| largest(&own) < largest(least)) {
+        *least = Some(own);
     }
 }
 

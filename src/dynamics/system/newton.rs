@@ -22,6 +22,7 @@
 use std::sync::Arc;
 
 use super::System;
+use super::cholesky::Indefinite;
 use super::edges::stabilized;
 use super::newton_matrix::{ITERATED, NewtonMatrix, SOLVED_ONCE};
 use super::reduced::nodal_multipliers;
@@ -124,31 +125,49 @@ impl System {
 
     /// Sets N = M + gamma D + gamma^2 Kt, for the solves from now on.
     pub(crate) fn factorize_newton(&mut self, gamma: f64) -> Result<(), Failure> {
+        let factorized =
+            self.begin_newton(gamma).or_else(|_| self.newton.solver.factorize_indefinite());
+        factorized.map_err(|_| {
+            Failure::Recoverable(
+                "the Newton matrix is singular (a body that is about to buckle or to collapse)"
+                    .into(),
+            )
+        })?;
+        self.complete_newton();
+        Ok(())
+    }
+
+    /// As [`factorize_newton`](Self::factorize_newton), if N is positive definite; returns whether it is.
+    pub(super) fn factorize_definite_newton(&mut self, gamma: f64) -> bool {
+        let is_definite = self.begin_newton(gamma).is_ok();
+        if is_definite {
+            self.complete_newton();
+        }
+        is_definite
+    }
+
+    /// Sets N, positive definite.
+    fn begin_newton(&mut self, gamma: f64) -> Result<(), Indefinite> {
         self.newton.gamma = gamma;
         let NewtonMatrix { solver, stiffness, damping, is_damped, accuracy, .. } = &mut self.newton;
         let (stiffness, damping) = (stiffness.get(), damping.get());
         let inertia = &self.matrices.inertia;
-        let factorized = solver.begin(*accuracy, |source: EntrySource| {
+        solver.begin(*accuracy, |source: EntrySource| {
             let (entry, transposed, axes) = (source.entry(), source.transposed(), source.axes());
             let mass = if axes[0] == axes[1] { inertia.values[entry] } else { 0.0 };
             // the symmetric part: tangents of viscosity and contact need not be symmetric
             let part = |matrix: &BlockMatrix| matrix.symmetric(entry, transposed, axes);
             let damped = if *is_damped { part(damping) } else { 0.0 };
             mass + gamma * (damped + gamma * part(stiffness))
-        });
-        let factorized = factorized.or_else(|_| self.newton.solver.factorize_indefinite());
-        if let (Ok(()), Some(solver)) = (&factorized, &mut self.newton.solver.edges) {
-            solver.turn(&self.linear_edges, Some(stabilized(gamma, self.alpha)));
-        }
-        if factorized.is_ok() {
-            self.condense_flow();
-        }
-        factorized.map_err(|_| {
-            Failure::Recoverable(
-                "the Newton matrix is singular (a body that is about to buckle or to collapse)"
-                    .into(),
-            )
         })
+    }
+
+    /// Prepares what edges and what flows need of the N in force.
+    fn complete_newton(&mut self) {
+        if let Some(solver) = &mut self.newton.solver.edges {
+            solver.turn(&self.linear_edges, Some(stabilized(self.newton.gamma, self.alpha)));
+        }
+        self.condense_flow();
     }
 
     /// Solves the system above. `ru` holds ru and becomes xu; `self.newton.right` holds M rv - gamma Kt ru
