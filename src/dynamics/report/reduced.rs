@@ -84,6 +84,11 @@ impl ReducedReport {
         }
     }
 
+    /// The imbalance (m) up to which the error is one that was wanted.
+    pub(crate) fn enough(&self) -> f64 {
+        self.within * self.travel / self.per_imbalance
+    }
+
     /// The largest imbalance (m), and the largest displacement (m).
     pub(crate) fn lengths(&self) -> [f64; 2] {
         [self.imbalance, self.travel]

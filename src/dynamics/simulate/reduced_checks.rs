@@ -42,7 +42,8 @@ impl ReducedChecks {
         if self.left_over.is_empty() {
             return;
         }
-        let found = equations().map(|mut system| system.imbalances(&self.left_over));
+        let enough = self.report.enough();
+        let found = equations().map(|mut system| system.imbalances(&self.left_over, enough));
         let found = found.unwrap_or_else(|| vec![None; self.left_over.len()]);
         for (state, displacement) in self.left_over.drain(..).zip(found) {
             let Some(displacement) = displacement else {

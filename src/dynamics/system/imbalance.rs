@@ -155,8 +155,9 @@ impl System {
     /// where no tangents tell.
     ///
     /// Of the tangents of the first and of the last state those tell that resist more: a body on the way to where it comes to
-    /// rest may be about to buckle, and move far under any force. Those that do not resist every motion tell only where no others do.
-    pub(crate) fn imbalances(&mut self, states: &[LeftOver]) -> Vec<Option<Vec<f64>>> {
+    /// rest may be about to buckle, and move far under any force. Those that do not resist every motion, which take longer to factorize, are asked only where
+    /// the others tell more than `enough` (m), or nothing.
+    pub(crate) fn imbalances(&mut self, states: &[LeftOver], enough: f64) -> Vec<Option<Vec<f64>>> {
         let mut least = vec![None; states.len()];
         let residuals: Result<Vec<_>, Failure> =
             states.iter().map(|state| self.residual(state)).collect();
@@ -164,17 +165,13 @@ impl System {
         let (first, others) = (states.first(), states.get(1..).unwrap_or_default());
         let at: Vec<&LeftOver> = first.into_iter().chain(others.last()).collect();
         for are_definite in [true, false] {
-            let mut found = vec![None; states.len()];
             for at in &at {
-                let by_these = self.imbalances_by(at, states, &residuals, are_definite);
-                found.iter_mut().zip(by_these).for_each(|(found, own)| take_less(found, own));
+                let found = self.imbalances_by(at, states, &residuals, are_definite);
+                least.iter_mut().zip(found).for_each(|(least, own)| take_less(least, own));
             }
-            for (least, own) in least.iter_mut().zip(found) {
-                if least.is_none() {
-                    *least = own;
-                }
-            }
-            if least.iter().all(Option::is_some) {
+            let is_enough =
+                |least: &Option<Vec<f64>>| least.as_ref().is_some_and(|x| largest(x) <= enough);
+            if least.iter().all(is_enough) {
                 break;
             }
         }

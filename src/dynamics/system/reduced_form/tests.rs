@@ -179,7 +179,7 @@ fn with_all_shapes_and_cells_it_is_the_body() {
         }
         // nothing is left over, and the state is one of its own
         let left_over = form.system.left_over(T, &state, [0.0, 1.0]).unwrap().unwrap();
-        let imbalance = largest(form.system.imbalances(&[left_over])[0].as_ref().unwrap());
+        let imbalance = largest(form.system.imbalances(&[left_over], 0.0)[0].as_ref().unwrap());
         assert!(imbalance < 1e-13, "{imbalance:e} m");
         let again = form.unknowns_of(T, &state).unwrap();
         let off: Vec<f64> = again.iter().zip(&y).map(|(a, b)| a - b).collect();
@@ -236,7 +236,7 @@ fn a_state_that_the_model_does_not_have_is_none_of_its_own() {
         assert!(form.unknowns_of(T, &state).is_none());
         // what is left out is told
         let left_over = form.system.left_over(T, &state, [0.0, 1.0]).unwrap().unwrap();
-        let found = largest(form.system.imbalances(&[left_over])[0].as_ref().unwrap());
+        let found = largest(form.system.imbalances(&[left_over], 0.0)[0].as_ref().unwrap());
         assert!(found > 1e-6, "{found:e} m");
     }
 }
