@@ -25,7 +25,9 @@ pub(super) struct Present<'a> {
 /// The frame of the present, with the colours of a quantity and the past after the time `since` (s).
 pub(super) fn of(present: &Present, colours: Option<usize>, since: Option<f64>) -> Value {
     let &Present { simulation, picture, sliders, hand, pace, past, playing, trouble } = present;
-    let (view, report) = (simulation.view(), simulation.report());
+    let view = simulation.view();
+    // while it plays nothing waits for what a reduced model tells of its error
+    let report = if playing { simulation.settled_report() } else { simulation.report() };
     let (body, u) = (view.body(), view.displacements());
     let values = sliders.iter().map(|slider| slider.value(simulation).unwrap_or(f64::NAN));
     // the forces of all springs are shown, also of those without a slider

@@ -329,17 +329,24 @@ impl Run {
         }
     }
 
-    /// How the motion was computed so far.
+    /// How the motion was computed so far, with what a reduced model tells of its error.
     pub(super) fn report(&self) -> Report {
+        if let Some(checks) = &self.reduced {
+            let equations = || self.equations(&self.phase, &self.state).ok();
+            locked(checks).settle(self.number, equations, |state, x| self.changes_by(state, x));
+        }
+        self.settled_report()
+    }
+
+    /// The same, with what is known already of the error of a reduced model: the rest takes factorizations with all unknowns.
+    pub(super) fn settled_report(&self) -> Report {
         let mut report = self.trajectory.report.clone();
         let phase = self.phase_run.report(&self.phase.name, self.time, &self.integration);
         report.wall_seconds = self.clock.elapsed().as_secs_f64();
         report.states = phase.states;
         report.phases.push(phase);
         if let Some(checks) = &self.reduced {
-            let mut checks = locked(checks);
-            let equations = || self.equations(&self.phase, &self.state).ok();
-            checks.settle(self.number, equations, |state, x| self.changes_by(state, x));
+            let checks = locked(checks);
             report.indicators = indicators::reduced(&checks.report);
             report.reduced = Some(checks.report.clone());
         }

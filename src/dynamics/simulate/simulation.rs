@@ -142,6 +142,12 @@ impl Simulation {
         self.run.report()
     }
 
+    /// The same without what is not known yet of the error of a reduced model, as that takes longer than a picture may.
+    #[cfg(feature = "play")]
+    pub(crate) fn settled_report(&self) -> Report {
+        self.run.settled_report()
+    }
+
     /// Takes samples of the motion from the end of the present step on, which are kept in the [`trajectory`](Self::trajectory).
     ///
     /// # Errors
