@@ -248,20 +248,16 @@ impl<'a> View<'a> {
     /// A name that no pipe has.
     pub fn pipe_flow(&self, pipe: &str) -> Result<f64, InputError> {
         let number = self.scene.pipe_number(pipe, "pipe")?;
-        let (others, count) = (self.state.others, self.scene.pipes().len());
-        Ok(others.len().checked_sub(count).map_or(0.0, |first| others[first + number]))
+        let flowing = self.scene.flowing(self.state.others);
+        Ok(flowing.map_or(0.0, |all| all[all.len() - self.scene.pipes().len() + number]))
     }
 
-    /// The amount (kg) of the gas of that number: amounts of gases, of liquids, states of what lags and the flows of pipes are the last unknowns of the state.
+    /// The amount (kg) of that number, of gases and then of liquids.
     fn amount(&self, number: usize) -> f64 {
         let Gauges { gases, liquids, .. } = self.gauges;
-        let others = self.state.others;
-        // where there are none, amounts stay what they are
-        let scene = self.scene;
-        let unknowns = gases.len() + liquids.len() + scene.lags().len() + scene.pipes().len();
-        let first = others.len().checked_sub(unknowns);
-        match (first, number.checked_sub(gases.len())) {
-            (Some(first), _) => others[first + number],
+        // where they are no unknowns, amounts stay what they are
+        match (self.scene.flowing(self.state.others), number.checked_sub(gases.len())) {
+            (Some(flowing), _) => flowing[number],
             (None, None) => gases[number].amount(),
             (None, Some(number)) => liquids[number].amount(),
         }

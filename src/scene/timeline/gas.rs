@@ -73,8 +73,17 @@ impl Scene {
     /// Number of amounts of gas and liquids, of states of actuators that lag and of flows of pipes that are unknowns.
     #[cfg(feature = "checkpoint")]
     pub(crate) fn flowing_amounts(&self) -> usize {
-        let amounts = self.gases.len() + self.liquids.len();
-        if self.is_shut { 0 } else { amounts + self.lags.len() + self.pipes.len() }
+        if self.is_shut { 0 } else { self.flowing_count() }
+    }
+
+    /// The last unknowns of a state: amounts of gases, then of liquids, states of actuators that lag, and flows of pipes; none where these are constants.
+    pub(crate) fn flowing<'a>(&self, states: &'a [f64]) -> Option<&'a [f64]> {
+        let first = states.len().checked_sub(self.flowing_count())?;
+        Some(&states[first..])
+    }
+
+    fn flowing_count(&self) -> usize {
+        self.gases.len() + self.liquids.len() + self.lags.len() + self.pipes.len()
     }
 
     /// All that gas is and flows through, for comparison with another scene.

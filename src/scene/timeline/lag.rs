@@ -44,7 +44,7 @@ impl Scene {
         for (name, lag) in self.lags() {
             self.actuator_number(name, "lag")?;
             lag.validate(name)?;
-            let muscle = self.muscles.iter().find(|muscle| muscle.name() == name);
+            let muscle = self.muscle_named(name);
             if lag.is_activation() && muscle.and_then(|muscle| muscle.law()).is_none() {
                 let help = "its activation is a part of the largest stress of Hill's law: name a muscle that has one, or take a first-order lag";
                 return Err(InputError::new("lag", format!("of \"{name}\""), help));
@@ -76,7 +76,7 @@ impl Scene {
         let Some((number, (_, lag))) = lags.find(|(_, (name, _))| *name == actuator) else {
             return Ok(None);
         };
-        let muscle = self.muscles.iter().find(|muscle| muscle.name() == actuator);
+        let muscle = self.muscle_named(actuator);
         if let (Some(muscle), Some(stress)) =
             (muscle, drives.iter().map(Signal::value).sum::<Option<f64>>())
         {
@@ -89,7 +89,7 @@ impl Scene {
 
     /// A size of what drives an actuator, by which tolerances are chosen: what makes large strains, or full activation.
     fn size_of_states(&self, actuator: &str) -> f64 {
-        let (body, muscle) = (&self.body, self.muscles.iter().find(|own| own.name() == actuator));
+        let (body, muscle) = (&self.body, self.muscle_named(actuator));
         if let Some(muscle) = muscle {
             return muscle.law().map_or(body.largest_young(), |hill| hill.largest);
         }
@@ -113,11 +113,9 @@ impl Scene {
         let Some(lag) = self.lag_of(actuator) else { return sum };
         let sum = sum.map(|x| lag.gain() * x);
         let number = self.lags().position(|(name, _)| name == actuator);
-        // behind them are the flows of pipes
-        let first = states.len().checked_sub(self.lags.len() + self.pipes.len());
-        match (first, number) {
-            (Some(first), Some(number)) => {
-                let state = states[first + number];
+        match (self.flowing(states), number) {
+            (Some(flowing), Some(number)) => {
+                let state = flowing[self.gases.len() + self.liquids.len() + number];
                 [state, lag.rate(sum[0], state, self.size_of_states(actuator))]
             }
             _ => sum,

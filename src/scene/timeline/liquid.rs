@@ -127,16 +127,12 @@ impl Scene {
         u: &[f64],
         states: &[f64],
     ) -> Vec<[[f64; 3]; 2]> {
-        let amounts = self.gases.len() + self.liquids.len();
-        let first = states.len().checked_sub(amounts + self.lags.len() + self.pipes.len());
+        let flowing = self.flowing(states);
         let each = self.liquids.iter().enumerate().filter(|(_, liquid)| liquid.has_surface());
         let lines = each.filter_map(|(number, liquid)| {
             // errors were found when the phase began
             let poured = self.poured_in(Some(phase), liquid).ok()?;
-            let amount = match first {
-                Some(first) => states[first + self.gases.len() + number],
-                None => poured.amount(),
-            };
+            let amount = flowing.map_or(poured.amount(), |all| all[self.gases.len() + number]);
             Some(poured.waterline(u, amount))
         });
         lines.flatten().collect()

@@ -31,6 +31,11 @@ impl Scene {
         &self.muscles
     }
 
+    /// The muscle with a name, if there is one.
+    pub(super) fn muscle_named(&self, name: &str) -> Option<&Muscle> {
+        self.muscles.iter().find(|muscle| muscle.name() == name)
+    }
+
     /// What grows.
     pub fn growths(&self) -> &[Growth] {
         &self.growths
