@@ -151,6 +151,22 @@ fn a_free_body_turns_by_any_angle() {
     assert!((last / first - 1.0).abs() < 1e-5, "{first} {last}");
 }
 
+/// A plate that falls as it vibrates: its shapes hold the fall with a little of the vibration, which makes it no slow vibration.
+#[test]
+fn falling_is_no_vibration() {
+    let mesh = Mesh::rectangle([0.1, 0.02], [13, 4], Cells::Rectangles).unwrap();
+    let body = Body::new(mesh, RUBBER.law(Law::NeoHookean)).thickness(0.01).build().unwrap();
+    let bent = |x: &[f64]| vec![0.0, 2.0 * (x[0] - 0.05) * (x[0] - 0.05)];
+    let scene = Scene::new(body).initial_displacement(bent).gravity([0.0, -9.8]);
+    let scene = scene.phase(Phase::until(0.1).named("fall"));
+    let model = learned(vec![scene.clone()], 1e-6, 0.002);
+    let slowest = |scene: &Scene| scene.spectrum().unwrap()[0].lowest_frequency.unwrap();
+    let own = slowest(&scene.clone().reduced(model).unwrap());
+    let exact = slowest(&scene);
+    println!("{own} of {exact} rad/s");
+    assert!((own / exact - 1.0).abs() < 0.05, "{own} of {exact} rad/s");
+}
+
 /// What constraints move, and what the work of that is.
 #[test]
 fn constraints_move_the_body_and_supply_energy() {

@@ -6,6 +6,7 @@
 mod tests;
 
 use super::System;
+use super::spectrum::RIGID;
 use crate::base::simd::add_multiple;
 use crate::base::vector::{dot, largest};
 use crate::dynamics::matrices::Matrices;
@@ -103,7 +104,7 @@ impl System {
         self.newton.is_set = false;
         self.update_tangents(t, &rest, &rest, false);
         let highest = self.highest(|system| system.tangents().0);
-        self.rigid_motions(&rest, highest)
+        self.rigid_motions(&rest, RIGID * highest)
     }
 
     /// The lowest vibrations by the present tangents, as squares of angular frequencies (rad^2/s^2) with shapes that are orthonormal by M.

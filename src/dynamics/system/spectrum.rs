@@ -65,13 +65,16 @@ const SUBSPACE_ITERATIONS: usize = 12;
 
 /// Parts of the highest eigenvalue: those below the first belong to motions without stiffness; the second is
 /// the shift that makes Kt + shift M definite without loss of accuracy in the solves.
-const RIGID: f64 = 1e-12;
+pub(super) const RIGID: f64 = 1e-12;
 const SHIFT: f64 = 1e-8;
 /// A shift above the lowest eigenvalue is lowered to this part of it: slender bodies are so soft.
 const LOWER_SHIFT: f64 = 0.1;
 
 /// Part of the highest eigenvalue along shapes below which one is round-off of 0.
 const ROUND_OFF: f64 = 1e-10;
+
+/// Part of the kinetic energy of a shape in rigid motions from which on it is no vibration.
+const NEARLY_RIGID: f64 = 0.99;
 
 impl System {
     /// The spectrum at (t, u, v).
@@ -81,7 +84,7 @@ impl System {
         self.add_branch_tangents(0.0, u, &[]);
         self.add_flow_tangents(t, [u, v, &amounts]);
         if let Some(reduction) = &self.reduction {
-            return self.spectrum_along(&reduction.shapes);
+            return self.spectrum_along(&reduction.shapes, u);
         }
         self.edges.move_to(self.alpha, u, v);
         self.turn_inertia(false);
@@ -94,7 +97,7 @@ impl System {
             lowest_damping_ratio: 0.0,
             mass_damping_ratio: 0.0,
         };
-        let rigid = self.rigid_motions(u, highest);
+        let rigid = self.rigid_motions(u, RIGID * highest);
         if let Some((eigenvalue, x)) = self.lowest(highest, &rigid, 1).pop() {
             let omega = eigenvalue.sqrt();
             spectrum.lowest_frequency = Some(omega);
@@ -107,7 +110,7 @@ impl System {
     }
 
     /// The spectrum along the shapes of a reduced model, which are orthonormal by M.
-    fn spectrum_along(&self, shapes: &Shapes) -> Spectrum {
+    fn spectrum_along(&self, shapes: &Shapes, u: &[f64]) -> Spectrum {
         let (count, free) = (shapes.count(), shapes.free());
         let along = |product: &dyn Fn(&[f64], &mut [f64])| {
             let all = shapes.products(product);
@@ -118,8 +121,16 @@ impl System {
         let stiffness = SymmetricEigen::new(along(&|x, y| k.add_product(1.0, x, y)));
         let damping = along(&|x, y| d.add_product(1.0, x, y));
         let highest = stiffness.eigenvalues.iter().copied().fold(0.0, f64::max);
-        let vibrations = (0..free).filter(|&i| stiffness.eigenvalues[i] > ROUND_OFF * highest);
-        let lowest = vibrations
+        // shapes hold rigid motions with a little strain
+        let rigid = self.rigid_motions(u, ROUND_OFF * highest);
+        let rigid: Vec<Vec<f64>> = rigid.iter().map(|motion| shapes.coordinates(motion)).collect();
+        let is_vibration = |&i: &usize| {
+            let x = stiffness.eigenvectors.column(i);
+            let part: f64 = rigid.iter().map(|motion| dot(motion, x.as_slice()).powi(2)).sum();
+            stiffness.eigenvalues[i] > ROUND_OFF * highest && part < NEARLY_RIGID
+        };
+        let lowest = (0..free)
+            .filter(is_vibration)
             .min_by(|&i, &j| stiffness.eigenvalues[i].total_cmp(&stiffness.eigenvalues[j]));
         let mut spectrum = Spectrum {
             highest_frequency: highest.sqrt(),
@@ -173,8 +184,9 @@ impl System {
         highest
     }
 
-    /// The rigid motions of the body with displacements `u` that neither rows nor stiffness resist, orthonormal by M.
-    pub(super) fn rigid_motions(&self, u: &[f64], highest: f64) -> Vec<Vec<f64>> {
+    /// The rigid motions of the body with displacements `u` that neither rows nor stiffness resist, with eigenvalues below
+    /// `round_off`, orthonormal by M.
+    pub(super) fn rigid_motions(&self, u: &[f64], round_off: f64) -> Vec<Vec<f64>> {
         let Matrices { positions, size, stiffness, dimension, inertia, .. } = &*self.matrices;
         let mut positions = positions.clone();
         // with linear strain, turns along straight lines cause no strain
@@ -190,7 +202,7 @@ impl System {
         }
         let values = self.ritz(&mut motions);
         let unresisted = motions.into_iter().zip(values);
-        let unresisted = unresisted.filter(|(_, value)| value.abs() <= RIGID * highest);
+        let unresisted = unresisted.filter(|(_, value)| value.abs() <= round_off);
         unresisted.map(|(motion, _)| motion).collect()
     }
 
