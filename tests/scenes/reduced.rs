@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 
 use pliant::reduce::{Training, error, reduce};
 use pliant::{
-    Body, Cells, Error, Inertia, Law, Material, Mesh, Method, Obstacle, Phase, Prescribed,
+    Axis, Body, Cells, Error, Inertia, Law, Material, Mesh, Method, Obstacle, Phase, Prescribed,
     ReducedModel, Sampling, Scene, Settings, Statics, Strain, Trajectory, Viscosity,
 };
 
@@ -158,8 +158,16 @@ fn falling_is_no_vibration() {
     let body = Body::new(mesh, RUBBER.law(Law::NeoHookean)).thickness(0.01).build().unwrap();
     let bent = |x: &[f64]| vec![0.0, 2.0 * (x[0] - 0.05) * (x[0] - 0.05)];
     let scene = Scene::new(body).initial_displacement(bent).gravity([0.0, -9.8]);
-    let scene = scene.phase(Phase::until(0.1).named("fall"));
-    let model = learned(vec![scene.clone()], 1e-6, 0.002);
+    let scene = scene.phase(Phase::until(0.1).named("fall").hold_axes("left", [Axis::X]));
+    // too few shapes to hold the fall exactly
+    let training = Training {
+        scenes: vec![scene.clone()],
+        held_out: Vec::new(),
+        settings: settings(1e-6),
+        within: 1e-6,
+        most_unknowns: 2,
+    };
+    let model = reduce(&training, &mut |_| ControlFlow::Continue(())).unwrap().model;
     let slowest = |scene: &Scene| scene.spectrum().unwrap()[0].lowest_frequency.unwrap();
     let own = slowest(&scene.clone().reduced(model).unwrap());
     let exact = slowest(&scene);
