@@ -1,7 +1,7 @@
 //! What a run by a reduced model knows of its error: what the model leaves over is kept now and then, and how far that would
 //! move the body is found once somebody asks, as it takes a factorization with all unknowns.
 
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use crate::base::vector::largest;
 use crate::dynamics::report::{ReducedReport, ToldReading};
@@ -14,15 +14,15 @@ pub(super) struct ReducedChecks {
     pub(super) report: ReducedReport,
     /// Of the present phase.
     left_over: Vec<LeftOver>,
-    /// Of all phases.
-    pub(super) lacking: Vec<Arc<Lacking>>,
+    /// Of all phases, if somebody wants them.
+    lacking: Option<Vec<Lacking>>,
 }
 
 impl ReducedChecks {
-    /// At the start of a run by `model`.
-    pub(super) fn new(model: &ReducedModel) -> Self {
+    /// At the start of a run by `model`, which keeps the displacements that it lacks or not.
+    pub(super) fn new(model: &ReducedModel, keeps_lacking: bool) -> Self {
         let report = ReducedReport::new(model);
-        Self { report, left_over: Vec::new(), lacking: Vec::new() }
+        Self { report, left_over: Vec::new(), lacking: keeps_lacking.then(Vec::new) }
     }
 
     /// Keeps what is left over in a state whose largest displacement is `travel` (m).
@@ -52,13 +52,22 @@ impl ReducedChecks {
             };
             self.report.note_imbalance(largest(&displacement));
             self.report.note_changes(change(&state, &displacement));
-            self.lacking.push(Arc::new(Lacking { phase: number, displacement }));
+            if let Some(lacking) = &mut self.lacking {
+                lacking.push(Lacking { phase: number, displacement });
+            }
         }
     }
 
-    /// Forgets what is not known yet, as it belongs to another phase than that to come.
-    pub(super) fn forget(&mut self) {
+    /// Forgets what is not known yet, as a run goes back from its phase to the earlier one `number`, and what was lacking from
+    /// that on, as it is run again.
+    pub(super) fn go_back(&mut self, number: usize) {
         self.left_over.clear();
+        self.lacking.iter_mut().for_each(|all| all.retain(|lacking| lacking.phase < number));
+    }
+
+    /// The displacements that were lacking, at the end; none unless they were kept.
+    pub(super) fn take_lacking(&mut self) -> Vec<Lacking> {
+        self.lacking.take().unwrap_or_default()
     }
 }
 

@@ -63,6 +63,7 @@ pub(crate) use at_rest::{AtRest, ForceBalance};
 pub(crate) use dae::{DaeForm, Index};
 use edges::Edges;
 pub(crate) use form::Form;
+pub(crate) use expected::Vibrations;
 pub(crate) use imbalance::{Lacking, LeftOver};
 use newton_matrix::NewtonMatrix;
 use reduced::{EXACT, Reduced, nodal_multipliers};

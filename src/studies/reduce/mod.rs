@@ -23,7 +23,7 @@ use alike::differing_part;
 pub use by_modes::reduce_by_modes;
 pub use error::error;
 use error::{distance, travel};
-use learn::LearnedPhase;
+use learn::{LearnedPhase, Undeformed};
 #[cfg(feature = "study")]
 pub(crate) use told::pays_from;
 #[cfg(feature = "sweep")]
@@ -147,7 +147,10 @@ fn learn_from(
     let runs: Vec<&Trajectory> = checks[..scenes.len()].iter().map(|(run, _)| run).collect();
     let numbers = 0..scenes[0].phases().len();
     let phases: Result<Vec<LearnedPhase>, Error> = numbers
-        .map(|number| LearnedPhase::new(&scenes[0], number, &runs, &[], *most_unknowns))
+        .map(|number| {
+            let mut at_rest = Undeformed::new(&scenes[0], number)?;
+            LearnedPhase::new((&scenes[0], number), &mut at_rest, &runs, &[], *most_unknowns)
+        })
         .collect();
     let phases = phases?;
     let [least, most] = size_limits(&phases, *most_unknowns)?;
@@ -408,7 +411,7 @@ fn timed(
     observer: &mut dyn FnMut() -> ControlFlow<()>,
 ) -> Result<(Trajectory, f64), Error> {
     let clock = Instant::now();
-    let sampling = Sampling::every(scene.end() / samples);
+    let sampling = Sampling::every(scene.end() / samples).keeping_lacking();
     let run = scene.simulate_with(settings, &sampling, |_| observer())?;
     Ok((run, clock.elapsed().as_secs_f64()))
 }
