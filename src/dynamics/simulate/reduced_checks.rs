@@ -75,3 +75,46 @@ impl ReducedChecks {
 pub(super) fn locked(checks: &Mutex<ReducedChecks>) -> MutexGuard<'_, ReducedChecks> {
     checks.lock().unwrap_or_else(PoisonError::into_inner)
 }
+
+#[cfg(test)]
+mod tests {
+    use std::ops::ControlFlow;
+
+    use super::*;
+    use crate::reduce::{Training, reduce};
+    use crate::{Body, Cells, Material, Mesh, Phase, Scene, Settings, Strain};
+
+    /// Six states of each of two phases, however often they are run; none where nobody has asked.
+    #[test]
+    fn what_is_lacking_is_kept_for_the_last_way_alone() {
+        let mesh = Mesh::rectangle([0.1, 0.02], [5, 2], Cells::Rectangles).unwrap();
+        let rubber = Material { density: 1000.0, young: 1e5, poisson: 0.4, viscosity: 100.0 };
+        let body = Body::new(mesh, rubber).thickness(0.01).strain(Strain::Green).build().unwrap();
+        let bent = Phase::until(0.1).named("bent").hold("left").load([10], [0.0, 0.02]);
+        let scene = Scene::new(body).phase(bent).phase(Phase::until(0.2).hold("left"));
+        let settings = Settings { rtol: 1e-4, ..Settings::default() };
+        let training = Training {
+            scenes: vec![scene.clone()],
+            held_out: Vec::new(),
+            settings: settings.clone(),
+            within: 0.1,
+            most_unknowns: 6,
+        };
+        let model = reduce(&training, &mut |_| ControlFlow::Continue(())).unwrap().model;
+        let scene = scene.reduced(model.clone()).unwrap();
+        for (is_asked, expected) in [(true, [6, 6]), (false, [0, 0])] {
+            let mut strip = scene.start(&settings).unwrap();
+            strip.run.reduced = Some(Mutex::new(ReducedChecks::new(&model, is_asked)));
+            strip.advance_to(0.05).unwrap();
+            let halfway = strip.checkpoint();
+            for _ in 0..4 {
+                strip.restore(&halfway).unwrap();
+                strip.advance_to(0.2).unwrap();
+            }
+            let lacking = strip.into_trajectory().lacking;
+            let of_phase = |phase| lacking.iter().filter(|own| own.phase == phase).count();
+            assert!(lacking.len() <= expected.iter().sum(), "{}", lacking.len());
+            assert_eq!(of_phase(1), expected[1]);
+        }
+    }
+}

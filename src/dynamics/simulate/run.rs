@@ -150,9 +150,9 @@ impl Run {
             trajectory,
             least_energy: least_energy(scene.body()),
             pause: None,
-            reduced: scene.reduced_model().map(|model| {
-                Mutex::new(ReducedChecks::new(model, sampling.keeps_lacking()))
-            }),
+            reduced: scene
+                .reduced_model()
+                .map(|model| Mutex::new(ReducedChecks::new(model, sampling.keeps_lacking()))),
             scene: Arc::new(scene.clone()),
         };
         run.follow_angles();

@@ -6,9 +6,9 @@ use std::time::Instant;
 
 use super::error::distance;
 use super::learn::{LearnedPhase, Undeformed, equilibria, expected};
+use super::runs::{ByModel, run_by};
 use super::{
-    Kit, Reduced, SAMPLES, SIZES, Training, Tried, check, learn_from, learned, mean, no_shape,
-    size_limits, timed,
+    Kit, Reduced, SIZES, Training, Tried, check, learn_from, learned, no_shape, size_limits,
 };
 use crate::base::input::InputError;
 use crate::base::vector::largest;
@@ -124,8 +124,7 @@ impl Enrichment<'_> {
             let model = self.kit.model(&phases, &counts, 0.0)?;
             let found = self.run(model, last.as_ref(), &mut failure)?;
             let lacking = found.iter().flat_map(|seen| seen.runs.iter().take(scenes.len()));
-            let lacking: Vec<Lacking> =
-                lacking.flat_map(|(run, _)| run.lacking.clone()).collect();
+            let lacking: Vec<Lacking> = lacking.flat_map(|(run, _)| run.lacking.clone()).collect();
             let error =
                 |seen: &Option<Seen>| seen.as_ref().map_or(f64::INFINITY, |seen| seen.model.error);
             let is_enough = error(&found) <= *within;
@@ -173,23 +172,20 @@ impl Enrichment<'_> {
     ) -> Result<Option<Seen>, Error> {
         let Training { scenes, held_out, settings, .. } = self.training;
         let mut runs = Vec::new();
-        let (mut imbalance, mut travel) = (0.0_f64, 0.0_f64);
         let what = format!("{} unknowns", model.unknowns());
-        for scene in scenes.iter().chain(held_out) {
-            let scene = scene.clone().reduced(model.clone())?;
-            let (run, time) = match timed(&scene, settings, SAMPLES, &mut || (self.observer)(&what))
-            {
-                Err(Error::Integration(failed)) if !failed.is_interruption() => {
-                    *failure = Some(Error::Integration(failed));
-                    return Ok(None);
-                }
-                done => done?,
-            };
-            if let Some(report) = &run.report().reduced {
-                let [own, far] = report.lengths();
-                (imbalance, travel) = (imbalance.max(own), travel.max(far));
+        let see = |_: usize, run: Option<(Trajectory, f64)>| match run {
+            Some(run) => {
+                runs.push(run);
+                ControlFlow::Continue(())
             }
-            runs.push((run, time));
+            None => ControlFlow::Break(()),
+        };
+        let all = scenes.iter().chain(held_out);
+        let found = run_by(&model, all, settings, &mut || (self.observer)(&what), see)?;
+        let ByModel { lengths: [imbalance, travel], seconds, problem } = found;
+        if problem.is_some() {
+            *failure = problem;
+            return Ok(None);
         }
         let told = if imbalance > 0.0 { imbalance / travel } else { 0.0 };
         let apart = before.map_or(f64::INFINITY, |before| {
@@ -199,7 +195,6 @@ impl Enrichment<'_> {
         });
         let error = told.max(TIMES_APART * apart);
         let (unknowns, cells) = (model.unknowns(), model.cells());
-        let seconds = mean(runs.iter().map(|(_, seconds)| *seconds));
         self.tried.push(Tried { unknowns, cells, error, told, seconds });
         (model.error, model.travel, model.is_estimate) = (error, travel, true);
         Ok(Some(Seen { model, runs }))

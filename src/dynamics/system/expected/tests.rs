@@ -3,9 +3,9 @@
 use faer::Mat;
 use faer::prelude::Solve;
 
+use super::Vibrations;
 use crate::base::pod::orthonormal;
 use crate::base::vector::{dot, largest};
-use super::Vibrations;
 use crate::dynamics::system::System;
 use crate::dynamics::system::tests::first_phase;
 use crate::scene::constraint::PhaseStart;
@@ -64,7 +64,8 @@ fn motions_of_second_order_are_those_of_equilibria() {
 
     let scene = strip(FORCE);
     let rest = vec![0.0; scene.body().dofs()];
-    let expected = system(&scene).expected_motions([0.0, 1.0], &rest, &[], None, &mut None).unwrap();
+    let expected =
+        system(&scene).expected_motions([0.0, 1.0], &rest, &[], None, &mut None).unwrap();
     let left_over = |motions: &[Vec<f64>]| {
         let mass = |x: &[f64], y: &mut [f64]| scene.body().inertia().add_product(2, 1.0, x, y);
         let mut rest = alike.clone();
