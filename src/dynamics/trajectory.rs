@@ -94,8 +94,8 @@ pub struct Trajectory {
     pub(crate) report: Report,
     /// What reads contact, once that was asked for.
     contact: OnceLock<Arc<ContactReader>>,
-    /// What a reduced model lacks, as the run has told.
-    pub(crate) lacking: Vec<Arc<Lacking>>,
+    /// What a reduced model lacks, as the run has told; empty unless requested.
+    pub(crate) lacking: Vec<Lacking>,
 }
 
 /// Short: errors hold trajectories, and a program that ends with one prints it.

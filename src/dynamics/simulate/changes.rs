@@ -275,7 +275,7 @@ impl Run {
         }
         if self.number != number {
             self.number = number;
-            self.reduced.iter().for_each(|checks| locked(checks).forget());
+            self.reduced.iter().for_each(|checks| locked(checks).go_back(number));
             self.phase_run = self.new_phase_run(plan.clone());
             let before = number.checked_sub(1).map_or(0.0, |last| self.scene.phases()[last].until);
             self.trajectory.report.phases.retain(|phase| phase.end <= before);

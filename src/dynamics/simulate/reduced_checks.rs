@@ -1,7 +1,7 @@
 //! What a run by a reduced model knows of its error: what the model leaves over is kept now and then, and how far that would
 //! move the body is found once somebody asks, as it takes a factorization with all unknowns.
 
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use crate::base::vector::largest;
 use crate::dynamics::report::{ReducedReport, ToldReading};
@@ -14,15 +14,15 @@ pub(super) struct ReducedChecks {
     pub(super) report: ReducedReport,
     /// Of the present phase.
     left_over: Vec<LeftOver>,
-    /// Of all phases.
-    pub(super) lacking: Vec<Arc<Lacking>>,
+    /// Of all phases, if somebody wants them.
+    lacking: Option<Vec<Lacking>>,
 }
 
 impl ReducedChecks {
-    /// At the start of a run by `model`.
-    pub(super) fn new(model: &ReducedModel) -> Self {
+    /// At the start of a run by `model`, which keeps the displacements that it lacks or not.
+    pub(super) fn new(model: &ReducedModel, keeps_lacking: bool) -> Self {
         let report = ReducedReport::new(model);
-        Self { report, left_over: Vec::new(), lacking: Vec::new() }
+        Self { report, left_over: Vec::new(), lacking: keeps_lacking.then(Vec::new) }
     }
 
     /// Keeps what is left over in a state whose largest displacement is `travel` (m).
@@ -52,17 +52,69 @@ impl ReducedChecks {
             };
             self.report.note_imbalance(largest(&displacement));
             self.report.note_changes(change(&state, &displacement));
-            self.lacking.push(Arc::new(Lacking { phase: number, displacement }));
+            if let Some(lacking) = &mut self.lacking {
+                lacking.push(Lacking { phase: number, displacement });
+            }
         }
     }
 
-    /// Forgets what is not known yet, as it belongs to another phase than that to come.
-    pub(super) fn forget(&mut self) {
+    /// Forgets what is not known yet, as a run goes back from its phase to the earlier one `number`, and what was lacking from
+    /// that on, as it is run again.
+    pub(super) fn go_back(&mut self, number: usize) {
         self.left_over.clear();
+        self.lacking.iter_mut().for_each(|all| all.retain(|lacking| lacking.phase < number));
+    }
+
+    /// The displacements that were lacking, at the end; none unless they were kept.
+    pub(super) fn take_lacking(&mut self) -> Vec<Lacking> {
+        self.lacking.take().unwrap_or_default()
     }
 }
 
 /// The checks, whatever has happened to others who looked at them.
 pub(super) fn locked(checks: &Mutex<ReducedChecks>) -> MutexGuard<'_, ReducedChecks> {
     checks.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::ops::ControlFlow;
+
+    use super::*;
+    use crate::reduce::{Training, reduce};
+    use crate::{Body, Cells, Material, Mesh, Phase, Scene, Settings, Strain};
+
+    /// Six states of each of two phases, however often they are run; none where nobody has asked.
+    #[test]
+    fn what_is_lacking_is_kept_for_the_last_way_alone() {
+        let mesh = Mesh::rectangle([0.1, 0.02], [5, 2], Cells::Rectangles).unwrap();
+        let rubber = Material { density: 1000.0, young: 1e5, poisson: 0.4, viscosity: 100.0 };
+        let body = Body::new(mesh, rubber).thickness(0.01).strain(Strain::Green).build().unwrap();
+        let bent = Phase::until(0.1).named("bent").hold("left").load([10], [0.0, 0.02]);
+        let scene = Scene::new(body).phase(bent).phase(Phase::until(0.2).hold("left"));
+        let settings = Settings { rtol: 1e-4, ..Settings::default() };
+        let training = Training {
+            scenes: vec![scene.clone()],
+            held_out: Vec::new(),
+            settings: settings.clone(),
+            within: 0.1,
+            most_unknowns: 6,
+        };
+        let model = reduce(&training, &mut |_| ControlFlow::Continue(())).unwrap().model;
+        let scene = scene.reduced(model.clone()).unwrap();
+        for (is_asked, expected) in [(true, [6, 6]), (false, [0, 0])] {
+            let mut strip = scene.start(&settings).unwrap();
+            strip.run.reduced = Some(Mutex::new(ReducedChecks::new(&model, is_asked)));
+            strip.advance_to(0.05).unwrap();
+            let halfway = strip.checkpoint();
+            for _ in 0..4 {
+                strip.restore(&halfway).unwrap();
+                strip.advance_to(0.2).unwrap();
+            }
+            let lacking = strip.into_trajectory().lacking;
+            let of_phase = |phase| lacking.iter().filter(|own| own.phase == phase).count();
+            assert!(lacking.len() <= expected.iter().sum(), "{}", lacking.len());
+            assert_eq!(of_phase(1), expected[1]);
+        }
+    }
 }

@@ -150,7 +150,9 @@ impl Run {
             trajectory,
             least_energy: least_energy(scene.body()),
             pause: None,
-            reduced: scene.reduced_model().map(|model| Mutex::new(ReducedChecks::new(model))),
+            reduced: scene
+                .reduced_model()
+                .map(|model| Mutex::new(ReducedChecks::new(model, sampling.keeps_lacking()))),
             scene: Arc::new(scene.clone()),
         };
         run.follow_angles();
@@ -373,7 +375,7 @@ impl Run {
     pub(super) fn into_trajectory(mut self) -> Trajectory {
         self.trajectory.report = self.report();
         if let Some(checks) = &self.reduced {
-            self.trajectory.lacking.clone_from(&locked(checks).lacking);
+            self.trajectory.lacking = locked(checks).take_lacking();
         }
         self.trajectory.report.indicators = indicators::of_motion(&self.trajectory);
         self.trajectory

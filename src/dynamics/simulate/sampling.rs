@@ -22,6 +22,8 @@ pub struct Sampling {
     sensors: Vec<Sensor>,
     /// Whether sensors are also read within each step, to find their largest and least values.
     finds_peaks: bool,
+    /// Whether the displacements that a reduced model lacks are kept.
+    keeps_lacking: bool,
 }
 
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -81,6 +83,16 @@ impl Sampling {
 
     pub(super) fn finds_peaks(&self) -> bool {
         self.finds_peaks
+    }
+
+    /// Keeps the displacements that a reduced model lacks: [`Trajectory::lacking`](crate::Trajectory).
+    pub(crate) fn keeping_lacking(mut self) -> Self {
+        self.keeps_lacking = true;
+        self
+    }
+
+    pub(super) fn keeps_lacking(&self) -> bool {
+        self.keeps_lacking
     }
 
     /// Whether a sample within a phase is taken because of [`also_at`](Self::also_at) alone.

@@ -33,19 +33,35 @@ const STEP: f64 = 1e-3;
 /// Times that a wave takes across the body, in which shapes reach equilibrium.
 const STATIC: f64 = 1e3;
 
+/// Motions at rest of a body with some constraints.
+pub(crate) struct Vibrations {
+    /// The entries of the tangent stiffness (N/m) there.
+    stiffness: Vec<f64>,
+    /// Rigid motions that nothing resists, orthonormal by M.
+    rigid: Vec<Vec<f64>>,
+    /// Squares of angular frequencies (rad^2/s^2), ascending, with shapes that are orthonormal by M.
+    lowest: Vec<(f64, Vec<f64>)>,
+}
+
 impl System {
     /// Displacements (m) that are expected from `start` to `end` (s), about as large as they will be, where the phase begins with
-    /// `velocities` (m/s): no larger than `most` (m), if that is known. What the rows that move do by their `lifts` is not among them, but how that bends the body is.
+    /// `velocities` (m/s): no larger than `most` (m), if that is known. What the rows that move do by their `lifts` is not among them, but how that bends the body is. Vibrations that
+    /// are `known` are not looked for where the tangents are the same.
     pub(crate) fn expected_motions(
         &mut self,
         [start, end]: [f64; 2],
         velocities: &[f64],
         lifts: &[Vec<f64>],
         most: Option<f64>,
+        known: &mut Option<Vibrations>,
     ) -> Result<Vec<Vec<f64>>, Failure> {
         let times = TIMES.map(|part| start + part * (end - start));
-        let rigid = self.update_tangents_at_rest(start);
-        let vibrations = self.vibrations(&rigid, VIBRATIONS);
+        self.update_tangents_at_rest(start);
+        let found = match known.take() {
+            Some(known) if known.stiffness == self.tangents().0.values => known,
+            _ => self.vibrations(VIBRATIONS),
+        };
+        let Vibrations { rigid, lowest: vibrations, .. } = &*known.insert(found);
         let [size, speed] = self.matrices.scales;
         self.factorize_newton(STATIC * size / speed)?;
 
@@ -55,7 +71,7 @@ impl System {
         for time in times {
             let mut load = self.load_at_rest(time)?;
             // what is left when the body moves as a whole
-            for motion in &rigid {
+            for motion in rigid {
                 let part = -dot(motion, &load);
                 self.add_momentum(part, motion, &mut load);
             }
@@ -75,11 +91,11 @@ impl System {
         self.add_momentum(1.0, velocities, &mut momentum);
         for (value, shape) in vibrations {
             // how far it swings by each load that comes at once, and by the velocities
-            let by_loads = loads.iter().map(|load| dot(load, &shape).abs() / value);
-            let by_velocities = dot(&momentum, &shape).abs() / value.sqrt();
-            let least = LEAST * most * slowest / value / largest(&shape);
+            let by_loads = loads.iter().map(|load| dot(load, shape).abs() / value);
+            let by_velocities = dot(&momentum, shape).abs() / value.sqrt();
+            let least = LEAST * most * slowest / value / largest(shape);
             let amplitude = by_loads.fold(by_velocities.max(least), f64::max);
-            motions.push(shape.into_iter().map(|x| amplitude * x).collect());
+            motions.push(shape.iter().map(|x| amplitude * x).collect());
         }
         motions.retain(|motion| largest(motion) > 0.0);
 
@@ -98,19 +114,19 @@ impl System {
         Ok(motions)
     }
 
-    /// Sets the tangents to those at rest, and returns the rigid motions that nothing resists there.
-    fn update_tangents_at_rest(&mut self, t: f64) -> Vec<Vec<f64>> {
+    /// Sets the tangents to those at rest.
+    fn update_tangents_at_rest(&mut self, t: f64) {
         let rest = vec![0.0; self.dofs()];
         self.newton.is_set = false;
         self.update_tangents(t, &rest, &rest, false);
-        let highest = self.highest(|system| system.tangents().0);
-        self.rigid_motions(&rest, RIGID * highest)
     }
 
-    /// The lowest vibrations by the present tangents, as squares of angular frequencies (rad^2/s^2) with shapes that are orthonormal by M.
-    fn vibrations(&mut self, rigid: &[Vec<f64>], count: usize) -> Vec<(f64, Vec<f64>)> {
+    /// The `count` lowest vibrations by the tangents at rest.
+    fn vibrations(&mut self, count: usize) -> Vibrations {
         let highest = self.highest(|system| system.tangents().0);
-        self.lowest(highest, rigid, count)
+        let rigid = self.rigid_motions(&vec![0.0; self.dofs()], RIGID * highest);
+        let lowest = self.lowest(highest, &rigid, count);
+        Vibrations { stiffness: self.tangents().0.values.clone(), rigid, lowest }
     }
 
     /// What each row that moves does from the first of the `times` on, as far as it goes.

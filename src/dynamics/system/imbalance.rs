@@ -30,7 +30,7 @@ pub(crate) struct LeftOver {
 }
 
 /// Displacements (m) of all nodes that a reduced model lacks, as a state in a phase tells.
-#[derive(Debug, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Lacking {
     pub(crate) phase: usize,
     pub(crate) displacement: Vec<f64>,

@@ -62,6 +62,7 @@ use std::sync::Arc;
 pub(crate) use at_rest::{AtRest, ForceBalance};
 pub(crate) use dae::{DaeForm, Index};
 use edges::Edges;
+pub(crate) use expected::Vibrations;
 pub(crate) use form::Form;
 pub(crate) use imbalance::{Lacking, LeftOver};
 use newton_matrix::NewtonMatrix;

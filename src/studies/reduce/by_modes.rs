@@ -2,14 +2,13 @@
 //! expect, the others what runs by the model go through and leave over. Their error is the one that these runs tell.
 
 use std::ops::ControlFlow;
-use std::sync::Arc;
 use std::time::Instant;
 
 use super::error::distance;
-use super::learn::{LearnedPhase, equilibria, expected};
+use super::learn::{LearnedPhase, Undeformed, equilibria, expected};
+use super::runs::{ByModel, run_by};
 use super::{
-    Kit, Reduced, SAMPLES, SIZES, Training, Tried, check, learn_from, learned, mean, no_shape,
-    size_limits, timed,
+    Kit, Reduced, SIZES, Training, Tried, check, learn_from, learned, no_shape, size_limits,
 };
 use crate::base::input::InputError;
 use crate::base::vector::largest;
@@ -111,7 +110,10 @@ impl Enrichment<'_> {
     /// The best of models to which shapes are added that their own runs lack, with all cells.
     fn enriched(&mut self) -> Result<Seen, Error> {
         let Training { scenes, within, most_unknowns, .. } = self.training;
-        let mut phases = expected_phases(scenes, *most_unknowns)?;
+        let numbers = 0..scenes[0].phases().len();
+        let equations = numbers.map(|number| Undeformed::new(&scenes[0], number));
+        let mut equations = equations.collect::<Result<Vec<_>, Error>>()?;
+        let mut phases = expected_phases(scenes, &mut equations, *most_unknowns)?;
         let [least, most] = size_limits(&phases, *most_unknowns)?;
         let after = |count: usize| SIZES.into_iter().find(|size| *size > count && *size >= least);
         let first = after(0).map_or(most, |size| size.min(*most_unknowns));
@@ -122,8 +124,7 @@ impl Enrichment<'_> {
             let model = self.kit.model(&phases, &counts, 0.0)?;
             let found = self.run(model, last.as_ref(), &mut failure)?;
             let lacking = found.iter().flat_map(|seen| seen.runs.iter().take(scenes.len()));
-            let lacking: Vec<Arc<Lacking>> =
-                lacking.flat_map(|(run, _)| run.lacking.clone()).collect();
+            let lacking: Vec<Lacking> = lacking.flat_map(|(run, _)| run.lacking.clone()).collect();
             let error =
                 |seen: &Option<Seen>| seen.as_ref().map_or(f64::INFINITY, |seen| seen.model.error);
             let is_enough = error(&found) <= *within;
@@ -140,11 +141,10 @@ impl Enrichment<'_> {
             for (number, count) in counts.iter_mut().enumerate() {
                 let own = lacking.iter().filter(|lacking| lacking.phase == number);
                 let own: Vec<Vec<f64>> = own.map(|lacking| lacking.displacement.clone()).collect();
-                let phase = phases[number].clone();
                 // a run that has failed tells nothing: take more of what was expected
                 if !own.is_empty() {
                     let added = next.saturating_sub(*count);
-                    phases[number] = phase.grown((&scenes[0], number), *count, &own, added)?;
+                    phases[number].grow(&mut equations[number], *count, own, added);
                 }
                 *count = phases[number].count(next);
             }
@@ -172,23 +172,20 @@ impl Enrichment<'_> {
     ) -> Result<Option<Seen>, Error> {
         let Training { scenes, held_out, settings, .. } = self.training;
         let mut runs = Vec::new();
-        let (mut imbalance, mut travel) = (0.0_f64, 0.0_f64);
         let what = format!("{} unknowns", model.unknowns());
-        for scene in scenes.iter().chain(held_out) {
-            let scene = scene.clone().reduced(model.clone())?;
-            let (run, time) = match timed(&scene, settings, SAMPLES, &mut || (self.observer)(&what))
-            {
-                Err(Error::Integration(failed)) if !failed.is_interruption() => {
-                    *failure = Some(Error::Integration(failed));
-                    return Ok(None);
-                }
-                done => done?,
-            };
-            if let Some(report) = &run.report().reduced {
-                let [own, far] = report.lengths();
-                (imbalance, travel) = (imbalance.max(own), travel.max(far));
+        let see = |_: usize, run: Option<(Trajectory, f64)>| match run {
+            Some(run) => {
+                runs.push(run);
+                ControlFlow::Continue(())
             }
-            runs.push((run, time));
+            None => ControlFlow::Break(()),
+        };
+        let all = scenes.iter().chain(held_out);
+        let found = run_by(&model, all, settings, &mut || (self.observer)(&what), see)?;
+        let ByModel { lengths: [imbalance, travel], seconds, problem } = found;
+        if problem.is_some() {
+            *failure = problem;
+            return Ok(None);
         }
         let told = if imbalance > 0.0 { imbalance / travel } else { 0.0 };
         let apart = before.map_or(f64::INFINITY, |before| {
@@ -198,27 +195,33 @@ impl Enrichment<'_> {
         });
         let error = told.max(TIMES_APART * apart);
         let (unknowns, cells) = (model.unknowns(), model.cells());
-        let seconds = mean(runs.iter().map(|(_, seconds)| *seconds));
         self.tried.push(Tried { unknowns, cells, error, told, seconds });
         (model.error, model.travel, model.is_estimate) = (error, travel, true);
         Ok(Some(Seen { model, runs }))
     }
 }
 
-/// All phases with the shapes that are expected of them.
-fn expected_phases(scenes: &[Scene], most: usize) -> Result<Vec<LearnedPhase>, Error> {
+/// All phases, with their `equations` at rest, and the shapes that are expected of them.
+fn expected_phases(
+    scenes: &[Scene],
+    equations: &mut [Undeformed],
+    most: usize,
+) -> Result<Vec<LearnedPhase>, Error> {
     let numbers = 0..scenes[0].phases().len();
     let at_rest =
         |scene: &Scene| numbers.clone().flat_map(|number| equilibria(scene, number)).collect();
     let at_rest: Vec<Vec<Vec<f64>>> = scenes.iter().map(at_rest).collect();
-    let of_phase = |number: usize| {
+    let of_phase = |number: usize, equations: &mut Undeformed| {
+        let mut vibrations = None;
         // what one phase does another one undoes
         let mut motions = at_rest.concat();
         for (scene, at_rest) in scenes.iter().zip(&at_rest) {
             let farthest = at_rest.iter().map(|u| largest(u)).fold(0.0, f64::max);
-            motions.extend(expected(scene, number, Some(farthest).filter(|most| *most > 0.0))?);
+            let most = Some(farthest).filter(|most| *most > 0.0);
+            motions.extend(expected((scene, number), most, &mut vibrations)?);
         }
-        LearnedPhase::new(&scenes[0], number, &[], &motions, most)
+        LearnedPhase::new((&scenes[0], number), equations, &[], &motions, most)
     };
-    numbers.clone().map(of_phase).collect()
+    let each = numbers.clone().zip(equations);
+    each.map(|(number, equations)| of_phase(number, equations)).collect()
 }

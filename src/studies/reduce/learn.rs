@@ -3,13 +3,13 @@
 use std::sync::Arc;
 
 use crate::base::input::InputError;
-use crate::base::pod::{Mass, orthonormal, pod};
+use crate::base::pod::{Mass, Pod, orthonormal, pod};
 use crate::base::simd::add_multiple;
 use crate::base::vector::dot;
 use crate::dynamics::error::Error;
 use crate::dynamics::matrices::Matrices;
 use crate::dynamics::statics::Statics;
-use crate::dynamics::system::System;
+use crate::dynamics::system::{System, Vibrations};
 use crate::dynamics::trajectory::Trajectory;
 use crate::elements::body::Body;
 use crate::integrators::ode::Failure;
@@ -18,7 +18,6 @@ use crate::scene::reduced_model::ReducedPhase;
 use crate::scene::timeline::Scene;
 
 /// A phase in all runs.
-#[derive(Clone)]
 pub(super) struct LearnedPhase {
     name: String,
     rows: usize,
@@ -36,7 +35,6 @@ pub(super) struct LearnedPhase {
 }
 
 /// A state in a run.
-#[derive(Clone)]
 pub(super) struct State {
     /// Displacements (m) where the phase began.
     origin: Arc<Vec<f64>>,
@@ -48,19 +46,19 @@ pub(super) struct State {
 }
 
 impl LearnedPhase {
-    /// Phase `number` of a scene, of the `runs` of scenes that have the same body and phases, and of displacements `beyond` those of
-    /// the runs.
+    /// Phase `number` of a scene, with its equations `at_rest`, of the `runs` of scenes that have the same body and phases, and of
+    /// `displacements` (m) beside those of the runs.
     pub(super) fn new(
-        scene: &Scene,
-        number: usize,
+        (scene, number): (&Scene, usize),
+        at_rest: &mut Undeformed,
         runs: &[&Trajectory],
-        beyond: &[Vec<f64>],
+        displacements: &[Vec<f64>],
         most: usize,
     ) -> Result<Self, Error> {
         let (body, phase) = (scene.body(), &scene.phases()[number]);
-        let Undeformed { mut system, matrices, start } = Undeformed::new(scene, number)?;
-        let lifts = system.lifts(start).map_err(|failure| failed(phase.name(), failure))?;
-        let states = states_in(runs, number, &mut system, &lifts);
+        let Undeformed { system, matrices, start } = at_rest;
+        let lifts = system.lifts(*start).map_err(|failure| failed(phase.name(), failure))?;
+        let states = states_in(runs, number, system, &lifts);
 
         let mass = |x: &[f64], y: &mut [f64]| {
             y.fill(0.0);
@@ -70,32 +68,21 @@ impl LearnedPhase {
         let turns = is_free && body.dimension() == 2;
         let mut snapshots: Vec<Vec<f64>> =
             spread(&states, MOST_SNAPSHOTS).map(|state| state.own.clone()).collect();
-        let moved = moving(&system);
+        let moved = moving(system);
         snapshots.extend(
-            beyond.iter().map(|u| own_part(u.clone(), &mut system, &moved, &lifts)[0].clone()),
+            displacements.iter().map(|u| own_part(u.clone(), system, &moved, &lifts)[0].clone()),
         );
-        let with_turned = |mut all: Vec<Vec<f64>>| {
-            if turns {
-                let turned: Vec<Vec<f64>> = all.iter().map(|x| quarter_turned(x)).collect();
-                all.extend(turned);
-            }
-            all
-        };
         let mut always = Vec::new();
         if is_free {
             // what has turned has turned in the shape that it began with
             let mut begun: Vec<&Arc<Vec<f64>>> = states.iter().map(|state| &state.origin).collect();
             begun.dedup_by(|a, b| Arc::ptr_eq(a, b));
             let begun = begun.into_iter().map(|origin| origin.to_vec()).collect();
-            let begun = pod(&with_turned(begun), &mass).shapes;
+            let begun = beyond(&[], begun, turns, &mass).shapes;
             let first = begun.into_iter().take(MOST_BEGUN);
             always = orthonormal(&affine(body).into_iter().chain(first).collect::<Vec<_>>(), &mass);
         }
-        for snapshot in &mut snapshots {
-            remove(&always, &mass, snapshot);
-        }
-        let snapshots = with_turned(snapshots);
-        let found = pod(&snapshots, &mass);
+        let found = beyond(&always, snapshots, turns, &mass);
         let count = most.saturating_sub(always.len()).min(found.shapes.len());
         let shapes = orthonormal(&[&always[..], &found.shapes[..count]].concat(), &mass);
         let weighted = weighted(&shapes, &mass);
@@ -114,29 +101,26 @@ impl LearnedPhase {
         })
     }
 
-    /// The first `count` shapes, and `added` ones of which `displacements` (m) in phase `number` of a scene are made beyond these.
-    pub(super) fn grown(
-        mut self,
-        (scene, number): (&Scene, usize),
+    /// The first `count` shapes, and `added` ones of which `displacements` (m) are made beyond these.
+    pub(super) fn grow(
+        &mut self,
+        Undeformed { system, matrices, .. }: &mut Undeformed,
         count: usize,
-        displacements: &[Vec<f64>],
+        displacements: Vec<Vec<f64>>,
         added: usize,
-    ) -> Result<Self, Error> {
-        let Undeformed { mut system, matrices, .. } = Undeformed::new(scene, number)?;
+    ) {
         let mass = |x: &[f64], y: &mut [f64]| {
             y.fill(0.0);
             matrices.inertia.add_product(matrices.dimension, 1.0, x, y);
         };
         self.shapes.truncate(count);
-        let mut beyond = displacements.to_vec();
-        beyond.iter_mut().for_each(|x| remove(&self.shapes, &mass, x));
-        let mut new: Vec<Vec<f64>> = pod(&beyond, &mass).shapes.into_iter().take(added).collect();
+        let found = beyond(&self.shapes, displacements, false, &mass);
+        let mut new: Vec<Vec<f64>> = found.shapes.into_iter().take(added).collect();
         // what is small beside what was removed has its round-off
         new.iter_mut().for_each(|shape| system.constrain(shape));
         let all: Vec<Vec<f64>> = self.shapes.drain(..).chain(new).collect();
         self.shapes = orthonormal(&all, &mass);
         self.weighted = weighted(&self.shapes, &mass);
-        Ok(self)
     }
 
     /// Number of shapes of a model of at most `unknowns`.
@@ -216,7 +200,7 @@ fn size(weighted: &[f64], states: &[State]) -> f64 {
 }
 
 /// The equations of a phase with all unknowns, where the body is at rest in its undeformed shape.
-struct Undeformed {
+pub(super) struct Undeformed {
     system: System,
     matrices: Arc<Matrices>,
     /// The time (s) at which the phase begins.
@@ -224,7 +208,7 @@ struct Undeformed {
 }
 
 impl Undeformed {
-    fn new(scene: &Scene, number: usize) -> Result<Self, Error> {
+    pub(super) fn new(scene: &Scene, number: usize) -> Result<Self, Error> {
         let phase = &scene.phases()[number];
         let start = number.checked_sub(1).map_or(0.0, |before| scene.phases()[before].end());
         let forces = scene.forces()?;
@@ -252,11 +236,11 @@ pub(super) fn equilibria(scene: &Scene, number: usize) -> Vec<Vec<f64>> {
 const LOAD_STEPS: usize = 8;
 
 /// The displacements (m) that are expected in phase `number` of a scene by what is linear and of second order, no larger than `most` (m) if
-/// that is known.
+/// that is known, with the vibrations that are `known` of another scene.
 pub(super) fn expected(
-    scene: &Scene,
-    number: usize,
+    (scene, number): (&Scene, usize),
     most: Option<f64>,
+    known: &mut Option<Vibrations>,
 ) -> Result<Vec<Vec<f64>>, Error> {
     let phase = &scene.phases()[number];
     let Undeformed { mut system, start, .. } = Undeformed::new(scene, number)?;
@@ -265,8 +249,9 @@ pub(super) fn expected(
         _ => vec![0.0; scene.body().dofs()],
     };
     let lifts = system.lifts(start);
-    let found = lifts
-        .and_then(|lifts| system.expected_motions([start, phase.end()], &velocities, &lifts, most));
+    let times = [start, phase.end()];
+    let found =
+        lifts.and_then(|lifts| system.expected_motions(times, &velocities, &lifts, most, known));
     found.map_err(|failure| failed(phase.name(), failure))
 }
 
@@ -344,6 +329,16 @@ fn affine(body: &Body) -> Vec<Vec<f64>> {
 /// A displacement in the plane, turned by a quarter.
 fn quarter_turned(x: &[f64]) -> Vec<f64> {
     x.as_chunks::<2>().0.iter().flat_map(|&[x, y]| [-y, x]).collect()
+}
+
+/// What `displacements` are made of beyond some orthonormal shapes; where each `turns`, of those turned by a quarter, too.
+fn beyond(shapes: &[Vec<f64>], mut displacements: Vec<Vec<f64>>, turns: bool, mass: Mass) -> Pod {
+    displacements.iter_mut().for_each(|x| remove(shapes, mass, x));
+    if turns {
+        let turned: Vec<Vec<f64>> = displacements.iter().map(|x| quarter_turned(x)).collect();
+        displacements.extend(turned);
+    }
+    pod(&displacements, mass)
 }
 
 /// Removes from `x` what orthonormal shapes have of it.

@@ -9,6 +9,7 @@ mod alike;
 mod by_modes;
 mod error;
 mod learn;
+mod runs;
 mod sample;
 mod told;
 #[cfg(feature = "sweep")]
@@ -23,7 +24,8 @@ use alike::differing_part;
 pub use by_modes::reduce_by_modes;
 pub use error::error;
 use error::{distance, travel};
-use learn::LearnedPhase;
+use learn::{LearnedPhase, Undeformed};
+use runs::{ByModel, SAMPLES, mean, run_by, timed};
 #[cfg(feature = "study")]
 pub(crate) use told::pays_from;
 #[cfg(feature = "sweep")]
@@ -32,7 +34,6 @@ pub use verified::{Verified, verify};
 
 use crate::base::input::{InputError, positive};
 use crate::dynamics::error::Error;
-use crate::dynamics::simulate::Sampling;
 use crate::dynamics::trajectory::Trajectory;
 use crate::elements::body::ByCell;
 use crate::integrators::ode::Failure;
@@ -91,9 +92,6 @@ pub struct Tried {
 /// Numbers of unknowns that are tried.
 const SIZES: [usize; 10] = [4, 6, 8, 12, 16, 24, 32, 48, 64, 96];
 
-/// Samples of a run that is learned from or checked with.
-const SAMPLES: f64 = 200.0;
-
 /// Parts of the error that is wanted by which the work of the sampled cells may differ from that of all: at first, and where
 /// more shapes do not help at last.
 const OF_CELLS: [f64; 2] = [0.03, 1e-4];
@@ -147,7 +145,10 @@ fn learn_from(
     let runs: Vec<&Trajectory> = checks[..scenes.len()].iter().map(|(run, _)| run).collect();
     let numbers = 0..scenes[0].phases().len();
     let phases: Result<Vec<LearnedPhase>, Error> = numbers
-        .map(|number| LearnedPhase::new(&scenes[0], number, &runs, &[], *most_unknowns))
+        .map(|number| {
+            let mut at_rest = Undeformed::new(&scenes[0], number)?;
+            LearnedPhase::new((&scenes[0], number), &mut at_rest, &runs, &[], *most_unknowns)
+        })
         .collect();
     let phases = phases?;
     let [least, most] = size_limits(&phases, *most_unknowns)?;
@@ -324,41 +325,29 @@ impl Search<'_> {
         checks: &[(Trajectory, f64)],
         what: &str,
     ) -> Result<(ReducedModel, Found), Error> {
-        let (mut error, mut worst, mut problem) = (0.0_f64, 0, None);
-        let (mut per_imbalance, mut imbalance, mut seconds) = (0.0_f64, 0.0_f64, Vec::new());
+        let (mut error, mut worst) = (0.0_f64, 0);
+        let (mut per_imbalance, mut imbalance) = (0.0_f64, 0.0_f64);
+        let scenes = checks.iter().map(|(full, _)| full.scene());
         let settings = &self.training.settings;
-        for (number, (full, _)) in checks.iter().enumerate() {
-            let scene = full.scene().clone().reduced(model.clone())?;
-            let own = match timed(&scene, settings, SAMPLES, &mut || (self.observer)(what)) {
-                Ok((run, time)) => {
-                    let own = distance(full, &run) / model.travel;
-                    let told = run.report().reduced.as_ref().map_or(0.0, |run| run.imbalance());
-                    imbalance = imbalance.max(told);
-                    if told > 0.0 && told.is_finite() {
-                        per_imbalance = per_imbalance.max(own / told);
-                    }
-                    seconds.push(time);
-                    own
+        let see = |number: usize, run: Option<(Trajectory, f64)>| {
+            let own = run.map_or(f64::INFINITY, |(run, _)| {
+                let own = distance(&checks[number].0, &run) / model.travel;
+                let told = run.report().reduced.as_ref().map_or(0.0, |run| run.imbalance());
+                imbalance = imbalance.max(told);
+                if told > 0.0 && told.is_finite() {
+                    per_imbalance = per_imbalance.max(own / told);
                 }
-                Err(Error::Integration(failed)) if failed.is_interruption() => {
-                    return Err(Error::Integration(failed));
-                }
-                Err(failed) => {
-                    problem = Some(failed);
-                    f64::INFINITY
-                }
-            };
+                own
+            });
             if own > error {
                 (error, worst) = (own, number);
             }
-        }
-        let tried = Tried {
-            unknowns: model.unknowns(),
-            cells: model.cells(),
-            error,
-            told: imbalance * per_imbalance,
-            seconds: mean(seconds.into_iter()),
+            ControlFlow::Continue(())
         };
+        let found = run_by(&model, scenes, settings, &mut || (self.observer)(what), see)?;
+        let ByModel { seconds, problem, .. } = found;
+        let (unknowns, cells) = (model.unknowns(), model.cells());
+        let tried = Tried { unknowns, cells, error, told: imbalance * per_imbalance, seconds };
         (model.error, model.error_per_imbalance) = (error, per_imbalance);
         Ok((model, Found { tried, worst, problem }))
     }
@@ -398,24 +387,6 @@ fn check(training: &Training) -> Result<(), InputError> {
         }
     }
     Ok(())
-}
-
-/// A run with so many samples, and the time (s) that it takes.
-fn timed(
-    scene: &Scene,
-    settings: &Settings,
-    samples: f64,
-    observer: &mut dyn FnMut() -> ControlFlow<()>,
-) -> Result<(Trajectory, f64), Error> {
-    let clock = Instant::now();
-    let sampling = Sampling::every(scene.end() / samples);
-    let run = scene.simulate_with(settings, &sampling, |_| observer())?;
-    Ok((run, clock.elapsed().as_secs_f64()))
-}
-
-fn mean(values: impl Iterator<Item = f64>) -> f64 {
-    let values: Vec<f64> = values.collect();
-    values.iter().sum::<f64>() / values.len() as f64
 }
 
 /// The error of forces that have no meaning in a state as few shapes have it.

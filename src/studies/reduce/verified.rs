@@ -2,8 +2,9 @@
 
 use std::ops::ControlFlow;
 
+use super::Tried;
 use super::error::{distance, travel};
-use super::{Tried, timed};
+use super::runs::timed;
 use crate::dynamics::error::Error;
 use crate::scene::ReducedModel;
 use crate::scene::settings::Settings;

@@ -56,10 +56,11 @@ fn with_amounts() -> Scene {
     let phase = Phase::until(1.0)
         .named("p")
         .hold_axes([1, 2], [Axis::Y])
+        // so fast that its power is a large part of all
         .follow([11], Axis::X, |t| Prescribed {
-            displacement: 0.01 * (3.0 * t).sin(),
-            velocity: 0.03 * (3.0 * t).cos(),
-            acceleration: -0.09 * (3.0 * t).sin(),
+            displacement: 1e-4 * (3e4 * t).sin(),
+            velocity: 3.0 * (3e4 * t).cos(),
+            acceleration: -9e4 * (3e4 * t).sin(),
         })
         .hold_combination([(10, Axis::X, 1.0), (12, Axis::X, -2.0)])
         .load([7], [3.0, -2.0])
