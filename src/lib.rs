@@ -78,7 +78,7 @@ pub use integrators::common::Integrator;
 pub use io::scene_file::{OutputRequest, SceneFile};
 #[cfg(feature = "bodies")]
 pub use scene::{
-    BodyState, Phase, ReducedModel, Scene, Term,
+    BodyState, Phase, ReducedModel, Scene, Smaller, Term,
     constraint::{Axis, Prescribed},
     forces::*,
     settings::{

@@ -183,6 +183,22 @@ class Scene:
         """The same scene by a reduced model of it, a :class:`ReducedModel`; by all its unknowns with None."""
         return Scene._of(self._scene.reduced(model and model._reduced))
 
+    def half(self, axis):
+        """The half of the same scene below its middle along an `axis`, ``"x"``, ``"y"`` or ``"z"``, if it is symmetric; all of it with None.
+
+        Of both halves it is the one that the sensors are on. They read what they would read of the whole; energies and forces are those of
+        the half.
+        """
+        return self.with_values({"solver.half": axis or ""})
+
+    def in_plane(self, axis):
+        """The section across an `axis` of the same scene in space, if it is the same all along it, in a plane; all of space with None.
+
+        It is in plane strain where both ends are held along the axis, and else in plane stress. Nodes, displacements and sensors without a
+        component have the other two axes.
+        """
+        return self.with_values({"solver.plane": axis or ""})
+
     def start(self, **solver) -> Simulation:
         """The scene in motion under the control of a program: a :class:`Simulation`."""
         return Simulation(self._scene.with_values(_settings(None, solver)).start())

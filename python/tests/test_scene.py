@@ -325,3 +325,31 @@ def test_a_chart(tmp_path):
     table = pliant.Scene(BEAM).chart(tmp_path / "chart", methods=["rk", "arkode"], rtol=[1e-3, 1e-5], repetitions=1)
     assert "arkode" in table or "rk" in table
     assert sorted(path.name for path in (tmp_path / "chart").iterdir()) == ["chart.csv", "chart.md", "chart.png", "chart.svg"]
+
+
+def test_smaller_models_read_what_the_whole_does():
+    scene = pliant.Scene.from_toml("""
+        [body]
+        mesh = { kind = "cuboid", size = [0.2, 0.04, 0.05], nodes = [5, 2, 3], cells = "hexahedra" }
+        material = { density = 1000.0, young = 1e5, poisson = 0.3, viscosity = 20.0 }
+        [[phase]]
+        until = 0.02
+        hold = [{ nodes = "front", axes = ["y"] }, { nodes = "back", axes = ["y"] }]
+        load = [{ nodes = "left", total = [-0.5, 0.0, 0.0] }, { nodes = "right", total = [0.5, 0.0, 0.0] }]
+        [[sensor]]
+        name = "end"
+        kind = "position"
+        nodes = "right"
+        component = "x"
+        [solver]
+        rtol = 1e-8
+    """)
+    plane = scene.in_plane("y")
+    assert plane.mesh.nodes.shape == (15, 2) and plane.half("x").mesh.nodes.shape == (9, 2)
+    assert plane.in_plane(None).mesh.nodes.shape == (30, 3)
+    end = scene.run().sensors["end"][-1]
+    for smaller in (plane, scene.half("x")):
+        # to some errors of the steps
+        assert abs(smaller.run().sensors["end"][-1] - end) < 1e-8 * end
+    with pytest.raises(pliant.SceneError, match="solver.plane"):
+        scene.in_plane("x")

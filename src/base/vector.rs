@@ -38,6 +38,11 @@ pub(crate) fn cross(a: &[f64; 3], b: &[f64; 3]) -> [f64; 3] {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
+/// The numbers of the two axes of space other than this one.
+pub(crate) fn axes_across(axis: usize) -> [usize; 2] {
+    [[1, 2], [0, 2], [0, 1]][axis]
+}
+
 /// Numbers in ascending order, each once.
 #[cfg(feature = "bodies")]
 pub(crate) fn distinct(numbers: impl IntoIterator<Item = usize>) -> Vec<usize> {

@@ -12,3 +12,4 @@ mod scene_file_errors;
 mod scene_file_words;
 mod scene_files;
 mod sensors;
+mod smaller_models;

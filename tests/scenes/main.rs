@@ -31,6 +31,7 @@ mod growth;
 mod growth_by_direction;
 mod halves;
 mod hill;
+mod in_plane;
 mod index_two;
 mod indicators;
 mod lags;

@@ -5,10 +5,10 @@ use std::ops::ControlFlow;
 use std::path::Path;
 
 use pliant::samples::{ClampedBeam, beam_jump, clamped_beam};
-use pliant::study::{Advice, Adviser, Choice, Parts, Quantity, Smaller};
+use pliant::study::{Advice, Adviser, Choice, Parts, Quantity, Smaller, SmallerModel};
 use pliant::{
-    Axis, Body, Cells, Error, Inertia, Material, Mesh, Obstacle, Phase, Sampling, Scene, SceneFile,
-    Settings, Strain, Term,
+    Axis, Body, Cells, Error, Inertia, Material, Mesh, Obstacle, Phase, Plane, Sampling, Scene,
+    SceneFile, Settings, SolidCells, Strain, Term,
 };
 
 use super::{dephased, frequency};
@@ -352,6 +352,28 @@ fn half_of_what_is_symmetric_is_told() -> Outcome {
         assert!(matches!(half.kind, Smaller::Half { axis: Axis::X, at } if is_cut(at)), "{half}");
         // two runs that differ by the errors of their steps alone, which are small beside the accuracy (measured: 0.6 %)
         assert!(half.change < 0.02 && half.unknowns < half.full_unknowns, "{half}");
+    }
+    Ok(())
+}
+
+/// A thin beam in space that bends in its plane is told to be one in plane stress, of the whole motion and of a reading.
+#[test]
+fn what_is_the_same_along_an_axis_is_told_in_a_plane() -> Outcome {
+    let soft = Material { density: 1000.0, young: 1e5, poisson: 0.3, viscosity: 20.0 };
+    let mesh = Mesh::cuboid([0.1, 0.005, 0.02], [4, 2, 2], SolidCells::Hexahedra)?;
+    let scene = Scene::new(Body::new(mesh, soft).build()?)
+        .gravity([0.0, 0.0, -2.0])
+        .phase(Phase::until(0.05).hold("left"));
+    for quantity in [Quantity::motion(), Quantity::named("right.z", &scene, &[])?] {
+        let adviser = Adviser::new(&scene, 0.1).quantity(quantity).budget(30.0);
+        let advice = adviser.run(&mut |_| ControlFlow::Continue(()))?;
+        println!("{advice}");
+        let is_plane = |smaller: &&SmallerModel| {
+            smaller.kind == Smaller::Plane { axis: Axis::Y, plane: Plane::Stress }
+        };
+        let plane = advice.smaller.iter().find(is_plane).unwrap();
+        // the clamped side is held along y, too, which is felt up to some thicknesses from it
+        assert!(plane.change < 0.05 && 2 * plane.unknowns <= plane.full_unknowns, "{plane}");
     }
     Ok(())
 }

@@ -184,6 +184,9 @@ fn solver(file: &SceneFile) -> Result<(), Failure> {
     let order = max_order.map_or(String::new(), |order| format!("order up to {order}, "));
     let events = format!("contact events: {contact_events}");
     line("", &format!("{order}up to {max_steps} steps in a phase, {events}"))?;
+    for model in &file.smaller {
+        line("run as", &model.to_string())?;
+    }
     if let Some(model) = scene.reduced_model() {
         line("reduced", &model.to_string())?;
         line("", &format!("learned from {}", model.learned_from()))?;

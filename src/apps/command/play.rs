@@ -45,7 +45,11 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let player = Player::new(&file.scene, &file.settings, &file.title, *port)?;
     // sensors are read as often as the energies, whatever output times the file has
     let sensors = OutputRequest { step: None, times: None, ..file.output }.sampling();
-    let player = player.sensors(&sensors)?.saving(text, &scene.path);
+    let mut player = player.sensors(&sensors)?;
+    // nodes of a smaller model are no nodes of the file
+    if file.smaller.is_empty() {
+        player = player.saving(text, &scene.path);
+    }
     // there is nothing that would have to be saved first
     ctrlc::set_handler(|| process::exit(0))
         .map_err(|error| Failure::failed(format!("cannot watch for Ctrl-C: {error}")))?;

@@ -15,18 +15,19 @@ impl Reading {
         let is_along = self.component.is_some_and(|component| {
             components.contains(&component) && component != components[half.axis.index()]
         });
-        let across = format!("{:?}", half.axis).to_lowercase();
         let refused = |value: &str, help: String| InputError::new("quantity", value, help);
+        let only_along = |value: &str| {
+            let across = half.axis.word();
+            let help = format!(
+                "the half has it along the plane alone: choose a component other than {across}"
+            );
+            refused(value, help)
+        };
         let means = |nodes: &Selection| {
             let own = whole.body().mesh().select(nodes)?;
             match half.standing_for(&own) {
                 Some((nodes, is_all)) if is_all || is_along => Ok(nodes),
-                Some(_) => {
-                    let help = format!(
-                        "the half has it along the plane alone: choose a component other than {across}"
-                    );
-                    Err(refused("of nodes on both sides", help))
-                }
+                Some(_) => Err(only_along("of nodes on both sides")),
                 None => {
                     let help = "the half has no such mean: name nodes on one side";
                     Err(refused("of nodes on both sides", help.into()))
@@ -38,12 +39,7 @@ impl Reading {
             What::Displacement(nodes) => What::Displacement(means(nodes)?),
             What::Velocity(nodes) => What::Velocity(means(nodes)?),
             What::CentreOfMass if is_along => What::CentreOfMass,
-            What::CentreOfMass => {
-                let help = format!(
-                    "the half has it along the plane alone: choose a component other than {across}"
-                );
-                return Err(refused("centre of mass", help));
-            }
+            What::CentreOfMass => return Err(only_along("centre of mass")),
             _ => {
                 let help = "the half has positions, displacements, velocities and centres of mass: name one of them";
                 return Err(refused("of another kind", help.into()));

@@ -15,10 +15,12 @@ mod dipole;
 mod events;
 mod failure;
 mod gauge;
-#[cfg(feature = "study")]
+#[cfg(any(feature = "scene-file", feature = "study"))]
 mod half_reading;
 mod interval;
 mod phase_run;
+#[cfg(any(feature = "scene-file", feature = "study"))]
+mod plane_reading;
 mod progress;
 mod reading;
 mod records;

@@ -20,7 +20,7 @@ use crate::base::input::{InputError, positive};
 use crate::base::sparse::{BlockMatrix, NodeMatrix, NodePattern};
 use crate::elements::basis::Finer;
 use crate::elements::material::{Plane, Strain, Substance, Viscosity};
-use crate::elements::mesh::Mesh;
+use crate::elements::mesh::{Mesh, Prism};
 
 /// The builder of a body: see [`Body::new`].
 ///
@@ -188,6 +188,33 @@ impl BodyBuilder {
                 })
                 .collect();
             *mesh = mesh.part(&cells, |node| keeps[node], &is_on_plane);
+        }
+        Ok(self)
+    }
+
+    /// The section of a single body that is a prism, as thick as that is high.
+    ///
+    /// # Errors
+    /// Point masses, whose place in the section is not known; regions that change along the axis or that the mesh does not have.
+    pub(crate) fn section(mut self, prism: &Prism, plane: Plane) -> Result<Self, InputError> {
+        for (mesh, recipe) in &mut self.bodies {
+            if let Some((name, ..)) = recipe.points.first() {
+                let help = "in a plane it would weigh on all of a line: leave it out";
+                return Err(InputError::new("point mass", format!("\"{name}\""), help));
+            }
+            for (selection, _) in &mut recipe.regions {
+                let (cells, is_whole) = prism.whole_cells(&selection.cells(mesh)?);
+                if !is_whole {
+                    let help = "it changes along the axis: make it the same all along, or leave the scene in space";
+                    return Err(InputError::new("region", &*selection, help));
+                }
+                *selection = CellSelection::Numbers(cells.iter().map(|cell| cell + 1).collect());
+            }
+            (recipe.plane, recipe.thickness) = (plane, Some(prism.height()));
+            if plane == Plane::Stress {
+                recipe.dilatation = Dilatation::AtPoints;
+            }
+            *mesh = prism.section.clone();
         }
         Ok(self)
     }

@@ -9,6 +9,7 @@ mod generate;
 #[cfg(feature = "gmsh")]
 mod gmsh;
 mod mirror;
+mod prism;
 mod select;
 mod surface;
 
@@ -20,6 +21,7 @@ pub(crate) use cell::FaceKind;
 pub(crate) use generate::BYTES_PER_NODE;
 pub use generate::{Cells, SolidCells};
 pub(crate) use mirror::Mirror;
+pub(crate) use prism::Prism;
 pub use select::Selection;
 pub(crate) use surface::Enclosed;
 

@@ -7,15 +7,17 @@ use crate::dynamics::simulate::{Reading, Sampling};
 use crate::dynamics::statics::Statics;
 use crate::elements::mesh::Selection;
 use crate::scene::settings::Settings;
-use crate::scene::timeline::Scene;
+use crate::scene::timeline::{Scene, Smaller};
 
 /// The contents of a scene file.
 #[derive(Debug, Clone)]
 pub struct SceneFile {
     /// Title of the scene; empty without one.
     pub title: String,
-    /// The scene.
+    /// The scene, by the smaller models of it by which it is run.
     pub scene: Scene,
+    /// How it is smaller than what the tables say: `half` and `plane` of `[solver]`.
+    pub smaller: Vec<Smaller>,
     /// How it is integrated.
     pub settings: Settings,
     /// How accurate its motion has to be.

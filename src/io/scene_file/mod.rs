@@ -68,6 +68,7 @@ mod selection;
 mod sensor;
 mod set_value;
 mod settings;
+mod smaller;
 mod source;
 #[cfg(feature = "sweep")]
 mod study;

@@ -17,6 +17,7 @@ use super::phase;
 use super::phase_keys::PHASE;
 use super::sensor::{SENSOR, sensor};
 use super::settings::{self, OUTPUT, SOLVER, STATICS};
+use super::smaller;
 use super::surroundings::{self, CABLE, CHAMBER, SPRING};
 use super::table::Table;
 use super::tie::{self, TIE};
@@ -138,9 +139,6 @@ pub(super) fn scene_file(top: &Table) -> Result<SceneFile, Error> {
         scene = initial::add_initial(scene, &initial)?;
     }
     scene = top.required("body", |body| body::moving(scene, body))?;
-    if let Some(solver) = top.get("solver") {
-        scene = settings::reduced(scene, &solver)?;
-    }
     let auto = top.required("body", body::auto)?;
     let settings = top.optional("solver", settings::solver)?.unwrap_or_default();
     let accuracy = top.optional("solver", settings::accuracy)?.unwrap_or_default();
@@ -153,9 +151,15 @@ pub(super) fn scene_file(top: &Table) -> Result<SceneFile, Error> {
         output.sensors = sensors.collect::<Result<_, _>>()?;
         output.sampling().check(&scene).map_err(|error| values.error(error))?;
     }
+    let mut smaller = Vec::new();
+    if let Some(solver) = top.get("solver") {
+        (scene, output, smaller) = smaller::smaller(scene, output, &solver)?;
+        scene = settings::reduced(scene, &solver)?;
+    }
     Ok(SceneFile {
         title: title.into(),
         scene,
+        smaller,
         settings,
         accuracy,
         auto,

@@ -19,6 +19,11 @@ impl Axis {
         self as usize
     }
 
+    /// Its word: `x`, `y`, `z`.
+    pub(crate) fn word(self) -> &'static str {
+        ["x", "y", "z"][self.index()]
+    }
+
     /// All axes of a space.
     pub(crate) fn all(dimension: usize) -> &'static [Axis] {
         &[Self::X, Self::Y, Self::Z][..dimension]

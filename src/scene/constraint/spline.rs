@@ -7,7 +7,7 @@ use crate::base::vector::largest;
 /// A displacement that runs smoothly through given points: a cubic spline. It starts and ends with
 /// velocity 0, and rests before the first time and after the last. Between them b, b' and b'' are
 /// continuous; b'' starts and ends with a jump.
-#[derive(Debug, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "checkpoint", serde(from = "Points"))]
 pub(crate) struct Spline {

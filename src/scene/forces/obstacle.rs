@@ -8,6 +8,7 @@ use super::travel::{Cubics, Travel, Waypoints};
 #[cfg(feature = "scene-file")]
 use crate::base::formula::Formula;
 use crate::base::input::{InputError, not_negative, positive};
+use crate::base::vector::axes_across;
 use crate::scene::constraint::Spline;
 
 /// An obstacle: a signed distance d(x), negative inside, and the law of its penalty force.
@@ -399,6 +400,34 @@ impl Obstacle {
             && !self.bristles.as_ref().is_some_and(is_skew)
     }
 
+    /// Its section across an `axis`, in the plane of the other two, for a body between two `ends` (m) on it: `None` if it is not known to be
+    /// the same all along there at some `times` (s). A stiffness per node stays what it is.
+    pub(crate) fn section(
+        &self,
+        axis: usize,
+        ends: [f64; 2],
+        times: &[f64],
+        tolerance: f64,
+    ) -> Option<Self> {
+        let axes = axes_across(axis);
+        let is_along = |of: &Bristles| of.direction.get(axis).is_some_and(|x| *x != 0.0);
+        let leaves = |t: &f64| self.displacement(*t)[axis].abs() > tolerance;
+        if times.iter().any(leaves) || self.bristles.as_ref().is_some_and(is_along) {
+            return None;
+        }
+        let bristles = self.bristles.as_ref().map(|of| Bristles {
+            direction: axes.map(|i| of.direction[i]).to_vec(),
+            coefficient: of.coefficient,
+        });
+        Some(Self {
+            shape: self.shape.section(axis, ends, tolerance)?,
+            travel: self.travel.part(axes),
+            offset: [self.offset[axes[0]], self.offset[axes[1]], 0.0],
+            bristles,
+            ..self.clone()
+        })
+    }
+
     /// Whether its friction is larger one way.
     pub(crate) fn has_bristles(&self) -> bool {
         self.bristles.is_some()
@@ -409,7 +438,8 @@ impl Obstacle {
         self.coulomb(size).filter(|_| self.has_friction()).map(|coulomb| coulomb.sticking_speed)
     }
 
-    pub(super) fn is_per_area(&self) -> bool {
+    /// Whether its stiffness is per area of the body, and not per node.
+    pub(crate) fn is_per_area(&self) -> bool {
         matches!(self.stiffness, Stiffness::Density(_))
     }
 

@@ -4,7 +4,7 @@ use std::fmt;
 use std::sync::Arc;
 
 use crate::base::input::{InputError, finite, positive};
-use crate::base::vector::{dot, norm};
+use crate::base::vector::{axes_across, dot, norm};
 
 /// Components of a normal below this part of its length are round-off.
 const ROUND_OFF: f64 = 1e-12;
@@ -134,6 +134,36 @@ impl Shape {
             }
             Kind::Union(parts) => parts.iter().all(|part| part.is_symmetric((axis, at), tolerance)),
             Kind::Custom(_) => false,
+        }
+    }
+
+    /// Its section across an `axis`, in the plane of the other two: `None` if it is not known to be the same all along there for
+    /// bodies between two `ends` (m) on it, to within `tolerance` (m).
+    pub(super) fn section(&self, axis: usize, ends: [f64; 2], tolerance: f64) -> Option<Self> {
+        let axes = axes_across(axis);
+        let own = |x: &[f64]| axes.map(|i| x[i]).to_vec();
+        // beyond the ends by so much that what is inside is nowhere nearer to an end
+        let covers = |[low, high]: [f64; 2], beyond: f64| {
+            low <= ends[0] - beyond + tolerance && high >= ends[1] + beyond - tolerance
+        };
+        match &self.0 {
+            Kind::HalfPlane { point, normal } => (normal[axis].abs() <= ROUND_OFF * norm(normal))
+                .then(|| Self::half_plane(own(point), own(normal))),
+            Kind::Box { min, max } => {
+                let [a, b] = axes.map(|i| 0.5 * (max[i] - min[i]));
+                covers([min[axis], max[axis]], a.min(b))
+                    .then(|| Self::box_between(own(min), own(max)))
+            }
+            Kind::Capsule { from, to, radius } => {
+                let is_along = axes.iter().all(|&i| (from[i] - to[i]).abs() <= tolerance);
+                let span = [from[axis].min(to[axis]), from[axis].max(to[axis])];
+                (is_along && covers(span, 0.0)).then(|| Self::disc(own(from), *radius))
+            }
+            Kind::Union(parts) => {
+                let parts = parts.iter().map(|part| part.section(axis, ends, tolerance));
+                parts.collect::<Option<Vec<_>>>().map(Self::union)
+            }
+            Kind::Ball { .. } | Kind::Custom(_) => None,
         }
     }
 

@@ -358,6 +358,30 @@ impl VectorSignal {
         }
     }
 
+    /// Some of its components.
+    pub(crate) fn part(&self, components: [usize; 2]) -> Self {
+        let chosen = |values: &[f64]| components.map(|i| values[i]).to_vec();
+        match self {
+            Self::Constant(values) => Self::Constant(chosen(values)),
+            Self::TimeTable(TimeTable { times, values }) => {
+                let values = values.iter().map(|values| chosen(values)).collect();
+                Self::TimeTable(TimeTable::new(times.clone(), values))
+            }
+            Self::Formulas(formulas) => {
+                Self::Formulas(components.map(|i| formulas[i].clone()).into())
+            }
+            varying => {
+                let (varying, dimension) = (varying.clone(), varying.dimension());
+                let write = move |t: f64, vector: &mut [f64]| {
+                    let mut all = [0.0; 3];
+                    varying.at(t, &mut all[..dimension]);
+                    vector.iter_mut().zip(components).for_each(|(x, i)| *x = all[i]);
+                };
+                Self::Function { dimension: components.len(), write: Arc::new(write) }
+            }
+        }
+    }
+
     /// Its number of components.
     fn dimension(&self) -> usize {
         match self {

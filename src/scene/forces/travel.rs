@@ -172,6 +172,23 @@ impl Travel {
         }
     }
 
+    /// Some of its components.
+    pub(super) fn part(&self, components: [usize; 2]) -> Self {
+        let chosen = |x: &[f64]| components.map(|i| x[i]).to_vec();
+        match self {
+            Self::Uniform(velocity) if velocity.is_empty() => self.clone(),
+            Self::Uniform(velocity) => Self::Uniform(chosen(velocity)),
+            Self::Path(path) => {
+                let times = path.splines.first().map_or(&[][..], Spline::times);
+                let displacements = path.displacements.iter().map(|x| chosen(x)).collect();
+                Self::Path(Arc::new(Waypoints::new(times, displacements)))
+            }
+            Self::Formulas(formulas) => {
+                Self::Formulas(components.map(|i| formulas[i].clone()).into())
+            }
+        }
+    }
+
     /// Whether its velocity is constant.
     #[cfg(feature = "checkpoint")]
     pub(super) fn is_uniform(&self) -> bool {

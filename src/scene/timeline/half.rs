@@ -15,7 +15,7 @@ use symmetry::Symmetry;
 
 /// One half of a symmetric scene, and which nodes it has of the whole one.
 #[derive(Debug, Clone)]
-#[cfg_attr(not(feature = "study"), allow(dead_code))]
+#[cfg_attr(not(any(feature = "scene-file", feature = "study")), allow(dead_code))]
 pub(crate) struct Half {
     pub(crate) scene: Scene,
     /// The axis that the plane is normal to.
@@ -28,7 +28,7 @@ pub(crate) struct Half {
     images: Vec<usize>,
 }
 
-#[cfg(feature = "study")]
+#[cfg(any(feature = "scene-file", feature = "study"))]
 impl Half {
     /// The numbers (from 0) that some nodes of the whole scene have here; `None` if one of them is on the other side.
     fn numbers(&self, nodes: &[usize]) -> Option<Vec<usize>> {

@@ -16,7 +16,9 @@ mod load;
 mod loading;
 mod phase;
 mod pipe;
+mod plane;
 mod reduced;
+mod smaller;
 mod start;
 mod term;
 mod tie;
@@ -27,12 +29,15 @@ use std::sync::Arc;
 
 pub use body_state::BodyState;
 pub(crate) use contacts::ContactReader;
-#[cfg(feature = "study")]
+#[cfg(any(feature = "scene-file", feature = "study"))]
 pub(crate) use half::Half;
 pub(crate) use load::{Load, LoadKind};
 #[cfg(feature = "checkpoint")]
 pub(crate) use phase::ContactWith;
 pub use phase::Phase;
+#[cfg(any(feature = "scene-file", feature = "study"))]
+pub(crate) use plane::InPlane;
+pub use smaller::Smaller;
 use start::Start;
 pub use term::Term;
 use tie::Tie;

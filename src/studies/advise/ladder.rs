@@ -63,6 +63,7 @@ impl Search<'_> {
         self.sweep(&enough, found)?;
         self.rigid(found)?;
         self.half(found)?;
+        self.plane(found)?;
         self.reduce(found)
     }
 

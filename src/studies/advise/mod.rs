@@ -10,6 +10,7 @@ mod half;
 mod ladder;
 mod page;
 mod parts;
+mod plane;
 mod record;
 mod reduced;
 mod reduced_candidate;
@@ -17,10 +18,13 @@ mod rigid;
 mod runs;
 mod search;
 mod smaller_model;
+mod smaller_run;
 
 pub use advice::{Advice, Candidate};
 pub use adviser::Adviser;
 pub use choice::{Choice, RicherCells};
 pub use parts::Parts;
 pub use reduced_candidate::ReducedCandidate;
-pub use smaller_model::{Smaller, SmallerModel};
+pub use smaller_model::SmallerModel;
+
+pub use crate::scene::timeline::Smaller;

@@ -4,10 +4,11 @@ use super::choice::Choice;
 use super::found::Found;
 use super::ladder::PATIENCE;
 use super::search::{Cut, SHORT, Search, Solved, Stop};
-use super::smaller_model::{Smaller, SmallerModel};
+use super::smaller_model::SmallerModel;
 use crate::base::input::percent;
 use crate::base::sparse::NodePattern;
 use crate::elements::body::Strain;
+use crate::scene::timeline::Smaller;
 use crate::studies::work_precision::rigid_motion::distance_from_rigid;
 
 impl Search<'_> {

@@ -4,8 +4,8 @@ use std::fmt;
 
 use serde_json::{Value, json};
 
-use crate::base::input::{percent, short, told};
-use crate::scene::constraint::Axis;
+use crate::base::input::{percent, short};
+use crate::scene::timeline::Smaller;
 use crate::studies::work_precision::time_text;
 
 /// A smaller model of a motion that is right, on the same mesh and with the same settings.
@@ -26,21 +26,6 @@ pub struct SmallerModel {
     pub full_unknowns: usize,
 }
 
-/// How a model is smaller.
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[non_exhaustive]
-pub enum Smaller {
-    /// All bodies are rigid.
-    Rigid,
-    /// One half of a symmetric scene: see [`Scene::symmetric_half`](crate::Scene::symmetric_half).
-    Half {
-        /// The axis that the plane of symmetry is normal to.
-        axis: Axis,
-        /// Where on that axis the plane is (m).
-        at: f64,
-    },
-}
-
 impl SmallerModel {
     /// It as data.
     pub(super) fn to_json(&self) -> Value {
@@ -53,18 +38,6 @@ impl SmallerModel {
             "unknowns": unknowns,
             "full_unknowns": full_unknowns,
         })
-    }
-}
-
-impl fmt::Display for Smaller {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Rigid => f.write_str("all of it rigid"),
-            Self::Half { axis, at } => {
-                let axis = format!("{axis:?}").to_lowercase();
-                write!(f, "half of it, cut at {axis} = {} m", told(*at))
-            }
-        }
     }
 }
 
@@ -90,6 +63,7 @@ impl fmt::Display for SmallerModel {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::constraint::Axis;
 
     #[test]
     fn smaller_models_are_told() {

@@ -9,7 +9,7 @@ use crate::base::input::{InputError, unknown_among};
 use crate::dynamics::equilibrium::Equilibrium;
 use crate::dynamics::simulate::{Component, Reading, Sampling};
 use crate::dynamics::trajectory::{Sample, Trajectory};
-use crate::scene::timeline::{Half, Scene};
+use crate::scene::timeline::{Half, InPlane, Scene};
 
 /// A quantity of interest: the whole motion, or a number that follows from it.
 ///
@@ -284,6 +284,15 @@ impl Quantity {
         Ok(Self { reading: reading.transpose()?, ..self.clone() })
     }
 
+    /// What has the same value in the section, `plane`, of a scene in `space` as it has there: of the motion that in the plane.
+    ///
+    /// # Errors
+    /// A reading that the section does not have.
+    pub(crate) fn in_plane(&self, space: &Scene, plane: &InPlane) -> Result<Self, InputError> {
+        let reading = self.reading.as_ref().map(|reading| reading.in_plane(space, plane));
+        Ok(Self { reading: reading.transpose()?, ..self.clone() })
+    }
+
     /// Whether it is the whole motion.
     pub(crate) fn is_motion(&self) -> bool {
         self.reading.is_none()
@@ -394,6 +403,17 @@ impl Seen {
         let of_time =
             |x: &Vec<f64>| points.iter().flat_map(|point| &x[point * d..][..d]).copied().collect();
         Self { values: self.values.iter().map(of_time).collect(), ..self.clone() }
+    }
+
+    /// What was seen in space along two axes, with the same scale; numbers stay.
+    pub(crate) fn along(&self, axes: [usize; 2]) -> Self {
+        if self.dimension != 3 {
+            return self.clone();
+        }
+        let chosen =
+            |x: &Vec<f64>| x.chunks_exact(3).flat_map(|point| axes.map(|i| point[i])).collect();
+        let values = self.values.iter().map(chosen).collect();
+        Self { dimension: axes.len(), values, ..self.clone() }
     }
 
     pub(crate) fn distance(&self, other: &Self) -> Distance {

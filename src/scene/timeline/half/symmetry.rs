@@ -2,17 +2,13 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use super::super::smaller::{SAME, check_known, times_of};
 use super::super::{Phase, Scene};
 use crate::base::input::{InputError, told};
 use crate::base::vector::largest;
 use crate::elements::mesh::Mirror;
 use crate::scene::constraint::{Axis, ConstraintRow, PhaseStart, prescribe};
 use crate::scene::forces::Signal;
-
-/// Differences below this part of the largest value are round-off.
-const SAME: f64 = 1e-9;
-/// What changes with time is compared at this many times of each phase.
-const TIMES: u32 = 17;
 
 /// A scene with a plane of symmetry.
 pub(super) struct Symmetry<'a> {
@@ -27,7 +23,11 @@ impl<'a> Symmetry<'a> {
     /// # Errors
     /// What is not symmetric, or of which that is not known.
     pub(super) fn of(scene: &'a Scene, axis: Axis) -> Result<Self, InputError> {
-        check_known(scene)?;
+        check_known(
+            scene,
+            "a half",
+            "leave the scene whole, or build the half by hand (Phase::symmetry)",
+        )?;
         let (mesh, d) = (scene.body.mesh(), scene.body.dimension());
         if axis.index() >= d {
             let help = format!("the body has {d} dimension(s)");
@@ -36,7 +36,7 @@ impl<'a> Symmetry<'a> {
         let Some(mirror) = mesh.mirror(axis.index()) else {
             let help = format!("a node has no mirror image: {HALF}");
             return Err(InputError::new(
-                format!("mesh along {}", word(axis)),
+                format!("mesh along {}", axis.word()),
                 "not symmetric",
                 help,
             ));
@@ -57,7 +57,7 @@ impl<'a> Symmetry<'a> {
 
     /// The error for something that is not symmetric.
     fn refused(&self, input: impl Into<String>, value: impl Into<String>) -> InputError {
-        let plane = format!("{} = {} m", word(self.axis), told(self.mirror.at));
+        let plane = format!("{} = {} m", self.axis.word(), told(self.mirror.at));
         let help = format!("it is not symmetric to the plane {plane}: {HALF}");
         InputError::new(input, value.into(), help)
     }
@@ -71,7 +71,7 @@ impl<'a> Symmetry<'a> {
             let mut sides = free.map(|&node| mesh.position(node)[*axis] > *at);
             let first = sides.next();
             if first.is_none() || sides.any(|side| Some(side) != first) {
-                let plane = format!("{} = {} m", word(self.axis), told(*at));
+                let plane = format!("{} = {} m", self.axis.word(), told(*at));
                 let help = format!(
                     "it lies across the plane of symmetry {plane} or in it: take an even number of cells across it"
                 );
@@ -134,8 +134,7 @@ impl<'a> Symmetry<'a> {
         {
             return Err(self.refused(named("gravity"), format!("{gravity:?}")));
         }
-        let part = |k: u32| time + f64::from(k) / f64::from(TIMES - 1) * (phase.until - time);
-        let times: Vec<f64> = (0..TIMES).map(part).collect();
+        let times = times_of(phase, time);
         let plane = (axis, self.mirror.at);
         for obstacle in phase.contacts(&scene.obstacles)? {
             if !obstacle.is_symmetric(plane, &times, SAME * scene.body.size()) {
@@ -145,18 +144,18 @@ impl<'a> Symmetry<'a> {
         self.check_constraints(phase, &times, reached)?;
         let mut forces = vec![0.0; scene.body.dofs()];
         let d = scene.body.dimension();
-        for t in times {
+        for &t in &times {
             forces.fill(0.0);
             for (node, force) in scene.loads_at(phase, t)? {
                 forces[node * d..][..d].iter_mut().zip(force).for_each(|(sum, f)| *sum += f);
             }
             self.check_field(&named("loads"), &forces)?;
         }
-        self.check_pressures(phase, &part)
+        self.check_pressures(phase, &times)
     }
 
-    /// Pressures on faces: each has its image, or is its own. `part` are times (s) of the phase.
-    fn check_pressures(&self, phase: &Phase, part: &dyn Fn(u32) -> f64) -> Result<(), InputError> {
+    /// Pressures on faces: each has its image, or is its own. `times` (s) are of the phase.
+    fn check_pressures(&self, phase: &Phase, times: &[f64]) -> Result<(), InputError> {
         let mesh = self.scene.body.mesh();
         let sets = phase
             .face_pressures
@@ -166,7 +165,7 @@ impl<'a> Symmetry<'a> {
         for ((nodes, pressure), own) in phase.face_pressures.iter().zip(&sets) {
             let image: BTreeSet<usize> = own.iter().map(|&node| self.mirror.images[node]).collect();
             let is_image = |(other, set): (&(_, Signal), &BTreeSet<usize>)| {
-                *set == image && (0..TIMES).all(|k| other.1.at(part(k)) == pressure.at(part(k)))
+                *set == image && times.iter().all(|&t| other.1.at(t) == pressure.at(t))
             };
             if !phase.face_pressures.iter().zip(&sets).any(is_image) {
                 let input = format!("pressure on faces of phase \"{}\"", phase.name);
@@ -218,33 +217,3 @@ impl<'a> Symmetry<'a> {
 
 /// What else can be done.
 const HALF: &str = "make it so, or leave the scene whole";
-
-fn word(axis: Axis) -> String {
-    format!("{axis:?}").to_lowercase()
-}
-
-/// Refuses what a half of is not known.
-fn check_known(scene: &Scene) -> Result<(), InputError> {
-    let body = &scene.body;
-    body.single("a half of a symmetric scene")?;
-    let unknown = [
-        ("springs", scene.springs.len()),
-        ("muscles", scene.muscles.len()),
-        ("magnets", scene.magnets.len()),
-        ("growths", scene.growths.len()),
-        ("fluids", scene.fluids.len()),
-        ("chambers", scene.chambers.len()),
-        ("touches", scene.touches.len()),
-        ("ties", scene.ties.len()),
-        ("forces that are not of this crate", scene.forces.len()),
-        ("rigid materials", body.substances().filter(|made_of| made_of.is_rigid).count()),
-        ("families of fibres", body.substances().map(|made_of| made_of.fibres.len()).sum()),
-    ];
-    match unknown.iter().find(|(_, count)| *count > 0) {
-        Some((name, count)) => {
-            let help = "what a half of them does is not known: leave the scene whole, or build the half by hand (Phase::symmetry)";
-            Err(InputError::new(*name, count, help))
-        }
-        None => Ok(()),
-    }
-}

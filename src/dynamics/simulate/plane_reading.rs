@@ -1,0 +1,66 @@
+//! What a reading of a scene that is the same all along an axis is in its section.
+
+use super::reading::{By, Component, OfContact, Reading, What};
+use crate::base::input::InputError;
+use crate::elements::mesh::Selection;
+use crate::scene::constraint::Axis;
+use crate::scene::timeline::{InPlane, Scene};
+
+impl Reading {
+    /// The reading that has the same value in the section, `plane`, of a scene in `space` as this one has there; of all components those in
+    /// the plane, along its axes.
+    ///
+    /// # Errors
+    /// Readings that the section does not have, or of which that is not known.
+    pub(crate) fn in_plane(&self, space: &Scene, plane: &InPlane) -> Result<Self, InputError> {
+        let refused = |value: &str, help: String| Err(InputError::new("quantity", value, help));
+        let axes = plane.prism.axes();
+        let component = match self.component {
+            None => None,
+            Some(own) => {
+                let place = |i: &usize| Axis::all(3)[*i].word() == own.word();
+                let Some(k) = axes.iter().position(place) else {
+                    let help = format!(
+                        "the plane has components {} and {} alone: choose one of them",
+                        Axis::all(3)[axes[0]].word(),
+                        Axis::all(3)[axes[1]].word()
+                    );
+                    return refused(&format!("component \"{}\"", own.word()), help);
+                };
+                Some([Component::X, Component::Y][k])
+            }
+        };
+        let select = |nodes: &Selection| space.body().mesh().select(nodes);
+        let means = |nodes: &Selection| match plane.standing_for(&select(nodes)?) {
+            Some(nodes) => Ok(nodes),
+            None => {
+                let help = "the section has no such mean, as there are more nodes in one place of it than in another: name nodes at one end";
+                Err(InputError::new("quantity", format!("of nodes {nodes}"), help))
+            }
+        };
+        let what = match &self.what {
+            What::Position(nodes) => What::Position(means(nodes)?),
+            What::Displacement(nodes) => What::Displacement(means(nodes)?),
+            What::Velocity(nodes) => What::Velocity(means(nodes)?),
+            What::ConstraintForce(nodes) => match plane.prism.whole_columns(&select(nodes)?) {
+                Some(own) => {
+                    let own: Vec<usize> = own.into_iter().map(|node| node + 1).collect();
+                    What::ConstraintForce(own.into())
+                }
+                None => {
+                    let help = "the section has that of all nodes of a line along the axis together: name all of them";
+                    return refused(&format!("constraint force on {nodes}"), help.into());
+                }
+            },
+            what @ (What::CentreOfMass
+            | What::Momentum
+            | What::Contact(OfContact::Force, By::Obstacle(_), None)) => what.clone(),
+            _ => {
+                let help = "the section has positions, displacements, velocities, centres of mass, momenta, constraint forces and forces of \
+                            obstacles: name one of them";
+                return refused("of another kind", help.into());
+            }
+        };
+        Ok(Self { what, component, ..self.clone() })
+    }
+}

@@ -1,0 +1,236 @@
+//! The section of a scene that is the same all along an axis, in a plane.
+
+mod uniform;
+
+use std::sync::Arc;
+
+#[cfg(any(feature = "scene-file", feature = "study"))]
+use super::Smaller;
+use super::smaller::SAME;
+use super::{Load, Phase, Scene};
+use crate::base::input::InputError;
+use crate::elements::material::Plane;
+use crate::elements::mesh::{Prism, Selection};
+use crate::scene::constraint::{Axes, Axis, Constrained, Constraint, Motion, Turn};
+use crate::scene::forces::Obstacle;
+use uniform::Uniform;
+
+/// The section of a scene, and which nodes it has of that.
+#[derive(Debug, Clone)]
+#[cfg_attr(not(any(feature = "scene-file", feature = "study")), allow(dead_code))]
+pub(crate) struct InPlane {
+    pub(crate) scene: Scene,
+    /// The axis that it is across.
+    pub(crate) axis: Axis,
+    /// What is assumed along it.
+    pub(crate) plane: Plane,
+    pub(crate) prism: Prism,
+}
+
+#[cfg(any(feature = "scene-file", feature = "study"))]
+impl InPlane {
+    /// How it is told.
+    pub(crate) fn kind(&self) -> Smaller {
+        Smaller::Plane { axis: self.axis, plane: self.plane }
+    }
+
+    /// The nodes with the same mean motion in the plane as these of the scene in space have: all in each place count equally, so that
+    /// there are as many in one place as in the other, or else `None`.
+    pub(crate) fn standing_for(&self, nodes: &[usize]) -> Option<Selection> {
+        let mut own: Vec<usize> = nodes.iter().map(|&node| self.prism.columns[node]).collect();
+        own.sort_unstable();
+        let counts: Vec<usize> = own.chunk_by(|a, b| a == b).map(<[usize]>::len).collect();
+        own.dedup();
+        let is_even = counts.windows(2).all(|pair| pair[0] == pair[1]);
+        is_even.then(|| numbers(own))
+    }
+}
+
+impl Scene {
+    /// The section across `axis` of a scene in space that is the same all along it, as a scene in a plane: with as many unknowns as one
+    /// layer of nodes has there, or fewer.
+    ///
+    /// The mesh is a prism of hexahedra or tetrahedra, as those of [`Mesh::cuboid`](crate::Mesh::cuboid) are along all axes. The axes of the plane are
+    /// the other two in their order. It is in *plane strain* where both ends of the prism are held along the axis: then it moves as the
+    /// scene in space does, as long as that stays the same all along. Otherwise it is in *plane stress*, as thick as the
+    /// prism is long: what is thin beside its section moves so up to a part of the order of (thickness/width)^2, but near nodes that are
+    /// held along the axis besides, as those of a clamped side. Forces and masses are those of the whole.
+    ///
+    /// ```
+    /// use pliant::{Axis, Body, Material, Mesh, Phase, Plane, Scene, SolidCells};
+    ///
+    /// let rubber = Material { density: 1000.0, young: 1e6, poisson: 0.3, viscosity: 40.0 };
+    /// let mesh = Mesh::cuboid([0.1, 0.005, 0.02], [11, 2, 3], SolidCells::Hexahedra)?;
+    /// let beam = Scene::new(Body::new(mesh, rubber).build()?)
+    ///     .gravity([0.0, 0.0, -9.8])
+    ///     .phase(Phase::until(0.5).hold("left"));
+    /// let plane = beam.in_plane(Axis::Y)?;
+    /// assert_eq!((beam.body().dofs(), plane.body().dofs()), (198, 66));
+    /// // gravity pulls along the z axis
+    /// assert!(beam.in_plane(Axis::Z).is_err());
+    /// # Ok::<(), pliant::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// What [`validate`](Self::validate) refuses. A mesh that is no such prism; anything that changes along the axis or points along it: materials, what is held and
+    /// moved, loads, pressures on faces, gravity, the start, obstacles (half-spaces, capsules along the axis and boxes that go on beyond
+    /// the ends are the same). What a section of is not known: several bodies, rigid and fibrous materials, point masses, springs and other actuators,
+    /// chambers, fluids, bodies that touch, forces that are not of this crate. Laws that there are not in plane stress.
+    pub fn in_plane(&self, axis: Axis) -> Result<Self, InputError> {
+        Ok(self.section(axis)?.scene)
+    }
+
+    /// As [`in_plane`](Self::in_plane), with what stands for what.
+    pub(crate) fn section(&self, axis: Axis) -> Result<InPlane, InputError> {
+        self.validate()?;
+        let uniform = Uniform::of(self, axis)?;
+        let (prism, plane) = (&uniform.prism, uniform.plane);
+        let body = self.body.to_builder().section(prism, plane)?.build()?;
+        let mut start = super::start::Start::rest(&body);
+        start.displacements = prism.field(self.initial_displacements());
+        start.velocities = prism.field(&self.initial_velocities()?);
+        let mut scene = self.clone().unreduced();
+        (scene.body, scene.start) = (Arc::new(body), start);
+        let chosen = |x: &Vec<f64>| prism.axes().map(|i| x[i]).to_vec();
+        scene.gravity = self.gravity.as_ref().map(chosen);
+        let sections = |obstacles: &[Obstacle], phase: &Phase, since: f64| {
+            let all = obstacles.iter().map(|obstacle| uniform.section(obstacle, phase, since));
+            all.collect::<Result<Vec<_>, InputError>>()
+        };
+        let (mut phases, mut time) = (Vec::new(), 0.0);
+        for phase in &self.phases {
+            let mut own = phase.clone();
+            own.gravity = phase.gravity.as_ref().map(chosen);
+            own.constraints = uniform.constraints(phase)?;
+            own.loads = Vec::new();
+            for (selection, load) in &phase.loads {
+                own.loads.extend(scene.section_of_load(self, &uniform, phase, selection, load)?);
+            }
+            own.face_pressures = Vec::new();
+            for (selection, pressure) in &phase.face_pressures {
+                let nodes = uniform.pressed(selection, phase)?;
+                own.face_pressures.push((nodes, pressure.clone()));
+            }
+            own.redirected = sections(&phase.redirected, phase, time)?;
+            scene.obstacles = sections(&self.obstacles, phase, time)?;
+            time = phase.until;
+            phases.push(own);
+        }
+        scene.phases = phases;
+        scene.validate()?;
+        Ok(InPlane { scene, axis, plane, prism: uniform.prism })
+    }
+
+    /// A load on the section: the sum of the parts that the scene in space has in each place. It stays of its kind where the section
+    /// shares it out in the same way.
+    fn section_of_load(
+        &self,
+        space: &Scene,
+        uniform: &Uniform,
+        phase: &Phase,
+        selection: &Selection,
+        load: &Load,
+    ) -> Result<Vec<(Selection, Load)>, InputError> {
+        let prism = &uniform.prism;
+        let columns = uniform.whole(selection, &format!("load of phase \"{}\"", phase.name))?;
+        let nodes = space.body.mesh().select(selection)?;
+        let mut sums = vec![0.0; prism.nodes.len()];
+        for (&node, part) in nodes.iter().zip(space.parts(load.kind, selection, &nodes)?) {
+            sums[prism.columns[node]] += part;
+        }
+        let (own, value) = (numbers(columns.clone()), load.value.part(prism.axes()));
+        if let Ok(parts) = self.parts(load.kind, &own, &columns) {
+            let most = parts.iter().fold(0.0_f64, |most, part| most.max(part.abs()));
+            let is_same = |(&k, part): (&usize, &f64)| (sums[k] - part).abs() <= SAME * most;
+            if columns.iter().zip(&parts).all(is_same) {
+                return Ok(vec![(own, Load { kind: load.kind, value })]);
+            }
+        }
+        let mut groups: Vec<(f64, Vec<usize>)> = Vec::new();
+        for column in columns.into_iter().filter(|&column| sums[column] != 0.0) {
+            let part = sums[column];
+            match groups.iter_mut().find(|(other, _)| (*other - part).abs() <= SAME * part.abs()) {
+                Some((_, nodes)) => nodes.push(column),
+                None => groups.push((part, vec![column])),
+            }
+        }
+        let each =
+            |(part, nodes): (f64, Vec<usize>)| (numbers(nodes), Load::each(value.times(part)));
+        Ok(groups.into_iter().map(each).collect())
+    }
+}
+
+impl Uniform<'_> {
+    /// What is held and moved of the section.
+    fn constraints(&self, phase: &Phase) -> Result<Vec<Constraint>, InputError> {
+        let axes = self.prism.axes();
+        let mut constraints = Vec::new();
+        for Constraint { what, how } in &phase.constraints {
+            let (selection, own) = match what {
+                Constrained::Nodes(selection, Axes::All) => (selection, None),
+                Constrained::Nodes(selection, Axes::These(axes)) => (selection, Some(axes.clone())),
+                // all its rows are of one axis
+                Constrained::Along(selection, normal) => {
+                    let along = Axis::all(3)
+                        .iter()
+                        .max_by(|a, b| normal[a.index()].abs().total_cmp(&normal[b.index()].abs()));
+                    (selection, Some(along.copied().into_iter().collect()))
+                }
+                // refused before
+                Constrained::Row(_) => continue,
+            };
+            let kept: Option<Vec<usize>> = own.map(|own| {
+                (0..own.len())
+                    .filter(|&k| own[k].index() != self.prism.axis)
+                    .map(|k| own[k].index())
+                    .collect()
+            });
+            if kept.as_ref().is_some_and(Vec::is_empty) {
+                continue;
+            }
+            let nodes = self
+                .whole(selection, &format!("held and moved nodes of phase \"{}\"", phase.name))?;
+            let place = |i: &usize| axes.iter().position(|own| own == i).unwrap_or_default();
+            let how = match (how, what) {
+                (Motion::Velocity(velocity), Constrained::Nodes(_, Axes::These(all))) => {
+                    let own = all.iter().zip(velocity);
+                    let own = own.filter(|(axis, _)| axis.index() != self.prism.axis);
+                    Motion::Velocity(own.map(|(_, velocity)| *velocity).collect())
+                }
+                (Motion::Velocity(velocity), _) => {
+                    Motion::Velocity(axes.map(|i| velocity[i]).to_vec())
+                }
+                (Motion::Turn(turn), _) => Motion::Turn(Arc::new(Turn {
+                    centre: axes.map(|i| turn.centre[i]).to_vec(),
+                    // x and z are a left-handed pair
+                    axis: vec![
+                        if self.prism.axis == 1 { -1.0 } else { 1.0 } * turn.axis[self.prism.axis],
+                    ],
+                    angles: turn.angles.clone(),
+                })),
+                (how, _) => how.clone(),
+            };
+            let own = match kept {
+                None => Axes::All,
+                Some(kept) => Axes::These(kept.iter().map(|i| Axis::all(2)[place(i)]).collect()),
+            };
+            constraints.push(Constraint { what: Constrained::Nodes(numbers(nodes), own), how });
+        }
+        Ok(constraints)
+    }
+
+    /// The nodes on which a pressure acts.
+    fn pressed(&self, selection: &Selection, phase: &Phase) -> Result<Selection, InputError> {
+        let input = format!("pressure on faces of phase \"{}\"", phase.name);
+        let nodes = self.mesh().select(selection)?;
+        if self.prism.has_end_face(self.mesh(), &nodes) {
+            return Err(self.refused(&input, format!("{selection}, on an end of it")));
+        }
+        self.whole(selection, &input).map(numbers)
+    }
+}
+
+/// Nodes (from 0) as a selection.
+fn numbers(nodes: Vec<usize>) -> Selection {
+    nodes.into_iter().map(|node| node + 1).collect::<Vec<usize>>().into()
+}

@@ -1,0 +1,104 @@
+//! `half` and `plane` of `[solver]`: sensors read what they would read of the whole.
+
+use std::path::Path;
+
+use pliant::{Axis, Plane, SceneFile, Smaller};
+
+/// A plate between two walls, which is pulled at both ends; symmetric along x, and the same all along y.
+const SCENE: &str = r#"
+gravity = [0.0, 0.0, -9.8]
+[body]
+mesh = { kind = "cuboid", size = [0.2, 0.04, 0.05], nodes = [5, 2, 3], cells = "hexahedra" }
+material = { density = 1000.0, young = 1e5, poisson = 0.3, viscosity = 20.0 }
+[[obstacle]]
+name = "floor"
+kind = "half-plane"
+point = [0.0, 0.0, 0.0]
+normal = [0.0, 0.0, 1.0]
+stiffness = 500.0
+damping = 1.0
+[[phase]]
+until = 0.05
+hold = [{ nodes = "front", axes = ["y"] }, { nodes = "back", axes = ["y"] }]
+load = [{ nodes = "left", total = [-0.5, 0.0, 0.0] }, { nodes = "right", total = [0.5, 0.0, 0.0] }]
+[[sensor]]
+name = "end"
+kind = "position"
+nodes = "right"
+component = "x"
+[[sensor]]
+name = "height"
+kind = "centre-of-mass"
+component = "z"
+[solver]
+rtol = 1e-8
+"#;
+
+fn read(solver: &str) -> Result<SceneFile, pliant::Error> {
+    SceneFile::parse(&format!("{SCENE}{solver}"), Path::new("plate.toml"))
+}
+
+/// What the sensors read at the end, and the number of unknown displacements.
+fn run(file: &SceneFile) -> (Vec<f64>, usize) {
+    let motion = file.scene.simulate(&file.settings, &file.output.sampling()).unwrap();
+    (motion.last().sensors.clone(), file.scene.body().dofs())
+}
+
+/// To some errors of the steps, which are not the same ones, of where things are (measured: 4e-10 m of 0.2 m).
+#[test]
+fn sensors_of_smaller_models_read_those_of_the_whole() {
+    let whole = read("").unwrap();
+    assert!(
+        whole.smaller.is_empty() && read("half = \"\"\nplane = \"\"").unwrap().smaller.is_empty()
+    );
+    let (expected, unknowns) = run(&whole);
+    assert_eq!(unknowns, 90);
+    let at = 0.1;
+    let half = Smaller::Half { axis: Axis::X, at };
+    let plane = Smaller::Plane { axis: Axis::Y, plane: Plane::Strain };
+    for (solver, kinds, own_unknowns) in [
+        ("half = \"x\"", vec![half], 54),
+        ("plane = \"y\"", vec![plane], 30),
+        ("half = \"x\"\nplane = \"y\"", vec![half, plane], 18),
+    ] {
+        let file = read(solver).unwrap();
+        assert_eq!(file.smaller, kinds);
+        let (found, unknowns) = run(&file);
+        assert_eq!(unknowns, own_unknowns);
+        for (found, expected) in found.iter().zip(&expected) {
+            println!("{solver:?}: {found} {expected} {:e}", found - expected);
+            assert!(
+                (found - expected).abs() < 1e-8 * expected.abs(),
+                "{solver}: {found} {expected}"
+            );
+        }
+    }
+}
+
+/// What a smaller model does not have is an error in its line, with what to do.
+#[test]
+fn what_has_no_smaller_model_is_refused() {
+    let told = |solver: &str, sensor: &str| {
+        let text = format!("{SCENE}{solver}\n{sensor}");
+        SceneFile::parse(&text, Path::new("plate.toml")).unwrap_err().to_string()
+    };
+    let has = |told: String, parts: &[&str]| {
+        println!("{told}");
+        assert!(parts.iter().all(|part| told.contains(part)), "{told}");
+    };
+    has(told("half = \"z\"", ""), &["plate.toml:36: solver.half", "gravity of phase"]);
+    has(told("plane = \"x\"", ""), &["plate.toml:36: solver.plane", "along x"]);
+    let stress = "[[sensor]]\nname = \"stress\"\nkind = \"stress\"\nnodes = [1]";
+    has(told("plane = \"y\"", stress), &["quantity of sensor \"stress\"", "of another kind"]);
+    let across =
+        "[[sensor]]\nname = \"across\"\nkind = \"velocity\"\nnodes = [1]\ncomponent = \"y\"";
+    has(told("plane = \"y\"", across), &["component \"y\"", "x and z alone"]);
+    has(
+        told("half = \"x\"", &across.replace("[1]", "\"bottom\"").replace("\"y\"", "\"x\"")),
+        &["quantity of sensor \"across\""],
+    );
+    has(
+        told("half = \"x\"", "[output]\ntrack = \"left\""),
+        &["output.track", "the side that is left out"],
+    );
+}
