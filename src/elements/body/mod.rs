@@ -47,7 +47,7 @@ pub use assembled::Body;
 pub use builder::BodyBuilder;
 pub(crate) use contraction::Contraction;
 pub use dilatation::Dilatation;
-pub(crate) use elastic::LinearByCells;
+pub(crate) use elastic::{Elastic, LinearByCells};
 
 pub(crate) use fields::von_mises;
 pub use fields::{CellField, NodalField};

@@ -22,11 +22,7 @@ impl Scene {
     pub(crate) fn forces_in(&self, phase: &Phase) -> Result<Forces, InputError> {
         let dimension = self.body.dimension();
         let mut forces = Forces::new();
-        let mut grown = Vec::new();
-        for (growth, _) in self.growing(phase)? {
-            grown.extend(growth.cells(&self.body)?);
-        }
-        if let Some(elastic) = self.body.elastic_outside(&grown) {
+        if let Some(elastic) = self.body.elastic_outside(&self.growing_cells(phase)?) {
             forces.push(Arc::new(elastic));
         }
         if let Some(elastic) = self.body.elastic_of_rigid() {
@@ -230,6 +226,16 @@ impl Scene {
             }
         }
         Ok(all)
+    }
+
+    /// The cells that grow in `phase`, counted from 0.
+    ///
+    /// # Errors
+    /// Cells that the body does not have, or that are part of two growths.
+    pub(crate) fn growing_cells(&self, phase: &Phase) -> Result<Vec<usize>, InputError> {
+        let growing = self.growing(phase)?.into_iter();
+        let cells = growing.map(|(growth, _)| growth.cells(&self.body));
+        Ok(cells.collect::<Result<Vec<_>, _>>()?.concat())
     }
 
     /// The cells that have grown in `phase` at time `t` (s); `states` as [`drive_at`](Self::drive_at) takes them.

@@ -58,10 +58,18 @@ impl Scene {
         let matrices =
             [body.inertia().values(), body.stiffness().values(), body.damping().values()];
         let said = format!("{body:?}").into_bytes();
+        // what grows in a phase is not among what is sampled there
+        let mut growing = Vec::new();
+        for phase in &self.phases {
+            let cells = self.growing_cells(phase)?;
+            if !cells.is_empty() {
+                growing.extend(format!("{} {cells:?}", phase.name).into_bytes());
+            }
+        }
         let mut parts = vec![
             ("positions of the nodes".to_owned(), bytes(mesh.positions())),
             ("cells".to_owned(), format!("{:?} {cells:?}", mesh.kind()).into_bytes()),
-            ("materials".to_owned(), [bytes(&matrices.concat()), said].concat()),
+            ("materials".to_owned(), [bytes(&matrices.concat()), said, growing].concat()),
         ];
         let rest = vec![0.0; body.dofs()];
         for phase in &self.phases {

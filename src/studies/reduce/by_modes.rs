@@ -55,7 +55,7 @@ pub fn reduce_by_modes(
     check(training)?;
     let wanted = training.within;
     let mut enrichment =
-        Enrichment { training, kit: Kit::new(training, 0.0), tried: Vec::new(), observer };
+        Enrichment { training, kit: Kit::new(training, 0.0)?, tried: Vec::new(), observer };
     let Seen { model: rich, runs } = enrichment.enriched()?;
     let mut tried = enrichment.tried;
 

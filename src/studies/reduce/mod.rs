@@ -18,6 +18,7 @@ mod verified;
 
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
+use std::sync::Arc;
 use std::time::Instant;
 
 use alike::differing_part;
@@ -35,7 +36,7 @@ pub use verified::{Verified, verify};
 use crate::base::input::{InputError, positive};
 use crate::dynamics::error::Error;
 use crate::dynamics::trajectory::Trajectory;
-use crate::elements::body::ByCell;
+use crate::elements::body::{ByCell, Elastic};
 use crate::integrators::ode::Failure;
 use crate::scene::ReducedModel;
 use crate::scene::settings::Settings;
@@ -156,7 +157,7 @@ fn learn_from(
         training,
         phases: &phases,
         checks,
-        kit: Kit::new(training, checks.iter().map(|(run, _)| travel(run)).fold(0.0, f64::max)),
+        kit: Kit::new(training, checks.iter().map(|(run, _)| travel(run)).fold(0.0, f64::max))?,
         observer,
         tolerance: OF_CELLS[0] * within,
         tried: Vec::new(),
@@ -206,16 +207,32 @@ fn learned(runs: usize, by: &str) -> String {
 /// What models are made with.
 struct Kit<'a> {
     training: &'a Training,
-    by_cell: Option<ByCell>,
+    /// What is sampled in each phase: the elasticity of cells that do not grow there, and all viscosity, cell by cell, too.
+    sampled: Vec<Option<Arc<(Elastic, ByCell)>>>,
     /// Largest displacement (m) in the checks.
     travel: f64,
 }
 
 impl<'a> Kit<'a> {
-    fn new(training: &'a Training, travel: f64) -> Self {
-        let body = training.scenes[0].body();
-        let by_cell = body.elastic().map(|elastic| elastic.by_cell(body.mesh()));
-        Self { training, by_cell, travel }
+    /// # Errors
+    /// Cells that cannot grow.
+    fn new(training: &'a Training, travel: f64) -> Result<Self, InputError> {
+        let scene = &training.scenes[0];
+        let body = scene.body();
+        let (mut sampled, mut known) = (Vec::new(), None);
+        for phase in scene.phases() {
+            let cells = scene.growing_cells(phase)?;
+            let own = match known.take() {
+                Some((same, own)) if same == cells => own,
+                _ => body.elastic_outside(&cells).map(|elastic| {
+                    let by_cell = elastic.by_cell(body.mesh());
+                    Arc::new((elastic, by_cell))
+                }),
+            };
+            sampled.push(own.clone());
+            known = Some((cells, own));
+        }
+        Ok(Self { training, sampled, travel })
     }
 
     /// A model of so many shapes of each phase, not checked yet, with cells that do the work of all to a `tolerance`.
@@ -225,17 +242,19 @@ impl<'a> Kit<'a> {
         counts: &[usize],
         tolerance: f64,
     ) -> Result<ReducedModel, Error> {
-        let Self { training, by_cell, travel } = self;
+        let Self { training, sampled, travel } = self;
         let body = training.scenes[0].body();
         let shapes =
             phases.iter().zip(counts).map(|(phase, count)| count + phase.lifts.len()).max();
-        let is_exact = body.elastic().is_some_and(|own| own.has_strain_modes(shapes.unwrap_or(0)));
-        let cells = match by_cell.as_ref().filter(|_| !is_exact) {
-            Some(by_cell) if tolerance > 0.0 => {
-                sample::weights(by_cell, phases, counts, tolerance)?
-            }
-            Some(_) => (0..body.mesh().cell_count()).map(|cell| (cell, 1.0)).collect(),
-            None => BTreeMap::new(),
+        let mut all = sampled.iter().flatten();
+        let cells = if all.all(|own| own.0.has_strain_modes(shapes.unwrap_or(0))) {
+            BTreeMap::new()
+        } else if tolerance > 0.0 {
+            let by_cell: Vec<_> =
+                sampled.iter().map(|own| own.as_ref().map(|own| &own.1)).collect();
+            sample::weights(&by_cell, phases, counts, tolerance)?
+        } else {
+            (0..body.mesh().cell_count()).map(|cell| (cell, 1.0)).collect()
         };
         Ok(ReducedModel {
             dofs: body.dofs(),
@@ -374,11 +393,6 @@ fn check(training: &Training) -> Result<(), InputError> {
     }
     settings.validate()?;
     first.check_reducible()?;
-    // weights are found from the work of cells that have not grown
-    if !first.growths().is_empty() {
-        let help = "cells that grow cannot be reduced yet: run the scene unreduced";
-        return Err(InputError::new("number of growths", first.growths().len(), help));
-    }
     for scene in scenes.iter().chain(held_out) {
         scene.validate()?;
         if let Some(part) = differing_part(first, scene)? {

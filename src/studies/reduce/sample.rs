@@ -17,17 +17,19 @@ const STATES: usize = 60;
 /// Part of the largest amplitude of a shape that the forces along all others count with at least.
 const LEAST: f64 = 0.01;
 
-/// Cells with weights that do the work of all to `tolerance`, where each phase has so many of its shapes.
+/// Cells with weights that do the work of all to `tolerance`, where each phase has so many of its shapes, and what is sampled in it is
+/// given `by_cell`.
 ///
 /// The forces along a shape count as much as the shape moves, whatever its stiffness.
 pub(super) fn weights(
-    by_cell: &ByCell,
+    by_cell: &[Option<&ByCell>],
     phases: &[LearnedPhase],
     counts: &[usize],
     tolerance: f64,
 ) -> Result<BTreeMap<usize, f64>, Error> {
     let mut blocks: Vec<Mat<f64>> = Vec::new();
-    for (phase, &count) in phases.iter().zip(counts) {
+    for ((phase, &count), by_cell) in phases.iter().zip(counts).zip(by_cell) {
+        let Some(by_cell) = by_cell else { continue };
         let shapes = phase.all_shapes(count);
         let mut of_phase = Vec::new();
         for state in spread(&phase.states, STATES.div_ceil(phases.len())) {

@@ -12,8 +12,8 @@ use crate::scene::constraint::{Axis, PhaseStart, Prescribed};
 use crate::scene::reduced_model::{ReducedModel, ReducedPhase};
 use crate::studies::samples::SQUARE_MATERIAL;
 use crate::{
-    Body, Cells, Chamber, Gas, Lag, Liquid, Mesh, Obstacle, Orifice, Phase, Pipe, Scene, Spring,
-    Viscosity,
+    Body, CellSelection, Cells, Chamber, Gas, Growth, Lag, Liquid, Mesh, Obstacle, Orifice, Phase,
+    Pipe, Plane, Scene, Spring, Strain, Viscosity,
 };
 
 const T: f64 = 0.3;
@@ -88,6 +88,29 @@ fn with_amounts() -> Scene {
         .phase(phase)
 }
 
+/// Cells that grow alike in all directions, and others that grow along one, by a strain that changes by `rate` (1/s).
+fn growing(rate: f64) -> Scene {
+    let mesh = Mesh::rectangle([0.3, 0.2], [4, 3], Cells::Triangles).unwrap();
+    let body = Body::new(mesh, SQUARE_MATERIAL)
+        .strain(Strain::Green)
+        .plane(Plane::Stress)
+        .thickness(0.01)
+        .build()
+        .unwrap();
+    let [all, along] = [[0.0, 0.1], [0.1, 0.2]]
+        .map(|[low, high]| Growth::within(CellSelection::inside([0.0, low], [0.2, high])));
+    let phase = Phase::until(1.0)
+        .named("p")
+        .hold_axes([1, 2], [Axis::Y])
+        .hold_combination([(10, Axis::X, 1.0), (12, Axis::X, -2.0)])
+        .actuate_with(["all"], move |t| 0.1 + rate * t)
+        .actuate_with(["along"], move |t| -0.1 - rate * t);
+    Scene::new(body)
+        .growth(all.named("all"))
+        .growth(along.named("along").along([1.0, 0.5]).keeping_volume())
+        .phase(phase)
+}
+
 fn system(scene: &Scene) -> System {
     let rest = vec![0.0; scene.body().dofs()];
     let start = PhaseStart { time: 0.0, u: &rest };
@@ -157,7 +180,7 @@ fn rhs(form: &mut impl Ode, y: &[f64]) -> Vec<f64> {
 
 #[test]
 fn with_all_shapes_and_cells_it_is_the_body() {
-    for scene in [scene(), with_amounts()] {
+    for scene in [scene(), with_amounts(), growing(0.2)] {
         let (mut form, y, state) = reduced(&scene, usize::MAX);
         let mut full = system(&scene);
         let n = full.dofs();
@@ -192,7 +215,8 @@ fn with_all_shapes_and_cells_it_is_the_body() {
 /// flows in.
 #[test]
 fn newton_systems_are_derivatives() {
-    for scene in [scene(), with_amounts()] {
+    // what growth supplies is not among what is differentiated
+    for scene in [scene(), with_amounts(), growing(0.0)] {
         let (mut form, y, _) = reduced(&scene, 9);
         let (free, gamma) = (form.free, 2e-3);
         let ydot = rhs(&mut form, &y);
