@@ -363,10 +363,10 @@ mod tests {
     fn what_is_no_prism_is_refused() {
         let told = |mesh: &Mesh, axis| mesh.prism(axis).unwrap_err().to_string();
         let block = Mesh::cuboid([0.4, 0.3, 0.2], [3; 3], SolidCells::Hexahedra).unwrap();
-        let tapered = block.clone().mapped(|&[x, y, z]| [x, y * (1.0 + x), z]).unwrap();
+        let tapered = block.clone().mapped(|x| [x[0], x[1] * (1.0 + x[0]), x[2]]).unwrap();
         assert!(tapered.prism(2).is_ok());
         assert!(told(&tapered, 0).contains("mesh along x = "), "{}", told(&tapered, 0));
-        let domed = block.mapped(|&[x, y, z]| [x, y, z * (1.0 + x)]).unwrap();
+        let domed = block.mapped(|x| [x[0], x[1], x[2] * (1.0 + x[0])]).unwrap();
         assert!(told(&domed, 2).contains("neither along the axis"), "{}", told(&domed, 2));
         let bubbles = Mesh::cuboid([1.0; 3], [2; 3], SolidCells::Tetrahedra10).unwrap();
         assert!(told(&bubbles.with_bubbles().unwrap(), 2).contains("without bubbles"));
