@@ -3826,6 +3826,8 @@ def solver(
     max_steps: int | None = None,
     quantity: str | None = None,
     reduced: str | None = None,
+    half: Literal["x", "y", "z", ""] | None = None,
+    plane: Literal["x", "y", "z", ""] | None = None,
 ) -> dict:
     r"""How the equations of motion are integrated.
 
@@ -3863,6 +3865,14 @@ def solver(
     reduced
         the reduced model by which it is run: a file of `pliant reduce`, relative to the scene file. Default: all
         unknowns. `""` is all unknowns. Statics always takes all of them.
+    half
+        the axis across which the scene is cut at its middle: half of it is run. Default: the whole. The scene has to
+        be symmetric. Sensors read what they would read of the whole; forces and energies are those of the half. Of
+        both halves it is that below the cut, unless sensors are on the other side. `""` is the whole.
+    plane
+        the axis of space across which a section of the scene is run in a plane. Default: all of space. The scene has
+        to be the same all along it. It is in plane strain where both ends are held along the axis, and else in plane
+        stress. `""` is all of space.
     """
     return _table(
         accuracy=accuracy,
@@ -3878,6 +3888,8 @@ def solver(
         max_steps=max_steps,
         quantity=quantity,
         reduced=reduced,
+        half=half,
+        plane=plane,
     )
 
 

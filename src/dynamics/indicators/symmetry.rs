@@ -35,7 +35,7 @@ pub(super) fn plane(body: &Body, samples: &[&Sample]) -> Option<Indicator> {
         AXES[axis],
         percent(PLANE)
     );
-    let enough = || format!("{said}: a body in the plane would do");
+    let enough = || format!("{said}: a body in the plane would do (`plane` in `[solver]`)");
     Some(Indicator::needed("plane", (part, "1"), PLANE, || said.clone(), enough))
 }
 
@@ -64,7 +64,11 @@ pub(super) fn mirrors(body: &Body, samples: &[&Sample]) -> Vec<Indicator> {
             off(part),
             percent(MIRRORED)
         );
-        let enough = || format!("{said}: half of the body would do, its middle held by `symmetry`");
+        let enough = || {
+            format!(
+                "{said}: half of the body would do (`half` in `[solver]`, or its middle held by `symmetry`)"
+            )
+        };
         Indicator::needed(name, (part, "1"), MIRRORED, || said.clone(), enough)
     };
     parts.map(indicator).collect()

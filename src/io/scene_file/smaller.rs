@@ -2,8 +2,7 @@
 
 use super::contents::OutputRequest;
 use super::keys::{Holds, Key};
-use super::settings::SOLVER;
-use super::value::Value;
+use super::table::Table;
 use crate::base::input::InputError;
 use crate::dynamics::error::Error;
 use crate::dynamics::simulate::Reading;
@@ -38,18 +37,18 @@ const AXES: [(&str, Option<Axis>); 4] =
 /// A smaller model, what is written of it, and how it is smaller.
 type Shrunk = (Scene, OutputRequest, Smaller);
 
-/// The scene by the smaller models that `[solver]` names, with what is written of it.
+type Shrink = fn(&Scene, &OutputRequest, Axis) -> Result<Shrunk, InputError>;
+
+/// The scene by the smaller models that the table `solver` names, with what is written of it.
 pub(super) fn smaller(
     mut scene: Scene,
     mut output: OutputRequest,
-    solver: &Value,
+    solver: &Table<'_>,
 ) -> Result<(Scene, OutputRequest, Vec<Smaller>), Error> {
-    let table = solver.table(&SOLVER)?;
     let mut all = Vec::new();
-    let steps: [(&str, fn(&Scene, &OutputRequest, Axis) -> Result<Shrunk, InputError>); 2] =
-        [("half", half), ("plane", plane)];
+    let steps: [(&str, Shrink); 2] = [("half", half), ("plane", plane)];
     for (key, shrink) in steps {
-        let Some(value) = table.get(key) else { continue };
+        let Some(value) = solver.get(key) else { continue };
         if let Some(axis) = value.word(&AXES)? {
             let shrunk = shrink(&scene, &output, axis).map_err(|error| value.error(error))?;
             let (own, written, how) = shrunk;

@@ -153,7 +153,7 @@ pub(super) fn scene_file(top: &Table) -> Result<SceneFile, Error> {
     }
     let mut smaller = Vec::new();
     if let Some(solver) = top.get("solver") {
-        (scene, output, smaller) = smaller::smaller(scene, output, &solver)?;
+        (scene, output, smaller) = smaller::smaller(scene, output, &solver.table(&SOLVER)?)?;
         scene = settings::reduced(scene, &solver)?;
     }
     Ok(SceneFile {
