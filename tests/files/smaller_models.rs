@@ -86,8 +86,8 @@ fn what_has_no_smaller_model_is_refused() {
         println!("{told}");
         assert!(parts.iter().all(|part| told.contains(part)), "{told}");
     };
-    has(told("half = \"z\"", ""), &["plate.toml:36: solver.half", "gravity of phase"]);
-    has(told("plane = \"x\"", ""), &["plate.toml:36: solver.plane", "along x"]);
+    has(told("half = \"z\"", ""), &["plate.toml:28: solver.half", "gravity of phase"]);
+    has(told("plane = \"x\"", ""), &["plate.toml:28: solver.plane", "along x"]);
     let stress = "[[sensor]]\nname = \"stress\"\nkind = \"stress\"\nnodes = [1]";
     has(told("plane = \"y\"", stress), &["quantity of sensor \"stress\"", "of another kind"]);
     let across =

@@ -21,8 +21,9 @@ impl<'a> Uniform<'a> {
     /// # Errors
     /// What changes along the axis, or points along it, or of which that is not known.
     pub(super) fn of(scene: &'a Scene, axis: Axis) -> Result<Self, InputError> {
-        check_known(scene, "a section", "leave the scene in space")?;
+        scene.body.single("a section")?;
         let prism = scene.body.mesh().prism(axis.index())?;
+        check_known(scene, "a section", SPACE)?;
         let mut uniform = Self { scene, axis, prism, plane: Plane::Strain };
         uniform.check_field("initial displacements", scene.initial_displacements())?;
         uniform.check_field("initial velocities", &scene.initial_velocities()?)?;
