@@ -71,7 +71,16 @@ fn half(scene: &Scene, output: &OutputRequest, axis: Axis) -> Result<Shrunk, Inp
         let kind = Smaller::Half { axis, at: half.at };
         Ok((half.scene, written, kind))
     };
-    of_side(false).or_else(|error| of_side(true).map_err(|_: InputError| error))
+    of_side(false).or_else(|below| of_side(true).map_err(|above| both(below, above)))
+}
+
+/// Why neither half is run.
+fn both(below: InputError, above: InputError) -> InputError {
+    if below.to_string() == above.to_string() {
+        return below;
+    }
+    let help = format!("{}; of the half above the cut: {above}", below.help);
+    InputError::new(below.input, below.value, help)
 }
 
 fn plane(scene: &Scene, output: &OutputRequest, axis: Axis) -> Result<Shrunk, InputError> {
