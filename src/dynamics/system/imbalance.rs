@@ -21,9 +21,9 @@ pub(crate) struct LeftOver {
     age: f64,
     /// Displacements (m), velocities (m/s) and accelerations (m/s^2) of all nodes.
     pub(crate) state: [Vec<f64>; 3],
-    /// Amounts of what flows.
-    amounts: Vec<f64>,
-    /// The nodal forces (N) of all but the cells.
+    /// Strains of Maxwell branches, and amounts of what flows.
+    internal: Vec<f64>,
+    /// The nodal forces (N) of all but the cells and their branches.
     forces: Vec<f64>,
     /// How far the state is outside of those learned from, in parts of the widest range of a shape.
     pub(crate) outside: f64,
@@ -60,17 +60,11 @@ impl System {
     /// # Errors
     /// What reduced models do not have.
     pub(crate) fn check_reducible(&self) -> Result<(), InputError> {
-        let missing = [
-            (self.matrices.rigid.is_some(), "rigid pieces"),
-            (self.matrices.branches.is_some(), "Maxwell branches"),
-        ];
-        match missing.iter().find(|(is_there, _)| *is_there) {
-            Some((_, what)) => {
-                let help = format!("a scene with {what} cannot be reduced yet: run it unreduced");
-                Err(InputError::new("reduced model", format!("of a scene with {what}"), help))
-            }
-            None => Ok(()),
+        if self.matrices.rigid.is_none() {
+            return Ok(());
         }
+        let help = "a scene with rigid pieces cannot be reduced yet: run it unreduced";
+        Err(InputError::new("reduced model", "of a scene with rigid pieces", help))
     }
 
     /// Mass (kg) that moves along one axis.
@@ -107,28 +101,28 @@ impl System {
             }
             _ => return Ok(None),
         }
-        let State { u, v, others: amounts, .. } = State::of(state, self.dofs());
+        let State { u, v, others: internal, .. } = State::of(state, self.dofs());
         self.at.nodal.clear();
-        self.set_lagging(t, amounts);
+        self.set_lagging(t, internal);
         self.add_forces_where(|force| !force.is_by_cells(), t, u, v)?;
-        self.add_flow_forces(t, u, amounts)?;
+        self.add_flow_forces(t, u, self.parts_of(internal).1)?;
         self.at.nodal.add_up(&mut self.at.total);
         let forces = self.at.total.clone();
-        let a = self.reduced_accelerations(t, [u, v, amounts])?;
+        let a = self.reduced_accelerations(t, [u, v, internal])?;
         let outside = self.reduction.as_ref().map_or(0.0, |own| own.outside(u));
         let state = [u.to_vec(), v.to_vec(), a];
-        Ok(Some(LeftOver { time: t, age, state, amounts: amounts.to_vec(), forces, outside }))
+        Ok(Some(LeftOver { time: t, age, state, internal: internal.to_vec(), forces, outside }))
     }
 
     /// Accelerations (m/s^2) of all nodes as a reduced model has them.
     fn reduced_accelerations(
         &mut self,
         t: f64,
-        [u, v, amounts]: [&[f64]; 3],
+        [u, v, internal]: [&[f64]; 3],
     ) -> Result<Vec<f64>, Failure> {
         let Some(reduction) = &mut self.reduction else { return Ok(vec![0.0; u.len()]) };
         let [q, p] = reduction.coordinates(&self.rows, t, [u, v]);
-        reduction.evaluate(&self.rows, t, [&q, &p, amounts])?;
+        reduction.evaluate(&self.rows, t, [&q, &p, internal])?;
         Ok(reduction.accelerations())
     }
 
@@ -136,10 +130,10 @@ impl System {
     pub(super) fn evaluate_reduced(
         &mut self,
         t: f64,
-        [u, v, amounts]: [&[f64]; 3],
+        [u, v, internal]: [&[f64]; 3],
     ) -> Result<(), Failure> {
-        self.evaluate_forces(t, u, v, amounts)?;
-        self.at.acceleration = self.reduced_accelerations(t, [u, v, amounts])?;
+        self.evaluate_forces(t, u, v, internal)?;
+        self.at.acceleration = self.reduced_accelerations(t, [u, v, internal])?;
         let Self { matrices, rows, inertia, at, .. } = self;
         let mut left_over = at.total.clone();
         matrices.inertia.add_product(matrices.dimension, -1.0, &at.acceleration, &mut left_over);
@@ -180,10 +174,11 @@ impl System {
 
     /// The nodal forces (N) that a state leaves over.
     fn residual(&mut self, state: &LeftOver) -> Result<Vec<f64>, Failure> {
-        let LeftOver { time, state: [u, v, a], forces, .. } = state;
+        let LeftOver { time, state: [u, v, a], internal, forces, .. } = state;
         self.at.nodal.clear();
         self.add_forces_of_matrices(u, v)?;
         self.add_forces_where(|force| force.is_by_cells(), *time, u, v)?;
+        self.add_branch_forces(u, internal);
         let Self { at, matrices, .. } = self;
         at.nodal.add_up(&mut at.total);
         add(forces, &mut at.total);
@@ -199,20 +194,25 @@ impl System {
         residuals: &[Vec<f64>],
         are_definite: bool,
     ) -> Vec<Option<Vec<f64>>> {
-        let LeftOver { time, state: [u, v, _], amounts, .. } = at;
+        let LeftOver { time, state: [u, v, _], internal, .. } = at;
         // a step so long that inertia hardly matters, except where nothing resists a motion
         let [size, speed] = self.matrices.scales;
         let slow = SLOW * size / speed;
-        self.newton.is_set = false;
-        self.set_lagging(*time, amounts);
-        self.update_tangents(*time, u, v, false);
-        self.add_flow_tangents(*time, [u, v, amounts]);
+        let (strains, amounts) = self.parts_of(internal);
+        self.set_lagging(*time, internal);
         let (mut gamma, mut is_factorized) = (0.0, false);
         let mut imbalances = Vec::new();
         for (LeftOver { age, .. }, residual) in states.iter().zip(residuals) {
             // what has just begun to act has not moved the body far
             if gamma != slow.min(*age) {
+                let is_first = gamma == 0.0;
                 gamma = slow.min(*age);
+                // what branches add depends on gamma
+                if is_first || !strains.is_empty() {
+                    self.update_tangents(*time, u, v, false);
+                    self.add_branch_tangents(gamma, u, strains);
+                    self.add_flow_tangents(*time, [u, v, amounts]);
+                }
                 is_factorized = match are_definite {
                     true => self.factorize_definite_newton(gamma),
                     false => self.factorize_newton(gamma).is_ok(),

@@ -40,6 +40,7 @@ mod newton_matrix;
 mod ode;
 mod rates;
 mod reduced;
+mod reduced_branches;
 mod reduced_dae;
 mod reduced_flow;
 mod reduced_form;
@@ -499,14 +500,19 @@ impl System {
     ) -> Result<(), Failure> {
         self.set_lagging(t, internal);
         self.collect_forces(t, u, v)?;
-        let (strains, amounts) = self.parts_of(internal);
+        self.add_branch_forces(u, internal);
+        self.add_flow_forces(t, u, self.parts_of(internal).1)?;
+        self.at.nodal.add_up(&mut self.at.total);
+        Ok(())
+    }
+
+    /// Adds the forces of Maxwell branches, and sets the rates of their strains.
+    fn add_branch_forces(&mut self, u: &[f64], internal: &[f64]) {
+        let (strains, _) = self.parts_of(internal);
         let Evaluation { nodal, relaxing, relaxed, .. } = &mut self.at;
         if let (Some(branches), [_, ..]) = (&self.matrices.branches, strains) {
             *relaxed = branches.add_forces(u, strains, &mut nodal.conservative, relaxing);
         }
-        self.add_flow_forces(t, u, amounts)?;
-        self.at.nodal.add_up(&mut self.at.total);
-        Ok(())
     }
 
     fn collect_forces(&mut self, t: f64, u: &[f64], v: &[f64]) -> Result<(), Failure> {

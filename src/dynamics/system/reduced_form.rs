@@ -1,5 +1,5 @@
-//! The equations of a phase by a reduced model, as an ODE: y = (q, q', amounts, energy dissipated, energy supplied). Energies come last,
-//! where integrals have to be.
+//! The equations of a phase by a reduced model, as an ODE: y = (q, q', internal unknowns, energy dissipated, energy supplied).
+//! Energies come last, where integrals have to be.
 
 #[cfg(test)]
 mod tests;
@@ -18,8 +18,8 @@ pub(crate) struct ReducedForm {
 }
 
 impl ReducedForm {
-    /// The equations of a `system` that has a reduced model, from its `state` = (u, v, energies, amounts) at time t on; with the
-    /// unknowns of that state. What velocities lose that the model does not have is energy supplied.
+    /// The equations of a `system` that has a reduced model, from its `state` = (u, v, energies, internal unknowns) at time t
+    /// on; with the unknowns of that state. What velocities lose that the model does not have is energy supplied.
     ///
     /// # Errors
     /// The system, if it has no reduced model.
@@ -52,19 +52,19 @@ impl ReducedForm {
         Ok((form, y))
     }
 
-    /// Writes (u, v, energies, amounts) for the unknowns y at time t.
+    /// Writes (u, v, energies, internal unknowns) for the unknowns y at time t.
     pub(crate) fn lift(&mut self, t: f64, y: &[f64], state: &mut [f64]) {
         let System { reduction, rows, matrices, .. } = &mut self.system;
-        let [q, p, amounts, energies] = parts(y, self.free);
+        let [q, p, internal, energies] = parts(y, self.free);
         let all = StateMut::of(state, matrices.dofs());
         if let Some(reduction) = reduction {
             reduction.lift(rows, t, [q, p], [all.u, all.v]);
         }
         (*all.dissipated, *all.supplied) = (energies[0], energies[1]);
-        all.others.copy_from_slice(amounts);
+        all.others.copy_from_slice(internal);
     }
 
-    /// The unknowns of a state (u, v, energies, amounts) at time t, if the model has it.
+    /// The unknowns of a state (u, v, energies, internal unknowns) at time t, if the model has it.
     pub(crate) fn unknowns_of(&mut self, t: f64, state: &[f64]) -> Option<Vec<f64>> {
         let n = self.system.dofs();
         let State { u, v, dissipated, supplied, others } = State::of(state, n);
@@ -80,11 +80,16 @@ impl ReducedForm {
         (!differs(u, &lifted[..n]) && !differs(v, &lifted[n..2 * n])).then_some(y)
     }
 
+    /// Number of shapes that are free: q comes first, then as many numbers q', then the internal unknowns.
+    pub(crate) fn free(&self) -> usize {
+        self.free
+    }
+
     fn evaluate(&mut self, t: f64, y: &[f64]) -> Result<(), Failure> {
-        let [q, p, amounts, _] = parts(y, self.free);
+        let [q, p, internal, _] = parts(y, self.free);
         let System { reduction, rows, refusal, .. } = &mut self.system;
         let Some(reduction) = reduction else { return Ok(()) };
-        let evaluated = reduction.evaluate(rows, t, [q, p, amounts]);
+        let evaluated = reduction.evaluate(rows, t, [q, p, internal]);
         if let Err(Failure::Recoverable(reason)) = &evaluated {
             refusal.clone_from(reason);
         }
@@ -92,20 +97,20 @@ impl ReducedForm {
     }
 }
 
-/// q, q', amounts and energies of y, or of y' or a residual.
+/// q, q', internal unknowns and energies of y, or of y' or a residual.
 fn parts(y: &[f64], free: usize) -> [&[f64]; 4] {
     let (q, rest) = y.split_at(free);
     let (p, rest) = rest.split_at(free);
-    let (amounts, energies) = rest.split_at(rest.len() - ENERGIES);
-    [q, p, amounts, energies]
+    let (internal, energies) = rest.split_at(rest.len() - ENERGIES);
+    [q, p, internal, energies]
 }
 
 /// As [`parts`], to be written to.
 fn parts_mut(y: &mut [f64], free: usize) -> [&mut [f64]; 4] {
     let (q, rest) = y.split_at_mut(free);
     let (p, rest) = rest.split_at_mut(free);
-    let (amounts, energies) = rest.split_at_mut(rest.len() - ENERGIES);
-    [q, p, amounts, energies]
+    let (internal, energies) = rest.split_at_mut(rest.len() - ENERGIES);
+    [q, p, internal, energies]
 }
 
 /// What holds the equations of a reduced model.
@@ -142,10 +147,10 @@ impl Ode for ReducedForm {
         self.evaluate(t, y)?;
         let Some(reduction) = &self.system.reduction else { return Ok(()) };
         let [_, velocities, ..] = parts(y, self.free);
-        let [q, p, amounts, energies] = parts_mut(ydot, self.free);
+        let [q, p, internal, energies] = parts_mut(ydot, self.free);
         q.copy_from_slice(velocities);
         p.copy_from_slice(reduction.acceleration());
-        amounts.copy_from_slice(reduction.amount_rates());
+        reduction.copy_internal_rates(internal);
         energies.copy_from_slice(&reduction.powers());
         Ok(())
     }
@@ -162,7 +167,8 @@ impl Ode for ReducedForm {
         gamma: f64,
         reuse: bool,
     ) -> Result<bool, Failure> {
-        let is_old = self.system.reduction.as_ref().is_some_and(|own| reuse && own.has_tangents());
+        let is_old =
+            self.system.reduction.as_ref().is_some_and(|own| reuse && own.keeps_tangents());
         if !is_old {
             self.evaluate(t, y)?;
         }
@@ -177,9 +183,9 @@ impl Ode for ReducedForm {
     }
 
     fn newton_solve(&mut self, gamma: f64, r: &mut [f64]) -> Result<(), Failure> {
-        let [ru, rv, amounts, energies] = parts_mut(r, self.free);
+        let [ru, rv, internal, energies] = parts_mut(r, self.free);
         let Some(reduction) = &mut self.system.reduction else { return Ok(()) };
-        let powers = reduction.solve([ru, rv, amounts]);
+        let powers = reduction.solve([ru, rv, internal]);
         energies.iter_mut().zip(powers).for_each(|(energy, power)| *energy += gamma * power);
         Ok(())
     }

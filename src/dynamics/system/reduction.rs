@@ -19,6 +19,7 @@ use faer::perm::PermRef;
 use faer::{Mat, MatMut, Par, Spec};
 
 use super::differences::Differences;
+use super::reduced_branches::ReducedBranches;
 use super::reduced_flow::ReducedFlow;
 use super::shapes::Shapes;
 use crate::base::input::InputError;
@@ -48,7 +49,8 @@ pub(super) struct Reduction {
     /// ones.
     generalized: [Vec<Box<dyn GeneralizedForce>>; 2],
     acting: Forces,
-    /// That whose amounts are unknowns, if there is one.
+    /// Those whose strains are unknowns, and that whose amounts are, if there are any.
+    branches: Option<ReducedBranches>,
     flow: Option<ReducedFlow>,
     pattern: Arc<NodePattern>,
     constant: Constant,
@@ -103,6 +105,8 @@ struct Tangents {
 /// I + gamma D + gamma^2 K, factorized.
 struct Factors {
     matrix: Mat<f64>,
+    /// K, with what branches do in such a step.
+    stiffness: Vec<f64>,
     forward: Vec<usize>,
     inverse: Vec<usize>,
     memory: MemBuffer,
@@ -160,6 +164,10 @@ impl Reduction {
         let groups = pairs.iter().map(|pair| &pair[..]);
         let pattern = Arc::new(NodePattern::new(matrices.pattern().nodes(), groups));
         seen.extend(pairs.iter().flatten());
+        let branches = ReducedBranches::new(matrices, s);
+        if branches.is_some() {
+            seen.extend(0..matrices.pattern().nodes());
+        }
         shapes.activate(seen.into_iter(), dimension);
         let product = |matrix: &dyn Fn(&[f64], &mut [f64])| shapes.products(matrix);
         let inertia = product(&|x, y| matrices.inertia.add_product(dimension, 1.0, x, y));
@@ -185,6 +193,7 @@ impl Reduction {
             forces: Forces::new(),
             generalized: [Vec::new(), Vec::new()],
             acting: Forces::new(),
+            branches,
             flow: None,
             constant: Constant {
                 inertia,
@@ -213,7 +222,7 @@ impl Reduction {
                 differences: Differences::new(matrices.scales),
                 is_set: false,
             },
-            factors: Factors::new(shapes.free()),
+            factors: Factors::new(shapes.free(), s),
             next_check: None,
             model: model.clone(),
             pattern,
@@ -363,23 +372,32 @@ impl Reduction {
         }
     }
 
-    /// Evaluates the forces and q'' at (q, q', amounts).
+    /// Number of internal strains, which come first among the internal unknowns.
+    fn strains(&self) -> usize {
+        self.branches.as_ref().map_or(0, ReducedBranches::unknowns)
+    }
+
+    /// Evaluates the forces and q'' at (q, q', internal unknowns).
     pub(super) fn evaluate(
         &mut self,
         rows: &[ConstraintRow],
         t: f64,
-        [q, p, amounts]: [&[f64]; 3],
+        [q, p, internal]: [&[f64]; 3],
     ) -> Result<(), Failure> {
         self.place(rows, t, [q, p]);
-        let Self { at, shapes, origin, generalized, acting, flow, constant, .. } = self;
+        let (strains, amounts) = internal.split_at(self.strains());
+        let Self { at, shapes, origin, generalized, acting, branches, flow, constant, .. } = self;
         let (s, free) = (shapes.count(), shapes.free());
         let Place { z: [z, rates], pushed, u, v, nodal, generalized: along, .. } = at;
         nodal.clear();
         along.clear();
-        if !acting.is_empty() || flow.is_some() {
+        if !acting.is_empty() || branches.is_some() || flow.is_some() {
             shapes.lift_active([z, rates], [u, v], origin);
         }
-        let mut brought = 0.0;
+        let (mut relaxed, mut brought) = (0.0, 0.0);
+        if let Some(branches) = branches {
+            relaxed = branches.add_forces(u, strains, &mut nodal.conservative);
+        }
         if let Some(flow) = flow {
             brought = flow.add_forces(t, u, amounts, nodal)?;
         }
@@ -389,7 +407,7 @@ impl Reduction {
         for force in generalized.iter_mut().flatten() {
             force.add_forces(t, [z, rates], along)?;
         }
-        at.carried = [nodal.carried_heat, nodal.carried_power + brought];
+        at.carried = [nodal.carried_heat + relaxed, nodal.carried_power + brought];
 
         // what constant matrices do, and what is steady
         at.applied.copy_from_slice(&constant.steady[1]);
@@ -433,9 +451,15 @@ impl Reduction {
         &self.at.acceleration
     }
 
-    /// Rates of the amounts at the last evaluation; none without any.
-    pub(super) fn amount_rates(&self) -> &[f64] {
-        self.flow.as_ref().map_or(&[], |flow| flow.rates())
+    /// Writes the rates of the internal unknowns at the last evaluation.
+    pub(super) fn copy_internal_rates(&self, rates: &mut [f64]) {
+        let (strains, amounts) = rates.split_at_mut(self.strains());
+        if let Some(branches) = &self.branches {
+            strains.copy_from_slice(branches.rates());
+        }
+        if let Some(flow) = &self.flow {
+            amounts.copy_from_slice(flow.rates());
+        }
     }
 
     /// u'' of all nodes at the last evaluation.
@@ -482,9 +506,9 @@ impl Reduction {
         *is_set = true;
     }
 
-    /// Whether tangents were evaluated since the forces changed.
-    pub(super) fn has_tangents(&self) -> bool {
-        self.tangents.is_set
+    /// Whether tangents that were evaluated since the forces changed serve for another step: those of branches do not.
+    pub(super) fn keeps_tangents(&self) -> bool {
+        self.tangents.is_set && self.branches.is_none()
     }
 
     /// Evaluations for the tangents of forces that do not compute them.
@@ -495,9 +519,14 @@ impl Reduction {
     /// Factorizes the Newton matrix for steps of the parameter `gamma`.
     pub(super) fn factorize(&mut self, gamma: f64) {
         let (s, free) = (self.shapes.count(), self.shapes.free());
-        let [stiffness, damping] = &self.tangents.projected;
-        let (factors, flow) = (&mut self.factors, &mut self.flow);
+        let Self { tangents, factors, branches, flow, shapes, at, .. } = self;
+        let [stiffness, damping] = &tangents.projected;
         factors.gamma = gamma;
+        factors.stiffness.copy_from_slice(stiffness);
+        if let Some(branches) = branches {
+            branches.add_stiffness(gamma, &at.u, shapes, &mut factors.stiffness);
+        }
+        let stiffness = &factors.stiffness;
         for j in 0..free {
             for i in 0..free {
                 let entry = gamma * (damping[i * s + j] + gamma * stiffness[i * s + j]);
@@ -513,15 +542,24 @@ impl Reduction {
         factor::lu_in_place(matrix, forward, inverse, Par::Seq, memory, Spec::default());
     }
 
-    /// Solves (I - gamma J) x = r for the residuals `ru`, `rv` and those of `amounts`, which become x. Returns the changes of
-    /// the powers dissipated and supplied (W) along x.
-    pub(super) fn solve(&mut self, [ru, rv, amounts]: [&mut [f64]; 3]) -> [f64; 2] {
+    /// Solves (I - gamma J) x = r for the residuals `ru`, `rv` and those of `internal` unknowns, which become x. Returns the
+    /// changes of the powers dissipated and supplied (W) along x.
+    pub(super) fn solve(&mut self, [ru, rv, internal]: [&mut [f64]; 3]) -> [f64; 2] {
         let (s, free) = (self.shapes.count(), self.shapes.free());
-        let [stiffness, damping] = &self.tangents.projected;
-        let Factors { matrix, forward, inverse, memory, gamma, right, xv } = &mut self.factors;
+        let (strains, amounts) = internal.split_at_mut(self.strains());
+        let [_, damping] = &self.tangents.projected;
+        let Factors { matrix, stiffness, forward, inverse, memory, gamma, right, xv } =
+            &mut self.factors;
         let gamma = *gamma;
         for i in 0..free {
             xv[i] = rv[i] - gamma * dot(&stiffness[i * s..][..free], ru);
+        }
+        // gamma times the forces on the shapes that constraints move
+        let mut on_moved: &[f64] = &[];
+        if let Some(branches) = &mut self.branches {
+            let along = branches.of_residuals(strains, &mut self.shapes);
+            xv.iter_mut().zip(along).for_each(|(xv, force)| *xv += force);
+            on_moved = &along[free..];
         }
         if let Some(flow) = &mut self.flow {
             flow.add_residuals(gamma, ru, amounts, xv);
@@ -548,7 +586,11 @@ impl Reduction {
         for row in free..s {
             let of = |matrix: &[f64], x: &[f64]| dot(&matrix[row * s..][..free], x);
             let change = of(&self.constant.inertia, right) + of(damping, xv) + of(stiffness, ru);
-            supplied += rates[row] * change;
+            let passed = on_moved.get(row - free).map_or(0.0, |force| force / gamma);
+            supplied += rates[row] * (change - passed);
+        }
+        if let Some(branches) = &mut self.branches {
+            dissipated += branches.solve(ru, strains, &self.shapes);
         }
         if let Some(flow) = &mut self.flow {
             let [heated, brought] = flow.solve(ru, amounts, &rates[free..]);
@@ -572,11 +614,13 @@ impl Reduction {
 }
 
 impl Factors {
-    fn new(n: usize) -> Self {
+    /// Of `n` unknowns, along so many shapes.
+    fn new(n: usize, shapes: usize) -> Self {
         let scratch = factor::lu_in_place_scratch::<usize, f64>(n, n, Par::Seq, Spec::default())
             .or(solve::solve_in_place_scratch::<usize, f64>(n, 1, Par::Seq));
         Self {
             matrix: Mat::zeros(n, n),
+            stiffness: vec![0.0; shapes * shapes],
             forward: vec![0; n],
             inverse: vec![0; n],
             memory: MemBuffer::new(scratch),

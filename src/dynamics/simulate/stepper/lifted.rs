@@ -13,7 +13,7 @@ use crate::scene::settings::{AbsoluteTolerances, Method, Settings};
 /// An integrator of a reduced model.
 struct Lifted<I> {
     integrator: I,
-    /// (u, v, energies, amounts) at the end of the last step.
+    /// (u, v, energies, internal unknowns) at the end of the last step.
     state: Vec<f64>,
     /// Room for the unknowns of the model.
     seen: Vec<f64>,
@@ -39,9 +39,10 @@ pub(super) fn start(
         return Err("the equations have no reduced model".into());
     };
     // shapes are orthonormal in M: a displacement of all nodes counts times the root of the mass
-    let free = (y.len() - ENERGIES - of_amounts.len()) / 2;
+    let free = equations.free();
     let mut tolerances = vec![atol.position * mass.sqrt(); free];
     tolerances.resize(2 * free, atol.velocity * mass.sqrt());
+    tolerances.resize(y.len() - ENERGIES - of_amounts.len(), atol.strain);
     tolerances.extend(of_amounts);
     tolerances.resize(y.len(), atol.energy);
     if method == Method::Ida {

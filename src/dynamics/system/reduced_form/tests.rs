@@ -7,6 +7,7 @@ use super::super::ReducedDae;
 use super::*;
 use crate::base::pod::orthonormal;
 use crate::base::vector::{noise, norm};
+use crate::dynamics::state;
 use crate::integrators::ode::{Dae, Ode};
 use crate::scene::constraint::{Axis, PhaseStart, Prescribed};
 use crate::scene::reduced_model::{ReducedModel, ReducedPhase};
@@ -111,6 +112,30 @@ fn growing(rate: f64) -> Scene {
         .phase(phase)
 }
 
+/// Branches with and without a yield stress, and nodes that move.
+fn relaxing() -> Scene {
+    let mesh = Mesh::rectangle([0.3, 0.2], [4, 3], Cells::Triangles).unwrap();
+    let dough = SQUARE_MATERIAL.yielding(1.5, 0.03, 300.0).maxwell(0.5, 0.01);
+    let body = Body::new(mesh, SQUARE_MATERIAL.maxwell(0.8, 0.02))
+        .strain(Strain::Green)
+        .thickness(0.01)
+        .region(CellSelection::inside([0.0, 0.0], [0.15, 0.2]), dough)
+        .build()
+        .unwrap();
+    let phase = Phase::until(1.0)
+        .named("p")
+        .hold_axes([1, 2], [Axis::Y])
+        // so fast that its power is a large part of all
+        .follow([11], Axis::X, |t| Prescribed {
+            displacement: 1e-4 * (3e4 * t).sin(),
+            velocity: 3.0 * (3e4 * t).cos(),
+            acceleration: -9e4 * (3e4 * t).sin(),
+        })
+        .hold_combination([(10, Axis::X, 1.0), (12, Axis::X, -2.0)])
+        .load([7], [3.0, -2.0]);
+    Scene::new(body).phase(phase)
+}
+
 fn system(scene: &Scene) -> System {
     let rest = vec![0.0; scene.body().dofs()];
     let start = PhaseStart { time: 0.0, u: &rest };
@@ -160,6 +185,8 @@ fn reduced(scene: &Scene, most: usize) -> (ReducedForm, Vec<f64>, Vec<f64>) {
     let mut own = system(scene);
     own.reduce(scene.body(), &model, "p").unwrap();
     let mut start = vec![0.0; own.unknowns() - own.amounts().len()];
+    let strains = state::length(own.dofs())..start.len();
+    start[strains].iter_mut().zip(noise(1000, 11)).for_each(|(g, x)| *g = 1e-2 * x);
     // states that lag and flows are 0 at the start
     start.extend(own.amounts().iter().map(|x| if *x == 0.0 { 0.02 } else { 1.1 * x }));
     let (mut form, mut y) = ReducedForm::new(own, 0.0, &start).ok().unwrap();
@@ -180,7 +207,7 @@ fn rhs(form: &mut impl Ode, y: &[f64]) -> Vec<f64> {
 
 #[test]
 fn with_all_shapes_and_cells_it_is_the_body() {
-    for scene in [scene(), with_amounts(), growing(0.2)] {
+    for scene in [scene(), with_amounts(), growing(0.2), relaxing()] {
         let (mut form, y, state) = reduced(&scene, usize::MAX);
         let mut full = system(&scene);
         let n = full.dofs();
@@ -216,7 +243,7 @@ fn with_all_shapes_and_cells_it_is_the_body() {
 #[test]
 fn newton_systems_are_derivatives() {
     // what growth supplies is not among what is differentiated
-    for scene in [scene(), with_amounts(), growing(0.0)] {
+    for scene in [scene(), with_amounts(), growing(0.0), relaxing()] {
         let (mut form, y, _) = reduced(&scene, 9);
         let (free, gamma) = (form.free, 2e-3);
         let ydot = rhs(&mut form, &y);
@@ -252,7 +279,7 @@ fn newton_systems_are_derivatives() {
 
 #[test]
 fn a_state_that_the_model_does_not_have_is_none_of_its_own() {
-    for scene in [scene(), with_amounts()] {
+    for scene in [scene(), with_amounts(), relaxing()] {
         let (mut form, _, mut state) = reduced(&scene, 9);
         assert!(form.unknowns_of(T, &state).is_some());
         let other = noise(state.len(), 7);
