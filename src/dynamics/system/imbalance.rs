@@ -120,9 +120,16 @@ impl System {
         t: f64,
         [u, v, internal]: [&[f64]; 3],
     ) -> Result<Vec<f64>, Failure> {
+        let (strains, amounts) = internal.split_at(self.at.relaxing.len().min(internal.len()));
         let Some(reduction) = &mut self.reduction else { return Ok(vec![0.0; u.len()]) };
         let [q, p] = reduction.coordinates(&self.rows, t, [u, v]);
-        reduction.evaluate(&self.rows, t, [&q, &p, internal])?;
+        // the strains of all cells are known here
+        reduction.evaluate_parts(&self.rows, t, [&q, &p, &[], amounts])?;
+        if let (Some(branches), [_, ..]) = (&self.matrices.branches, strains) {
+            let mut forces = vec![0.0; u.len()];
+            branches.add_forces(u, strains, &mut forces, &mut self.at.relaxing);
+            reduction.push(&forces);
+        }
         Ok(reduction.accelerations())
     }
 

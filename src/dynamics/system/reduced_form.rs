@@ -38,12 +38,14 @@ impl ReducedForm {
         }
         let State { u, v, dissipated, supplied, others } = State::of(state, form.system.dofs());
         let kinetic = form.system.energy(t, u, v, &[]).kinetic;
+        let (strains, amounts) = form.system.parts_of(others);
         let System { reduction, matrices, rows, .. } = &mut form.system;
-        let p = match reduction {
-            Some(own) => own.begin(matrices, rows, t, [u, v]),
-            None => Vec::new(),
+        let [p, of_branches] = match reduction {
+            Some(own) => own.begin(matrices, rows, t, [u, v, strains]),
+            None => Default::default(),
         };
-        let mut y = [&vec![0.0; free][..], &p, others, &[dissipated, supplied]].concat();
+        let energies = [dissipated, supplied];
+        let mut y = [&vec![0.0; free][..], &p, &of_branches, amounts, &energies].concat();
         let mut lifted = vec![0.0; state.len()];
         form.lift(t, &y, &mut lifted);
         let n = form.system.dofs();
@@ -58,10 +60,9 @@ impl ReducedForm {
         let [q, p, internal, energies] = parts(y, self.free);
         let all = StateMut::of(state, matrices.dofs());
         if let Some(reduction) = reduction {
-            reduction.lift(rows, t, [q, p], [all.u, all.v]);
+            reduction.lift(rows, t, [q, p, internal], [all.u, all.v, all.others]);
         }
         (*all.dissipated, *all.supplied) = (energies[0], energies[1]);
-        all.others.copy_from_slice(internal);
     }
 
     /// The unknowns of a state (u, v, energies, internal unknowns) at time t, if the model has it.
@@ -70,7 +71,9 @@ impl ReducedForm {
         let State { u, v, dissipated, supplied, others } = State::of(state, n);
         let reduction = self.system.reduction.as_ref().filter(|own| own.has_begun())?;
         let [q, p] = reduction.coordinates(&self.system.rows, t, [u, v]);
-        let y = [&q[..], &p, others, &[dissipated, supplied]].concat();
+        let (strains, amounts) = self.system.parts_of(others);
+        let of_branches = reduction.branch_unknowns_of(strains)?;
+        let y = [&q[..], &p, &of_branches, amounts, &[dissipated, supplied]].concat();
         let mut lifted = vec![0.0; state.len()];
         self.lift(t, &y, &mut lifted);
         let differs = |own: &[f64], lifted: &[f64]| {
@@ -83,6 +86,12 @@ impl ReducedForm {
     /// Number of shapes that are free: q comes first, then as many numbers q', then the internal unknowns.
     pub(crate) fn free(&self) -> usize {
         self.free
+    }
+
+    /// Absolute tolerances of the unknowns of Maxwell branches, where that of strains is `strain`.
+    pub(crate) fn branch_tolerances(&self, strain: f64) -> Vec<f64> {
+        let reduction = self.system.reduction.as_ref();
+        reduction.map_or(Vec::new(), |reduction| reduction.branch_tolerances(strain))
     }
 
     fn evaluate(&mut self, t: f64, y: &[f64]) -> Result<(), Failure> {

@@ -165,7 +165,7 @@ impl Reduction {
         let pattern = Arc::new(NodePattern::new(matrices.pattern().nodes(), groups));
         seen.extend(pairs.iter().flatten());
         let branches = ReducedBranches::new(matrices, s);
-        if branches.is_some() {
+        if branches.as_ref().is_some_and(ReducedBranches::see_all) {
             seen.extend(0..matrices.pattern().nodes());
         }
         shapes.activate(seen.into_iter(), dimension);
@@ -292,14 +292,14 @@ impl Reduction {
         self.tangents.is_set = false;
     }
 
-    /// Begins at (u, v), which becomes u_0, and returns q' of it; q is 0.
+    /// Begins at (u, v, internal strains), which becomes u_0, and returns q' of it and the unknowns of branches; q is 0.
     pub(super) fn begin(
         &mut self,
         matrices: &Matrices,
         rows: &[ConstraintRow],
         t: f64,
-        [u, v]: [&[f64]; 2],
-    ) -> Vec<f64> {
+        [u, v, strains]: [&[f64]; 3],
+    ) -> [Vec<f64>; 2] {
         self.has_begun = true;
         self.origin.copy_from_slice(u);
         self.at.u.copy_from_slice(u);
@@ -318,7 +318,8 @@ impl Reduction {
         self.generalize(false);
         self.tangents.is_set = false;
         let [_, p] = self.coordinates(rows, t, [u, v]);
-        p
+        let begun = self.branches.as_mut().map(|own| own.begin(u, strains, &self.shapes));
+        [p, begun.unwrap_or_default()]
     }
 
     /// Whether a motion has begun.
@@ -343,14 +344,20 @@ impl Reduction {
         own.map(|x| self.shapes.coordinates(&x))
     }
 
-    /// Writes u and v of all nodes for (q, q') at time t.
+    /// Writes u and v of all nodes, and all internal unknowns, for (q, q', internal unknowns) at time t.
     pub(super) fn lift(
         &mut self,
         rows: &[ConstraintRow],
         t: f64,
-        [q, p]: [&[f64]; 2],
-        [u, v]: [&mut [f64]; 2],
+        [q, p, internal]: [&[f64]; 3],
+        [u, v, others]: [&mut [f64]; 3],
     ) {
+        let (of_branches, amounts) = internal.split_at(self.branch_unknowns());
+        let (strains, own_amounts) = others.split_at_mut(others.len() - amounts.len());
+        own_amounts.copy_from_slice(amounts);
+        if let Some(branches) = &mut self.branches {
+            branches.lift(of_branches, strains);
+        }
         self.place(rows, t, [q, p]);
         let [z, rates] = &self.at.z;
         u.copy_from_slice(&self.origin);
@@ -372,8 +379,18 @@ impl Reduction {
         }
     }
 
-    /// Number of internal strains, which come first among the internal unknowns.
-    fn strains(&self) -> usize {
+    /// The unknowns of branches with these internal `strains`, if the model knows them.
+    pub(super) fn branch_unknowns_of(&self, strains: &[f64]) -> Option<Vec<f64>> {
+        self.branches.as_ref().map_or(Some(Vec::new()), |own| own.unknowns_of(strains))
+    }
+
+    /// Absolute tolerances of the unknowns of branches, where that of strains is `strain`.
+    pub(super) fn branch_tolerances(&self, strain: f64) -> Vec<f64> {
+        self.branches.as_ref().map_or(Vec::new(), |own| own.tolerances(strain))
+    }
+
+    /// Number of unknowns of branches, which come first among the internal ones.
+    fn branch_unknowns(&self) -> usize {
         self.branches.as_ref().map_or(0, ReducedBranches::unknowns)
     }
 
@@ -384,19 +401,30 @@ impl Reduction {
         t: f64,
         [q, p, internal]: [&[f64]; 3],
     ) -> Result<(), Failure> {
+        let (of_branches, amounts) = internal.split_at(self.branch_unknowns());
+        self.evaluate_parts(rows, t, [q, p, of_branches, amounts])
+    }
+
+    /// The same, without branches if there are no unknowns of these.
+    pub(super) fn evaluate_parts(
+        &mut self,
+        rows: &[ConstraintRow],
+        t: f64,
+        [q, p, of_branches, amounts]: [&[f64]; 4],
+    ) -> Result<(), Failure> {
         self.place(rows, t, [q, p]);
-        let (strains, amounts) = internal.split_at(self.strains());
         let Self { at, shapes, origin, generalized, acting, branches, flow, constant, .. } = self;
         let (s, free) = (shapes.count(), shapes.free());
         let Place { z: [z, rates], pushed, u, v, nodal, generalized: along, .. } = at;
         nodal.clear();
         along.clear();
-        if !acting.is_empty() || branches.is_some() || flow.is_some() {
+        let are_seen = branches.as_ref().is_some_and(ReducedBranches::see_all);
+        if !acting.is_empty() || are_seen || flow.is_some() {
             shapes.lift_active([z, rates], [u, v], origin);
         }
         let (mut relaxed, mut brought) = (0.0, 0.0);
-        if let Some(branches) = branches {
-            relaxed = branches.add_forces(u, strains, &mut nodal.conservative);
+        if let (Some(branches), [_, ..]) = (branches, of_branches) {
+            relaxed = branches.add_forces([u, z, of_branches], nodal, along);
         }
         if let Some(flow) = flow {
             brought = flow.add_forces(t, u, amounts, nodal)?;
@@ -453,13 +481,20 @@ impl Reduction {
 
     /// Writes the rates of the internal unknowns at the last evaluation.
     pub(super) fn copy_internal_rates(&self, rates: &mut [f64]) {
-        let (strains, amounts) = rates.split_at_mut(self.strains());
+        let (strains, amounts) = rates.split_at_mut(self.branch_unknowns());
         if let Some(branches) = &self.branches {
             strains.copy_from_slice(branches.rates());
         }
         if let Some(flow) = &self.flow {
             amounts.copy_from_slice(flow.rates());
         }
+    }
+
+    /// Adds to q'' what `forces` (N) on all nodes do along the shapes.
+    pub(super) fn push(&mut self, forces: &[f64]) {
+        let mut along = vec![0.0; self.shapes.count()];
+        self.shapes.add_projected(forces, &mut along);
+        self.at.acceleration.iter_mut().zip(along).for_each(|(sum, along)| *sum += along);
     }
 
     /// u'' of all nodes at the last evaluation.
@@ -479,7 +514,7 @@ impl Reduction {
 
     /// Updates the tangents to the state last evaluated.
     pub(super) fn update_tangents(&mut self, t: f64) {
-        let Self { at, shapes, generalized, acting, flow, constant, tangents, .. } = self;
+        let Self { at, shapes, generalized, acting, branches, flow, constant, tangents, .. } = self;
         let Tangents { nodal: [stiffness, damping], projected, differences, is_set } = tangents;
         stiffness.values.fill(0.0);
         damping.values.fill(0.0);
@@ -503,12 +538,15 @@ impl Reduction {
         for force in generalized.iter_mut().flatten() {
             force.add_tangents(t, [z, rates], stiffness, damping);
         }
+        if let Some(branches) = branches {
+            branches.update_tangents();
+        }
         *is_set = true;
     }
 
     /// Whether tangents that were evaluated since the forces changed serve for another step: those of branches do not.
     pub(super) fn keeps_tangents(&self) -> bool {
-        self.tangents.is_set && self.branches.is_none()
+        self.tangents.is_set && self.branches.as_ref().is_none_or(ReducedBranches::keep_tangents)
     }
 
     /// Evaluations for the tangents of forces that do not compute them.
@@ -546,7 +584,7 @@ impl Reduction {
     /// changes of the powers dissipated and supplied (W) along x.
     pub(super) fn solve(&mut self, [ru, rv, internal]: [&mut [f64]; 3]) -> [f64; 2] {
         let (s, free) = (self.shapes.count(), self.shapes.free());
-        let (strains, amounts) = internal.split_at_mut(self.strains());
+        let (strains, amounts) = internal.split_at_mut(self.branch_unknowns());
         let [_, damping] = &self.tangents.projected;
         let Factors { matrix, stiffness, forward, inverse, memory, gamma, right, xv } =
             &mut self.factors;

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::branch_modes::BranchModal;
 use super::branches::Branched;
 use super::dilatation::Dilatation;
 use super::elements::{ElementsOf, Offset};
@@ -34,6 +35,7 @@ pub(super) trait Elements:
     + GrownFields
     + Recovery
     + StrainProducts
+    + BranchModal
     + Send
     + Sync
 {

@@ -70,13 +70,13 @@ pub(super) trait Branched {
 }
 
 /// A branch at a point of a cell.
-struct Site<'a, const N: usize, const M: usize, const D: usize> {
-    branch: &'a Relaxing,
-    point: &'a StrainPoint<f64, N, M, D>,
-    at: Strained<M, D>,
-    cell: usize,
+pub(super) struct Site<'a, const N: usize, const M: usize, const D: usize> {
+    pub(super) branch: &'a Relaxing,
+    pub(super) point: &'a StrainPoint<f64, N, M, D>,
+    pub(super) at: Strained<M, D>,
+    pub(super) cell: usize,
     /// Index of the first component of its internal strain.
-    first: usize,
+    pub(super) first: usize,
 }
 
 impl<'a, const N: usize, const M: usize, const D: usize> Site<'a, N, M, D> {
@@ -110,7 +110,7 @@ impl<'a, const N: usize, const M: usize, const D: usize> Site<'a, N, M, D> {
     }
 
     /// E - G
-    fn apart(&self, internal: &[f64]) -> Components {
+    pub(super) fn apart(&self, internal: &[f64]) -> Components {
         let own = self.own(internal);
         let mut apart = self.at.strain();
         apart.iter_mut().zip(own).for_each(|(e, g)| *e -= g);
@@ -121,7 +121,7 @@ impl<'a, const N: usize, const M: usize, const D: usize> Site<'a, N, M, D> {
 impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<N, M, D, Q> {
     /// Visits all branches at all points, with the strains that `strains` returns for each. The loop is compiled once for
     /// a kind of cell, not for each use of it.
-    fn visit<const K: usize>(
+    pub(super) fn visit<const K: usize>(
         &self,
         regions: &Regions,
         u: &[f64],

@@ -90,7 +90,7 @@ impl Force for Elastic {
 
 /// Part of the multiplications for all cells that those for the modes of their strains may take: what a sample of the cells
 /// would take.
-const OF_CELLS: usize = 8;
+pub(super) const OF_CELLS: usize = 8;
 
 impl Elastic {
     /// Whether the forces along so many shapes follow from the modes of the strains, in less time than from a sample of

@@ -2,6 +2,7 @@
 
 mod assembled;
 mod assembly;
+mod branch_modes;
 mod branches;
 mod builder;
 mod constant;
@@ -49,6 +50,7 @@ pub(crate) use contraction::Contraction;
 pub use dilatation::Dilatation;
 pub(crate) use elastic::{Elastic, LinearByCells};
 
+pub(crate) use branch_modes::BranchModes;
 pub(crate) use fields::von_mises;
 pub use fields::{CellField, NodalField};
 pub(crate) use grown_fields::Grown;

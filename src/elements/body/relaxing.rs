@@ -4,9 +4,13 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use super::assembly::Elements;
+use super::branch_modes::{BranchModes, Found};
 use super::continuum::Continuum;
+use super::elastic::OF_CELLS;
 use super::regions::Regions;
+use super::strain_modes::modes;
 use crate::base::sparse::BlockMatrix;
+use crate::elements::material::Relaxing;
 
 /// The branches of a body: of each of several bodies that have any, one after the other.
 #[derive(Clone)]
@@ -35,6 +39,29 @@ impl Branches {
             })
             .collect();
         (!bodies.is_empty()).then_some(Self { bodies })
+    }
+
+    /// Whether the forces along so many shapes follow from the modes of the strains, in less time than from all cells.
+    pub(crate) fn have_modes(&self, shapes: usize) -> bool {
+        let times = self.bodies.iter().flat_map(|body| body.regions.branches());
+        let mut times: Vec<f64> = times.map(|branch| branch.time).collect();
+        times.sort_by(f64::total_cmp);
+        times.dedup();
+        let of_modes = times.len().saturating_mul(modes(shapes).saturating_pow(2));
+        let work: usize = self.bodies.iter().map(|body| body.elements.work()).sum();
+        let mut all = self.bodies.iter().flat_map(|body| body.regions.branches());
+        all.all(|branch| !branch.yields()) && OF_CELLS.saturating_mul(of_modes) <= work
+    }
+
+    /// The branches along `shapes` from displacements `origin` (m) and internal strains on.
+    pub(crate) fn modes(&self, origin: &[f64], strains: &[f64], shapes: &[&[f64]]) -> BranchModes {
+        let mut all = self.bodies.iter().flat_map(|body| body.regions.branches());
+        let mut found = Found::new(shapes.len(), !all.any(Relaxing::is_quadratic));
+        for OfBody { elements, regions, internal } in &self.bodies {
+            let at = [origin, &strains[internal.clone()]];
+            elements.add_branch_modes(regions, at, shapes, internal.start, &mut found);
+        }
+        BranchModes::new(shapes.len(), found)
     }
 
     /// Number of internal strains, each component counted.

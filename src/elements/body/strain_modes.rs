@@ -62,7 +62,7 @@ pub(super) fn modes(shapes: usize) -> usize {
 }
 
 /// The mode of a pair of shapes.
-fn pair(shapes: usize, k: usize, l: usize) -> usize {
+pub(super) fn pair(shapes: usize, k: usize, l: usize) -> usize {
     let (low, high) = (k.min(l), k.max(l));
     1 + shapes + high * (high + 1) / 2 + low
 }
@@ -70,34 +70,38 @@ fn pair(shapes: usize, k: usize, l: usize) -> usize {
 /// Rows of strains that are multiplied at once.
 const ROWS: usize = 1024;
 
-/// Components of the strains of all modes at some points, a row for each, that G and G_v are made of.
-struct Strains<'a> {
+/// Components of the strains of all modes at some points, a row for each, that symmetric matrices such as G are made of: sums of
+/// the products of two entries of a row.
+pub(super) struct Strains<const P: usize> {
     rows: Mat<f64>,
-    /// Of each row, for G and G_v.
-    weights: [Vec<f64>; 2],
+    /// Of each row, for each matrix.
+    weights: [Vec<f64>; P],
     weighted: Mat<f64>,
-    products: &'a mut [Option<Mat<f64>>; 2],
+    products: [Option<Mat<f64>>; P],
 }
 
-impl<'a> Strains<'a> {
-    fn new(modes: usize, products: &'a mut [Option<Mat<f64>>; 2]) -> Self {
+impl<const P: usize> Strains<P> {
+    /// None yet of so many modes, to be added to matrices, as far as there are any.
+    pub(super) fn new(modes: usize, products: [Option<Mat<f64>>; P]) -> Self {
         let rows = || Mat::zeros(ROWS, modes);
-        Self { rows: rows(), weights: Default::default(), weighted: rows(), products }
+        let weights = std::array::from_fn(|_| Vec::new());
+        Self { rows: rows(), weights, weighted: rows(), products }
     }
 
-    /// The next row, with its weights. It is to be set for all modes.
-    fn row(&mut self, weights: [f64; 2]) -> usize {
-        if self.weights[0].len() == ROWS {
+    /// Adds a row, with its weights.
+    pub(super) fn push(&mut self, weights: [f64; P], row: impl Iterator<Item = f64>) {
+        let number = self.weights[0].len();
+        self.weights.iter_mut().zip(weights).for_each(|(all, weight)| all.push(weight));
+        row.enumerate().for_each(|(mode, entry)| self.rows[(number, mode)] = entry);
+        if number + 1 == ROWS {
             self.multiply();
         }
-        self.weights.iter_mut().zip(weights).for_each(|(all, weight)| all.push(weight));
-        self.weights[0].len() - 1
     }
 
-    /// Adds the rows to G and G_v.
+    /// Adds the rows to the matrices.
     fn multiply(&mut self) {
         let Self { rows, weights, weighted, products } = self;
-        for (weights, product) in weights.iter_mut().zip(&mut **products) {
+        for (weights, product) in weights.iter_mut().zip(products) {
             let count = weights.len();
             if let Some(product) = product {
                 for column in 0..rows.ncols() {
@@ -110,6 +114,12 @@ impl<'a> Strains<'a> {
             }
             weights.clear();
         }
+    }
+
+    /// The matrices.
+    pub(super) fn done(mut self) -> [Option<Mat<f64>>; P] {
+        self.multiply();
+        self.products
     }
 }
 
@@ -139,7 +149,7 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> StrainProdu
             [origin].iter().chain(shapes).map(|field| field.as_chunks().0).collect();
         let mut gradients = vec![[[0.0; D]; M]; fields.len()];
         let mut strains = vec![[[0.0; M]; M]; modes(shapes.len())];
-        let mut all = Strains::new(strains.len(), products);
+        let mut all = Strains::new(strains.len(), products.each_mut().map(Option::take));
         let all_cells = 0..self.nodes.len();
         for (cells, laws) in regions.runs(&all_cells) {
             let none = Lame { lambda: 0.0, mu: 0.0 };
@@ -154,21 +164,18 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> StrainProdu
                     }
                     set_strains(point.frame, &gradients, &mut strains);
                     // lambda tr(A) tr(B) + 2 mu A : B
-                    let row = all.row(moduli.map(|lame| point.volume * lame.lambda));
-                    for (mode, strain) in strains.iter().enumerate() {
-                        all.rows[(row, mode)] = (0..M).map(|j| strain[j][j]).sum();
-                    }
+                    let trace = |strain: &[[f64; M]; M]| (0..M).map(|j| strain[j][j]).sum();
+                    let weights = moduli.map(|lame| point.volume * lame.lambda);
+                    all.push(weights, strains.iter().map(trace));
                     for (j, k) in (0..M).flat_map(|j| (0..=j).map(move |k| (j, k))) {
                         let times = if k == j { 2.0 } else { 4.0 };
-                        let row = all.row(moduli.map(|lame| point.volume * times * lame.mu));
-                        for (mode, strain) in strains.iter().enumerate() {
-                            all.rows[(row, mode)] = strain[j][k];
-                        }
+                        let weights = moduli.map(|lame| point.volume * times * lame.mu);
+                        all.push(weights, strains.iter().map(|strain| strain[j][k]));
                     }
                 }
             }
         }
-        all.multiply();
+        *products = all.done();
     }
 }
 
@@ -223,41 +230,63 @@ impl StrainModes {
             self.products.iter().zip(&self.amplitudes).zip(&mut self.stresses)
         {
             let Some(product) = product else { continue };
-            // symmetric: its columns are its rows
-            for (mode, stress) in stresses.iter_mut().enumerate() {
-                [*stress] = each(Product, [product.col_as_slice(mode), amplitudes], []);
-            }
+            multiply(product, amplitudes, stresses);
         }
     }
 
-    /// Derivatives of G w by each coordinate, dw/dz_m being that of z_m itself times `single`, and of its pairs with z.
+    /// Sets the [changes](set_changes) of G w.
     fn change(&mut self, number: usize, single: f64, z: &[f64]) {
-        let Some(product) = &self.products[number] else { return };
-        for (m, change) in self.changes.chunks_exact_mut(modes(self.shapes)).enumerate() {
-            change.fill(0.0);
-            let singles = std::iter::once((1 + m, single));
-            let pairs = z.iter().enumerate().map(|(l, z)| (pair(self.shapes, m, l), *z));
-            for (mode, factor) in singles.chain(pairs).filter(|(_, factor)| *factor != 0.0) {
-                add_multiple(factor, product.col_as_slice(mode), change);
-            }
+        if let Some(product) = &self.products[number] {
+            set_changes(product, single, z, &mut self.changes);
         }
     }
+}
 
-    /// Adds dw/dz_k . change_m to a matrix, row by row.
-    fn add_changes(&self, z: &[f64], matrix: &mut [f64]) {
-        let s = self.shapes;
-        for (m, change) in self.changes.chunks_exact(modes(s)).enumerate() {
-            for k in 0..s {
-                matrix[k * s + m] += along(change, s, k, z);
-            }
+/// Sets the derivatives of A w by each coordinate, dw/dz_m being that of z_m itself times `single`, and of its pairs with z as far as
+/// there are any.
+pub(super) fn set_changes(a: &Mat<f64>, single: f64, z: &[f64], changes: &mut [f64]) {
+    let modes = a.nrows();
+    for (m, change) in changes.chunks_exact_mut(modes).enumerate() {
+        change.fill(0.0);
+        let singles = std::iter::once((1 + m, single));
+        let pairs = z.iter().enumerate().map(|(l, factor)| (pair(z.len(), m, l), *factor));
+        let all = singles.chain(pairs.filter(|(mode, _)| *mode < modes));
+        for (mode, factor) in all.filter(|(_, factor)| *factor != 0.0) {
+            add_multiple(factor, a.col_as_slice(mode), change);
+        }
+    }
+}
+
+/// Adds dw/dz_k . change_m, for all changes of so many modes, to a matrix, row by row.
+pub(super) fn add_changes(changes: &[f64], modes: usize, z: &[f64], matrix: &mut [f64]) {
+    let s = z.len();
+    for (m, change) in changes.chunks_exact(modes).enumerate() {
+        for k in 0..s {
+            matrix[k * s + m] += along(change, k, z);
         }
     }
 }
 
 /// dw/dz_k . x
-fn along(x: &[f64], shapes: usize, k: usize, z: &[f64]) -> f64 {
-    let of_pairs = z.iter().enumerate().map(|(l, z)| z * x[pair(shapes, k, l)]);
+pub(super) fn along(x: &[f64], k: usize, z: &[f64]) -> f64 {
+    let s = z.len();
+    if x.len() == 1 + s {
+        return x[1 + k];
+    }
+    let of_pairs = z.iter().enumerate().map(|(l, z)| z * x[pair(s, k, l)]);
     x[1 + k] + of_pairs.sum::<f64>()
+}
+
+/// y = A x for a symmetric A.
+pub(super) fn multiply(a: &Mat<f64>, x: &[f64], y: &mut [f64]) {
+    // its columns are its rows
+    y.iter_mut().enumerate().for_each(|(k, y)| *y = inner(a.col_as_slice(k), x));
+}
+
+/// x . y
+pub(super) fn inner(x: &[f64], y: &[f64]) -> f64 {
+    let [product] = each(Product, [x, y], []);
+    product
 }
 
 impl GeneralizedForce for StrainModes {
@@ -268,13 +297,13 @@ impl GeneralizedForce for StrainModes {
         forces: &mut NodalForces,
     ) -> Result<(), Failure> {
         self.evaluate(z);
-        let Self { shapes, products, stresses, .. } = self;
+        let Self { products, stresses, .. } = self;
         let [of_shapes, _] = z;
         let parts = [&mut forces.conservative, &mut forces.dissipative];
         for ((product, stress), part) in products.iter().zip(stresses).zip(parts) {
             if product.is_some() {
                 for (k, force) in part.iter_mut().enumerate() {
-                    *force -= along(stress, *shapes, k, of_shapes);
+                    *force -= along(stress, k, of_shapes);
                 }
             }
         }
@@ -299,13 +328,13 @@ impl GeneralizedForce for StrainModes {
         }
         if self.products[0].is_some() {
             self.change(0, 1.0, z);
-            self.add_changes(z, stiffness);
+            add_changes(&self.changes, modes(s), z, stiffness);
         }
         if self.products[1].is_some() {
             self.change(1, 0.0, rates);
-            self.add_changes(z, stiffness);
+            add_changes(&self.changes, modes(s), z, stiffness);
             self.change(1, 1.0, z);
-            self.add_changes(z, damping);
+            add_changes(&self.changes, modes(s), z, damping);
         }
     }
 }

@@ -147,6 +147,16 @@ impl Relaxing {
         }
     }
 
+    /// Whether its strain is a quadratic function of the displacements, and not a linear one.
+    pub(crate) fn is_quadratic(&self) -> bool {
+        self.strain == Strain::Green
+    }
+
+    /// The moduli lambda and mu of its spring (Pa).
+    pub(crate) fn moduli(&self) -> [f64; 2] {
+        [self.hooke.lame.lambda, self.hooke.lame.mu]
+    }
+
     /// Its modulus lambda against a change of volume (Pa).
     pub(crate) fn lambda(&self) -> f64 {
         self.hooke.lame.lambda

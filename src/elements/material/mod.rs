@@ -18,13 +18,14 @@ pub(crate) use branch::{Relaxing, Strained, Stretch};
 pub(crate) use cell_law::CellLaw;
 pub(crate) use deformation::Deformation;
 pub use fibres::{FibreDirection, Fibres};
-pub(crate) use flow::{Components, Step, trace};
+pub(crate) use flow::{Components, Step, components, trace};
 pub(crate) use grown::{GrownLaw, Stretches, along_cell};
 pub(crate) use hooke::Hooke;
 pub use hooke::{Lame, Plane};
 pub(crate) use law::{Block, Blocks, ElasticLaw};
 pub(crate) use laws::{ByPoint, Elastic, Fibre, Hookean, Linear, ObjectiveViscosity, with_law};
 pub use laws::{Hill, Law, Strain, Viscosity};
+pub(crate) use response::axes;
 pub use rigid_mass::{Moments, RigidMass};
 pub use substance::Substance;
 

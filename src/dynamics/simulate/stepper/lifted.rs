@@ -42,7 +42,7 @@ pub(super) fn start(
     let free = equations.free();
     let mut tolerances = vec![atol.position * mass.sqrt(); free];
     tolerances.resize(2 * free, atol.velocity * mass.sqrt());
-    tolerances.resize(y.len() - ENERGIES - of_amounts.len(), atol.strain);
+    tolerances.extend(equations.branch_tolerances(atol.strain));
     tolerances.extend(of_amounts);
     tolerances.resize(y.len(), atol.energy);
     if method == Method::Ida {

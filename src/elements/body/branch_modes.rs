@@ -1,0 +1,371 @@
+//! Maxwell branches without a yield stress along shapes, exactly: the internal strain G follows the strain linearly, so that it
+//! is a sum of the modes b_a of the strain (`strain_modes.rs`), whose amplitudes follow those of the strain.
+//!
+//! ```text
+//! E = E_0 + sum_a w_a(z) b_a,   G = E_0 + sum_a g_a b_a,   g_a' = (w_a - g_a)/tau
+//! ```
+//!
+//! What branches were strained by at the start, E_0 - G_0, is one more mode, with w = 0 and g = -1 then. All branches of one
+//! relaxation time tau have the same amplitudes; C is that of each. With H_ab = int b_a : C b_b dV and P = 1/(1 + gamma/tau)
+//!
+//! ```text
+//! f_k = -dw/dz_k . H (w - g),   xg = P rg + (1 - P) W xz,   W_ak = dw_a/dz_k
+//! K = d2w/dz2 . H (w - g) + P W^T H W
+//! ```
+
+use faer::Mat;
+
+use super::branches::Site;
+use super::elements::{ElementsOf, gradient};
+use super::forces::relative;
+use super::projection::COEFFICIENTS;
+use super::regions::Regions;
+use super::strain_modes::{Strains, add_changes, along, inner, modes, multiply, pair, set_changes};
+use crate::base::simd::add_multiple;
+use crate::base::tensor::{Matrix, dot};
+use crate::elements::material::{Components, axes, components, trace};
+
+/// Elements with branches, along shapes.
+pub(super) trait BranchModal {
+    /// Adds the modes of the branches along `shapes`, from displacements and internal strains `at` the start, of which the
+    /// first has the number `first` among those of all bodies.
+    fn add_branch_modes(
+        &self,
+        regions: &Regions,
+        at: [&[f64]; 2],
+        shapes: &[&[f64]],
+        first: usize,
+        found: &mut Found,
+    );
+}
+
+/// The modes of all branches, as they are found.
+pub(super) struct Found {
+    groups: Vec<(f64, Strains<1>)>,
+    modes: usize,
+    fields: Vec<Field>,
+    /// The modes of each field.
+    rows: Vec<f64>,
+}
+
+/// A component of an internal strain.
+struct Field {
+    /// Its number, and that of its group.
+    number: usize,
+    group: usize,
+    /// E_0
+    start: f64,
+}
+
+/// The branches along shapes.
+pub(crate) struct BranchModes {
+    shapes: usize,
+    modes: usize,
+    groups: Vec<Group>,
+    fields: Vec<Field>,
+    rows: Vec<f64>,
+    /// w, and room for vectors like it.
+    w: Vec<f64>,
+    room: [Vec<f64>; 2],
+    /// Derivatives of H w by each coordinate.
+    changes: Vec<f64>,
+    /// z at the last evaluation, and where the tangents are from.
+    at: [Vec<f64>; 2],
+    /// d2w/dz2 . H (w - g) there, row by row.
+    geometric: Vec<f64>,
+}
+
+/// Branches of one relaxation time.
+struct Group {
+    /// tau (s)
+    time: f64,
+    /// H (J)
+    product: Mat<f64>,
+    /// w - g, and H times it.
+    apart: Vec<f64>,
+    stress: Vec<f64>,
+    /// W^T H W where the tangents are from, row by row.
+    material: Vec<f64>,
+}
+
+impl Found {
+    /// None yet, along so many shapes; of linear strains each shape has one mode, and pairs of shapes have none.
+    pub(super) fn new(shapes: usize, are_linear: bool) -> Self {
+        let modes = if are_linear { 1 + shapes } else { modes(shapes) };
+        Self { groups: Vec::new(), modes, fields: Vec::new(), rows: Vec::new() }
+    }
+
+    /// The number of the group of a relaxation time.
+    fn group(&mut self, time: f64) -> usize {
+        let known = self.groups.iter().position(|(own, _)| *own == time);
+        known.unwrap_or_else(|| {
+            let zeros = Mat::zeros(self.modes, self.modes);
+            self.groups.push((time, Strains::new(self.modes, [Some(zeros)])));
+            self.groups.len() - 1
+        })
+    }
+}
+
+impl<const N: usize, const M: usize, const D: usize, const Q: usize> BranchModal
+    for ElementsOf<N, M, D, Q>
+{
+    fn add_branch_modes(
+        &self,
+        regions: &Regions,
+        [origin, internal]: [&[f64]; 2],
+        shapes: &[&[f64]],
+        first: usize,
+        found: &mut Found,
+    ) {
+        let fields: Vec<&[[f64; D]]> = shapes.iter().map(|shape| shape.as_chunks().0).collect();
+        let mut gradients = vec![[[0.0; D]; M]; shapes.len()];
+        let mut strains = vec![Components::default(); found.modes];
+        // int p tr(b_a) dV of the functions p of a projected dilatation
+        let mut swelling = vec![[0.0; COEFFICIENTS]; found.modes];
+        let (mut volume, mut points) = (0.0, 0);
+        self.visit(regions, origin, &|_| [], &mut |site, []| {
+            let Site { branch, point, at, cell, .. } = site;
+            for (own, field) in gradients.iter_mut().zip(&fields) {
+                *own = gradient(1, &relative(&self.nodes[*cell], field), &point.gradients);
+            }
+            strains[0] = site.apart(internal);
+            for (k, shape) in gradients.iter().enumerate() {
+                strains[1 + k] = at.change(shape);
+                for (l, other) in gradients[..=k].iter().enumerate() {
+                    if let Some(strain) = strains.get_mut(pair(shapes.len(), k, l)) {
+                        *strain = symmetric(shape, other);
+                    }
+                }
+            }
+            let (group, start) = (found.group(branch.time), at.strain());
+            let (weight, [lambda, mu]) = (point.volume, branch.moduli());
+            let rows = &mut found.groups[group].1;
+            for v in 0..branch.components() {
+                let (j, k) = axes::<M>(v);
+                let times = if k == j { 2.0 } else { 4.0 };
+                rows.push([weight * times * mu], strains.iter().map(|strain| strain[v]));
+            }
+            if self.is_projected() {
+                let modes = self.modes_of(*cell, points);
+                let values = std::iter::once(1.0).chain(modes.into_iter().flatten());
+                for (c, value) in values.enumerate() {
+                    for (sums, strain) in swelling.iter_mut().zip(&strains) {
+                        sums[c] += weight * value * trace::<M>(strain);
+                    }
+                }
+                (volume, points) = (volume + weight, points + 1);
+                if points == Q {
+                    for c in 0..self.coefficients() {
+                        rows.push([lambda / volume], swelling.iter().map(|sums| sums[c]));
+                    }
+                    swelling.fill([0.0; COEFFICIENTS]);
+                    (volume, points) = (0.0, 0);
+                }
+            } else {
+                rows.push([weight * lambda], strains.iter().map(trace::<M>));
+            }
+            for v in 0..branch.components() {
+                found.rows.extend(strains.iter().map(|strain| strain[v]));
+                let number = first + site.first + v;
+                found.fields.push(Field { number, group, start: start[v] });
+            }
+        });
+    }
+}
+
+/// sym(A^T B)
+fn symmetric<const M: usize, const D: usize>(
+    a: &Matrix<f64, D, M>,
+    b: &Matrix<f64, D, M>,
+) -> Components {
+    let mut strain = Components::default();
+    for (v, component) in strain[..components(M)].iter_mut().enumerate() {
+        let (j, k) = axes::<M>(v);
+        *component = 0.5 * (dot(&a[j], &b[k]) + dot(&a[k], &b[j]));
+    }
+    strain
+}
+
+impl BranchModes {
+    /// Those that were found, along so many shapes.
+    pub(super) fn new(shapes: usize, found: Found) -> Self {
+        let Found { groups, modes, fields, rows } = found;
+        let group = |(time, strains): (f64, Strains<1>)| {
+            let [product] = strains.done();
+            Group {
+                time,
+                product: product.unwrap_or_else(|| Mat::zeros(modes, modes)),
+                apart: vec![0.0; modes],
+                stress: vec![0.0; modes],
+                material: vec![0.0; shapes * shapes],
+            }
+        };
+        Self {
+            shapes,
+            modes,
+            groups: groups.into_iter().map(group).collect(),
+            fields,
+            rows,
+            w: vec![0.0; modes],
+            room: [vec![0.0; modes], vec![0.0; modes]],
+            changes: vec![0.0; modes * shapes],
+            at: [vec![0.0; shapes], vec![0.0; shapes]],
+            geometric: vec![0.0; shapes * shapes],
+        }
+    }
+
+    /// Number of amplitudes g.
+    pub(crate) fn unknowns(&self) -> usize {
+        self.groups.len() * self.modes
+    }
+
+    /// Those at the start.
+    pub(crate) fn start(&self) -> Vec<f64> {
+        let of_group = |at: usize| if at == 0 { -1.0 } else { 0.0 };
+        (0..self.unknowns()).map(|at| of_group(at % self.modes)).collect()
+    }
+
+    /// Absolute tolerances of the amplitudes, where that of strains is `strain`.
+    pub(crate) fn tolerances(&self, strain: f64) -> Vec<f64> {
+        let mut largest = vec![0.0_f64; self.unknowns()];
+        for (Field { group, .. }, row) in self.each_field() {
+            for (largest, mode) in largest[group * self.modes..].iter_mut().zip(row) {
+                *largest = largest.max(mode.abs());
+            }
+        }
+        // a mode that strains nothing does not matter
+        let tolerance = |largest: f64| if largest > 0.0 { strain / largest } else { 1.0 };
+        largest.into_iter().map(tolerance).collect()
+    }
+
+    /// Writes the internal strains of all cells for the amplitudes `g`.
+    pub(crate) fn lift(&self, g: &[f64], strains: &mut [f64]) {
+        for (Field { number, group, start }, row) in self.each_field() {
+            strains[*number] = start + inner(row, &g[group * self.modes..][..self.modes]);
+        }
+    }
+
+    fn each_field(&self) -> impl Iterator<Item = (&Field, &[f64])> {
+        self.fields.iter().zip(self.rows.chunks_exact(self.modes))
+    }
+
+    /// Adds the forces along the shapes at `z`, where the amplitudes are `g`, and writes the rates of these; returns the power (W)
+    /// that is dissipated.
+    pub(crate) fn add_forces(
+        &mut self,
+        z: &[f64],
+        g: &[f64],
+        forces: &mut [f64],
+        rates: &mut [f64],
+    ) -> f64 {
+        self.at[0].copy_from_slice(z);
+        self.set_amplitudes(z);
+        let (mut power, modes) = (0.0, self.modes);
+        let own = g.chunks_exact(modes).zip(rates.chunks_exact_mut(modes));
+        for (Group { time, product, apart, stress, .. }, (g, rates)) in
+            self.groups.iter_mut().zip(own)
+        {
+            for (((apart, rate), w), g) in apart.iter_mut().zip(rates).zip(&self.w).zip(g) {
+                *apart = w - g;
+                *rate = *apart / *time;
+            }
+            multiply(product, apart, stress);
+            power += inner(apart, stress) / *time;
+            for (k, force) in forces.iter_mut().enumerate() {
+                *force -= along(stress, k, z);
+            }
+        }
+        power
+    }
+
+    /// Updates the tangents to where forces were evaluated last.
+    pub(crate) fn update_tangents(&mut self) {
+        let Self { shapes, modes, groups, changes, at: [z, place], geometric, .. } = self;
+        let s = *shapes;
+        place.copy_from_slice(z);
+        geometric.fill(0.0);
+        for Group { product, stress, material, .. } in groups {
+            material.fill(0.0);
+            set_changes(product, 1.0, z, changes);
+            add_changes(changes, *modes, z, material);
+            for k in 0..s {
+                for l in 0..s {
+                    geometric[k * s + l] += stress.get(pair(s, k, l)).copied().unwrap_or_default();
+                }
+            }
+        }
+    }
+
+    /// Adds the stiffness in a step of the parameter `gamma` (s), row by row.
+    pub(crate) fn add_stiffness(&self, gamma: f64, stiffness: &mut [f64]) {
+        add_multiple(1.0, &self.geometric, stiffness);
+        for Group { time, material, .. } in &self.groups {
+            add_multiple(passed(gamma, *time), material, stiffness);
+        }
+    }
+
+    /// Adds gamma times the forces along the shapes of what the `residuals` of the amplitudes pass to the springs in a step of
+    /// that parameter.
+    pub(crate) fn add_residuals(&mut self, gamma: f64, residuals: &[f64], right: &mut [f64]) {
+        let Self { modes, groups, room: [stress, _], at: [_, z], .. } = self;
+        for (Group { time, product, .. }, own) in groups.iter().zip(residuals.chunks_exact(*modes))
+        {
+            multiply(product, own, stress);
+            let factor = gamma * passed(gamma, *time);
+            for (k, right) in right.iter_mut().enumerate() {
+                *right += factor * along(stress, k, z);
+            }
+        }
+    }
+
+    /// Turns the residuals `x` of the amplitudes into their changes, by those of the coordinates, `xz`. Returns the change of the
+    /// power (W) that is dissipated.
+    pub(crate) fn solve(&mut self, gamma: f64, xz: &[f64], x: &mut [f64]) -> f64 {
+        let Self { shapes, modes, groups, w: changes, room: [apart, stress], at: [_, z], .. } =
+            self;
+        // W xz
+        changes.fill(0.0);
+        changes[1..=*shapes][..xz.len()].copy_from_slice(xz);
+        for (k, change) in xz.iter().enumerate() {
+            for (l, z) in z.iter().enumerate() {
+                if let Some(sum) = changes.get_mut(pair(*shapes, k, l)) {
+                    *sum += change * z;
+                }
+            }
+        }
+        let mut power = 0.0;
+        for (Group { time, product, stress: before, .. }, x) in
+            groups.iter().zip(x.chunks_exact_mut(*modes))
+        {
+            let part = passed(gamma, *time);
+            for ((x, change), apart) in x.iter_mut().zip(&*changes).zip(&mut *apart) {
+                *x = part * *x + (1.0 - part) * change;
+                *apart = change - *x;
+            }
+            multiply(product, apart, stress);
+            power += (2.0 * inner(apart, before) + inner(apart, stress)) / *time;
+        }
+        power
+    }
+
+    fn set_amplitudes(&mut self, z: &[f64]) {
+        let Self { shapes, w, .. } = self;
+        w[0] = 0.0;
+        w[1..=*shapes].copy_from_slice(z);
+        for k in 0..*shapes {
+            for l in 0..=k {
+                if let Some(w) = w.get_mut(pair(*shapes, k, l)) {
+                    *w = if k == l { 0.5 } else { 1.0 } * z[k] * z[l];
+                }
+            }
+        }
+    }
+}
+
+/// The part of a change of strain that passes to the spring in a step of the parameter `gamma`.
+fn passed(gamma: f64, time: f64) -> f64 {
+    1.0 / (1.0 + gamma / time)
+}
+
+#[cfg(test)]
+mod tests;
