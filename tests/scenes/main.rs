@@ -50,6 +50,7 @@ mod random_scenes;
 mod readings;
 mod reduced;
 mod reduced_flow;
+mod reduced_relaxing;
 mod relaxing;
 mod rigid;
 mod rigid_mass;

@@ -23,6 +23,7 @@ use super::regions::Regions;
 use super::strain_modes::{Strains, add_changes, along, inner, modes, multiply, pair, set_changes};
 use crate::base::simd::add_multiple;
 use crate::base::tensor::{Matrix, dot};
+use crate::base::vector::largest;
 use crate::elements::material::{Components, axes, components, trace};
 
 /// Elements with branches, along shapes.
@@ -41,20 +42,17 @@ pub(super) trait BranchModal {
 
 /// The modes of all branches, as they are found.
 pub(super) struct Found {
-    groups: Vec<(f64, Strains<1>)>,
     modes: usize,
-    fields: Vec<Field>,
-    /// The modes of each field.
-    rows: Vec<f64>,
+    groups: Vec<FoundGroup>,
 }
 
-/// A component of an internal strain.
-struct Field {
-    /// Its number, and that of its group.
-    number: usize,
-    group: usize,
-    /// E_0
-    start: f64,
+/// Those of one relaxation time: the components of internal strains by their numbers, with E_0 and the modes of each.
+struct FoundGroup {
+    time: f64,
+    products: Strains<1>,
+    numbers: Vec<usize>,
+    start: Vec<f64>,
+    rows: Vec<f64>,
 }
 
 /// The branches along shapes.
@@ -62,8 +60,6 @@ pub(crate) struct BranchModes {
     shapes: usize,
     modes: usize,
     groups: Vec<Group>,
-    fields: Vec<Field>,
-    rows: Vec<f64>,
     /// w, and room for vectors like it.
     w: Vec<f64>,
     room: [Vec<f64>; 2],
@@ -86,23 +82,31 @@ struct Group {
     stress: Vec<f64>,
     /// W^T H W where the tangents are from, row by row.
     material: Vec<f64>,
+    /// The components of internal strains by their numbers, E_0, and there the modes one after the other; room for as many numbers.
+    numbers: Vec<usize>,
+    start: Vec<f64>,
+    columns: Vec<f64>,
+    strains: Vec<f64>,
 }
 
 impl Found {
     /// None yet, along so many shapes; of linear strains each shape has one mode, and pairs of shapes have none.
     pub(super) fn new(shapes: usize, are_linear: bool) -> Self {
         let modes = if are_linear { 1 + shapes } else { modes(shapes) };
-        Self { groups: Vec::new(), modes, fields: Vec::new(), rows: Vec::new() }
+        Self { modes, groups: Vec::new() }
     }
 
-    /// The number of the group of a relaxation time.
-    fn group(&mut self, time: f64) -> usize {
-        let known = self.groups.iter().position(|(own, _)| *own == time);
-        known.unwrap_or_else(|| {
+    /// The group of a relaxation time.
+    fn group(&mut self, time: f64) -> &mut FoundGroup {
+        let known = self.groups.iter().position(|own| own.time == time);
+        let number = known.unwrap_or_else(|| {
             let zeros = Mat::zeros(self.modes, self.modes);
-            self.groups.push((time, Strains::new(self.modes, [Some(zeros)])));
+            let products = Strains::new(self.modes, [Some(zeros)]);
+            let [start, rows] = [Vec::new(), Vec::new()];
+            self.groups.push(FoundGroup { time, products, numbers: Vec::new(), start, rows });
             self.groups.len() - 1
-        })
+        });
+        &mut self.groups[number]
     }
 }
 
@@ -137,13 +141,13 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> BranchModal
                     }
                 }
             }
-            let (group, start) = (found.group(branch.time), at.strain());
             let (weight, [lambda, mu]) = (point.volume, branch.moduli());
-            let rows = &mut found.groups[group].1;
+            let group = found.group(branch.time);
+            let products = &mut group.products;
             for v in 0..branch.components() {
                 let (j, k) = axes::<M>(v);
                 let times = if k == j { 2.0 } else { 4.0 };
-                rows.push([weight * times * mu], strains.iter().map(|strain| strain[v]));
+                products.push([weight * times * mu], strains.iter().map(|strain| strain[v]));
             }
             if self.is_projected() {
                 let modes = self.modes_of(*cell, points);
@@ -156,18 +160,18 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> BranchModal
                 (volume, points) = (volume + weight, points + 1);
                 if points == Q {
                     for c in 0..self.coefficients() {
-                        rows.push([lambda / volume], swelling.iter().map(|sums| sums[c]));
+                        products.push([lambda / volume], swelling.iter().map(|sums| sums[c]));
                     }
                     swelling.fill([0.0; COEFFICIENTS]);
                     (volume, points) = (0.0, 0);
                 }
             } else {
-                rows.push([weight * lambda], strains.iter().map(trace::<M>));
+                products.push([weight * lambda], strains.iter().map(trace::<M>));
             }
-            for v in 0..branch.components() {
-                found.rows.extend(strains.iter().map(|strain| strain[v]));
-                let number = first + site.first + v;
-                found.fields.push(Field { number, group, start: start[v] });
+            for (v, start) in at.strain().into_iter().take(branch.components()).enumerate() {
+                group.numbers.push(first + site.first + v);
+                group.start.push(start);
+                group.rows.extend(strains.iter().map(|strain| strain[v]));
             }
         });
     }
@@ -189,10 +193,15 @@ fn symmetric<const M: usize, const D: usize>(
 impl BranchModes {
     /// Those that were found, along so many shapes.
     pub(super) fn new(shapes: usize, found: Found) -> Self {
-        let Found { groups, modes, fields, rows } = found;
-        let group = |(time, strains): (f64, Strains<1>)| {
-            let [product] = strains.done();
+        let Found { modes, groups } = found;
+        let group = |FoundGroup { time, products, numbers, start, rows }: FoundGroup| {
+            let [product] = products.done();
+            let column = |mode: usize| rows.iter().skip(mode).step_by(modes).copied();
             Group {
+                columns: (0..modes).flat_map(column).collect(),
+                strains: vec![0.0; numbers.len()],
+                numbers,
+                start,
                 time,
                 product: product.unwrap_or_else(|| Mat::zeros(modes, modes)),
                 apart: vec![0.0; modes],
@@ -204,8 +213,6 @@ impl BranchModes {
             shapes,
             modes,
             groups: groups.into_iter().map(group).collect(),
-            fields,
-            rows,
             w: vec![0.0; modes],
             room: [vec![0.0; modes], vec![0.0; modes]],
             changes: vec![0.0; modes * shapes],
@@ -227,26 +234,23 @@ impl BranchModes {
 
     /// Absolute tolerances of the amplitudes, where that of strains is `strain`.
     pub(crate) fn tolerances(&self, strain: f64) -> Vec<f64> {
-        let mut largest = vec![0.0_f64; self.unknowns()];
-        for (Field { group, .. }, row) in self.each_field() {
-            for (largest, mode) in largest[group * self.modes..].iter_mut().zip(row) {
-                *largest = largest.max(mode.abs());
-            }
-        }
         // a mode that strains nothing does not matter
-        let tolerance = |largest: f64| if largest > 0.0 { strain / largest } else { 1.0 };
-        largest.into_iter().map(tolerance).collect()
+        let tolerance = |most: f64| if most > 0.0 { strain / most } else { 1.0 };
+        let columns = self.groups.iter().flat_map(|group| group.columns.chunks(group.start.len()));
+        columns.map(|column| tolerance(largest(column))).collect()
     }
 
     /// Writes the internal strains of all cells for the amplitudes `g`.
-    pub(crate) fn lift(&self, g: &[f64], strains: &mut [f64]) {
-        for (Field { number, group, start }, row) in self.each_field() {
-            strains[*number] = start + inner(row, &g[group * self.modes..][..self.modes]);
+    pub(crate) fn lift(&mut self, g: &[f64], strains: &mut [f64]) {
+        for (Group { numbers, start, columns, strains: own, .. }, g) in
+            self.groups.iter_mut().zip(g.chunks_exact(self.modes))
+        {
+            own.copy_from_slice(start);
+            for (g, column) in g.iter().zip(columns.chunks(start.len())) {
+                add_multiple(*g, column, own);
+            }
+            numbers.iter().zip(own).for_each(|(&number, own)| strains[number] = *own);
         }
-    }
-
-    fn each_field(&self) -> impl Iterator<Item = (&Field, &[f64])> {
-        self.fields.iter().zip(self.rows.chunks_exact(self.modes))
     }
 
     /// Adds the forces along the shapes at `z`, where the amplitudes are `g`, and writes the rates of these; returns the power (W)
