@@ -27,6 +27,16 @@ pub struct SmallerModel {
 }
 
 impl SmallerModel {
+    /// What has to be set for it in the file of the scene, beside what is set for what it is a model of; none for what is rigid, which
+    /// is a candidate as any other.
+    pub(super) fn set(&self) -> Option<String> {
+        match self.kind {
+            Smaller::Rigid => None,
+            Smaller::Half { axis, .. } => Some(format!("solver.half={}", axis.word())),
+            Smaller::Plane { axis, .. } => Some(format!("solver.plane={}", axis.word())),
+        }
+    }
+
     /// It as data.
     pub(super) fn to_json(&self) -> Value {
         let Self { change, seconds, full_seconds, unknowns, full_unknowns, .. } = self;
