@@ -105,7 +105,13 @@ fn a_section_that_is_advised_is_written() {
     let scene = place.scene(&text.replace("[[phase]]", stress));
     let output = place.run(&[&["advise", scene][..], &ask, &["whole.toml"]].concat());
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
-    says(&stdout(&output), &["The smaller model (in a plane across y (plane strain)) is not for all of the file", "of another kind"]);
+    says(
+        &stdout(&output),
+        &[
+            "The smaller model (in a plane across y (plane strain)) is not for all of the file",
+            "of another kind",
+        ],
+    );
     assert_eq!(place.run(&["run", "whole.toml", "-q"]).status.code(), Some(0));
 }
 

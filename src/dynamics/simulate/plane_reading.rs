@@ -43,10 +43,7 @@ impl Reading {
             What::Displacement(nodes) => What::Displacement(means(nodes)?),
             What::Velocity(nodes) => What::Velocity(means(nodes)?),
             What::ConstraintForce(nodes) => match plane.prism.whole_columns(&select(nodes)?) {
-                Some(own) => {
-                    let own: Vec<usize> = own.into_iter().map(|node| node + 1).collect();
-                    What::ConstraintForce(own.into())
-                }
+                Some(own) => What::ConstraintForce(Selection::of_nodes(own)),
                 None => {
                     let help = "the section has that of all nodes of a line along the axis together: name all of them";
                     return refused(&format!("constraint force on {nodes}"), help.into());

@@ -148,7 +148,10 @@ impl fmt::Display for Advice {
         if let (Some(smaller), Some(parts)) = (self.smaller_enough(), parts) {
             let SmallerModel { kind, change, seconds, .. } = smaller;
             let (off, time) = (percent(parts.sum() + change), time_text(*seconds));
-            writeln!(f, "Smaller:     {kind}, with the same settings: {off} off at most in {time}")?;
+            writeln!(
+                f,
+                "Smaller:     {kind}, with the same settings: {off} off at most in {time}"
+            )?;
         }
         writeln!(f, "As written:  {}", run(&self.written))?;
         match self.mesh {
