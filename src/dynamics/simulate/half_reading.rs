@@ -23,7 +23,12 @@ impl Reading {
             );
             refused(value, help)
         };
+        let is_uneven = self.counts.windows(2).any(|pair| pair[0] != pair[1]);
         let means = |nodes: &Selection| {
+            if is_uneven {
+                let help = "the half of a section has no means of it in which some nodes count more than others: name nodes at one end";
+                return Err(refused("of a side in space", help.into()));
+            }
             let own = whole.body().mesh().select(nodes)?;
             match half.standing_for(&own) {
                 Some((nodes, is_all)) if is_all || is_along => Ok(nodes),
@@ -45,6 +50,6 @@ impl Reading {
                 return Err(refused("of another kind", help.into()));
             }
         };
-        Ok(Self { what, ..self.clone() })
+        Ok(Self { what, counts: Vec::new(), ..self.clone() })
     }
 }

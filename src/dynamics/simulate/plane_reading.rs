@@ -31,12 +31,12 @@ impl Reading {
             }
         };
         let select = |nodes: &Selection| space.body().mesh().select(nodes);
-        let means = |nodes: &Selection| match plane.standing_for(&select(nodes)?) {
-            Some(nodes) => Ok(nodes),
-            None => {
-                let help = "the section has no such mean, as there are more nodes in one place of it than in another: name nodes at one end";
-                Err(InputError::new("quantity", format!("of nodes {nodes}"), help))
-            }
+        // there may be more nodes in one place of the section than in another
+        let mut counts = Vec::new();
+        let mut means = |nodes: &Selection| -> Result<Selection, InputError> {
+            let own;
+            (own, counts) = plane.standing_for(&select(nodes)?);
+            Ok(Selection::of_nodes(own))
         };
         let what = match &self.what {
             What::Position(nodes) => What::Position(means(nodes)?),
@@ -58,6 +58,6 @@ impl Reading {
                 return refused("of another kind", help.into());
             }
         };
-        Ok(Self { what, component, ..self.clone() })
+        Ok(Self { what, component, counts, ..self.clone() })
     }
 }

@@ -1,6 +1,7 @@
 //! What can be read from a motion, by name.
 
 use std::f64::consts::TAU;
+use std::iter::repeat_n;
 
 use crate::base::input::{InputError, unknown_among};
 use crate::dynamics::trajectory::DEGREES;
@@ -17,6 +18,8 @@ pub struct Reading {
     pub(super) in_degrees: bool,
     /// The name of the body that is read; all of them together without one.
     pub(super) body: Option<String>,
+    /// How often each node counts in a mean, in their order; once where there are no numbers.
+    pub(super) counts: Vec<usize>,
 }
 
 /// What is read.
@@ -462,6 +465,15 @@ impl Reading {
         }
     }
 
+    /// The nodes of a mean, each as often as it counts.
+    pub(super) fn counted(&self, nodes: Vec<usize>) -> Vec<usize> {
+        if self.counts.is_empty() {
+            return nodes;
+        }
+        let counts = self.counts.iter().copied();
+        nodes.into_iter().zip(counts).flat_map(|(node, count)| repeat_n(node, count)).collect()
+    }
+
     /// A full turn in the unit of an angle.
     pub(super) fn full_turn(&self) -> f64 {
         if self.in_degrees { 360.0 } else { TAU }
@@ -547,6 +559,6 @@ impl Reading {
 
 impl From<What> for Reading {
     fn from(what: What) -> Self {
-        Self { what, component: None, in_degrees: false, body: None }
+        Self { what, component: None, in_degrees: false, body: None, counts: Vec::new() }
     }
 }

@@ -34,15 +34,13 @@ impl InPlane {
         Smaller::Plane { axis: self.axis, plane: self.plane }
     }
 
-    /// The nodes with the same mean motion in the plane as these of the scene in space have: all in each place count equally, so that
-    /// there are as many in one place as in the other, or else `None`.
-    pub(crate) fn standing_for(&self, nodes: &[usize]) -> Option<Selection> {
+    /// The nodes in the places of these of the scene in space, ascending, and how many of these are in each.
+    pub(crate) fn standing_for(&self, nodes: &[usize]) -> (Vec<usize>, Vec<usize>) {
         let mut own: Vec<usize> = nodes.iter().map(|&node| self.prism.columns[node]).collect();
         own.sort_unstable();
-        let counts: Vec<usize> = own.chunk_by(|a, b| a == b).map(<[usize]>::len).collect();
+        let counts = own.chunk_by(|a, b| a == b).map(<[usize]>::len).collect();
         own.dedup();
-        let is_even = counts.windows(2).all(|pair| pair[0] == pair[1]);
-        is_even.then(|| Selection::of_nodes(own))
+        (own, counts)
     }
 }
 
