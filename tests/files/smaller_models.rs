@@ -101,6 +101,33 @@ fn means_count_all_nodes_of_the_whole() {
     assert!((moved[1] / moved[0] - 1.0).abs() < 0.01, "{moved:?}");
 }
 
+/// A bar that is drawn across a mat between two walls, on a coarse mesh of one layer: forces and displacements of the section are those of the mat, to some errors of the
+/// steps of what sticks and slips (measured: 5e-6 of the largest). Contact is per node here: per area it is felt at other points of faces than of edges.
+#[test]
+fn the_section_of_a_mat_reads_what_the_mat_does() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/rolled-mat.toml");
+    let text = std::fs::read_to_string(path).unwrap();
+    let coarse = text.replace("nodes = [21, 7, 5]", "nodes = [11, 2, 3]");
+    let coarse = coarse.replace("stiffness_density = 5.0e7", "stiffness = 5.0e4");
+    let coarse = coarse.replace("rtol = 1.0e-4", "rtol = 1.0e-6");
+    let [space, own] = [("", 198), ("y", 66)].map(|(axis, unknowns)| {
+        let text = coarse.replace("plane = \"y\"", &format!("plane = \"{axis}\""));
+        let file = SceneFile::parse(&text, Path::new("mat.toml")).unwrap();
+        assert_eq!(file.scene.body().dofs(), unknowns);
+        let scene = file.scene.ended_at(0.8);
+        let motion = scene.simulate(&file.settings, &file.output.sampling()).unwrap();
+        motion.samples().iter().map(|sample| sample.sensors.clone()).collect::<Vec<_>>()
+    });
+    // forces along x, y and z in space, along x and y in the plane, and the mean displacement along x
+    for (k, other) in [(0, 0), (2, 1), (3, 2)] {
+        let largest = space.iter().fold(0.0_f64, |most, read| most.max(read[k].abs()));
+        let apart = space.iter().zip(&own).map(|(a, b)| (a[k] - b[other]).abs());
+        let apart = apart.fold(0.0, f64::max);
+        println!("{apart:e} of {largest:e}");
+        assert!(apart < 1e-4 * largest, "{apart:e} of {largest:e}");
+    }
+}
+
 /// What a smaller model does not have is an error in its line, with what to do.
 #[test]
 fn what_has_no_smaller_model_is_refused() {
