@@ -23,9 +23,8 @@ impl Reading {
             );
             refused(value, help)
         };
-        let is_uneven = self.counts.windows(2).any(|pair| pair[0] != pair[1]);
         let means = |nodes: &Selection| {
-            if is_uneven {
+            if self.counts.is_some() {
                 let help = "the half of a section has no means of it in which some nodes count more than others: name nodes at one end";
                 return Err(refused("of a side in space", help.into()));
             }
@@ -50,6 +49,6 @@ impl Reading {
                 return Err(refused("of another kind", help.into()));
             }
         };
-        Ok(Self { what, counts: Vec::new(), ..self.clone() })
+        Ok(Self { what, ..self.clone() })
     }
 }

@@ -32,10 +32,11 @@ impl Reading {
         };
         let select = |nodes: &Selection| space.body().mesh().select(nodes);
         // there may be more nodes in one place of the section than in another
-        let mut counts = Vec::new();
+        let mut counts = None;
         let mut means = |nodes: &Selection| -> Result<Selection, InputError> {
-            let own;
-            (own, counts) = plane.standing_for(&select(nodes)?);
+            let (own, of_each) = plane.standing_for(&select(nodes)?);
+            let is_even = of_each.iter().all(|count| *count == of_each[0]);
+            counts = (!is_even).then(|| of_each.into());
             Ok(Selection::of_nodes(own))
         };
         let what = match &self.what {

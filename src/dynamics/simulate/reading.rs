@@ -18,8 +18,8 @@ pub struct Reading {
     pub(super) in_degrees: bool,
     /// The name of the body that is read; all of them together without one.
     pub(super) body: Option<String>,
-    /// How often each node counts in a mean, in their order; once where there are no numbers.
-    pub(super) counts: Vec<usize>,
+    /// How often each node counts in a mean, in their order; each once without.
+    pub(super) counts: Option<Box<[usize]>>,
 }
 
 /// What is read.
@@ -467,11 +467,9 @@ impl Reading {
 
     /// The nodes of a mean, each as often as it counts.
     pub(super) fn counted(&self, nodes: Vec<usize>) -> Vec<usize> {
-        if self.counts.is_empty() {
-            return nodes;
-        }
-        let counts = self.counts.iter().copied();
-        nodes.into_iter().zip(counts).flat_map(|(node, count)| repeat_n(node, count)).collect()
+        let Some(counts) = &self.counts else { return nodes };
+        let counted = nodes.into_iter().zip(counts);
+        counted.flat_map(|(node, count)| repeat_n(node, *count)).collect()
     }
 
     /// A full turn in the unit of an angle.
@@ -559,6 +557,6 @@ impl Reading {
 
 impl From<What> for Reading {
     fn from(what: What) -> Self {
-        Self { what, component: None, in_degrees: false, body: None, counts: Vec::new() }
+        Self { what, component: None, in_degrees: false, body: None, counts: None }
     }
 }
