@@ -33,7 +33,8 @@ pub struct Report {
     pub energy_error: f64,
     /// Largest rise of the energy balance (J): energy that the integrator has created.
     pub energy_created: f64,
-    /// Largest sum of the energies (J), as the scale of `energy_error`.
+    /// Largest sum of the energies (J), as the scale of `energy_error`: no less than the work of the forces that hold a body
+    /// along 1e-9 of its size, which is round-off.
     pub energy_scale: f64,
     /// Wall-clock time of the whole run (s).
     pub wall_seconds: f64,

@@ -98,6 +98,9 @@ pub struct Trajectory {
     pub(crate) lacking: Vec<Lacking>,
 }
 
+/// Displacements below this part of the size of a body are round-off, and so is the work of forces along them.
+const ROUND_OFF: f64 = 1e-9;
+
 /// Short: errors hold trajectories, and a program that ends with one prints it.
 impl fmt::Debug for Trajectory {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -123,6 +126,10 @@ impl Trajectory {
 
     pub(crate) fn push(&mut self, sample: Sample) {
         self.note_energy(&sample.energy);
+        // a body that is held does not move but by round-off, and all its energies are that
+        let reactions: f64 = sample.multipliers.iter().map(|force| force.abs()).sum();
+        let least = ROUND_OFF * self.body().size() * reactions;
+        self.report.energy_scale = self.report.energy_scale.max(least);
         self.samples.push(sample);
     }
 

@@ -70,6 +70,51 @@ fn advice_is_written_into_a_scene_that_runs() {
     assert!(stderr(&output).contains("is there already"), "{}", stderr(&output));
 }
 
+/// A thick strip between held ends is advised to be run as its section, and so is the file that is written, which moves as the file
+/// with the other settings does; with a sensor that the section does not have, it is run in space.
+#[test]
+fn a_section_that_is_advised_is_written() {
+    let place = Place::new();
+    let text = "gravity = [0.0, 0.0, -2.0]\n[body]\n\
+        mesh = { kind = \"cuboid\", size = [0.1, 0.1, 0.02], nodes = [4, 9, 2], cells = \"hexahedra\" }\n\
+        material = { density = 1000.0, young = 1e5, poisson = 0.3, viscosity = 20.0 }\n\
+        [[sensor]]\nname = \"tip\"\nkind = \"position\"\nnodes = \"right\"\ncomponent = \"z\"\n\
+        [[phase]]\nuntil = 0.05\nhold = [{ nodes = \"left\" }, { nodes = \"front\", axes = [\"y\"] }, \
+        { nodes = \"back\", axes = [\"y\"] }]\n[output]\nformats = [\"csv\"]\n";
+    let ask = ["--within", "20%", "--quantity", "tip.z", "--budget", "20", "-q", "--write"];
+    let scene = place.scene(text);
+    let output = place.run(&[&["advise", scene][..], &ask, &["enough.toml"]].concat());
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    println!("{}", stdout(&output));
+    says(&stdout(&output), &["Smaller:     in a plane across y (plane strain)", "solver.plane=y"]);
+    let tip = |arguments: &[&str]| {
+        let output = place.run(&[&["run", "enough.toml", "--out", "found"], arguments].concat());
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        let (header, rows) = place.table("found");
+        let column = header.iter().position(|name| name.starts_with("tip")).unwrap();
+        rows[rows.len() - 1][column] - rows[0][column]
+    };
+    let output = place.run(&["check", "enough.toml"]);
+    says(&stdout(&output), &["in a plane across y (plane strain)"]);
+    let [own, space] = [&["-q"][..], &["-q", "--set", "solver.plane=\"\""]].map(tip);
+    println!("{own:e} {space:e}");
+    // plane strain is exact, and the tolerances are those of both (measured: 1e-5 apart, at rtol 1e-4)
+    assert!((own / space - 1.0).abs() < 1e-3, "{own:e} {space:e}");
+
+    let stress = "[[sensor]]\nname = \"stress\"\nkind = \"stress\"\nnodes = [1]\n[[phase]]";
+    let scene = place.scene(&text.replace("[[phase]]", stress));
+    let output = place.run(&[&["advise", scene][..], &ask, &["whole.toml"]].concat());
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    says(
+        &stdout(&output),
+        &[
+            "The smaller model (in a plane across y (plane strain)) is not for all of the file",
+            "of another kind",
+        ],
+    );
+    assert_eq!(place.run(&["run", "whole.toml", "-q"]).status.code(), Some(0));
+}
+
 /// A clamp divides less than its cells everywhere, and comes as near to what many cells give; the file that is written gives the same.
 #[test]
 fn cells_are_divided_where_the_estimate_says() {

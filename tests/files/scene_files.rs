@@ -255,6 +255,8 @@ fn all_scenes_are_run() {
         "float",
         "gripper",
         "wheel-over-stones",
+        // where smaller models are tested
+        "rolled-mat",
         // where fluids are tested
         "fish",
         // where muscles and lags are tested

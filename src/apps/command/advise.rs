@@ -13,7 +13,7 @@ use pliant::studies::{
     advise::{Advice, Adviser, Candidate},
     work_precision::Quantity,
 };
-use pliant::{Fraction, Sampling};
+use pliant::{Fraction, Sampling, SceneFile};
 
 use crate::failure::{Failure, print};
 use crate::files::Directory;
@@ -92,8 +92,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     progress.finish_and_clear();
     let advice = advice?;
     print(&advice)?;
+    let set = set_for(scene, &file, &advice)?;
     if let Some(enough) = &advice.enough {
-        let command = command_of(scene, enough);
+        let command = command_of(scene, enough, &set);
         match command.len() > LONGEST {
             true => print(
                 "\nTo run what is enough, have it written by --write FILE: it lists the cells that are halved.",
@@ -121,7 +122,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         directory.tell()?;
     }
     match (write, &advice.enough) {
-        (Some(path), Some(enough)) => write_scene(scene, &advice, enough, path),
+        (Some(path), Some(_)) => write_scene(scene, &advice, &set, path),
         (Some(_), None) => {
             Err(Failure::failed("nothing is known to be enough: no scene file is written"))
         }
@@ -129,11 +130,32 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
 }
 
+/// What has to be set for what is enough, by a smaller model if there is one by which the scene of the file can be run: with all its
+/// sensors, and beside the smaller models that it names.
+fn set_for(
+    scene: &SceneArguments,
+    file: &SceneFile,
+    advice: &Advice,
+) -> Result<Vec<String>, Failure> {
+    let (set, Some(enough)) = (advice.set(), &advice.enough) else { return Ok(Vec::new()) };
+    let Some(smaller) = advice.smaller_enough() else { return Ok(set) };
+    let mut kinds = file.smaller.clone();
+    kinds.push(smaller.kind);
+    let why = match scene.read_with(&set) {
+        Ok(own) if own.smaller == kinds => return Ok(set),
+        Ok(_) => "it has another one already".into(),
+        Err(error) => error.to_string(),
+    };
+    let kind = smaller.kind;
+    print(format_args!("\nThe smaller model ({kind}) is not for all of the file: {why}"))?;
+    Ok(enough.set.clone())
+}
+
 /// The command that runs what is enough, as a shell takes it.
-fn command_of(scene: &SceneArguments, enough: &Candidate) -> String {
+fn command_of(scene: &SceneArguments, enough: &Candidate, set: &[String]) -> String {
     let command = if enough.choice.is_static { "static" } else { "run" };
     let path = quoted(&scene.path.to_string_lossy());
-    let sets = scene.set.iter().chain(&enough.set);
+    let sets = scene.set.iter().chain(set);
     let sets = sets.map(|set| format!(" --set {}", quoted(set)));
     sets.fold(format!("  pliant {command} {path}"), |line, set| line + &set)
 }
@@ -142,12 +164,12 @@ fn command_of(scene: &SceneArguments, enough: &Candidate) -> String {
 fn write_scene(
     scene: &SceneArguments,
     advice: &Advice,
-    enough: &Candidate,
+    set: &[String],
     path: &Path,
 ) -> Result<(), Failure> {
     let comment = |line: &str| format!("# {line}").trim_end().to_owned() + "\n";
     let reasons: String = advice.to_string().lines().map(comment).collect();
-    let mut set = enough.set.clone();
+    let mut set = set.to_vec();
     set.extend(scene.mesh_for(path)?);
     let text = scene.text(&set)?;
     // a schema must stay on the first line

@@ -1,5 +1,6 @@
 //! `pliant play`
 
+use std::iter;
 use std::path::PathBuf;
 use std::process;
 
@@ -42,7 +43,10 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     if let Some(end) = *until {
         file.scene = file.scene.lasting(end);
     }
-    let player = Player::new(&file.scene, &file.settings, &file.title, *port)?;
+    // a smaller model is not all that the file says
+    let said = iter::once(file.title.clone()).chain(file.smaller.iter().map(ToString::to_string));
+    let said: Vec<String> = said.filter(|part| !part.is_empty()).collect();
+    let player = Player::new(&file.scene, &file.settings, &said.join(", "), *port)?;
     // sensors are read as often as the energies, whatever output times the file has
     let sensors = OutputRequest { step: None, times: None, ..file.output }.sampling();
     let mut player = player.sensors(&sensors)?;

@@ -122,7 +122,7 @@ impl Reading {
         };
         match &self.what {
             What::Position(nodes) | What::Displacement(nodes) => {
-                add_mean(&select(nodes)?, self.direction(scene, sample)?);
+                add_mean(&self.counted(select(nodes)?), self.direction(scene, sample)?);
             }
             What::Distance([from, to]) => {
                 let (from, to) = (select(from)?, select(to)?);

@@ -78,15 +78,15 @@ impl Reading {
         let d = scene.body().dimension();
         Ok(match &self.what {
             What::Position(nodes) => {
-                let nodes = select(nodes)?;
+                let nodes = self.counted(select(nodes)?);
                 Box::new(move |view, _| Value::Vector(position(view, &nodes)))
             }
             What::Displacement(nodes) => {
-                let nodes = select(nodes)?;
+                let nodes = self.counted(select(nodes)?);
                 Box::new(move |view, _| Value::Vector(mean(&nodes, view.displacements(), d)))
             }
             What::Velocity(nodes) => {
-                let nodes = select(nodes)?;
+                let nodes = self.counted(select(nodes)?);
                 Box::new(move |view, _| Value::Vector(mean(&nodes, view.velocities(), d)))
             }
             What::ConstraintForce(nodes) => {

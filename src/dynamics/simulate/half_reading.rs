@@ -24,6 +24,10 @@ impl Reading {
             refused(value, help)
         };
         let means = |nodes: &Selection| {
+            if self.counts.is_some() {
+                let help = "the half of a section has no means of it in which some nodes count more than others: name nodes at one end";
+                return Err(refused("of a side in space", help.into()));
+            }
             let own = whole.body().mesh().select(nodes)?;
             match half.standing_for(&own) {
                 Some((nodes, is_all)) if is_all || is_along => Ok(nodes),

@@ -31,22 +31,20 @@ impl Reading {
             }
         };
         let select = |nodes: &Selection| space.body().mesh().select(nodes);
-        let means = |nodes: &Selection| match plane.standing_for(&select(nodes)?) {
-            Some(nodes) => Ok(nodes),
-            None => {
-                let help = "the section has no such mean, as there are more nodes in one place of it than in another: name nodes at one end";
-                Err(InputError::new("quantity", format!("of nodes {nodes}"), help))
-            }
+        // there may be more nodes in one place of the section than in another
+        let mut counts = None;
+        let mut means = |nodes: &Selection| -> Result<Selection, InputError> {
+            let (own, of_each) = plane.standing_for(&select(nodes)?);
+            let is_even = of_each.iter().all(|count| *count == of_each[0]);
+            counts = (!is_even).then(|| of_each.into());
+            Ok(Selection::of_nodes(own))
         };
         let what = match &self.what {
             What::Position(nodes) => What::Position(means(nodes)?),
             What::Displacement(nodes) => What::Displacement(means(nodes)?),
             What::Velocity(nodes) => What::Velocity(means(nodes)?),
             What::ConstraintForce(nodes) => match plane.prism.whole_columns(&select(nodes)?) {
-                Some(own) => {
-                    let own: Vec<usize> = own.into_iter().map(|node| node + 1).collect();
-                    What::ConstraintForce(own.into())
-                }
+                Some(own) => What::ConstraintForce(Selection::of_nodes(own)),
                 None => {
                     let help = "the section has that of all nodes of a line along the axis together: name all of them";
                     return refused(&format!("constraint force on {nodes}"), help.into());
@@ -61,6 +59,6 @@ impl Reading {
                 return refused("of another kind", help.into());
             }
         };
-        Ok(Self { what, component, ..self.clone() })
+        Ok(Self { what, component, counts, ..self.clone() })
     }
 }

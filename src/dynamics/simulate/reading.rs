@@ -1,6 +1,7 @@
 //! What can be read from a motion, by name.
 
 use std::f64::consts::TAU;
+use std::iter::repeat_n;
 
 use crate::base::input::{InputError, unknown_among};
 use crate::dynamics::trajectory::DEGREES;
@@ -17,6 +18,8 @@ pub struct Reading {
     pub(super) in_degrees: bool,
     /// The name of the body that is read; all of them together without one.
     pub(super) body: Option<String>,
+    /// How often each node counts in a mean, in their order; each once without.
+    pub(super) counts: Option<Box<[usize]>>,
 }
 
 /// What is read.
@@ -462,6 +465,13 @@ impl Reading {
         }
     }
 
+    /// The nodes of a mean, each as often as it counts.
+    pub(super) fn counted(&self, nodes: Vec<usize>) -> Vec<usize> {
+        let Some(counts) = &self.counts else { return nodes };
+        let counted = nodes.into_iter().zip(counts);
+        counted.flat_map(|(node, count)| repeat_n(node, *count)).collect()
+    }
+
     /// A full turn in the unit of an angle.
     pub(super) fn full_turn(&self) -> f64 {
         if self.in_degrees { 360.0 } else { TAU }
@@ -547,6 +557,6 @@ impl Reading {
 
 impl From<What> for Reading {
     fn from(what: What) -> Self {
-        Self { what, component: None, in_degrees: false, body: None }
+        Self { what, component: None, in_degrees: false, body: None, counts: None }
     }
 }

@@ -65,6 +65,13 @@ impl fmt::Display for Selection {
     }
 }
 
+impl Selection {
+    /// Nodes by their numbers, counted from 0.
+    pub(crate) fn of_nodes(nodes: impl IntoIterator<Item = usize>) -> Self {
+        Self::Numbers(nodes.into_iter().map(|node| node + 1).collect())
+    }
+}
+
 impl From<&str> for Selection {
     fn from(name: &str) -> Self {
         Self::Set(name.into())

@@ -4,6 +4,7 @@ use super::contents::OutputRequest;
 use super::keys::{Holds, Key};
 use super::table::Table;
 use crate::base::input::InputError;
+use crate::base::vector::distinct;
 use crate::dynamics::error::Error;
 use crate::dynamics::simulate::Reading;
 use crate::elements::mesh::Selection;
@@ -64,8 +65,7 @@ fn half(scene: &Scene, output: &OutputRequest, axis: Axis) -> Result<Shrunk, Inp
     let of_side = |is_upper| {
         let half = scene.half(axis, is_upper)?;
         let kept = |nodes: &[usize]| {
-            let own = nodes.iter().filter_map(|node| half.nodes.binary_search(node).ok());
-            numbers(own.collect())
+            Selection::of_nodes(nodes.iter().filter_map(|node| half.nodes.binary_search(node).ok()))
         };
         let written = mapped(scene, output, &kept, &|reading| reading.in_half(scene, &half))?;
         let kind = Smaller::Half { axis, at: half.at };
@@ -86,10 +86,7 @@ fn both(below: InputError, above: InputError) -> InputError {
 fn plane(scene: &Scene, output: &OutputRequest, axis: Axis) -> Result<Shrunk, InputError> {
     let section = scene.section(axis)?;
     let places = |nodes: &[usize]| {
-        let mut own: Vec<usize> = nodes.iter().map(|&node| section.prism.columns[node]).collect();
-        own.sort_unstable();
-        own.dedup();
-        numbers(own)
+        Selection::of_nodes(distinct(nodes.iter().map(|&node| section.prism.columns[node])))
     };
     let written = mapped(scene, output, &places, &|reading| reading.in_plane(scene, &section))?;
     let kind = section.kind();
@@ -116,16 +113,11 @@ fn mapped(
     }
     if let Some(track) = &mut output.track {
         let own = nodes(&scene.body().mesh().select(track)?);
-        if own == numbers(Vec::new()) {
+        if own == Selection::of_nodes([]) {
             let help = "it is all on the side that is left out: name nodes on one side, where the sensors are";
             return Err(InputError::new("output.track", &*track, help));
         }
         *track = own;
     }
     Ok(output)
-}
-
-/// Nodes (from 0) as a selection.
-fn numbers(nodes: Vec<usize>) -> Selection {
-    nodes.into_iter().map(|node| node + 1).collect::<Vec<usize>>().into()
 }

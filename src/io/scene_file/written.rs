@@ -58,7 +58,7 @@ fn entry<'t>(mut table: &'t DeTable, toml: &'t str) -> Option<(Vec<&'t str>, &'t
     }
 }
 
-/// The `text` with a new entry: in a `table` after its last number, text or list; at the top level before all
+/// The `text` with a new entry: in a `table` after its last number, text, list or table in braces; at the top level before all
 /// else.
 fn inserted(
     text: &str,
@@ -71,7 +71,7 @@ fn inserted(
     let entry = format!("{} = {value}", keys.join("."));
     let Some(table) = table else { return Some(format!("{entry}\n{text}")) };
     let is_plain = |value: &&Spanned<DeValue>| match value.get_ref() {
-        DeValue::Table(_) => false,
+        DeValue::Table(_) => is_whole(value, text),
         DeValue::Array(list) => list.iter().all(|value| value.get_ref().as_table().is_none()),
         _ => true,
     };
@@ -148,6 +148,10 @@ mod tests {
             assert_eq!(TEXT.matches(old).count(), 1, "{old}");
             assert_eq!(written(TEXT, over).unwrap(), TEXT.replace(old, new), "{over}");
         }
+        // tables in braces alone
+        let braces = "[body]\nmesh = { nodes = 3 }\nmaterial = { young = 1e5 } # Pa\n[[phase]]\n";
+        let new = braces.replace("# Pa\n", "# Pa\n\"strain\" = \"cauchy\"\n");
+        assert_eq!(written(braces, "body.strain=cauchy").unwrap(), new);
         for (text, over) in [
             (TEXT, "body={ area = 1.0 }"),
             (TEXT, "phase.3.until=1"),

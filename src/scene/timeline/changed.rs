@@ -180,7 +180,7 @@ impl Phase {
             let rest = match rest.len() {
                 0 => continue,
                 count if count == held.len() => selection.clone(),
-                _ => Selection::Numbers(rest.iter().map(|node| node + 1).collect()),
+                _ => Selection::of_nodes(rest),
             };
             let what = match what {
                 Constrained::Along(_, normal) => Constrained::Along(rest, normal),

@@ -222,7 +222,7 @@ impl Change<'_> {
             return Ok(moved);
         }
         let extended = self.finer.extended(&nodes);
-        Ok(extended.iter().map(|node| node + 1).collect::<Vec<_>>().into())
+        Ok(Selection::of_nodes(extended))
     }
 
     /// The nodes of the coarse mesh, by number.

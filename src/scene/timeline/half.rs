@@ -39,11 +39,8 @@ impl Half {
     /// side, and else those of each pair that are. `None` if there are none, or some nodes have no pair, or are on the
     /// plane beside others that are not. The flag is whether they are all themselves.
     pub(crate) fn standing_for(&self, nodes: &[usize]) -> Option<(Selection, bool)> {
-        let selected = |numbers: Vec<usize>| {
-            numbers.iter().map(|number| number + 1).collect::<Vec<_>>().into()
-        };
         if let Some(own) = self.numbers(nodes) {
-            return Some((selected(own), true));
+            return Some((Selection::of_nodes(own), true));
         }
         let has_pair =
             |node: &usize| self.images[*node] != *node && nodes.contains(&self.images[*node]);
@@ -51,7 +48,7 @@ impl Half {
             return None;
         }
         let own = nodes.iter().filter_map(|node| self.nodes.binary_search(node).ok());
-        Some((selected(own.collect()), false))
+        Some((Selection::of_nodes(own), false))
     }
 }
 
@@ -146,8 +143,8 @@ impl Scene {
     fn kept(&self, nodes: &Selection, half: &Half) -> Result<Option<Selection>, InputError> {
         let own = self.body.mesh().select(nodes)?;
         let own = own.iter().filter_map(|node| half.nodes.binary_search(node).ok());
-        let numbers: Vec<usize> = own.map(|node| node + 1).collect();
-        Ok(Some(numbers).filter(|numbers| !numbers.is_empty()).map(Into::into))
+        let own: Vec<usize> = own.collect();
+        Ok((!own.is_empty()).then(|| Selection::of_nodes(own)))
     }
 
     /// The same, of nodes that name faces: none where only nodes of the plane are left of them.
@@ -192,9 +189,9 @@ impl Scene {
         };
         let free = half.nodes.iter().enumerate();
         let free = free.filter(|(_, node)| mirror.is_on_plane(**node) && !is_held(**node));
-        let free: Vec<usize> = free.map(|(number, _)| number + 1).collect();
+        let free: Vec<usize> = free.map(|(number, _)| number).collect();
         if !free.is_empty() {
-            let what = Constrained::Nodes(free.into(), Axes::These(vec![half.axis]));
+            let what = Constrained::Nodes(Selection::of_nodes(free), Axes::These(vec![half.axis]));
             constraints.push(Constraint { what, how: Motion::Hold });
         }
         Ok(constraints)

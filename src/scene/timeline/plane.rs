@@ -34,15 +34,13 @@ impl InPlane {
         Smaller::Plane { axis: self.axis, plane: self.plane }
     }
 
-    /// The nodes with the same mean motion in the plane as these of the scene in space have: all in each place count equally, so that
-    /// there are as many in one place as in the other, or else `None`.
-    pub(crate) fn standing_for(&self, nodes: &[usize]) -> Option<Selection> {
+    /// The nodes in the places of these of the scene in space, ascending, and how many of these are in each.
+    pub(crate) fn standing_for(&self, nodes: &[usize]) -> (Vec<usize>, Vec<usize>) {
         let mut own: Vec<usize> = nodes.iter().map(|&node| self.prism.columns[node]).collect();
         own.sort_unstable();
-        let counts: Vec<usize> = own.chunk_by(|a, b| a == b).map(<[usize]>::len).collect();
+        let counts = own.chunk_by(|a, b| a == b).map(<[usize]>::len).collect();
         own.dedup();
-        let is_even = counts.windows(2).all(|pair| pair[0] == pair[1]);
-        is_even.then(|| numbers(own))
+        (own, counts)
     }
 }
 
@@ -82,8 +80,14 @@ impl Scene {
 
     /// As [`in_plane`](Self::in_plane), with what stands for what.
     pub(crate) fn section(&self, axis: Axis) -> Result<InPlane, InputError> {
+        self.body.single("a section")?;
+        self.section_of(self.body.mesh().prism(axis.index())?)
+    }
+
+    /// The section of the scene whose mesh is this prism.
+    pub(crate) fn section_of(&self, prism: Prism) -> Result<InPlane, InputError> {
         self.validate()?;
-        let uniform = Uniform::of(self, axis)?;
+        let uniform = Uniform::of(self, prism)?;
         let (prism, plane) = (&uniform.prism, uniform.plane);
         let body = self.body.to_builder().section(prism, plane)?.build()?;
         let mut start = super::start::Start::rest(&body);
@@ -118,7 +122,7 @@ impl Scene {
         }
         scene.phases = phases;
         scene.validate()?;
-        Ok(InPlane { scene, axis, plane, prism: uniform.prism })
+        Ok(InPlane { scene, axis: uniform.axis, plane, prism: uniform.prism })
     }
 
     /// A load on the section: the sum of the parts that the scene in space has in each place. It stays of its kind where the section
@@ -138,7 +142,7 @@ impl Scene {
         for (&node, part) in nodes.iter().zip(space.parts(load.kind, selection, &nodes)?) {
             sums[prism.columns[node]] += part;
         }
-        let (own, value) = (numbers(columns.clone()), load.value.part(prism.axes()));
+        let (own, value) = (Selection::of_nodes(columns.clone()), load.value.part(prism.axes()));
         if let Ok(parts) = self.parts(load.kind, &own, &columns) {
             let most = parts.iter().fold(0.0_f64, |most, part| most.max(part.abs()));
             let is_same = |(&k, part): (&usize, &f64)| (sums[k] - part).abs() <= SAME * most;
@@ -154,8 +158,9 @@ impl Scene {
                 None => groups.push((part, vec![column])),
             }
         }
-        let each =
-            |(part, nodes): (f64, Vec<usize>)| (numbers(nodes), Load::each(value.times(part)));
+        let each = |(part, nodes): (f64, Vec<usize>)| {
+            (Selection::of_nodes(nodes), Load::each(value.times(part)))
+        };
         Ok(groups.into_iter().map(each).collect())
     }
 }
@@ -163,60 +168,57 @@ impl Scene {
 impl Uniform<'_> {
     /// What is held and moved of the section.
     fn constraints(&self, phase: &Phase) -> Result<Vec<Constraint>, InputError> {
-        let axes = self.prism.axes();
+        let input = format!("held and moved nodes of phase \"{}\"", phase.name);
         let mut constraints = Vec::new();
         for Constraint { what, how } in &phase.constraints {
-            let (selection, own) = match what {
-                Constrained::Nodes(selection, Axes::All) => (selection, None),
-                Constrained::Nodes(selection, Axes::These(axes)) => (selection, Some(axes.clone())),
-                // all its rows are of one axis
-                Constrained::Along(selection, normal) => {
-                    let along = Axis::all(3)
-                        .iter()
-                        .max_by(|a, b| normal[a.index()].abs().total_cmp(&normal[b.index()].abs()));
-                    (selection, Some(along.copied().into_iter().collect()))
-                }
+            let (selection, axes) = match what {
+                Constrained::Nodes(selection, Axes::All) => (selection, Axis::all(3).to_vec()),
+                Constrained::Nodes(selection, Axes::These(axes)) => (selection, axes.clone()),
+                Constrained::Along(selection, normal) => (selection, vec![nearest_axis(normal)]),
                 // refused before
                 Constrained::Row(_) => continue,
             };
-            let kept: Option<Vec<usize>> = own.map(|own| {
-                (0..own.len())
-                    .filter(|&k| own[k].index() != self.prism.axis)
-                    .map(|k| own[k].index())
-                    .collect()
-            });
-            if kept.as_ref().is_some_and(Vec::is_empty) {
+            let own: Vec<Axis> = axes.iter().filter_map(|axis| self.own_axis(*axis)).collect();
+            if own.is_empty() {
                 continue;
             }
-            let nodes = self
-                .whole(selection, &format!("held and moved nodes of phase \"{}\"", phase.name))?;
-            let place = |i: &usize| axes.iter().position(|own| own == i).unwrap_or_default();
-            let how = match (how, what) {
-                (Motion::Velocity(velocity), Constrained::Nodes(_, Axes::These(all))) => {
-                    let own = all.iter().zip(velocity);
-                    let own = own.filter(|(axis, _)| axis.index() != self.prism.axis);
-                    Motion::Velocity(own.map(|(_, velocity)| *velocity).collect())
-                }
-                (Motion::Velocity(velocity), _) => {
-                    Motion::Velocity(axes.map(|i| velocity[i]).to_vec())
-                }
-                (Motion::Turn(turn), _) => Motion::Turn(Arc::new(Turn {
-                    centre: axes.map(|i| turn.centre[i]).to_vec(),
-                    // x and z are a left-handed pair
-                    axis: vec![
-                        if self.prism.axis == 1 { -1.0 } else { 1.0 } * turn.axis[self.prism.axis],
-                    ],
-                    angles: turn.angles.clone(),
-                })),
-                (how, _) => how.clone(),
+            let nodes = Selection::of_nodes(self.whole(selection, &input)?);
+            let own = match what {
+                Constrained::Nodes(_, Axes::All) => Axes::All,
+                _ => Axes::These(own),
             };
-            let own = match kept {
-                None => Axes::All,
-                Some(kept) => Axes::These(kept.iter().map(|i| Axis::all(2)[place(i)]).collect()),
-            };
-            constraints.push(Constraint { what: Constrained::Nodes(numbers(nodes), own), how });
+            let how = self.motion(how, &axes);
+            constraints.push(Constraint { what: Constrained::Nodes(nodes, own), how });
         }
         Ok(constraints)
+    }
+
+    /// What an axis of space is called in the plane; none for that of the prism.
+    fn own_axis(&self, axis: Axis) -> Option<Axis> {
+        let place = self.prism.axes().iter().position(|own| *own == axis.index());
+        place.map(|place| Axis::all(2)[place])
+    }
+
+    /// A motion of nodes along some `axes` of space, as it is in the plane.
+    fn motion(&self, how: &Motion, axes: &[Axis]) -> Motion {
+        match how {
+            Motion::Velocity(velocity) => {
+                let own = axes.iter().zip(velocity);
+                let own = own.filter(|(axis, _)| self.own_axis(**axis).is_some());
+                Motion::Velocity(own.map(|(_, velocity)| *velocity).collect())
+            }
+            Motion::Turn(turn) => {
+                // x and z are a left-handed pair
+                let sign = if self.axis == Axis::Y { -1.0 } else { 1.0 };
+                Motion::Turn(Arc::new(Turn {
+                    centre: self.prism.axes().map(|i| turn.centre[i]).to_vec(),
+                    axis: vec![sign * turn.axis[self.axis.index()]],
+                    angles: turn.angles.clone(),
+                }))
+            }
+            // the same for all axes
+            Motion::Hold | Motion::Path(_) | Motion::Spline(_) | Motion::Formula(_) => how.clone(),
+        }
     }
 
     /// The nodes on which a pressure acts.
@@ -226,11 +228,14 @@ impl Uniform<'_> {
         if self.prism.has_end_face(self.mesh(), &nodes) {
             return Err(self.refused(&input, format!("{selection}, on an end of it")));
         }
-        self.whole(selection, &input).map(numbers)
+        self.whole(selection, &input).map(Selection::of_nodes)
     }
 }
 
-/// Nodes (from 0) as a selection.
-fn numbers(nodes: Vec<usize>) -> Selection {
-    nodes.into_iter().map(|node| node + 1).collect::<Vec<usize>>().into()
+/// The axis along which a direction is: all rows of what is held along a direction have to be of one.
+fn nearest_axis(normal: &[f64]) -> Axis {
+    let longer = |a: Axis, b: &Axis| {
+        if normal[b.index()].abs() > normal[a.index()].abs() { *b } else { a }
+    };
+    Axis::all(3).iter().fold(Axis::X, longer)
 }

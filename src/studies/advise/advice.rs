@@ -73,6 +73,27 @@ pub struct Advice {
     pub known: usize,
 }
 
+impl Advice {
+    /// The fastest half or section (of [`smaller`](Self::smaller)) with which what is enough stays so, if one saves time: what it changes
+    /// and the error of what is enough are within the accuracy together.
+    pub fn smaller_enough(&self) -> Option<&SmallerModel> {
+        let enough = self.enough.as_ref()?.parts?.sum();
+        let is_right = |model: &&SmallerModel| {
+            let saves_time = model.seconds < model.full_seconds;
+            model.set().is_some() && saves_time && enough + model.change <= self.accuracy
+        };
+        let right = self.smaller.iter().filter(is_right);
+        right.min_by(|a, b| a.seconds.total_cmp(&b.seconds))
+    }
+
+    /// What has to be set in the file of the scene, as `--set` takes it, for what is enough, by a
+    /// [smaller model](Self::smaller_enough) if there is one.
+    pub fn set(&self) -> Vec<String> {
+        let enough = self.enough.iter().flat_map(|enough| enough.set.iter().cloned());
+        enough.chain(self.smaller_enough().and_then(SmallerModel::set)).collect()
+    }
+}
+
 /// A choice, and how good it is.
 #[derive(Debug, Clone)]
 pub struct Candidate {

@@ -4,6 +4,7 @@ use std::fmt;
 
 use super::advice::{Advice, Candidate};
 use super::choice::Choice;
+use super::smaller_model::SmallerModel;
 use crate::base::input::{percent, short, told};
 use crate::dynamics::report::Verdict;
 use crate::elements::body::Strain;
@@ -142,6 +143,15 @@ impl fmt::Display for Advice {
             }
             Some(enough) => writeln!(f, "\nEnough:      {}", run(enough))?,
             None => writeln!(f, "\nNothing that was tried is enough.")?,
+        }
+        let parts = self.enough.as_ref().and_then(|enough| enough.parts);
+        if let (Some(smaller), Some(parts)) = (self.smaller_enough(), parts) {
+            let SmallerModel { kind, change, seconds, .. } = smaller;
+            let (off, time) = (percent(parts.sum() + change), time_text(*seconds));
+            writeln!(
+                f,
+                "Smaller:     {kind}, with the same settings: {off} off at most in {time}"
+            )?;
         }
         writeln!(f, "As written:  {}", run(&self.written))?;
         match self.mesh {

@@ -10,27 +10,11 @@ use crate::scene::timeline::{Scene, Smaller};
 impl Search<'_> {
     /// Runs half of the fastest motion that is right, if it is symmetric. Where it is not although the scene is, the change tells.
     pub(super) fn half(&mut self, found: &mut Found) -> Result<(), Stop> {
-        let Some([best, exact]) = self.soft(found) else { return Ok(()) };
-        let Ok(scene) = best.choice.scene(&self.scene) else { return Ok(()) };
-        let mesh = scene.body().mesh();
-        if !scene.body().is_single() {
-            return Ok(());
-        }
-        let mut refused = Vec::new();
-        for &axis in Axis::all(mesh.dimension()) {
+        self.run_across("half of it, cut across", found, |search, scene, axis, exact| {
             // of a mesh without a plane of symmetry there is nothing to tell
-            if mesh.mirror(axis.index()).is_none() {
-                continue;
-            }
-            match self.halved(&scene, axis, &exact) {
-                Ok(halved) => return self.run_smaller([best, exact], &halved, found),
-                Err(error) => {
-                    refused.push(format!("half of it, cut across {}: {error}", axis.word()));
-                }
-            }
-        }
-        found.not_tried.extend(refused);
-        Ok(())
+            scene.body().mesh().mirror(axis.index())?;
+            Some(search.halved(scene, axis, exact))
+        })
     }
 
     /// The half on the side on which the quantity is.

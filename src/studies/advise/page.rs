@@ -21,7 +21,7 @@ const KEY: &str = include_str!("page/key.html");
 /// Processor time that each of the motions may take.
 const LONGEST: Duration = Duration::from_secs(20);
 /// How lines about one candidate begin in the text of the advice.
-const NAMES: [&str; 2] = ["Enough", "As written"];
+const NAMES: [&str; 3] = ["Enough", "Smaller", "As written"];
 
 impl Advice {
     /// Writes the advice as one HTML file for a web browser, without a network.
@@ -69,8 +69,8 @@ impl Advice {
 
     fn html(&self, motions: &[(&str, Trajectory)], left_out: &[String]) -> String {
         let answer = paragraphs(&self.to_string());
-        let sets = self.enough.as_ref().map_or_else(String::new, |enough| {
-            let lines = escaped(&enough.set.join("\n"));
+        let sets = self.enough.as_ref().map_or_else(String::new, |_| {
+            let lines = escaped(&self.set().join("\n"));
             format!(
                 "<h3>What is enough, as <code>--set</code> takes it:</h3>\n<pre>{lines}</pre>\n"
             )

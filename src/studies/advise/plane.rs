@@ -4,37 +4,22 @@ use super::found::Found;
 use super::search::{Search, Solved, Stop};
 use super::smaller_run::Shrunk;
 use crate::base::input::InputError;
-use crate::scene::constraint::Axis;
+use crate::elements::mesh::Prism;
 use crate::scene::timeline::Scene;
 
 impl Search<'_> {
     /// Runs the fastest motion that is right in a plane, if it is the same all along an axis. How far the body is from plane strain or
     /// plane stress, the change tells.
     pub(super) fn plane(&mut self, found: &mut Found) -> Result<(), Stop> {
-        let Some([best, exact]) = self.soft(found) else { return Ok(()) };
-        let Ok(scene) = best.choice.scene(&self.scene) else { return Ok(()) };
-        let mut refused = Vec::new();
-        if !scene.body().is_single() {
-            return Ok(());
-        }
-        for &axis in Axis::all(scene.body().dimension()) {
+        self.run_across("in a plane across", found, |search, scene, axis, exact| {
             // of a mesh that is no prism there is nothing to tell
-            if scene.body().mesh().prism(axis.index()).is_err() {
-                continue;
-            }
-            match self.section(&scene, axis, &exact) {
-                Ok(section) => return self.run_smaller([best, exact], &section, found),
-                Err(error) => {
-                    refused.push(format!("in a plane across {}: {error}", axis.word()));
-                }
-            }
-        }
-        found.not_tried.extend(refused);
-        Ok(())
+            let prism = scene.body().mesh().prism(axis.index()).ok()?;
+            Some(search.section(scene, prism, exact))
+        })
     }
 
-    fn section(&self, scene: &Scene, axis: Axis, exact: &Solved) -> Result<Shrunk, InputError> {
-        let section = scene.section(axis)?;
+    fn section(&self, scene: &Scene, prism: Prism, exact: &Solved) -> Result<Shrunk, InputError> {
+        let section = scene.section_of(prism)?;
         let quantity = self.request.quantity.in_plane(scene, &section)?;
         let points = section.prism.columns[..self.nodes].to_vec();
         let nodes = points.iter().max().map_or(0, |last| last + 1);

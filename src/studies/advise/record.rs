@@ -16,8 +16,9 @@ impl Advice {
     ///
     /// The keys are `quantity`, `accuracy`, `scale`, `unit`, `written`, `enough`, `truth`, `resolution`, `has_rate`,
     /// `mesh`, `alphas`, `law`, `inertia`, `terms`, `together`, `candidates`, `known_until`, `end`, `mesh_estimate`,
-    /// `smaller`, `reduced`, `look`, `not_tried`, `is_cut_short`, `runs`, `seconds`, `known`, as the fields are; `null` means not
-    /// known. A candidate has `model` and `set`, what has to be set for it in the file of the scene.
+    /// `smaller`, `set`, `reduced`, `look`, `not_tried`, `is_cut_short`, `runs`, `seconds`, `known`, as the fields are; `null` means not
+    /// known. A candidate has `model` and `set`, what has to be set for it in the file of the scene; the key `set` is that
+    /// of what is enough, by the half or section with which it stays so.
     ///
     /// # Errors
     /// [`Error::Output`] if it cannot be written.
@@ -72,6 +73,7 @@ impl Advice {
                 json!({ "value": estimate.value, "change": estimate.change, "correction": estimate.correction, "is_reliable": estimate.is_reliable() })
             }),
             "smaller": self.smaller.iter().map(SmallerModel::to_json).collect::<Vec<_>>(),
+            "set": self.set(),
             "reduced": self.reduced.as_ref().map(|reduced| {
                 json!({
                     "unknowns": reduced.unknowns,

@@ -46,15 +46,8 @@ impl Search<'_> {
             found.sweep.push(loose.clone());
             pair = [loose, best];
         }
-        let [own, full] = pair;
-        found.smaller.push(SmallerModel {
-            kind: Smaller::Rigid,
-            change,
-            seconds: own.seconds,
-            full_seconds: full.seconds,
-            unknowns: own.unknowns,
-            full_unknowns: full.unknowns,
-        });
+        let runs = pair.map(|run| (run.seconds, run.unknowns));
+        found.smaller.push(SmallerModel::new(Smaller::Rigid, change, runs));
         Ok(())
     }
 

@@ -27,6 +27,22 @@ pub struct SmallerModel {
 }
 
 impl SmallerModel {
+    /// A model by the times (s) and unknowns of two runs: one by it, and one of what it is a model of.
+    pub(super) fn new(kind: Smaller, change: f64, runs: [(f64, usize); 2]) -> Self {
+        let [(seconds, unknowns), (full_seconds, full_unknowns)] = runs;
+        Self { kind, change, seconds, full_seconds, unknowns, full_unknowns }
+    }
+
+    /// What has to be set for it in the file of the scene, beside what is set for what it is a model of; none for what is rigid, which
+    /// is a candidate as any other.
+    pub(super) fn set(&self) -> Option<String> {
+        match self.kind {
+            Smaller::Rigid => None,
+            Smaller::Half { axis, .. } => Some(format!("solver.half={}", axis.word())),
+            Smaller::Plane { axis, .. } => Some(format!("solver.plane={}", axis.word())),
+        }
+    }
+
     /// It as data.
     pub(super) fn to_json(&self) -> Value {
         let Self { change, seconds, full_seconds, unknowns, full_unknowns, .. } = self;

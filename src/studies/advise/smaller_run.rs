@@ -5,6 +5,8 @@ use super::ladder::PATIENCE;
 use super::runs::Outcome;
 use super::search::{Cut, SHORT, Search, Solved, Stop};
 use super::smaller_model::SmallerModel;
+use crate::base::input::InputError;
+use crate::scene::constraint::Axis;
 use crate::scene::timeline::{Scene, Smaller};
 use crate::studies::work_precision::quantity::{Quantity, Seen};
 use crate::studies::work_precision::truth::reason;
@@ -32,8 +34,33 @@ impl Shrunk {
 }
 
 impl Search<'_> {
+    /// Runs a smaller model of the fastest motion that is right, across the first axis that has one. `of` makes it, or says nothing
+    /// where there is none; why there is none across any axis is told after `name`, as in "half of it, cut across".
+    pub(super) fn run_across(
+        &mut self,
+        name: &str,
+        found: &mut Found,
+        of: impl Fn(&Self, &Scene, Axis, &Solved) -> Option<Result<Shrunk, InputError>>,
+    ) -> Result<(), Stop> {
+        let Some([best, exact]) = self.soft(found) else { return Ok(()) };
+        let Ok(scene) = best.choice.scene(&self.scene) else { return Ok(()) };
+        if !scene.body().is_single() {
+            return Ok(());
+        }
+        let mut refused = Vec::new();
+        for &axis in Axis::all(scene.body().dimension()) {
+            match of(self, &scene, axis, &exact) {
+                Some(Ok(model)) => return self.run_smaller([best, exact], &model, found),
+                Some(Err(error)) => refused.push(format!("{name} {}: {error}", axis.word())),
+                None => {}
+            }
+        }
+        found.not_tried.extend(refused);
+        Ok(())
+    }
+
     /// Runs a smaller model as exactly as what it is a model of was run, to see what it changes, and then as fast.
-    pub(super) fn run_smaller(
+    fn run_smaller(
         &mut self,
         [best, exact]: [Solved; 2],
         model: &Shrunk,
@@ -49,14 +76,8 @@ impl Search<'_> {
             pair = (loose, best);
         }
         let (own, full) = pair;
-        found.smaller.push(SmallerModel {
-            kind,
-            change,
-            seconds: own.seconds,
-            full_seconds: full.seconds,
-            unknowns: own.unknowns,
-            full_unknowns: full.unknowns,
-        });
+        let runs = [(own.seconds, own.unknowns), (full.seconds, full.unknowns)];
+        found.smaller.push(SmallerModel::new(kind, change, runs));
         Ok(())
     }
 

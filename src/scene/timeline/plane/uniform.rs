@@ -12,17 +12,18 @@ use crate::scene::forces::Obstacle;
 /// A scene that is the same all along an axis.
 pub(super) struct Uniform<'a> {
     scene: &'a Scene,
-    axis: Axis,
+    pub(super) axis: Axis,
     pub(super) prism: Prism,
     pub(super) plane: Plane,
 }
 
 impl<'a> Uniform<'a> {
+    /// The scene whose mesh is this prism.
+    ///
     /// # Errors
-    /// What changes along the axis, or points along it, or of which that is not known.
-    pub(super) fn of(scene: &'a Scene, axis: Axis) -> Result<Self, InputError> {
-        scene.body.single("a section")?;
-        let prism = scene.body.mesh().prism(axis.index())?;
+    /// What changes along its axis, or points along it, or of which that is not known.
+    pub(super) fn of(scene: &'a Scene, prism: Prism) -> Result<Self, InputError> {
+        let axis = Axis::all(3)[prism.axis];
         check_known(scene, "a section", SPACE)?;
         let mut uniform = Self { scene, axis, prism, plane: Plane::Strain };
         uniform.check_field("initial displacements", scene.initial_displacements())?;
