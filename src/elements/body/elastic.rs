@@ -88,10 +88,6 @@ impl Force for Elastic {
     }
 }
 
-/// Part of the multiplications for all cells that those for the modes of their strains may take: what a sample of the cells
-/// would take.
-pub(super) const OF_CELLS: usize = 8;
-
 impl Elastic {
     /// Whether the forces along so many shapes follow from the modes of the strains, in less time than from a sample of
     /// the cells.
@@ -100,8 +96,7 @@ impl Elastic {
             elements.has_strain_modes(regions, *terms)
         };
         let work: usize = self.bodies.iter().map(|(own, _)| own.elements.work()).sum();
-        let of_modes = strain_modes::modes(shapes).saturating_pow(2);
-        self.bodies.iter().all(has_modes) && OF_CELLS.saturating_mul(of_modes) <= work
+        self.bodies.iter().all(has_modes) && strain_modes::pay(shapes, 1, work)
     }
 
     /// The forces along `shapes` from displacements `origin` (m), if [they have such modes](Self::has_strain_modes).

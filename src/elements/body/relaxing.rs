@@ -6,9 +6,8 @@ use std::sync::Arc;
 use super::assembly::Elements;
 use super::branch_modes::{BranchModes, Found};
 use super::continuum::Continuum;
-use super::elastic::OF_CELLS;
 use super::regions::Regions;
-use super::strain_modes::modes;
+use super::strain_modes::pay;
 use crate::base::sparse::BlockMatrix;
 use crate::elements::material::Relaxing;
 
@@ -47,10 +46,9 @@ impl Branches {
         let mut times: Vec<f64> = times.map(|branch| branch.time).collect();
         times.sort_by(f64::total_cmp);
         times.dedup();
-        let of_modes = times.len().saturating_mul(modes(shapes).saturating_pow(2));
         let work: usize = self.bodies.iter().map(|body| body.elements.work()).sum();
         let mut all = self.bodies.iter().flat_map(|body| body.regions.branches());
-        all.all(|branch| !branch.yields()) && OF_CELLS.saturating_mul(of_modes) <= work
+        all.all(|branch| !branch.yields()) && pay(shapes, times.len(), work)
     }
 
     /// The branches along `shapes` from displacements `origin` (m) and internal strains on.

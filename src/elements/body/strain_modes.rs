@@ -61,6 +61,16 @@ pub(super) fn modes(shapes: usize) -> usize {
     1 + shapes + shapes * (shapes + 1) / 2
 }
 
+/// Part of the multiplications for all cells that those for the modes of their strains may take: what a sample of the cells
+/// would take.
+const OF_CELLS: usize = 8;
+
+/// Whether so many sets of modes along so many shapes are that much less than the `work` for all cells.
+pub(super) fn pay(shapes: usize, sets: usize, work: usize) -> bool {
+    let of_modes = sets.saturating_mul(modes(shapes).saturating_pow(2));
+    OF_CELLS.saturating_mul(of_modes) <= work
+}
+
 /// The mode of a pair of shapes.
 pub(super) fn pair(shapes: usize, k: usize, l: usize) -> usize {
     let (low, high) = (k.min(l), k.max(l));
