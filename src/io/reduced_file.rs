@@ -167,6 +167,7 @@ mod tests {
             travel: 0.02,
             error_per_imbalance: 1.7,
             is_estimate: true,
+            runs: 3,
             within: 0.02,
             learned_from: "two runs".into(),
         }

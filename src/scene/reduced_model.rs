@@ -34,6 +34,9 @@ pub struct ReducedModel {
     /// Whether that is not the error of a run with all unknowns, but what its own runs told.
     #[cfg_attr(feature = "checkpoint", serde(default))]
     pub(crate) is_estimate: bool,
+    /// Number of runs that it was learned from; 0 if that is not known.
+    #[cfg_attr(feature = "checkpoint", serde(default))]
+    pub(crate) runs: usize,
     /// What it was learned from, in words.
     pub(crate) learned_from: String,
 }

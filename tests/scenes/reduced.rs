@@ -85,6 +85,15 @@ fn quadratic_strains_need_no_cells() {
     };
     let model = learned(vec![scene(0.004)], 1e-6, 0.01);
     assert_eq!(model.cells(), 0, "{model}");
+    // the run that it was learned from is known by what it tells, and others are warned of
+    let is_other = |run: &Trajectory| {
+        let warnings = run.report().named_warnings();
+        warnings.iter().any(|(name, _)| *name == "reduced-one-run")
+    };
+    for (force, is_another) in [(0.004, false), (0.007, true)] {
+        let own = run(&scene(force).reduced(model.clone()).unwrap(), 1e-7);
+        assert_eq!(is_other(&own), is_another, "{:?}", own.report().reduced);
+    }
     let full = scene(0.003);
     let own = run(&full.clone().reduced(model).unwrap(), 1e-6);
     let exact = error(&run(&full, 1e-6), &own);

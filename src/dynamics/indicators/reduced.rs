@@ -7,8 +7,11 @@ use crate::dynamics::report::{Indicator, ReducedReport};
 const TIMES_WANTED: f64 = 2.0;
 /// Part of the widest range of a shape by which a state may be outside of those learned from.
 const MOST_OUTSIDE: f64 = 0.05;
+/// Part of what was wanted by which the error that a run tells may differ from that of the one that the model was learned from, if it is
+/// that run: methods and tolerances may be others.
+const SAME_RUN: f64 = 0.05;
 
-/// The error that the run tells, and how far it was outside of what the model has learned.
+/// The error that the run tells, how far it was outside of what the model has learned, and whether that was another run.
 pub(crate) fn reduced(run: &ReducedReport) -> Vec<Indicator> {
     let limit = TIMES_WANTED * run.within;
     let said = format!(
@@ -30,5 +33,20 @@ pub(crate) fn reduced(run: &ReducedReport) -> Vec<Indicator> {
     let value = (run.outside, "1");
     let range =
         Indicator::trusted("reduced-range", value, [0.0, MOST_OUTSIDE], || said.clone(), beyond);
-    vec![error, range]
+    let other = run.from_that_of_one_run().map(|apart| {
+        let said = format!(
+            "the reduced model was learned from one run, off by {}; this one tells {}",
+            percent(run.checked_error),
+            percent(run.told_error)
+        );
+        let beyond = || {
+            format!(
+                "{said}: it is another run, or not all of that, and may be off by many times what it tells: reduce the scene \
+                 over a range (--vary), or have a run such as this one checked (pliant reduce --verify)"
+            )
+        };
+        let value = (apart, "1");
+        Indicator::trusted("reduced-one-run", value, [0.0, SAME_RUN], || said.clone(), beyond)
+    });
+    [error, range].into_iter().chain(other).collect()
 }

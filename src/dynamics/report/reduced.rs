@@ -25,6 +25,8 @@ pub struct ReducedReport {
     pub readings: Vec<ToldReading>,
     /// Whether its error is not that of any run with all unknowns, but what its own runs told.
     pub is_estimate: bool,
+    /// Whether it was learned from one run.
+    is_of_one_run: bool,
     per_imbalance: f64,
     /// Largest imbalance and largest displacement (m) that were seen.
     imbalance: f64,
@@ -54,6 +56,7 @@ impl ReducedReport {
             outside: 0.0,
             readings: Vec::new(),
             is_estimate: model.is_estimate,
+            is_of_one_run: model.runs == 1,
             per_imbalance: model.error_per_imbalance,
             imbalance: 0.0,
             travel: model.travel,
@@ -82,6 +85,13 @@ impl ReducedReport {
                 None => self.readings.push(ToldReading { error, ..change }),
             }
         }
+    }
+
+    /// By how much the error that this run tells differs from that of the one run, with all unknowns, that the model was learned
+    /// from, as a part of what was wanted; none if it was learned from several, and as long as nothing is told.
+    pub(crate) fn from_that_of_one_run(&self) -> Option<f64> {
+        let is_told = self.is_of_one_run && !self.is_estimate && self.told_error > 0.0;
+        is_told.then(|| (self.told_error - self.checked_error).abs() / self.within)
     }
 
     /// The imbalance (m) up to which the error is one that was wanted.

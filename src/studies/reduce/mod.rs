@@ -266,6 +266,7 @@ impl<'a> Kit<'a> {
             within: training.within,
             error_per_imbalance: 1.0,
             is_estimate: false,
+            runs: training.scenes.len(),
             learned_from: learned(training.scenes.len(), ""),
         })
     }

@@ -192,6 +192,7 @@ fn model(scene: &Scene, most: usize) -> ReducedModel {
         travel: 0.1,
         error_per_imbalance: 1.0,
         is_estimate: false,
+        runs: 1,
         learned_from: "nothing".into(),
     }
 }
