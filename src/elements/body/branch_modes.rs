@@ -136,9 +136,11 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> BranchModal
             for (k, shape) in gradients.iter().enumerate() {
                 strains[1 + k] = at.change(shape);
                 for (l, other) in gradients[..=k].iter().enumerate() {
-                    if let Some(strain) = strains.get_mut(pair(shapes.len(), k, l)) {
-                        *strain = symmetric(shape, other);
-                    }
+                    let Some(strain) = strains.get_mut(pair(shapes.len(), k, l)) else { break };
+                    *strain = match branch.is_quadratic() {
+                        true => symmetric(shape, other),
+                        false => Components::default(),
+                    };
                 }
             }
             let (weight, [lambda, mu]) = (point.volume, branch.moduli());

@@ -11,6 +11,10 @@ fn bodies() -> Vec<(&'static str, Body)> {
     let plane = || Mesh::rectangle([0.3, 0.2], [4, 3], Cells::Rectangles).unwrap();
     let space = |cells| Mesh::cuboid([0.3, 0.2, 0.1], [3, 2, 2], cells).unwrap();
     let substance = || RUBBER.maxwell(0.8, 0.02).maxwell(0.5, 0.3).maxwell(0.3, 0.02);
+    let of_strain = |name: &str, strain| {
+        let body = Body::new(plane(), substance()).thickness(0.02).strain(strain);
+        body.named(name).build().unwrap()
+    };
     let stiff = || Material { young: 3e5, poisson: 0.1, ..RUBBER }.maxwell(0.7, 0.3);
     let left = || crate::CellSelection::inside([0.0, 0.0], [0.15, 0.2]);
     vec![
@@ -47,6 +51,10 @@ fn bodies() -> Vec<(&'static str, Body)> {
                 .strain(Strain::Green)
                 .build()
                 .unwrap(),
+        ),
+        (
+            "linear strain beside another",
+            Body::join([of_strain("a", Strain::Cauchy), of_strain("b", Strain::Green)]).unwrap(),
         ),
         (
             "linear strain",
