@@ -33,7 +33,7 @@ pub(crate) fn reduced(run: &ReducedReport) -> Vec<Indicator> {
     let value = (run.outside, "1");
     let range =
         Indicator::trusted("reduced-range", value, [0.0, MOST_OUTSIDE], || said.clone(), beyond);
-    let other = run.from_that_of_one_run().map(|apart| {
+    let other = run.apart_from_one_run().map(|apart| {
         let said = format!(
             "the reduced model was learned from one run, off by {}; this one tells {}",
             percent(run.checked_error),
