@@ -205,21 +205,21 @@ impl System {
         // a step so long that inertia hardly matters, except where nothing resists a motion
         let [size, speed] = self.matrices.scales;
         let slow = SLOW * size / speed;
+        let step = |state: &LeftOver| slow.min(state.age);
+        // Maxwell branches are least stiff in the longest step
+        let longest = states.iter().map(step).fold(0.0, f64::max);
         let (strains, amounts) = self.parts_of(internal);
         self.set_lagging(*time, internal);
+        self.newton.is_set = false;
+        self.update_tangents(*time, u, v, false);
+        self.add_branch_tangents(longest, u, strains);
+        self.add_flow_tangents(*time, [u, v, amounts]);
         let (mut gamma, mut is_factorized) = (0.0, false);
         let mut imbalances = Vec::new();
-        for (LeftOver { age, .. }, residual) in states.iter().zip(residuals) {
+        for (state, residual) in states.iter().zip(residuals) {
             // what has just begun to act has not moved the body far
-            if gamma != slow.min(*age) {
-                let is_first = gamma == 0.0;
-                gamma = slow.min(*age);
-                // what branches add depends on gamma
-                if is_first || !strains.is_empty() {
-                    self.update_tangents(*time, u, v, false);
-                    self.add_branch_tangents(gamma, u, strains);
-                    self.add_flow_tangents(*time, [u, v, amounts]);
-                }
+            if gamma != step(state) {
+                gamma = step(state);
                 is_factorized = match are_definite {
                     true => self.factorize_definite_newton(gamma),
                     false => self.factorize_newton(gamma).is_ok(),
