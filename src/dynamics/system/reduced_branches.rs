@@ -6,6 +6,7 @@
 //! of q with gamma^2 Psi^T B^T C P B Psi added.
 
 use super::shapes::Shapes;
+use crate::base::simd::add;
 use crate::base::sparse::BlockMatrix;
 use crate::dynamics::matrices::Matrices;
 use crate::elements::body::{BranchModes, Branches};
@@ -180,7 +181,7 @@ impl ReducedBranches {
                 self.branches.add_tangents(gamma, u, &self.unknowns, tangents);
                 own.fill(0.0);
                 shapes.add_projected_matrix(tangents, own);
-                stiffness.iter_mut().zip(own).for_each(|(sum, own)| *sum += *own);
+                add(own, stiffness);
             }
         }
     }

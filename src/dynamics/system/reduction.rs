@@ -23,6 +23,7 @@ use super::reduced_branches::ReducedBranches;
 use super::reduced_flow::ReducedFlow;
 use super::shapes::Shapes;
 use crate::base::input::InputError;
+use crate::base::simd::add;
 use crate::base::sparse::{BlockMatrix, NodePattern};
 use crate::base::vector::{dot, largest};
 use crate::dynamics::matrices::Matrices;
@@ -494,7 +495,7 @@ impl Reduction {
     pub(super) fn push(&mut self, forces: &[f64]) {
         let mut along = vec![0.0; self.shapes.count()];
         self.shapes.add_projected(forces, &mut along);
-        self.at.acceleration.iter_mut().zip(along).for_each(|(sum, along)| *sum += along);
+        add(&along[..self.shapes.free()], &mut self.at.acceleration);
     }
 
     /// u'' of all nodes at the last evaluation.
@@ -596,7 +597,7 @@ impl Reduction {
         let mut on_moved: &[f64] = &[];
         if let Some(branches) = &mut self.branches {
             let along = branches.of_residuals(strains, &mut self.shapes);
-            xv.iter_mut().zip(along).for_each(|(xv, force)| *xv += force);
+            add(&along[..free], xv);
             on_moved = &along[free..];
         }
         if let Some(flow) = &mut self.flow {

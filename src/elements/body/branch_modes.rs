@@ -20,8 +20,11 @@ use super::elements::{ElementsOf, gradient};
 use super::forces::relative;
 use super::projection::COEFFICIENTS;
 use super::regions::Regions;
-use super::strain_modes::{Strains, add_changes, along, inner, modes, multiply, pair, set_changes};
-use crate::base::simd::add_multiple;
+use super::strain_modes::{
+    Strains, add_changes, along, inner, modes, multiply, pair, set_amplitude_changes,
+    set_amplitudes, set_changes,
+};
+use crate::base::simd::{add, add_multiple};
 use crate::base::tensor::{Matrix, dot};
 use crate::base::vector::largest;
 use crate::elements::material::{Components, axes, components, trace};
@@ -60,9 +63,10 @@ pub(crate) struct BranchModes {
     shapes: usize,
     modes: usize,
     groups: Vec<Group>,
-    /// w, and room for vectors like it.
+    /// w, and room for vectors like it and like z.
     w: Vec<f64>,
     room: [Vec<f64>; 2],
+    moved: Vec<f64>,
     /// Derivatives of H w by each coordinate.
     changes: Vec<f64>,
     /// z at the last evaluation, and where the tangents are from.
@@ -217,6 +221,7 @@ impl BranchModes {
             groups: groups.into_iter().map(group).collect(),
             w: vec![0.0; modes],
             room: [vec![0.0; modes], vec![0.0; modes]],
+            moved: vec![0.0; shapes],
             changes: vec![0.0; modes * shapes],
             at: [vec![0.0; shapes], vec![0.0; shapes]],
             geometric: vec![0.0; shapes * shapes],
@@ -265,7 +270,7 @@ impl BranchModes {
         rates: &mut [f64],
     ) -> f64 {
         self.at[0].copy_from_slice(z);
-        self.set_amplitudes(z);
+        set_amplitudes(z, &mut self.w);
         let (mut power, modes) = (0.0, self.modes);
         let own = g.chunks_exact(modes).zip(rates.chunks_exact_mut(modes));
         for (Group { time, product, apart, stress, .. }, (g, rates)) in
@@ -304,7 +309,7 @@ impl BranchModes {
 
     /// Adds the stiffness in a step of the parameter `gamma` (s), row by row.
     pub(crate) fn add_stiffness(&self, gamma: f64, stiffness: &mut [f64]) {
-        add_multiple(1.0, &self.geometric, stiffness);
+        add(&self.geometric, stiffness);
         for Group { time, material, .. } in &self.groups {
             add_multiple(passed(gamma, *time), material, stiffness);
         }
@@ -327,18 +332,10 @@ impl BranchModes {
     /// Turns the residuals `x` of the amplitudes into their changes, by those of the coordinates, `xz`. Returns the change of the
     /// power (W) that is dissipated.
     pub(crate) fn solve(&mut self, gamma: f64, xz: &[f64], x: &mut [f64]) -> f64 {
-        let Self { shapes, modes, groups, w: changes, room: [apart, stress], at: [_, z], .. } =
-            self;
-        // W xz
-        changes.fill(0.0);
-        changes[1..=*shapes][..xz.len()].copy_from_slice(xz);
-        for (k, change) in xz.iter().enumerate() {
-            for (l, z) in z.iter().enumerate() {
-                if let Some(sum) = changes.get_mut(pair(*shapes, k, l)) {
-                    *sum += change * z;
-                }
-            }
-        }
+        let Self { modes, groups, w: changes, room: [apart, stress], at: [_, z], moved, .. } = self;
+        // the others move as they have to
+        moved[..xz.len()].copy_from_slice(xz);
+        set_amplitude_changes(z, moved, changes);
         let mut power = 0.0;
         for (Group { time, product, stress: before, .. }, x) in
             groups.iter().zip(x.chunks_exact_mut(*modes))
@@ -352,19 +349,6 @@ impl BranchModes {
             power += (2.0 * inner(apart, before) + inner(apart, stress)) / *time;
         }
         power
-    }
-
-    fn set_amplitudes(&mut self, z: &[f64]) {
-        let Self { shapes, w, .. } = self;
-        w[0] = 0.0;
-        w[1..=*shapes].copy_from_slice(z);
-        for k in 0..*shapes {
-            for l in 0..=k {
-                if let Some(w) = w.get_mut(pair(*shapes, k, l)) {
-                    *w = if k == l { 0.5 } else { 1.0 } * z[k] * z[l];
-                }
-            }
-        }
     }
 }
 

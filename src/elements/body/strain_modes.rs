@@ -224,18 +224,10 @@ impl StrainModes {
 
     /// Sets w, w', G w and G_v w'.
     fn evaluate(&mut self, [z, rates]: [&[f64]; 2]) {
-        let Self { shapes, amplitudes: [w, speeds], .. } = self;
+        let [w, speeds] = &mut self.amplitudes;
         w[0] = 1.0;
-        w[1..=*shapes].copy_from_slice(z);
-        speeds[1..=*shapes].copy_from_slice(rates);
-        for k in 0..*shapes {
-            for l in 0..=k {
-                let at = pair(*shapes, k, l);
-                let half = if k == l { 0.5 } else { 1.0 };
-                w[at] = half * z[k] * z[l];
-                speeds[at] = half * (rates[k] * z[l] + z[k] * rates[l]);
-            }
-        }
+        set_amplitudes(z, w);
+        set_amplitude_changes(z, rates, speeds);
         for ((product, amplitudes), stresses) in
             self.products.iter().zip(&self.amplitudes).zip(&mut self.stresses)
         {
@@ -250,6 +242,31 @@ impl StrainModes {
             set_changes(product, single, z, &mut self.changes);
         }
     }
+}
+
+/// Sets the amplitudes w at z of the shapes and, as far as there are any, of their pairs.
+pub(super) fn set_amplitudes(z: &[f64], w: &mut [f64]) {
+    w[1..=z.len()].copy_from_slice(z);
+    for (k, l) in pairs(z.len(), w.len()) {
+        let half = if k == l { 0.5 } else { 1.0 };
+        w[pair(z.len(), k, l)] = half * z[k] * z[l];
+    }
+}
+
+/// Sets the `changes` of these amplitudes for a change `x` of z.
+pub(super) fn set_amplitude_changes(z: &[f64], x: &[f64], changes: &mut [f64]) {
+    changes[1..=z.len()].copy_from_slice(x);
+    for (k, l) in pairs(z.len(), changes.len()) {
+        let half = if k == l { 0.5 } else { 1.0 };
+        changes[pair(z.len(), k, l)] = half * (x[k] * z[l] + z[k] * x[l]);
+    }
+}
+
+/// The pairs of so many shapes, if they have any of so many modes.
+fn pairs(shapes: usize, modes: usize) -> impl Iterator<Item = (usize, usize)> {
+    let have_pairs = modes > 1 + shapes;
+    let shapes = if have_pairs { shapes } else { 0 };
+    (0..shapes).flat_map(|k| (0..=k).map(move |l| (k, l)))
 }
 
 /// Sets the derivatives of A w by each coordinate, dw/dz_m being that of z_m itself times `single`, and of its pairs with z as far as

@@ -49,6 +49,15 @@ fn scene() -> Scene {
     Scene::new(body).gravity([0.0, -9.8]).obstacle(floor).phase(phase)
 }
 
+/// A motion so fast that its power is a large part of all.
+fn fast(t: f64) -> Prescribed {
+    Prescribed {
+        displacement: 1e-4 * (3e4 * t).sin(),
+        velocity: 3.0 * (3e4 * t).cos(),
+        acceleration: -9e4 * (3e4 * t).sin(),
+    }
+}
+
 /// Two rooms of gas with orifices, two of liquids with weight, one of them with a surface, pipes, and a spring that lags, in a body
 /// with nodes that move.
 fn with_amounts() -> Scene {
@@ -57,12 +66,7 @@ fn with_amounts() -> Scene {
     let phase = Phase::until(1.0)
         .named("p")
         .hold_axes([1, 2], [Axis::Y])
-        // so fast that its power is a large part of all
-        .follow([11], Axis::X, |t| Prescribed {
-            displacement: 1e-4 * (3e4 * t).sin(),
-            velocity: 3.0 * (3e4 * t).cos(),
-            acceleration: -9e4 * (3e4 * t).sin(),
-        })
+        .follow([11], Axis::X, fast)
         .hold_combination([(10, Axis::X, 1.0), (12, Axis::X, -2.0)])
         .load([7], [3.0, -2.0])
         .open("out", 0.5)
@@ -125,12 +129,7 @@ fn relaxing() -> Scene {
     let phase = Phase::until(1.0)
         .named("p")
         .hold_axes([1, 2], [Axis::Y])
-        // so fast that its power is a large part of all
-        .follow([11], Axis::X, |t| Prescribed {
-            displacement: 1e-4 * (3e4 * t).sin(),
-            velocity: 3.0 * (3e4 * t).cos(),
-            acceleration: -9e4 * (3e4 * t).sin(),
-        })
+        .follow([11], Axis::X, fast)
         .hold_combination([(10, Axis::X, 1.0), (12, Axis::X, -2.0)])
         .load([7], [3.0, -2.0]);
     Scene::new(body).phase(phase)
@@ -144,11 +143,7 @@ fn relaxing_by_modes() -> Scene {
     let phase = Phase::until(1.0)
         .named("p")
         .hold_axes([1, 2], [Axis::Y])
-        .follow([11], Axis::X, |t| Prescribed {
-            displacement: 1e-4 * (3e4 * t).sin(),
-            velocity: 3.0 * (3e4 * t).cos(),
-            acceleration: -9e4 * (3e4 * t).sin(),
-        })
+        .follow([11], Axis::X, fast)
         .load([70], [3.0, -2.0]);
     Scene::new(body).phase(phase)
 }
