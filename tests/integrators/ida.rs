@@ -88,6 +88,24 @@ fn the_state_of_rest_is_found() {
     assert!((solver.y()[0] - 2.0).abs() < 1e-8);
 }
 
+/// 0 = x^2 - w^2 with x = 2, from near and far: from w = 1 Newton's method is there after four iterations, each of which needs a new Jacobian.
+#[test]
+fn starts_that_newtons_method_reaches_are_found() {
+    let system = |_t: f64, y: &[f64], yp: &[f64], r: &mut [f64]| {
+        r[0] = yp[0] + y[0];
+        r[1] = y[0] * y[0] - y[1] * y[1];
+        Ok(())
+    };
+    for w in [0.01, 0.1, 0.5, 1.0, 1.5, 3.0, 100.0] {
+        let options = IdaOptions::new(1e-6, 1e-9).differential([true, false]);
+        let mut solver = Ida::new(system, 0.0, &[2.0, w], &[0.0; 2], &options).unwrap();
+        solver.consistent_start(InitialCondition::Algebraic, 1.0).unwrap();
+        // the last iteration of a method of order 2 leaves next to nothing of the tolerance, 2e-6
+        println!("{w}: {:e}", solver.y()[1] - 2.0);
+        assert!((solver.y()[1] - 2.0).abs() < 1e-9, "{w}: {:?}", solver.y());
+    }
+}
+
 #[test]
 fn an_impossible_start_is_an_error() {
     // No real number has the square -1.

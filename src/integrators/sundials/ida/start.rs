@@ -40,6 +40,9 @@ const LONGEST_STEP: f64 = 1e-3;
 /// The factor that shortens that time if none of them led to a start, and how often it is applied.
 const NEXT: f64 = 1e-5;
 const RETRIES: usize = 6;
+/// C keeps a Jacobian for up to ten iterations, and gives up where these do not converge. After that a search is repeated by Newton's
+/// method with so many Jacobians, each for one iteration.
+const JACOBIANS: i32 = 30;
 
 /// What a session of IDA can do, as described at [`Ida`](super::Ida).
 pub trait StartsDae: CarriesSensitivities {
@@ -88,7 +91,7 @@ impl<S: Dae> StartsDae for Session<IdaKind, S> {
             InitialCondition::Algebraic => ffi::IDA_YA_YDP_INIT,
             InitialCondition::State => ffi::IDA_Y_INIT,
         };
-        let mut towards = first_output;
+        let (mut towards, mut keeps_jacobians) = (first_output, true);
         let mut retries = if task == ffi::IDA_YA_YDP_INIT { RETRIES } else { 0 };
         let code = loop {
             self.host.get_mut().troubles.clear();
@@ -97,6 +100,11 @@ impl<S: Dae> StartsDae for Session<IdaKind, S> {
             let code = unsafe { ffi::IDACalcIC(self.memory.raw, task, apart(self.t, towards)) };
             self.host.get_mut().troubles.resume_panic();
             let unfound = [ffi::IDA_CONV_FAIL, ffi::IDA_LINESEARCH_FAIL, ffi::IDA_NO_RECOVERY];
+            if code == ffi::IDA_CONV_FAIL && keeps_jacobians {
+                keeps_jacobians = false;
+                self.renew_jacobians_at_start()?;
+                continue;
+            }
             // C refuses shorter times
             let scale = NEXT * (towards - self.t);
             let moves = scale.abs() > 8.0 * f64::EPSILON * self.t.abs();
@@ -189,6 +197,15 @@ impl<S: Dae> StartsDae for Session<IdaKind, S> {
 }
 
 impl<S> Session<IdaKind, S> {
+    /// Lets the search for a start take a new Jacobian for each iteration.
+    fn renew_jacobians_at_start(&mut self) -> Result<(), Error> {
+        let memory = self.memory.raw;
+        // SAFETY: the memory is alive.
+        self.host.call(named!(IDASetMaxNumItersIC), |set| unsafe { set(memory, 1) })?;
+        // SAFETY: the memory is alive.
+        self.host.call(named!(IDASetMaxNumJacsIC), |set| unsafe { set(memory, JACOBIANS) })
+    }
+
     /// The error for a start that was not found by steps of these sizes.
     fn unfound(&mut self, code: i32, first_output: f64, [longest, shortest]: [f64; 2]) -> Error {
         let mut error = self.stopped(code, first_output);
