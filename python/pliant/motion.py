@@ -223,20 +223,37 @@ class Motion:
         return pyvista.from_meshio(self.to_meshio(sample))
 
     def plot(self, *names, axes=None):
-        """Draws columns over time by matplotlib; by default the sensors, or the centre of mass if there are none."""
+        """Draws columns over time by matplotlib; by default the sensors, or the centre of mass if there are none.
+
+        Each unit has an axis of values of its own: the first one is that of `axes`, which is returned.
+        """
         import matplotlib.pyplot as plt
 
         columns = self.columns()
         names = names or tuple(self.sensors) or tuple(name for name in columns if name.startswith("centre"))
-        if axes is None:
-            axes = plt.subplots()[1]
         for name in names:
             if name not in columns:
                 raise KeyError(f"{name!r} is none of {', '.join(map(repr, columns))}")
-            axes.plot(self.times, columns[name], label=name)
+        if axes is None:
+            axes = plt.subplots(layout="constrained")[1]
+        by_unit, lines = {}, []
+        for number, name in enumerate(names):
+            unit = self._unit(name)
+            if unit not in by_unit:
+                by_unit[unit] = axes.twinx() if by_unit else axes
+                by_unit[unit].set_ylabel(unit)
+                # further axes stand beside the second one
+                by_unit[unit].spines["right"].set_position(("outward", 55.0 * max(len(by_unit) - 2, 0)))
+            lines += by_unit[unit].plot(self.times, columns[name], f"C{number}", label=name)
         axes.set_xlabel("time (s)")
-        axes.legend()
+        axes.legend(handles=lines)
         return axes
+
+    def _unit(self, name):
+        """The unit of a column."""
+        if name in self.units:
+            return self.units[name]
+        return "J" if name.startswith("energy ") else "s" if name == "time" else "m"
 
 
 class Equilibrium(Motion):

@@ -10,8 +10,11 @@ WIDTH = 30
 @contextlib.contextmanager
 def bar(title, end, wanted, unit="s"):
     """Gives a function of how far it is, of `end` in all, or None if no bar is wanted."""
+    is_notebook = "ipykernel" in sys.modules
+    # notebooks show stderr in red, as if it were an error
+    stream = sys.stdout if is_notebook else sys.stderr
     if wanted is None:
-        wanted = sys.stderr.isatty() or "ipykernel" in sys.modules
+        wanted = is_notebook or stream.isatty()
     if not wanted:
         yield None
         return
@@ -23,11 +26,11 @@ def bar(title, end, wanted, unit="s"):
         left = spent / part - spent if part > 0 else float("inf")
         full = int(WIDTH * part)
         line = f"\r{title}: {100 * part:3.0f}%|{'#' * full}{' ' * (WIDTH - full)}| {reached:.4g}/{end:.4g} {unit}"
-        print(f"{line} [{spent:.0f} s, {left:.0f} s to go]", end="", file=sys.stderr, flush=True)
+        print(f"{line} [{spent:.0f} s, {left:.0f} s to go]", end="", file=stream, flush=True)
         shown[0] = True
 
     try:
         yield show
     finally:
         if shown[0]:
-            print(file=sys.stderr)
+            print(file=stream)
