@@ -219,3 +219,26 @@ fn what_cannot_be_meant_is_refused() {
     }
     assert!(!Path::new(&place.path("out")).exists());
 }
+
+/// A script that reads the report after bad input does not find that of an earlier run. Nothing else is lost, and where nothing is there
+/// nothing is made.
+#[test]
+fn bad_input_leaves_no_older_report() {
+    let place = Place::new();
+    let (right, wrong) = (bar(0.1), bar(0.1).replace("young = 5.0e4", "young = -5.0e4"));
+    for command in ["run", "static"] {
+        let results = place.path(if command == "run" { "out/scene" } else { "out/scene-static" });
+        let failed = || {
+            let output = place.run(&[command, place.scene(&wrong), "-q"]);
+            assert_eq!(output.status.code(), Some(2));
+            stderr(&output)
+        };
+        assert!(!failed().contains("removed") && !results.exists());
+        let output = place.run(&[command, place.scene(&right), "-q"]);
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        assert!(results.join("report.json").exists());
+        says(&failed(), &["young", "report.json of an earlier run was removed"]);
+        assert!(!results.join("report.json").exists() && results.join("trajectory.csv").exists());
+        assert!(!failed().contains("removed"));
+    }
+}

@@ -9,7 +9,7 @@ use pliant::scene_file::Format;
 use pliant::simulate::{Checkpoint, Simulation};
 use pliant::{Error, OutputRequest, SceneFile, Selection, Trajectory};
 
-use crate::failure::{Failure, print};
+use crate::failure::{BAD_INPUT, Failure, print};
 
 /// Flags that choose what is written.
 #[derive(Args)]
@@ -52,14 +52,34 @@ impl OutputArguments {
         Ok(())
     }
 
-    /// The directory for the results of the scene file at `path`.
-    pub fn directory(&self, path: &Path, suffix: &str) -> Result<Directory, Failure> {
-        let directory = self.out.clone().unwrap_or_else(|| {
+    /// The path of the directory for the results of the scene file at `path`.
+    pub fn place(&self, path: &Path, suffix: &str) -> PathBuf {
+        self.out.clone().unwrap_or_else(|| {
             let stem = path.file_stem().unwrap_or_default().to_string_lossy();
             Path::new("out").join(format!("{stem}{suffix}"))
-        });
-        Directory::new(directory)
+        })
     }
+}
+
+/// Removes the `summary` of an earlier run from a directory for results where bad input keeps a run from beginning: a script
+/// would take it for that of the run that did not begin. Other results stay.
+pub fn without_older(
+    path: &Path,
+    summary: &str,
+    result: Result<(), Failure>,
+) -> Result<(), Failure> {
+    let Err(Failure { code: BAD_INPUT, message }) = result else { return result };
+    let file = path.join(summary);
+    // another run that writes there is not disturbed; file systems without locks are accepted
+    let is_busy = || {
+        let lock = File::open(path).map(|directory| directory.try_lock());
+        matches!(lock, Ok(Err(TryLockError::WouldBlock)))
+    };
+    let message = match file.is_file() && !is_busy() && fs::remove_file(&file).is_ok() {
+        true => format!("{message} ({} of an earlier run was removed)", file.display()),
+        false => message,
+    };
+    Err(Failure { code: BAD_INPUT, message })
 }
 
 /// A directory for results.
@@ -76,6 +96,8 @@ pub struct Directory {
 /// File from which a run that was ended can be continued.
 const CHECKPOINT: &str = "checkpoint.json";
 const TABLE: &str = "trajectory.csv";
+/// How a result was obtained.
+pub const REPORT: &str = "report.json";
 /// File from which another scene can start.
 const STATE: &str = "state.json";
 /// The scene file with cells divided where it helps.
@@ -85,7 +107,7 @@ const RESULTS: [&str; 10] = [
     TABLE,
     REFINED,
     CHECKPOINT,
-    "report.json",
+    REPORT,
     STATE,
     "snapshots.svg",
     "animation.html",

@@ -1,7 +1,7 @@
 //! `pliant run`
 
 use std::ops::ControlFlow;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use clap::Args;
@@ -12,7 +12,7 @@ use pliant::{Error, Fraction, IntegrationFailure, SceneFile, Trajectory};
 
 use crate::accuracy::AccuracyArguments;
 use crate::failure::{Failure, print};
-use crate::files::{Directory, OutputArguments};
+use crate::files::{Directory, OutputArguments, REPORT, without_older};
 use crate::progress::RunProgress;
 use crate::scene::SceneArguments;
 use crate::settings::{SettingsArguments, ended};
@@ -97,6 +97,16 @@ impl<'a> Keeper<'a> {
 }
 
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let place = arguments.output.place(&arguments.scene.path, "");
+    let result = run_in(arguments, &place);
+    match arguments.resume {
+        // the report is that of the run that was to be resumed
+        true => result,
+        false => without_older(&place, REPORT, result),
+    }
+}
+
+fn run_in(arguments: &Arguments, place: &Path) -> Result<(), Failure> {
     let Arguments { scene, settings, step, until, accuracy, reduced, resume, output } = arguments;
     let mut file = scene.read_reduced(reduced.as_deref())?;
     settings.apply(&mut file.settings)?;
@@ -109,7 +119,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     if let Some(times) = &mut file.output.times {
         times.retain(|t| *t <= file.scene.end());
     }
-    let directory = output.directory(&arguments.scene.path, "")?;
+    let directory = Directory::new(place.into())?;
     let watch = RunProgress::new(file.scene.end(), output.quiet)?;
     match file.accuracy.within {
         Some(_) if *resume => Err(Failure::bad_input(
@@ -179,7 +189,7 @@ pub fn keep(
     write_table: impl FnOnce(&mut Directory) -> Result<(), Failure>,
 ) -> Result<(), Failure> {
     directory.claim()?;
-    directory.write("report.json", |path| write_report(outcome, path))?;
+    directory.write(REPORT, |path| write_report(outcome, path))?;
     write_table(directory)?;
     directory.write_state(outcome.unwrap_or_else(|failure| &failure.trajectory))
 }

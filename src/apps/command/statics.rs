@@ -1,6 +1,7 @@
 //! `pliant static`
 
 use std::fs;
+use std::path::Path;
 
 use clap::Args;
 use pliant::output::write_static_report;
@@ -9,7 +10,7 @@ use pliant::studies::work_precision::Quantity;
 use pliant::{Equilibrium, Error, MeshEstimate, OutputRequest, SceneFile};
 
 use crate::failure::{Failure, print};
-use crate::files::{OutputArguments, REFINED};
+use crate::files::{Directory, OutputArguments, REFINED, REPORT, without_older};
 use crate::scene::SceneArguments;
 
 /// Find the equilibrium of a phase of a scene
@@ -94,9 +95,14 @@ impl Arguments {
 }
 
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let place = arguments.output.place(&arguments.scene.path, "-static");
+    without_older(&place, REPORT, run_in(arguments, &place))
+}
+
+fn run_in(arguments: &Arguments, place: &Path) -> Result<(), Failure> {
     let Arguments { scene, output, .. } = arguments;
     let file = arguments.read(&[])?;
-    let mut directory = output.directory(&scene.path, "-static")?;
+    let mut directory = Directory::new(place.into())?;
     let quantity = arguments.quantity(&file)?;
     if let Some(quantity) = &quantity {
         MeshEstimate::check(&file.scene, quantity)?;
@@ -134,7 +140,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         Err(failure) => &failure.trajectory,
     };
     directory.claim()?;
-    directory.write("report.json", |path| write_static_report(outcome, path))?;
+    directory.write(REPORT, |path| write_static_report(outcome, path))?;
     if let Some(mut set) = refined {
         set.extend(scene.mesh_for(&directory.beside(REFINED))?);
         let text = scene.text(&set)?;

@@ -15,7 +15,7 @@ use pliant::{Error, Fraction, SceneFile};
 
 use crate::engine::{Engine, TaskArray};
 use crate::failure::{Failure, print};
-use crate::files::Directory;
+use crate::files::{Directory, without_older};
 use crate::progress::{KILLED, rows_bar};
 use crate::run::keep;
 use crate::task::Tasks;
@@ -79,25 +79,21 @@ pub struct Arguments {
 const MOST_TASKS: usize = 1000;
 
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let sweep = read(arguments)?;
-    let batch = arguments.batch.unwrap_or(sweep.plan().len().div_ceil(MOST_TASKS));
-    if batch == 0 {
-        return Err(Failure::bad_input("--batch = 0: a task has one row at least"));
-    }
-    if arguments.plan {
-        return tell_plan(&sweep);
-    }
-    let units = match arguments.task {
-        // what has submitted the task has checked all values
-        Some(_) => sweep.check_first()?,
-        None => sweep.check()?,
-    };
-    let path = arguments.out.clone().unwrap_or_else(|| {
+    let place = arguments.out.clone().unwrap_or_else(|| {
         let stem = arguments.study.file_stem().unwrap_or_default().to_string_lossy();
         Path::new("out").join(format!("{stem}-sweep"))
     });
-    Directory::new(path.clone())?; // which can be written to
-    let store = Store::new(path, &sweep)?;
+    let (sweep, batch, units) = match begin(arguments) {
+        Ok(begun) => begun,
+        // these write no table
+        Err(failure) if arguments.plan || arguments.task.is_some() => return Err(failure),
+        Err(failure) => return without_older(&place, "table.csv", Err(failure)),
+    };
+    if arguments.plan {
+        return tell_plan(&sweep);
+    }
+    Directory::new(place.clone())?; // which can be written to
+    let store = Store::new(place, &sweep)?;
     let study = Study { arguments, sweep: &sweep, store: &store };
     if let Some(task) = &arguments.task {
         let rows = task
@@ -115,6 +111,22 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     study.gather(&units)?;
     outcome.map(|_| ())
+}
+
+/// The study, the number of rows in a task and the units of the quantities, which a plan does without.
+fn begin(arguments: &Arguments) -> Result<(Sweep, usize, Vec<&'static str>), Failure> {
+    let sweep = read(arguments)?;
+    let batch = arguments.batch.unwrap_or(sweep.plan().len().div_ceil(MOST_TASKS));
+    if batch == 0 {
+        return Err(Failure::bad_input("--batch = 0: a task has one row at least"));
+    }
+    let units = match (arguments.plan, &arguments.task) {
+        (true, _) => Vec::new(),
+        // what has submitted the task has checked all values
+        (false, Some(_)) => sweep.check_first()?,
+        (false, None) => sweep.check()?,
+    };
+    Ok((sweep, batch, units))
 }
 
 /// The study, with what flags have in place of the file.
