@@ -325,3 +325,32 @@ fn finer_cells() {
         "{graded}"
     );
 }
+
+/// Regions that overlap add up key by key, the later one counting: as three regions that do not overlap.
+#[test]
+fn regions_that_overlap_add_up() {
+    let scene = |regions: &str| {
+        let text = format!(
+            "[body]\nmesh = {{ kind = \"rectangle\", size = [0.3, 0.1], nodes = [4, 2], cells = \"rectangles\" }}\n\
+             thickness = 0.01\nmaterial = {{ density = 1000.0, young = 1e5, poisson = 0.3, viscosity = 10.0 }}\n\
+             {regions}\n[[phase]]\nuntil = 1.0\n[output]\nstep = 0.1\n"
+        );
+        SceneFile::parse(&text, Path::new("regions.toml")).unwrap().scene
+    };
+    let region = |cells: &str, keys: &str| {
+        format!("[[body.region]]\ncells = {cells}\nmaterial = {{ {keys} }}\n")
+    };
+    let overlapping = region("[1, 2]", "young = 3e5, density = 1200.0")
+        + &region("[2, 3]", "density = 1500.0, viscosity = 20.0");
+    let apart = region("[1]", "young = 3e5, density = 1200.0")
+        + &region("[2]", "young = 3e5, density = 1500.0, viscosity = 20.0")
+        + &region("[3]", "density = 1500.0, viscosity = 20.0");
+    let [found, expected] = [overlapping, apart].map(|regions| scene(&regions));
+    let [found, expected] = [found.body(), expected.body()];
+    // sums of the same numbers in the same order
+    assert_eq!(found.inertia().values(), expected.inertia().values());
+    assert_eq!(found.stiffness().values(), expected.stiffness().values());
+    assert_eq!(found.damping().values(), expected.damping().values());
+    // 1200, 1500 and 1500 kg/m^3 in squares of 10 cm, 1 cm thick
+    assert!((found.mass() - 0.42).abs() < 1e-12, "{}", found.mass());
+}

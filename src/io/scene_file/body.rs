@@ -1,5 +1,7 @@
 //! `[body]`, `[[body.region]]` and `[[point]]`.
 
+use std::collections::BTreeMap;
+
 use super::cells::{BOX, CELLS, GROUP, cells};
 use super::contents::AutoRequest;
 use super::keys::{AUTO, Holds, Key, TableKeys};
@@ -9,7 +11,9 @@ use super::table::Table;
 use super::value::Value;
 use crate::base::input::{find, positive};
 use crate::dynamics::error::Error;
-use crate::elements::body::{Body, BodyBuilder, Dilatation, Inertia, Strain, Viscosity};
+use crate::elements::body::{
+    Body, BodyBuilder, CellSelection, Dilatation, Inertia, Strain, Viscosity,
+};
 use crate::elements::material::{Plane, Substance};
 use crate::elements::mesh::{CellKind, Mesh};
 use crate::scene::timeline::Scene;
@@ -100,7 +104,8 @@ const PLANE: [(&str, Plane); 2] = [("strain", Plane::Strain), ("stress", Plane::
 
 const REGION: TableKeys = TableKeys::new(
     "[[body.region]]",
-    "A part of the body with a material of its own.",
+    "A part of the body with a material of its own. A cell of several regions has the keys of all of them: where two give the same \
+     key, that of the later one in the file counts.",
     &[
         Key::new("name", Holds::Text, "the name of the region, for who reads the file"),
         BOX,
@@ -266,12 +271,31 @@ fn add_regions(
     mesh: &Mesh,
     base: &Substance,
 ) -> Result<BodyBuilder, Error> {
+    // what the cells are made of so far, and which of these each has
+    let mut substances = vec![base.clone()];
+    let mut of_cell = vec![0; mesh.cell_count()];
     for table in regions.tables(&REGION)? {
         table.optional("name", Value::string)?;
         let none = || table.missing("box", "expected either box, group or cells");
-        let cells = cells(&table, mesh)?.ok_or_else(none)?;
-        let material = table.required("material", |value| substance(value, Some(base)))?;
-        body = body.region(cells, material);
+        let selection = cells(&table, mesh)?.ok_or_else(none)?;
+        let mut parts: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+        for cell in selection.cells(mesh).map_err(|error| table.blame(error))? {
+            parts.entry(of_cell[cell]).or_default().push(cell);
+        }
+        let overlaps = parts.keys().any(|&before| before > 0);
+        for (before, cells) in parts {
+            let material =
+                table.required("material", |value| substance(value, Some(&substances[before])))?;
+            cells.iter().for_each(|&cell| of_cell[cell] = substances.len());
+            substances.push(material.clone());
+            body = match overlaps {
+                false => body.region(selection.clone(), material),
+                true => {
+                    let numbers = cells.iter().map(|cell| cell + 1).collect();
+                    body.region(CellSelection::Numbers(numbers), material)
+                }
+            };
+        }
     }
     Ok(body)
 }
