@@ -138,3 +138,24 @@ fn parts_of_unions() {
         }
     }
 }
+
+/// A word in place of a table with that `kind` is answered by the table.
+#[test]
+fn a_word_in_place_of_a_table_is_answered_by_the_table() {
+    let right = "viscosity = 10.0, ";
+    let text = |law: &str| {
+        format!(
+            "[body]\nmesh = {{ kind = \"rectangle\", size = [0.1, 0.1], nodes = [2, 2], cells = \"rectangles\" }}\n\
+             thickness = 0.01\nmaterial = {{ density = 1000.0, young = 1e5, poisson = 0.3, {right}{law} }}\n\
+             [[phase]]\nuntil = 1.0\n[output]\nstep = 0.1\n"
+        )
+    };
+    assert_eq!(message(&text("law = { kind = \"neo-hookean\" }")), "accepted");
+    let found = message(&text("law = \"neo-hookean\""));
+    assert!(
+        found.contains("body.material.law") && found.contains("{ kind = \"neo-hookean\" }"),
+        "{found}"
+    );
+    let found = message(&text("law = \"neo-hookian\""));
+    assert!(found.contains("a table; found") && !found.contains("kind ="), "{found}");
+}

@@ -137,7 +137,11 @@ fn surroundings(scene: &Scene) -> Result<(), Failure> {
     if let Some(gravity) = scene.acceleration() {
         line("gravity", &format!("{gravity:?} m/s^2"))?;
     }
-    let springs = scene.springs().iter().map(|spring| spring.name()).collect();
+    let of_kind = |is_cable: bool| {
+        let own = scene.springs().iter().filter(|spring| spring.is_cable() == is_cable);
+        own.map(|spring| spring.name()).collect()
+    };
+    let (springs, cables) = (of_kind(false), of_kind(true));
     let muscles = scene.muscles().iter().map(|muscle| muscle.name()).collect();
     let growths = scene.growths().iter().map(|growth| growth.name()).collect();
     let lags = scene.lags().map(|(name, _)| name).collect();
@@ -153,6 +157,7 @@ fn surroundings(scene: &Scene) -> Result<(), Failure> {
     let touches = scene.touches().iter().map(|touch| touch.name()).collect();
     for (label, names) in [
         ("springs", springs),
+        ("cables", cables),
         ("muscles", muscles),
         ("growths", growths),
         ("lags of", lags),

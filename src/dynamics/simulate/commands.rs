@@ -82,7 +82,7 @@ impl Simulation {
     /// A name that no spring, no muscle and no growth has; numbers that are not finite; a stress that [Hill's law](crate::Hill) of a muscle does not
     /// have.
     pub fn actuate(&mut self, spring: &str, force: impl Into<Signal>) -> Result<(), Error> {
-        let (force, input) = (force.into(), "actuation of spring");
+        let (force, input) = (force.into(), "actuation");
         self.scene().actuator_number(spring, input)?;
         if self.scene().growths().iter().any(|growth| growth.name() == spring) {
             return self.command(Change::Stores, |phase, _| {

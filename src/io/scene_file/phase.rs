@@ -268,7 +268,7 @@ fn actuate(phase: Phase, table: &Table, scene: &Scene) -> Result<Phase, Error> {
             false => "its winch draws in a length: give length or lengths",
         };
         return Err(table.blame(InputError::new(
-            "actuation of spring",
+            "actuation of cable",
             format!("\"{name}\""),
             help,
         )));

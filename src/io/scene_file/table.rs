@@ -251,7 +251,14 @@ impl<'a> Value<'a> {
     /// A table with these `keys`.
     pub(super) fn table(&self, keys: &'static TableKeys) -> Result<Table<'a>, Error> {
         let DeValue::Table(entries) = self.value else {
-            return Err(self.unexpected("a table"));
+            // the word alone, where it is one of several keys
+            let kind = self.value.as_str().and_then(|word| {
+                keys.kinds.iter().find(|kind| kind.word == word).map(|kind| kind.word)
+            });
+            return Err(match kind {
+                Some(word) => self.unexpected(format!("a table: {{ kind = \"{word}\" }}")),
+                None => self.unexpected("a table"),
+            });
         };
         Table::new(self.source, self.key.clone(), self.at.clone(), entries, keys)
     }

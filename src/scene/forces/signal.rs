@@ -180,6 +180,14 @@ impl Signal {
         }
     }
 
+    /// The least value of a constant or a table.
+    pub(crate) fn least(&self) -> Option<f64> {
+        match &self.0 {
+            SignalKind::TimeTable(table) => table.values.iter().flatten().copied().reduce(f64::min),
+            _ => self.value(),
+        }
+    }
+
     /// The number that a command can set, if it is one.
     pub(crate) fn live(&self) -> Option<&Live> {
         match &self.0 {

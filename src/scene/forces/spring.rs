@@ -229,7 +229,7 @@ impl Spring {
     }
 
     /// Whether it is a cable, whose actuation is a tension or a length that is drawn in.
-    pub(crate) fn is_cable(&self) -> bool {
+    pub fn is_cable(&self) -> bool {
         matches!(self.kind, Kind::Cable { .. })
     }
 
@@ -291,7 +291,11 @@ impl Spring {
     }
 
     fn input(&self, key: &str) -> String {
-        format!("{} \"{}\" {key}", if self.is_cable() { "cable" } else { "spring" }, self.name)
+        format!("{} \"{}\" {key}", self.what(), self.name)
+    }
+
+    fn what(&self) -> &'static str {
+        if self.is_cable() { "cable" } else { "spring" }
     }
 
     /// Where the spring runs.
@@ -330,6 +334,7 @@ impl Spring {
             return Err(InputError::new(input("places"), format!("{joints:?}"), help));
         }
         Ok(Path {
+            what: self.what(),
             name: self.name.clone(),
             dimension: mesh.dimension(),
             nodes: joints.into_iter().map(Joint::node).collect(),
@@ -360,6 +365,34 @@ impl Spring {
     /// As [`joints`](Self::joints); places that follow each other and are the same; numbers out of range.
     pub(crate) fn gauge(&self, mesh: &Mesh) -> Result<SpringGauge, InputError> {
         self.law(mesh).map(SpringGauge)
+    }
+
+    /// Checks the tension of a cable that is driven by the sum of the signals `actuation` in a phase, as far as it is known
+    /// before a run.
+    ///
+    /// # Errors
+    /// A constant, or a table by itself, below 0.
+    pub(crate) fn check_tension(
+        &self,
+        phase: &str,
+        actuation: &[Signal],
+    ) -> Result<(), InputError> {
+        if !self.is_cable() || self.is_winch() {
+            return Ok(());
+        }
+        let sum = || actuation.iter().map(Signal::value).sum::<Option<f64>>();
+        let least = match actuation {
+            [only] => only.least(),
+            _ => sum(),
+        };
+        match least.filter(|least| *least < 0.0) {
+            None => Ok(()),
+            Some(least) => {
+                let input = format!("actuation of cable \"{}\" in phase \"{phase}\"", self.name);
+                let help = "a cable cannot push: its tension (N) is 0 or above";
+                Err(InputError::new(input, format!("{least} N"), help))
+            }
+        }
     }
 
     /// The forces of the spring, driven by the sum of the signals `actuation`.

@@ -76,7 +76,7 @@ impl Scene {
         if self.muscles.is_empty() && self.growths.is_empty() {
             return self.spring_number(name, input);
         }
-        find(name, self.actuators(), input, "springs, muscles and growths")
+        find(name, self.actuators(), input, "springs, cables, muscles and growths")
     }
 
     /// Names of all springs, muscles and growths.

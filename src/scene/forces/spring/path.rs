@@ -17,6 +17,8 @@ const NO_DIRECTION: f64 = 1e-9;
 /// Straight lines from place to place.
 #[derive(Clone)]
 pub(super) struct Path {
+    /// A spring or a cable, and its name.
+    pub(super) what: &'static str,
     pub(super) name: String,
     pub(super) dimension: usize,
     /// The nodes that are its places, in order; none where that is a point of space.
@@ -97,8 +99,9 @@ impl Path {
             lines => format!("line {} of {lines} of ", line + 1),
         };
         Failure::Recoverable(format!(
-            "{of}spring \"{}\" has collapsed at t = {t} s: {how}, its natural length is {} m. Without a length it \
+            "{of}{} \"{}\" has collapsed at t = {t} s: {how}, its natural length is {} m. Without a length it \
              has no direction: pull it with less force, or make it stiffer",
+            self.what,
             self.name,
             self.natural_length(line)
         ))
