@@ -65,7 +65,8 @@ pub use dynamics::{
 #[cfg(feature = "bodies")]
 pub use elements::{
     body::{
-        Body, CellField, CellSelection, Dilatation, Inertia, NodalField, Part, Strain, Viscosity,
+        Body, BranchCells, BranchState, CellField, CellSelection, Dilatation, Inertia, NodalField,
+        Part, Strain, Viscosity,
     },
     material::{
         FibreDirection, Fibres, Hill, Lame, Law, Material, MaxwellBranch, Moments, Plane,
@@ -78,7 +79,7 @@ pub use integrators::common::Integrator;
 pub use io::scene_file::{OutputRequest, SceneFile};
 #[cfg(feature = "bodies")]
 pub use scene::{
-    BodyState, Phase, ReducedModel, Scene, Smaller, Term,
+    BodyState, Phase, ReducedModel, Scene, SceneState, Smaller, Term,
     constraint::{Axis, Prescribed},
     forces::*,
     settings::{

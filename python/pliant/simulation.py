@@ -20,7 +20,9 @@ class Simulation:
     """A scene in motion under the control of a program: it advances, is commanded, goes back, and is forked.
 
     Nodes are named by a set (``"right"``), a number from 1, or a list of numbers. Commands take effect at the present time
-    and stay in force until the phase ends. A simulation belongs to one thread at a time: :meth:`fork` one for each.
+    and stay in force until another command replaces them or the phase ends: the next phase begins as the scene defines it, and
+    commands have to be given again. (What has happened stays: positions, amounts of gas and liquid, states of lags, and where an
+    obstacle that :meth:`move_obstacle` moved has come to.) A simulation belongs to one thread at a time: :meth:`fork` one for each.
     """
 
     def __init__(self, simulation: _pliant.Simulation):
@@ -221,7 +223,7 @@ class Simulation:
         self._simulation.when(event, lambda: action(self), direction)
 
     def set_pressure(self, chamber: str, pressure: float) -> None:
-        """Sets the pressure (Pa) in a chamber."""
+        """Sets the pressure (Pa) in a chamber, until the phase ends."""
         self._simulation.set_pressure(chamber, pressure)
 
     def open(self, orifice: str, opening: float) -> None:

@@ -120,7 +120,9 @@ def mesh_bar(
         the place of the lower corner, or of the centre of a ring (m). Default: the origin.
     turn
         the angle by which the mesh is turned about the origin before it is brought to its place (rad). Default: 0.
-        One number in the plane, counter-clockwise; in space three, the axis times the angle.
+        One number in the plane, counter-clockwise; in space three, the axis times the angle. It turns nodes alone:
+        boxes, and directions of fibres, muscles, growths and remanences, are given in space, as the mesh lies after
+        it.
     quadratic
         whether cells get mid nodes. Default: false. Triangles, tetrahedra and hexahedra; quadrilaterals are divided
         into triangles first. Numbers of nodes in the file are those of the mesh without this; where several nodes are
@@ -177,7 +179,9 @@ def mesh_rectangle(
         the place of the lower corner, or of the centre of a ring (m). Default: the origin.
     turn
         the angle by which the mesh is turned about the origin before it is brought to its place (rad). Default: 0.
-        One number in the plane, counter-clockwise; in space three, the axis times the angle.
+        One number in the plane, counter-clockwise; in space three, the axis times the angle. It turns nodes alone:
+        boxes, and directions of fibres, muscles, growths and remanences, are given in space, as the mesh lies after
+        it.
     quadratic
         whether cells get mid nodes. Default: false. Triangles, tetrahedra and hexahedra; quadrilaterals are divided
         into triangles first. Numbers of nodes in the file are those of the mesh without this; where several nodes are
@@ -242,7 +246,9 @@ def mesh_ring(
         the place of the lower corner, or of the centre of a ring (m). Default: the origin.
     turn
         the angle by which the mesh is turned about the origin before it is brought to its place (rad). Default: 0.
-        One number in the plane, counter-clockwise; in space three, the axis times the angle.
+        One number in the plane, counter-clockwise; in space three, the axis times the angle. It turns nodes alone:
+        boxes, and directions of fibres, muscles, growths and remanences, are given in space, as the mesh lies after
+        it.
     quadratic
         whether cells get mid nodes. Default: false. Triangles, tetrahedra and hexahedra; quadrilaterals are divided
         into triangles first. Numbers of nodes in the file are those of the mesh without this; where several nodes are
@@ -303,7 +309,9 @@ def mesh_half_ring(
         the place of the lower corner, or of the centre of a ring (m). Default: the origin.
     turn
         the angle by which the mesh is turned about the origin before it is brought to its place (rad). Default: 0.
-        One number in the plane, counter-clockwise; in space three, the axis times the angle.
+        One number in the plane, counter-clockwise; in space three, the axis times the angle. It turns nodes alone:
+        boxes, and directions of fibres, muscles, growths and remanences, are given in space, as the mesh lies after
+        it.
     quadratic
         whether cells get mid nodes. Default: false. Triangles, tetrahedra and hexahedra; quadrilaterals are divided
         into triangles first. Numbers of nodes in the file are those of the mesh without this; where several nodes are
@@ -361,7 +369,9 @@ def mesh_cuboid(
         the place of the lower corner, or of the centre of a ring (m). Default: the origin.
     turn
         the angle by which the mesh is turned about the origin before it is brought to its place (rad). Default: 0.
-        One number in the plane, counter-clockwise; in space three, the axis times the angle.
+        One number in the plane, counter-clockwise; in space three, the axis times the angle. It turns nodes alone:
+        boxes, and directions of fibres, muscles, growths and remanences, are given in space, as the mesh lies after
+        it.
     quadratic
         whether cells get mid nodes. Default: false. Triangles, tetrahedra and hexahedra; quadrilaterals are divided
         into triangles first. Numbers of nodes in the file are those of the mesh without this; where several nodes are
@@ -415,7 +425,9 @@ def mesh_gmsh(
         the place of the lower corner, or of the centre of a ring (m). Default: the origin.
     turn
         the angle by which the mesh is turned about the origin before it is brought to its place (rad). Default: 0.
-        One number in the plane, counter-clockwise; in space three, the axis times the angle.
+        One number in the plane, counter-clockwise; in space three, the axis times the angle. It turns nodes alone:
+        boxes, and directions of fibres, muscles, growths and remanences, are given in space, as the mesh lies after
+        it.
     quadratic
         whether cells get mid nodes. Default: false. Triangles, tetrahedra and hexahedra; quadrilaterals are divided
         into triangles first. Numbers of nodes in the file are those of the mesh without this; where several nodes are
@@ -464,7 +476,9 @@ def mesh_surface(
         the place of the lower corner, or of the centre of a ring (m). Default: the origin.
     turn
         the angle by which the mesh is turned about the origin before it is brought to its place (rad). Default: 0.
-        One number in the plane, counter-clockwise; in space three, the axis times the angle.
+        One number in the plane, counter-clockwise; in space three, the axis times the angle. It turns nodes alone:
+        boxes, and directions of fibres, muscles, growths and remanences, are given in space, as the mesh lies after
+        it.
     quadratic
         whether cells get mid nodes. Default: false. Triangles, tetrahedra and hexahedra; quadrilaterals are divided
         into triangles first. Numbers of nodes in the file are those of the mesh without this; where several nodes are
@@ -523,7 +537,9 @@ def mesh_listed(
         the place of the lower corner, or of the centre of a ring (m). Default: the origin.
     turn
         the angle by which the mesh is turned about the origin before it is brought to its place (rad). Default: 0.
-        One number in the plane, counter-clockwise; in space three, the axis times the angle.
+        One number in the plane, counter-clockwise; in space three, the axis times the angle. It turns nodes alone:
+        boxes, and directions of fibres, muscles, growths and remanences, are given in space, as the mesh lies after
+        it.
     quadratic
         whether cells get mid nodes. Default: false. Triangles, tetrahedra and hexahedra; quadrilaterals are divided
         into triangles first. Numbers of nodes in the file are those of the mesh without this; where several nodes are
@@ -883,7 +899,8 @@ def region(
     group: str | None = None,
     cells: Sequence[int] | None = None,
 ) -> dict:
-    r"""A part of the body with a material of its own.
+    r"""A part of the body with a material of its own. A cell of several regions has the keys of all of them: where two
+    give the same key, that of the later one in the file counts.
 
     Parameters
     ----------
@@ -948,9 +965,11 @@ def initial(
     Parameters
     ----------
     from_
-        what `pliant run` or `pliant static` has left of a body with the same mesh: the directory, or its
-        `state.json`, relative to the scene file. Default: undeformed, at rest. It gives displacements and velocities;
-        all else may differ, and time begins anew.
+        the state that `pliant run` or `pliant static` has left of bodies with the same meshes: the directory, or its
+        `state.json`, relative to the scene file. Default: undeformed, at rest. It gives all unknowns by the names of
+        bodies, chambers, actuators and pipes: displacements, velocities, Maxwell branches, masses of gas and liquid,
+        lags, flow rates; what only one of both has is a warning. All else may differ. Time begins anew, and with it
+        signals and paths: an obstacle is where the scene has it at t = 0.
     velocity
         the velocity of all nodes (m/s). Default: 0. Not beside a state `from` which they move already.
     spin
@@ -3609,8 +3628,8 @@ def sensor_stress(
     nodes: Nodes | None = None,
     point: Vector | None = None,
 ) -> dict:
-    r"""Sensor of the kind "stress": the stress of the elasticity, without Maxwell branches, at nodes or at a point,
-    extrapolated from the cells around (Pa).
+    r"""Sensor of the kind "stress": the stress of the elastic law alone, without viscosity and Maxwell branches, at nodes
+    or at a point, extrapolated from the cells around (Pa).
 
     Parameters
     ----------

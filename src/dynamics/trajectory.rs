@@ -1,6 +1,7 @@
 //! The result of a run: sampled states, how they were obtained, and why it ended early.
 
 mod forces;
+mod state;
 
 use std::error::Error;
 use std::fmt;
@@ -11,7 +12,7 @@ use crate::dynamics::report::Report;
 use crate::dynamics::system::{Energy, Lacking};
 use crate::elements::body::Body;
 use crate::scene::settings::Method;
-use crate::scene::timeline::{BodyState, ContactReader, Phase, Scene};
+use crate::scene::timeline::{ContactReader, Phase, Scene};
 
 /// The state of a scene at one time.
 #[derive(Debug, Clone, PartialEq)]
@@ -31,6 +32,8 @@ pub struct Sample {
     /// Amounts (kg) of the gases in chambers and then of the liquids, the states of [lags](crate::Lag), and the flows of pipes (m^3/s), each in the order of the scene; none where
     /// they are constants: in equilibria, by `ida-klu` and by `central-difference`.
     pub amounts: Vec<f64>,
+    /// Internal strains (1) of Maxwell branches, of the last sample of a motion alone: there are many.
+    pub internal_strains: Vec<f64>,
     /// Energies (J).
     pub energy: Energy,
     /// Largest |A^T u - b| among the constraints of the phase (m).
@@ -96,6 +99,8 @@ pub struct Trajectory {
     contact: OnceLock<Arc<ContactReader>>,
     /// What a reduced model lacks, as the run has told; empty unless requested.
     pub(crate) lacking: Vec<Lacking>,
+    /// Angles (turns) that sensors of angles read at the end, by their names.
+    pub(crate) angles: Vec<(String, f64)>,
 }
 
 /// Displacements below this part of the size of a body are round-off, and so is the work of forces along them.
@@ -119,6 +124,7 @@ impl Trajectory {
             report,
             contact: OnceLock::new(),
             lacking: Vec::new(),
+            angles: Vec::new(),
         };
         trajectory.push(first);
         trajectory
@@ -130,6 +136,9 @@ impl Trajectory {
         let reactions: f64 = sample.multipliers.iter().map(|force| force.abs()).sum();
         let least = ROUND_OFF * self.body().size() * reactions;
         self.report.energy_scale = self.report.energy_scale.max(least);
+        if let Some(before) = self.samples.last_mut() {
+            before.internal_strains = Vec::new();
+        }
         self.samples.push(sample);
     }
 
@@ -229,15 +238,6 @@ impl Trajectory {
         (report.energy_error, report.energy_created, report.energy_scale) = (error, created, scale);
     }
 
-    /// The state at a sample, which another scene can [start from](Scene::starting_from).
-    pub fn state(&self, sample: &Sample) -> BodyState {
-        BodyState {
-            positions: self.body().mesh().positions().to_vec(),
-            displacements: sample.u.clone(),
-            velocities: sample.v.clone(),
-        }
-    }
-
     /// The last sample alone, with the same report.
     pub fn at_end(&self) -> Self {
         self.since(self.last().time)
@@ -250,7 +250,8 @@ impl Trajectory {
         let (scene, sensors) = (self.scene.clone(), self.sensors.clone());
         let (peaks, contact) = (self.peaks.clone(), self.contact.clone());
         let report = self.report.clone();
-        Self { scene, samples, sensors, peaks, report, contact, lacking: Vec::new() }
+        let (lacking, angles) = (Vec::new(), self.angles.clone());
+        Self { scene, samples, sensors, peaks, report, contact, lacking, angles }
     }
 
     /// The scene that was run.

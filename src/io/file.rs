@@ -49,9 +49,10 @@ fn replace(path: &Path, content: impl FnOnce(&mut dyn Write) -> io::Result<()>) 
 /// A kind of JSON files, each of which begins with what it is and with its format.
 #[cfg(feature = "checkpoint")]
 pub(crate) struct Kind {
-    /// What a file says it is, and the format that this version reads.
+    /// What a file says it is, the format that this version writes, and the oldest one that it reads.
     pub(crate) what: &'static str,
     pub(crate) format: u32,
+    pub(crate) oldest: u32,
     /// The input that names such a file, in errors.
     pub(crate) input: &'static str,
     /// What to name in its place.
@@ -92,7 +93,7 @@ impl Kind {
     }
 
     fn parse<T: DeserializeOwned>(&self, text: &[u8]) -> Result<T, String> {
-        let Self { what, format, help, .. } = self;
+        let Self { what, format, oldest, help, .. } = self;
         let none = || format!("it does not say \"{what}\": name {help}");
         let damaged = |error| format!("it is damaged or cut off ({error}): make it anew");
         let head: Head = serde_json::from_slice(text).map_err(|error| match error.is_data() {
@@ -102,11 +103,12 @@ impl Kind {
         if head.what != *what {
             return Err(none());
         }
-        if head.format != *format {
-            return Err(format!(
-                "it has format {}, this version reads format {format}",
-                head.format
-            ));
+        if !(*oldest..=*format).contains(&head.format) {
+            let known = match oldest == format {
+                true => format!("format {format}"),
+                false => format!("formats {oldest} to {format}"),
+            };
+            return Err(format!("it has format {}, this version reads {known}", head.format));
         }
         serde_json::from_slice(text).map_err(damaged)
     }

@@ -12,9 +12,11 @@ use crate::io::file::{Kind, write_file};
 use crate::scene::reduced_model::ReducedModel;
 use crate::scene::timeline::Scene;
 
+/// Format 1 has no checksum.
 const KIND: Kind = Kind {
     what: "pliant reduced model",
-    format: 1,
+    format: 2,
+    oldest: 1,
     input: "file of a reduced model",
     help: "a file that `pliant reduce` has written",
     // fifty million numbers
@@ -31,6 +33,9 @@ struct Record {
     format: u32,
     /// Names of the parts of the scene that the model depends on, and their hashes.
     scene: Vec<(String, String)>,
+    /// Hash of both others, by which a file is told that was changed.
+    #[serde(default)]
+    checksum: Option<String>,
     model: ReducedModel,
 }
 
@@ -45,8 +50,9 @@ impl ReducedModel {
         scene.clone().reduced(self.clone())?;
         self.check().map_err(|problem| InputError::new("reduced model", problem, HELP))?;
         let Kind { what, format, .. } = KIND;
-        let record =
-            Record { what: what.into(), format, scene: identity(scene)?, model: self.clone() };
+        let (scene, model) = (identity(scene)?, self.clone());
+        let checksum = Some(checksum(&scene, &model)?);
+        let record = Record { what: what.into(), format, scene, checksum, model };
         write_file(path.as_ref(), |file| {
             serde_json::to_writer(&mut *file, &record)?;
             writeln!(file)
@@ -60,7 +66,13 @@ impl ReducedModel {
     /// for another scene: the message names what differs.
     pub fn read(path: impl AsRef<Path>, scene: &Scene) -> Result<Self, Error> {
         let path = path.as_ref();
-        let Record { scene: parts, model, .. } = KIND.read(path)?;
+        let Record { format, scene: parts, checksum: kept, model, .. } = KIND.read(path)?;
+        if format > 1 && kept != Some(checksum(&parts, &model)?) {
+            let help = format!(
+                "its checksum is not that of its numbers, so that it was changed or damaged: {HELP}"
+            );
+            return Err(KIND.refuse(path, help));
+        }
         let own = identity(scene)?;
         // phases that only the file has do not matter
         for part in &own {
@@ -118,13 +130,21 @@ impl ReducedModel {
 
 /// Names of the parts of a scene that a model depends on, and their hashes.
 fn identity(scene: &Scene) -> Result<Vec<(String, String)>, InputError> {
-    let hashed = |bytes: Vec<u8>| {
-        let mut hasher = SipHasher13::new();
-        hasher.write(&bytes);
-        format!("{:016x}", hasher.finish())
-    };
     let parts = scene.reduced_parts()?.into_iter();
-    Ok(parts.map(|(name, bytes)| (name, hashed(bytes))).collect())
+    Ok(parts.map(|(name, bytes)| (name, hashed(&bytes))).collect())
+}
+
+/// The hash of a model and of what identifies its scene: of their text, which has all digits.
+fn checksum(scene: &[(String, String)], model: &ReducedModel) -> Result<String, InputError> {
+    let text = serde_json::to_vec(&(scene, model));
+    let text = text.map_err(|error| InputError::new("reduced model", error, HELP))?;
+    Ok(hashed(&text))
+}
+
+fn hashed(bytes: &[u8]) -> String {
+    let mut hasher = SipHasher13::new();
+    hasher.write(bytes);
+    format!("{:016x}", hasher.finish())
 }
 
 #[cfg(test)]

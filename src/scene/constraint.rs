@@ -7,6 +7,7 @@
 mod axis;
 mod prescribed;
 mod resolve;
+mod rigid_holds;
 mod row;
 mod spline;
 mod start;
@@ -18,6 +19,7 @@ use std::sync::Arc;
 pub use axis::Axis;
 pub use prescribed::{Path, Prescribed};
 pub(crate) use resolve::rows;
+pub(crate) use rigid_holds::check_rigid_holds;
 pub(crate) use row::{ConstraintRow, independent_terms, prescribe};
 pub(crate) use spline::Spline;
 pub(crate) use start::PhaseStart;

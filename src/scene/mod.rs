@@ -10,4 +10,4 @@ pub(crate) mod settings;
 pub mod timeline;
 
 pub use reduced_model::ReducedModel;
-pub use timeline::{BodyState, Phase, Scene, Smaller, Term};
+pub use timeline::{BodyState, Phase, Scene, SceneState, Smaller, Term};

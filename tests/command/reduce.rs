@@ -4,7 +4,7 @@ use std::fs;
 
 use serde_json::{Value, json};
 
-use super::{Place, says, stdout};
+use super::{Place, says, stderr, stdout};
 
 /// A beam that a load bends; both phases are needed for a way back.
 const SCENE: &str = r#"
@@ -62,6 +62,18 @@ fn a_model_is_learned_written_and_run() {
     assert!(
         numbers["learned_from"].as_str().unwrap().contains(&format!("{FORCE} from 0.005 to 0.02"))
     );
+
+    // a changed digit of a shape is noticed
+    let mut changed = fs::read(place.path("scene.reduced")).unwrap();
+    let shapes = changed.windows(8).position(|word| word == b"\"shapes\"").unwrap();
+    let digit = changed[shapes..].iter().position(u8::is_ascii_digit).unwrap() + shapes + 4;
+    assert!(changed[digit].is_ascii_digit());
+    changed[digit] = if changed[digit] == b'9' { b'8' } else { changed[digit] + 1 };
+    fs::write(place.path("changed.reduced"), changed).unwrap();
+    let refused = place.run(&["check", scene, "--set", "solver.reduced=changed.reduced"]);
+    assert_eq!(refused.status.code(), Some(2));
+    says(&stderr(&refused), &["changed.reduced", "checksum"]);
+    fs::remove_file(place.path("changed.reduced")).unwrap();
 
     let check = place.run(&["check", scene, "--set", "solver.reduced=scene.reduced"]);
     says(&stdout(&check), &["reduced", "unknowns", "learned from 5 runs"]);

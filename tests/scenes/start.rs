@@ -196,7 +196,7 @@ fn a_state_of_another_mesh_is_refused() {
     assert!(longer.contains("node 2 at [0.1, 0.0] undeformed"), "{longer}");
     assert!(longer.contains("same mesh"), "{longer}");
     let mut turned = state.clone();
-    turned.velocities[3] = f64::NAN;
+    turned.bodies[0].velocities[3] = f64::NAN;
     let scene = scene(0.2, [3, 2]).starting_from(&turned);
     assert!(scene.validate().unwrap_err().to_string().contains("initial velocity"));
 }

@@ -2,8 +2,8 @@
 
 use pliant::mesh::CellKind;
 use pliant::{
-    Axis, Body, Cells, Dilatation, Law, Material, Mesh, Method, Obstacle, Phase, Plane, Sampling,
-    Scene, Settings, SolidCells, Spring, Statics, Strain, Verdict,
+    Axis, Body, Cells, Chamber, Dilatation, Gas, Guide, Law, Material, Mesh, Method, Obstacle,
+    Orifice, Phase, Plane, Sampling, Scene, Settings, SolidCells, Spring, Statics, Strain, Verdict,
 };
 
 const SOFT: Material = Material { density: 1000.0, young: 5e4, poisson: 0.3, viscosity: 0.0 };
@@ -591,4 +591,40 @@ fn energies_below_zero_are_energies() {
     assert!(report.energy_error > 0.0 && motion.samples().iter().all(|s| s.energy.springs < -90.0));
     let warnings = report.warnings();
     assert!(!warnings.iter().any(|warning| warning.contains("energ")), "{warnings:?}");
+}
+
+/// Numbers of gas that are gauge pressures, or in other units; what is meant is not warned of. A cable cannot push.
+#[test]
+fn numbers_of_gas_and_cables_are_looked_at() {
+    let ring = || {
+        let mesh = Mesh::ring(0.02, 0.03, [16, 3], Cells::Rectangles).unwrap();
+        let body = Body::new(mesh, Material { young: 1e6, ..SOFT }).thickness(0.01);
+        Scene::new(body.build().unwrap()).chamber(Chamber::within("air", "inner"))
+    };
+    let gas = |pressure: f64| ring().gas(Gas::in_chamber("air").pressure(pressure));
+    let phase = || Phase::until(0.1).hold([1, 2, 3]);
+    let warned = |scene: Scene| scene.phase(phase()).warnings();
+    assert_eq!(warned(gas(1.2e5)), NONE);
+    only(
+        &warned(gas(5000.0)),
+        &["air", "5000 Pa", "106325 Pa", "unusual = [\"absolute-pressure\"]"],
+    );
+    assert_eq!(warned(gas(5000.0).unusual(["absolute-pressure"])), NONE);
+    let fed = |conductance: f64, supply: f64| {
+        let orifice = Orifice::new("in", "pump", "air", conductance);
+        gas(1.013e5).supply("pump", supply).orifice(orifice)
+    };
+    assert_eq!(warned(fed(1e-8, 1.2e5)), NONE);
+    only(&warned(fed(1e-8, 2e4)), &["supply \"pump\"", "2e4 Pa"]);
+    // C rho_0 sqrt(R T)/0.6847 (ISO 6358 and a choked nozzle of k = 1.4)
+    let area = 0.5 * 1.185 * (1e5_f64 / 1.185).sqrt() / 0.684_731;
+    only(&warned(fed(0.5, 1.2e5)), &["orifice \"in\"", &format!("{area:.1} m^2"), "1e-8"]);
+
+    let tendon = |force: f64| {
+        let cable = Spring::cable([Guide::nodes([1]), Guide::nodes([3])]).named("tendon");
+        ring().spring(cable).phase(phase().actuate(["tendon"], force)).validate()
+    };
+    tendon(1.0).unwrap();
+    let refused = tendon(-1.0).unwrap_err().to_string();
+    assert!(refused.contains("cable \"tendon\"") && refused.contains("-1 N"), "{refused}");
 }

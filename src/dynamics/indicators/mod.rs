@@ -7,6 +7,7 @@
 //! | [`units`]: density, modulus (of rubber) | 5 to 25,000 kg/m^3, 2e12 Pa (1e8 Pa) |
 //! | [`units`]: thickness over size; strain of a column under its own weight | 20; 100 % |
 //! | [`units`]: remanence of magnets, magnetic field, moment of dipoles | 2 T, 10 T, 1e4 A m^2 |
+//! | [`gas`]: least absolute pressure; orifices beside their chambers | 5e4 Pa; a face of a cube as large |
 //! | [`mesh`]: Poisson's ratio of linear cells | 0.45 |
 //! | [`mesh`]: pieces that nothing joins | one piece |
 //! | [`overlap`]: how deep the body overlaps itself, as drawn and as it moves | a twentieth of a cell |
@@ -16,8 +17,10 @@
 //! | [`touch`]: how deep nodes are inside obstacles, at the start and later | half a cell, 2 % of the body |
 //! | [`touch`]: obstacles with friction that are touched in statics, where it does not act | none |
 //! | [`touch`]: obstacles that act and are never touched | none |
+//! | [`start`]: unknowns that the scene or the state from which it starts does not have | none |
 //! | [`chamber`]: the least volume of a chamber | 0 |
 //! | [`pace`]: absolute tolerance of displacements | 1 % of the distance that nodes travel, or 10 `rtol` |
+//! | [`pace`]: drift of constraints after the starts of phases | 0.1 % of the distance that nodes travel |
 //! | [`reduced`]: the error that a run by a reduced model tells | twice what was wanted |
 //! | [`reduced`]: how far it was outside of what the model has learned | 5 % of the range |
 //!
@@ -33,9 +36,9 @@
 //! | [`shape`]: layers of cells across a slender body that bends | 4 of simplices, 2 of others, 1 quadratic |
 //! | [`waves`]: cells in a wavelength of the motion | 6 linear, 3 quadratic |
 //! | [`points`]: single nodes that are loaded or held so much that the mesh matters | none |
+//! | [`pace`]: largest drift of constraints | 0.1 % of the distance that nodes travel |
 //! | [`felt`]: depth in obstacles | 10 % of the distance that nodes travel |
 //! | [`felt`]: forces of friction (+) | 1 % of the normal forces |
-//! | [`pace`]: drift of constraints | 0.1 % of the distance that nodes travel |
 //! | [`pace`]: kinetic energy (+) | 1 % of the stored energy |
 //! | [`pace`]: damping of the lowest vibration, and how much faster the fastest motion of the mesh is | |
 //! | [`symmetry`]: how far the motion is from one in a plane (+) | 1 % |
@@ -46,6 +49,7 @@ mod coarse;
 mod deformed;
 mod each;
 mod felt;
+mod gas;
 mod mesh;
 pub(crate) mod overlap;
 mod pace;
@@ -55,6 +59,7 @@ mod rigid;
 mod shape;
 mod size;
 mod skin;
+mod start;
 mod strain;
 mod symmetry;
 mod touch;
@@ -103,9 +108,11 @@ impl Scene {
         };
         let each = body.parts().flat_map(of_body);
         each.chain(units::of_scene(self))
+            .chain(gas::gas(self))
             .chain(mesh::pieces(self))
             .chain(overlap::drawn(body))
             .chain(touch::begun_inside(self))
+            .chain(start::lacking(self))
             .collect()
     }
 }
@@ -167,6 +174,7 @@ pub(crate) fn of_motion(trajectory: &Trajectory) -> Vec<Indicator> {
     let measured = measured.chain(chamber::volumes(scene, trajectory.samples()));
     let measured = measured.chain(overlaps(trajectory));
     let measured = measured.chain(pace::tolerance(trajectory, &samples));
+    let measured = measured.chain(pace::lasting_drift(trajectory, &samples));
     let measured = measured.chain(trajectory.report().reduced.iter().flat_map(reduced));
     measured.chain(is_whole.then(missed).into_iter().flatten()).collect()
 }

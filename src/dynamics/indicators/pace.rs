@@ -5,12 +5,15 @@ use super::rigid::travel;
 use crate::base::input::{percent, short, told};
 use crate::dynamics::report::Indicator;
 use crate::dynamics::trajectory::{Sample, Trajectory};
-use crate::scene::timeline::Scene;
+use crate::scene::timeline::{Phase, Scene};
 
 /// Kinetic over stored energy below which a motion is a sequence of equilibria.
 const STATIC: f64 = 0.01;
 /// Largest error of constraints relative to the distance that nodes travel.
 const MOST_DRIFT: f64 = 1e-3;
+/// Times 1/alpha after which a jump w of a prescribed velocity, which leaves w t exp(-alpha t), is below 2e-3 of its largest
+/// value.
+const DECAY: f64 = 10.0;
 /// Largest absolute tolerance of displacements relative to the distance that nodes travel, and the multiple
 /// of `rtol` that it may be in any case.
 const MOST_TOLERANCE: f64 = 0.01;
@@ -96,6 +99,42 @@ pub(super) fn drift(trajectory: &Trajectory, samples: &[&Sample]) -> Option<Indi
     );
     let beyond = || format!("{said}: raise alpha, or lower rtol");
     Some(Indicator::trusted("drift", (part, "1"), [0.0, MOST_DRIFT], || said.clone(), beyond))
+}
+
+/// How far constraints are from what they should be once jumps of prescribed velocities at the starts of phases have
+/// decayed, which is all that [`drift`] shows of most motions.
+pub(super) fn lasting_drift(trajectory: &Trajectory, samples: &[&Sample]) -> Option<Indicator> {
+    let way = travel(trajectory.body(), samples);
+    if samples.iter().all(|sample| sample.multipliers.is_empty()) || way == 0.0 {
+        return None;
+    }
+    let (phases, alpha) = (trajectory.scene().phases(), trajectory.report().alpha);
+    let has_settled = |sample: &&Sample| {
+        let start = sample.phase.checked_sub(1).and_then(|before| phases.get(before));
+        alpha == 0.0 || sample.time >= start.map_or(0.0, Phase::end) + DECAY / alpha
+    };
+    let settled = trajectory.samples().iter().filter(has_settled);
+    let drift = settled.map(|sample| sample.constraint_drift).reduce(f64::max)?;
+    // of a body at rest both are round-off
+    let part = drift / way.max(REST * trajectory.body().size());
+    let said = format!(
+        "constraints are still off by {} m after the starts of phases, {} of the way that nodes go (limit: {})",
+        short(drift),
+        percent(part),
+        percent(MOST_DRIFT)
+    );
+    let beyond = || {
+        let of_rigid = match trajectory.body().rigid_pieces() {
+            Some(_) => {
+                "; where rigid bodies are held, joined or tied so that one constraint follows from the others and the shape of the bodies, \
+                 leave that one out"
+            }
+            None => "",
+        };
+        format!("{said}: raise alpha, or lower rtol{of_rigid}")
+    };
+    let limits = [0.0, MOST_DRIFT];
+    Some(Indicator::trusted("lasting-drift", (part, "1"), limits, || said.clone(), beyond))
 }
 
 /// Whether the tolerance of displacements is small compared with them.

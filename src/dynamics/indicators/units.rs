@@ -93,7 +93,7 @@ pub(super) fn units(scene: &Scene, body: &Body) -> Vec<Indicator> {
 }
 
 /// Those that the scene declares as [meant](Scene::unusual) count as within their limits.
-fn as_meant(scene: &Scene, mut all: Vec<Indicator>) -> Vec<Indicator> {
+pub(super) fn as_meant(scene: &Scene, mut all: Vec<Indicator>) -> Vec<Indicator> {
     for indicator in &mut all {
         let is_meant = scene.unusual_quantities().iter().any(|name| name == indicator.name);
         if is_meant && indicator.is_beyond() {
@@ -232,7 +232,8 @@ fn weight(scene: &Scene, body: &Body) -> Option<Indicator> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::forces::{Dipole, Magnet};
+    use crate::dynamics::indicators::gas::gas;
+    use crate::scene::forces::{Chamber, Dipole, Gas, Magnet, Orifice};
     use crate::scene::timeline::UNITS;
     use crate::studies::samples::square_jump;
 
@@ -242,8 +243,13 @@ mod tests {
         let scene = square_jump(4).unwrap().gravity([0.0, -9.8]).phase(Phase::until(9.0));
         let scene =
             scene.magnet(Magnet::new([0.1, 0.0])).dipole(Dipole::new([1.0, 0.0], [0.0, 9.0]));
+        let scene = scene
+            .chamber(Chamber::within("air", [1, 4, 16, 13]))
+            .gas(Gas::in_chamber("air"))
+            .orifice(Orifice::new("vent", "air", "atmosphere", 1e-9));
         let mut all = units(&scene, scene.body());
         all.extend(of_scene(&scene));
+        all.extend(gas(&scene));
         let mut names: Vec<&str> = all.iter().map(|indicator| indicator.name).collect();
         names.sort_unstable();
         let mut known = UNITS.to_vec();

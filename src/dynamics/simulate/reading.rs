@@ -360,7 +360,8 @@ impl Reading {
         What::ChamberVolume(chamber.into()).into()
     }
 
-    /// Stress at nodes (Pa): see [`Body::nodal_fields`](crate::Body::nodal_fields).
+    /// Stress at nodes (Pa), of the elastic law alone, without viscosity and Maxwell branches: see
+    /// [`Body::nodal_fields`](crate::Body::nodal_fields).
     pub fn stress(nodes: impl Into<Selection>) -> Self {
         What::Stress(Place::Nodes(nodes.into())).into()
     }

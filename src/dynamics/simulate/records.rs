@@ -19,14 +19,16 @@ use crate::scene::timeline::{Phase, Scene};
 pub(super) fn of_state(phase: usize, system: &System, time: f64, state: &[f64]) -> Sample {
     let State { u, v, dissipated, supplied, others } = State::of(state, system.dofs());
     let internal = internal(system, others);
-    let amounts = internal[internal.len().saturating_sub(system.amounts().len())..].to_vec();
+    let (strains, amounts) =
+        internal.split_at(internal.len().saturating_sub(system.amounts().len()));
     Sample {
         time,
         phase,
         u: u.to_vec(),
         v: v.to_vec(),
         multipliers: Vec::new(),
-        amounts,
+        amounts: amounts.to_vec(),
+        internal_strains: strains.to_vec(),
         energy: Energy { dissipated, supplied, ..Energy::default() },
         constraint_drift: 0.0,
         sensors: Vec::new(),

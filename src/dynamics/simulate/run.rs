@@ -27,7 +27,7 @@ use crate::dynamics::trajectory::{IntegrationFailure, Interrupted, Sample, Traje
 use crate::elements::body::{Body, Part};
 use crate::elements::force::Forces;
 use crate::integrators::ode::Failure;
-use crate::scene::constraint::{PhaseStart, prescribe};
+use crate::scene::constraint::{PhaseStart, check_rigid_holds, prescribe};
 use crate::scene::settings::{Method, Scales, Settings};
 use crate::scene::timeline::{Phase, Scene};
 
@@ -101,7 +101,11 @@ impl Run {
         if let Some(why) = settings.method.why_not(scene) {
             return Err(InputError::new("method", settings.method, why).into());
         }
-        let mut state = [u, &v, &[0.0; ENERGIES], &system.relaxed(u)].concat();
+        let mut internal = system.relaxed(u);
+        if let Some(branches) = &matrices.branches {
+            scene.start_branches(branches, &mut internal);
+        }
+        let mut state = [u, &v, &[0.0; ENERGIES], &internal].concat();
         begin_to_move(settings, phase, &mut system, &mut state);
         let mut first = records::sample(0, &mut system, 0.0, &state)
             .map_err(|failure| scene.bad_start(failure))?;
@@ -121,7 +125,8 @@ impl Run {
         let plan = Plan::new(settings, &mut system, 0.0, &state);
         let times = sampling.within(0.0, phase.until);
         let (phase, balance) = (Arc::new(phase.clone()), first.energy.balance());
-        let angles = Angles::default();
+        let mut angles = Angles::default();
+        scene.starting_angles().for_each(|(name, turns)| angles.note(name, turns));
         records::complete(&mut first, (&sensors, &angles), (scene, &gauges), &phase, false);
         let mut trajectory = Trajectory::new(scene, report, first);
         trajectory.sensors = sensors.quantities.clone();
@@ -280,7 +285,10 @@ impl Run {
     pub(super) fn equations(&self, phase: &Phase, u: &[f64]) -> Result<System, InputError> {
         let start = PhaseStart { time: self.time, u };
         let forces = self.scene.forces_in(phase)?;
-        self.scene.system(&self.matrices, phase, forces, &start, self.settings.alpha)
+        let alpha = self.settings.alpha;
+        let system = self.scene.system(&self.matrices, phase, forces, &start, alpha)?;
+        check_rigid_holds(system.rows(), self.scene.body(), phase.name(), &start)?;
+        Ok(system)
     }
 
     /// Begins the phase in force, whose equations are `system`.
@@ -374,6 +382,7 @@ impl Run {
     /// The motion, at the end of the run.
     pub(super) fn into_trajectory(mut self) -> Trajectory {
         self.trajectory.report = self.report();
+        self.trajectory.angles = take(&mut self.angles.0);
         if let Some(checks) = &self.reduced {
             self.trajectory.lacking = locked(checks).take_lacking();
         }

@@ -28,6 +28,8 @@ pub(super) struct Gauges {
     springs: Vec<SpringGauge>,
     gases: Vec<Filled>,
     liquids: Vec<Poured>,
+    /// Their masses at the start (kg), of gases and then of liquids.
+    masses: Vec<f64>,
     muscles: Vec<Strands>,
     /// By which the positions of nodes make the magnetic moment (A m); empty without magnets.
     poles: Vec<f64>,
@@ -42,11 +44,13 @@ impl Gauges {
         let chambers = chambers.map(|chamber| chamber.force(body, Vec::new()).map(Arc::new));
         let springs = scene.springs().iter().map(|spring| spring.gauge(body.mesh()));
         let muscles = scene.muscles().iter().map(|muscle| muscle.strands(body));
+        let (gases, liquids) = (scene.filled()?, scene.poured(None)?);
         Ok(Self {
             chambers: chambers.collect::<Result<_, _>>()?,
             springs: springs.collect::<Result<_, _>>()?,
-            gases: scene.filled()?,
-            liquids: scene.poured(None)?,
+            masses: scene.starting_masses(&gases, &liquids),
+            gases,
+            liquids,
             muscles: muscles.collect::<Result<_, _>>()?,
             poles: scene.magnetization()?.map_or_else(Vec::new, |magnets| magnets.poles),
             magnetized: scene.magnetized_points()?,
@@ -254,13 +258,8 @@ impl<'a> View<'a> {
 
     /// The amount (kg) of that number, of gases and then of liquids.
     fn amount(&self, number: usize) -> f64 {
-        let Gauges { gases, liquids, .. } = self.gauges;
         // where they are no unknowns, amounts stay what they are
-        match (self.scene.flowing(self.state.others), number.checked_sub(gases.len())) {
-            (Some(flowing), _) => flowing[number],
-            (None, None) => gases[number].amount(),
-            (None, Some(number)) => liquids[number].amount(),
-        }
+        self.scene.flowing(self.state.others).unwrap_or(&self.gauges.masses)[number]
     }
 
     /// That of the liquid of that number.

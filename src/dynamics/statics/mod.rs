@@ -40,6 +40,7 @@ use crate::dynamics::report::Report;
 use crate::dynamics::system::AtRest;
 use crate::dynamics::system::rigid::{self, RigidMotion};
 use crate::dynamics::trajectory::{Commanded, Quantity, Sample, Trajectory};
+use crate::elements::body::Branches;
 use crate::scene::constraint::{ConstraintRow, PhaseStart, prescribe};
 use crate::scene::timeline::{Phase, Scene};
 
@@ -225,6 +226,12 @@ impl Scene {
         let points = std::mem::take(&mut search.curve);
         let is_curve = search.statics.is_curve();
         let (acting, d) = (&self.phases()[phase], self.body().dimension());
+        let branches = self.body().branches();
+        let relaxed = |u: &[f64]| {
+            let mut strains = vec![0.0; branches.as_ref().map_or(0, Branches::unknowns)];
+            branches.iter().for_each(|branches| branches.relax(u, &mut strains));
+            strains
+        };
         let sample = |(number, point): (usize, &Point)| {
             let mut energy = search.rest.energy(point.fraction, &point.u);
             energy.supplied = energy.balance() - unloaded.balance();
@@ -235,6 +242,7 @@ impl Scene {
                 v: vec![0.0; point.u.len()],
                 multipliers: point.mu.clone(),
                 amounts: Vec::new(),
+                internal_strains: relaxed(&point.u),
                 energy,
                 constraint_drift: point.drift,
                 sensors: if is_curve { vec![point.fraction] } else { Vec::new() },

@@ -12,6 +12,7 @@
 //!
 //! With a projected dilatation the stress at a point takes the projected trace of E - G; no other equation does.
 
+use super::branch_state::{BranchCells, runs};
 use super::elements::{ElementsOf, gradient};
 use super::forces::{collect, relative};
 use super::projection::{COEFFICIENTS, Projected};
@@ -27,6 +28,9 @@ use crate::elements::material::{
 /// Elements with branches.
 pub(super) trait Branched {
     fn internal_strains(&self, regions: &Regions) -> usize;
+
+    /// Runs of cells with branches of the same kind.
+    fn branch_cells(&self, regions: &Regions) -> Vec<BranchCells>;
 
     fn relax(&self, regions: &Regions, u: &[f64], internal: &mut [f64]);
 
@@ -250,6 +254,15 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Branched
         let of_point =
             |cell| -> usize { regions.of(cell).branches.iter().map(Relaxing::components).sum() };
         (0..self.nodes.len()).map(|cell| Q * of_point(cell)).sum()
+    }
+
+    fn branch_cells(&self, regions: &Regions) -> Vec<BranchCells> {
+        let of_cell = |cell| {
+            let branches = &regions.of(cell).branches;
+            let variables = branches.iter().map(Relaxing::variable).collect();
+            (variables, Q * branches.iter().map(Relaxing::components).sum::<usize>())
+        };
+        runs((0..self.nodes.len()).map(of_cell))
     }
 
     fn relax(&self, regions: &Regions, u: &[f64], internal: &mut [f64]) {

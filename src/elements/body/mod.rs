@@ -3,6 +3,7 @@
 mod assembled;
 mod assembly;
 mod branch_modes;
+mod branch_state;
 mod branches;
 mod builder;
 mod constant;
@@ -45,6 +46,7 @@ mod tests;
 mod whole;
 
 pub use assembled::Body;
+pub use branch_state::{BranchCells, BranchState};
 pub use builder::BodyBuilder;
 pub(crate) use contraction::Contraction;
 pub use dilatation::Dilatation;

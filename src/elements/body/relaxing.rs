@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use super::assembly::Elements;
 use super::branch_modes::{BranchModes, Found};
+use super::branch_state::BranchState;
 use super::continuum::Continuum;
 use super::regions::Regions;
 use super::strain_modes::pay;
@@ -19,6 +20,8 @@ pub(crate) struct Branches {
 
 #[derive(Clone)]
 struct OfBody {
+    /// Number of the body (from 0) among those of the scene.
+    body: usize,
     elements: Arc<dyn Elements>,
     regions: Arc<Regions>,
     /// Its internal strains among those of all.
@@ -29,12 +32,13 @@ impl Branches {
     /// Those of `bodies`, if there are any.
     pub(super) fn of<'a>(bodies: impl Iterator<Item = &'a Continuum>) -> Option<Self> {
         let mut first = 0;
-        let relaxing = bodies.filter(|body| body.regions.branches().next().is_some());
+        let relaxing =
+            bodies.enumerate().filter(|(_, body)| body.regions.branches().next().is_some());
         let bodies: Vec<OfBody> = relaxing
-            .map(|Continuum { elements, regions, .. }| {
+            .map(|(body, Continuum { elements, regions, .. })| {
                 let internal = first..first + elements.internal_strains(regions);
                 first = internal.end;
-                OfBody { elements: elements.clone(), regions: regions.clone(), internal }
+                OfBody { body, elements: elements.clone(), regions: regions.clone(), internal }
             })
             .collect();
         (!bodies.is_empty()).then_some(Self { bodies })
@@ -55,7 +59,7 @@ impl Branches {
     pub(crate) fn modes(&self, origin: &[f64], strains: &[f64], shapes: &[&[f64]]) -> BranchModes {
         let mut all = self.bodies.iter().flat_map(|body| body.regions.branches());
         let mut found = Found::new(shapes.len(), !all.any(Relaxing::is_quadratic));
-        for OfBody { elements, regions, internal } in &self.bodies {
+        for OfBody { elements, regions, internal, .. } in &self.bodies {
             let at = [origin, &strains[internal.clone()]];
             elements.add_branch_modes(regions, at, shapes, internal.start, &mut found);
         }
@@ -67,6 +71,30 @@ impl Branches {
         self.bodies.last().map_or(0, |last| last.internal.end)
     }
 
+    /// The state of the branches of the body of that number (from 0), whose components are among `internal`; none
+    /// without branches.
+    pub(crate) fn state_of(&self, body: usize, internal: &[f64]) -> Option<BranchState> {
+        let own = self.bodies.iter().find(|own| own.body == body)?;
+        let cells = own.elements.branch_cells(&own.regions);
+        Some(BranchState { cells, components: internal[own.internal.clone()].to_vec() })
+    }
+
+    /// Whether the body of that number (from 0) has branches.
+    pub(crate) fn are_of(&self, body: usize) -> bool {
+        self.bodies.iter().any(|own| own.body == body)
+    }
+
+    /// Writes a `state` to the components of that body among `internal`, if its branches are of the same kinds.
+    pub(crate) fn set_state(&self, body: usize, state: &BranchState, internal: &mut [f64]) -> bool {
+        let Some(own) = self.bodies.iter().find(|own| own.body == body) else { return false };
+        let fits = state.components.len() == own.internal.len()
+            && own.elements.branch_cells(&own.regions) == state.cells;
+        if fits {
+            internal[own.internal.clone()].copy_from_slice(&state.components);
+        }
+        fits
+    }
+
     /// Largest rate of relaxation (1/s).
     pub(crate) fn fastest(&self) -> f64 {
         let branches = self.bodies.iter().flat_map(|body| body.regions.branches());
@@ -75,7 +103,7 @@ impl Branches {
 
     /// Writes the internal strains with which the branches have no stress at the displacements `u` (m).
     pub(crate) fn relax(&self, u: &[f64], internal: &mut [f64]) {
-        for OfBody { elements, regions, internal: own } in &self.bodies {
+        for OfBody { elements, regions, internal: own, .. } in &self.bodies {
             elements.relax(regions, u, &mut internal[own.clone()]);
         }
     }
@@ -89,7 +117,7 @@ impl Branches {
         forces: &mut [f64],
         rates: &mut [f64],
     ) -> f64 {
-        let of_body = |OfBody { elements, regions, internal: own }: &OfBody| {
+        let of_body = |OfBody { elements, regions, internal: own, .. }: &OfBody| {
             let (internal, rates) = (&internal[own.clone()], &mut rates[own.clone()]);
             elements.add_branch_forces(regions, u, internal, forces, rates)
         };
@@ -98,7 +126,7 @@ impl Branches {
 
     /// Strain energy (J).
     pub(crate) fn energy(&self, u: &[f64], internal: &[f64]) -> f64 {
-        let of_body = |OfBody { elements, regions, internal: own }: &OfBody| {
+        let of_body = |OfBody { elements, regions, internal: own, .. }: &OfBody| {
             elements.branch_energy(regions, u, &internal[own.clone()])
         };
         self.bodies.iter().map(of_body).sum()
@@ -113,7 +141,7 @@ impl Branches {
         internal: &[f64],
         stiffness: &mut BlockMatrix,
     ) {
-        for OfBody { elements, regions, internal: own } in &self.bodies {
+        for OfBody { elements, regions, internal: own, .. } in &self.bodies {
             // none means without stress
             let at = [u, internal.get(own.clone()).unwrap_or_default()];
             elements.add_branch_tangents(regions, gamma, at, stiffness);
@@ -129,7 +157,7 @@ impl Branches {
         residuals: &[f64],
         right: &mut [f64],
     ) {
-        for OfBody { elements, regions, internal: own } in &self.bodies {
+        for OfBody { elements, regions, internal: own, .. } in &self.bodies {
             let at = [u, &internal[own.clone()]];
             elements.add_branch_residuals(regions, gamma, at, &residuals[own.clone()], right);
         }
@@ -146,7 +174,7 @@ impl Branches {
         xu: &[f64],
         x: &mut [f64],
     ) -> f64 {
-        let of_body = |OfBody { elements, regions, internal: own }: &OfBody| {
+        let of_body = |OfBody { elements, regions, internal: own, .. }: &OfBody| {
             let (at, rates) = ([u, &internal[own.clone()]], &rates[own.clone()]);
             elements.solve_branches(regions, gamma, at, rates, xu, &mut x[own.clone()])
         };

@@ -85,6 +85,14 @@ impl Relaxing {
         Self { hooke, time: branch.time, strain, dimension, flowing }
     }
 
+    /// The name of its internal variable, which says what its components are.
+    pub(crate) fn variable(&self) -> &'static str {
+        match self.strain {
+            Strain::Cauchy => "cauchy strain",
+            Strain::Green => "green strain",
+        }
+    }
+
     /// Components of G.
     pub(crate) fn components(&self) -> usize {
         let across = self.flowing.is_some_and(|flowing| flowing.strains_across(self.dimension));

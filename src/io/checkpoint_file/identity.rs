@@ -58,6 +58,9 @@ impl Identity {
         ];
         let mut parts: Vec<(String, String)> =
             parts.map(|(name, hash)| (name.into(), text(hash))).into();
+        if let Some(state) = scene.starting_state() {
+            parts.push(("state at the start".into(), text(of_text(state))));
+        }
         // a scene without gas is what it was before there was any
         if scene.has_gas() {
             parts.push(("gas".into(), text(of_text(&scene.gas_parts()))));

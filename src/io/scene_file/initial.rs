@@ -4,7 +4,7 @@ use super::keys::{Holds, Key, TableKeys};
 use super::selection::selection;
 use super::value::Value;
 use crate::dynamics::error::Error;
-use crate::scene::timeline::{BodyState, Scene};
+use crate::scene::timeline::{Scene, SceneState};
 
 pub(super) const INITIAL: TableKeys = TableKeys::new(
     "[initial]",
@@ -14,10 +14,14 @@ pub(super) const INITIAL: TableKeys = TableKeys::new(
         Key::new(
             "from",
             Holds::Text,
-            "what `pliant run` or `pliant static` has left of a body with the same mesh: the directory, or its \
+            "the state that `pliant run` or `pliant static` has left of bodies with the same meshes: the directory, or its \
              `state.json`, relative to the scene file",
         )
-        .law("It gives displacements and velocities; all else may differ, and time begins anew.")
+        .law(
+            "It gives all unknowns by the names of bodies, chambers, actuators and pipes: displacements, velocities, Maxwell \
+             branches, masses of gas and liquid, lags, flow rates; what only one of both has is a warning. All else may \
+             differ. Time begins anew, and with it signals and paths: an obstacle is where the scene has it at t = 0.",
+        )
         .default("undeformed, at rest"),
         Key::new("velocity", Holds::Vector, "the velocity of all nodes")
             .in_unit("m/s")
@@ -52,9 +56,9 @@ pub(super) fn add_initial(mut scene: Scene, value: &Value) -> Result<Scene, Erro
     let dimension = scene.body().dimension();
     let mut moves = false;
     if let Some(value) = table.get("from") {
-        let state = BodyState::read(value.source.beside(value.string()?));
+        let state = SceneState::read(value.source.beside(value.string()?));
         let state = state.map_err(|error| value.error(error))?;
-        moves = state.velocities.iter().any(|&v| v != 0.0);
+        moves = state.bodies.iter().flat_map(|body| &body.velocities).any(|&v| v != 0.0);
         scene = scene.starting_from(&state);
         scene.initial_velocities().map_err(|error| value.error(error))?;
     }

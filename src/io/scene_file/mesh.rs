@@ -26,7 +26,8 @@ pub(super) const MESH: TableKeys = TableKeys::new(
             "the angle by which the mesh is turned about the origin before it is brought to its place",
         )
         .in_unit("rad")
-        .law("One number in the plane, counter-clockwise; in space three, the axis times the angle.")
+        .law("One number in the plane, counter-clockwise; in space three, the axis times the angle. It turns nodes alone: boxes, and \
+              directions of fibres, muscles, growths and remanences, are given in space, as the mesh lies after it.")
         .default("0"),
         Key::new("quadratic", Holds::Flag, "whether cells get mid nodes")
             .law(FINER)

@@ -12,6 +12,8 @@ use crate::integrators::ode::Failure;
 /// nodes of the walls.
 pub(crate) struct Closed<C> {
     content: C,
+    /// kg
+    amount: f64,
     /// The nodes of the walls.
     nodes: Vec<usize>,
     /// dV/du (m^2) at all nodes.
@@ -19,9 +21,15 @@ pub(crate) struct Closed<C> {
 }
 
 impl<C: Content> Closed<C> {
-    pub(crate) fn new(content: C, dofs: usize) -> Self {
+    /// With an `amount` (kg), among `dofs` displacement components.
+    pub(crate) fn new(content: C, amount: f64, dofs: usize) -> Self {
         let nodes: BTreeSet<usize> = content.walls().couplings().into_iter().flatten().collect();
-        Self { content, nodes: nodes.into_iter().collect(), gradient: Mutex::new(vec![0.0; dofs]) }
+        Self {
+            content,
+            amount,
+            nodes: nodes.into_iter().collect(),
+            gradient: Mutex::new(vec![0.0; dofs]),
+        }
     }
 }
 
@@ -33,11 +41,11 @@ impl<C: Content> Force for Closed<C> {
         _v: &[f64],
         forces: &mut NodalForces,
     ) -> Result<(), Failure> {
-        self.content.press(u, self.content.amount(), forces)
+        self.content.press(u, self.amount, forces)
     }
 
     fn check_step(&self, t: f64, _before: &[f64], after: &[f64]) -> Result<(), Failure> {
-        self.content.check(t, after, self.content.amount())
+        self.content.check(t, after, self.amount)
     }
 
     fn add_tangents(
@@ -50,7 +58,7 @@ impl<C: Content> Force for Closed<C> {
     ) -> Tangents {
         let mut gradient = self.gradient.lock().unwrap_or_else(PoisonError::into_inner);
         gradient.fill(0.0);
-        let linear = self.content.linearize(u, self.content.amount(), stiffness, &mut gradient);
+        let linear = self.content.linearize(u, self.amount, stiffness, &mut gradient);
         // the forces refuse such a state
         let Some([_, factor, _]) = linear else { return Tangents::Added };
         let d = stiffness.dimension();
@@ -68,7 +76,7 @@ impl<C: Content> Force for Closed<C> {
     }
 
     fn potential(&self, _t: f64, u: &[f64]) -> f64 {
-        self.content.potential(u, self.content.amount())
+        self.content.potential(u, self.amount)
     }
 
     fn reservoir(&self) -> Reservoir {

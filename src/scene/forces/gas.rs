@@ -67,6 +67,10 @@ impl Gas {
         self
     }
 
+    pub(crate) fn absolute_pressure(&self) -> f64 {
+        self.pressure
+    }
+
     /// Exponent n: 1 isothermal (slow, the default), 1.4 adiabatic (fast), between them polytropic.
     pub fn exponent(mut self, exponent: f64) -> Self {
         self.exponent = exponent;
@@ -114,6 +118,11 @@ pub(crate) struct Filled {
 }
 
 impl Filled {
+    /// V_0 (m^3)
+    pub(crate) fn natural_volume(&self) -> f64 {
+        self.volume
+    }
+
     /// Absolute pressure (Pa) of an `amount` (kg) under the displacements `u`, and the volume (m^3).
     ///
     /// # Errors

@@ -314,6 +314,11 @@ impl Obstacle {
         std::array::from_fn(|i| self.offset[i] + travelled[i])
     }
 
+    /// Position (m) of its [reference point](Shape::reference) at time `t` (s); none of a custom shape.
+    pub(crate) fn place_at(&self, t: f64) -> Option<Vec<f64>> {
+        self.shape.reference(&self.displacement(t))
+    }
+
     /// w at time `t` (s); 0 beyond the dimension.
     pub(crate) fn velocity_at(&self, t: f64) -> [f64; 3] {
         self.travel.velocity(t)

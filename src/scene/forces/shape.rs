@@ -167,6 +167,25 @@ impl Shape {
         }
     }
 
+    /// A point that says where a shape is that has been displaced (m): the centre of a ball, the first corner of a box, the first end
+    /// of a capsule, the point of a half-plane nearest to the origin, that of the first part of a union; none of a custom shape.
+    pub(crate) fn reference(&self, displacement: &[f64; 3]) -> Option<Vec<f64>> {
+        let moved = |point: &[f64]| {
+            point.iter().zip(displacement).map(|(x, d)| x + d).collect::<Vec<f64>>()
+        };
+        match &self.0 {
+            Kind::HalfPlane { point, normal } => {
+                let along = dot(normal, &moved(point)) / dot(normal, normal);
+                Some(normal.iter().map(|n| along * n).collect())
+            }
+            Kind::Ball { centre: point, .. }
+            | Kind::Box { min: point, .. }
+            | Kind::Capsule { from: point, .. } => Some(moved(point)),
+            Kind::Union(parts) => parts.first()?.reference(displacement),
+            Kind::Custom(_) => None,
+        }
+    }
+
     pub(crate) fn kind(&self) -> &Kind {
         &self.0
     }

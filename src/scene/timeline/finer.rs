@@ -271,8 +271,11 @@ impl Change<'_> {
     fn start(&self, scene: &Scene, body: &Body) -> Result<super::start::Start, InputError> {
         scene.start.velocities(self.body)?;
         let mut start = scene.start.clone();
+        start.refuse_branches("a finer mesh")?;
         // they have been checked above, for the coarse mesh
-        start.positions = None;
+        if let Some(state) = &mut start.state {
+            Arc::make_mut(state).bodies.clear();
+        }
         for field in [&mut start.displacements, &mut start.velocities] {
             *field = self.finer.interpolated(field, body.dimension());
         }

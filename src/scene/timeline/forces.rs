@@ -186,6 +186,7 @@ impl Scene {
         };
         let mut actuations = self.actuation_signals(phase)?.into_iter();
         for (spring, actuation) in self.springs.iter().zip(&mut actuations) {
+            spring.check_tension(&phase.name, &actuation)?;
             drive(spring.name(), actuation, &|signals| spring.forces(self.body.mesh(), signals))?;
         }
         for (muscle, stress) in self.muscles.iter().zip(&mut actuations) {

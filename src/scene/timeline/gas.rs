@@ -70,6 +70,26 @@ impl Scene {
         !self.gases.is_empty()
     }
 
+    /// The gases.
+    pub(crate) fn gases(&self) -> impl Iterator<Item = &Gas> {
+        self.gases.iter()
+    }
+
+    /// The supplies, with their absolute pressures (Pa).
+    pub(crate) fn supplies(&self) -> impl Iterator<Item = (&str, &Signal)> {
+        self.supplies.iter().map(|supply| (&*supply.name, &supply.pressure))
+    }
+
+    /// Absolute pressure (Pa) of the air around chambers.
+    pub(crate) fn outside(&self) -> f64 {
+        self.atmosphere
+    }
+
+    /// The chambers with gas, by their names.
+    pub(crate) fn gas_chambers(&self) -> impl Iterator<Item = &str> {
+        self.gases.iter().map(|gas| &*gas.chamber)
+    }
+
     /// Number of amounts of gas and liquids, of states of actuators that lag and of flows of pipes that are unknowns.
     #[cfg(feature = "checkpoint")]
     pub(crate) fn flowing_amounts(&self) -> usize {
@@ -219,15 +239,19 @@ impl Scene {
         let (orifices, gases) = (orifices.collect::<Result<Vec<_>, _>>()?, self.filled()?);
         let (liquids, dofs) = (self.poured(Some(phase))?, self.body.dofs());
         let pipes = self.pipe_flows()?;
+        let mut start = self.starting_masses(&gases, &liquids);
         if self.is_shut {
-            for gas in gases {
-                forces.push(Arc::new(Closed::new(gas, dofs)));
+            let mut masses = start.into_iter();
+            for (gas, mass) in gases.into_iter().zip(&mut masses) {
+                forces.push(Arc::new(Closed::new(gas, mass, dofs)));
             }
-            for liquid in liquids {
-                forces.push(Arc::new(Closed::new(liquid, dofs)));
+            for (liquid, mass) in liquids.into_iter().zip(masses) {
+                forces.push(Arc::new(Closed::new(liquid, mass, dofs)));
             }
         } else if !(gases.is_empty() && liquids.is_empty() && lagging.is_empty()) {
-            forces.push(Arc::new(AmountFlow::new(gases, orifices, liquids, lagging, pipes)));
+            start.extend(self.starting_lags_and_pipes());
+            let flow = AmountFlow::new(gases, orifices, liquids, lagging, pipes, start);
+            forces.push(Arc::new(flow));
         }
         Ok(())
     }

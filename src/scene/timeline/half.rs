@@ -87,6 +87,7 @@ impl Scene {
     /// As [`symmetric_half`](Self::symmetric_half), of the side above the plane if `is_upper`.
     pub(crate) fn half(&self, axis: Axis, is_upper: bool) -> Result<Half, InputError> {
         self.validate()?;
+        self.start.refuse_branches("a half")?;
         let symmetry = Symmetry::of(self, axis)?;
         let mirror = &symmetry.mirror;
         let mesh = self.body.mesh();

@@ -1,6 +1,8 @@
 //! Initial conditions of a scene.
 
-use super::{BodyState, Scene};
+use std::sync::Arc;
+
+use super::{Scene, SceneState};
 use crate::base::input::InputError;
 use crate::elements::mesh::Selection;
 
@@ -9,13 +11,24 @@ use crate::elements::mesh::Selection;
 /// Velocities that the constraints of the first phase do not allow are projected onto the nearest, in the
 /// norm of kinetic energy, that they do allow: an inelastic impact at t = 0. In statics nothing moves.
 impl Scene {
-    /// Starts from a state of an earlier motion, or from an equilibrium, of a body with the same mesh.
+    /// Starts from a state of an earlier motion, or from an equilibrium, of bodies with the same meshes.
     ///
-    /// It gives the displacements and velocities at t = 0. All else may differ, such as material, strain,
-    /// loads and obstacles. Time and energies begin anew.
+    /// It gives all unknowns at t = 0 by names: displacements, velocities and Maxwell branches of each body, masses of gas
+    /// and liquid in chambers, states of lags, flow rates of pipes, and whole turns of sensors of angles. A scene with
+    /// one body takes that of a state with one body, whatever their names are. All else may differ, such as material,
+    /// strain, loads and obstacles. Time and energies begin anew, and so do signals and paths, which are functions of time:
+    /// an obstacle is where the scene has it at t = 0.
     ///
-    /// [`initial_displacement`](Self::initial_displacement) and [`initial_velocity`](Self::initial_velocity),
-    /// called after it, replace one or the other; [`spin`](Self::spin) is added to its velocities.
+    /// Unknowns that the scene has and the state has not begin as without a state, and those that only the state has are
+    /// not used: a [warning](Self::warnings) names both. Branches of a body are used if the cells have branches of the same
+    /// kinds.
+    ///
+    /// In an equilibrium the masses of gas and liquid are those of the state. There are no displacements at the start, and branches
+    /// and lags are at rest.
+    ///
+    /// [`initial_displacement`](Self::initial_displacement), called after it, replaces its displacements, with branches
+    /// that have relaxed, and [`initial_velocity`](Self::initial_velocity) its velocities; [`spin`](Self::spin) is
+    /// added to these.
     ///
     /// ```
     /// use pliant::{Body, Cells, Material, Mesh, Phase, Sampling, Scene, Settings, Statics};
@@ -34,18 +47,43 @@ impl Scene {
     /// # Ok::<(), pliant::Error>(())
     /// ```
     ///
-    /// [`validate`](Self::validate) and runs refuse a state of another mesh.
-    pub fn starting_from(mut self, state: &BodyState) -> Self {
-        let BodyState { positions, displacements, velocities } = state.clone();
-        self.start.positions = Some(positions);
-        self.start.displacements = displacements;
-        self.start.velocities = velocities;
+    /// [`validate`](Self::validate) and runs refuse a state of another mesh, of bodies none of which the scene has, and
+    /// gas or liquid of a chamber in which the scene has none.
+    pub fn starting_from(mut self, state: &SceneState) -> Self {
+        let start = &mut self.start;
+        match state.whole() {
+            Some(whole) => {
+                start.displacements.clone_from(&whole.displacements);
+                start.velocities.clone_from(&whole.velocities);
+            }
+            None => {
+                let is_single = self.body.is_single();
+                for part in self.body.parts() {
+                    let Some(own) = state.of(&part, is_single) else { continue };
+                    for (all, field) in [
+                        (&mut start.displacements, &own.displacements),
+                        (&mut start.velocities, &own.velocities),
+                    ] {
+                        // another number is an error of `validate`
+                        if let Some(all) = all.get_mut(part.dofs())
+                            && all.len() == field.len()
+                        {
+                            all.copy_from_slice(field);
+                        }
+                    }
+                }
+            }
+        }
+        start.state = Some(Arc::new(state.clone()));
         self
     }
 
     /// Displacements at t = 0 (m): `field` gives one for each undeformed position. Default: none.
     pub fn initial_displacement(mut self, field: impl Fn(&[f64]) -> Vec<f64>) -> Self {
         self.start.displacements = self.body.mesh().field(field);
+        if let Some(state) = &mut self.start.state {
+            Arc::make_mut(state).bodies.iter_mut().for_each(|body| body.branches = None);
+        }
         self
     }
 

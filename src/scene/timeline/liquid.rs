@@ -3,7 +3,7 @@
 use super::{Phase, Scene, unique};
 use crate::base::input::InputError;
 use crate::base::vector::norm;
-use crate::scene::forces::{Content, Liquid, Live, Poured, Signal, Weight};
+use crate::scene::forces::{Liquid, Live, Poured, Signal, Weight};
 
 /// Parts of the time between two breaks of a flow in which it is added up.
 const PARTS: usize = 50;
@@ -132,7 +132,10 @@ impl Scene {
         let lines = each.filter_map(|(number, liquid)| {
             // errors were found when the phase began
             let poured = self.poured_in(Some(phase), liquid).ok()?;
-            let amount = flowing.map_or(poured.amount(), |all| all[self.gases.len() + number]);
+            let amount = match flowing {
+                Some(all) => all[self.gases.len() + number],
+                None => self.starting_liquid(liquid, &poured),
+            };
             Some(poured.waterline(u, amount))
         });
         lines.flatten().collect()
@@ -147,7 +150,7 @@ impl Scene {
             return Ok(());
         }
         for (liquid, full) in self.liquids.iter().zip(self.poured(None)?) {
-            let whole = full.natural(full.amount());
+            let whole = full.natural(self.starting_liquid(liquid, &full));
             let (mut start, mut volume) = (0.0, whole);
             for phase in &self.phases {
                 let flows = phase.flows.iter().filter(|(name, _)| name == liquid.chamber());

@@ -1,6 +1,5 @@
 //! Scenes: a body, what surrounds it, and a timeline of phases.
 
-mod body_state;
 mod changed;
 mod contacts;
 mod dipole;
@@ -18,8 +17,10 @@ mod phase;
 mod pipe;
 mod plane;
 mod reduced;
+mod scene_state;
 mod smaller;
 mod start;
+mod start_state;
 mod term;
 mod tie;
 mod within;
@@ -27,7 +28,6 @@ mod within;
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-pub use body_state::BodyState;
 pub(crate) use contacts::ContactReader;
 #[cfg(any(feature = "scene-file", feature = "study"))]
 pub(crate) use half::Half;
@@ -37,6 +37,7 @@ pub(crate) use phase::ContactWith;
 pub use phase::Phase;
 #[cfg(any(feature = "scene-file", feature = "study"))]
 pub(crate) use plane::InPlane;
+pub use scene_state::{BodyState, SceneState};
 pub use smaller::Smaller;
 use start::Start;
 pub use term::Term;
@@ -49,7 +50,7 @@ use crate::elements::force::{Force, Forces, NodalForces};
 use crate::elements::mesh::Selection;
 use crate::integrators::ode::Failure;
 use crate::scene::constraint::{
-    Constrained, Constraint, ConstraintRow, PhaseStart, prescribe, rows,
+    Constrained, Constraint, ConstraintRow, PhaseStart, check_rigid_holds, prescribe, rows,
 };
 use crate::scene::forces::{
     ATMOSPHERE, Chamber, Contact, Dipole, Fluid, Gas, Growth, Lag, Liquid, Magnet, Muscle,
@@ -107,7 +108,7 @@ pub struct Scene {
 }
 
 /// The quantities of a scene that may be [unusual](Scene::unusual): the names of the indicators of its units.
-pub(crate) const UNITS: [&str; 10] = [
+pub(crate) const UNITS: [&str; 12] = [
     "size",
     "mass",
     "density",
@@ -118,6 +119,8 @@ pub(crate) const UNITS: [&str; 10] = [
     "remanence",
     "magnetic-field",
     "dipole-moment",
+    "absolute-pressure",
+    "orifice-area",
 ];
 
 impl Scene {
@@ -230,7 +233,8 @@ impl Scene {
     /// Quantities that are meant as they are, although such values are rare for a soft body in SI units.
     ///
     /// They are among `size`, `mass`, `density`, `young`, `wave-speed`, `thickness`, `weight` (the strain
-    /// of a column as high as the body under its own weight), `remanence`, `magnetic-field` and `dipole-moment`. [Indicators](Self::indicators) with these names
+    /// of a column as high as the body under its own weight), `remanence`, `magnetic-field`, `dipole-moment`, `absolute-pressure` (of gas and
+    /// supplies) and `orifice-area`. [Indicators](Self::indicators) with these names
     /// keep their numbers and do not warn.
     ///
     /// ```
@@ -301,7 +305,12 @@ impl Scene {
 
     /// Number (from 0) of the spring with a name; `input` is where that was given.
     pub(crate) fn spring_number(&self, name: &str, input: &str) -> Result<usize, InputError> {
-        find(name, self.springs.iter().map(Spring::name), input, "springs")
+        let what = match self.springs.iter().filter(|spring| spring.is_cable()).count() {
+            0 => "springs",
+            cables if cables == self.springs.len() => "cables",
+            _ => "springs and cables",
+        };
+        find(name, self.springs.iter().map(Spring::name), input, what)
     }
 
     /// Number (from 0) of the obstacle with a name; `input` is where that was given.
@@ -361,6 +370,8 @@ impl Scene {
     pub(crate) fn forces_from_start(&self) -> Result<Vec<Forces>, InputError> {
         let forces = self.forces()?;
         let (u, v) = (self.initial_displacements(), self.initial_velocities()?);
+        let (phase, start) = (self.first_phase()?, PhaseStart { time: 0.0, u });
+        check_rigid_holds(&self.rows(phase, &start)?, &self.body, &phase.name, &start)?;
         for force in self.dipole_forces(self.first_phase()?)? {
             force.check(0.0, u)?;
         }
@@ -414,6 +425,7 @@ impl Scene {
             unique("spring, muscle or growth", self.actuators())?;
         }
         self.check_lags()?;
+        self.check_start_state()?;
         unique("chamber", self.chambers.iter().map(Chamber::name))?;
         unique("obstacle", self.obstacles.iter().map(Obstacle::name))?;
         unique("touch", self.touches.iter().map(Touch::name))?;

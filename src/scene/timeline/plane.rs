@@ -87,6 +87,7 @@ impl Scene {
     /// The section of the scene whose mesh is this prism.
     pub(crate) fn section_of(&self, prism: Prism) -> Result<InPlane, InputError> {
         self.validate()?;
+        self.start.refuse_branches("a section")?;
         let uniform = Uniform::of(self, prism)?;
         let (prism, plane) = (&uniform.prism, uniform.plane);
         let body = self.body.to_builder().section(prism, plane)?.build()?;

@@ -1,6 +1,8 @@
 //! How a scene starts: displacements and velocities at t = 0.
 
-use super::body_state::check_positions;
+use std::sync::Arc;
+
+use super::SceneState;
 use super::phase::check_vector;
 use crate::base::input::{InputError, finite};
 use crate::base::vector::cross;
@@ -11,8 +13,8 @@ use crate::scene::constraint::angular;
 /// The start as the user of a scene gives it.
 #[derive(Debug, Clone)]
 pub(super) struct Start {
-    /// Undeformed positions (m) of the body that had the displacements, if it was another one.
-    pub(super) positions: Option<Vec<f64>>,
+    /// The state that it was taken from, if it was; without bodies where these have another mesh by now.
+    pub(super) state: Option<Arc<SceneState>>,
     /// Displacements (m).
     pub(super) displacements: Vec<f64>,
     /// Velocities (m/s), without `spin` and `of_nodes`.
@@ -30,12 +32,27 @@ impl Start {
     pub(super) fn rest(body: &Body) -> Self {
         let rest = vec![0.0; body.dofs()];
         Self {
-            positions: None,
+            state: None,
             displacements: rest.clone(),
             velocities: rest,
             spin: None,
             of_nodes: Vec::new(),
             of_bodies: Vec::new(),
+        }
+    }
+
+    /// # Errors
+    /// Branches in the state from which it starts: it is not known what `they` are in another mesh.
+    pub(super) fn refuse_branches(&self, other: &str) -> Result<(), InputError> {
+        let mut bodies = self.state.iter().flat_map(|state| &state.bodies);
+        match bodies.any(|body| body.branches.is_some()) {
+            false => Ok(()),
+            true => {
+                let help = format!(
+                    "what they are in the cells of {other} is not known: start from a state of a scene with that mesh"
+                );
+                Err(InputError::new("state at the start", "with Maxwell branches", help))
+            }
         }
     }
 
@@ -46,9 +63,9 @@ impl Start {
     /// unknown nodes.
     pub(super) fn velocities(&self, body: &Body) -> Result<Vec<f64>, InputError> {
         let dimension = body.dimension();
-        let Self { positions, displacements, velocities, spin, of_nodes, of_bodies } = self;
-        if let Some(positions) = positions {
-            check_positions(positions, body)?;
+        let Self { state, displacements, velocities, spin, of_nodes, of_bodies } = self;
+        if let Some(state) = state {
+            state.check(body)?;
         }
         for (name, vector) in
             [("initial displacement", displacements), ("initial velocity", velocities)]

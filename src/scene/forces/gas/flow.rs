@@ -22,16 +22,15 @@ pub(crate) struct AmountFlow {
 }
 
 impl AmountFlow {
+    /// `start` are the unknowns at the start of the scene.
     pub(crate) fn new(
         gases: Vec<Filled>,
         orifices: Vec<OrificeFlow>,
         liquids: Vec<Poured>,
         lagging: Vec<Lagging>,
         pipes: Vec<PipeFlow>,
+        start: Vec<f64>,
     ) -> Self {
-        let mut start: Vec<f64> = gases.iter().map(Content::amount).collect();
-        start.extend(liquids.iter().map(Content::amount));
-        start.resize(start.len() + lagging.len() + pipes.len(), 0.0);
         Self { start, gases, orifices, liquids, lagging, pipes }
     }
 

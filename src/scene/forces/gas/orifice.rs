@@ -168,6 +168,16 @@ pub(crate) struct OrificeFlow {
 }
 
 impl OrificeFlow {
+    /// Area (m^2) of the nozzle without losses that lets as much pass where it is choked.
+    pub(crate) fn area(&self) -> f64 {
+        self.scale * GAS_CONSTANT_TIMES_TEMPERATURE.sqrt() / nozzle(CRITICAL).sqrt()
+    }
+
+    /// What is at its ends.
+    pub(crate) fn ends(&self) -> &[End; 2] {
+        &self.ends
+    }
+
     /// The flow (kg/s) from the first end to the second at time `t` (s), and its derivatives by the absolute pressures
     /// of both (kg/(s Pa)). The `gases` of the scene have these `pressures` (Pa).
     ///

@@ -102,7 +102,9 @@ fn energies_belong_to_the_pressures() {
         let (body, gas) = filled(1.3e5, exponent);
         let orifice = Orifice::new("o", "supply", "room", 1e-6);
         let orifice = orifice.flow([End::Given(2e5.into()), End::Gas(0)], Vec::new()).unwrap();
-        let flow = AmountFlow::new(vec![gas], vec![orifice], Vec::new(), Vec::new(), Vec::new());
+        let start = vec![gas.amount];
+        let none = Vec::new;
+        let flow = AmountFlow::new(vec![gas], vec![orifice], none(), Vec::new(), Vec::new(), start);
         let first = flow.start()[0];
         let at = |swelling: f64, amount: f64| -> ([f64; 4], FlowDerivatives) {
             // the upper nodes rise

@@ -89,7 +89,8 @@ fn forces_and_tangents_belong_to_the_energy() {
         assert!((slope / ((ahead - behind) / (2.0 * more)) - 1.0).abs() < 1e-8, "{slope}");
         let amount = liquid.amount();
         let (volume, heavy) = (liquid.walls().volume(&u), forces(&liquid, &u, amount));
-        let closed = Closed::new(liquid, u.len());
+        let amount = liquid.amount();
+        let closed = Closed::new(liquid, amount, u.len());
         let pattern = Arc::new(body.inertia().pattern().with_pairs(&closed.couplings()));
         let [mut stiffness, mut damping] =
             [(), ()].map(|()| BlockMatrix::zeros(&pattern, dimension));

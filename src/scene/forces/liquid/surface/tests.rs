@@ -111,7 +111,8 @@ fn forces_and_tangents_belong_to_the_energy() {
             let [ahead, behind] = [more, -more].map(|x| liquid.brought(&u, amount + x).unwrap()[0]);
             let difference = (ahead - behind) / (2.0 * more);
             assert!((slope / difference - 1.0).abs() < 1e-4, "{number}: {slope} {difference}");
-            let closed = Closed::new(liquid, n);
+            let amount = liquid.amount();
+            let closed = Closed::new(liquid, amount, n);
             // the tangent has a kink where a corner is at the level
             let size = check(&closed, (d, &cells), 0.0, &u, &vec![0.0; n], 1e-5);
             assert!(size > 1.0, "{number}: {size}");
@@ -192,7 +193,8 @@ fn walls_feel_the_pressure_of_the_depth() {
     let mesh = Mesh::rectangle([0.2, 0.2], [2, 2], Cells::Triangles).unwrap();
     let body = self::body(mesh);
     let liquid = poured(&body, &Chamber::within("tank", [1, 4, 3]), 0.5, down);
-    let closed = Closed::new(liquid, body.dofs());
+    let amount = liquid.amount();
+    let closed = Closed::new(liquid, amount, body.dofs());
     let felt = nodal_forces(&closed, 0.0, &[0.0; 8], &[0.0; 8]).conservative.to_vec();
     // from the upper side down to the lower left corner: V = w h^2/2 with h = 0.2 sqrt(0.5)
     let height = 0.2 * 0.5_f64.sqrt();

@@ -1,0 +1,184 @@
+//! Rows on a rigid piece that follow from others for small motions alone.
+//!
+//! With two of its nodes held along the line through both, a piece cannot turn, though it may for small motions: the length
+//! between them changes by the square of the angle. No equations of motion have such a constraint, and the row, or an edge of
+//! the piece, would be left out of them as if it were implied. Where what follows for small motions follows for large
+//! ones, too, as between two nodes of an axis, nothing is lost.
+
+use nalgebra::{DMatrix, DVector, Rotation3, Vector3};
+
+use super::row::{ConstraintRow, independent_terms};
+use super::start::PhaseStart;
+use crate::base::input::InputError;
+use crate::base::vector::{dot, norm};
+use crate::elements::body::{Body, RigidPieces};
+
+/// The part of a row, relative to the row, that is round-off.
+const NOTHING_NEW: f64 = 1e-5;
+/// The motions that are tried, in radians and in parts of the size of a piece.
+const TRIED: f64 = 0.1;
+/// What a row may change by in them, in parts of the size: what is implied is off by round-off, what is not by about half of
+/// the square of the motion, 5e-3.
+const IMPLIED: f64 = 1e-6;
+/// Rounds of the search for a motion that the other rows allow. Each leaves a tenth or so.
+const ROUNDS: usize = 30;
+
+/// # Errors
+/// Rows on one rigid piece that others imply for small motions, and not for large ones.
+pub(crate) fn check_rigid_holds(
+    rows: &[ConstraintRow],
+    body: &Body,
+    phase: &str,
+    start: &PhaseStart,
+) -> Result<(), InputError> {
+    let Some(pieces) = body.rigid_pieces() else { return Ok(()) };
+    for frame in pieces.frames() {
+        let piece = Piece::new(frame, rows, (body, pieces), start.u);
+        let Some((row, change)) = piece.lost_row() else { continue };
+        let label = row.label(body.dimension());
+        let input = format!("constraint on {label} in phase \"{phase}\"");
+        let help = format!(
+            "for small motions the other constraints of its rigid piece and the shape of the piece imply it, for large ones they do not: \
+             a motion that they allow by a tenth of the size of the piece moves {label} by {change:.1e} m. Leave it out, or \
+             constrain nodes that are apart across the direction in which they are held, or hold the piece wholly"
+        );
+        return Err(InputError::new(input, row.motion.label(), help));
+    }
+    Ok(())
+}
+
+/// A rigid piece with the rows on it alone.
+struct Piece<'a> {
+    dimension: usize,
+    /// Positions of its frame from their mean (m), and its size (m).
+    arms: Vec<Vector3<f64>>,
+    size: f64,
+    /// Each row with its terms: node of the frame, axis and coefficient.
+    rows: Vec<(&'a ConstraintRow, Vec<(usize, usize, f64)>)>,
+}
+
+impl<'a> Piece<'a> {
+    fn new(
+        frame: &[usize],
+        rows: &'a [ConstraintRow],
+        (body, pieces): (&Body, &RigidPieces),
+        u: &[f64],
+    ) -> Self {
+        let d = body.dimension();
+        let place = |&node: &usize| {
+            let x = body.mesh().position(node);
+            Vector3::from_fn(|i, _| if i < d { x[i] + u[node * d + i] } else { 0.0 })
+        };
+        let mut arms: Vec<Vector3<f64>> = frame.iter().map(place).collect();
+        let mean = arms.iter().sum::<Vector3<f64>>() / arms.len() as f64;
+        arms.iter_mut().for_each(|arm| *arm -= mean);
+        let size = arms.iter().map(Vector3::norm).fold(0.0, f64::max);
+        let own = |row: &'a ConstraintRow| {
+            let terms = independent_terms(&row.terms, Some(pieces), d).into_iter();
+            let term = |(dof, c): (usize, f64)| {
+                Some((frame.iter().position(|&node| node == dof / d)?, dof % d, c))
+            };
+            Some((row, terms.map(term).collect::<Option<Vec<_>>>()?))
+        };
+        Self { dimension: d, arms, size, rows: rows.iter().filter_map(own).collect() }
+    }
+
+    /// What moves in a rigid motion, its displacements in parts of the size and its angles: 3 in the plane, 6 in space.
+    fn freedoms(&self) -> usize {
+        self.dimension + self.dimension * (self.dimension - 1) / 2
+    }
+
+    /// Displacements (m) of the frame in a rigid motion.
+    fn moved(&self, motion: &DVector<f64>) -> Vec<Vector3<f64>> {
+        let d = self.dimension;
+        let shift = Vector3::from_fn(|i, _| if i < d { self.size * motion[i] } else { 0.0 });
+        let turn = match d {
+            3 => Vector3::new(motion[3], motion[4], motion[5]),
+            2 => Vector3::new(0.0, 0.0, motion[2]),
+            _ => Vector3::zeros(),
+        };
+        let rotation = Rotation3::new(turn);
+        self.arms.iter().map(|arm| rotation * arm - arm + shift).collect()
+    }
+
+    /// By how much each row changes (m) in a rigid motion.
+    fn changes(&self, motion: &DVector<f64>) -> Vec<f64> {
+        let moved = self.moved(motion);
+        let change = |(_, terms): &(&ConstraintRow, Vec<(usize, usize, f64)>)| {
+            terms.iter().map(|&(node, axis, c)| c * moved[node][axis]).sum()
+        };
+        self.rows.iter().map(change).collect()
+    }
+
+    /// The derivatives of the rows by the rigid motion, in the size, one column per row.
+    fn derivatives(&self) -> Vec<Vec<f64>> {
+        let count = self.freedoms();
+        let small = 1e-7;
+        let columns: Vec<Vec<f64>> = (0..count)
+            .map(|k| {
+                let along = |by: f64| {
+                    self.changes(&DVector::from_fn(count, |i, _| if i == k { by } else { 0.0 }))
+                };
+                let pairs = along(small).into_iter().zip(along(-small));
+                pairs.map(|(up, down)| (up - down) / (2.0 * small * self.size)).collect()
+            })
+            .collect();
+        (0..self.rows.len()).map(|row| columns.iter().map(|column| column[row]).collect()).collect()
+    }
+
+    /// The first row that others imply for small motions and not for large ones, with what it changes by (m).
+    fn lost_row(&self) -> Option<(&'a ConstraintRow, f64)> {
+        let (count, all) = (self.freedoms(), self.derivatives());
+        let (mut kept, mut implied): (Vec<usize>, Vec<usize>) = Default::default();
+        let mut known: Vec<Vec<f64>> = Vec::new();
+        for (number, row) in all.iter().enumerate() {
+            let mut rest = row.clone();
+            for _ in 0..2 {
+                for direction in &known {
+                    let part = dot(direction, &rest);
+                    rest.iter_mut().zip(direction).for_each(|(x, e)| *x -= part * e);
+                }
+            }
+            let left = norm(&rest);
+            if left > NOTHING_NEW * norm(row) {
+                known.push(rest.into_iter().map(|x| x / left).collect());
+                kept.push(number);
+            } else {
+                implied.push(number);
+            }
+        }
+        if implied.is_empty() || known.len() == count {
+            return None;
+        }
+        let held = DMatrix::from_fn(kept.len(), count, |i, k| all[kept[i]][k]);
+        let inverse = held.pseudo_inverse(f64::EPSILON).ok()?;
+        // motions that are left: those across the directions that are known
+        let known = DMatrix::from_fn(known.len(), count, |i, k| known[i][k]);
+        let left = (known.transpose() * known).symmetric_eigen();
+        let free: Vec<DVector<f64>> = (0..count)
+            .filter(|&k| left.eigenvalues[k] < 0.5)
+            .map(|k| left.eigenvectors.column(k).into_owned())
+            .collect();
+        let pairs = (0..free.len()).flat_map(|a| (0..=a).map(move |b| (a, b)));
+        let mut worst = (None, 0.0);
+        for (a, b) in pairs {
+            let mut motion = (&free[a] + &free[b]).normalize() * TRIED;
+            for _ in 0..ROUNDS {
+                let changes = self.changes(&motion);
+                let off = DVector::from_fn(kept.len(), |i, _| changes[kept[i]] / self.size);
+                motion -= &inverse * off;
+            }
+            let changes = self.changes(&motion);
+            if kept.iter().any(|&row| changes[row].abs() > IMPLIED * self.size) {
+                // no such motion was found
+                continue;
+            }
+            for &row in &implied {
+                if changes[row].abs() > f64::max(worst.1, IMPLIED * self.size) {
+                    worst = (Some(self.rows[row].0), changes[row].abs());
+                }
+            }
+        }
+        Some((worst.0?, worst.1))
+    }
+}
