@@ -69,10 +69,23 @@ class Mesh:
             return cls.read_gmsh(path)
 
     @classmethod
-    def from_meshio(cls, mesh):
+    def from_meshio(cls, mesh, dimension=None):
         """A mesh of meshio: its cells of the highest dimension, its sets of points and of cells.
 
-        Coordinates along axes in which nothing extends are left out.
+        Sets of cells of any dimension, and the physical groups of files of Gmsh, are node sets; those of the cells themselves are
+        groups, too. Coordinates along axes in which nothing extends, but for round-off (1e-6 of the size), are left out.
+
+        Parameters
+        ----------
+        mesh : meshio.Mesh
+        dimension : int, optional
+            3 for faces in space that are meant to be a membrane.
+
+        Raises
+        ------
+        ValueError
+            Cells of unknown or several kinds; faces alone in space without ``dimension=3``; coordinates that extend along more axes than
+            ``dimension`` has.
         """
         known = {name: word for word, name in _MESHIO.items() if name}
         blocks = [block for block in mesh.cells if block.type in known]
@@ -88,20 +101,24 @@ class Mesh:
         number = np.full(len(mesh.points), -1)
         number[used] = np.arange(len(used))
         nodes = np.asarray(mesh.points, dtype=float)[used]
-        flat = [axis for axis in range(nodes.shape[1]) if axis >= highest and np.ptp(nodes[:, axis]) == 0.0]
-        nodes = np.delete(nodes, flat, axis=1)
+        nodes = _in_own_space(nodes, highest, dimension)
         sets = {}
+
+        def add(name, points):
+            kept = number[np.asarray(points, dtype=int).ravel()]
+            sets[name] = np.union1d(sets.get(name, []), kept[kept >= 0]).astype(int)
+
         for name, points in (mesh.point_sets or {}).items():
-            kept = number[np.asarray(points, dtype=int)]
-            sets[name] = kept[kept >= 0]
+            add(name, points)
         groups, first = {}, 0
         for place, block in enumerate(mesh.cells):
-            if block.type != kind:
-                continue
-            for name, members in (mesh.cell_sets or {}).items():
-                if members[place] is not None and len(members[place]):
-                    groups.setdefault(name, []).extend(first + np.asarray(members[place], dtype=int))
-            first += len(block.data)
+            for name, members in _named_cells(mesh, place, block):
+                add(name, block.data[members])
+                if block.type == kind:
+                    groups[name] = np.union1d(groups.get(name, []), first + members).astype(int)
+            if block.type == kind:
+                first += len(block.data)
+        sets = {name: nodes for name, nodes in sets.items() if len(nodes)}
         return cls(nodes, number[cells], known[kind], sets, groups)
 
     def to_meshio(self):
@@ -125,3 +142,32 @@ class Mesh:
         if groups:
             mesh["groups"] = groups
         return mesh
+
+
+def _named_cells(mesh, place, block):
+    """Names with the numbers of cells in one block of a mesh of meshio: its sets of cells, and the physical groups of Gmsh."""
+    for name, members in (mesh.cell_sets or {}).items():
+        # "gmsh:bounding_entities" holds tags of the geometry, not cells
+        if not name.startswith("gmsh:") and members[place] is not None and len(members[place]):
+            yield name, np.asarray(members[place], dtype=int)
+    physical = (mesh.cell_data or {}).get("gmsh:physical")
+    for name, (tag, dimension) in (mesh.field_data or {}).items() if physical is not None else ():
+        members = np.flatnonzero(np.asarray(physical[place]) == tag)
+        if dimension == block.dim and len(members):
+            yield name, members
+
+
+def _in_own_space(nodes, highest, dimension):
+    """Positions of the nodes of cells of dimension `highest` along the axes in which they extend."""
+    extent = np.ptp(nodes, axis=0)
+    axes = [axis for axis in range(nodes.shape[1]) if axis < highest or extent[axis] > 1e-6 * extent.max()]
+    if dimension is None and highest == 2 and len(axes) == 3:
+        raise ValueError(
+            "the mesh is of faces alone that are not in the plane z = constant: mesh the volume for a solid, or pass dimension=3 if a "
+            "membrane in space is meant"
+        )
+    if dimension is not None:
+        if not len(axes) <= dimension <= nodes.shape[1]:
+            raise ValueError(f"dimension is {dimension}: the nodes have {nodes.shape[1]} coordinates and extend along {len(axes)} axes")
+        axes = range(dimension)
+    return nodes[:, list(axes)]

@@ -1012,7 +1012,8 @@ def tie(
     to: str,
 ) -> dict:
     r"""Nodes of one body that are glued to another, whose mesh need not match: in all phases each moves with the point at
-    which it is. Name the nodes of the finer surface.
+    which it is. Of two surfaces either may be named: nodes of the finer one follow the coarser one, and those of a
+    deformable one a rigid one.
 
     Parameters
     ----------

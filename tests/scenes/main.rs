@@ -12,6 +12,7 @@ mod chambers;
 mod checkpoint_file;
 mod checkpoint_refused;
 mod compression;
+mod conformity;
 mod contact;
 mod contact_edges;
 mod contact_events;

@@ -111,12 +111,12 @@ fn indicators_within_their_limits() {
     let names: Vec<&str> = before.iter().map(|indicator| indicator.name).collect();
     let units = ["size", "mass", "density", "young", "wave-speed", "thickness"];
     assert_eq!(names[..6], units);
-    assert_eq!(names[6..], ["poisson", "pieces", "drawn-overlap"]);
+    assert_eq!(names[6..], ["poisson", "conformity", "pieces", "drawn-overlap"]);
     // E 5e4 over density 1000
     assert!((before[4].value - 50_f64.sqrt()).abs() < 1e-12);
     let motion = scene.simulate(&Settings::default(), &Sampling::phase_ends()).unwrap();
     let measured = &motion.report().indicators;
-    assert_eq!(measured[..9], before);
+    assert_eq!(measured[..10], before);
     let turn = measured.iter().find(|indicator| indicator.name == "turn").unwrap();
     assert!((turn.value - 3.1).abs() < 1e-3, "{turn}");
     assert_eq!((turn.limits, turn.unit, turn.verdict), ([0.0, 10.0], "degrees", Verdict::Fine));
@@ -348,19 +348,22 @@ fn too_stiff(warning: &str) -> f64 {
 
 /// How many times too stiff a coarse mesh is, against 81 x 17 nodes of quadratic triangles. Measured at nu = 0.3 (the true
 /// factor, the estimate): one triangle thick 3.43 and 3.42 (51 nodes long), two thick 1.90 and 1.76 (11 nodes long), four
-/// 1.24 and 1.20, eight 1.06 and 1.05; two rectangles 1.16 and 1.13. Where cells lock, it is a lower bound: at
+/// 1.24 and 1.20, eight 1.06 and 1.05; two rectangles 1.16 and 1.14. Where cells lock, it is a lower bound: at
 /// nu = 0.48 two triangles thick 5.0 and 2.3, eight 1.34 and 1.29.
 #[test]
 fn cells_too_coarse_for_bending() {
     for (cells, nodes, poisson, warns) in [
         (Cells::Triangles, [51, 2], 0.3, true),
         (Cells::Triangles, [11, 3], 0.3, true),
-        (Cells::Triangles, [21, 5], 0.3, false),
+        (Cells::Triangles, [21, 5], 0.3, true),
+        (Cells::Triangles, [41, 9], 0.3, false),
         (Cells::Crossed, [11, 3], 0.3, true),
-        (Cells::Crossed, [21, 5], 0.48, false),
+        (Cells::Crossed, [41, 9], 0.48, false),
         (Cells::Rectangles, [6, 2], 0.3, true),
-        (Cells::Rectangles, [11, 3], 0.3, false),
-        (Cells::Triangles, [41, 9], 0.45, false),
+        (Cells::Rectangles, [11, 3], 0.3, true),
+        (Cells::Rectangles, [21, 5], 0.3, false),
+        (Cells::Triangles, [41, 9], 0.45, true),
+        (Cells::Triangles, [81, 17], 0.45, false),
         (Cells::Triangles, [41, 9], 0.48, true),
         (Cells::Triangles6, [11, 3], 0.48, false),
         (Cells::Rectangles9, [6, 2], 0.48, false),
@@ -371,20 +374,21 @@ fn cells_too_coarse_for_bending() {
             assert_eq!(warnings, NONE, "{cells:?} {nodes:?} {poisson}");
             continue;
         }
-        only(&warnings, &["limit: 1.25 times", "at t = 1 s", "\"triangles6\"", "times as fine"]);
+        only(&warnings, &["limit: 1.1 times", "at t = 1 s", "\"triangles6\"", "times as fine"]);
         let fine = cantilever(Cells::Triangles6, [81, 17], poisson, Strain::Cauchy).0;
         let part = too_stiff(&warnings[0]) / (fine / sinks);
         // one decimal is told; one cell through the thickness of a short beam is told least well, 0.81 of it
         assert!((0.8..1.05).contains(&part), "{cells:?} {nodes:?} {poisson}: {part}");
     }
     let green = |nodes| cantilever(Cells::Triangles, nodes, 0.3, Strain::Green).1;
-    only(&green([11, 3]), &["1.8 times too stiff"]);
-    assert_eq!(green([21, 5]), NONE);
+    only(&green([11, 3]), &["1.76 times too stiff"]);
+    assert_eq!(green([41, 9]), NONE);
     for (cells, nodes, warns) in [
         (SolidCells::Tetrahedra, [11, 3, 3], true),
-        (SolidCells::Tetrahedra, [21, 5, 5], false),
+        (SolidCells::Tetrahedra, [21, 5, 5], true),
         (SolidCells::Hexahedra, [6, 2, 2], true),
-        (SolidCells::Hexahedra, [11, 3, 3], false),
+        (SolidCells::Hexahedra, [11, 3, 3], true),
+        (SolidCells::Hexahedra, [21, 5, 5], false),
         (SolidCells::Tetrahedra10, [6, 2, 2], false),
         (SolidCells::Hexahedra20, [6, 2, 2], false),
         (SolidCells::Hexahedra27, [6, 2, 2], false),
@@ -399,6 +403,35 @@ fn cells_too_coarse_for_bending() {
             true => only(&warnings, &["too coarse", "\"tetrahedra10\""]),
             false => assert_eq!(warnings, NONE, "{cells:?}"),
         }
+    }
+}
+
+/// Two layers of hexahedra in bending, the nearer to incompressible the stiffer, against quadratic ones of half the size (at 0.49 with
+/// a linear dilatation). Measured, the true factor and the estimate: 1.146 and 1.129 at nu = 0.3, 1.285 and 1.219 at 0.44, 1.316 and
+/// 1.239 at 0.45, 1.769 and 1.543 at 0.49; jumps alone had 1.204 at 0.45 and 1.264 at 0.49.
+#[test]
+fn hexahedra_that_resist_a_change_of_volume() {
+    let bent = |cells: SolidCells, nodes: [usize; 3], poisson: f64, dilatation: Dilatation| {
+        let mesh = Mesh::cuboid([0.1, 0.02, 0.02], nodes, cells).unwrap();
+        let end = mesh.sets()["right"].clone();
+        let pull = Phase::until(1.0).hold("left").load_total("right", [0.0, 0.0, -1e-5]);
+        let body = Body::new(mesh, Material { poisson, ..SOFT }).dilatation(dilatation);
+        let scene = Scene::new(body.build().unwrap()).phase(pull);
+        let rest = scene.equilibrium(&Statics::default()).unwrap();
+        let sinks = end.iter().map(|node| -rest.displacements()[3 * node + 2]).sum::<f64>();
+        let indicators = rest.trajectory().report().indicators.clone();
+        let told = indicators.into_iter().find(|told| told.name == "stiffness-of-cells");
+        (sinks / end.len() as f64, told)
+    };
+    for (poisson, least) in [(0.3, 0.97), (0.44, 0.93), (0.45, 0.92), (0.49, 0.85)] {
+        let (fine, _) = match poisson > 0.48 {
+            true => bent(SolidCells::Hexahedra27, [11, 5, 5], poisson, Dilatation::Linear),
+            false => bent(SolidCells::Hexahedra20, [11, 5, 5], poisson, Dilatation::AtPoints),
+        };
+        let (coarse, told) = bent(SolidCells::Hexahedra, [11, 3, 3], poisson, Dilatation::AtPoints);
+        let told = told.unwrap();
+        let part = told.value / (fine / coarse);
+        assert!((least..1.0).contains(&part) && told.is_doubtful(), "{poisson}: {part} {told}");
     }
 }
 

@@ -1,5 +1,6 @@
 //! Whether the cells are fine enough for the strains that they show.
 
+use super::bending::stiffness;
 use super::mesh::quadratic_cells;
 use crate::base::input::told;
 use crate::dynamics::report::Indicator;
@@ -7,7 +8,7 @@ use crate::dynamics::trajectory::Sample;
 use crate::elements::body::Body;
 
 /// Largest factor by which its cells may make a body too stiff.
-const MOST_STIFF: f64 = 1.25;
+const MOST_STIFF: f64 = 1.1;
 /// Samples count if they have at least this part of the largest strain energy of all samples, ...
 const LARGE: f64 = 0.5;
 /// ... and this part of the largest energy of any kind, and this mean strain: smaller strains may be
@@ -16,7 +17,8 @@ const SEEN: f64 = 1e-3;
 const LEAST_STRAIN: f64 = 1e-8;
 
 /// Too few linear cells where the strain varies, as through the thickness of a beam in bending. The strain
-/// energy of the jumps between cells is an effect of the mesh, which makes the body that much too stiff.
+/// energy of the jumps between cells is an effect of the mesh, which makes the body that much too stiff (or more, as jumps do not show
+/// all of it: see [`stiffness`]).
 /// `energy_scale` (J) is that of the motion.
 pub(super) fn coarse(body: &Body, energy_scale: f64, samples: &[&Sample]) -> Option<Indicator> {
     let help = quadratic_cells(body.mesh().kind())?;
@@ -30,8 +32,7 @@ pub(super) fn coarse(body: &Body, energy_scale: f64, samples: &[&Sample]) -> Opt
     let counts = samples.iter().filter(|sample| energy(sample) >= LARGE * largest);
     let jumps = counts.filter_map(|sample| Some((body.strain_jumps(&sample.u)?, sample.time)));
     let (jumps, time) = jumps.max_by(|(a, _), (b, _)| a.total_cmp(b))?;
-    // without jumps, the same displacements would need only the rest of the energy
-    let stiff = 1.0 / (1.0 - jumps.min(0.99));
+    let stiff = stiffness(body, jumps);
     let within = || {
         format!(
             "cells are fine enough for their strains: the body is some {stiff:.2} times too stiff (limit: {MOST_STIFF} times)"
@@ -41,7 +42,7 @@ pub(super) fn coarse(body: &Body, energy_scale: f64, samples: &[&Sample]) -> Opt
         let finer = ((stiff - 1.0) / (MOST_STIFF - 1.0)).sqrt();
         format!(
             "cells are too coarse for their strains: at t = {} s {:.0} % of the strain energy is in jumps between \
-             cells, so the body is some {stiff:.1} times too stiff or more (limit: {MOST_STIFF} times); take {help}, or a \
+             cells, so the body is some {stiff:.2} times too stiff or more (limit: {MOST_STIFF} times); take {help}, or a \
              mesh {:.1} times as fine where it bends",
             told(time),
             100.0 * jumps,

@@ -10,10 +10,11 @@
 //! | [`gas`]: least absolute pressure; orifices beside their chambers | 5e4 Pa; a face of a cube as large |
 //! | [`mesh`]: Poisson's ratio of linear cells | 0.45 |
 //! | [`mesh`]: pieces that nothing joins | one piece |
+//! | [`conformity`]: hanging nodes, and nodes in the same position that are not one | none |
 //! | [`overlap`]: how deep the body overlaps itself, as drawn and as it moves | a twentieth of a cell |
 //! | [`strain`]: how far cells turn under Cauchy strain | 10 degrees |
 //! | [`strain`]: cells turned inside out under Cauchy strain | none |
-//! | [`coarse`]: how much too stiff linear cells are for the strains that they show | 1.25 times |
+//! | [`coarse`]: how much too stiff linear cells are for the strains that they show | 1.1 times |
 //! | [`touch`]: how deep nodes are inside obstacles, at the start and later | half a cell, 2 % of the body |
 //! | [`touch`]: obstacles with friction that are touched in statics, where it does not act | none |
 //! | [`touch`]: obstacles that act and are never touched | none |
@@ -44,8 +45,10 @@
 //! | [`symmetry`]: how far the motion is from one in a plane (+) | 1 % |
 //! | [`symmetry`]: how far the motion is from its mirror images (+) | 0.1 % |
 
+mod bending;
 mod chamber;
 mod coarse;
+mod conformity;
 mod deformed;
 mod each;
 mod felt;
@@ -104,7 +107,8 @@ impl Scene {
         let body = self.body();
         let of_body = |part: Part| {
             let measured = units::units(self, part.body).into_iter();
-            named(part.name, body, measured.chain(mesh::locking(part.body)))
+            let measured = measured.chain(mesh::locking(part.body));
+            named(part.name, body, measured.chain(conformity::conformity(part.body)))
         };
         let each = body.parts().flat_map(of_body);
         each.chain(units::of_scene(self))

@@ -1,15 +1,16 @@
 //! Whether a body passes through itself, or pieces of it through each other.
 
 use super::size::cell_sizes;
-use super::skin::{Skin, points};
+use super::skin::{Skin, points, position};
 use crate::base::grid::Grid;
 use crate::base::input::{InputError, told};
+use crate::base::vector::{difference, norm};
 use crate::dynamics::report::Indicator;
 use crate::dynamics::trajectory::Sample;
-use crate::elements::basis::shares_in;
+use crate::elements::basis::{closest, shares_in};
 use crate::elements::body::{Body, Part};
 use crate::elements::mesh::CellKind;
-use crate::scene::forces::{SurfacePoint, Touch};
+use crate::scene::forces::{SurfacePoint, Touch, pieces};
 use crate::scene::timeline::Scene;
 
 /// How deep a point of the boundary may be within a cell of another part of the body, relative to the size of
@@ -62,6 +63,24 @@ impl<'a> Overlaps<'a> {
 
     /// All points within cells that share no node with theirs, under the displacements `u` (m).
     fn entries(&mut self, u: &[f64]) -> Vec<Entry> {
+        self.entries_but(u, Self::is_near)
+    }
+
+    /// All points of the undeformed shape within cells that are not theirs. (As a body deforms, edges of neighbours that are
+    /// curved may overlap a little.)
+    fn drawn_entries(&mut self) -> Vec<Entry> {
+        let u = vec![0.0; self.body.dofs()];
+        self.entries_but(&u, |overlaps, point, cell| {
+            overlaps.points[point].nodes().all(|(node, _)| cell.contains(&node))
+        })
+    }
+
+    /// All points within cells, but those that `is_own` has, under the displacements `u` (m).
+    fn entries_but(
+        &mut self,
+        u: &[f64],
+        is_own: impl Fn(&Self, usize, &[usize]) -> bool,
+    ) -> Vec<Entry> {
         let (mesh, d) = (self.body.mesh(), self.body.dimension());
         let now: Vec<f64> = mesh.positions().iter().zip(u).map(|(x, u)| x + u).collect();
         if now.iter().any(|x| !x.is_finite()) {
@@ -83,7 +102,7 @@ impl<'a> Overlaps<'a> {
                 }
             }
             grid.each_within(&corners, |point| {
-                if !self.is_near(point, cell)
+                if !is_own(self, point, cell)
                     && let Some(shares) = shares_in((*kind, d), &now, cell, &places[point][..d])
                 {
                     met.push((point, number, shares));
@@ -105,10 +124,33 @@ impl<'a> Overlaps<'a> {
             !is_redirected && !inverted.contains(cell)
         });
         let entry = |(point, cell, shares): (usize, usize, Vec<(usize, f64)>)| {
-            let depth = self.skin.depth(&shares, &now);
+            // the boundary nearest to a point in a neighbour is its own
+            let depth = match self.is_near(point, self.cells[cell].1) {
+                true => self.depth_in_cell(cell, &places[point]),
+                false => self.skin.depth(&shares, &now),
+            };
             Entry { point, cell, depth, limit: self.limits[cell] }
         };
         met.into_iter().map(entry).collect()
+    }
+
+    /// The distance (m) of a place in a cell from its undeformed faces, which are taken as flat between their nodes.
+    fn depth_in_cell(&self, cell: usize, x: &[f64; 3]) -> f64 {
+        let (mesh, (kind, nodes)) = (self.body.mesh(), self.cells[cell]);
+        let faces = kind.faces().iter().map(|face| face.iter().map(|&k| nodes[k]).collect());
+        let away = |face: Vec<usize>| {
+            let corners = |piece: &[usize]| -> Vec<[f64; 3]> {
+                piece.iter().map(|&k| position(mesh, face[k])).collect()
+            };
+            let of_piece = |(piece, _): (&[usize], f64)| {
+                let corners = corners(piece);
+                let shares = closest(&corners, x);
+                let there = |i: usize| corners.iter().zip(shares).map(|(c, s)| s * c[i]).sum();
+                norm(&difference(&std::array::from_fn(there), x))
+            };
+            pieces(mesh.face_kind(&face)).map(of_piece).fold(f64::INFINITY, f64::min)
+        };
+        faces.map(away).fold(f64::INFINITY, f64::min)
     }
 
     /// Whether a cell has a node of a point, or shares a node with a cell that has one.
@@ -176,7 +218,7 @@ impl<'a> Overlaps<'a> {
 /// A mesh that overlaps itself in its undeformed shape.
 pub(super) fn drawn(body: &Body) -> Option<Indicator> {
     let mut overlaps = Overlaps::new(body)?;
-    let entries = overlaps.entries(&vec![0.0; body.dofs()]);
+    let entries = overlaps.drawn_entries();
     let deepest = Overlaps::deepest(&entries);
     let [depth, limit] = overlaps.numbers(deepest.as_ref());
     let within = || {
@@ -242,7 +284,7 @@ pub(super) fn overlap(scene: &Scene, samples: &[&Sample]) -> Option<Indicator> {
     let body = scene.body();
     let mut overlaps = Overlaps::new(body)?;
     let mut is_drawn = vec![false; overlaps.points.len()];
-    for entry in overlaps.entries(&vec![0.0; body.dofs()]) {
+    for entry in overlaps.drawn_entries() {
         is_drawn[entry.point] |= entry.is_beyond();
     }
     let (mut first, mut most) = (None, None::<(Entry, &Sample, Vec<Entry>)>);

@@ -1,5 +1,8 @@
 //! Sizes of cells.
 
+use nalgebra::SVector;
+
+use super::skin::position;
 use crate::elements::body::{Body, Part};
 
 /// The size (m) of each cell: the edge of a square or cube that is cut into such cells, or that is such a cell.
@@ -19,6 +22,21 @@ pub(super) fn block_volumes(body: &Body) -> impl Iterator<Item = f64> {
     let is_simplex = kind.faces().len() == kind.dimension() + 1;
     let parts = if is_simplex { [1.0, 1.0, 2.0, 6.0][kind.dimension()] } else { 1.0 };
     body.cell_volumes().into_iter().map(move |volume| parts * volume)
+}
+
+/// The least length (m) of each cell of a single body, nearly: of its shortest edge, or of its height over the others.
+pub(super) fn least_cell_lengths(body: &Body) -> Vec<f64> {
+    let (mesh, section) = (body.mesh(), body.section());
+    let position = |node: usize| SVector::<f64, 3>::from(position(mesh, node));
+    let of_cell = |(cell, volume): (&[usize], f64)| {
+        let edges = mesh.kind().edges().iter();
+        let lengths = edges.map(|edge| (position(cell[edge[1]]) - position(cell[edge[0]])).norm());
+        let (least, most) = lengths.fold((f64::INFINITY, 0.0_f64), |(least, most), length| {
+            (least.min(length), most.max(length))
+        });
+        least.min(volume / section / most.powi(mesh.kind().dimension() as i32 - 1))
+    };
+    mesh.cells().zip(block_volumes(body)).map(of_cell).collect()
 }
 
 /// For each node the size (m) of the smallest of its cells. Infinite for a node without cells.

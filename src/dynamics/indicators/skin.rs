@@ -137,6 +137,6 @@ fn distance(a: &[f64; 3], b: &[f64; 3]) -> f64 {
 }
 
 /// Natural position of a node; components beyond the dimension are 0.
-fn position(mesh: &Mesh, node: usize) -> [f64; 3] {
+pub(super) fn position(mesh: &Mesh, node: usize) -> [f64; 3] {
     weighted([(node, 1.0)].into_iter(), mesh.positions(), mesh.dimension())
 }

@@ -256,6 +256,7 @@ impl Body {
         let pattern = Arc::new(NodePattern::new(mesh.node_count(), mesh.cells().chain(frame)));
         recipe.dilatation.check(mesh.kind(), mesh.dimension(), plane)?;
         let elements = elements(&mesh, section, recipe.dilatation, &pattern)?;
+        mesh.check_sides()?;
         if let Some(given) = &recipe.material.mass {
             let density = given.mass / elements.volumes().iter().sum::<f64>();
             recipe.material.material.density = density;

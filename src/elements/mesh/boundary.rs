@@ -1,8 +1,7 @@
 //! Boundary extraction: the faces that belong to one cell only.
 
-use std::ops::Range;
-
 use super::{Block, FaceKind, Mesh};
+use crate::base::input::{InputError, told};
 
 /// A face of a cell: a node in 1D, an edge in 2D, a face in 3D.
 ///
@@ -39,10 +38,65 @@ impl Mesh {
     /// The faces of cells that belong to one cell only, whatever the dimension of space: those on the rim of
     /// a membrane, the ends of a string.
     pub(crate) fn outer_faces(&self) -> Vec<Face> {
-        let of_block = |block: &Block| -> Vec<Face> {
-            self.faces_of_one_cell(block).map(|face| block.face(face).collect()).collect()
+        self.outer_faces_of_cells().into_iter().map(|(_, face)| face).collect()
+    }
+
+    /// The same faces, each with the cell that it belongs to.
+    pub(crate) fn outer_faces_of_cells(&self) -> Vec<(usize, Face)> {
+        let (mut all, mut first) = (Vec::new(), 0);
+        for block in &self.blocks {
+            let cell = |face| first + face / block.kind.faces().len();
+            let once = self.faces_of_one_cell(block);
+            all.extend(once.map(|face| (cell(face), block.face(face).collect())));
+            first += block.cells().len();
+        }
+        all
+    }
+
+    /// Checks that cells that fill their space, and whose volumes are above 0, meet at their faces from opposite sides.
+    ///
+    /// # Errors
+    /// Cells that lie on the same side of a face that they have in common, so that they overlap.
+    pub(crate) fn check_sides(&self) -> Result<(), InputError> {
+        let (mut count, mut first) = (0, None);
+        for block in self.blocks.iter().filter(|block| block.kind.dimension() == self.dimension) {
+            let per_cell = block.kind.faces().len();
+            block.each_shared_face(self.node_count(), |faces| {
+                let opposite = match *faces {
+                    [a, b] => block.are_opposite(a, b),
+                    _ => false,
+                };
+                if !opposite {
+                    count += 1;
+                    let cells = faces[..2].iter().map(|face| face / per_cell).collect::<Vec<_>>();
+                    let place = (cells, block.face(faces[0]).collect::<Vec<_>>());
+                    if first.as_ref().is_none_or(|first| place < *first) {
+                        first = Some(place);
+                    }
+                }
+            });
+        }
+        let Some((cells, face)) = first else { return Ok(()) };
+        let nodes: Vec<usize> = face.iter().map(|node| node + 1).collect();
+        let help = format!(
+            "cells {} and {} are on the same side of the face that they have in common (nodes {nodes:?}, around {} m), so that they \
+             overlap, with twice the mass and stiffness there: move the node that is on the wrong side of the face, or leave out the \
+             cell that is too many",
+            cells[0] + 1,
+            cells[1] + 1,
+            self.told_middle(&face)
+        );
+        let input = format!("folded mesh: faces with cells on one side in the {}", self.origin());
+        Err(InputError::new(input, count, help))
+    }
+
+    /// The mean position of nodes, for messages.
+    pub(crate) fn told_middle(&self, nodes: &[usize]) -> String {
+        let mean = |axis: usize| {
+            let sum: f64 = nodes.iter().map(|&node| self.position(node)[axis]).sum();
+            told(sum / nodes.len() as f64)
         };
-        self.blocks.iter().flat_map(of_block).collect()
+        format!("({})", (0..self.dimension).map(mean).collect::<Vec<_>>().join(", "))
     }
 
     /// The shape of a face of the boundary.
@@ -74,12 +128,42 @@ impl Block {
     /// Numbers of the faces that belong to one cell only, ascending; the mesh has `nodes` nodes.
     fn faces_of_one_cell(&self, nodes: usize) -> Vec<usize> {
         let mut once: Vec<usize> = Vec::new();
-        let (offsets, faces) = self.faces_by_smallest_node(nodes);
-        for range in offsets.windows(2) {
-            once.extend(without_match(&faces[range[0]..range[1]], |face| self.face(face)));
-        }
+        self.each_face(nodes, |faces| once.extend(faces.iter().filter(|_| faces.len() == 1)));
         once.sort_unstable();
         once
+    }
+
+    /// Calls `see` with the numbers, ascending, of the faces that have the same nodes, where several do.
+    fn each_shared_face(&self, nodes: usize, mut see: impl FnMut(&[usize])) {
+        self.each_face(nodes, |faces| {
+            if faces.len() > 1 {
+                see(faces);
+            }
+        });
+    }
+
+    /// Calls `see` with the numbers, ascending, of all faces that have the same nodes.
+    fn each_face(&self, nodes: usize, mut see: impl FnMut(&[usize])) {
+        let (offsets, faces) = self.faces_by_smallest_node(nodes);
+        for range in offsets.windows(2) {
+            each_match(&faces[range[0]..range[1]], |face| self.face(face), &mut see);
+        }
+    }
+
+    /// Whether the cells of two faces with the same nodes lie on opposite sides: their corners run the other way round then.
+    fn are_opposite(&self, a: usize, b: usize) -> bool {
+        let count = self.kind.faces().len();
+        let dimension = self.kind.dimension();
+        if dimension == 1 {
+            return a % count != b % count; // the left end of one and the right end of the other
+        }
+        let corners = FaceKind::of(dimension, self.kind.faces()[0].len()).corners();
+        let [a, b] = [a, b].map(|face| self.face(face).take(corners).collect::<Vec<_>>());
+        if corners == 2 {
+            return a[0] != b[0];
+        }
+        let Some(start) = b.iter().position(|node| *node == a[0]) else { return false };
+        (0..corners).all(|k| a[k] == b[(start + corners - k) % corners])
     }
 
     /// Nodes of face `face`; all faces of a cell are counted before those of the next.
@@ -111,23 +195,29 @@ impl Block {
     }
 }
 
-/// Those of `faces` that have the same nodes as no other one of them.
-fn without_match<I: Iterator<Item = usize>>(
+/// Calls `see` with each group of `faces` that have the same nodes.
+fn each_match<I: Iterator<Item = usize>>(
     faces: &[usize],
     nodes: impl Fn(usize) -> I,
-) -> Vec<usize> {
+    mut see: impl FnMut(&[usize]),
+) {
     // the nodes of each face, ascending: keys one after the other, of any length each
     let (mut all, mut keys) = (Vec::new(), Vec::with_capacity(faces.len()));
     for &face in faces {
         let start = all.len();
         all.extend(nodes(face));
         all[start..].sort_unstable();
-        keys.push((start..all.len(), face));
+        keys.push((start, face));
     }
-    let key = |range: &Range<usize>| &all[range.clone()];
-    keys.sort_unstable_by(|(a, _), (b, _)| key(a).cmp(key(b)));
-    let same = keys.chunk_by(|(a, _), (b, _)| key(a) == key(b));
-    same.filter(|faces| faces.len() == 1).map(|faces| faces[0].1).collect()
+    let key = |k: usize| &all[keys[k].0..keys.get(k + 1).map_or(all.len(), |next| next.0)];
+    let mut order: Vec<usize> = (0..keys.len()).collect();
+    order.sort_unstable_by(|&a, &b| key(a).cmp(key(b)).then(a.cmp(&b)));
+    let mut same = Vec::new();
+    for group in order.chunk_by(|&a, &b| key(a) == key(b)) {
+        same.clear();
+        same.extend(group.iter().map(|&k| keys[k].1));
+        see(&same);
+    }
 }
 
 #[cfg(test)]
@@ -167,7 +257,12 @@ mod tests {
             [0, 10, 11, 12, 13, 14, 15, 16],
             [16, 15, 14, 13, 12, 11, 10, 0],
         ];
-        let alone = super::without_match(&[0, 1, 2, 3], |face| faces[face].into_iter());
-        assert_eq!(alone, [0, 1]);
+        let mut groups = Vec::new();
+        super::each_match(
+            &[0, 1, 2, 3],
+            |face| faces[face].into_iter(),
+            |same| groups.push(same.to_vec()),
+        );
+        assert_eq!(groups, [vec![0], vec![1], vec![2, 3]]);
     }
 }

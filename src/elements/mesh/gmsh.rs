@@ -51,6 +51,7 @@ impl Mesh {
         let file = file.map_err(|error| format!("it cannot be read: {error}"));
         file.and_then(Contents::read)
             .and_then(|contents| build(&contents))
+            .map(|mesh| Self { file: Some(path.into()), ..mesh })
             .map_err(|problem| InputError::new("mesh file", path.display(), problem))
     }
 }

@@ -14,6 +14,8 @@ mod select;
 mod surface;
 
 use std::collections::BTreeMap;
+use std::path::Path;
+use std::sync::Arc;
 
 pub use boundary::Face;
 pub use cell::CellKind;
@@ -46,6 +48,10 @@ pub struct Mesh {
     cell_groups: BTreeMap<String, Vec<usize>>,
     /// Nodes of a plane of symmetry at which it was cut.
     plane: Vec<usize>,
+    /// The file that it was read from, for messages.
+    file: Option<Arc<Path>>,
+    /// What was changed as it was read.
+    notes: Vec<String>,
 }
 
 /// Cells of one kind. Different blocks share no nodes.
@@ -129,7 +135,16 @@ impl Mesh {
         let (sets, cell_groups) = (BTreeMap::from([("all".into(), all)]), BTreeMap::new());
         let blocks = vec![Block { kind, connectivity, is_surface: false }];
         let plane = Vec::new();
-        let mut mesh = Self { dimension, positions, blocks, sets, cell_groups, plane };
+        let mut mesh = Self {
+            dimension,
+            positions,
+            blocks,
+            sets,
+            cell_groups,
+            plane,
+            file: None,
+            notes: Vec::new(),
+        };
         mesh.sets.insert("boundary".into(), mesh.find_boundary_nodes());
         mesh
     }
@@ -171,7 +186,16 @@ impl Mesh {
     ) -> Self {
         let mut mesh = Self::named(self.dimension, positions, kind, connectivity);
         mesh.blocks[0].is_surface = self.blocks[0].is_surface;
+        mesh.file.clone_from(&self.file);
         mesh
+    }
+
+    /// The mesh in words, with the file that it was read from.
+    pub(crate) fn origin(&self) -> String {
+        match &self.file {
+            Some(file) => format!("mesh of file {}", file.display()),
+            None => "mesh".into(),
+        }
     }
 
     /// Names nodes (from 0).
@@ -327,6 +351,8 @@ impl Mesh {
             sets: BTreeMap::new(),
             cell_groups: BTreeMap::new(),
             plane: Vec::new(),
+            file: None,
+            notes: Vec::new(),
         };
         let mut boundary = Vec::new();
         for (name, mesh) in bodies {
@@ -353,6 +379,11 @@ impl Mesh {
         joined.sets.insert("all".into(), (0..joined.node_count()).collect());
         joined.sets.insert("boundary".into(), boundary);
         joined
+    }
+
+    /// Notes on what was changed as it was read from a file, for people: triangles without an area that were left out, for one.
+    pub fn notes(&self) -> &[String] {
+        &self.notes
     }
 
     /// The named node sets.

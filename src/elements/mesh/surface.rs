@@ -1,6 +1,7 @@
 //! Closed surfaces of triangles, which a rigid solid lies within.
 
 mod file;
+mod mend;
 #[cfg(test)]
 mod tests;
 

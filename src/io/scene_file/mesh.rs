@@ -187,6 +187,7 @@ pub(super) fn mesh(
 ) -> Result<Mesh, Error> {
     let table = value.table(&MESH)?;
     let mesh = generate(&table, auto).map_err(|error| table.blame(error))?;
+    mesh.notes().iter().for_each(|note| value.source.note(format!("{}: {note}", mesh.origin())));
     let mesh = match dimension {
         Some(dimension) => placed(mesh, dimension)?,
         None => mesh,

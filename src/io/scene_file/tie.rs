@@ -8,8 +8,8 @@ use crate::scene::timeline::Scene;
 
 pub(super) const TIE: TableKeys = TableKeys::new(
     "[[tie]]",
-    "Nodes of one body that are glued to another, whose mesh need not match: in all phases each moves with the point at which it is. Name \
-     the nodes of the finer surface.",
+    "Nodes of one body that are glued to another, whose mesh need not match: in all phases each moves with the point at which it is. Of \
+     two surfaces either may be named: nodes of the finer one follow the coarser one, and those of a deformable one a rigid one.",
     &[
         Key::new("nodes", Holds::Nodes, "the nodes").required(),
         Key::new("to", Holds::Text, "the name of the body that they are glued to").required(),

@@ -178,8 +178,9 @@ impl Scene {
     /// Glues nodes to another of several [bodies](Body::join): in all phases each moves with the point of the body
     /// at which it is in the undeformed shape, by the shape functions there.
     ///
-    /// The meshes need not match. Name the nodes of the finer surface: those of the other one are then free
-    /// between them. A node that touches the body nowhere may be apart from it by a fifth of an edge, as where one
+    /// The meshes need not match. Where `nodes` are all those of faces, either side may be named: nodes of the side with more of them
+    /// follow the faces of the other one, and nodes of a deformable body those of a rigid one, so that none is left free between
+    /// others. Nodes that make up no face follow the body. A node that touches the body nowhere may be apart from it by a fifth of an edge, as where one
     /// of two curved surfaces has longer edges; the gap stays as it is.
     ///
     /// ```

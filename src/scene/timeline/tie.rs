@@ -1,6 +1,11 @@
 //! Ties: nodes of one body glued to another body.
 
+mod facing;
+
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
+
+use facing::facing;
 
 use crate::base::input::InputError;
 use crate::base::vector::norm;
@@ -39,33 +44,73 @@ impl Tie {
     }
 }
 
-/// The constraints by which `nodes` move with the points of the body with the name `to` at which they are.
+/// Nodes of a body (among those of all) by numbers, each with the nodes that it follows and their shares.
+type Rows = BTreeMap<usize, Vec<(usize, f64)>>;
+
+/// The constraints by which `nodes` move with the points of the body with the name `to` at which they are, or, where that is the finer
+/// or the softer side, its nodes with points of their faces: see [`Scene::tie`](super::Scene::tie).
 ///
 /// # Errors
 /// Nodes or a body that do not exist, nodes of the body itself, nodes that are not at it.
 fn tied(body: &Body, nodes: &Selection, to: &str) -> Result<Arc<[Constraint]>, InputError> {
     let to = body.part_named(to, "body of a tie")?;
     let target = Target::new(&to);
-    let mut constraints = Vec::new();
+    let (mut rows, mut owners) = (Rows::new(), BTreeMap::new());
     for node in body.mesh().select(nodes)? {
         if to.nodes.contains(&node) {
             let help =
                 format!("it is a node of body \"{}\" itself: name those of another body", to.name);
             return Err(InputError::new("node of a tie", node + 1, help));
         }
-        let shares = target.shares_at(node, body.mesh().position(node))?;
+        rows.insert(node, target.shares_at(node, body.mesh().position(node))?);
+        let owner = body.part_of(node);
+        owners.entry(owner.nodes.start).or_insert(owner);
+    }
+    for own in owners.values() {
+        turn_round(own, &to, &mut rows)?;
+    }
+    let mut constraints = Vec::new();
+    for (node, shares) in rows {
         // rows of the same two nodes are the same, whichever of them was named
-        let is_first = shares.iter().all(|(other, _)| node < to.nodes.start + other);
+        let is_first = shares.iter().all(|(other, _)| node < *other);
         let sign = if is_first { 1.0 } else { -1.0 };
         for &axis in Axis::all(body.dimension()) {
-            let others = shares
-                .iter()
-                .map(|(other, share)| (to.nodes.start + other + 1, axis, -sign * share));
+            let others = shares.iter().map(|(other, share)| (other + 1, axis, -sign * share));
             let terms = [(node + 1, axis, sign)].into_iter().chain(others).collect();
             constraints.push(Constraint { what: Constrained::Row(terms), how: Motion::Hold });
         }
     }
     Ok(constraints.into())
+}
+
+/// Has nodes of the body `to` follow faces of `own` that all nodes of are tied, where these are the coarser or the rigid side.
+///
+/// Nodes of a coarse surface that follow a fine one leave its nodes between them free: there it bulges, and the joint is too soft.
+fn turn_round(own: &Part, to: &Part, rows: &mut Rows) -> Result<(), InputError> {
+    let first = own.nodes.start;
+    let mut faces = own.body.mesh().boundary_faces();
+    faces.retain(|face| face.iter().all(|node| rows.contains_key(&(first + node))));
+    let named: BTreeSet<usize> = faces.iter().flatten().map(|node| first + node).collect();
+    let followers = facing(own.body, &faces, to.body);
+    let [own_is_rigid, to_is_rigid] =
+        [own, to].map(|part| part.body.substances().all(|substance| substance.is_rigid));
+    let are_to_follow = match (own_is_rigid, to_is_rigid) {
+        (true, false) => !followers.is_empty(),
+        (false, false) => followers.len() > named.len(),
+        _ => false,
+    };
+    if !are_to_follow {
+        return Ok(());
+    }
+    let followers: BTreeSet<usize> = followers.iter().map(|node| to.nodes.start + node).collect();
+    // named nodes between a follower and a node beside the faces stay where they were glued
+    let is_held = |shares: &[(usize, f64)]| shares.iter().all(|(on, _)| followers.contains(on));
+    rows.retain(|node, shares| !(named.contains(node) && is_held(shares)));
+    let target = Target::new(own);
+    for node in followers {
+        rows.insert(node, target.shares_at(node, to.body.mesh().position(node - to.nodes.start))?);
+    }
+    Ok(())
 }
 
 /// A body that nodes are glued to.
@@ -86,10 +131,10 @@ impl<'a> Target<'a> {
         Self { part, facets }
     }
 
-    /// The nodes of the body with their shares in the point where `node`, at `x` (m), is glued.
+    /// The nodes of the body (among those of all) with their shares in the point where `node`, at `x` (m), is glued.
     fn shares_at(&self, node: usize, x: &[f64]) -> Result<Vec<(usize, f64)>, InputError> {
         if let Ok(shares) = self.part.body.shares_at(x) {
-            return Ok(without_round_off(shares.into_iter()));
+            return Ok(self.without_round_off(shares.into_iter()));
         }
         let x: [f64; 3] = std::array::from_fn(|i| x.get(i).copied().unwrap_or(0.0));
         let placed = self.facets.iter().map(|facet| {
@@ -103,7 +148,7 @@ impl<'a> Target<'a> {
         let nearest = placed.min_by(|(a, ..), (b, ..)| a.total_cmp(b));
         match nearest {
             Some((gap, facet, shares, edge)) if gap <= MOST_APART * edge => {
-                Ok(without_round_off(facet.iter().copied().zip(shares)))
+                Ok(self.without_round_off(facet.iter().copied().zip(shares)))
             }
             nearest => {
                 let (gap, edge) =
@@ -123,18 +168,20 @@ impl<'a> Target<'a> {
         }
     }
 
+    /// The shares that are not 0. A node by itself has all, so that its row is the same from whichever side it was named.
+    fn without_round_off(&self, shares: impl Iterator<Item = (usize, f64)>) -> Vec<(usize, f64)> {
+        let first = self.part.nodes.start;
+        let some = shares.filter(|(_, share)| share.abs() > NO_SHARE);
+        let some: Vec<_> = some.map(|(node, share)| (first + node, share)).collect();
+        match some[..] {
+            [(node, _)] => vec![(node, 1.0)],
+            _ => some,
+        }
+    }
+
     fn position(&self, node: usize) -> [f64; 3] {
         let x = self.part.body.mesh().position(node);
         std::array::from_fn(|i| x.get(i).copied().unwrap_or(0.0))
-    }
-}
-
-/// The shares that are not 0. A node by itself has all, so that its row is the same from whichever side it was named.
-fn without_round_off(shares: impl Iterator<Item = (usize, f64)>) -> Vec<(usize, f64)> {
-    let some: Vec<_> = shares.filter(|(_, share)| share.abs() > NO_SHARE).collect();
-    match some[..] {
-        [(node, _)] => vec![(node, 1.0)],
-        _ => some,
     }
 }
 

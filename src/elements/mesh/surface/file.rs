@@ -1,10 +1,10 @@
 //! Surfaces from files: STL, OBJ, and triangles of Gmsh.
 
-use std::collections::BTreeMap;
 use std::path::Path;
 
+use super::mend::mended;
 use crate::base::input::{InputError, read_at_most};
-use crate::elements::mesh::{CellKind, Mesh};
+use crate::elements::mesh::Mesh;
 
 /// Bytes that a file may have: those of some ten million triangles.
 const MOST_BYTES: u64 = 1 << 30;
@@ -21,8 +21,9 @@ impl Mesh {
     /// nodes alone; see [`read_gmsh`](Self::read_gmsh)).
     ///
     /// Coordinates are taken as metres; of a drawing in millimetres take [`mapped`](Self::mapped) by 0.001. Points of STL and OBJ
-    /// files at the same place are one node, in the order in which they come first. Triangles with two corners at the same place
-    /// are left out. Of OBJ files the lines `v` and `f` are read; faces of more than three corners are divided into triangles
+    /// files at the same place, but for round-off (5e-7 of the largest coordinate), are one node, in the order in which they come
+    /// first. Triangles without an area are left out, and triangles with corners of others on their sides are divided there; both
+    /// are [notes](Self::notes). Of OBJ files the lines `v` and `f` are read; faces of more than three corners are divided into triangles
     /// around the first one. The surface is checked and turned outwards as by [`closed`](Self::closed).
     ///
     /// # Errors
@@ -43,35 +44,22 @@ impl Mesh {
         let file =
             read_at_most(path, MOST_BYTES).map_err(|error| format!("it cannot be read: {error}"));
         let corners = file.and_then(|file| read(&file));
-        let mesh = corners.and_then(|corners| joined(&corners).map_err(|error| error.to_string()));
+        let mesh = corners.and_then(|corners| mended(&corners).map_err(|error| error.to_string()));
         mesh.and_then(|mesh| mesh.closed().map_err(|error| error.to_string()))
+            .map(|mesh| Self { file: Some(path.into()), ..mesh })
             .map_err(|problem| InputError::new("mesh file", path.display(), problem))
     }
 }
 
-/// The mesh of triangles whose corners at the same place are one node.
-fn joined(corners: &[[f64; 3]]) -> Result<Mesh, InputError> {
-    let (mut positions, mut numbers) = (Vec::new(), BTreeMap::new());
-    let mut number = |corner: &[f64; 3]| {
-        // 0 and -0 are one place
-        let place = corner.map(|x| (x + 0.0).to_bits());
-        *numbers.entry(place).or_insert_with(|| {
-            positions.extend(corner);
-            positions.len() / 3 - 1
-        })
-    };
-    let triangles = corners.as_chunks::<3>().0.iter();
-    let triangles = triangles.map(|triangle| triangle.each_ref().map(&mut number));
-    let connectivity: Vec<usize> =
-        triangles.filter(|[a, b, c]| a != b && b != c && c != a).flatten().collect();
-    Mesh::new(3, positions, CellKind::Triangle, connectivity)
-}
-
-/// The corners in an STL file: its length says whether it is a binary one, as its first word may be "solid" in both.
+/// The corners in an STL file: its length says whether it is a binary one, as its first word may be "solid" in both. Binary files may
+/// have bytes to spare at their end.
 fn stl(file: &[u8]) -> Result<Corners, String> {
     if let Some(count) = file.get(STL_HEAD - 4..STL_HEAD).and_then(|count| count.try_into().ok()) {
-        let triangles = &file[STL_HEAD..];
-        if triangles.len() as u64 == u64::from(u32::from_le_bytes(count)) * STL_TRIANGLE as u64 {
+        let count = u64::from(u32::from_le_bytes(count)) * STL_TRIANGLE as u64;
+        let has_spare = std::str::from_utf8(file).is_err() && count > 0;
+        let all = &file[STL_HEAD..];
+        if all.len() as u64 == count || (has_spare && all.len() as u64 > count) {
+            let triangles = &all[..count as usize];
             // a normal, three corners, two bytes of other use
             let corners = triangles.chunks_exact(STL_TRIANGLE).flat_map(|triangle| {
                 let numbers = triangle[12..48].as_chunks::<4>().0.iter();
@@ -85,7 +73,7 @@ fn stl(file: &[u8]) -> Result<Corners, String> {
     let text = text(file, "it is no STL file: neither of the length of a binary one nor text")?;
     let mut corners = Vec::new();
     for (line, words) in words(text) {
-        match words[0] {
+        match &*words[0].to_ascii_lowercase() {
             "vertex" => corners.push(point(line, &words[1..])?),
             "endloop" if corners.len() % 3 != 0 => {
                 return Err(format!("line {line} ends a loop without three corners"));

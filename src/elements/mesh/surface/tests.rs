@@ -219,3 +219,61 @@ fn files_give_what_they_say() {
     let error = Mesh::read_surface("nowhere.stl").unwrap_err().to_string();
     assert!(error.contains("cannot be read"), "{error}");
 }
+
+/// The cube as programs write it: corners off by round-off from triangle to triangle, a triangle without an area on a side and corners
+/// of others on sides, words in capitals; a binary file with bytes to spare.
+#[test]
+fn surfaces_as_programs_write_them() {
+    let directory = tempfile::tempdir().unwrap();
+    let read = |name: &str, contents: &[u8]| {
+        let path = directory.path().join(name);
+        std::fs::write(&path, contents).unwrap();
+        Mesh::read_surface(&path).unwrap()
+    };
+    let text = |triangles: &[[[f64; 3]; 3]], noise: f64| {
+        let noise =
+            crate::base::vector::noise(9 * triangles.len(), 3).into_iter().map(|x| noise * x);
+        let mut noise = noise.collect::<Vec<_>>().into_iter();
+        let mut text = String::from("SOLID CUBE\n");
+        for triangle in triangles {
+            text += "FACET NORMAL 0 0 0\nOUTER LOOP\n";
+            for corner in triangle {
+                let [x, y, z] = corner.map(|x| x + noise.next().unwrap());
+                text += &format!("VERTEX {x:e} {y:e} {z:e}\n");
+            }
+            text += "ENDLOOP\nENDFACET\n";
+        }
+        text + "ENDSOLID\n"
+    };
+    let (positions, cells) = cube();
+    let points = positions.as_chunks::<3>().0;
+    let triangles: Vec<[[f64; 3]; 3]> =
+        cells.as_chunks::<3>().0.iter().map(|cell| cell.map(|node| points[node])).collect();
+    let whole = read("noise.stl", text(&triangles, 1e-16).as_bytes());
+    assert_eq!((whole.node_count(), whole.cell_count()), (8, 12));
+    assert!((whole.enclosed().volume / 1e-3 - 1.0).abs() < 1e-13);
+    assert!(whole.notes().is_empty());
+    // the first triangle is cut in two at a corner on a side of its neighbour; beside it in a flat one, or not
+    let [a, b, c] = triangles[0];
+    let [halved, flat] = [0, 1].map(|flat| {
+        let long = [[a, b], [b, c], [c, a]].into_iter().enumerate().max_by(|(_, p), (_, q)| {
+            let length = |[p, q]: &[[f64; 3]; 2]| (Vector3::from(*q) - Vector3::from(*p)).norm();
+            length(p).total_cmp(&length(q))
+        });
+        let (k, [from, to]) = long.unwrap();
+        let far = triangles[0][(k + 2) % 3];
+        let middle: [f64; 3] = std::array::from_fn(|i| 0.3 * from[i] + 0.7 * to[i]);
+        let mut all = triangles[1..].to_vec();
+        all.extend([[from, middle, far], [middle, to, far]]);
+        all.extend([[from, to, middle]].into_iter().take(flat));
+        read("cut.stl", text(&all, 1e-16).as_bytes())
+    });
+    for (mesh, notes) in [(halved, 1), (flat, 2)] {
+        assert_eq!((mesh.node_count(), mesh.cell_count(), mesh.notes().len()), (9, 14, notes));
+        assert!((mesh.enclosed().volume / 1e-3 - 1.0).abs() < 1e-13);
+        assert!((mesh.area() / 0.06 - 1.0).abs() < 1e-13);
+    }
+    let mut binary = files().0;
+    binary.extend(b"made by a program\xff");
+    assert_eq!(read("spare.stl", &binary).cell_count(), 12);
+}
