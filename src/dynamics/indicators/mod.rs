@@ -8,6 +8,7 @@
 //! | [`units`]: thickness over size; strain of a column under its own weight | 20; 100 % |
 //! | [`units`]: remanence of magnets, magnetic field, moment of dipoles | 2 T, 10 T, 1e4 A m^2 |
 //! | [`mesh`]: Poisson's ratio of linear cells | 0.45 |
+//! | [`branches`]: stress of Maxwell branches at a stretch of 1.1 | 1.25 times their share |
 //! | [`mesh`]: pieces that nothing joins | one piece |
 //! | [`overlap`]: how deep the body overlaps itself, as drawn and as it moves | a twentieth of a cell |
 //! | [`strain`]: how far cells turn under Cauchy strain | 10 degrees |
@@ -41,6 +42,7 @@
 //! | [`symmetry`]: how far the motion is from one in a plane (+) | 1 % |
 //! | [`symmetry`]: how far the motion is from its mirror images (+) | 0.1 % |
 
+mod branches;
 mod chamber;
 mod coarse;
 mod deformed;
@@ -99,7 +101,11 @@ impl Scene {
         let body = self.body();
         let of_body = |part: Part| {
             let measured = units::units(self, part.body).into_iter();
-            named(part.name, body, measured.chain(mesh::locking(part.body)))
+            named(
+                part.name,
+                body,
+                measured.chain(mesh::locking(part.body)).chain(branches::stiffening(part.body)),
+            )
         };
         let each = body.parts().flat_map(of_body);
         each.chain(units::of_scene(self))
