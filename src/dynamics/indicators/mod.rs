@@ -9,6 +9,7 @@
 //! | [`units`]: remanence of magnets, magnetic field, moment of dipoles | 2 T, 10 T, 1e4 A m^2 |
 //! | [`gas`]: least absolute pressure; orifices beside their chambers | 5e4 Pa; a face of a cube as large |
 //! | [`mesh`]: Poisson's ratio of linear cells | 0.45 |
+//! | [`branches`]: stress of Maxwell branches at a stretch of 1.1 | 1.25 times their share |
 //! | [`mesh`]: pieces that nothing joins | one piece |
 //! | [`conformity`]: hanging nodes, and nodes in the same position that are not one | none |
 //! | [`overlap`]: how deep the body overlaps itself, as drawn and as it moves | a twentieth of a cell |
@@ -46,6 +47,7 @@
 //! | [`symmetry`]: how far the motion is from its mirror images (+) | 0.1 % |
 
 mod bending;
+mod branches;
 mod chamber;
 mod coarse;
 mod conformity;
@@ -107,7 +109,8 @@ impl Scene {
         let body = self.body();
         let of_body = |part: Part| {
             let measured = units::units(self, part.body).into_iter();
-            let measured = measured.chain(mesh::locking(part.body));
+            let measured =
+                measured.chain(mesh::locking(part.body)).chain(branches::stiffening(part.body));
             named(part.name, body, measured.chain(conformity::conformity(part.body)))
         };
         let each = body.parts().flat_map(of_body);

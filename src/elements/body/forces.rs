@@ -22,7 +22,9 @@ use super::regions::{Laws, Regions};
 use crate::base::lane::{Lane, SIDE_BY_SIDE};
 use crate::base::tensor::{Matrix, Real};
 use crate::elements::force::NodalForces;
-use crate::elements::material::{ByPoint, Deformation, Elastic, Hooke, Hookean, Linear};
+use crate::elements::material::{
+    ByPoint, Deformation, Elastic, Hooke, Hookean, Linear, ObjectiveViscosity,
+};
 use crate::integrators::ode::Failure;
 
 mod stress;
@@ -103,9 +105,17 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Forces
         if terms.viscous {
             self.shares.each_force(D, &mut forces.dissipative, &|run, first, forces| {
                 regions.runs(run).try_for_each(|(cells, laws)| {
-                    let pull =
-                        ViscousStress { law: &laws.viscous, is_projected: self.is_projected() };
-                    self.add(cells, [u, v], first, forces, pull)
+                    let (fields, is_projected) = ([u, v], self.is_projected());
+                    match &laws.objective {
+                        ObjectiveViscosity::Hookean(law) => {
+                            let pull = ViscousStress { law, is_projected };
+                            self.add(cells, fields, first, forces, pull)
+                        }
+                        ObjectiveViscosity::Newtonian(law) => {
+                            let pull = ViscousStress { law, is_projected };
+                            self.add(cells, fields, first, forces, pull)
+                        }
+                    }
                 })
             })?;
         }
@@ -138,7 +148,7 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Forces
             add(u, |laws| laws.hooke, &mut forces.conservative)?;
         }
         if terms.viscous {
-            add(v, |laws| laws.viscous.0, &mut forces.dissipative)?;
+            add(v, |laws| laws.viscous, &mut forces.dissipative)?;
         }
         Ok(())
     }

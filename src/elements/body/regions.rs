@@ -125,7 +125,10 @@ pub(super) struct Laws {
     pub(super) elastic: Elastic,
     /// What the elastic law is at small strains.
     pub(super) hooke: Hooke,
-    pub(super) viscous: ObjectiveViscosity,
+    /// Hooke's law with viscous moduli: the damping matrix B.
+    pub(super) viscous: Hooke,
+    /// What viscosity is if it is objective.
+    pub(super) objective: ObjectiveViscosity,
     pub(super) branches: Vec<Relaxing>,
     /// What keeps a rigid piece in its shape where its edges do not; all of the above have no stiffness then.
     pub(super) of_rigid: Option<Elastic>,
@@ -134,7 +137,7 @@ pub(super) struct Laws {
 impl Laws {
     /// The law of the damping matrix B.
     pub(super) fn natural_viscosity(&self) -> Elastic {
-        Elastic::Linear(Hookean(self.viscous.0))
+        Elastic::Linear(Hookean(self.viscous))
     }
 }
 
@@ -185,6 +188,10 @@ impl Regions {
                 true => [Lame { lambda: 0.0, mu: 0.0 }; 2],
                 false => [material.elastic(), material.viscous()],
             };
+            let objective = match is_rigid {
+                true => ObjectiveViscosity::zero(dimension, plane),
+                false => ObjectiveViscosity::new(&elastic, material, dimension, plane),
+            };
             Ok(Laws {
                 density: material.density,
                 mass_damping: *mass_damping,
@@ -193,7 +200,8 @@ impl Regions {
                     false => elastic,
                 },
                 hooke: hooke(lame),
-                viscous: ObjectiveViscosity(hooke(viscous)),
+                viscous: hooke(viscous),
+                objective,
                 branches: branches
                     .iter()
                     .map(|branch| Relaxing::new(branch, material, strain, dimension, plane))
@@ -265,9 +273,12 @@ impl Regions {
     pub(super) fn of_rigid(&self, dimension: usize, plane: Plane) -> Self {
         let zero = Lame { lambda: 0.0, mu: 0.0 };
         let none = Elastic::new(Strain::Green, None, zero, dimension, plane);
-        let viscous = ObjectiveViscosity(Hooke::new(zero, dimension, plane));
-        let of_rigid =
-            |laws: &Laws| Laws { elastic: laws.of_rigid.unwrap_or(none), viscous, ..laws.clone() };
+        let viscous = Hooke::new(zero, dimension, plane);
+        let objective = ObjectiveViscosity::zero(dimension, plane);
+        let of_rigid = |laws: &Laws| {
+            let elastic = laws.of_rigid.unwrap_or(none);
+            Laws { elastic, viscous, objective, ..laws.clone() }
+        };
         Self { laws: self.laws.iter().map(of_rigid).collect(), ..self.clone() }
     }
 
@@ -281,7 +292,8 @@ impl Regions {
     ) -> [Self; 2] {
         let zero = Lame { lambda: 0.0, mu: 0.0 };
         let elastic = Elastic::new(Strain::Green, None, zero, dimension, plane);
-        let viscous = ObjectiveViscosity(Hooke::new(zero, dimension, plane));
+        let viscous = Hooke::new(zero, dimension, plane);
+        let none = ObjectiveViscosity::zero(dimension, plane);
         let laws = |change: &dyn Fn(&Laws) -> Laws| {
             let changed: Vec<Laws> = self.laws.iter().map(change).collect();
             self.laws.iter().cloned().chain(changed).collect()
@@ -294,12 +306,14 @@ impl Regions {
         };
         let part = |laws, of_cell| Self { materials: self.materials.clone(), laws, of_cell };
         // those inside keep their viscosity in the second part
-        let mut grows = part(
-            laws(&|laws| Laws { elastic, viscous, ..laws.clone() }),
-            of_cell(&|cell| !inside(cell)),
-        );
-        grows.laws.iter_mut().for_each(|laws| laws.viscous = viscous);
-        let rest = part(laws(&|laws| Laws { elastic, ..laws.clone() }), of_cell(&inside));
+        let mut grows =
+            part(laws(&|laws| Laws { elastic, ..laws.clone() }), of_cell(&|cell| !inside(cell)));
+        grows.laws.iter_mut().for_each(|laws| (laws.viscous, laws.objective) = (viscous, none));
+        let of_growing = |laws: &Laws| {
+            let objective = laws.objective.of_growing(dimension);
+            Laws { elastic, objective, ..laws.clone() }
+        };
+        let rest = part(laws(&of_growing), of_cell(&inside));
         [grows, rest]
     }
 
@@ -311,12 +325,21 @@ impl Regions {
 
     /// Whether any of them is viscous.
     pub(super) fn are_viscous(&self) -> bool {
-        self.laws.iter().any(|laws| !laws.viscous.0.is_zero())
+        self.laws.iter().any(|laws| !laws.viscous.is_zero())
     }
 
     /// The branches of all of them.
     pub(super) fn branches(&self) -> impl Iterator<Item = &Relaxing> {
         self.laws.iter().flat_map(|laws| &laws.branches)
+    }
+
+    /// The branches beside a law other than Hooke's.
+    pub(super) fn branches_beside_rubber(&self) -> impl Iterator<Item = &Relaxing> {
+        let rubber = self.laws.iter().filter(|laws| match laws.elastic {
+            Elastic::ByPoint(_) => true,
+            Elastic::Linear(_) | Elastic::StVenantKirchhoff(_) => false,
+        });
+        rubber.flat_map(|laws| &laws.branches)
     }
 
     /// Whether any of them has mass damping.

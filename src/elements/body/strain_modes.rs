@@ -17,11 +17,11 @@ use faer::{Accum, Mat, Par};
 
 use super::elements::{ElementsOf, gradient};
 use super::forces::{Terms, relative};
-use super::regions::Regions;
+use super::regions::{Laws, Regions};
 use crate::base::simd::{Formula, add_multiple, each};
 use crate::base::tensor::{Matrix, Real, dot};
 use crate::elements::force::{GeneralizedForce, NodalForces};
-use crate::elements::material::{Deformation, Elastic, Lame};
+use crate::elements::material::{Deformation, Elastic, Lame, ObjectiveViscosity};
 use crate::integrators::ode::Failure;
 
 /// G and G_v of elements: the modes of their strains, and what these store and dissipate.
@@ -137,10 +137,12 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> StrainProdu
     for ElementsOf<N, M, D, Q>
 {
     fn has_strain_modes(&self, regions: &Regions, terms: Terms) -> bool {
-        let is_quadratic = |law: &Elastic| matches!(law, Elastic::StVenantKirchhoff(_));
+        let are_quadratic = |laws: &Laws| {
+            (!terms.elastic || matches!(laws.elastic, Elastic::StVenantKirchhoff(_)))
+                && (!terms.viscous || matches!(laws.objective, ObjectiveViscosity::Hookean(_)))
+        };
         let all = 0..self.nodes.len();
-        !self.is_projected()
-            && (!terms.elastic || regions.runs(&all).all(|(_, laws)| is_quadratic(&laws.elastic)))
+        !self.is_projected() && regions.runs(&all).all(|(_, laws)| are_quadratic(laws))
     }
 
     fn work(&self) -> usize {
@@ -165,7 +167,7 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> StrainProdu
             let none = Lame { lambda: 0.0, mu: 0.0 };
             let moduli = [
                 if terms.elastic { laws.hooke.lame } else { none },
-                if terms.viscous { laws.viscous.0.lame } else { none },
+                if terms.viscous { laws.viscous.lame } else { none },
             ];
             for cell in cells {
                 for point in self.points(cell) {

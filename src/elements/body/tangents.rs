@@ -15,7 +15,7 @@ use super::projection::COEFFICIENTS;
 use super::regions::{Laws, Regions};
 use crate::base::sparse::{BlockMatrix, Rows};
 use crate::base::tensor::{Matrix, times};
-use crate::elements::material::{Blocks, Deformation, Elastic};
+use crate::elements::material::{Blocks, Deformation, Elastic, ObjectiveViscosity, ViscousLaw};
 
 mod pass;
 mod tangent;
@@ -111,19 +111,14 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Tangents
                     }
                 }
                 if terms.viscous {
-                    let law = &laws.viscous;
-                    self.add_to(
-                        &mut damping,
-                        cells.clone(),
-                        [u],
-                        RateTangent { law, is_projected },
-                    );
-                    self.add_to(
-                        &mut stiffness,
-                        cells,
-                        [u, v],
-                        ViscousTangent { law, is_projected },
-                    );
+                    match &laws.objective {
+                        ObjectiveViscosity::Hookean(law) => {
+                            self.add_viscous(cells, [u, v], law, &mut stiffness, &mut damping);
+                        }
+                        ObjectiveViscosity::Newtonian(law) => {
+                            self.add_viscous(cells, [u, v], law, &mut stiffness, &mut damping);
+                        }
+                    }
                 }
             }
         };
@@ -132,6 +127,20 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Tangents
 }
 
 impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<N, M, D, Q> {
+    /// Adds the tangents of a viscous law by displacements and velocities, to the stiffness and the damping.
+    fn add_viscous(
+        &self,
+        cells: Range<usize>,
+        [u, v]: [&[f64]; 2],
+        law: &impl ViscousLaw,
+        stiffness: &mut Rows<'_, D>,
+        damping: &mut Rows<'_, D>,
+    ) {
+        let is_projected = self.is_projected();
+        self.add_to(damping, cells.clone(), [u], RateTangent { law, is_projected });
+        self.add_to(stiffness, cells, [u, v], ViscousTangent { law, is_projected });
+    }
+
     /// Adds the tangent at rest of one cell.
     fn add_at_rest(&self, cell: usize, slope: &impl TangentTerm<1>, rows: &mut Rows<'_, D>) {
         let entries = &self.entries[cell];

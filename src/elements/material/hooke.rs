@@ -57,6 +57,11 @@ impl Hooke {
         Self { lame: Lame { lambda, mu }, across }
     }
 
+    /// Whether there is no stress across its cells, of this `cell_dimension`.
+    pub(crate) fn is_free_across(&self, cell_dimension: usize) -> bool {
+        cell_dimension < 3 && self.across == Plane::Stress
+    }
+
     /// The same with lambda = 0, without the resistance to a change of volume.
     #[inline(always)]
     pub(crate) fn of_shear(&self) -> Self {

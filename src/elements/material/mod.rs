@@ -23,7 +23,9 @@ pub(crate) use grown::{GrownLaw, Stretches, along_cell};
 pub(crate) use hooke::Hooke;
 pub use hooke::{Lame, Plane};
 pub(crate) use law::{Block, Blocks, ElasticLaw};
-pub(crate) use laws::{ByPoint, Elastic, Fibre, Hookean, Linear, ObjectiveViscosity, with_law};
+pub(crate) use laws::{
+    ByPoint, Elastic, Fibre, Hookean, Linear, ObjectiveViscosity, ViscousLaw, with_law,
+};
 pub use laws::{Hill, Law, Strain, Viscosity};
 pub(crate) use response::axes;
 pub use rigid_mass::{Moments, RigidMass};
@@ -66,6 +68,16 @@ impl Material {
     /// The viscous pair: the same formula with c for E.
     pub fn viscous(&self) -> Lame {
         lame(self.viscosity, self.poisson)
+    }
+
+    /// The viscous pair with a bulk viscosity that stays that of a Poisson's ratio of [`NEARLY_INCOMPRESSIBLE`] above it.
+    pub(crate) fn bounded_viscous(&self) -> Lame {
+        let viscous = self.viscous();
+        if self.poisson <= NEARLY_INCOMPRESSIBLE {
+            return viscous;
+        }
+        let bulk = self.viscosity / (3.0 * (1.0 - 2.0 * NEARLY_INCOMPRESSIBLE));
+        Lame { lambda: bulk - 2.0 / 3.0 * viscous.mu, ..viscous }
     }
 
     /// Speed sqrt(E/rho) of a wave along a slender bar (m/s).

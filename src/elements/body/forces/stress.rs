@@ -2,7 +2,7 @@
 //! dilatation.
 
 use crate::base::tensor::{Matrix, Real};
-use crate::elements::material::{CellLaw, Deformation, ObjectiveViscosity};
+use crate::elements::material::{CellLaw, Deformation, ViscousLaw};
 
 /// A stress at a point, by the gradients of `K` fields: of displacements and, if K is 2, of velocities.
 pub(in crate::elements::body) trait StressTerm<const K: usize> {
@@ -77,12 +77,12 @@ impl<L: CellLaw> StressTerm<1> for ElasticStress<'_, L> {
 }
 
 /// Viscous stress.
-pub(super) struct ViscousStress<'l> {
-    pub(super) law: &'l ObjectiveViscosity,
+pub(super) struct ViscousStress<'l, L> {
+    pub(super) law: &'l L,
     pub(super) is_projected: bool,
 }
 
-impl StressTerm<2> for ViscousStress<'_> {
+impl<L: ViscousLaw> StressTerm<2> for ViscousStress<'_, L> {
     #[inline(always)]
     fn is_projected(&self) -> bool {
         self.is_projected
@@ -114,7 +114,7 @@ impl StressTerm<2> for ViscousStress<'_> {
         pull
     }
 
-    /// It has meaning everywhere.
+    /// It has meaning wherever the elastic law has.
     fn outside(&self, _: f64) -> String {
         String::new()
     }

@@ -4,7 +4,7 @@
 #![allow(clippy::needless_range_loop, reason = "indices that several arrays share read best")]
 
 use crate::base::tensor::{Matrix, Real, product, times};
-use crate::elements::material::{Block, Blocks, CellLaw, Deformation, ObjectiveViscosity};
+use crate::elements::material::{Block, Blocks, CellLaw, Deformation, ViscousLaw};
 
 /// A tangent at a point, by the gradients of `K` fields: of displacements and, if K is 2, of velocities.
 pub(in crate::elements::body) trait TangentTerm<const K: usize> {
@@ -107,12 +107,12 @@ impl<L: CellLaw> TangentTerm<1> for ElasticTangent<'_, L> {
 }
 
 /// The tangent of viscous stress by the rate.
-pub(super) struct RateTangent<'l> {
-    pub(super) law: &'l ObjectiveViscosity,
+pub(super) struct RateTangent<'l, L> {
+    pub(super) law: &'l L,
     pub(super) is_projected: bool,
 }
 
-impl TangentTerm<1> for RateTangent<'_> {
+impl<L: ViscousLaw> TangentTerm<1> for RateTangent<'_, L> {
     const IS_SYMMETRIC: bool = true;
 
     #[inline(always)]
@@ -136,11 +136,12 @@ impl TangentTerm<1> for RateTangent<'_> {
     fn swelling<T: Real, const N: usize, const M: usize, const D: usize>(
         &self,
         at: &Deformation<T, M, D>,
-        _: &[Matrix<T, D, M>; 1],
+        [rate]: &[Matrix<T, D, M>; 1],
         gradients: &[[T; M]; N],
         volume: T,
     ) -> (T, [[T; D]; N], [[T; D]; N]) {
-        let force = times(product(&at.gradient(), gradients), volume);
+        let [by_rate, _] = self.law.swelling(at, rate, gradients);
+        let force = times(by_rate, volume);
         (volume, force, force)
     }
 
@@ -151,12 +152,12 @@ impl TangentTerm<1> for RateTangent<'_> {
 }
 
 /// The tangent of viscous stress by the deformation.
-pub(super) struct ViscousTangent<'l> {
-    pub(super) law: &'l ObjectiveViscosity,
+pub(super) struct ViscousTangent<'l, L> {
+    pub(super) law: &'l L,
     pub(super) is_projected: bool,
 }
 
-impl TangentTerm<2> for ViscousTangent<'_> {
+impl<L: ViscousLaw> TangentTerm<2> for ViscousTangent<'_, L> {
     const IS_SYMMETRIC: bool = false;
 
     #[inline(always)]
@@ -184,8 +185,8 @@ impl TangentTerm<2> for ViscousTangent<'_> {
         gradients: &[[T; M]; N],
         volume: T,
     ) -> (T, [[T; D]; N], [[T; D]; N]) {
-        let force = times(product(&at.gradient(), gradients), volume);
-        let motion = times(product(rate, gradients), volume);
+        let [force, motion] =
+            self.law.swelling(at, rate, gradients).map(|by_nodes| times(by_nodes, volume));
         (self.law.rate_of_dilatation(at, rate) * volume, force, motion)
     }
 

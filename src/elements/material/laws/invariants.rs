@@ -113,7 +113,7 @@ fn minor<T: Real, const M: usize>(g: &Matrix<T, M, M>, j: usize, k: usize) -> T 
 
 /// C^-1 of C = I + G, which has the determinant `area`.
 #[inline(always)]
-fn inverse_of<T: Real, const M: usize>(g: &Matrix<T, M, M>, area: T) -> Matrix<T, M, M> {
+pub(super) fn inverse_of<T: Real, const M: usize>(g: &Matrix<T, M, M>, area: T) -> Matrix<T, M, M> {
     let one = area.constant(1.0);
     let share = one / area;
     let mut c = *g;

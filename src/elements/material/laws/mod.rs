@@ -4,23 +4,25 @@ mod by_point;
 mod fibre;
 mod hill;
 mod hookean;
+mod hookean_viscosity;
 mod invariants;
-mod objective_viscosity;
+mod newtonian;
 mod principal;
 mod rivlin;
 mod stretches;
 #[cfg(test)]
 mod tests;
+mod viscous;
 mod volume;
 
 pub(crate) use by_point::ByPoint;
 pub(crate) use fibre::Fibre;
 pub use hill::Hill;
 pub(crate) use hookean::{Hookean, Linear, StVenantKirchhoff};
-pub(crate) use objective_viscosity::ObjectiveViscosity;
 pub(crate) use rivlin::Rivlin;
 pub(crate) use stretches::ByStretches;
 use stretches::Kind;
+pub(crate) use viscous::{ObjectiveViscosity, ViscousLaw};
 
 use super::hooke::{Hooke, Lame, Plane};
 use crate::base::input::{InputError, finite};
@@ -145,7 +147,13 @@ pub enum Viscosity {
     /// Force -B v with the constant B of the undeformed shape, as in Hirai. Not invariant to
     /// rotation: a body that spins as a whole is braked.
     Natural,
-    /// Stress from the rate of Green's strain: a body that spins as a whole is not braked.
+    /// Stress from the rate of deformation of the present shape: a body that spins as a whole is not braked.
+    ///
+    /// Beside Hooke's law for Green's strain it is that law, with viscous moduli, for the rate of Green's strain: S = lambda tr(E')
+    /// I + 2 mu E' is second Piola stress. Beside all other laws it is a Newtonian fluid: lambda tr(d) I + 2 mu d is Kirchhoff
+    /// stress, with the rate of deformation d = sym(F' F^-1). A motion that keeps the volume does not feel lambda there, and a bar
+    /// of rubber at the stretch l resists with 3 mu l'/l. From a Poisson's ratio of 0.45 on the bulk viscosity lambda + 2 mu / 3 of
+    /// solids and of plane strain is that of 0.45, and in cells that grow it is 0.
     Objective,
 }
 

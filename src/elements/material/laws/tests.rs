@@ -4,10 +4,12 @@
 use nalgebra::{Rotation3, Vector3};
 use pulp::{Arch, Scalar, Simd, WithSimd};
 
+use super::hookean_viscosity::HookeanViscosity;
+use super::newtonian::NewtonianViscosity;
 use super::*;
 use crate::base::lane::{Lane, SIDE_BY_SIDE};
 use crate::base::tensor::{Matrix, Real, dot, product};
-use crate::elements::material::{Blocks, Deformation, ElasticLaw, Lame, Plane};
+use crate::elements::material::{Blocks, Deformation, ElasticLaw, Lame, Material, Plane};
 
 /// Moduli of a soft material, Pa.
 const LAME: Lame = Lame { lambda: 2.0, mu: 1.0 };
@@ -188,29 +190,178 @@ fn stresses_and_tangents_are_derivatives() {
     in_all_dimensions!(check);
 }
 
-/// The same of objective viscosity: its potential by F' is Hooke's energy of the rate of Green's strain.
+/// The same of objective viscosity: its potential by F' is half of the heat P : F', which is never below 0.
 #[test]
 fn viscous_stresses_and_tangents_are_derivatives() {
-    fn check<const M: usize, const D: usize>() {
-        let law = ObjectiveViscosity(Hooke::new(LAME, M, Plane::Strain));
+    fn check_law<L: ViscousLaw, const M: usize, const D: usize>(name: &str, law: &L) {
         let (frame, h, rate) = (frame::<M, D>(), noise(0.3, 5.0), noise(1.0, 40.0));
         let (at, units) = (Deformation::new(frame, h), units());
         let by_rate = law.rate_tangent(&at, false, &units, 1.0);
+        let heat = |rate: &Matrix<f64, D, M>| {
+            let stress = law.stress(&at, rate, None, 1.0);
+            stress.iter().zip(rate).map(|(p, rate)| dot(p, rate)).sum::<f64>()
+        };
+        assert!(heat(&rate) > 0.01, "{name} {M} in {D}: {}", heat(&rate));
         are_derivatives(
-            "objective viscosity, by the rate",
+            name,
             &rate,
-            |rate| law.0.energy(&at.twice_green_rate(rate)),
+            |rate| 0.5 * heat(rate),
             |rate| law.stress(&at, rate, None, 1.0),
             |a, b| by_rate.block(a, b),
         );
-        let stress =
-            |h: &Matrix<f64, D, M>| law.stress(&Deformation::new(frame, *h), &rate, None, 1.0);
-        let tangent = law.tangent(&at, &rate, None, &units, 1.0);
-        for place in (0..D).flat_map(|i| (0..M).map(move |j| [i, j])) {
-            is_tangent("objective viscosity", &h, &stress, &|a, b| tangent.block(a, b), place);
+        // at points, and under the pull of a projected dilatation, which is kept constant
+        for pull in [None, Some(0.7)] {
+            let stress =
+                |h: &Matrix<f64, D, M>| law.stress(&Deformation::new(frame, *h), &rate, pull, 1.0);
+            let tangent = law.tangent(&at, &rate, pull, &units, 1.0);
+            for place in (0..D).flat_map(|i| (0..M).map(move |j| [i, j])) {
+                is_tangent(name, &h, &stress, &|a, b| tangent.block(a, b), place);
+            }
+        }
+        // the rate of dilatation by velocities and displacements
+        let [by_velocities, by_displacements] = law.swelling(&at, &rate, &units);
+        for (i, j) in (0..D).flat_map(|i| (0..M).map(move |j| (i, j))) {
+            let own = |by| law.rate_of_dilatation(&at, &moved(&rate, [i, j], by));
+            let apart = (by_velocities[j][i] - slope(own)).abs();
+            assert!(apart < OFF, "{name} {M} in {D}: dilatation by F' is off by {apart:e}");
+            let own = |by| {
+                let at = Deformation::new(frame, moved(&h, [i, j], by));
+                law.rate_of_dilatation(&at, &rate)
+            };
+            let apart = (by_displacements[j][i] - slope(own)).abs();
+            assert!(apart < OFF, "{name} {M} in {D}: dilatation by F is off by {apart:e}");
         }
     }
+    fn check<const M: usize, const D: usize>() {
+        let hooke = Hooke::new(LAME, M, Plane::Strain);
+        check_law::<_, M, D>("Hookean viscosity", &HookeanViscosity(hooke));
+        check_law::<_, M, D>("Newtonian viscosity", &NewtonianViscosity(hooke));
+    }
     in_all_dimensions!(check);
+}
+
+/// A bar of rubber at the stretch l, which lengthens and keeps its volume, resists with the Kirchhoff stress 3 mu l'/l, a film with
+/// 4 mu l'/l along and 2 mu l'/l across where its width is kept, a string with the viscosity itself: whatever Poisson's ratio is, and whether
+/// cells grow. Hooke's law for the rate of Green's strain, that of nearly incompressible Hooke's law, is far from that.
+#[test]
+fn viscosity_of_rubber_does_not_grow_with_stretch() {
+    for poisson in [0.4, 0.49, 0.499, 0.499_999] {
+        let material = Material { density: 1.0, young: 1.0, poisson, viscosity: 2.0 };
+        let mu = material.viscous().mu;
+        for l in [0.7_f64, 1.0, 1.5, 2.0] {
+            let width = l.powf(-0.5);
+            let at = Deformation::new(
+                frame::<3, 3>(),
+                [[l - 1.0, 0.0, 0.0], [0.0, width - 1.0, 0.0], [0.0, 0.0, width - 1.0]],
+            );
+            let across = -0.5 * width / l;
+            let rate = [[1.0, 0.0, 0.0], [0.0, across, 0.0], [0.0, 0.0, across]];
+            let own = |law: &ObjectiveViscosity| match law {
+                ObjectiveViscosity::Hookean(law) => law.stress(&at, &rate, None, 1.0),
+                ObjectiveViscosity::Newtonian(law) => law.stress(&at, &rate, None, 1.0),
+            };
+            // the pull along, less that across which a free side takes away; all in Kirchhoff stress
+            let pull = |p: Matrix<f64, 3, 3>| p[0][0] * l - p[1][1] * width;
+            let rubber = law((Strain::Green, Some(Law::NeoHookean), Plane::Strain), 3);
+            let law_of_rubber = ObjectiveViscosity::new(&rubber, &material, 3, Plane::Strain);
+            for viscosity in [law_of_rubber, law_of_rubber.of_growing(3)] {
+                let p = own(&viscosity);
+                assert!((pull(p) * l / (3.0 * mu) - 1.0).abs() < 1e-14, "{poisson} {l}: {p:?}");
+                // deviator: the mean pull does not feel lambda, which is 1e6 mu at most
+                assert!((p[0][0] * l + 2.0 * p[1][1] * width).abs() < 1e-13, "{poisson} {l}");
+            }
+            let hooke = law((Strain::Green, None, Plane::Strain), 3);
+            let of_hooke = ObjectiveViscosity::new(&hooke, &material, 3, Plane::Strain);
+            let explodes = pull(own(&of_hooke)) * l / (3.0 * mu);
+            assert!(l != 1.5 || explodes > 1.5, "{poisson}: {explodes}");
+
+            let film = law((Strain::Green, Some(Law::NeoHookean), Plane::Stress), 2);
+            let ObjectiveViscosity::Newtonian(film) =
+                ObjectiveViscosity::new(&film, &material, 2, Plane::Stress)
+            else {
+                panic!("rubber is no Hookean material")
+            };
+            let at = Deformation::new(frame::<2, 3>(), {
+                let [along, _] = frame::<2, 3>();
+                [along.map(|x| (l - 1.0) * x), [0.0; 3]]
+            });
+            let [along, across] = frame::<2, 3>();
+            let p = film.stress(&at, &[along, [0.0; 3]], None, 1.0);
+            // 2 mu + lambda, with the lambda of plane stress: 2 nu mu / (1 - nu)
+            let stiff = 2.0 * mu * poisson / (1.0 - poisson);
+            let expected = [(stiff + 2.0 * mu) / (l * l), stiff / l];
+            let found = [dot(&p[0], &along), dot(&p[1], &across)];
+            for (found, expected) in found.iter().zip(expected) {
+                assert!((found / expected - 1.0).abs() < 1e-13, "{poisson} {l}: {found}");
+            }
+
+            let string = law((Strain::Green, Some(Law::NeoHookean), Plane::Stress), 1);
+            let ObjectiveViscosity::Newtonian(string) =
+                ObjectiveViscosity::new(&string, &material, 1, Plane::Stress)
+            else {
+                panic!("rubber is no Hookean material")
+            };
+            let at = Deformation::new(frame::<1, 1>(), [[l - 1.0]]);
+            let [[p]] = string.stress(&at, &[[1.0]], None, 1.0);
+            assert!((p * l * l / 2.0 - 1.0).abs() < 1e-14, "{poisson} {l}: {p}");
+        }
+    }
+}
+
+/// Where nothing is deformed, all objective viscosities are Hooke's law with viscous moduli, up to a Poisson's ratio of 0.45;
+/// above, a bar that is free across has 0.84 % less of it at most: (1 - 2 nu)/3 - (10/3) (1 - 2 nu)^2.
+#[test]
+fn viscosity_at_small_strains_is_hookes() {
+    let rest = Deformation::new(frame::<3, 3>(), [[0.0; 3]; 3]);
+    let rate = noise(1.0, 11.0);
+    for poisson in [0.0, 0.3, 0.4, 0.45, 0.46, 0.475, 0.49, 0.4999] {
+        let material = Material { density: 1.0, young: 1.0, poisson, viscosity: 1.0 };
+        let rubber = law((Strain::Green, Some(Law::NeoHookean), Plane::Strain), 3);
+        let ObjectiveViscosity::Newtonian(newtonian) =
+            ObjectiveViscosity::new(&rubber, &material, 3, Plane::Strain)
+        else {
+            panic!("rubber is no Hookean material")
+        };
+        let hookean = HookeanViscosity(Hooke::new(material.viscous(), 3, Plane::Strain));
+        if poisson <= 0.45 {
+            let apart = farthest(
+                &newtonian.stress(&rest, &rate, None, 1.0),
+                &hookean.stress(&rest, &rate, None, 1.0),
+            );
+            assert!(apart < 1e-14, "{poisson}: {apart:e}");
+        }
+        // heat of a bar whose sides follow by Poisson's ratio
+        let bar = [[1.0, 0.0, 0.0], [0.0, -poisson, 0.0], [0.0, 0.0, -poisson]];
+        let p = newtonian.stress(&rest, &bar, None, 1.0);
+        let heat = p[0][0] - 2.0 * poisson * p[1][1];
+        let least = if poisson <= 0.45 { 1.0 - 1e-14 } else { 0.99166 };
+        assert!((least..1.0 + 1e-14).contains(&heat), "{poisson}: {heat}");
+    }
+}
+
+/// Objective viscosity does not resist a spin, and does so in proportion to its weight where shape changes; a turned
+/// body has a turned stress.
+fn does_not_brake<L: ViscousLaw, const M: usize, const D: usize>(law: &L) {
+    let frame = frame::<M, D>();
+    let (at, rate) = (Deformation::new(frame, noise(0.3, 9.0)), noise(1.0, 3.0));
+    let f = at.gradient();
+    if D > 1 {
+        // spinning about an axis: F' = W F with a skew W
+        let mut spin = [[0.0; D]; D];
+        (spin[0][1], spin[1][0]) = (3.0, -3.0);
+        let still = law.stress(&at, &product(&spin, &f), None, 1.0);
+        assert!(farthest(&still, &[[0.0; D]; M]) < 1e-13, "{M} in {D}: {still:?}");
+    }
+    let mut turned = rotated(&f);
+    for (turned, frame) in turned.iter_mut().zip(&frame) {
+        turned.iter_mut().zip(frame).for_each(|(x, x_0)| *x -= x_0);
+    }
+    let [some, twice] = [1.0, 2.0].map(|weight| law.stress(&at, &rate, None, weight));
+    let after = law.stress(&Deformation::new(frame, turned), &rotated(&rate), None, 1.0);
+    assert!(farthest(&after, &rotated(&some)) < 1e-13, "{M} in {D}");
+    assert!(farthest(&some, &[[0.0; D]; M]) > 0.1);
+    let apart = farthest(&twice, &some.map(|column| column.map(|entry| 2.0 * entry)));
+    assert!(apart < 1e-14, "{M} in {D}: {apart:e}");
 }
 
 /// Energy does not see a rotation that comes after a deformation, and stress turns with it. Only linear
@@ -241,19 +392,9 @@ fn laws_do_not_see_rotations() {
                 assert!(apart < 1e-14, "{strain:?} {M} in {D}: stress is off by {apart:e}");
             });
         }
-        let viscous = ObjectiveViscosity(Hooke::new(LAME, M, Plane::Strain));
-        let (at, rate) = (Deformation::new(frame, noise(0.3, 9.0)), noise(1.0, 3.0));
-        let f = at.gradient();
-        if D > 1 {
-            // spinning about an axis: F' = W F with a skew W
-            let mut spin = [[0.0; D]; D];
-            (spin[0][1], spin[1][0]) = (3.0, -3.0);
-            let still = viscous.stress(&at, &product(&spin, &f), None, 1.0);
-            assert!(farthest(&still, &[[0.0; D]; M]) < 1e-14, "{M} in {D}: {still:?}");
-        }
-        let [some, twice] = [1.0, 2.0].map(|weight| viscous.stress(&at, &rate, None, weight));
-        assert!(farthest(&some, &[[0.0; D]; M]) > 0.1);
-        assert_eq!(twice, some.map(|column| column.map(|entry| 2.0 * entry)));
+        let hooke = Hooke::new(LAME, M, Plane::Strain);
+        does_not_brake::<_, M, D>(&HookeanViscosity(hooke));
+        does_not_brake::<_, M, D>(&NewtonianViscosity(hooke));
     }
     in_all_dimensions!(check);
 }

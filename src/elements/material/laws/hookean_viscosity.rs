@@ -1,22 +1,25 @@
-//! Objective viscosity: Hooke's law, with viscous moduli, for the rate of Green's strain.
+//! Hooke's law, with viscous moduli, for the rate of Green's strain.
 
 #![allow(clippy::needless_range_loop, reason = "closures would not be compiled in place")]
 
+use super::viscous::ViscousLaw;
 use crate::base::tensor::{Matrix, Real, dot, product, product_transposed, times, trace};
 use crate::elements::material::deformation::Deformation;
 use crate::elements::material::hooke::{Hooke, Lame, Spread};
 use crate::elements::material::law::{Block, Blocks};
 
-/// P = F S with E' = sym(F^T F'), S = lambda tr(E') I + 2 mu E'. A body that spins as a whole is not
-/// braked.
+/// P = F S with E' = sym(F^T F'), S = lambda tr(E') I + 2 mu E'.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct ObjectiveViscosity(pub(crate) Hooke);
+pub(crate) struct HookeanViscosity(pub(crate) Hooke);
 
-/// A `pull` is lambda times a projected rate of dilatation, where that takes the place of lambda tr(E').
-impl ObjectiveViscosity {
-    /// tr(E')
+impl ViscousLaw for HookeanViscosity {
     #[inline(always)]
-    pub(crate) fn rate_of_dilatation<T: Real, const M: usize, const D: usize>(
+    fn hooke(&self) -> &Hooke {
+        &self.0
+    }
+
+    #[inline(always)]
+    fn rate_of_dilatation<T: Real, const M: usize, const D: usize>(
         &self,
         at: &Deformation<T, M, D>,
         rate: &Matrix<T, D, M>,
@@ -24,16 +27,8 @@ impl ObjectiveViscosity {
         trace(&at.twice_green_rate(rate)) * 0.5
     }
 
-    /// lambda times a projected `rate` tr(E'), and lambda.
     #[inline(always)]
-    pub(crate) fn of_volume<T: Real>(&self, rate: T) -> [T; 2] {
-        let [_, pull, stiff] = self.0.of_volume(rate);
-        [pull, stiff]
-    }
-
-    /// First Piola stress P (Pa), times `weight`, the volume of the point.
-    #[inline(always)]
-    pub(crate) fn stress<T: Real, const M: usize, const D: usize>(
+    fn stress<T: Real, const M: usize, const D: usize>(
         &self,
         at: &Deformation<T, M, D>,
         rate: &Matrix<T, D, M>,
@@ -43,12 +38,9 @@ impl ObjectiveViscosity {
         product(&at.gradient(), &self.0.stress(&at.twice_green_rate(rate), pull, weight))
     }
 
-    /// dP/dF, as [`ElasticLaw::tangent`](crate::elements::material::ElasticLaw::tangent).
-    ///
-    /// The rate of strain changes with F, too, so that this is not symmetric:
-    /// lambda f_a f'_b^T + mu ((g_a . g_b) F F'^T + f_b f'_a^T) + (g_a . S g_b) I, f'_a = F' g_a
+    /// lambda f_a f'_b^T + mu ((g_a . g_b) F F'^T + f_b f'_a^T) + (g_a . S g_b) I, f_a = F g_a, f'_a = F' g_a
     #[inline(always)]
-    pub(crate) fn tangent<'a, T: Real, const N: usize, const M: usize, const D: usize>(
+    fn tangent<'a, T: Real, const N: usize, const M: usize, const D: usize>(
         &self,
         at: &Deformation<T, M, D>,
         rate: &Matrix<T, D, M>,
@@ -69,9 +61,8 @@ impl ObjectiveViscosity {
         }
     }
 
-    /// dP/dF', likewise, and symmetric; `is_projected` leaves out the part of a projected dilatation.
     #[inline(always)]
-    pub(crate) fn rate_tangent<'a, T: Real, const N: usize, const M: usize, const D: usize>(
+    fn rate_tangent<'a, T: Real, const N: usize, const M: usize, const D: usize>(
         &self,
         at: &Deformation<T, M, D>,
         is_projected: bool,
@@ -82,11 +73,13 @@ impl ObjectiveViscosity {
     }
 
     #[inline(always)]
-    fn moduli_at_points(&self, is_projected: bool) -> Lame {
-        match is_projected {
-            true => self.0.of_shear().lame,
-            false => self.0.lame,
-        }
+    fn swelling<T: Real, const N: usize, const M: usize, const D: usize>(
+        &self,
+        at: &Deformation<T, M, D>,
+        rate: &Matrix<T, D, M>,
+        gradients: &[[T; M]; N],
+    ) -> [[[T; D]; N]; 2] {
+        [product(&at.gradient(), gradients), product(rate, gradients)]
     }
 }
 
