@@ -170,6 +170,8 @@ impl fmt::Display for Equilibrium {
             "{stability}; forces balanced to {residual:.1e} of {force_scale:.3e} N, \
              {iterations} iteration(s), {load_steps} load step(s)"
         )?;
+        let planes = self.trajectory.body().planes();
+        planes.iter().try_for_each(|plane| write!(f, ", {plane}"))?;
         if !self.removed.is_empty() {
             write!(
                 f,

@@ -27,6 +27,9 @@ pub struct Report {
     pub alpha: f64,
     /// Unknowns of the integrator, in the last phase.
     pub states: usize,
+    /// Assumption across cells of two dimensions in words, such as `plane strain`, body by body where they differ; `None` without
+    /// such cells.
+    pub plane: Option<String>,
     /// Largest |A^T u - b| at the end of a step (m).
     pub constraint_drift: f64,
     /// Largest change of the energy balance (J): kinetic + potential + dissipated - supplied.
@@ -254,7 +257,9 @@ impl fmt::Display for Report {
     /// warnings.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { method, rtol, alpha, states, .. } = self;
-        writeln!(f, "{method}, rtol {rtol:.0e}, alpha {alpha:.0e} 1/s, {states} unknowns")?;
+        write!(f, "{method}, rtol {rtol:.0e}, alpha {alpha:.0e} 1/s, {states} unknowns")?;
+        self.plane.iter().try_for_each(|plane| write!(f, ", {plane}"))?;
+        writeln!(f)?;
         writeln!(
             f,
             "{:12} {:>8} {:>8} {:>12} {:>15} {:>9} {:>9}",

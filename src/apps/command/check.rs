@@ -84,7 +84,8 @@ fn part_of(Part { name, body, .. }: &Part) -> Result<(), Failure> {
         Dilatation::Mean => ", mean dilatation",
         Dilatation::Linear => ", linear dilatation",
     };
-    line("", &format!("{strain} strain, {viscosity} viscosity{dilatation}"))?;
+    let plane = body.planes().map_or_else(String::new, |plane| format!(", {plane}"));
+    line("", &format!("{strain} strain, {viscosity} viscosity{plane}{dilatation}"))?;
     let labels = std::iter::once("material").chain(std::iter::repeat("region"));
     labels
         .zip(body.substances())

@@ -180,7 +180,7 @@ fn materials(body: &Body) -> Vec<Indicator> {
 fn thickness(body: &Body) -> Option<Indicator> {
     let mesh = body.mesh();
     let (thickness, size) = (body.section(), mesh.size());
-    let is_per_metre = body.plane() == Plane::Strain && thickness == PER_METRE;
+    let is_per_metre = body.plane() == Some(Plane::Strain) && thickness == PER_METRE;
     if mesh.kind().dimension() != 2 || mesh.is_surface() || is_per_metre {
         return None;
     }

@@ -120,6 +120,7 @@ impl Run {
             rtol: settings.rtol,
             atol_position,
             alpha: settings.alpha,
+            plane: scene.body().planes(),
             ..Report::default()
         };
         let plan = Plan::new(settings, &mut system, 0.0, &state);

@@ -105,9 +105,32 @@ impl Body {
         self.continua.iter().flat_map(|continuum| &continuum.regions.materials)
     }
 
-    /// What it assumes about the third dimension, if its cells have two.
-    pub(crate) fn plane(&self) -> Plane {
-        self.continua[0].plane
+    /// Assumption across its cells, if they have two dimensions; of several bodies that of the first.
+    pub fn plane(&self) -> Option<Plane> {
+        let continuum = &self.continua[0];
+        (continuum.kind.dimension() == 2 && !self.mesh.is_surface()).then_some(continuum.plane)
+    }
+
+    /// The assumptions across cells of two dimensions of all bodies in words, as `plane strain`; `None` if there are no such cells.
+    pub fn planes(&self) -> Option<String> {
+        let names = |plane| {
+            let parts = self.parts().filter(move |part| part.body.plane() == Some(plane));
+            parts.map(|part| part.name.to_owned()).collect::<Vec<_>>()
+        };
+        let text = |plane: Plane, of: String| format!("plane {}{of}", plane.name());
+        match [Plane::Strain, Plane::Stress].map(|plane| (plane, names(plane))) {
+            [(_, none), (_, none_either)] if none.is_empty() && none_either.is_empty() => None,
+            [(plane, some), (_, none)] | [(_, none), (plane, some)]
+                if none.is_empty() && !some.is_empty() =>
+            {
+                Some(text(plane, String::new()))
+            }
+            both => {
+                let both =
+                    both.map(|(plane, names)| text(plane, format!(" ({})", names.join(", "))));
+                Some(both.join(", "))
+            }
+        }
     }
 
     /// How strain is measured.
@@ -128,7 +151,7 @@ impl Body {
     /// Whether its cells are not free to change their volume by their thickness, so that they lock if the material is nearly
     /// incompressible.
     pub(crate) fn can_lock(&self) -> bool {
-        !Dilatation::is_free(self.mesh.kind(), self.dimension(), self.plane())
+        !Dilatation::is_free(self.mesh.kind(), self.dimension(), self.continua[0].plane)
     }
 
     /// What it is made of, then what each of its regions is made of; body by body.

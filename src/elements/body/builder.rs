@@ -85,9 +85,10 @@ impl BodyBuilder {
         self.each(|recipe| recipe.points.push(point.clone()))
     }
 
-    /// Plane strain (default) or plane stress, for two-dimensional bodies.
+    /// Plane strain or plane stress, for cells of two dimensions. Default: plane strain in the plane, plane stress in space
+    /// (membranes).
     pub fn plane(self, plane: Plane) -> Self {
-        self.each(|recipe| recipe.plane = plane)
+        self.each(|recipe| recipe.plane = Some(plane))
     }
 
     /// Where a change of volume is resisted: at each point (default), or projected onto few functions of each cell,
@@ -210,7 +211,7 @@ impl BodyBuilder {
                 }
                 *selection = CellSelection::Numbers(cells.iter().map(|cell| cell + 1).collect());
             }
-            (recipe.plane, recipe.thickness) = (plane, Some(prism.height()));
+            (recipe.plane, recipe.thickness) = (Some(plane), Some(prism.height()));
             if plane == Plane::Stress {
                 recipe.dilatation = Dilatation::AtPoints;
             }
@@ -240,7 +241,7 @@ impl Body {
     /// The single body of a recipe.
     fn made(mut mesh: Mesh, mut recipe: Recipe) -> Result<Self, InputError> {
         let section = recipe.section(&mesh)?;
-        let Recipe { strain, plane, .. } = recipe;
+        let (strain, plane) = (recipe.strain, recipe.plane(&mesh));
         let viscosity = recipe.viscosity.unwrap_or(match strain {
             Strain::Cauchy => Viscosity::Natural,
             _ => Viscosity::Objective,
@@ -359,7 +360,7 @@ impl Body {
             strain: Strain::default(),
             viscosity: None,
             inertia: Inertia::default(),
-            plane: Plane::default(),
+            plane: None,
             dilatation: Dilatation::default(),
             thickness: None,
             area: None,

@@ -16,7 +16,8 @@ pub(super) struct Recipe {
     pub(super) strain: Strain,
     pub(super) viscosity: Option<Viscosity>,
     pub(super) inertia: Inertia,
-    pub(super) plane: Plane,
+    /// That of [`Recipe::plane`] if `None`.
+    pub(super) plane: Option<Plane>,
     pub(super) dilatation: Dilatation,
     pub(super) thickness: Option<f64>,
     pub(super) area: Option<f64>,
@@ -24,6 +25,13 @@ pub(super) struct Recipe {
 }
 
 impl Recipe {
+    /// The assumption across the cells of `mesh`, where they have two dimensions: unless one is given, no strain in the plane,
+    /// and no stress in space, where nothing keeps a membrane from changing its thickness.
+    pub(super) fn plane(&self, mesh: &Mesh) -> Plane {
+        let usual = if mesh.dimension() == 3 { Plane::Stress } else { Plane::Strain };
+        self.plane.unwrap_or(usual)
+    }
+
     /// Thickness (m) or cross section (m^2) of the cells of `mesh`; 1 for solids.
     ///
     /// # Errors

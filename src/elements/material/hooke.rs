@@ -16,17 +16,25 @@ pub struct Lame {
     pub mu: f64,
 }
 
-/// What a two-dimensional body assumes about the third dimension.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+/// Assumption about the direction across cells of two dimensions.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Plane {
-    /// No strain across the plane (Hirai's choice): lambda as it is.
-    #[default]
+    /// No strain across the plane (Hirai's choice): lambda as it is. The default of bodies in the plane.
     Strain,
-    /// No stress across the plane: lambda becomes 2 lambda mu / (lambda + 2 mu).
+    /// No stress across the plane, so that the thickness changes: lambda becomes 2 lambda mu / (lambda + 2 mu). The default of
+    /// membranes in space.
     Stress,
 }
 
 impl Plane {
+    /// Name: `strain`, `stress`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Strain => "strain",
+            Self::Stress => "stress",
+        }
+    }
+
     /// Whether the section of cells of dimension `M` is free to change.
     pub(super) const fn is_free<const M: usize>(self) -> bool {
         M == 1 || M == 2 && matches!(self, Self::Stress)

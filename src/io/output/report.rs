@@ -98,6 +98,8 @@ table! {
         "rtol", "1", "relative tolerance" => trajectory.report().rtol;
         "alpha", "1/s", "stabilization rate of constraints" => trajectory.report().alpha;
         "states", "", "unknowns of the integrator, in the last phase" => trajectory.report().states;
+        "plane", "", "assumption across cells of two dimensions, such as `plane strain`; `null` without such cells"
+            => trajectory.report().plane;
         {OfCounts} => &trajectory.report().counts();
         "wall_seconds", "s", "wall-clock time of the whole run" => trajectory.report().wall_seconds;
         "phases" [OfPhase], "", "the phases that were begun, in their order" => {
@@ -259,6 +261,8 @@ table! {
         "failure" (OfLostEquilibrium), "", "why the search gave up; `null` if it did not" => found.err();
         "method", "", "`\"static\"`" => "static";
         "states", "", "displacement components" => motion_of(found).body().dofs();
+        "plane", "", "assumption across cells of two dimensions, such as `plane strain`; `null` without such cells"
+            => motion_of(found).body().planes();
         "stability" (OfStability), "", "what a small push does to the equilibrium"
             => found.ok().map(|found| &found.stability);
         "removed", "", "rigid motions, in words, that nothing holds and that were taken out of the displacements"

@@ -58,9 +58,10 @@ pub(super) const BODY: TableKeys = TableKeys::new(
         Key::new(
             "plane",
             Holds::Word(|| PLANE.map(|(word, _)| word).into()),
-            "what is 0 across the plane",
+            "the quantity that is 0 across cells of two dimensions",
         )
-        .default("strain"),
+        .law("No strain: the body is as long across the plane as a tunnel lining. No stress: it is a sheet, whose thickness changes.")
+        .default("strain in the plane, stress in space (membranes)"),
         Key::new(
             "dilatation",
             Holds::Word(|| DILATATION.map(|(word, _)| word).into()),

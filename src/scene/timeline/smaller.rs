@@ -42,11 +42,7 @@ impl fmt::Display for Smaller {
                 write!(f, "half of it, cut at {} = {} m", axis.word(), told(*at))
             }
             Self::Plane { axis, plane } => {
-                let plane = match plane {
-                    Plane::Strain => "strain",
-                    Plane::Stress => "stress",
-                };
-                write!(f, "in a plane across {} (plane {plane})", axis.word())
+                write!(f, "in a plane across {} (plane {})", axis.word(), plane.name())
             }
         }
     }
