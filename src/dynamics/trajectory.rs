@@ -1,10 +1,13 @@
 //! The result of a run: sampled states, how they were obtained, and why it ended early.
 
 mod forces;
+mod penetration;
 
 use std::error::Error;
 use std::fmt;
 use std::sync::{Arc, OnceLock};
+
+pub(crate) use penetration::{Deepest, DepthLimit, Penetration};
 
 use crate::base::input::{InputError, told};
 use crate::dynamics::report::Report;
@@ -92,6 +95,8 @@ pub struct Trajectory {
     /// The least and the largest reading of each sensor, also between samples; empty unless requested.
     pub(crate) peaks: Vec<[f64; 2]>,
     pub(crate) report: Report,
+    /// How deep the surface got into each obstacle.
+    pub(crate) penetrations: Vec<Penetration>,
     /// What reads contact, once that was asked for.
     contact: OnceLock<Arc<ContactReader>>,
     /// What a reduced model lacks, as the run has told; empty unless requested.
@@ -117,6 +122,7 @@ impl Trajectory {
             sensors: Vec::new(),
             peaks: Vec::new(),
             report,
+            penetrations: Vec::new(),
             contact: OnceLock::new(),
             lacking: Vec::new(),
         };
@@ -249,8 +255,9 @@ impl Trajectory {
         let samples = self.samples[first.min(self.samples.len() - 1)..].to_vec();
         let (scene, sensors) = (self.scene.clone(), self.sensors.clone());
         let (peaks, contact) = (self.peaks.clone(), self.contact.clone());
-        let report = self.report.clone();
-        Self { scene, samples, sensors, peaks, report, contact, lacking: Vec::new() }
+        let (report, penetrations) = (self.report.clone(), self.penetrations.clone());
+        let lacking = Vec::new();
+        Self { scene, samples, sensors, peaks, report, penetrations, contact, lacking }
     }
 
     /// The scene that was run.
