@@ -1,11 +1,14 @@
 //! The result of a run: sampled states, how they were obtained, and why it ended early.
 
 mod forces;
+mod penetration;
 mod state;
 
 use std::error::Error;
 use std::fmt;
 use std::sync::{Arc, OnceLock};
+
+pub(crate) use penetration::{Deepest, DepthLimit, Penetration};
 
 use crate::base::input::{InputError, told};
 use crate::dynamics::report::Report;
@@ -95,6 +98,8 @@ pub struct Trajectory {
     /// The least and the largest reading of each sensor, also between samples; empty unless requested.
     pub(crate) peaks: Vec<[f64; 2]>,
     pub(crate) report: Report,
+    /// How deep the surface got into each obstacle.
+    pub(crate) penetrations: Vec<Penetration>,
     /// What reads contact, once that was asked for.
     contact: OnceLock<Arc<ContactReader>>,
     /// What a reduced model lacks, as the run has told; empty unless requested.
@@ -122,6 +127,7 @@ impl Trajectory {
             sensors: Vec::new(),
             peaks: Vec::new(),
             report,
+            penetrations: Vec::new(),
             contact: OnceLock::new(),
             lacking: Vec::new(),
             angles: Vec::new(),
@@ -249,9 +255,9 @@ impl Trajectory {
         let samples = self.samples[first.min(self.samples.len() - 1)..].to_vec();
         let (scene, sensors) = (self.scene.clone(), self.sensors.clone());
         let (peaks, contact) = (self.peaks.clone(), self.contact.clone());
-        let report = self.report.clone();
+        let (report, penetrations) = (self.report.clone(), self.penetrations.clone());
         let (lacking, angles) = (Vec::new(), self.angles.clone());
-        Self { scene, samples, sensors, peaks, report, contact, lacking, angles }
+        Self { scene, samples, sensors, peaks, report, penetrations, contact, lacking, angles }
     }
 
     /// The scene that was run.

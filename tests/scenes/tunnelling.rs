@@ -123,3 +123,48 @@ fn no_step_is_longer_than_allowed() {
         assert!(error.contains("max_step") && error.contains("above 0"), "{error}");
     }
 }
+
+/// A square at 3 m/s and a plate of 1 mm that is too soft to stop it: the motion is reported as doubtful, also where no
+/// sample shows the square inside the plate, and on a plate with the stiffness that the report names it turns back.
+#[test]
+fn a_body_that_breaks_through_a_plate_is_reported_with_what_would_hold() {
+    let run = |stiffness: f64| {
+        let plate = Obstacle::box_between([-0.1, -0.001], [0.1, 0.0]).stiffness(stiffness);
+        let scene = square(0.02, 3, [0.0, 0.005])
+            .obstacle(plate.named("plate"))
+            .initial_velocity(|_| vec![0.0, -3.0])
+            .phase(Phase::until(0.01));
+        scene.simulate(&Settings::default(), &Sampling::phase_ends()).unwrap()
+    };
+    let soft = run(100.0);
+    assert!(soft.centre_of_mass(soft.last())[1] < -0.01);
+    let warnings = soft.report().warnings();
+    let told =
+        warnings.iter().find(|warning| warning.contains("passed through obstacle \"plate\""));
+    let told = told.unwrap_or_else(|| panic!("{warnings:?}"));
+    let enough = told.split("to about ").nth(1).and_then(|rest| rest.split(' ').next());
+    let hard = run(enough.unwrap().parse().unwrap());
+    assert!(hard.centre_of_mass(hard.last())[1] > 0.01, "{told}");
+    let warnings = hard.report().warnings();
+    assert!(!warnings.iter().any(|warning| warning.contains("inside obstacle")), "{warnings:?}");
+    assert!(!warnings.iter().any(|warning| warning.contains("passed")), "{warnings:?}");
+}
+
+/// A pin between two nodes of a face, where no force acts: reported, and not where a node rests on the pin.
+#[test]
+fn a_pin_that_enters_between_nodes_is_reported() {
+    let warnings = |x: f64| {
+        let pin = Obstacle::disc([x, -0.011], 0.01).stiffness(1e4).damping(10.0).named("pin");
+        let scene =
+            square(0.1, 3, [0.0, 0.0]).obstacle(pin).gravity([0.0, -9.8]).phase(Phase::until(0.06));
+        let motion = scene.simulate(&Settings::default(), &Sampling::phase_ends()).unwrap();
+        motion.report().warnings()
+    };
+    let between = warnings(0.025);
+    let is_told = |warning: &String| {
+        warning.contains("the surface between nodes") && warning.contains("obstacle \"pin\"")
+    };
+    assert!(between.iter().any(is_told), "{between:?}");
+    let on_node = warnings(0.0);
+    assert!(!on_node.iter().any(is_told), "{on_node:?}");
+}

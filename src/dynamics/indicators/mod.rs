@@ -1,5 +1,6 @@
 //! Indicators: numbers measured on a scene and on its motion, each with the limit beyond which the result is
-//! doubtful, and what to do then. They are evaluated before a run or after it, never during it.
+//! doubtful, and what to do then. They are evaluated before a run or after it, never during it, but for depths in
+//! obstacles, which [`penetration`] follows from step to step.
 //!
 //! | indicator | limit |
 //! | --- | --- |
@@ -16,7 +17,9 @@
 //! | [`strain`]: how far cells turn under Cauchy strain | 10 degrees |
 //! | [`strain`]: cells turned inside out under Cauchy strain | none |
 //! | [`coarse`]: how much too stiff linear cells are for the strains that they show | 1.1 times |
-//! | [`touch`]: how deep nodes are inside obstacles, at the start and later | half a cell, 2 % of the body |
+//! | [`touch`]: how deep nodes are inside obstacles, at the start and later | half a cell, 2 % of the body; half of the thickness of the body, a quarter of that of the obstacle |
+//! | [`touch`]: points that went past the middle of an obstacle | none |
+//! | [`touch`]: how deep the surface between nodes is inside obstacles | as nodes |
 //! | [`touch`]: obstacles with friction that are touched in statics, where it does not act | none |
 //! | [`touch`]: obstacles that act and are never touched | none |
 //! | [`start`]: unknowns that the scene or the state from which it starts does not have | none |
@@ -58,6 +61,7 @@ mod gas;
 mod mesh;
 pub(crate) mod overlap;
 mod pace;
+mod penetration;
 mod points;
 mod reduced;
 mod rigid;
@@ -73,6 +77,7 @@ mod waves;
 
 use deformed::Deformed;
 use each::{each_body, named};
+pub(crate) use penetration::Follower;
 pub(crate) use reduced::reduced;
 use shape::Extent;
 
@@ -177,7 +182,9 @@ pub(crate) fn of_motion(trajectory: &Trajectory) -> Vec<Indicator> {
     let meetings = touch::meetings(trajectory, &samples);
     let missed = || touch::missed(&meetings, touch::Reach::between(scene, &samples));
     let measured = scene.indicators().into_iter().chain(of_cells(trajectory, &samples));
-    let measured = measured.chain(touch::depths(&meetings));
+    let measured = measured.chain(touch::depths(trajectory.scene(), &meetings));
+    let measured = measured.chain(touch::passages(trajectory));
+    let measured = measured.chain(touch::between_nodes(trajectory));
     let measured = measured.chain(chamber::volumes(scene, trajectory.samples()));
     let measured = measured.chain(overlaps(trajectory));
     let measured = measured.chain(pace::tolerance(trajectory, &samples));
@@ -192,7 +199,7 @@ pub(crate) fn of_equilibrium(trajectory: &Trajectory, is_found: bool) -> Vec<Ind
     let meetings = touch::meetings(trajectory, &samples);
     let measured = trajectory.scene().indicators().into_iter();
     let measured = measured.chain(of_cells(trajectory, &samples));
-    let measured = measured.chain(touch::depths(&meetings));
+    let measured = measured.chain(touch::depths(trajectory.scene(), &meetings));
     let measured = measured.chain(overlaps(trajectory));
     let measured = measured.chain(touch::slippery(trajectory, &meetings));
     let measured = measured.chain(chamber::volumes(trajectory.scene(), trajectory.samples()));

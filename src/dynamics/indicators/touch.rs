@@ -2,17 +2,14 @@
 
 use std::ptr;
 
-use super::size::least_cell_sizes;
+use super::penetration::depth_limits;
+use crate::base::input::told;
 use crate::base::vector::norm;
 use crate::dynamics::report::Indicator;
-use crate::dynamics::trajectory::{Sample, Trajectory};
-use crate::elements::body::Body;
+use crate::dynamics::trajectory::{Deepest, DepthLimit, Sample, Trajectory};
 use crate::scene::forces::Contact;
 use crate::scene::timeline::{Phase, Scene};
 
-/// How far a node may be inside an obstacle: this part of its cell, or of the body if that is more.
-const MOST_OF_CELL: f64 = 0.5;
-const MOST_OF_BODY: f64 = 0.02;
 /// The name of the indicator of how deep a body begins inside an obstacle.
 pub(super) const START_DEPTH: &str = "start-depth";
 
@@ -23,8 +20,10 @@ pub(super) struct Meeting {
     speed: f64,
     /// Least distance (m), below 0 inside the obstacle.
     nearest: f64,
-    /// The largest depth (m) relative to its limit (m), and the node there, counted from 0.
-    deepest: Deepest,
+    /// The deepest node.
+    deepest: Option<Deepest>,
+    /// Estimated factor by which its stiffness would have to be larger to keep nodes within their limits.
+    stiffer: f64,
     /// Whether nodes were deeper than the limit at t = 0, which is [reported separately](begun_inside).
     is_begun_inside: bool,
 }
@@ -36,33 +35,12 @@ impl Meeting {
 
     /// Whether the obstacle may be too soft: nodes were inside, and not from the beginning.
     pub(super) fn may_be_soft(&self) -> bool {
-        self.deepest.depth > 0.0 && !self.is_begun_inside
+        self.deepest.is_some() && !self.is_begun_inside
     }
 
     /// How deep (m) nodes were inside.
     pub(super) fn depth(&self) -> f64 {
-        self.deepest.depth
-    }
-}
-
-#[derive(Clone, Copy)]
-struct Deepest {
-    depth: f64,
-    limit: f64,
-    node: usize,
-}
-
-impl Deepest {
-    const NONE: Self = Self { depth: 0.0, limit: 1.0, node: 0 };
-
-    fn see(&mut self, depth: f64, limit: f64, node: usize) {
-        if depth / limit > self.depth / self.limit {
-            *self = Self { depth, limit, node };
-        }
-    }
-
-    fn is_beyond(&self) -> bool {
-        self.depth > self.limit
+        self.deepest.map_or(0.0, |deepest| deepest.depth)
     }
 }
 
@@ -91,7 +69,8 @@ pub(super) fn meetings(trajectory: &Trajectory, samples: &[&Sample]) -> Vec<Meet
                     obstacle: name.to_owned(),
                     speed: 0.0,
                     nearest: f64::INFINITY,
-                    deepest: Deepest::NONE,
+                    deepest: None,
+                    stiffer: 1.0,
                     is_begun_inside: false,
                 });
                 meetings.len() - 1
@@ -101,34 +80,116 @@ pub(super) fn meetings(trajectory: &Trajectory, samples: &[&Sample]) -> Vec<Meet
             meeting.speed = meeting.speed.max(fastest);
             contact.each_distance(sample.time, &sample.u, |distance, node| {
                 meeting.nearest = meeting.nearest.min(distance);
-                meeting.deepest.see(-distance, limits[node], node);
+                see(&mut meeting.deepest, (-distance, node), &limits);
             });
-            meeting.is_begun_inside |= sample.time <= 0.0 && meeting.deepest.is_beyond();
+            let is_beyond = meeting.deepest.is_some_and(|deepest| deepest.part() > 1.0);
+            meeting.is_begun_inside |= sample.time <= 0.0 && is_beyond;
         }
         last = sample.time;
+    }
+    for known in &trajectory.penetrations {
+        let of = meetings.iter_mut().find(|meeting| meeting.obstacle == known.obstacle);
+        let (Some(meeting), Some(deepest)) = (of, known.at_nodes) else { continue };
+        meeting.stiffer = known.stiffer;
+        Deepest::replace(&mut meeting.deepest, deepest);
     }
     meetings
 }
 
-/// For each node the depth (m) up to which it may be inside an obstacle, by the smallest of its cells.
-fn depth_limits(body: &Body) -> Vec<f64> {
-    let least = MOST_OF_BODY * body.size();
-    least_cell_sizes(body).into_iter().map(|size| f64::max(MOST_OF_CELL * size, least)).collect()
+/// Considers a depth (m) of a node.
+fn see(deepest: &mut Option<Deepest>, (depth, node): (f64, usize), limits: &[DepthLimit]) {
+    let here = Deepest { depth, limit: limits[node], time: None, nodes: [node; 2] };
+    Deepest::replace(deepest, here);
 }
 
 /// Nodes inside obstacles.
-pub(super) fn depths(meetings: &[Meeting]) -> impl Iterator<Item = Indicator> {
-    meetings.iter().filter(|meeting| meeting.may_be_soft()).map(|meeting| {
-        let Deepest { depth, limit, node } = meeting.deepest;
-        let told = format!(
-            "node {} is {depth:.2e} m inside obstacle \"{}\" (limit: {limit:.2e} m, half a cell or 2 % of the \
-             body)",
-            node + 1,
-            meeting.obstacle
+pub(super) fn depths(scene: &Scene, meetings: &[Meeting]) -> impl Iterator<Item = Indicator> {
+    meetings.iter().filter(|meeting| meeting.may_be_soft()).filter_map(move |meeting| {
+        let Deepest { depth, limit, time, nodes } = meeting.deepest?;
+        let when = time.map_or(String::new(), |t| format!(" at t = {} s", told(t)));
+        let said = format!(
+            "node {} is {depth:.2e} m inside obstacle \"{}\"{when} (limit: {:.2e} m, {})",
+            nodes[0] + 1,
+            meeting.obstacle,
+            limit.depth,
+            limit.reason
         );
-        let beyond = || format!("{told}: raise the stiffness of the obstacle");
-        Indicator::trusted("depth", (depth, "m"), [0.0, limit], || told.clone(), beyond)
+        let beyond = || {
+            let (to, name) = (stiffness(scene, &meeting.obstacle, meeting.stiffer), &said);
+            format!("{name}: raise the stiffness of the obstacle{to}")
+        };
+        let limits = [0.0, limit.depth];
+        Some(Indicator::trusted("depth", (depth, "m"), limits, || said.clone(), beyond))
     })
+}
+
+/// To what the stiffness of an obstacle would have to be raised, in words, if `stiffer` is a factor that is known.
+fn stiffness(scene: &Scene, name: &str, stiffer: f64) -> String {
+    let of = scene.obstacles().iter().find(|obstacle| obstacle.name() == name);
+    let Some(obstacle) = of.filter(|_| stiffer > 1.0) else { return String::new() };
+    let (given, unit) = obstacle.given_stiffness();
+    format!(", from {given:.1e} to about {:.1e} {unit} by its energy", stiffer * given)
+}
+
+/// Obstacles that points of the surface have passed through.
+pub(super) fn passages(trajectory: &Trajectory) -> impl Iterator<Item = Indicator> {
+    let known = trajectory.penetrations.iter().filter(|known| known.half_thickness.is_finite());
+    known.map(|known| {
+        let name = &known.obstacle;
+        let within = || format!("no point passed the middle of obstacle \"{name}\" (limit: 0)");
+        let beyond = || {
+            let (time, nodes) = known.first_passage.unwrap_or_default();
+            let to = stiffness(trajectory.scene(), name, known.stiffer);
+            format!(
+                "the body passed through obstacle \"{name}\": its surface went past the middle {} time(s) (limit: 0), first at \
+                 {} at t = {} s, and was pushed out on the other side; raise the stiffness of the obstacle{to}, or make it \
+                 thicker than {:.1e} m",
+                known.passages,
+                on(nodes),
+                told(time),
+                2.0 * known.half_thickness
+            )
+        };
+        let value = (known.passages as f64, "");
+        Indicator::trusted("passage", value, [0.0, 0.0], within, beyond)
+    })
+}
+
+/// Obstacles between nodes of the surface, where nothing pushes back.
+pub(super) fn between_nodes(trajectory: &Trajectory) -> impl Iterator<Item = Indicator> {
+    trajectory.penetrations.iter().filter_map(|known| {
+        let deepest = known.between?;
+        let at_nodes = known.at_nodes.map_or(0.0, |at_nodes| at_nodes.depth);
+        if deepest.depth <= at_nodes {
+            return None;
+        }
+        let Deepest { depth, limit, nodes, time } = deepest;
+        let mesh = trajectory.body().mesh();
+        let [a, b] = nodes.map(|node| mesh.position(node));
+        let edge = norm(&a.iter().zip(b).map(|(a, b)| a - b).collect::<Vec<f64>>());
+        let said = format!(
+            "the surface between {}, {edge:.2e} m apart, is {depth:.2e} m inside obstacle \"{}\" at t = {} s (limit: {:.2e} m, \
+             {})",
+            on(nodes),
+            known.obstacle,
+            told(time.unwrap_or_default()),
+            limit.depth,
+            limit.reason
+        );
+        let beyond = || {
+            let least = f64::min(known.half_thickness, 0.5 * edge);
+            format!(
+                "{said}: contact does not act there; refine the surface to edges of at most {least:.1e} m, or round the obstacle"
+            )
+        };
+        let limits = [0.0, limit.depth];
+        Some(Indicator::trusted("depth-between-nodes", (depth, "m"), limits, || said.clone(), beyond))
+    })
+}
+
+/// Nodes in words, counted from 1.
+fn on([a, b]: [usize; 2]) -> String {
+    if a == b { format!("node {}", a + 1) } else { format!("nodes {} and {}", a + 1, b + 1) }
 }
 
 /// Obstacles of the first phase that the body begins inside of.
@@ -140,17 +201,19 @@ pub(super) fn begun_inside(scene: &Scene) -> Vec<Indicator> {
     }
     let limits = depth_limits(scene.body());
     let of_contact = |contact: &Contact| {
-        let (mut deepest, mut count) = (Deepest::NONE, 0);
+        let (mut deepest, mut count) = (None, 0);
         contact.each_distance(0.0, scene.initial_displacements(), |distance, node| {
-            deepest.see(-distance, limits[node], node);
+            see(&mut deepest, (-distance, node), &limits);
             count += usize::from(distance < 0.0);
         });
-        let Deepest { depth, limit, node } = deepest;
+        let Deepest { depth, limit, nodes, .. } = deepest?;
         let name = contact.obstacle().name();
         let said = format!(
             "the body begins with {count} node(s) inside obstacle \"{name}\", node {} the deepest by {depth:.2e} m (limit: \
-             {limit:.2e} m, half a cell or 2 % of the body)",
-            node + 1
+             {:.2e} m, {})",
+            nodes[0] + 1,
+            limit.depth,
+            limit.reason
         );
         let beyond = || {
             format!(
@@ -159,8 +222,8 @@ pub(super) fn begun_inside(scene: &Scene) -> Vec<Indicator> {
             )
         };
         let value = (depth, "m");
-        (depth > 0.0)
-            .then(|| Indicator::trusted(START_DEPTH, value, [0.0, limit], || said.clone(), beyond))
+        let limits = [0.0, limit.depth];
+        Some(Indicator::trusted(START_DEPTH, value, limits, || said.clone(), beyond))
     };
     contacts.iter().filter_map(of_contact).collect()
 }

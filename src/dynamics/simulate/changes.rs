@@ -220,6 +220,7 @@ impl Run {
                 work.stop = f64::NAN;
                 let (system, located) = (work.stepper.system(), self.phase_run.plan.locates());
                 self.phase_run.interval.events.begin(system, self.time, &self.state, located);
+                self.follower.begin(&self.scene, &self.phase);
                 self.remember();
                 Ok(true)
             }

@@ -4,6 +4,7 @@ use super::angles::Angles;
 use super::auto::Plan;
 use super::events::Events;
 use super::sampling::Schedule;
+use crate::dynamics::trajectory::Penetration;
 
 /// A state to go back to.
 #[derive(Clone, Default)]
@@ -19,6 +20,8 @@ pub(super) struct RollbackPoint {
     pub(super) angles: Angles,
     /// The least and the largest reading of each sensor until then.
     pub(super) peaks: Vec<[f64; 2]>,
+    /// How deep the surface had got into obstacles by then.
+    pub(super) penetrations: Vec<Penetration>,
 }
 
 /// How an interval ended.

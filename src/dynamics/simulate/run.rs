@@ -18,7 +18,7 @@ use super::stepper::{self, Failed};
 use super::view::{Gauges, View};
 use crate::base::input::InputError;
 use crate::dynamics::error::Error;
-use crate::dynamics::indicators;
+use crate::dynamics::indicators::{self, Follower};
 use crate::dynamics::matrices::Matrices;
 use crate::dynamics::report::{Report, ToldReading, creation};
 use crate::dynamics::state::{ENERGIES, State};
@@ -63,6 +63,8 @@ pub(super) struct Run {
     /// Steps in a row that did not move time ahead.
     pub(super) standing: usize,
     pub(super) trajectory: Trajectory,
+    /// Follows the surface into obstacles.
+    pub(super) follower: Follower,
     /// The last state whose energy balance was in order.
     pub(super) rollback_point: RollbackPoint,
     /// Reference value (J) of the energy balance by which methods are judged: that at the start or, once a
@@ -153,6 +155,7 @@ impl Run {
             standing: 0,
             rollback_point: RollbackPoint::default(),
             balance,
+            follower: Follower::new(scene),
             trajectory,
             least_energy: least_energy(scene.body()),
             pause: None,
@@ -306,6 +309,7 @@ impl Run {
     pub(super) fn begin_events(&mut self, system: &System) {
         let located = self.phase_run.plan.locates();
         self.phase_run.interval.events.begin(system, self.time, &self.state, located);
+        self.follower.begin(&self.scene, &self.phase);
     }
 
     /// A run in the same state without equations; its trajectory begins with the last sample of this one.
@@ -332,6 +336,7 @@ impl Run {
             steps: self.steps,
             standing: 0,
             trajectory: self.trajectory.at_end(),
+            follower: Follower::new(&self.scene),
             rollback_point: self.rollback_point.clone(),
             balance: self.balance,
             least_energy: self.least_energy,

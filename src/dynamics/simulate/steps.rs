@@ -13,6 +13,7 @@ use super::stepper::{Failed, Stepper};
 use crate::dynamics::report::creation;
 use crate::dynamics::system::System;
 use crate::dynamics::trajectory::Interrupted;
+use crate::elements::force::Step;
 use crate::integrators::ode::Failure;
 
 /// Steps between checks of the energy balance, each of which costs about one evaluation of the forces.
@@ -102,13 +103,23 @@ impl Run {
         rollback_point.energies = self.trajectory.noted();
         rollback_point.angles.clone_from(&self.angles);
         rollback_point.peaks.clone_from(&self.trajectory.peaks);
+        rollback_point.penetrations.clone_from(&self.trajectory.penetrations);
         rollback_point.state.clone_from(&self.state);
     }
 
     /// Goes back to the state last kept.
     pub(super) fn go_back(&mut self) {
-        let RollbackPoint { time, ref state, taken, samples, energies, ref angles, ref peaks } =
-            self.rollback_point;
+        let RollbackPoint {
+            time,
+            ref state,
+            taken,
+            samples,
+            energies,
+            ref angles,
+            ref peaks,
+            ref penetrations,
+        } = self.rollback_point;
+        self.trajectory.penetrations.clone_from(penetrations);
         self.angles.clone_from(angles);
         self.trajectory.peaks.clone_from(peaks);
         (self.time, self.phase_run.interval.taken, self.standing) = (time, taken, 0);
@@ -150,6 +161,15 @@ impl Run {
             self.find_peaks(stepper, time, sample)?;
         }
         let (system, arrived) = arrival(stepper, event, sample)?;
+        self.follower.follow(
+            &Step {
+                times: [self.time, time],
+                u: [&self.state[..n], &arrived[..n]],
+                v: [&self.state[n..2 * n], &arrived[n..2 * n]],
+            },
+            || energy(system, time, arrived).kinetic,
+            &mut self.trajectory.penetrations,
+        );
         let step = time - self.time;
         self.time = time;
         self.steps += 1;

@@ -9,7 +9,7 @@ use switches::Switches;
 
 use super::friction::{Backward, Coulomb, Drag};
 use super::obstacle::{Law, Obstacle};
-use super::passage::{Path, deepest};
+use super::passage::{Path, deepest, is_passed};
 use super::shape::Nearest;
 use super::signal::finite_at;
 use super::surface::{SurfacePoint, boundary_nodes, gauss_points};
@@ -140,6 +140,28 @@ impl Contact {
 
     pub(crate) fn obstacle(&self) -> &Obstacle {
         &self.obstacle
+    }
+
+    pub(crate) fn dimension(&self) -> usize {
+        self.dimension
+    }
+
+    /// The distance (m) of a position (m) at time `t` (s).
+    pub(crate) fn distance_of(&self, t: f64, x: [f64; 3]) -> f64 {
+        self.obstacle.nearest(&self.obstacle.displacement(t), x, self.dimension).distance
+    }
+
+    /// Half of the least thickness (m) of the obstacle at a position (m); infinite if that is not bounded or not known.
+    pub(crate) fn half_thickness(&self, t: f64, x: [f64; 3]) -> f64 {
+        let x = difference(&x, &self.obstacle.displacement(t));
+        self.obstacle.shape().half_thickness(&x[..self.dimension])
+    }
+
+    /// Whether a point that moves between two positions (m) passes the middle of the obstacle; of one of unknown thickness,
+    /// deeper than `depth` (m).
+    pub(crate) fn is_passed(&self, times: [f64; 2], x: [[f64; 3]; 2], depth: f64) -> bool {
+        let x = [0, 1].map(|k| difference(&x[k], &self.obstacle.displacement(times[k])));
+        is_passed(self.obstacle.shape(), [&x[0][..self.dimension], &x[1][..self.dimension]], depth)
     }
 
     /// Passes to `see` the distance (m) of each point and the first of its nodes (counted from 0).

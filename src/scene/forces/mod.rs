@@ -75,7 +75,7 @@ pub(crate) use spring::Joint;
 pub(crate) use spring::SpringGauge;
 pub use spring::{Guide, Spring};
 pub(crate) use surface::{
-    SurfacePoint, boundary_nodes, edge_points, face_centre, pieces, weighted,
+    SurfacePoint, boundary_area, boundary_nodes, edge_points, face_centre, pieces, weighted,
 };
 pub(crate) use time_table::TimeTable;
 pub use touch::Touch;

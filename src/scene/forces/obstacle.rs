@@ -448,6 +448,14 @@ impl Obstacle {
         matches!(self.stiffness, Stiffness::Density(_))
     }
 
+    /// Its stiffness as it was given, and the unit of that.
+    pub(crate) fn given_stiffness(&self) -> (f64, &'static str) {
+        match self.stiffness {
+            Stiffness::PerNode(stiffness) => (stiffness, "N/m per node"),
+            Stiffness::Density(stiffness) => (stiffness, "N/m^3"),
+        }
+    }
+
     /// Whether normal forces may pull.
     pub(super) fn has_adhesion(&self) -> bool {
         self.adhesion
@@ -455,7 +463,7 @@ impl Obstacle {
 
     /// The law for a point that stands for `area` (m^2; 1 for a node).
     pub(super) fn law(&self, area: f64) -> Law {
-        let (Stiffness::PerNode(stiffness) | Stiffness::Density(stiffness)) = self.stiffness;
+        let (stiffness, _) = self.given_stiffness();
         Law {
             stiffness: area * stiffness,
             damping: area * self.damping,

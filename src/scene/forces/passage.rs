@@ -89,6 +89,35 @@ pub(super) fn deepest(shape: &Shape, path: &Path, dimension: usize, depth: f64) 
     search.place
 }
 
+/// Places along a step at which the depth within a shape is looked at.
+const PLACES: usize = 16;
+/// Part of the half thickness of a shape at which a point that comes out on the other side has been: less than at its
+/// middle, which lies between places.
+const MIDDLE: f64 = 0.25;
+
+/// Whether a point has passed the middle of a shape on its way between two positions (m), of which one is inside: the
+/// nearest side is then an opposite one. Of a shape of unknown thickness, whether that is so, deeper than `depth` (m).
+pub(super) fn is_passed(shape: &Shape, [from, to]: [&[f64]; 2], depth: f64) -> bool {
+    if let Kind::Union(parts) = shape.kind() {
+        return parts.iter().any(|part| is_passed(part, [from, to], depth));
+    }
+    let [start, end] = [from, to].map(|x| shape.nearest(x));
+    if start.distance >= 0.0 && end.distance >= 0.0 || dot(&start.normal, &end.normal) >= 0.0 {
+        return false;
+    }
+    let half = shape.half_thickness(to);
+    let least = if half.is_finite() { MIDDLE * half } else { depth };
+    let is_deep =
+        |place: usize| {
+            let s = place as f64 / PLACES as f64;
+            let x: [f64; 3] = std::array::from_fn(|i| {
+                if i < from.len() { from[i] + s * (to[i] - from[i]) } else { 0.0 }
+            });
+            shape.nearest(&x[..from.len()]).distance < -least
+        };
+    (0..=PLACES).any(is_deep)
+}
+
 struct Search {
     dimension: usize,
     /// The distance (m) below which a further place is looked for.

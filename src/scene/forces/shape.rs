@@ -236,6 +236,25 @@ impl Shape {
         }
     }
 
+    /// Half of its least thickness (m) at `x`: that of the nearest part. Infinite where that is not bounded, or not known.
+    pub(super) fn half_thickness(&self, x: &[f64]) -> f64 {
+        match &self.0 {
+            Kind::HalfPlane { .. } | Kind::Ball { cavity: true, .. } | Kind::Custom(_) => {
+                f64::INFINITY
+            }
+            Kind::Ball { radius, .. } | Kind::Capsule { radius, .. } => *radius,
+            Kind::Box { min, max } => {
+                let halves = min.iter().zip(max).map(|(min, max)| 0.5 * (max - min));
+                halves.fold(f64::INFINITY, f64::min)
+            }
+            Kind::Union(parts) => {
+                let distance = |part: &&Self| part.nearest(x).distance;
+                let nearest = parts.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)));
+                nearest.map_or(f64::INFINITY, |part| part.half_thickness(x))
+            }
+        }
+    }
+
     /// Whether a user's function is part of it.
     pub(super) fn is_custom(&self) -> bool {
         match &self.0 {

@@ -106,6 +106,11 @@ pub(super) fn gauss_points(body: &Body) -> Option<Vec<SurfacePoint>> {
     Some(points)
 }
 
+/// Area (m^2) of the boundary of a body; a string has none: `None`.
+pub(crate) fn boundary_area(body: &Body) -> Option<f64> {
+    Some(gauss_points(body)?.iter().map(|point| point.area).sum())
+}
+
 /// Quadrature points of some `faces` that lie at the nodes and between them, so that nothing sticks out beyond all of
 /// them: Simpson's rule on both halves of segments, a rule of degree 3 on triangles. Points in the same place are one.
 /// A string has no area: `None`.

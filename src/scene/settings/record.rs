@@ -41,7 +41,7 @@ pub struct Settings {
     /// Whether contact events are located. Default: where that is faster at the same accuracy.
     pub contact_events: ContactEvents,
     /// Longest step (s), above 0. Default: none. Error control needs no bound, and no step leads through an
-    /// obstacle; this is for short forces that might begin and end within one step.
+    /// obstacle without its force; this is for short forces that might begin and end within one step.
     pub max_step: Option<f64>,
     /// Steps that one phase may take. Default: 10 million, a guard against runs without end.
     pub max_steps: usize,
