@@ -5,10 +5,10 @@ use std::sync::Arc;
 
 use super::{Phase, Scene, unique};
 use crate::base::input::{InputError, find, not_negative, unknown_among};
-use crate::elements::force::Forces;
+use crate::elements::force::{Force, Forces};
 use crate::scene::forces::{
-    AmountFlow, Chamber, Closed, DipolePart, End, Filled, Gas, Lagging, Live, Orifice, OrificeFlow,
-    Signal, Supply,
+    AmountFlow, Chamber, Closed, Content, DipolePart, End, Filled, Gas, Lagging, Live, Orifice,
+    OrificeFlow, Signal, Supply,
 };
 
 /// What an end of an orifice or a pipe in the open is called.
@@ -105,6 +105,34 @@ impl Scene {
             phase.flows.clear();
         });
         Cow::Owned(shut)
+    }
+
+    /// The same for statics: with actuators, and amounts of gas and liquids, that rise from rest if so asked.
+    pub(crate) fn loaded(&self, rises: bool) -> Self {
+        Self { rises, ..self.shut().into_owned() }
+    }
+
+    /// The last unknowns of a state of statics, as [`flowing`](Self::flowing) has them, for a `fraction` of the load of `phase`; none where there are neither gases nor liquids. `acting` is the phase under that fraction.
+    ///
+    /// # Errors
+    /// As [`filled`](Self::filled).
+    pub(crate) fn amounts_at(
+        &self,
+        fraction: f64,
+        phase: &Phase,
+        acting: &Phase,
+    ) -> Result<Vec<f64>, InputError> {
+        if !self.has_gas() && self.liquids.is_empty() {
+            return Ok(Vec::new());
+        }
+        let part = |[from, whole]: [f64; 2]| from + fraction * (whole - from);
+        let gases = self.filled()?;
+        let liquids = self.poured(Some(phase))?;
+        let gases = gases.iter().map(|gas| part([gas.unloaded(), gas.amount()]));
+        let liquids = liquids.iter().map(|liquid| part([liquid.unloaded(), liquid.amount()]));
+        let lags = self.lags().map(|(name, _)| self.drive_at(name, acting, phase.until, &[])[0]);
+        let pipes = self.pipes.iter().map(|_| 0.0);
+        Ok(gases.chain(liquids).chain(lags).chain(pipes).collect())
     }
 
     /// Number (from 0) of the orifice with a name; `input` is where that was given.
@@ -217,19 +245,30 @@ impl Scene {
         unique("orifice", self.orifices.iter().map(Orifice::name))?;
         let orifices = (0..self.orifices.len()).map(|number| self.orifice_flow(number, phase));
         let (orifices, gases) = (orifices.collect::<Result<Vec<_>, _>>()?, self.filled()?);
-        let (liquids, dofs) = (self.poured(Some(phase))?, self.body.dofs());
+        let liquids = self.poured(Some(phase))?;
         let pipes = self.pipe_flows()?;
         if self.is_shut {
             for gas in gases {
-                forces.push(Arc::new(Closed::new(gas, dofs)));
+                let from = gas.unloaded();
+                forces.push(self.closed(gas, from, phase.until));
             }
             for liquid in liquids {
-                forces.push(Arc::new(Closed::new(liquid, dofs)));
+                let from = liquid.unloaded();
+                forces.push(self.closed(liquid, from, phase.until));
             }
         } else if !(gases.is_empty() && liquids.is_empty() && lagging.is_empty()) {
             forces.push(Arc::new(AmountFlow::new(gases, orifices, liquids, lagging, pipes)));
         }
         Ok(())
+    }
+
+    /// The force of an amount that stays, or rises `from` another one (kg) up to the time `end` (s).
+    fn closed<C: Content + 'static>(&self, content: C, from: f64, end: f64) -> Arc<dyn Force> {
+        let dofs = self.body.dofs();
+        match self.rises {
+            true => Arc::new(Closed::rising(content, dofs, from, end)),
+            false => Arc::new(Closed::new(content, dofs)),
+        }
     }
 
     /// Times (s, ascending) at which what `phase` prescribes, the pressure of a supply, the velocity of a fluid and dipoles change their laws.
