@@ -960,7 +960,7 @@ def initial(
     nodes: dict | Sequence[dict] | None = None,
 ) -> dict:
     r"""How the body moves at first. What the first phase holds or moves takes its part of that, as by an impact. In
-    statics nothing moves.
+    statics nothing moves, and the search begins at the displacements of a state `from`.
 
     Parameters
     ----------

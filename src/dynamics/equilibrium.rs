@@ -64,6 +64,9 @@ pub struct Equilibrium {
     pub load_steps: usize,
     /// Load steps that did not converge and were made smaller.
     pub failed_steps: usize,
+    /// Load steps whose equilibrium was found by damped motion, as Newton's method failed: there may be several, of which
+    /// inertia would select another.
+    pub damped_steps: usize,
     /// Discretization error of a quantity, if it was [estimated](MeshEstimate).
     pub mesh_estimate: Option<MeshEstimate>,
 }
@@ -177,6 +180,13 @@ impl fmt::Display for Equilibrium {
                 f,
                 "; nothing holds the body: rigid motions removed ({})",
                 self.removed.join(", ")
+            )?;
+        }
+        if self.damped_steps > 0 {
+            let steps = self.damped_steps;
+            write!(
+                f,
+                "; found by damped motion in {steps} load step(s), where Newton's method failed"
             )?;
         }
         let differences = self.difference_evaluations;

@@ -66,6 +66,9 @@ pub struct Quantity {
     pub unit: String,
 }
 
+/// Name of the sensor that has the load factor of each equilibrium of a load curve.
+pub(crate) const LOAD_FACTOR: &str = "load factor";
+
 /// The unit of angles in degrees, the only one outside SI.
 pub(crate) const DEGREES: &str = "deg";
 

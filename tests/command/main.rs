@@ -411,7 +411,7 @@ fn static_writes_load_curves() {
            load = [{ nodes = \"right\", force = [-0.2] }]\n\
            [statics]\nphase = \"push\"\nload_steps = 4\n";
     let output =
-        place.run(&["static", place.scene(&two), "--formats", "vtk,html", "--out", "curve"]);
+        place.run(&["static", place.scene(&two), "--formats", "vtk,html,plot", "--out", "curve"]);
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     let (header, rows) = place.table("curve");
     let column = header.iter().position(|name| name == "load factor").unwrap();
@@ -420,6 +420,9 @@ fn static_writes_load_curves() {
     let frames =
         |directory| place.files(directory).iter().filter(|name| name.ends_with(".vtu")).count();
     assert_eq!(frames("curve"), 5);
+    // sensors are drawn over the load factor
+    let plot = fs::read_to_string(place.path("curve/plot.svg")).unwrap();
+    says(&plot, &["load factor", "class=\"series\""]);
 
     let arc = ["--arc-steps", "50", "--out", "arc", "--quiet"];
     let output = place.run(&[&["static", "scene.toml"][..], &arc].concat());

@@ -15,10 +15,10 @@ use crate::scene::SceneArguments;
 
 /// Find the equilibrium of a phase of a scene
 ///
-/// Its constraints, gravity, loads, obstacles and springs are taken as they are at its end; there is
-/// no motion. Writes trajectory.csv with one row, report.json, state.json (for other scenes to start from), and what --formats asks for, to
+/// Its constraints, gravity, loads, obstacles and actuators are taken as they are at its end; there is
+/// no motion. The search begins in the undeformed shape, or in the state of [initial] from. Writes trajectory.csv with one row, report.json, state.json (for other scenes to start from), and what --formats asks for, to
 /// out/NAME-static for the scene file NAME.toml if --out does not say otherwise. With several steps these are
-/// the load curve: one row and one frame for each equilibrium, with its load factor.
+/// the load curve: one row and one frame for each equilibrium, with its load factor, over which the format plot draws the sensors.
 #[derive(Args)]
 pub struct Arguments {
     #[command(flatten)]
@@ -108,11 +108,15 @@ fn run_in(arguments: &Arguments, place: &Path) -> Result<(), Failure> {
         MeshEstimate::check(&file.scene, quantity)?;
     }
     let mut request = file.output.clone();
-    // a single state has nothing to plot over time
-    let asked = request.formats.len();
-    request.formats.retain(|format| ![Format::Plot, Format::Png].contains(format));
-    if request.formats.len() < asked && !output.quiet {
-        print("plots over time are of motions: an equilibrium has none")?;
+    // a single state has nothing to plot
+    if !file.statics.options.is_curve() {
+        let asked = request.formats.len();
+        request.formats.retain(|format| ![Format::Plot, Format::Png].contains(format));
+        if request.formats.len() < asked && !output.quiet {
+            print(
+                "plots are of load curves, as with --load-steps 20: a single equilibrium has none",
+            )?;
+        }
     }
     let request = &request;
 

@@ -45,7 +45,7 @@ impl Search<'_> {
     /// Follows the path of equilibria from no load to the whole load.
     pub(super) fn trace(&mut self) -> Result<(), Stuck> {
         self.tried = 0.0;
-        self.balance()?;
+        self.balance(self.statics.max_iterations)?;
         self.factorize()?;
         let mut along = vec![0.0; self.u.len()];
         self.load_direction(&mut along)?;
@@ -108,7 +108,7 @@ impl Search<'_> {
             let part = (1.0 - self.fraction) / (self.tried - self.fraction);
             self.u.iter_mut().zip(from).for_each(|(u, from)| *u = from + part * (*u - from));
             self.tried = 1.0;
-            self.balance()?;
+            self.balance(self.statics.max_iterations)?;
             longer = self.way(from) / length;
         }
         if longer > LONGER {

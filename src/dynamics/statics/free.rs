@@ -100,7 +100,7 @@ impl Search<'_> {
         let inertia = self.body.inertia();
         if !self.turns_in_circles() {
             rigid::remove(&motions, inertia, &mut self.u);
-            return if self.is_linear { Ok(()) } else { self.balance() };
+            return if self.is_linear { Ok(()) } else { self.balance(self.statics.max_iterations) };
         }
         for _ in 0..MOST_ROUNDS {
             let parts = rigid::parts(&motions, inertia, &self.u);
@@ -114,7 +114,7 @@ impl Search<'_> {
                 .iter_mut()
                 .for_each(|motion| motion.move_to(self.body.mesh().positions(), &self.u));
         }
-        self.balance()
+        self.balance(self.statics.max_iterations)
     }
 
     /// Resultants of the loads, in words, along the motions that nothing restrains, where the search has

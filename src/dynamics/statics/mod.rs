@@ -9,9 +9,14 @@
 //!
 //! Where the tangent is indefinite, a multiple of M is added to it until it is positive definite, so that the
 //! energy falls in the search. If the search does not converge, constraints and loads are applied in smaller
-//! and smaller steps: constraints and obstacles along their paths; gravity, loads, pressure and the forces of
-//! actuators by a factor. Obstacles in motion count as standing where they are: nothing is dragged along.
+//! and smaller steps: constraints and obstacles along their paths; gravity, loads, pressure, the forces of
+//! actuators, what winches draw in, growth and amounts of gas and liquids by a factor. Where no step is small
+//! enough, damped motion finds the next equilibrium. Obstacles in
+//! motion count as standing where they are: nothing is dragged along.
 //! Friction does not act either, as it depends on how the body came there.
+//!
+//! A scene that starts from a given state is in equilibrium near it: the search begins there under the whole load, and
+//! what the loads leave unbalanced is released by a factor.
 //!
 //! A body that nothing holds is in equilibrium if its loads balance each other. Of all its positions the one
 //! is taken in which it has not moved as a whole: the displacements have no component along any rigid motion
@@ -22,6 +27,7 @@
 //! equilibria: it falls where the body snaps through.
 
 mod arc_length;
+mod continuation;
 mod free;
 mod newton;
 mod options;
@@ -29,7 +35,7 @@ mod options;
 use std::sync::Arc;
 use std::time::Instant;
 
-use newton::{Hold, Point, Search, Stuck};
+use newton::{Hold, Point, Search, Stuck, reason};
 pub use options::Statics;
 
 use crate::base::input::{InputError, find};
@@ -39,7 +45,7 @@ use crate::dynamics::indicators;
 use crate::dynamics::report::Report;
 use crate::dynamics::system::AtRest;
 use crate::dynamics::system::rigid::{self, RigidMotion};
-use crate::dynamics::trajectory::{Commanded, Quantity, Sample, Trajectory};
+use crate::dynamics::trajectory::{Commanded, LOAD_FACTOR, Quantity, Sample, Trajectory};
 use crate::elements::body::Branches;
 use crate::scene::constraint::{ConstraintRow, PhaseStart, prescribe};
 use crate::scene::timeline::{Phase, Scene};
@@ -49,6 +55,10 @@ impl Scene {
     /// end, without motion.
     ///
     /// The body would come to rest in it if they stayed in force.
+    ///
+    /// The search begins at the displacements of the [start](Self::starting_from): in the undeformed shape without load, or in a given
+    /// state under the whole load, of which what is unbalanced there is released step by step. So one load step follows another by hand,
+    /// and of several equilibria the near one is found.
     ///
     /// ```
     /// use pliant::{Body, Cells, Material, Mesh, Phase, Scene, Statics, Strain};
@@ -102,15 +112,24 @@ impl Scene {
             let help = "an equilibrium keeps the amounts of liquids as they are: leave it out and give a fill, or run the scene";
             return Err(InputError::new("flow of statics", "into a chamber", help));
         }
-        let shut = self.shut();
-        let mut forces = shut.forces()?;
+        self.initial_velocities()?;
+        let from = self.initial_displacements();
+        let starts = from.iter().any(|u| *u != 0.0);
+        self.shut().forces()?; // errors of what is constant, before it rises
+        let mut forces = self.loaded(!starts).forces()?;
         indicators::overlap::check_start(self)?;
         let matrices = self.matrices(&forces);
         let phase = &self.phases()[number]; // `forces` makes sure that there is one
         let (time, u) = self.left_by_phases_before(number)?;
         let start = PhaseStart { time, u: &u };
         let system = self.system(&matrices, phase, forces.swap_remove(number), &start, 0.0)?;
-        AtRest::new(system, phase.end(), phase.name())
+        let rest = AtRest::new(system, phase.end(), phase.name())?;
+        if !starts {
+            return Ok(rest);
+        }
+        rest.starting_from(from.to_vec()).map_err(|failure| {
+            InputError::new("state at the start", "of an equilibrium", reason(failure))
+        })
     }
 
     fn equilibrium_in(&self, number: usize, statics: &Statics) -> Result<Equilibrium, Error> {
@@ -169,7 +188,7 @@ impl Scene {
             }
         }
         let result = if statics.arc_steps > 0 { search.trace() } else { search.all() };
-        let mut trajectory = self.load_curve(number, &mut search);
+        let mut trajectory = self.load_curve(number, &mut search)?;
         trajectory.report.wall_seconds = clock.elapsed().as_secs_f64();
         trajectory.report.indicators = indicators::of_equilibrium(&trajectory, result.is_ok());
         if let Err(Stuck { mut cause, residual }) = result {
@@ -203,6 +222,7 @@ impl Scene {
             difference_evaluations: search.rest.system().difference_evaluations(),
             load_steps: search.load_steps,
             failed_steps: search.failed_steps,
+            damped_steps: search.damped_steps,
             mesh_estimate: None,
         })
     }
@@ -210,7 +230,7 @@ impl Scene {
     /// The start (s) of the phase of that `number`, and the displacements (m) left by the constraints of
     /// those before it.
     fn left_by_phases_before(&self, number: usize) -> Result<(f64, Vec<f64>), InputError> {
-        let (mut time, mut u) = (0.0, vec![0.0; self.body().dofs()]);
+        let (mut time, mut u) = (0.0, self.initial_displacements().to_vec());
         for phase in &self.phases()[..number] {
             let rows = self.rows(phase, &PhaseStart { time, u: &u })?;
             time = phase.end();
@@ -219,10 +239,10 @@ impl Scene {
         Ok((time, u))
     }
 
-    /// The undeformed shape and the equilibria that were found, as samples.
-    fn load_curve(&self, phase: usize, search: &mut Search) -> Trajectory {
-        let natural = Point::natural(self.body().dofs(), search.mu.len());
-        let unloaded = search.rest.energy(0.0, &natural.u);
+    /// The start and the equilibria that were found, as samples.
+    fn load_curve(&self, phase: usize, search: &mut Search) -> Result<Trajectory, InputError> {
+        let start = Point::start(search.rest.start(), search.mu.len());
+        let unloaded = search.rest.energy(0.0, &start.u);
         let points = std::mem::take(&mut search.curve);
         let is_curve = search.statics.is_curve();
         let (acting, d) = (&self.phases()[phase], self.body().dimension());
@@ -232,32 +252,33 @@ impl Scene {
             branches.iter().for_each(|branches| branches.relax(u, &mut strains));
             strains
         };
-        let sample = |(number, point): (usize, &Point)| {
+        let sample = |(number, point): (usize, &Point)| -> Result<Sample, InputError> {
+            let load = search.rest.acting(point.fraction);
+            let commanded =
+                acting.at_rest([load, point.fraction], (self.obstacles(), self.dipoles()), d);
             let mut energy = search.rest.energy(point.fraction, &point.u);
             energy.supplied = energy.balance() - unloaded.balance();
-            Sample {
+            Ok(Sample {
                 time: search.time(number, points.len(), point.fraction),
                 phase,
                 u: point.u.clone(),
                 v: vec![0.0; point.u.len()],
                 multipliers: point.mu.clone(),
-                amounts: Vec::new(),
+                amounts: self.amounts_at(load, acting, &commanded)?,
                 internal_strains: relaxed(&point.u),
                 energy,
                 constraint_drift: point.drift,
                 sensors: if is_curve { vec![point.fraction] } else { Vec::new() },
-                commanded: Commanded(Some(Arc::new(acting.at_rest(
-                    point.fraction,
-                    (self.obstacles(), self.dipoles()),
-                    d,
-                )))),
-            }
+                commanded: Commanded(Some(Arc::new(commanded))),
+            })
         };
-        let mut trajectory = Trajectory::new(self, Report::default(), sample((0, &natural)));
+        let mut trajectory = Trajectory::new(self, Report::default(), sample((0, &start))?);
         if is_curve {
-            trajectory.sensors = vec![Quantity { name: "load factor".into(), unit: "1".into() }];
+            trajectory.sensors = vec![Quantity { name: LOAD_FACTOR.into(), unit: "1".into() }];
         }
-        (1..).zip(&points).map(sample).for_each(|sample| trajectory.push(sample));
-        trajectory
+        for point in (1..).zip(&points) {
+            trajectory.push(sample(point)?);
+        }
+        Ok(trajectory)
     }
 }

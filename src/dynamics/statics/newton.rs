@@ -26,9 +26,9 @@ pub(super) struct Point {
 }
 
 impl Point {
-    /// The undeformed shape.
-    pub(super) fn natural(dofs: usize, rows: usize) -> Self {
-        Self { fraction: 0.0, u: vec![0.0; dofs], mu: vec![0.0; rows], drift: 0.0 }
+    /// Where the search starts from.
+    pub(super) fn start(u: &[f64], rows: usize) -> Self {
+        Self { fraction: 0.0, u: u.to_vec(), mu: vec![0.0; rows], drift: 0.0 }
     }
 }
 
@@ -53,10 +53,10 @@ pub(super) struct Search<'a> {
     /// Size of the body (m): no iteration moves a node by more than half of it.
     pub(super) size: f64,
     /// Multiples of M that are added to K: the least one, and the present one (1/s^2).
-    floor: f64,
-    shift: f64,
+    pub(super) floor: f64,
+    pub(super) shift: f64,
     /// Order of magnitude of the largest eigenvalue of K x = eigenvalue M x.
-    highest: f64,
+    pub(super) highest: f64,
     /// K is constant, and has been factorized.
     is_done: bool,
     pub(super) is_linear: bool,
@@ -80,6 +80,8 @@ pub(super) struct Search<'a> {
     pub(super) x: Vec<f64>,
     pub(super) d: Vec<f64>,
     pub(super) work: Vec<f64>,
+    /// Load steps for which damped motion found the equilibrium.
+    pub(super) damped_steps: usize,
 }
 
 /// Largest number of Newton iterations to an equilibrium that is near, stable or not, and the distance that
@@ -89,16 +91,16 @@ const NEAR: f64 = 0.5;
 
 /// Parts of the highest eigenvalue: the smallest shift that is tried (which also stays if rigid motions are
 /// free, or held by rows of several nodes), and the largest.
-const SHIFTS: [f64; 2] = [1e-10, 1e3];
+pub(super) const SHIFTS: [f64; 2] = [1e-10, 1e3];
 
 /// Why a step is not taken.
 const PASSED: &str = "surfaces that touch would pass through each other: take more load_steps";
 
 impl<'a> Search<'a> {
-    /// From the undeformed shape of a `body`.
+    /// From the start of `rest`.
     pub(super) fn new(mut rest: AtRest, statics: &'a Statics, body: &'a Body, hold: Hold) -> Self {
         let (dofs, rows) = (rest.system().dofs(), rest.system().rows().len());
-        let u = vec![0.0; dofs];
+        let u = rest.start().to_vec();
         rest.update_tangent(1.0, &u);
         let highest = rest.highest();
         let floor = if hold == Hold::Whole { 0.0 } else { SHIFTS[0] * highest };
@@ -128,34 +130,8 @@ impl<'a> Search<'a> {
             x: vec![0.0; dofs],
             d: vec![0.0; rows],
             work: vec![0.0; dofs],
+            damped_steps: 0,
         }
-    }
-
-    /// Applies the whole load.
-    pub(super) fn all(&mut self) -> Result<(), Stuck> {
-        let largest = 1.0 / self.statics.load_steps as f64;
-        let mut step = largest;
-        while self.fraction < 1.0 {
-            // a part that differs from the whole load by round-off only is the whole load
-            let target = self.fraction + step;
-            self.tried = if target > 1.0 - 1e-9 { 1.0 } else { target };
-            let (u, mu) = (self.u.clone(), self.mu.clone());
-            match self.balance().and_then(|()| self.place()) {
-                Ok(()) => {
-                    self.arrive();
-                    step = largest.min(2.0 * step);
-                }
-                Err(stuck) => {
-                    (self.u, self.mu) = (u, mu);
-                    self.failed_steps += 1;
-                    step *= 0.5;
-                    if self.is_linear || step < self.statics.min_load_step {
-                        return Err(stuck);
-                    }
-                }
-            }
-        }
-        Ok(())
     }
 
     /// Records the equilibrium that was found.
@@ -179,9 +155,9 @@ impl<'a> Search<'a> {
         part * self.rest.time()
     }
 
-    /// Finds the equilibrium for the part `tried` of the load, from `u`.
-    pub(super) fn balance(&mut self) -> Result<(), Stuck> {
-        let Statics { rtol, max_iterations, .. } = *self.statics;
+    /// Finds the equilibrium for the part `tried` of the load, from `u`, in `max_iterations` at most.
+    pub(super) fn balance(&mut self, max_iterations: usize) -> Result<(), Stuck> {
+        let Statics { rtol, .. } = *self.statics;
         self.shift = self.floor;
         self.residual = f64::INFINITY;
         let from = self.u.clone();

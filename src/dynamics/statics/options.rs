@@ -17,7 +17,7 @@ pub struct Statics {
     /// Newton iterations in one load step. Default: 100; ten are enough unless the body has to move far.
     pub max_iterations: usize,
     /// Steps in which constraints and loads are applied. Default: 1, everything at once; take more if the
-    /// search converges to an equilibrium other than the one that slow loading reaches.
+    /// search converges to an equilibrium other than the one that slow loading reaches. Steps that fail are halved.
     ///
     /// With more than one, the trajectory is a load curve: it has the equilibrium of each step, whose time is
     /// that part of the end of the phase, and a sensor `load factor` for the part.

@@ -5,9 +5,14 @@
 //! [ -A^T 0 ] [ mu ] = [ -d ]
 //! ```
 //!
-//! with K = -df/du. What acts from outside is applied gradually: gravity, loads, pressure and the forces of
-//! actuators by a fraction of their strength, obstacles in motion along their paths. The body and its springs
-//! do not change.
+//! with K = -df/du. What acts from outside is applied gradually. From the undeformed shape, gravity, loads, pressure and the
+//! forces of actuators act by a fraction of their strength; obstacles in motion are at that fraction of their paths; tensions of
+//! cables, what winches draw in, strains of growth and amounts of gas and liquids have risen by it
+//! ([`Scene::loaded`](crate::Scene)). The body and its springs do not change.
+//!
+//! From a given start u_0, all these act whole, and what they leave unbalanced there is released instead: with the fraction s the
+//! forces are f(u) - (1 - s) f(u_0). Where u_0 was in equilibrium under other dead loads, that is the straight way from these loads
+//! to the present ones.
 
 #[cfg(feature = "study")]
 mod dual;
@@ -36,6 +41,9 @@ pub(crate) struct AtRest {
     /// Velocities of the nodes for each of the forces: those of an obstacle in motion, so that it drags
     /// nothing along and no damper acts, as if it stood still. Empty for others.
     velocities: Vec<Vec<f64>>,
+    /// Where the search starts (m), and, of a given start, the forces (N) that are unbalanced there.
+    start: Vec<f64>,
+    unbalanced: Option<Vec<f64>>,
     nodal: NodalForces,
     factorizations: usize,
 }
@@ -73,6 +81,15 @@ impl ForceBalance {
     pub(crate) fn round_off(&self, u: &[f64]) -> f64 {
         let work: f64 = self.unbound.iter().zip(u).map(|(f, u)| (f * u).abs()).sum();
         f64::EPSILON * (8.0 * self.terms + work)
+    }
+
+    /// Adds constant forces (N), times `share`.
+    fn add_constant(&mut self, forces: &[f64], share: f64) {
+        for (i, force) in forces.iter().enumerate() {
+            self.total[i] += share * force;
+            self.unbound[i] += share * force;
+            self.scale = self.scale.max((share * force).abs());
+        }
     }
 
     fn clear(&mut self) {
@@ -117,7 +134,35 @@ impl AtRest {
         let still = vec![0.0; dofs];
         let velocities = vec![Vec::new(); system.forces.len()];
         let nodal = NodalForces::zeros(dofs);
-        Ok(Self { system, time, still, velocities, nodal, factorizations: 0 })
+        let start = still.clone();
+        let unbalanced = None;
+        Ok(Self { system, time, still, velocities, start, unbalanced, nodal, factorizations: 0 })
+    }
+
+    /// Starts from the displacements `start` (m), with all loads as they are.
+    ///
+    /// # Errors
+    /// Displacements at which forces are undefined.
+    pub(crate) fn starting_from(mut self, start: Vec<f64>) -> Result<Self, Failure> {
+        let mut at = ForceBalance::zeros(start.len());
+        self.unbalanced = Some(vec![0.0; start.len()]);
+        self.evaluate(0.0, &start, &mut at)?;
+        // forces on what is held are those of the constraints
+        for dof in self.system.rows.iter().filter_map(|row| row.nodal()) {
+            at.total[dof.0] = 0.0;
+        }
+        (self.start, self.unbalanced) = (start, Some(at.total));
+        Ok(self)
+    }
+
+    /// Where the search starts (m).
+    pub(crate) fn start(&self) -> &[f64] {
+        &self.start
+    }
+
+    /// The fraction of the loads that acts at a `fraction` of the way.
+    pub(crate) fn acting(&self, fraction: f64) -> f64 {
+        if self.unbalanced.is_some() { 1.0 } else { fraction }
     }
 
     pub(crate) fn system(&self) -> &System {
@@ -160,17 +205,18 @@ impl AtRest {
     /// Potential energies with a fraction of gravity, and of the paths of obstacles.
     pub(crate) fn energy(&self, fraction: f64, u: &[f64]) -> Energy {
         let energy = self.system.energy(fraction * self.time, u, &self.still, &[]);
-        Energy { gravity: fraction * energy.gravity, ..energy }
+        Energy { gravity: self.acting(fraction) * energy.gravity, ..energy }
     }
 
-    /// Residual of the constraints, b - A^T u, with b for a fraction of the path: a path that begins in the
-    /// undeformed shape is followed, another one is scaled.
+    /// Residual of the constraints, b - A^T u, with b for a fraction of the path: a path that begins where the search starts is
+    /// followed; to another one leads a straight line.
     pub(crate) fn lacking(&self, fraction: f64, u: &[f64], d: &mut [f64]) {
         for (d, row) in d.iter_mut().zip(&self.system.rows) {
             let b = |t: f64| row.prescribed(t).displacement;
-            let part = match b(0.0) == 0.0 {
+            let from = row.apply(&self.start);
+            let part = match b(0.0) == from {
                 true => b(fraction * self.time),
-                false => fraction * b(self.time),
+                false => from + fraction * (b(self.time) - from),
             };
             *d = part - row.apply(u);
         }
@@ -185,6 +231,10 @@ impl AtRest {
     ) -> Result<(), Failure> {
         at.clear();
         self.stand_still(fraction);
+        let acting = self.acting(fraction);
+        if let Some(unbalanced) = &self.unbalanced {
+            at.add_constant(unbalanced, fraction - 1.0);
+        }
         if let Some(stiffness) = &self.system.matrices.stiffness {
             self.nodal.clear();
             stiffness.add_product(-1.0, u, &mut self.nodal.conservative);
@@ -195,7 +245,7 @@ impl AtRest {
             let v = if v.is_empty() { &self.still } else { v };
             self.nodal.clear();
             let time = when(&**force, fraction, self.time);
-            let share = if is_load(&**force) { fraction } else { 1.0 };
+            let share = if is_load(&**force) { acting } else { 1.0 };
             force.add_forces(time, u, v, &mut self.nodal)?;
             let bound = force.reservoir() != Reservoir::None;
             at.add(&self.nodal, share, bound);
@@ -233,6 +283,7 @@ impl AtRest {
     pub(crate) fn update_tangent(&mut self, fraction: f64, u: &[f64]) {
         self.stand_still(fraction);
         self.system.make_room(u);
+        let acting = self.acting(fraction);
         let NewtonMatrix { stiffness, damping, differences, .. } = &mut self.system.newton;
         let still = &self.still;
         let own = (stiffness.begin(&None), damping.begin(&None));
@@ -247,7 +298,7 @@ impl AtRest {
             }
         };
         add(true, stiffness);
-        stiffness.values.iter_mut().for_each(|k| *k *= fraction);
+        stiffness.values.iter_mut().for_each(|k| *k *= acting);
         add(false, stiffness);
         if let Some(constant) = &self.system.matrices.stiffness {
             stiffness.values.iter_mut().zip(&constant.values).for_each(|(k, c)| *k += c);
@@ -368,10 +419,10 @@ pub(super) fn shifted(
 /// Bound on inverse iterations: enough for six digits even of close pairs of eigenvalues.
 const ITERATIONS: usize = 300;
 
-/// The time (s) at which a force is evaluated for a `fraction` of the load, up to the end `time`: an obstacle
-/// in motion is at that fraction of its path.
+/// The time (s) at which a force is evaluated for a `fraction` of the load, up to the end `time`: a load at the end, what is not
+/// scaled at that fraction of its path.
 fn when(force: &dyn Force, fraction: f64, time: f64) -> f64 {
-    if force.reservoir() == Reservoir::Contact { fraction * time } else { time }
+    if is_load(force) { time } else { fraction * time }
 }
 
 /// Whether a force is applied by fractions of its strength.

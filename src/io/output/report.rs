@@ -277,6 +277,8 @@ table! {
         "load_steps", "", "load steps that converged" => found.ok().map(|found| found.load_steps);
         "failed_steps", "", "load steps that did not, and were made smaller"
             => found.ok().map(|found| found.failed_steps);
+        "damped_steps", "", "load steps whose equilibrium was found by damped motion, as Newton's method failed"
+            => found.ok().map(|found| found.damped_steps);
         "mesh_estimate" (OfMesh), "",
             "by how much a quantity is off because of the mesh; `null` without `--quantity`"
             => found.ok().and_then(|found| found.mesh_estimate.as_ref());

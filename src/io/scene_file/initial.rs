@@ -9,7 +9,7 @@ use crate::scene::timeline::{Scene, SceneState};
 pub(super) const INITIAL: TableKeys = TableKeys::new(
     "[initial]",
     "How the body moves at first. What the first phase holds or moves takes its part of that, as by an impact. In \
-     statics nothing moves.",
+     statics nothing moves, and the search begins at the displacements of a state `from`.",
     &[
         Key::new(
             "from",

@@ -12,8 +12,11 @@ use crate::integrators::ode::Failure;
 /// nodes of the walls.
 pub(crate) struct Closed<C> {
     content: C,
-    /// kg
+    /// The whole amount (kg).
     amount: f64,
+    /// The amount (kg) at t = 0, and the time (s) at which it has risen along a straight line to the whole one; none where it is
+    /// constant.
+    rise: Option<[f64; 2]>,
     /// The nodes of the walls.
     nodes: Vec<usize>,
     /// dV/du (m^2) at all nodes.
@@ -24,33 +27,39 @@ impl<C: Content> Closed<C> {
     /// With an `amount` (kg), among `dofs` displacement components.
     pub(crate) fn new(content: C, amount: f64, dofs: usize) -> Self {
         let nodes: BTreeSet<usize> = content.walls().couplings().into_iter().flatten().collect();
-        Self {
-            content,
-            amount,
-            nodes: nodes.into_iter().collect(),
-            gradient: Mutex::new(vec![0.0; dofs]),
-        }
+        let (nodes, gradient) = (nodes.into_iter().collect(), Mutex::new(vec![0.0; dofs]));
+        Self { content, amount, rise: None, nodes, gradient }
+    }
+
+    /// With an amount that rises along a straight line `from` one (kg) at t = 0 to `amount` at time `end` (s).
+    pub(crate) fn rising(content: C, amount: f64, dofs: usize, [from, end]: [f64; 2]) -> Self {
+        Self { rise: Some([from, end]), ..Self::new(content, amount, dofs) }
+    }
+
+    /// The amount (kg) at time `t` (s).
+    fn amount(&self, t: f64) -> f64 {
+        self.rise.map_or(self.amount, |[from, end]| from + t / end * (self.amount - from))
     }
 }
 
 impl<C: Content> Force for Closed<C> {
     fn add_forces(
         &self,
-        _t: f64,
+        t: f64,
         u: &[f64],
         _v: &[f64],
         forces: &mut NodalForces,
     ) -> Result<(), Failure> {
-        self.content.press(u, self.amount, forces)
+        self.content.press(u, self.amount(t), forces)
     }
 
     fn check_step(&self, t: f64, _before: &[f64], after: &[f64]) -> Result<(), Failure> {
-        self.content.check(t, after, self.amount)
+        self.content.check(t, after, self.amount(t))
     }
 
     fn add_tangents(
         &self,
-        _t: f64,
+        t: f64,
         u: &[f64],
         _v: &[f64],
         stiffness: &mut BlockMatrix,
@@ -58,7 +67,7 @@ impl<C: Content> Force for Closed<C> {
     ) -> Tangents {
         let mut gradient = self.gradient.lock().unwrap_or_else(PoisonError::into_inner);
         gradient.fill(0.0);
-        let linear = self.content.linearize(u, self.amount, stiffness, &mut gradient);
+        let linear = self.content.linearize(u, self.amount(t), stiffness, &mut gradient);
         // the forces refuse such a state
         let Some([_, factor, _]) = linear else { return Tangents::Added };
         let d = stiffness.dimension();
@@ -75,8 +84,8 @@ impl<C: Content> Force for Closed<C> {
         Tangents::Added
     }
 
-    fn potential(&self, _t: f64, u: &[f64]) -> f64 {
-        self.content.potential(u, self.amount)
+    fn potential(&self, t: f64, u: &[f64]) -> f64 {
+        self.content.potential(u, self.amount(t))
     }
 
     fn reservoir(&self) -> Reservoir {

@@ -28,6 +28,9 @@ pub(crate) const ATMOSPHERE: f64 = 101_325.0;
 /// R T of the gas (J/kg): air of 1.185 kg/m^3 at 100 kPa and 20 C, the reference of ISO 6358.
 pub(crate) const GAS_CONSTANT_TIMES_TEMPERATURE: f64 = 1e5 / 1.185;
 
+/// Least part of an amount of gas, or of a liquid with a surface, with which statics begins: without any, a chamber has no pressure.
+pub(crate) const LEAST: f64 = 1e-6;
+
 /// An amount of gas in a [chamber](crate::Chamber), in place of a pressure that phases give it.
 ///
 /// Its absolute pressure follows the volume V of the chamber and the amount m, p = p_0 (V_0 m/(V m_0))^n, and the walls
@@ -152,6 +155,12 @@ impl Filled {
         let [pressure, _] = self.pressure(u, amount)?;
         self.walls.add_gradient(self.above_outside(pressure), u, &mut forces.conservative);
         Ok(pressure)
+    }
+
+    /// The amount (kg) that has the pressure outside in the undeformed shape; in a vacuum next to none.
+    pub(crate) fn unloaded(&self) -> f64 {
+        let part = (self.outside / self.pressure).powf(1.0 / self.exponent);
+        part.max(LEAST) * self.amount
     }
 
     /// What the gas exceeds the air around by (Pa), at an `absolute` pressure.

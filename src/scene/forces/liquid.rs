@@ -10,6 +10,7 @@ use std::fmt;
 
 use super::chamber::ChamberForce;
 use super::content::Content;
+use super::gas::LEAST;
 use super::moment::Moment;
 use super::signal::{self, Signal, finite_at};
 use crate::base::input::{InputError, positive};
@@ -176,7 +177,8 @@ impl Liquid {
                 Box::new(Whole::new(walls, bulk, [amount, density], weight, dofs))
             }
         };
-        Ok(Poured { held, density, flow })
+        let unloaded = if self.has_surface { LEAST * amount } else { density * volume };
+        Ok(Poured { held, density, unloaded, flow })
     }
 }
 
@@ -199,6 +201,7 @@ pub(crate) enum Weight {
 pub(crate) struct Poured {
     held: Box<dyn Held>,
     density: f64,
+    unloaded: f64,
     flow: Vec<Signal>,
 }
 
@@ -206,6 +209,11 @@ impl Poured {
     /// The natural volume (m^3) of an `amount` (kg).
     pub(crate) fn natural(&self, amount: f64) -> f64 {
         amount / self.density
+    }
+
+    /// The amount (kg) without pressure in the undeformed shape, apart from that of its weight; with a surface next to none.
+    pub(crate) fn unloaded(&self) -> f64 {
+        self.unloaded
     }
 
     /// The rate (kg/s) at which it flows in at time `t` (s).

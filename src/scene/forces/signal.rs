@@ -139,6 +139,12 @@ impl Signal {
         self
     }
 
+    /// The straight line through 0 at t = 0 and the value of this signal at time `end` (s), and on beyond it.
+    pub(crate) fn rising(&self, end: f64) -> Self {
+        let whole = self.at(end);
+        Self::function(move |t| t / end * whole)
+    }
+
     /// The value at time `t` (s).
     pub fn at(&self, t: f64) -> f64 {
         match &self.0 {

@@ -84,11 +84,11 @@ impl Phase {
     }
 
     /// The phase at rest under a `fraction` of its load: loads, pressures and the forces of actuators are
-    /// constant, this fraction of those at the end, as the magnetic field and the moments of `dipoles` are, and `obstacles` stand where they are at this fraction of
-    /// the end time.
+    /// constant, this fraction of those at the end, as the magnetic field and the moments of `dipoles` are, and `obstacles` stand where they are at the fraction `path`
+    /// of the end time.
     pub(crate) fn at_rest(
         &self,
-        fraction: f64,
+        [fraction, path]: [f64; 2],
         (obstacles, dipoles): (&[Obstacle], &[Dipole]),
         dimension: usize,
     ) -> Self {
@@ -113,7 +113,7 @@ impl Phase {
                 rest.set_dipole(dipole.name(), part, VectorSignal::Constant(vector));
             }
         }
-        let reached = fraction * end;
+        let reached = path * end;
         for obstacle in obstacles {
             if self.moving(obstacle).velocity_at(reached) != [0.0; 3] {
                 rest.redirect(obstacle, reached, vec![0.0; dimension]);

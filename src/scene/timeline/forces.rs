@@ -265,7 +265,15 @@ impl Scene {
             }
         }
         let named = self.actuators().zip(actuations);
-        Ok(named.map(|(name, signals)| self.driven(name, signals)).collect())
+        let mut driven: Vec<Vec<Signal>> =
+            named.map(|(name, signals)| self.driven(name, signals)).collect();
+        if self.rises {
+            // stresses of muscles are loads, which statics scales
+            let muscles = self.springs.len()..self.springs.len() + self.muscles.len();
+            let others = driven.iter_mut().enumerate().filter(|(k, _)| !muscles.contains(k));
+            others.flat_map(|(_, signals)| signals).for_each(|s| *s = s.rising(phase.until));
+        }
+        Ok(driven)
     }
 
     fn add_chambers(&self, phase: &Phase, forces: &mut Forces) -> Result<(), InputError> {

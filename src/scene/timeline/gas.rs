@@ -5,10 +5,10 @@ use std::sync::Arc;
 
 use super::{Phase, Scene, unique};
 use crate::base::input::{InputError, find, not_negative, unknown_among};
-use crate::elements::force::Forces;
+use crate::elements::force::{Force, Forces};
 use crate::scene::forces::{
-    AmountFlow, Chamber, Closed, DipolePart, End, Filled, Gas, Lagging, Live, Orifice, OrificeFlow,
-    Signal, Supply,
+    AmountFlow, Chamber, Closed, Content, DipolePart, End, Filled, Gas, Lagging, Live, Orifice,
+    OrificeFlow, Poured, Signal, Supply,
 };
 
 /// What an end of an orifice or a pipe in the open is called.
@@ -127,6 +127,39 @@ impl Scene {
         Cow::Owned(shut)
     }
 
+    /// The same for statics: with actuators, and amounts of gas and liquids, that rise from rest if so asked.
+    pub(crate) fn loaded(&self, rises: bool) -> Self {
+        Self { rises, ..self.shut().into_owned() }
+    }
+
+    /// The last unknowns of a state of statics, as [`flowing`](Self::flowing) has them, for a `fraction` of the load of `phase`; none where there are neither gases nor liquids. `acting` is the phase under that fraction.
+    ///
+    /// # Errors
+    /// As [`filled`](Self::filled).
+    pub(crate) fn amounts_at(
+        &self,
+        fraction: f64,
+        phase: &Phase,
+        acting: &Phase,
+    ) -> Result<Vec<f64>, InputError> {
+        if !self.has_gas() && self.liquids.is_empty() {
+            return Ok(Vec::new());
+        }
+        let part = |[from, whole]: [f64; 2]| from + fraction * (whole - from);
+        let gases = self.filled()?;
+        let liquids = self.poured(Some(phase))?;
+        let unloaded: Vec<f64> = gases
+            .iter()
+            .map(Filled::unloaded)
+            .chain(liquids.iter().map(Poured::unloaded))
+            .collect();
+        let masses = unloaded.into_iter().zip(self.starting_masses(&gases, &liquids));
+        let masses = masses.map(|(from, whole)| part([from, whole]));
+        let lags = self.lags().map(|(name, _)| self.drive_at(name, acting, phase.until, &[])[0]);
+        let pipes = self.pipes.iter().map(|_| 0.0);
+        Ok(masses.chain(lags).chain(pipes).collect())
+    }
+
     /// Number (from 0) of the orifice with a name; `input` is where that was given.
     pub(crate) fn orifice_number(&self, name: &str, input: &str) -> Result<usize, InputError> {
         find(name, self.orifices.iter().map(Orifice::name), input, "orifices")
@@ -237,16 +270,18 @@ impl Scene {
         unique("orifice", self.orifices.iter().map(Orifice::name))?;
         let orifices = (0..self.orifices.len()).map(|number| self.orifice_flow(number, phase));
         let (orifices, gases) = (orifices.collect::<Result<Vec<_>, _>>()?, self.filled()?);
-        let (liquids, dofs) = (self.poured(Some(phase))?, self.body.dofs());
+        let liquids = self.poured(Some(phase))?;
         let pipes = self.pipe_flows()?;
         let mut start = self.starting_masses(&gases, &liquids);
         if self.is_shut {
             let mut masses = start.into_iter();
             for (gas, mass) in gases.into_iter().zip(&mut masses) {
-                forces.push(Arc::new(Closed::new(gas, mass, dofs)));
+                let from = gas.unloaded();
+                forces.push(self.closed(gas, mass, [from, phase.until]));
             }
             for (liquid, mass) in liquids.into_iter().zip(masses) {
-                forces.push(Arc::new(Closed::new(liquid, mass, dofs)));
+                let from = liquid.unloaded();
+                forces.push(self.closed(liquid, mass, [from, phase.until]));
             }
         } else if !(gases.is_empty() && liquids.is_empty() && lagging.is_empty()) {
             start.extend(self.starting_lags_and_pipes());
@@ -254,6 +289,20 @@ impl Scene {
             forces.push(Arc::new(flow));
         }
         Ok(())
+    }
+
+    /// The force of an `amount` (kg) that stays, or rises `from` another one up to the time `end` (s).
+    fn closed<C: Content + 'static>(
+        &self,
+        content: C,
+        amount: f64,
+        [from, end]: [f64; 2],
+    ) -> Arc<dyn Force> {
+        let dofs = self.body.dofs();
+        match self.rises {
+            true => Arc::new(Closed::rising(content, amount, dofs, [from, end])),
+            false => Arc::new(Closed::new(content, amount, dofs)),
+        }
     }
 
     /// Times (s, ascending) at which what `phase` prescribes, the pressure of a supply, the velocity of a fluid and dipoles change their laws.

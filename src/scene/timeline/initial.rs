@@ -9,7 +9,8 @@ use crate::elements::mesh::Selection;
 /// # The start
 ///
 /// Velocities that the constraints of the first phase do not allow are projected onto the nearest, in the
-/// norm of kinetic energy, that they do allow: an inelastic impact at t = 0. In statics nothing moves.
+/// norm of kinetic energy, that they do allow: an inelastic impact at t = 0. In statics nothing moves, and the search for an
+/// equilibrium begins at the displacements of the start: see [`Scene::equilibrium`].
 impl Scene {
     /// Starts from a state of an earlier motion, or from an equilibrium, of bodies with the same meshes.
     ///

@@ -96,6 +96,8 @@ pub struct Scene {
     atmosphere: f64,
     /// Whether amounts of gas and liquids, and what drives actuators that lag, are no unknowns.
     is_shut: bool,
+    /// Whether that rises along straight lines, in each phase from what exerts nothing at t = 0 to what it is at its end.
+    rises: bool,
     ties: Vec<Tie>,
     touches: Vec<Touch>,
     obstacles: Vec<Obstacle>,
@@ -145,6 +147,7 @@ impl Scene {
             supplies: Vec::new(),
             atmosphere: ATMOSPHERE,
             is_shut: false,
+            rises: false,
             ties: Vec::new(),
             touches: Vec::new(),
             obstacles: Vec::new(),

@@ -1,5 +1,6 @@
 //! Equilibria against printed and closed forms, and against what mechanics demands of them.
 
+mod brought_on;
 mod chambers;
 mod free;
 mod free_green;

@@ -1,4 +1,4 @@
-//! Plots of sensors and energies of a motion over time.
+//! Plots of sensors and energies of a motion over time, or of a load curve over the load factor.
 
 mod page;
 mod table;
@@ -12,7 +12,7 @@ use super::figure::write_figure;
 use crate::dynamics::error::Error;
 use crate::dynamics::trajectory::Trajectory;
 
-/// Sensors and energies over time: a panel for each unit, with a legend; thin lines at the ends of the
+/// Sensors and energies over time, of a load curve over its load factor: a panel for each unit, with a legend; thin lines at the ends of the
 /// phases.
 ///
 /// ```

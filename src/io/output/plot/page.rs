@@ -1,4 +1,4 @@
-//! The page of a plot: panels one below the other, over one axis of time.
+//! The page of a plot: panels one below the other, over one axis of time, or of the load factor.
 
 use svg::Document;
 use svg::node::element::{Group, Path};
@@ -110,7 +110,11 @@ impl<'a> Page<'a> {
         for panel in &self.panels {
             drawing = drawing.add(self.panel(panel));
         }
-        let time = last.field.floor(&format!("time ({})", last.field.x.unit));
+        let (_, name, _) = self.table.across();
+        let time = match &last.field.x.unit[..] {
+            "" | "1" => last.field.floor(name),
+            unit => last.field.floor(&format!("{name} ({unit})")),
+        };
         drawing.add(time.set("class", "time")).add(self.phases())
     }
 
@@ -120,7 +124,7 @@ impl<'a> Page<'a> {
         let mut group = field.grid().set("class", "panel").add(name).add(field.outline());
         for (number, column) in panel.columns.iter().enumerate() {
             let line = |values: &mut dyn Iterator<Item = f64>| {
-                field.line(self.table.times.iter().copied().zip(values))
+                field.line(self.table.across().0.iter().copied().zip(values))
             };
             if let Some(difference) = panel.differences[number] {
                 let edge = |sign: f64| {
@@ -169,7 +173,8 @@ impl<'a> Page<'a> {
 
 impl<'a> Panel<'a> {
     fn new(column: &'a Column, difference: Option<&'a Column>, table: &Table) -> Self {
-        let x = Axis::linear(table.times.iter().copied(), 0.0, TICKS[1], "s");
+        let (across, _, unit) = table.across();
+        let x = Axis::linear(across.iter().copied(), 0.0, TICKS[1], unit);
         let field = Field { edges: [0.0; 4], x, y: Axis::default(), colours: [INK, GRID, GRID] };
         let (columns, differences, label) = (vec![column], vec![difference], String::new());
         Self { columns, differences, field, label, legend: Vec::new() }

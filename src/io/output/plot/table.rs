@@ -1,4 +1,4 @@
-//! Columns of numbers over time, as `trajectory.csv` has them.
+//! Columns of numbers over time, or over the load factor, as `trajectory.csv` has them.
 
 use std::fs;
 use std::io;
@@ -8,7 +8,7 @@ use serde_json::Value;
 
 use crate::base::input::{InputError, unknown_among};
 use crate::dynamics::error::Error;
-use crate::dynamics::trajectory::{DEGREES, Quantity, Trajectory};
+use crate::dynamics::trajectory::{DEGREES, LOAD_FACTOR, Quantity, Trajectory};
 use crate::elements::mesh::Selection;
 use crate::io::output::columns::{
     Columns, DIFFERENCE, EXCHANGED, OF_SENSOR, STORED, standard_unit,
@@ -116,6 +116,14 @@ impl Table {
         self.columns.iter_mut().zip(values).for_each(|(column, value)| column.values.push(*value));
     }
 
+    /// The values along the horizontal axis, with their name and unit: load factors of a load curve, else times.
+    pub(super) fn across(&self) -> (&[f64], &'static str, &'static str) {
+        match self.columns.iter().find(|column| column.quantity.name == LOAD_FACTOR) {
+            Some(column) => (&column.values, LOAD_FACTOR, "1"),
+            None => (&self.times, "time", "s"),
+        }
+    }
+
     /// The columns with these names; without names the sensors and the energies that there are.
     ///
     /// # Errors
@@ -125,7 +133,7 @@ impl Table {
             let is_sensor = |column: &&Column| {
                 let name = &column.quantity.name;
                 let is_difference = name == DIFFERENCE || name.ends_with(OF_SENSOR);
-                standard_unit(name).is_none() && !is_difference
+                standard_unit(name).is_none() && !is_difference && name != LOAD_FACTOR
             };
             let sensors = self.columns.iter().filter(is_sensor);
             return Ok(sensors.chain(self.energies()).collect());
