@@ -65,7 +65,8 @@ def body(
     inertia
         how inertia is shared out. Default: consistent. Consistent with the shape functions, or lumped at the nodes.
     plane
-        what is 0 across the plane. Default: strain.
+        the quantity that is 0 across cells of two dimensions. Default: strain in the plane, stress in space
+        (membranes). Strain: of bodies that are long across the plane. Stress: of sheets, whose thickness changes.
     dilatation
         where the body resists a change of its volume. Default: points, or what goes with `cells = "auto"` and
         `bubbles`. At each point of a cell, a nearly incompressible body locks. `linear`: projected onto linear

@@ -245,9 +245,13 @@ mod tests {
         says(ReducedModel::read(&path, &scene), &["cannot read", "beam.reduced"]);
         model(&scene).write(&path, &scene).unwrap();
         let text = fs::read_to_string(&path).unwrap();
+        fs::write(&path, text.replacen("3.25", "3.26", 1)).unwrap();
+        says(ReducedModel::read(&path, &scene), &["its checksum is not that of its numbers"]);
+        // files of format 1 have no checksum
+        let text = text.replacen("\"format\":2", "\"format\":1", 1);
         for (from, to, words) in [
             ("pliant reduced", "pliant", &["it does not say \"pliant reduced model\""][..]),
-            ("\"format\":1", "\"format\":2", &["format 2", "reads format 1"]),
+            ("\"format\":1", "\"format\":3", &["format 3", "reads formats 1 to 2"]),
             ("3.25", "-3.25", &["a weight of -3.25", HELP]),
             ("\"5\":", "\"16\":", &["cell 17 of", HELP]),
             ("\"error\":0.01", "\"error\":-1.0", &["an error of -1"]),

@@ -178,7 +178,7 @@ fn sphere(radius: f64, cells: i32) -> Mesh {
 
 /// A balloon of the default options, inflated to these stretches: virtual work of its forces in a uniform stretch, against that of
 /// the pressure p = 2 mu (h / r) (1 / l - 1 / l^7) of a thin sphere that keeps its volume. With nu = 0.4995 it is all but so: the
-/// shear is a thousandth of the bulk modulus. The facets are 1e-4 off the sphere.
+/// shear is a thousandth of the bulk modulus. The facets alone are 6e-4 off the sphere.
 #[test]
 fn balloons() {
     let (radius, thickness) = (0.02, 5e-4);
@@ -200,8 +200,8 @@ fn balloons() {
                 2.0 * shear * thickness / radius * (stretch.recip() - stretch.powi(-7));
             let apart = work / volume / closed_form - 1.0;
             println!("nu {poisson}, stretch {stretch}: {apart:e}");
-            // dilatation of the order of the mean stress over the bulk modulus
-            let tolerance = 3e-4 + 2.0 * (1.0 - 2.0 * poisson) * stretch.powi(2);
+            // the facets, and a dilatation of the order of the mean stress over the bulk modulus: 1.9e-3 were found at 1.02, 4.6e-3 at 3
+            let tolerance = 7e-4 + (1.0 - 2.0 * poisson) * (1.0 + 0.4 * stretch.powi(2));
             assert!(apart.abs() < tolerance, "nu {poisson}, stretch {stretch}: {apart:e}");
         }
     }

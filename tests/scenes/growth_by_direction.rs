@@ -315,7 +315,8 @@ fn energy_is_balanced() {
             )
             .phase(Phase::until(0.025).hold("inner").actuate(["inner"], -0.05));
         for method in [Method::CvodeBdf, Method::Arkode, Method::Rk, Method::Rosenbrock] {
-            let settings = Settings { method, rtol: 1e-7, ..Settings::default() };
+            // of cells that grow nothing damps waves of pressure
+            let settings = Settings { method, rtol: 1e-8, ..Settings::default() };
             let report = run(&scene, &settings, &[]).report().clone();
             let off = report.energy_error / report.energy_scale;
             println!("{method}: {off:.1e} of {} J", report.energy_scale);

@@ -106,7 +106,7 @@ fn a_vessel_on_a_spring_is_weighed() {
                 .damping(damping)
                 .length(0.5),
         );
-    let phase = |until: f64| Phase::until(until).hold_axes([1, 2], [Axis::X]);
+    let phase = |until: f64| Phase::until(until).hold_axes([1, 3], [Axis::X]);
     let sampling = Sampling::phase_ends()
         .read("height", Reading::displacement([1]))
         .read("level", Reading::liquid_level("vessel"))

@@ -178,7 +178,7 @@ fn muscles_that_cannot_be() {
     let phase = || Phase::until(0.1);
     says(
         scene().phase(phase().actuate(["n"], 1.0)),
-        &["\"n\"", "springs, muscles and growths \"m\""],
+        &["\"n\"", "springs, cables, muscles and growths \"m\""],
     );
     let spring = Spring::between([1], [9]).named("m").stiffness(1.0);
     says(scene().spring(spring).phase(phase()), &["spring, muscle or growth name = \"m\""]);

@@ -355,15 +355,13 @@ fn cells_too_coarse_for_bending() {
     for (cells, nodes, poisson, warns) in [
         (Cells::Triangles, [51, 2], 0.3, true),
         (Cells::Triangles, [11, 3], 0.3, true),
-        (Cells::Triangles, [21, 5], 0.3, true),
-        (Cells::Triangles, [41, 9], 0.3, false),
+        (Cells::Triangles, [21, 5], 0.3, false),
         (Cells::Crossed, [11, 3], 0.3, true),
-        (Cells::Crossed, [41, 9], 0.48, false),
+        (Cells::Crossed, [21, 5], 0.48, false),
         (Cells::Rectangles, [6, 2], 0.3, true),
         (Cells::Rectangles, [11, 3], 0.3, true),
         (Cells::Rectangles, [21, 5], 0.3, false),
-        (Cells::Triangles, [41, 9], 0.45, true),
-        (Cells::Triangles, [81, 17], 0.45, false),
+        (Cells::Triangles, [41, 9], 0.45, false),
         (Cells::Triangles, [41, 9], 0.48, true),
         (Cells::Triangles6, [11, 3], 0.48, false),
         (Cells::Rectangles9, [6, 2], 0.48, false),
@@ -374,7 +372,9 @@ fn cells_too_coarse_for_bending() {
             assert_eq!(warnings, NONE, "{cells:?} {nodes:?} {poisson}");
             continue;
         }
-        only(&warnings, &["limit: 1.1 times", "at t = 1 s", "\"triangles6\"", "times as fine"]);
+        let limit =
+            if cells == Cells::Rectangles { "limit: 1.1 times" } else { "limit: 1.25 times" };
+        only(&warnings, &[limit, "at t = 1 s", "\"triangles6\"", "times as fine"]);
         let fine = cantilever(Cells::Triangles6, [81, 17], poisson, Strain::Cauchy).0;
         let part = too_stiff(&warnings[0]) / (fine / sinks);
         // one decimal is told; one cell through the thickness of a short beam is told least well, 0.81 of it
@@ -382,10 +382,10 @@ fn cells_too_coarse_for_bending() {
     }
     let green = |nodes| cantilever(Cells::Triangles, nodes, 0.3, Strain::Green).1;
     only(&green([11, 3]), &["1.76 times too stiff"]);
-    assert_eq!(green([41, 9]), NONE);
+    assert_eq!(green([21, 5]), NONE);
     for (cells, nodes, warns) in [
         (SolidCells::Tetrahedra, [11, 3, 3], true),
-        (SolidCells::Tetrahedra, [21, 5, 5], true),
+        (SolidCells::Tetrahedra, [21, 5, 5], false),
         (SolidCells::Hexahedra, [6, 2, 2], true),
         (SolidCells::Hexahedra, [11, 3, 3], true),
         (SolidCells::Hexahedra, [21, 5, 5], false),
@@ -648,7 +648,7 @@ fn numbers_of_gas_and_cables_are_looked_at() {
         gas(1.013e5).supply("pump", supply).orifice(orifice)
     };
     assert_eq!(warned(fed(1e-8, 1.2e5)), NONE);
-    only(&warned(fed(1e-8, 2e4)), &["supply \"pump\"", "2e4 Pa"]);
+    only(&warned(fed(1e-8, 2e4)), &["supply \"pump\"", "20000 Pa"]);
     // C rho_0 sqrt(R T)/0.6847 (ISO 6358 and a choked nozzle of k = 1.4)
     let area = 0.5 * 1.185 * (1e5_f64 / 1.185).sqrt() / 0.684_731;
     only(&warned(fed(0.5, 1.2e5)), &["orifice \"in\"", &format!("{area:.1} m^2"), "1e-8"]);

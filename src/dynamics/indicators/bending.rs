@@ -49,7 +49,7 @@ impl Beam {
         let Material { young, poisson, .. } = *material;
         let mu = 0.5 * young / (1.0 + poisson);
         let lambda = 2.0 * mu * poisson / (1.0 - 2.0 * poisson);
-        let is_free = !is_solid && (body.plane() == Plane::Stress || body.dimension() == 3);
+        let is_free = !is_solid && body.plane() == Some(Plane::Stress);
         let lambda = if is_free { 2.0 * lambda * mu / (lambda + 2.0 * mu) } else { lambda };
         lambda.is_finite().then_some(Self { lambda, mu, is_solid })
     }

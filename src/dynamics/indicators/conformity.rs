@@ -1,7 +1,7 @@
 //! Whether cells meet in whole faces: hanging nodes, and nodes in the same position that are not one.
 
 use super::size::least_cell_lengths;
-use super::skin::position;
+use super::size::position;
 use crate::base::grid::Grid;
 use crate::base::vector::{difference, distinct, norm};
 use crate::dynamics::report::Indicator;

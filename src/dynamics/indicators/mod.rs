@@ -16,7 +16,7 @@
 //! | [`overlap`]: how deep the body overlaps itself, as drawn and as it moves | a twentieth of a cell |
 //! | [`strain`]: how far cells turn under Cauchy strain | 10 degrees |
 //! | [`strain`]: cells turned inside out under Cauchy strain | none |
-//! | [`coarse`]: how much too stiff linear cells are for the strains that they show | 1.1 times |
+//! | [`coarse`]: how much too stiff linear cells are for the strains that they show | 1.25 times; quadrilaterals and hexahedra 1.1 times |
 //! | [`touch`]: how deep nodes are inside obstacles, at the start and later | half a cell, 2 % of the body; half of the thickness of the body, a quarter of that of the obstacle |
 //! | [`touch`]: points that went past the middle of an obstacle | none |
 //! | [`touch`]: how deep the surface between nodes is inside obstacles | as nodes |

@@ -1,7 +1,8 @@
 //! Whether a body passes through itself, or pieces of it through each other.
 
 use super::size::cell_sizes;
-use super::skin::{Skin, points, position};
+use super::size::position;
+use super::skin::{Skin, points};
 use crate::base::grid::Grid;
 use crate::base::input::{InputError, told};
 use crate::base::vector::{difference, norm};
@@ -55,7 +56,7 @@ impl<'a> Overlaps<'a> {
         body.parts().any(fills_space).then(|| Self {
             body,
             skin: Skin::new(body),
-            points: points(body),
+            points: points(body, 1),
             cells: body.mesh().cells_with_kinds().collect(),
             limits: cell_sizes(body).into_iter().map(|size| MOST_OF_CELL * size).collect(),
         })

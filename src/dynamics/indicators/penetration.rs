@@ -72,7 +72,8 @@ impl Follower {
         let body = scene.body();
         let (d, limits) = (body.dimension(), depth_limits(body));
         let fills_space = |part: Part| part.body.mesh().kind().dimension() == d;
-        let all = if body.parts().any(fills_space) { points(body) } else { boundary_nodes(body) };
+        let all =
+            if body.parts().any(fills_space) { points(body, 2) } else { boundary_nodes(body) };
         let positions = body.mesh().positions();
         let followed = |on: SurfacePoint| {
             // the ends of an edge come first

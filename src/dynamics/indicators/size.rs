@@ -1,9 +1,9 @@
-//! Sizes of cells.
+//! Sizes of cells, and positions of nodes.
 
 use nalgebra::SVector;
 
-use super::skin::position;
 use crate::elements::body::{Body, Part};
+use crate::elements::mesh::Mesh;
 
 /// The size (m) of each cell: the edge of a square or cube that is cut into such cells, or that is such a cell.
 pub(super) fn cell_sizes(body: &Body) -> Vec<f64> {
@@ -39,6 +39,12 @@ pub(super) fn least_cell_lengths(body: &Body) -> Vec<f64> {
     mesh.cells().zip(block_volumes(body)).map(of_cell).collect()
 }
 
+/// Natural position (m) of a node; components beyond the dimension are 0.
+pub(super) fn position(mesh: &Mesh, node: usize) -> [f64; 3] {
+    let x = mesh.position(node);
+    std::array::from_fn(|i| x.get(i).copied().unwrap_or(0.0))
+}
+
 /// For each node the size (m) of the smallest of its cells. Infinite for a node without cells.
 pub(super) fn least_cell_sizes(body: &Body) -> Vec<f64> {
     let mut sizes = vec![f64::INFINITY; body.mesh().node_count()];
@@ -51,7 +57,7 @@ pub(super) fn least_cell_sizes(body: &Body) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::elements::mesh::{Cells, Mesh};
+    use crate::elements::mesh::Cells;
     use crate::studies::samples::SQUARE_MATERIAL;
 
     /// Sizes in a plane do not depend on the thickness, which bodies have of their own.

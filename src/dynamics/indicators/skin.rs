@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::size::block_volumes;
+use super::size::{block_volumes, position};
 use crate::base::vector::{difference, norm};
 use crate::elements::basis::closest;
 use crate::elements::body::{Body, Part};
@@ -89,10 +89,10 @@ impl<'a> Skin<'a> {
     }
 }
 
-/// The nodes of the boundary, and points between them on edges that are longer than their cell is thick, so
-/// that nothing as thick as that slips through between two points. In space also the centres of faces: the
+/// The nodes of the boundary, and points between them that divide edges into `least` parts, and into more where these are longer than their
+/// cell is thick, so that nothing as thick as that slips through between two points. In space also the centres of faces: the
 /// nodes of a body one cell thick all lie in the planes of its sides, and so do those of other parts of it.
-pub(super) fn points(body: &Body) -> Vec<SurfacePoint> {
+pub(super) fn points(body: &Body, least: usize) -> Vec<SurfacePoint> {
     let mesh = body.mesh();
     let mut points = boundary_nodes(body);
     if mesh.dimension() < 2 {
@@ -116,9 +116,9 @@ pub(super) fn points(body: &Body) -> Vec<SurfacePoint> {
             }
             let length = length(mesh, edge[0], edge[1]);
             let thick = (blocks[cell] / length).powf(1.0 / (mesh.dimension() - 1) as f64);
-            let count = ((length / thick).round() as usize).clamp(1, MOST_PARTS);
+            let count = ((length / thick).round() as usize).clamp(least, MOST_PARTS);
             let ends = [edge[0].min(edge[1]), edge[0].max(edge[1])];
-            let known = edges.entry(ends).or_insert_with(|| (edge, 1));
+            let known = edges.entry(ends).or_insert_with(|| (edge, least));
             known.1 = known.1.max(count);
         }
     }
@@ -134,9 +134,4 @@ fn length(mesh: &Mesh, a: usize, b: usize) -> f64 {
 
 fn distance(a: &[f64; 3], b: &[f64; 3]) -> f64 {
     norm(&difference(a, b))
-}
-
-/// Natural position of a node; components beyond the dimension are 0.
-pub(super) fn position(mesh: &Mesh, node: usize) -> [f64; 3] {
-    weighted([(node, 1.0)].into_iter(), mesh.positions(), mesh.dimension())
 }

@@ -241,10 +241,11 @@ impl AtRest {
             at.add(&self.nodal, 1.0, true);
             at.add_potential(-0.5 * dot(u, &self.nodal.conservative));
         }
+        let is_given = self.unbalanced.is_some();
         for (force, v) in self.system.forces.iter().zip(&self.velocities) {
             let v = if v.is_empty() { &self.still } else { v };
             self.nodal.clear();
-            let time = when(&**force, fraction, self.time);
+            let time = when(&**force, is_given, fraction, self.time);
             let share = if is_load(&**force) { acting } else { 1.0 };
             force.add_forces(time, u, v, &mut self.nodal)?;
             let bound = force.reservoir() != Reservoir::None;
@@ -271,8 +272,9 @@ impl AtRest {
     /// Gives the nodes the velocity of each obstacle at a fraction of its path.
     fn stand_still(&mut self, fraction: f64) {
         let dimension = self.system.matrices.dimension;
+        let is_given = self.unbalanced.is_some();
         for (force, v) in self.system.forces.iter().zip(&mut self.velocities) {
-            if let Some(w) = force.velocity(when(&**force, fraction, self.time)) {
+            if let Some(w) = force.velocity(when(&**force, is_given, fraction, self.time)) {
                 v.resize(self.still.len(), 0.0);
                 v.iter_mut().enumerate().for_each(|(dof, v)| *v = w[dof % dimension]);
             }
@@ -284,6 +286,7 @@ impl AtRest {
         self.stand_still(fraction);
         self.system.make_room(u);
         let acting = self.acting(fraction);
+        let is_given = self.unbalanced.is_some();
         let NewtonMatrix { stiffness, damping, differences, .. } = &mut self.system.newton;
         let still = &self.still;
         let own = (stiffness.begin(&None), damping.begin(&None));
@@ -291,7 +294,7 @@ impl AtRest {
         let mut add = |loads: bool, stiffness: &mut BlockMatrix| {
             for (force, v) in self.system.forces.iter().zip(&self.velocities) {
                 if is_load(&**force) == loads {
-                    let time = when(&**force, fraction, self.time);
+                    let time = when(&**force, is_given, fraction, self.time);
                     let v = if v.is_empty() { still } else { v };
                     differences.add_tangents(force, time, [u, v], [stiffness, damping]);
                 }
@@ -420,9 +423,10 @@ pub(super) fn shifted(
 const ITERATIONS: usize = 300;
 
 /// The time (s) at which a force is evaluated for a `fraction` of the load, up to the end `time`: a load at the end, what is not
-/// scaled at that fraction of its path.
-fn when(force: &dyn Force, fraction: f64, time: f64) -> f64 {
-    if is_load(force) { time } else { fraction * time }
+/// scaled at that fraction of its path. From a given start all but obstacles act as at the end.
+fn when(force: &dyn Force, is_given: bool, fraction: f64, time: f64) -> f64 {
+    let is_whole = is_given && force.reservoir() != Reservoir::Contact;
+    if is_load(force) || is_whole { time } else { fraction * time }
 }
 
 /// Whether a force is applied by fractions of its strength.

@@ -60,7 +60,7 @@ pub(super) const BODY: TableKeys = TableKeys::new(
             Holds::Word(|| PLANE.map(|(word, _)| word).into()),
             "the quantity that is 0 across cells of two dimensions",
         )
-        .law("No strain: the body is as long across the plane as a tunnel lining. No stress: it is a sheet, whose thickness changes.")
+        .law("Strain: of bodies that are long across the plane. Stress: of sheets, whose thickness changes.")
         .default("strain in the plane, stress in space (membranes)"),
         Key::new(
             "dilatation",

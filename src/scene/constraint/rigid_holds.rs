@@ -13,6 +13,9 @@ use crate::base::input::InputError;
 use crate::base::vector::{dot, norm};
 use crate::elements::body::{Body, RigidPieces};
 
+/// Terms of a row: the node, the component and the coefficient of each.
+type Terms = Vec<(usize, usize, f64)>;
+
 /// The part of a row, relative to the row, that is round-off.
 const NOTHING_NEW: f64 = 1e-5;
 /// The motions that are tried, in radians and in parts of the size of a piece.
@@ -54,7 +57,7 @@ struct Piece<'a> {
     arms: Vec<Vector3<f64>>,
     size: f64,
     /// Each row with its terms: node of the frame, axis and coefficient.
-    rows: Vec<(&'a ConstraintRow, Vec<(usize, usize, f64)>)>,
+    rows: Vec<(&'a ConstraintRow, Terms)>,
 }
 
 impl<'a> Piece<'a> {

@@ -1,11 +1,13 @@
 //! Ties: nodes of one body glued to another body.
 
 mod facing;
+mod reach;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use facing::facing;
+use reach::{MOST_APART, longest};
 
 use crate::base::input::InputError;
 use crate::base::vector::norm;
@@ -15,9 +17,6 @@ use crate::elements::mesh::Selection;
 use crate::scene::constraint::{Axis, Constrained, Constraint, Motion};
 use crate::scene::forces::pieces;
 
-/// How far a node may be from the body that it is glued to, over the length of the edges there: the straight edges of
-/// cells leave gaps along a curve.
-const MOST_APART: f64 = 0.2;
 /// Shares of nodes below this are round-off.
 const NO_SHARE: f64 = 1e-12;
 
@@ -183,16 +182,6 @@ impl<'a> Target<'a> {
         let x = self.part.body.mesh().position(node);
         std::array::from_fn(|i| x.get(i).copied().unwrap_or(0.0))
     }
-}
-
-/// The longest edge between corners (m).
-fn longest(corners: &[[f64; 3]]) -> f64 {
-    let next = corners.iter().cycle().skip(1);
-    let lengths = corners
-        .iter()
-        .zip(next)
-        .map(|(a, b)| norm(&std::array::from_fn::<f64, 3, _>(|i| b[i] - a[i])));
-    lengths.fold(0.0, f64::max)
 }
 
 #[cfg(test)]

@@ -140,8 +140,9 @@ mod tests {
         let mut before = found(0.0);
         for k in 1..=400 {
             let now = found(0.05 * f64::from(k));
-            // 1 % of the slope of 6 pi shifts a crossing by 5.3e-4 s or less, twice in the 1.66 s between the first and the last
-            assert!((now / 3.0 - 1.0).abs() < 7e-4, "{now}");
+            // 1 % at a slope of 6 pi shifts a crossing by 5.3e-4 s or less, and the middle of a swing as much: both twice in the 1.66 s
+            // between the first and the last (measured: 8.9e-4)
+            assert!((now / 3.0 - 1.0).abs() < 1.3e-3, "{now}");
             // and no jump: a step of 0.05 in the phase shifts the values and the middles of swings by 5e-4 each at most, which
             // is 2.7e-5 s each at both ends (measured: 4.6e-5)
             assert!((now / before - 1.0).abs() < 6.4e-5, "{now} {before}");

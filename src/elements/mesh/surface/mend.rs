@@ -8,6 +8,9 @@ use crate::base::grid::Grid;
 use crate::base::input::InputError;
 use crate::elements::mesh::{CellKind, Mesh};
 
+/// Numbers of points by the box of a grid that they are in.
+type Places = BTreeMap<[i64; 3], Vec<usize>>;
+
 /// Corners that are nearer to each other than this fraction of the largest coordinate are one: round-off of numbers of 4 bytes, of
 /// which binary STL files consist.
 const SAME: f64 = 4.0 * f32::EPSILON as f64;
@@ -53,8 +56,7 @@ pub(super) fn mended(corners: &[[f64; 3]]) -> Result<Mesh, InputError> {
 
 /// The places of `corners`, those nearer to each other than `same` (m) once, and the number of the place of each corner.
 fn joined(corners: &[[f64; 3]], same: f64) -> (Vec<[f64; 3]>, Vec<usize>) {
-    let (mut positions, mut places): (Vec<[f64; 3]>, BTreeMap<[i64; 3], Vec<usize>>) =
-        (Vec::new(), BTreeMap::new());
+    let (mut positions, mut places): (Vec<[f64; 3]>, Places) = (Vec::new(), BTreeMap::new());
     let size = 4.0 * same.max(f64::MIN_POSITIVE);
     let number = |corner: &[f64; 3]| {
         let home = corner.map(|x| (x / size).floor() as i64);

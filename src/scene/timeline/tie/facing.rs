@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use super::{MOST_APART, longest};
+use super::reach::{MOST_APART, longest};
 use crate::base::vector::{cross, difference, dot, norm};
 use crate::elements::basis::closest;
 use crate::elements::body::Body;
