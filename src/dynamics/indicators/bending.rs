@@ -5,7 +5,9 @@
 //! middle of the cell. With squares of y in the units h^2/12 of the section, s = 1/n^2 within the cells and 1 - s of their middles,
 //! its energy over k^2/2 is
 //!
-//!     lambda ((1 - b - g)^2 (1 - s) + (1 - b)^2 s) + 2 mu (1 + b^2 + g^2 (1 - s)) + mu s (1 + b^2)
+//! ```text
+//! lambda ((1 - b - g)^2 (1 - s) + (1 - b)^2 s) + 2 mu (1 + b^2 + g^2 (1 - s)) + mu s (1 + b^2)
+//! ```
 //!
 //! at its minimum over b and g, against E (or E of the plane) of a beam. In jumps between cells are (lambda + 2 mu) g^2 s of it and the
 //! shears. Where nu is near 1/2 a change of volume is avoided by a g that is too small, which no jump shows.
