@@ -28,6 +28,12 @@ pub(crate) fn norm(x: &[f64]) -> f64 {
     dot(x, x).sqrt()
 }
 
+/// A vector of up to three components, those beyond its own 0.
+#[cfg(feature = "bodies")]
+pub(crate) fn padded(x: &[f64]) -> [f64; 3] {
+    std::array::from_fn(|i| x.get(i).copied().unwrap_or(0.0))
+}
+
 /// a - b
 pub(crate) fn difference(a: &[f64; 3], b: &[f64; 3]) -> [f64; 3] {
     std::array::from_fn(|i| a[i] - b[i])

@@ -49,7 +49,7 @@ fn replace(path: &Path, content: impl FnOnce(&mut dyn Write) -> io::Result<()>) 
 /// A kind of JSON files, each of which begins with what it is and with its format.
 #[cfg(feature = "checkpoint")]
 pub(crate) struct Kind {
-    /// What a file says it is, the format that this version writes, and the oldest one that it reads.
+    /// Name of the kind as a file states it, the format that this version writes, and the oldest one that it reads.
     pub(crate) what: &'static str,
     pub(crate) format: u32,
     pub(crate) oldest: u32,

@@ -54,11 +54,14 @@ impl OutputArguments {
 
     /// The path of the directory for the results of the scene file at `path`.
     pub fn place(&self, path: &Path, suffix: &str) -> PathBuf {
-        self.out.clone().unwrap_or_else(|| {
-            let stem = path.file_stem().unwrap_or_default().to_string_lossy();
-            Path::new("out").join(format!("{stem}{suffix}"))
-        })
+        place(self.out.as_deref(), path, suffix)
     }
+}
+
+/// The path of the directory for the results of a scene or study file at `path`: `out` if it is given.
+pub fn place(out: Option<&Path>, path: &Path, suffix: &str) -> PathBuf {
+    let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+    out.map_or_else(|| Path::new("out").join(format!("{stem}{suffix}")), Path::to_path_buf)
 }
 
 /// Removes the `summary` of an earlier run from a directory for results where bad input keeps a run from beginning: a script

@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::io;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex};
@@ -15,7 +15,7 @@ use pliant::{Error, Fraction, SceneFile};
 
 use crate::engine::{Engine, TaskArray};
 use crate::failure::{Failure, print};
-use crate::files::{Directory, without_older};
+use crate::files::{Directory, place, without_older};
 use crate::progress::{KILLED, rows_bar};
 use crate::run::keep;
 use crate::task::Tasks;
@@ -79,10 +79,7 @@ pub struct Arguments {
 const MOST_TASKS: usize = 1000;
 
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let place = arguments.out.clone().unwrap_or_else(|| {
-        let stem = arguments.study.file_stem().unwrap_or_default().to_string_lossy();
-        Path::new("out").join(format!("{stem}-sweep"))
-    });
+    let place = place(arguments.out.as_deref(), &arguments.study, "-sweep");
     let (sweep, batch, units) = match begin(arguments) {
         Ok(begun) => begun,
         // these write no table

@@ -13,7 +13,7 @@
 //! shears. Where nu is near 1/2 a change of volume is avoided by a g that is too small, which no jump shows.
 
 use crate::elements::body::{Body, Dilatation};
-use crate::elements::material::{Material, Plane};
+use crate::elements::material::{Hooke, Lame, Material, Plane};
 use crate::elements::mesh::CellKind;
 
 /// The factor by which cells with this part of their energy in jumps make `body` too stiff in bending, of the material with the largest
@@ -48,11 +48,9 @@ impl Beam {
         if body.dilatation() != Dilatation::AtPoints {
             return None;
         }
-        let Material { young, poisson, .. } = *material;
-        let mu = 0.5 * young / (1.0 + poisson);
-        let lambda = 2.0 * mu * poisson / (1.0 - 2.0 * poisson);
-        let is_free = !is_solid && body.plane() == Some(Plane::Stress);
-        let lambda = if is_free { 2.0 * lambda * mu / (lambda + 2.0 * mu) } else { lambda };
+        let plane = body.plane().unwrap_or(Plane::Strain); // of solids it does not matter
+        let hooke = Hooke::new(material.elastic(), body.mesh().kind().dimension(), plane);
+        let Lame { lambda, mu } = hooke.lame;
         lambda.is_finite().then_some(Self { lambda, mu, is_solid })
     }
 

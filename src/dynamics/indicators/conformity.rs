@@ -1,13 +1,13 @@
 //! Whether cells meet in whole faces: hanging nodes, and nodes in the same position that are not one.
 
 use super::size::least_cell_lengths;
-use super::size::position;
 use crate::base::grid::Grid;
 use crate::base::vector::{difference, distinct, norm};
 use crate::dynamics::report::Indicator;
 use crate::elements::basis::nearest;
 use crate::elements::body::Body;
 use crate::elements::mesh::{Face, FaceKind, Mesh};
+use crate::scene::forces::natural;
 
 /// Nodes that are nearer to each other, or to a face, than this fraction of the least length of the cells there are meant to be
 /// at it: round-off of files with few digits.
@@ -80,11 +80,11 @@ impl Defects {
         for (cell, length) in mesh.cells().zip(&lengths) {
             cell.iter().for_each(|&node| length_at[node] = length_at[node].min(*length));
         }
-        let positions: Vec<[f64; 3]> = nodes.iter().map(|&node| position(mesh, node)).collect();
+        let positions: Vec<[f64; 3]> = nodes.iter().map(|&node| natural(mesh, node)).collect();
         let (grid, pattern) = (Grid::new(&positions), body.inertia().pattern());
         let pieces = pattern.pieces();
         for (cell, face) in &faces {
-            let corners: Vec<[f64; 3]> = face.iter().map(|&node| position(mesh, node)).collect();
+            let corners: Vec<[f64; 3]> = face.iter().map(|&node| natural(mesh, node)).collect();
             let kind = match mesh.kind().dimension() {
                 1 => FaceKind::Segment,
                 2 => FaceKind::of_rim(face.len()),

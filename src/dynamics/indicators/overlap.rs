@@ -1,7 +1,6 @@
 //! Whether a body passes through itself, or pieces of it through each other.
 
 use super::size::cell_sizes;
-use super::size::position;
 use super::skin::{Skin, points};
 use crate::base::grid::Grid;
 use crate::base::input::{InputError, told};
@@ -11,7 +10,7 @@ use crate::dynamics::trajectory::Sample;
 use crate::elements::basis::{closest, shares_in};
 use crate::elements::body::{Body, Part};
 use crate::elements::mesh::CellKind;
-use crate::scene::forces::{SurfacePoint, Touch, pieces};
+use crate::scene::forces::{SurfacePoint, Touch, natural, pieces};
 use crate::scene::timeline::Scene;
 
 /// How deep a point of the boundary may be within a cell of another part of the body, relative to the size of
@@ -141,7 +140,7 @@ impl<'a> Overlaps<'a> {
         let faces = kind.faces().iter().map(|face| face.iter().map(|&k| nodes[k]).collect());
         let away = |face: Vec<usize>| {
             let corners = |piece: &[usize]| -> Vec<[f64; 3]> {
-                piece.iter().map(|&k| position(mesh, face[k])).collect()
+                piece.iter().map(|&k| natural(mesh, face[k])).collect()
             };
             let of_piece = |(piece, _): (&[usize], f64)| {
                 let corners = corners(piece);

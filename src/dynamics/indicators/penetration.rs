@@ -1,5 +1,7 @@
 //! Follows the surface of a body into obstacles, step by step: also between samples, and between nodes.
 
+use std::sync::Arc;
+
 use super::size::least_cell_sizes;
 use super::skin::points;
 use crate::base::vector::{difference, dot, norm};
@@ -48,7 +50,7 @@ fn limit_within(half_thickness: f64) -> DepthLimit {
 /// The surface of the body of a scene, and the obstacles that act on it.
 #[derive(Default)]
 pub(crate) struct Follower {
-    points: Vec<Followed>,
+    points: Arc<[Followed]>,
     mass: f64,
     contacts: Vec<Contact>,
     /// How far each point may still move before it can be inside each obstacle (m).
@@ -84,6 +86,11 @@ impl Follower {
         };
         let points = all.into_iter().filter_map(followed).collect();
         Self { points, mass: body.mass(), ..Self::default() }
+    }
+
+    /// The same surface, before it is followed.
+    pub(crate) fn anew(&self) -> Self {
+        Self { points: self.points.clone(), mass: self.mass, ..Self::default() }
     }
 
     /// From now on follows it into the obstacles of a phase.

@@ -1,9 +1,9 @@
-//! Sizes of cells, and positions of nodes.
+//! Sizes of cells.
 
 use nalgebra::SVector;
 
 use crate::elements::body::{Body, Part};
-use crate::elements::mesh::Mesh;
+use crate::scene::forces::natural;
 
 /// The size (m) of each cell: the edge of a square or cube that is cut into such cells, or that is such a cell.
 pub(super) fn cell_sizes(body: &Body) -> Vec<f64> {
@@ -27,7 +27,7 @@ pub(super) fn block_volumes(body: &Body) -> impl Iterator<Item = f64> {
 /// The least length (m) of each cell of a single body, nearly: of its shortest edge, or of its height over the others.
 pub(super) fn least_cell_lengths(body: &Body) -> Vec<f64> {
     let (mesh, section) = (body.mesh(), body.section());
-    let position = |node: usize| SVector::<f64, 3>::from(position(mesh, node));
+    let position = |node: usize| SVector::<f64, 3>::from(natural(mesh, node));
     let of_cell = |(cell, volume): (&[usize], f64)| {
         let edges = mesh.kind().edges().iter();
         let lengths = edges.map(|edge| (position(cell[edge[1]]) - position(cell[edge[0]])).norm());
@@ -37,12 +37,6 @@ pub(super) fn least_cell_lengths(body: &Body) -> Vec<f64> {
         least.min(volume / section / most.powi(mesh.kind().dimension() as i32 - 1))
     };
     mesh.cells().zip(block_volumes(body)).map(of_cell).collect()
-}
-
-/// Natural position (m) of a node; components beyond the dimension are 0.
-pub(super) fn position(mesh: &Mesh, node: usize) -> [f64; 3] {
-    let x = mesh.position(node);
-    std::array::from_fn(|i| x.get(i).copied().unwrap_or(0.0))
 }
 
 /// For each node the size (m) of the smallest of its cells. Infinite for a node without cells.
@@ -57,7 +51,7 @@ pub(super) fn least_cell_sizes(body: &Body) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::elements::mesh::Cells;
+    use crate::elements::mesh::{Cells, Mesh};
     use crate::studies::samples::SQUARE_MATERIAL;
 
     /// Sizes in a plane do not depend on the thickness, which bodies have of their own.

@@ -2,13 +2,13 @@
 
 use std::collections::BTreeMap;
 
-use super::size::{block_volumes, position};
+use super::size::block_volumes;
 use crate::base::vector::{difference, norm};
 use crate::elements::basis::closest;
 use crate::elements::body::{Body, Part};
 use crate::elements::mesh::{CellKind, Mesh};
 use crate::scene::forces::{
-    SurfacePoint, boundary_nodes, edge_points, face_centre, pieces, weighted,
+    SurfacePoint, boundary_nodes, edge_points, face_centre, natural, pieces, weighted,
 };
 
 /// An edge is divided into at most this many parts.
@@ -67,7 +67,7 @@ impl<'a> Skin<'a> {
             for &part in &self.at_nodes[node] {
                 let nodes = &self.parts[part];
                 let corners: Vec<[f64; 3]> =
-                    nodes.iter().map(|&node| position(mesh, node)).collect();
+                    nodes.iter().map(|&node| natural(mesh, node)).collect();
                 let places = closest(&corners, &x);
                 let place = nodes.iter().copied().zip(places);
                 let away =
@@ -78,7 +78,7 @@ impl<'a> Skin<'a> {
             }
             for (_, other) in pattern.row(node) {
                 let is_new = self.seen[other] != self.searches;
-                if is_new && distance(&position(mesh, other), &x) <= least + self.longest {
+                if is_new && distance(&natural(mesh, other), &x) <= least + self.longest {
                     self.seen[other] = self.searches;
                     open.push(other);
                 }
@@ -129,7 +129,7 @@ pub(super) fn points(body: &Body, least: usize) -> Vec<SurfacePoint> {
 }
 
 fn length(mesh: &Mesh, a: usize, b: usize) -> f64 {
-    distance(&position(mesh, a), &position(mesh, b))
+    distance(&natural(mesh, a), &natural(mesh, b))
 }
 
 fn distance(a: &[f64; 3], b: &[f64; 3]) -> f64 {

@@ -115,8 +115,8 @@ pub(super) fn depths(scene: &Scene, meetings: &[Meeting]) -> impl Iterator<Item 
             limit.reason
         );
         let beyond = || {
-            let (to, name) = (stiffness(scene, &meeting.obstacle, meeting.stiffer), &said);
-            format!("{name}: raise the stiffness of the obstacle{to}")
+            let to = stiffness(scene, &meeting.obstacle, meeting.stiffer);
+            format!("{said}: raise the stiffness of the obstacle{to}")
         };
         let limits = [0.0, limit.depth];
         Some(Indicator::trusted("depth", (depth, "m"), limits, || said.clone(), beyond))

@@ -336,7 +336,7 @@ impl Run {
             steps: self.steps,
             standing: 0,
             trajectory: self.trajectory.at_end(),
-            follower: Follower::new(&self.scene),
+            follower: self.follower.anew(),
             rollback_point: self.rollback_point.clone(),
             balance: self.balance,
             least_energy: self.least_energy,

@@ -113,22 +113,20 @@ impl Body {
 
     /// The assumptions across cells of two dimensions of all bodies in words, as `plane strain`; `None` if there are no such cells.
     pub fn planes(&self) -> Option<String> {
-        let names = |plane| {
-            let parts = self.parts().filter(move |part| part.body.plane() == Some(plane));
-            parts.map(|part| part.name.to_owned()).collect::<Vec<_>>()
+        let with_names = |plane: Plane| {
+            let parts = self.parts().filter(|part| part.body.plane() == Some(plane));
+            (plane, parts.map(|part| part.name.to_owned()).collect::<Vec<_>>())
         };
-        let text = |plane: Plane, of: String| format!("plane {}{of}", plane.name());
-        match [Plane::Strain, Plane::Stress].map(|plane| (plane, names(plane))) {
-            [(_, none), (_, none_either)] if none.is_empty() && none_either.is_empty() => None,
-            [(plane, some), (_, none)] | [(_, none), (plane, some)]
-                if none.is_empty() && !some.is_empty() =>
-            {
-                Some(text(plane, String::new()))
-            }
+        let mut all: Vec<_> = [Plane::Strain, Plane::Stress].map(with_names).into();
+        all.retain(|(_, names)| !names.is_empty());
+        match &all[..] {
+            [] => None,
+            [(plane, _)] => Some(format!("plane {}", plane.name())),
             both => {
-                let both =
-                    both.map(|(plane, names)| text(plane, format!(" ({})", names.join(", "))));
-                Some(both.join(", "))
+                let text = |(plane, names): &(Plane, Vec<String>)| {
+                    format!("plane {} ({})", plane.name(), names.join(", "))
+                };
+                Some(both.iter().map(text).collect::<Vec<_>>().join(", "))
             }
         }
     }

@@ -127,7 +127,7 @@ pub(super) struct Laws {
     pub(super) hooke: Hooke,
     /// Hooke's law with viscous moduli: the damping matrix B.
     pub(super) viscous: Hooke,
-    /// What viscosity is if it is objective.
+    /// Law of objective viscosity.
     pub(super) objective: ObjectiveViscosity,
     pub(super) branches: Vec<Relaxing>,
     /// What keeps a rigid piece in its shape where its edges do not; all of the above have no stiffness then.

@@ -2,6 +2,7 @@
 
 use super::Mesh;
 use crate::base::grid::Grid;
+use crate::base::vector::padded;
 
 /// Equal positions may differ by this fraction of the size of a mesh: round-off when it is made.
 const SAME: f64 = 1e-9;
@@ -100,8 +101,7 @@ impl Mesh {
 /// For each of some `points`, `d` coordinates each, which of them is its image in the plane at a place on an axis. `None` if one has
 /// no image, or more than one. `size` is that of all of them.
 fn images(points: &[f64], d: usize, (axis, at): (usize, f64), size: f64) -> Option<Vec<usize>> {
-    let vector = |x: &[f64]| std::array::from_fn(|i| x.get(i).copied().unwrap_or(0.0));
-    let points: Vec<[f64; 3]> = points.chunks_exact(d).map(vector).collect();
+    let points: Vec<[f64; 3]> = points.chunks_exact(d).map(padded).collect();
     let grid = Grid::new(&points);
     let image = |x: &[f64; 3]| -> Option<usize> {
         let mut to = *x;

@@ -50,7 +50,7 @@ pub struct Mesh {
     plane: Vec<usize>,
     /// The file that it was read from, for messages.
     file: Option<Arc<Path>>,
-    /// What was changed as it was read.
+    /// Changes that were made as it was read, in words.
     notes: Vec<String>,
 }
 

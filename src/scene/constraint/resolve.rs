@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::ptr;
 
 use super::prescribed::Prescribed;
-use super::row::{ConstraintRow, RowMotion, independent_terms};
+use super::row::{ConstraintRow, NOTHING_NEW, RowMotion, independent_terms};
 use super::start::PhaseStart;
 use super::turn::Turning;
 use super::{Axes, Axis, Constrained, Constraint, Motion};
@@ -229,9 +229,6 @@ fn without_repetitions(
     Ok(kept.map(|(row, _)| row.clone()).collect())
 }
 
-/// Parts of a row below this, relative to the row, follow from other rows: nodes that are held as if on a line are there up
-/// to the digits of a file, and the Schur complement loses rows that add less than 1e-6.
-const NOTHING_NEW: f64 = 1e-5;
 /// Times (s) after the start of a phase at which motions of the nodes of a rigid piece are compared.
 const LOOKS: [f64; 4] = [0.0, 0.013, 0.37, 2.9];
 

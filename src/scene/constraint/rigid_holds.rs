@@ -7,7 +7,7 @@
 
 use nalgebra::{DMatrix, DVector, Rotation3, Vector3};
 
-use super::row::{ConstraintRow, independent_terms};
+use super::row::{ConstraintRow, NOTHING_NEW, independent_terms};
 use super::start::PhaseStart;
 use crate::base::input::InputError;
 use crate::base::vector::{dot, norm};
@@ -16,12 +16,10 @@ use crate::elements::body::{Body, RigidPieces};
 /// Terms of a row: the node, the component and the coefficient of each.
 type Terms = Vec<(usize, usize, f64)>;
 
-/// The part of a row, relative to the row, that is round-off.
-const NOTHING_NEW: f64 = 1e-5;
 /// The motions that are tried, in radians and in parts of the size of a piece.
 const TRIED: f64 = 0.1;
-/// What a row may change by in them, in parts of the size: what is implied is off by round-off, what is not by about half of
-/// the square of the motion, 5e-3.
+/// Largest change of an implied row in them, in parts of the size: an implied row is off by round-off, another one by about half
+/// of the square of the motion, 5e-3.
 const IMPLIED: f64 = 1e-6;
 /// Rounds of the search for a motion that the other rows allow. Each leaves a tenth or so.
 const ROUNDS: usize = 30;
@@ -86,7 +84,7 @@ impl<'a> Piece<'a> {
         Self { dimension: d, arms, size, rows: rows.iter().filter_map(own).collect() }
     }
 
-    /// What moves in a rigid motion, its displacements in parts of the size and its angles: 3 in the plane, 6 in space.
+    /// Number of unknowns of a rigid motion, its displacements in parts of the size and its angles: 3 in the plane, 6 in space.
     fn freedoms(&self) -> usize {
         self.dimension + self.dimension * (self.dimension - 1) / 2
     }
@@ -107,7 +105,7 @@ impl<'a> Piece<'a> {
     /// By how much each row changes (m) in a rigid motion.
     fn changes(&self, motion: &DVector<f64>) -> Vec<f64> {
         let moved = self.moved(motion);
-        let change = |(_, terms): &(&ConstraintRow, Vec<(usize, usize, f64)>)| {
+        let change = |(_, terms): &(&ConstraintRow, Terms)| {
             terms.iter().map(|&(node, axis, c)| c * moved[node][axis]).sum()
         };
         self.rows.iter().map(change).collect()

@@ -10,6 +10,10 @@ use super::turn::Turning;
 use crate::base::formula::Formula;
 use crate::elements::body::RigidPieces;
 
+/// Parts of a row below this, relative to the row, follow from other rows: nodes that are held as if on a line are there up
+/// to the digits of a file, and the Schur complement loses rows that add less than 1e-6.
+pub(super) const NOTHING_NEW: f64 = 1e-5;
+
 /// One row of A^T with its b(t), resolved for one phase.
 #[derive(Clone)]
 pub(crate) struct ConstraintRow {

@@ -75,7 +75,8 @@ pub(crate) use spring::Joint;
 pub(crate) use spring::SpringGauge;
 pub use spring::{Guide, Spring};
 pub(crate) use surface::{
-    SurfacePoint, boundary_area, boundary_nodes, edge_points, face_centre, pieces, weighted,
+    SurfacePoint, boundary_area, boundary_nodes, edge_points, face_centre, natural, pieces,
+    weighted,
 };
 pub(crate) use time_table::TimeTable;
 pub use touch::Touch;

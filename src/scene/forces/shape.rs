@@ -4,7 +4,7 @@ use std::fmt;
 use std::sync::Arc;
 
 use crate::base::input::{InputError, finite, positive};
-use crate::base::vector::{axes_across, dot, norm};
+use crate::base::vector::{axes_across, dot, norm, padded};
 
 /// Components of a normal below this part of its length are round-off.
 const ROUND_OFF: f64 = 1e-12;
@@ -328,10 +328,6 @@ impl Shape {
         }
         Ok(shape)
     }
-}
-
-fn padded(x: &[f64]) -> [f64; 3] {
-    std::array::from_fn(|i| x.get(i).copied().unwrap_or(0.0))
 }
 
 fn from_to(a: &[f64], b: &[f64]) -> [f64; 3] {

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::base::vector::{cross, difference, norm};
+use crate::base::vector::{cross, difference, norm, padded};
 use crate::elements::basis::{FacePoint, MOST_NODES, reference_node};
 use crate::elements::body::Body;
 use crate::elements::mesh::{FaceKind, Mesh};
@@ -300,9 +300,8 @@ fn measure(body: &Body, corners: &[usize]) -> f64 {
 }
 
 /// Undeformed position of a node (m); components beyond the dimension are 0.
-pub(super) fn natural(mesh: &Mesh, node: usize) -> [f64; 3] {
-    let x = mesh.position(node);
-    std::array::from_fn(|i| x.get(i).copied().unwrap_or(0.0))
+pub(crate) fn natural(mesh: &Mesh, node: usize) -> [f64; 3] {
+    padded(mesh.position(node))
 }
 
 #[cfg(test)]

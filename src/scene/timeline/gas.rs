@@ -145,16 +145,11 @@ impl Scene {
         if !self.has_gas() && self.liquids.is_empty() {
             return Ok(Vec::new());
         }
-        let part = |[from, whole]: [f64; 2]| from + fraction * (whole - from);
-        let gases = self.filled()?;
-        let liquids = self.poured(Some(phase))?;
-        let unloaded: Vec<f64> = gases
-            .iter()
-            .map(Filled::unloaded)
-            .chain(liquids.iter().map(Poured::unloaded))
-            .collect();
-        let masses = unloaded.into_iter().zip(self.starting_masses(&gases, &liquids));
-        let masses = masses.map(|(from, whole)| part([from, whole]));
+        let (gases, liquids) = (self.filled()?, self.poured(Some(phase))?);
+        let whole = self.starting_masses(&gases, &liquids);
+        let unloaded =
+            gases.iter().map(Filled::unloaded).chain(liquids.iter().map(Poured::unloaded));
+        let masses = unloaded.zip(whole).map(|(from, whole)| from + fraction * (whole - from));
         let lags = self.lags().map(|(name, _)| self.drive_at(name, acting, phase.until, &[])[0]);
         let pipes = self.pipes.iter().map(|_| 0.0);
         Ok(masses.chain(lags).chain(pipes).collect())

@@ -24,8 +24,8 @@ impl Scene {
     /// not used: a [warning](Self::warnings) names both. Branches of a body are used if the cells have branches of the same
     /// kinds.
     ///
-    /// In an equilibrium the masses of gas and liquid are those of the state. There are no displacements at the start, and branches
-    /// and lags are at rest.
+    /// The search for an equilibrium begins at the displacements of the state, with its masses of gas and liquid; branches and lags are
+    /// at rest.
     ///
     /// [`initial_displacement`](Self::initial_displacement), called after it, replaces its displacements, with branches
     /// that have relaxed, and [`initial_velocity`](Self::initial_velocity) its velocities; [`spin`](Self::spin) is

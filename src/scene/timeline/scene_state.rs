@@ -48,8 +48,8 @@ pub struct BodyState {
     pub branches: Option<BranchState>,
 }
 
-/// What an error of a state names.
-const INPUT: &str = "state at the start";
+/// Name of the input in errors of a state.
+pub(super) const INPUT: &str = "state at the start";
 
 impl SceneState {
     /// The state of a body of a scene, by its name; where one of both has a single body, or the state is not by bodies,

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use super::SceneState;
 use super::phase::check_vector;
+use super::scene_state::INPUT;
 use crate::base::input::{InputError, finite};
 use crate::base::vector::cross;
 use crate::elements::body::Body;
@@ -51,7 +52,7 @@ impl Start {
                 let help = format!(
                     "what they are in the cells of {other} is not known: start from a state of a scene with that mesh"
                 );
-                Err(InputError::new("state at the start", "with Maxwell branches", help))
+                Err(InputError::new(INPUT, "with Maxwell branches", help))
             }
         }
     }

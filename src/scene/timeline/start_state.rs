@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use super::scene_state::INPUT;
 use super::{Scene, SceneState};
 use crate::base::input::{InputError, told};
 use crate::base::vector::norm;
@@ -14,24 +15,25 @@ const SAME_PLACE: f64 = 1e-6;
 impl Scene {
     /// Masses (kg) at the start of the gases and then of the liquids, which are these.
     pub(crate) fn starting_masses(&self, gases: &[Filled], liquids: &[Poured]) -> Vec<f64> {
-        let state = self.start.state.as_deref();
-        let kept = |of: fn(&SceneState) -> &BTreeMap<String, f64>, chamber: &str| {
-            state.and_then(|state| of(state).get(chamber).copied())
-        };
-        let of_gases = self.gases.iter().zip(gases).map(|(gas, filled)| {
-            kept(|state| &state.gases, &gas.chamber).unwrap_or(filled.amount())
+        let gases = self.gases.iter().zip(gases).map(|(gas, filled)| {
+            self.mass_in_state(|state| &state.gases, &gas.chamber).unwrap_or(filled.amount())
         });
-        let of_liquids = self.liquids.iter().zip(liquids).map(|(liquid, poured)| {
-            kept(|state| &state.liquids, liquid.chamber()).unwrap_or(poured.amount())
-        });
-        of_gases.chain(of_liquids).collect()
+        let liquids = self.liquids.iter().zip(liquids);
+        gases.chain(liquids.map(|(liquid, poured)| self.starting_liquid(liquid, poured))).collect()
     }
 
     /// The mass (kg) of a liquid at the start, whose chamber has it as `poured`.
     pub(super) fn starting_liquid(&self, liquid: &Liquid, poured: &Poured) -> f64 {
-        let state = self.start.state.as_deref();
-        let kept = state.and_then(|state| state.liquids.get(liquid.chamber()).copied());
-        kept.unwrap_or(poured.amount())
+        self.mass_in_state(|state| &state.liquids, liquid.chamber()).unwrap_or(poured.amount())
+    }
+
+    /// The mass (kg) in a chamber that the state from which the scene starts has, of gases or of liquids.
+    fn mass_in_state(
+        &self,
+        of: fn(&SceneState) -> &BTreeMap<String, f64>,
+        chamber: &str,
+    ) -> Option<f64> {
+        of(self.start.state.as_deref()?).get(chamber).copied()
     }
 
     /// States of all lags and flow rates (m^3/s) of all pipes at the start.
@@ -88,7 +90,7 @@ impl Scene {
             if what == "gas" { "gases" } else { "liquids" }
         );
         let value = format!("{} kg of {what} in chamber \"{chamber}\"", told(*amount));
-        Err(InputError::new("state at the start", value, help))
+        Err(InputError::new(INPUT, value, help))
     }
 
     /// Unknowns that either the scene or the state from which it starts does not have, in words; none without a state.

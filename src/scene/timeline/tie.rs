@@ -10,12 +10,12 @@ use facing::facing;
 use reach::{MOST_APART, longest};
 
 use crate::base::input::InputError;
-use crate::base::vector::norm;
+use crate::base::vector::{norm, padded};
 use crate::elements::basis::closest;
 use crate::elements::body::{Body, Part};
 use crate::elements::mesh::Selection;
 use crate::scene::constraint::{Axis, Constrained, Constraint, Motion};
-use crate::scene::forces::pieces;
+use crate::scene::forces::{natural, pieces};
 
 /// Shares of nodes below this are round-off.
 const NO_SHARE: f64 = 1e-12;
@@ -135,9 +135,10 @@ impl<'a> Target<'a> {
         if let Ok(shares) = self.part.body.shares_at(x) {
             return Ok(self.without_round_off(shares.into_iter()));
         }
-        let x: [f64; 3] = std::array::from_fn(|i| x.get(i).copied().unwrap_or(0.0));
+        let x = padded(x);
         let placed = self.facets.iter().map(|facet| {
-            let corners: Vec<[f64; 3]> = facet.iter().map(|&node| self.position(node)).collect();
+            let corners: Vec<[f64; 3]> =
+                facet.iter().map(|&node| natural(self.part.body.mesh(), node)).collect();
             let shares = closest(&corners, &x);
             let at =
                 |i: usize| corners.iter().zip(shares).map(|(x, share)| share * x[i]).sum::<f64>();
@@ -176,11 +177,6 @@ impl<'a> Target<'a> {
             [(node, _)] => vec![(node, 1.0)],
             _ => some,
         }
-    }
-
-    fn position(&self, node: usize) -> [f64; 3] {
-        let x = self.part.body.mesh().position(node);
-        std::array::from_fn(|i| x.get(i).copied().unwrap_or(0.0))
     }
 }
 

@@ -17,7 +17,7 @@ use crate::elements::material::law::{Block, Blocks};
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct NewtonianViscosity(pub(crate) Hooke);
 
-/// What the formulas at a point share.
+/// Values that the formulas at a point share.
 struct Moving<T, const M: usize, const D: usize> {
     f: Matrix<T, D, M>,
     /// A
@@ -45,6 +45,24 @@ impl<T: Real, const M: usize, const D: usize> Moving<T, M, D> {
     fn raised(&self) -> Matrix<T, M, M> {
         let both = product(&self.inverse, &self.mixed);
         symmetric!(self.dilatation; j, k => both[j][k])
+    }
+
+    /// m_a = F' A g_a - F Q g_a; F Q is `pushed`.
+    #[inline(always)]
+    fn moving<const N: usize>(
+        &self,
+        rate: &Matrix<T, D, M>,
+        pushed: &Matrix<T, D, M>,
+        gradients: &[[T; M]; N],
+    ) -> [[T; D]; N] {
+        let mut moving = product(&product(rate, &self.inverse), gradients);
+        let pulls = product(pushed, gradients);
+        for a in 0..N {
+            for i in 0..D {
+                moving[a][i] = moving[a][i] - pulls[a][i];
+            }
+        }
+        moving
     }
 }
 
@@ -113,19 +131,11 @@ impl ViscousLaw for NewtonianViscosity {
                 turning[k][i] = turning[k][i] - minus[k][i];
             }
         }
-        let moved = product(&product(rate, &at.inverse), gradients);
-        let pulls = product(&pushed, gradients);
-        let mut moving = moved;
-        for a in 0..N {
-            for i in 0..D {
-                moving[a][i] = moved[a][i] - pulls[a][i];
-            }
-        }
         Tangent {
             gradients,
             along: product(&spatial, gradients),
-            moving,
-            pulls,
+            moving: at.moving(rate, &pushed, gradients),
+            pulls: product(&pushed, gradients),
             turning,
             raised: product(&raised, gradients),
             outside: outside(&spatial, &at.f),
@@ -163,14 +173,8 @@ impl ViscousLaw for NewtonianViscosity {
     ) -> [[[T; D]; N]; 2] {
         let at = Moving::new(at, rate);
         let spatial = product(&at.f, &at.inverse);
-        let mut moving = product(&product(rate, &at.inverse), gradients);
-        let pulls = product(&product(&at.f, &at.raised()), gradients);
-        for a in 0..N {
-            for i in 0..D {
-                moving[a][i] = moving[a][i] - pulls[a][i];
-            }
-        }
-        [product(&spatial, gradients), moving]
+        let pushed = product(&at.f, &at.raised());
+        [product(&spatial, gradients), at.moving(rate, &pushed, gradients)]
     }
 }
 

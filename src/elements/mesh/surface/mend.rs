@@ -6,6 +6,7 @@ use nalgebra::Vector3;
 
 use crate::base::grid::Grid;
 use crate::base::input::InputError;
+use crate::base::vector::distinct;
 use crate::elements::mesh::{CellKind, Mesh};
 
 /// Numbers of points by the box of a grid that they are in.
@@ -101,7 +102,7 @@ fn divide(positions: &[[f64; 3]], triangles: &mut Vec<[usize; 3]>, same: f64) ->
     }
     let is_open = |ends: [usize; 2]| counts[&key(ends)] == 1;
     let open = counts.iter().filter(|(_, count)| **count == 1).flat_map(|(ends, _)| *ends);
-    let open = crate::base::vector::distinct(open);
+    let open = distinct(open);
     if open.is_empty() {
         return 0;
     }

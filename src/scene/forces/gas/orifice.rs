@@ -173,7 +173,7 @@ impl OrificeFlow {
         self.scale * GAS_CONSTANT_TIMES_TEMPERATURE.sqrt() / nozzle(CRITICAL).sqrt()
     }
 
-    /// What is at its ends.
+    /// Its ends: chambers, supplies or the open.
     pub(crate) fn ends(&self) -> &[End; 2] {
         &self.ends
     }

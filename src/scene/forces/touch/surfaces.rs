@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::hull::Hull;
-use crate::base::vector::{cross, difference, dot, norm};
+use crate::base::vector::{cross, difference, dot, norm, padded};
 use crate::elements::basis::{MOST_NODES, Place, control_points, is_affine, nearest, reach};
 use crate::elements::body::Body;
 use crate::elements::mesh::FaceKind;
@@ -207,8 +207,7 @@ impl Surfaces {
 
     /// Where a node is undeformed (m).
     pub(super) fn at_rest(&self, node: usize) -> [f64; 3] {
-        let x = &self.natural[node * self.dimension..][..self.dimension];
-        std::array::from_fn(|i| x.get(i).copied().unwrap_or(0.0))
+        padded(&self.natural[node * self.dimension..][..self.dimension])
     }
 
     /// Where a node is under the displacements `u` (m).

@@ -7,7 +7,7 @@ use crate::base::vector::{cross, difference, dot, norm};
 use crate::elements::basis::closest;
 use crate::elements::body::Body;
 use crate::elements::mesh::{Face, Mesh};
-use crate::scene::forces::pieces;
+use crate::scene::forces::{natural, pieces};
 
 /// How far a node may be beside a surface, over the length of the edges there.
 const MOST_BESIDE: f64 = 0.02;
@@ -62,13 +62,7 @@ fn facets(mesh: &Mesh, faces: &[Face]) -> Vec<Facet> {
     for face in faces {
         for (piece, _) in pieces(mesh.face_kind(face)) {
             let nodes: Vec<usize> = piece.iter().map(|&k| face[k]).collect();
-            let corners: Vec<[f64; 3]> = nodes
-                .iter()
-                .map(|&node| {
-                    let x = mesh.position(node);
-                    std::array::from_fn(|i| x.get(i).copied().unwrap_or(0.0))
-                })
-                .collect();
+            let corners: Vec<[f64; 3]> = nodes.iter().map(|&node| natural(mesh, node)).collect();
             let across = match (dimension, &corners[..]) {
                 (2, [a, b]) => [b[1] - a[1], a[0] - b[0], 0.0],
                 (3, [a, b, c]) => cross(&difference(b, a), &difference(c, a)),
