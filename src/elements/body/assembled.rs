@@ -19,7 +19,7 @@ use crate::base::sparse::{BlockMatrix, NodeMatrix};
 use crate::elements::basis::shares_at;
 use crate::elements::force::NodalForces;
 use crate::elements::material::{
-    self, Hooke, Hookean, Lame, Material, Plane, Relaxing, Strain, Substance, Viscosity,
+    self, Hooke, Hookean, Lame, Material, Plane, Strain, Substance, Viscosity,
 };
 use crate::elements::mesh::Mesh;
 use crate::integrators::ode::Failure;
@@ -421,12 +421,5 @@ impl Body {
     /// The Maxwell branches, if there are any.
     pub(crate) fn branches(&self) -> Option<Branches> {
         Branches::of(self.continua.iter())
-    }
-
-    /// Moduli lambda and mu (Pa) of the branch with the largest lambda/mu beside a law other than Hooke's.
-    pub(crate) fn stiffest_branch(&self) -> Option<[f64; 2]> {
-        let all = self.continua.iter().flat_map(|own| own.regions.branches_beside_rubber());
-        let moduli = all.map(Relaxing::moduli);
-        moduli.max_by(|[a, b], [c, d]| (a / b).total_cmp(&(c / d)))
     }
 }

@@ -10,7 +10,8 @@
 //! (... + gamma^2 sum B^T C P B) xv = ... + gamma sum B^T C P rG
 //! ```
 //!
-//! With a projected dilatation the stress at a point takes the projected trace of E - G; no other equation does.
+//! With a projected dilatation the stress at a point takes the projected trace of E - G; no other equation does. Beside a law of
+//! rubber nothing is projected, as the bulk modulus of a branch is bounded there, and the system of a point is solved by numbers.
 
 use super::branch_state::{BranchCells, runs};
 use super::elements::{ElementsOf, gradient};
@@ -22,7 +23,7 @@ use crate::base::sparse::{BlockMatrix, Rows};
 use crate::base::tensor::Matrix;
 use crate::elements::basis::StrainPoint;
 use crate::elements::material::{
-    Block, Blocks, Components, Relaxing, Step, Strained, Stretch, trace,
+    Block, Blocks, Components, Maxwell, Relaxing, Sprung, Step, Strained, Stretch, trace,
 };
 
 /// Elements with branches.
@@ -113,6 +114,14 @@ impl<'a, const N: usize, const M: usize, const D: usize> Site<'a, N, M, D> {
         self.branch.step::<M>(gamma, &self.apart(internal))
     }
 
+    /// Its spring and damper at the point, beside a law of rubber; without `internal` strains those without stress.
+    fn rubber(&self, internal: &[f64]) -> Option<(&'a Maxwell, Sprung)> {
+        let spring = self.branch.rubber.as_ref()?;
+        let strain = self.at.strain();
+        let own = if internal.is_empty() { strain } else { self.own(internal) };
+        Some((spring, spring.at::<M>(&strain, &own)))
+    }
+
     /// E - G
     pub(super) fn apart(&self, internal: &[f64]) -> Components {
         let own = self.own(internal);
@@ -145,9 +154,10 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<
             let all = of_point(branches.len());
             let own = |point: usize, branch: usize| of_cells + point * all + of_point(branch);
             // each branch has its own projection
-            let together = if self.is_projected() { 1 } else { branches.len() };
+            let is_projected = self.is_projected() && branches[0].rubber.is_none();
+            let together = if is_projected { 1 } else { branches.len() };
             for start in (0..branches.len()).step_by(together) {
-                let projected = self.is_projected().then(|| {
+                let projected = is_projected.then(|| {
                     let (mut sums, mut volume) = ([Projected::new(0.0); K], 0.0);
                     for (q, point) in self.points(cell).enumerate() {
                         let (branch, first) = (&branches[start], own(q, start));
@@ -213,6 +223,9 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<
     ) {
         let (mut swelling, mut volume, mut points) = ([[[0.0; D]; N]; COEFFICIENTS], 0.0, 0);
         self.visit(regions, u, &|_| [], &mut |Site { branch, point, at, cell, .. }, []| {
+            if branch.rubber.is_some() {
+                return;
+            }
             let of_point = at.swelling(&point.gradients, point.volume);
             let modes = self.modes_of(*cell, points);
             let values = std::iter::once(1.0).chain(modes.into_iter().flatten());
@@ -284,6 +297,14 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Branched
         let apart = |site: &Site<'_, N, M, D>| [site.apart(internal)];
         self.visit(regions, u, &apart, &mut |site, [apart]| {
             let (branch, volume) = (site.branch, site.point.volume);
+            if let Some((spring, at)) = site.rubber(internal) {
+                let stress = site.at.first(&spring.stress::<M>(&at), volume);
+                self.pull(site, &stress, -1.0, forces);
+                power += volume * spring.heat(&at);
+                let own = spring.rate::<M>(&at);
+                site.own_mut(rates).iter_mut().zip(own).for_each(|(rate, own)| *rate = own);
+                return;
+            }
             self.pull(site, &branch.stress(&site.at, &apart, volume), -1.0, forces);
             power += volume * branch.loss::<M>(&apart) / branch.time;
             let own = branch.rate::<M>(&apart.strain);
@@ -296,7 +317,11 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Branched
         let mut twice = 0.0;
         let apart = |site: &Site<'_, N, M, D>| [site.apart(internal)];
         self.visit(regions, u, &apart, &mut |site, [apart]| {
-            twice += site.point.volume * site.branch.twice_energy::<M>(&apart);
+            let twice_own = match site.rubber(internal) {
+                Some((spring, at)) => 2.0 * spring.energy(&at),
+                None => site.branch.twice_energy::<M>(&apart),
+            };
+            twice += site.point.volume * twice_own;
         });
         0.5 * twice
     }
@@ -315,6 +340,13 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Branched
         };
         self.visit(regions, u, &apart, &mut |site, [apart]| {
             let Site { branch, point, at, cell, .. } = site;
+            if let Some((spring, sprung)) = site.rubber(internal) {
+                let elasticity = spring.step::<M>(gamma, &sprung).elasticity::<M>();
+                let stress = spring.stress::<M>(&sprung);
+                let tangent = at.tangent(&stress, elasticity, &point.gradients, point.volume);
+                add_blocks(&self.entries[*cell], &mut stiffness, &tangent);
+                return;
+            }
             let step = branch.step::<M>(gamma, &apart.strain);
             let lambda = if self.is_projected() { 0.0 } else { branch.lambda() };
             let tangent =
@@ -341,6 +373,12 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Branched
             [passed, passed.map(|passed| step.part * passed)]
         };
         self.visit(regions, u, &passed, &mut |site, [mut passed, whole]| {
+            if let Some((spring, at)) = site.rubber(internal) {
+                let change = spring.step::<M>(gamma, &at).stress(&site.own(residuals));
+                let stress = site.at.first(&change, site.point.volume);
+                self.pull(site, &stress, -gamma, right);
+                return;
+            }
             let part = site.step(gamma, internal).part;
             if self.is_projected() {
                 passed.trace = whole.trace / part;
@@ -364,7 +402,15 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Branched
             let of_nodes = relative(&self.nodes[site.cell], xu);
             site.at.change(&gradient(1, &of_nodes, &site.point.gradients))
         };
+        let mut power = 0.0;
         self.visit(regions, u, &|site| [change(site)], &mut |site, [Stretch { strain, .. }]| {
+            if let Some((spring, at)) = site.rubber(internal) {
+                let step = spring.step::<M>(gamma, &at);
+                let own = step.own(&strain, &site.own(x));
+                site.own_mut(x).iter_mut().zip(own).for_each(|(x, own)| *x = own);
+                power += site.point.volume * step.heat(&strain, &own);
+                return;
+            }
             let step = site.step(gamma, internal);
             let [passed, left] = [site.own(x), strain].map(|strain| step.passed::<M>(&strain));
             for (v, x) in site.own_mut(x).iter_mut().enumerate() {
@@ -372,7 +418,6 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Branched
                 *x = step.part * passed[v] + (1.0 - step.part) * strain[v] - flows;
             }
         });
-        let mut power = 0.0;
         let apart = |site: &Site<'_, N, M, D>| {
             // with a yield stress the rates do not determine E - G: below it they are 0
             let before = match site.branch.yields() {
@@ -383,6 +428,9 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Branched
             [before, std::array::from_fn(|v| before[v] + strain[v] - x[v])]
         };
         self.visit(regions, u, &apart, &mut |site, [before, after]| {
+            if site.branch.rubber.is_some() {
+                return;
+            }
             let change = site.branch.loss_change::<M>(&before, &after);
             power += site.point.volume * change / site.branch.time;
         });

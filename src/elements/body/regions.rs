@@ -204,7 +204,7 @@ impl Regions {
                 objective,
                 branches: branches
                     .iter()
-                    .map(|branch| Relaxing::new(branch, material, strain, dimension, plane))
+                    .map(|branch| Relaxing::new(branch, material, &elastic, dimension, plane))
                     .collect(),
                 of_rigid: is_rigid.then_some(elastic),
             })
@@ -331,15 +331,6 @@ impl Regions {
     /// The branches of all of them.
     pub(super) fn branches(&self) -> impl Iterator<Item = &Relaxing> {
         self.laws.iter().flat_map(|laws| &laws.branches)
-    }
-
-    /// The branches beside a law other than Hooke's.
-    pub(super) fn branches_beside_rubber(&self) -> impl Iterator<Item = &Relaxing> {
-        let rubber = self.laws.iter().filter(|laws| match laws.elastic {
-            Elastic::ByPoint(_) => true,
-            Elastic::Linear(_) | Elastic::StVenantKirchhoff(_) => false,
-        });
-        rubber.flat_map(|laws| &laws.branches)
     }
 
     /// Whether any of them has mass damping.

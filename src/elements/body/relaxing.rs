@@ -52,7 +52,7 @@ impl Branches {
         times.dedup();
         let work: usize = self.bodies.iter().map(|body| body.elements.work()).sum();
         let mut all = self.bodies.iter().flat_map(|body| body.regions.branches());
-        all.all(|branch| !branch.yields()) && pay(shapes, times.len(), work)
+        all.all(Relaxing::is_linear) && pay(shapes, times.len(), work)
     }
 
     /// The branches along `shapes` from displacements `origin` (m) and internal strains on.

@@ -4,7 +4,8 @@ use super::deformation::Deformation;
 use super::flow::{Components, Flowing, Step, components, trace};
 use super::hooke::{Hooke, Lame, Spread};
 use super::law::{Block, Blocks};
-use super::response::axes;
+use super::laws::{Elastic, Maxwell};
+use super::response::{self, Response, axes};
 use super::{Material, Plane, Strain};
 use crate::base::input::{InputError, not_negative, positive};
 use crate::base::tensor::{Matrix, dot, product, times};
@@ -13,16 +14,23 @@ use crate::base::tensor::{Matrix, dot, product, times};
 ///
 /// Under a strain that is applied suddenly and kept, the stress of the spring decays as exp(-t/tau).
 ///
-/// Its energy is that of Hooke's law for the strain E - G, with g times the material's Young's modulus and
+/// Beside Hooke's law its energy is that of Hooke's law for the strain E - G, with g times the material's Young's modulus and
 /// the same Poisson's ratio. E is the strain of the body (Green's, or Cauchy's with Cauchy strain); G, an
 /// unknown at each point of a cell where stress is computed, follows it by G' = (E - G)/tau (finite
 /// viscoelasticity by internal variables: J. C. Simo, T. J. R. Hughes, *Computational Inelasticity*, chapter
 /// 10). So under Green's strain a rigid rotation causes no stress in it, and it dissipates S : G' >= 0.
 ///
+/// Beside a [`Law`](crate::Law) of rubber the spring is neo-Hookean and C_v = I + 2 G the shape in which it has no stress, which
+/// follows that of the body, C, by C_v' = (r (C - tr(C C_v^-1) C_v/3) + ln(J) (2/3) C_v)/tau, with J^2 = det(C)/det(C_v) and
+/// r = J^(-2/3) (S. Reese, S. Govindjee, International Journal of Solids and Structures 35 (1998) 3455-3482): the
+/// same at small strains, and g times neo-Hookean rubber under a sudden stretch, however large it is. Its bulk modulus is at most that
+/// of a Poisson's ratio of 0.45, as nearly incompressible material is not to change its volume twice.
+///
 /// With a yield stress Y the damper does not move below it, like dough and tissue: pressed, held and
 /// released, these keep part of the deformation. With the von Mises stress q of the spring, G' = max(0,
 /// 1 - Y/q) dev(E - G)/tau (P. Perzyna, Advances in Applied Mechanics 9 (1966) 243-377, with a linear
-/// overstress): the stress of shear relaxes to q = Y and no further, that of a change of volume not at all.
+/// overstress): the stress of shear relaxes to q = Y and no further, that of a change of volume not at all. Beside a law of rubber the
+/// same factor stands before r, and the last term is left out.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MaxwellBranch {
     /// Share g of stiffness (1), above 0: Young's modulus of the spring over that of the material, which is
@@ -30,7 +38,8 @@ pub struct MaxwellBranch {
     pub share: f64,
     /// Relaxation time tau (s), above 0.
     pub time: f64,
-    /// Yield stress Y (Pa), 0 or above, of second Piola stress; 0 is a Maxwell branch without one.
+    /// Yield stress Y (Pa), 0 or above, of second Piola stress, or of Kirchhoff stress beside a law of rubber; 0 is a Maxwell branch
+    /// without one.
     pub yield_stress: f64,
 }
 
@@ -51,6 +60,8 @@ pub(crate) struct Relaxing {
     strain: Strain,
     dimension: usize,
     flowing: Option<Flowing>,
+    /// What it is beside a law of rubber.
+    pub(crate) rubber: Option<Maxwell>,
 }
 
 /// The strain of a point, and the shape in which stress acts there.
@@ -70,19 +81,32 @@ pub(crate) struct Stretch {
 }
 
 impl Relaxing {
-    /// The branch in cells of `dimension`.
+    /// The branch beside the law `elastic` in cells of `dimension`.
     pub(crate) fn new(
         branch: &MaxwellBranch,
         material: &Material,
-        strain: Strain,
+        elastic: &Elastic,
         dimension: usize,
         plane: Plane,
     ) -> Self {
+        let MaxwellBranch { time, yield_stress, .. } = *branch;
         let spring = Material { young: branch.share * material.young, ..*material };
         let hooke = Hooke::new(spring.elastic(), dimension, plane);
-        let flowing = (branch.yield_stress > 0.0)
-            .then(|| Flowing::new(&hooke, dimension, branch.yield_stress));
-        Self { hooke, time: branch.time, strain, dimension, flowing }
+        let flowing = (yield_stress > 0.0).then(|| Flowing::new(&hooke, dimension, yield_stress));
+        let is_free = hooke.is_free_across(dimension);
+        let rubber = matches!(elastic, Elastic::ByPoint(_)).then(|| {
+            // a free thickness follows the motion, whatever the bulk modulus is
+            let Lame { lambda, mu } = match is_free {
+                true => spring.elastic(),
+                false => spring.bounded(spring.young),
+            };
+            Maxwell { shear: mu, bulk: lambda + 2.0 / 3.0 * mu, time, yield_stress, is_free }
+        });
+        let strain = match elastic {
+            Elastic::Linear(_) => Strain::Cauchy,
+            Elastic::StVenantKirchhoff(_) | Elastic::ByPoint(_) => Strain::Green,
+        };
+        Self { hooke, time, strain, dimension, flowing, rubber }
     }
 
     /// The name of its internal variable, which says what its components are.
@@ -95,6 +119,9 @@ impl Relaxing {
 
     /// Components of G.
     pub(crate) fn components(&self) -> usize {
+        if let Some(rubber) = &self.rubber {
+            return rubber.components(self.dimension);
+        }
         let across = self.flowing.is_some_and(|flowing| flowing.strains_across(self.dimension));
         components(self.dimension) + usize::from(across)
     }
@@ -102,6 +129,11 @@ impl Relaxing {
     /// Whether it has a yield stress.
     pub(crate) fn yields(&self) -> bool {
         self.flowing.is_some()
+    }
+
+    /// Whether its internal strain follows the strain linearly.
+    pub(crate) fn is_linear(&self) -> bool {
+        self.flowing.is_none() && self.rubber.is_none()
     }
 
     /// G' (1/s), where E - G is `apart`.
@@ -228,6 +260,23 @@ impl<const M: usize, const D: usize> Strained<M, D> {
     /// The change of E with the displacements, whose change has the gradient `h`.
     pub(crate) fn change(&self, h: &Matrix<f64, D, M>) -> Components {
         halved(&self.shape.twice_green_rate(h))
+    }
+
+    /// First Piola stress (Pa) of the `second`, times `weight`.
+    pub(crate) fn first(&self, second: &Components, weight: f64) -> Matrix<f64, D, M> {
+        product(&self.shape.gradient(), &times(doubled::<M>(second), 0.5 * weight))
+    }
+
+    /// The stiffness between nodes of a stress and its derivative by the strain, times `weight`.
+    pub(crate) fn tangent<'a, const N: usize>(
+        &self,
+        second: &Components,
+        elasticity: response::Elasticity<f64>,
+        gradients: &'a [[f64; M]; N],
+        weight: f64,
+    ) -> impl Blocks<f64, D> + use<'a, N, M, D> {
+        let response = Response { stress: times(doubled::<M>(second), 0.5), elasticity };
+        response::Tangent::new(&self.shape.gradient(), &response, gradients, weight)
     }
 
     /// The derivative of the trace of E by the displacements of the nodes, times `weight`.

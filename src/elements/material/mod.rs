@@ -24,7 +24,8 @@ pub(crate) use hooke::Hooke;
 pub use hooke::{Lame, Plane};
 pub(crate) use law::{Block, Blocks, ElasticLaw};
 pub(crate) use laws::{
-    ByPoint, Elastic, Fibre, Hookean, Linear, ObjectiveViscosity, ViscousLaw, with_law,
+    ByPoint, Elastic, Fibre, Hookean, Linear, Maxwell, ObjectiveViscosity, Sprung, ViscousLaw,
+    with_law,
 };
 pub use laws::{Hill, Law, Strain, Viscosity};
 pub(crate) use response::axes;
@@ -70,14 +71,15 @@ impl Material {
         lame(self.viscosity, self.poisson)
     }
 
-    /// The viscous pair with a bulk viscosity that stays that of a Poisson's ratio of [`NEARLY_INCOMPRESSIBLE`] above it.
-    pub(crate) fn bounded_viscous(&self) -> Lame {
-        let viscous = self.viscous();
+    /// The pair of `modulus`, which is like Young's, with a bulk modulus that stays that of a Poisson's ratio of
+    /// [`NEARLY_INCOMPRESSIBLE`] above it.
+    pub(crate) fn bounded(&self, modulus: f64) -> Lame {
+        let pair = lame(modulus, self.poisson);
         if self.poisson <= NEARLY_INCOMPRESSIBLE {
-            return viscous;
+            return pair;
         }
-        let bulk = self.viscosity / (3.0 * (1.0 - 2.0 * NEARLY_INCOMPRESSIBLE));
-        Lame { lambda: bulk - 2.0 / 3.0 * viscous.mu, ..viscous }
+        let bulk = modulus / (3.0 * (1.0 - 2.0 * NEARLY_INCOMPRESSIBLE));
+        Lame { lambda: bulk - 2.0 / 3.0 * pair.mu, ..pair }
     }
 
     /// Speed sqrt(E/rho) of a wave along a slender bar (m/s).

@@ -59,21 +59,10 @@ impl<T: Real, const M: usize> Strained<T, M> {
         (self.swelling + 1.0).sqrt()
     }
 
-    /// I1 - 3 and I2 - 3 of J^(-2/3) C, the deformation without its change of volume: as differences of terms
-    /// of second order, so that they keep their digits.
+    /// [`above_rest`] of this point.
     #[inline(always)]
     pub(super) fn above_rest(&self) -> [T; 2] {
-        let [g, minors, determinant] = self.invariants;
-        let one = g.constant(1.0);
-        // s = J^(2/3), and s - 1 = (s^3 - 1) / (1 + s + s^2)
-        let s = self.shrink * self.shrink * (self.swelling + 1.0);
-        let whole = s * s + s + 1.0;
-        let more = self.swelling / whole;
-        let first = g * more * (s + 2.0) - (minors + determinant) * 3.0;
-        let second = g * more * (s * 2.0 + 1.0) + minors * (s * (s + -2.0) + -2.0)
-            - determinant * (s + 1.0) * 3.0;
-        let share = one / whole * self.shrink;
-        [first * share, second * share * self.shrink]
+        above_rest(self.invariants, self.swelling, self.shrink)
     }
 
     /// C (whose trace is tr(G) + 3) times the derivative of I1 by C, over J^(-2/3), for the component
@@ -89,6 +78,23 @@ impl<T: Real, const M: usize> Strained<T, M> {
         let [trace, minors, _] = self.invariants;
         (trace + 1.0) * of - square - (trace + minors * 2.0) * (1.0 / 3.0)
     }
+}
+
+/// I1 - 3 and I2 - 3 of J^(-2/3) C, the deformation without its change of volume, by the `invariants` of C - I, J^2 - 1 and
+/// J^(-2/3): as differences of terms of second order, so that they keep their digits.
+#[inline(always)]
+pub(super) fn above_rest<T: Real>(invariants: [T; 3], swelling: T, shrink: T) -> [T; 2] {
+    let [g, minors, determinant] = invariants;
+    let one = g.constant(1.0);
+    // s = J^(2/3), and s - 1 = (s^3 - 1) / (1 + s + s^2)
+    let s = shrink * shrink * (swelling + 1.0);
+    let whole = s * s + s + 1.0;
+    let more = swelling / whole;
+    let first = g * more * (s + 2.0) - (minors + determinant) * 3.0;
+    let second = g * more * (s * 2.0 + 1.0) + minors * (s * (s + -2.0) + -2.0)
+        - determinant * (s + 1.0) * 3.0;
+    let share = one / whole * shrink;
+    [first * share, second * share * shrink]
 }
 
 /// Trace, sum of the principal minors and determinant of a symmetric matrix; those that a matrix is too small

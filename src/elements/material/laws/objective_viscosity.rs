@@ -31,7 +31,7 @@ impl ObjectiveViscosity {
             // a free thickness follows the motion, whatever the bulk viscosity is
             _ if hooke.is_free_across(dimension) => Self::Newtonian(NewtonianViscosity(hooke)),
             _ => {
-                let lame = material.bounded_viscous();
+                let lame = material.bounded(material.viscosity);
                 Self::Newtonian(NewtonianViscosity(Hooke::new(lame, dimension, plane)))
             }
         }
