@@ -36,10 +36,10 @@ pub(super) const CABLE: TableKeys = TableKeys::new(
         Key::new("name", Holds::Text, "the name of the cable").default("spring 1, spring 2, ..."),
         Key::new(
             "path",
-            Holds::List(&Holds::Either(&[Holds::Nodes, Holds::Table(&END)])),
-            "nodes, by number, name or box, and points of space, in order",
+            Holds::List(&Holds::Either(&[Holds::Nodes, Holds::Table(&END), Holds::Table(&INSIDE)])),
+            "nodes, by number, name or box, places in the body, and points of space, in order",
         )
-        .law("Those of a set or a box follow each other by their distance from the place before them, or from the first of them.")
+        .law("Nodes of a set or a box follow each other by their distance from the place before them, or from the first of them.")
         .required(),
         Key::number("stiffness", "the stiffness", "N/m").law("With the modulus E and the section A it is E A / length.").default("0"),
         Key::number("length", "the natural length", "m").default("that of the path at the start"),
@@ -59,6 +59,13 @@ const END: TableKeys = TableKeys::new(
     "The end of a spring that is a fixed point of space.",
     &[Key::vector("point", "where it is", "m")],
     "[[spring]]\nends = [3, { point = [0.0, 0.2] }]\nstiffness = 20.0",
+);
+
+const INSIDE: TableKeys = TableKeys::new(
+    "inside",
+    "A place in the body by which a cable is led. It moves with the body, and is the same on a finer mesh.",
+    &[Key::vector("inside", "its undeformed position, within a cell or on the surface", "m")],
+    "[[cable]]\npath = [{ inside = [0.0, 0.08] }, { inside = [0.1, 0.08] }, { inside = [0.2, 0.08] }]",
 );
 
 pub(super) const CHAMBER: TableKeys = TableKeys::new(
@@ -137,6 +144,12 @@ pub(super) fn add_cable(scene: Scene, value: &Value) -> Result<Scene, Error> {
     unique(table, &name, scene.springs().iter().map(Spring::name))?;
     let mut cable = table.required("path", |value| {
         let place = |place: &Value| {
+            if place.entries().is_some_and(|entries| entries.contains_key("inside")) {
+                let inside = place.table(&INSIDE)?;
+                return Ok(Guide::inside(
+                    inside.required("inside", |value| value.vector(body.dimension()))?,
+                ));
+            }
             Ok::<_, Error>(match anchor(place, body.dimension())? {
                 Some(point) => Guide::point(point),
                 None => Guide::nodes(selection(place, body.mesh())?),

@@ -19,6 +19,7 @@ use super::signal::Signal;
 use super::surface::natural;
 use crate::base::input::{InputError, finite, not_negative, positive};
 use crate::base::vector::norm;
+use crate::elements::basis::shares_at;
 use crate::elements::force::Force;
 use crate::elements::mesh::{Mesh, Selection};
 
@@ -65,13 +66,14 @@ enum Kind {
     Cable { is_winch: bool, friction: Friction },
 }
 
-/// A place on the path of a [cable](Spring::cable): nodes that it is led by, or a fixed point of space.
+/// A place on the path of a [cable](Spring::cable): nodes that it is led by, a place in the body, or a fixed point of space.
 #[derive(Debug, Clone)]
 pub struct Guide(Place);
 
 #[derive(Debug, Clone)]
 enum Place {
     Nodes(Selection),
+    Inside(Vec<f64>),
     Point(Vec<f64>),
 }
 
@@ -82,19 +84,43 @@ impl Guide {
         Self(Place::Nodes(nodes.into()))
     }
 
+    /// The place in the body, within a cell or on its surface, whose undeformed position is `place` (m). It moves with the body, whatever
+    /// nodes are near, so that a finer mesh has the same guides. Of several bodies there the first has it.
+    ///
+    /// ```
+    /// use pliant::{Body, Cells, Guide, Material, Mesh, Phase, Sampling, Scene, Settings, Spring};
+    ///
+    /// let tip = |cells: usize| -> Result<f64, pliant::Error> {
+    ///     let mesh = Mesh::rectangle([0.1, 0.01], [cells + 1, 3], Cells::Rectangles9)?;
+    ///     let rubber = Material { density: 1000.0, young: 1e6, poisson: 0.3, viscosity: 1e4 };
+    ///     let guides = (0..=4).map(|k| Guide::inside([0.025 * f64::from(k), 0.008]));
+    ///     let scene = Scene::new(Body::new(mesh, rubber).thickness(0.01).build()?)
+    ///         .spring(Spring::cable(guides).named("tendon"))
+    ///         .phase(Phase::until(0.2).hold("left").actuate(["tendon"], 0.1));
+    ///     let motion = scene.simulate(&Settings::default(), &Sampling::every(0.2))?;
+    ///     let end = motion.body().mesh().select(&"right".into())?[0];
+    ///     Ok(motion.last().u[2 * end + 1])
+    /// };
+    /// assert!((tip(13)? / tip(26)? - 1.0).abs() < 0.01);
+    /// # Ok::<(), pliant::Error>(())
+    /// ```
+    pub fn inside(place: impl Into<Vec<f64>>) -> Self {
+        Self(Place::Inside(place.into()))
+    }
+
     /// A `point` of space (m), which stays where it is.
     pub fn point(point: impl Into<Vec<f64>>) -> Self {
         Self(Place::Point(point.into()))
     }
 }
 
-/// What a spring is joined to in a mesh.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) enum Joint {
-    /// A node, counted from 0.
-    Node(usize),
-    /// A point of space (m); components beyond the dimension are 0.
-    Point([f64; 3]),
+/// What a spring is joined to: a place in the mesh, or a point of space.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Joint {
+    /// Its undeformed position (m); components beyond the dimension are 0.
+    pub(crate) at: [f64; 3],
+    /// The nodes with which it moves, counted from 0, and their shares: none of a point of space.
+    pub(crate) shares: Vec<(usize, f64)>,
 }
 
 impl Spring {
@@ -263,21 +289,29 @@ impl Spring {
                     }
                     // numbers are in the order in which they are given
                     if !matches!(selection, Selection::Numbers(_)) {
-                        let before = joints.last().copied().unwrap_or(Joint::Node(nodes[0]));
-                        let before = before.place(mesh);
+                        let before = joints.last().map_or(natural(mesh, nodes[0]), |last| last.at);
                         let far = |node: usize| distance(&before, &natural(mesh, node));
                         nodes.sort_by(|a, b| far(*a).total_cmp(&far(*b)));
                     }
-                    joints.extend(nodes.into_iter().map(Joint::Node));
+                    let joint = |node| Joint { at: natural(mesh, node), shares: vec![(node, 1.0)] };
+                    joints.extend(nodes.into_iter().map(joint));
                 }
-                Place::Point(point) if point.len() == mesh.dimension() => {
+                Place::Inside(point) | Place::Point(point) => {
+                    let given = || format!("{point:?}");
+                    if point.len() != mesh.dimension() {
+                        let help = format!("it needs {} coordinates (m)", mesh.dimension());
+                        return Err(InputError::new(input("end"), given(), help));
+                    }
                     finite(&input("end"), point)?;
+                    let shares = match place {
+                        Place::Inside(place) => shares_at(mesh, place).ok_or_else(|| {
+                            let help = "it lies outside the body: give the undeformed position of one of its points";
+                            InputError::new(input("end"), given(), help)
+                        })?,
+                        _ => Vec::new(),
+                    };
                     let at = std::array::from_fn(|i| point.get(i).copied().unwrap_or(0.0));
-                    joints.push(Joint::Point(at));
-                }
-                Place::Point(point) => {
-                    let help = format!("it needs {} coordinates (m)", mesh.dimension());
-                    return Err(InputError::new(input("end"), format!("{point:?}"), help));
+                    joints.push(Joint { at, shares });
                 }
             }
         }
@@ -307,7 +341,7 @@ impl Spring {
         let joints = self.joints(mesh)?;
         not_negative(&input("stiffness"), self.stiffness, "N/m")?;
         not_negative(&input("damping"), self.damping, "N s/m")?;
-        let places: Vec<[f64; 3]> = joints.iter().map(|joint| joint.place(mesh)).collect();
+        let places: Vec<[f64; 3]> = joints.iter().map(|joint| joint.at).collect();
         let along = |pair: &[[f64; 3]]| std::array::from_fn(|i| pair[1][i] - pair[0][i]);
         let lines: Vec<[f64; 3]> = places.windows(2).map(along).collect();
         let lengths = || lines.iter().map(|line| norm(line));
@@ -329,15 +363,15 @@ impl Spring {
             );
             return Err(InputError::new(input(key), format!("{least} m"), help));
         }
-        if joints.iter().all(|joint| joint.node().is_none()) {
-            let help = "none of them is a node, so that it moves nothing: name one at least";
-            return Err(InputError::new(input("places"), format!("{joints:?}"), help));
+        if joints.iter().all(|joint| joint.shares.is_empty()) {
+            let help = "none of them is of the body, so that it moves nothing: name one at least";
+            return Err(InputError::new(input("places"), format!("{places:?}"), help));
         }
         Ok(Path {
             what: self.what(),
             name: self.name.clone(),
             dimension: mesh.dimension(),
-            nodes: joints.into_iter().map(Joint::node).collect(),
+            places: joints.into_iter().map(|joint| joint.shares).collect(),
             natural: lines,
             length,
         })
@@ -450,18 +484,11 @@ fn distance(a: &[f64; 3], b: &[f64; 3]) -> f64 {
 }
 
 impl Joint {
-    fn node(self) -> Option<usize> {
-        match self {
-            Self::Node(node) => Some(node),
-            Self::Point(_) => None,
-        }
-    }
-
-    /// Its undeformed position (m); components beyond the dimension are 0.
-    fn place(self, mesh: &Mesh) -> [f64; 3] {
-        match self {
-            Self::Node(node) => natural(mesh, node),
-            Self::Point(point) => point,
+    /// The node that it is, if it is one.
+    pub(crate) fn node(&self) -> Option<usize> {
+        match self.shares[..] {
+            [(node, _)] => Some(node),
+            _ => None,
         }
     }
 }

@@ -32,7 +32,7 @@ pub(super) fn gather(trajectory: &Trajectory, name: &str) -> Result<Value, Error
     let (body, mesh) = (scene.body(), scene.body().mesh());
     let points = point_masses(mesh);
     let ends = spring_ends(scene)?;
-    let geometry = Geometry::new(body, ends.iter().flatten().copied(), &points);
+    let geometry = Geometry::new(body, ends.iter().flatten(), &points);
     let frames = thinned(trajectory.samples(), bytes_per_frame(trajectory, &geometry));
     let view = (mesh.dimension() < 3).then(|| View::of(trajectory, &frames).corners());
     Ok(json!({
@@ -86,7 +86,7 @@ fn motion(trajectory: &Trajectory, frames: &[&Sample], geometry: &Geometry) -> V
             _ => displaced(trajectory, sample),
         };
         points.extend(geometry.nodes.iter().flat_map(|node| &all[node * axes..][..axes]));
-        points.extend(geometry.anchors(trajectory.body().dimension()));
+        points.extend(geometry.anchors(trajectory.body().dimension(), &sample.u));
     }
     pack::points(&points, axes)
 }

@@ -13,8 +13,8 @@ pub(super) struct Geometry {
     bodies: Vec<(String, &'static str, usize)>,
     /// The drawn nodes.
     pub(super) nodes: Vec<usize>,
-    /// The points of space that springs are joined to, drawn after the nodes.
-    anchors: Vec<[f64; 3]>,
+    /// What springs are joined to apart from nodes, drawn after those.
+    anchors: Vec<Joint>,
     /// The cell of each face.
     pub(super) cells: Vec<usize>,
     /// The nodes of each face in their order around it, as places among the drawn nodes.
@@ -30,21 +30,17 @@ pub(super) struct Geometry {
 impl Geometry {
     /// What is drawn of `body`: of a solid its surface, of other bodies all cells, and in addition what
     /// springs are joined to and the nodes `points`.
-    pub(super) fn new(
+    pub(super) fn new<'j>(
         body: &Body,
-        joints: impl Iterator<Item = Joint> + Clone,
+        joints: impl Iterator<Item = &'j Joint> + Clone,
         points: &[usize],
     ) -> Self {
-        let joined = joints.clone().filter_map(|joint| match joint {
-            Joint::Node(node) => Some(node),
-            Joint::Point(_) => None,
-        });
+        let joined = joints.clone().filter_map(Joint::node);
         let besides = joined.chain(points.iter().copied());
         let mut anchors = Vec::new();
-        for joint in joints {
-            match joint {
-                Joint::Point(x) if !anchors.contains(&x) => anchors.push(x),
-                _ => {}
+        for joint in joints.filter(|joint| joint.node().is_none()) {
+            if !anchors.contains(joint) {
+                anchors.push(joint.clone());
             }
         }
         let mesh = body.mesh();
@@ -112,21 +108,28 @@ impl Geometry {
 
     /// The places of what a spring joins, or of what a cable runs along.
     pub(super) fn ends(&self, joints: &[Joint]) -> Vec<usize> {
-        let place = |joint: &Joint| match joint {
-            Joint::Node(node) => self.places[*node],
-            Joint::Point(x) => {
-                let among = self.anchors.iter().position(|anchor| anchor == x);
+        let place = |joint: &Joint| match joint.node() {
+            Some(node) => self.places[node],
+            None => {
+                let among = self.anchors.iter().position(|anchor| anchor == joint);
                 among.map(|number| self.nodes.len() + number)
             }
         };
         joints.iter().filter_map(place).collect()
     }
 
-    /// Positions of the anchors in a space of `dimension`, as they are drawn.
-    pub(super) fn anchors(&self, dimension: usize) -> impl Iterator<Item = f64> {
-        let drawn = move |x: &[f64; 3]| match dimension {
-            1 | 2 => drawn(&x[..dimension]).to_vec(),
-            _ => x.to_vec(),
+    /// Positions of the anchors in a space of `dimension` under the displacements `u` (m), as they are drawn.
+    pub(super) fn anchors(&self, dimension: usize, u: &[f64]) -> impl Iterator<Item = f64> {
+        let drawn = move |joint: &Joint| {
+            let mut x = joint.at;
+            for &(node, share) in &joint.shares {
+                let own = &u[node * dimension..][..dimension];
+                x.iter_mut().zip(own).for_each(|(x, u)| *x += share * u);
+            }
+            match dimension {
+                1 | 2 => drawn(&x[..dimension]).to_vec(),
+                _ => x.to_vec(),
+            }
         };
         self.anchors.iter().flat_map(drawn)
     }

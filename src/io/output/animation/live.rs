@@ -44,7 +44,7 @@ impl Picture {
         let mesh = scene.body().mesh();
         let points = data::point_masses(mesh);
         let ends = data::spring_ends(scene)?;
-        let geometry = Geometry::new(scene.body(), ends.iter().flatten().copied(), &points);
+        let geometry = Geometry::new(scene.body(), ends.iter().flatten(), &points);
         let quantities = Quantity::of(scene);
         let told = quantities.iter().map(|quantity| quantity.to_json());
         let springs = scene.springs().iter().zip(&ends);
@@ -93,7 +93,7 @@ impl Picture {
                 _ => numbers.extend(moved),
             }
         }
-        numbers.extend(self.geometry.anchors(d));
+        numbers.extend(self.geometry.anchors(d, u));
         pack::singles(numbers)
     }
 

@@ -143,10 +143,8 @@ fn waterlines(trajectory: &Trajectory, sample: &Sample) -> Vec<[Point; 2]> {
 fn anchors(scene: &Scene) -> Vec<Vec<f64>> {
     let mesh = scene.body().mesh();
     let joints = scene.springs().iter().filter_map(|spring| spring.joints(mesh).ok());
-    let point = |joint| match joint {
-        Joint::Node(_) => None,
-        Joint::Point(x) => Some(x[..mesh.dimension()].to_vec()),
-    };
+    let point =
+        |joint: Joint| joint.shares.is_empty().then(|| joint.at[..mesh.dimension()].to_vec());
     joints.flatten().filter_map(point).collect()
 }
 

@@ -170,9 +170,11 @@ impl Panel<'_> {
         let mut data = Data::default();
         for spring in self.trajectory.scene().springs() {
             let Ok(joints) = spring.joints(mesh) else { continue };
-            let place = |joint| match joint {
-                Joint::Node(node) => points[node],
-                Joint::Point(x) => self.layout.place(self.number, drawn(&x[..mesh.dimension()])),
+            let place = |joint: Joint| match &joint.shares[..] {
+                [] => self.layout.place(self.number, drawn(&joint.at[..mesh.dimension()])),
+                shares => shares.iter().fold([0.0; 2], |sum, &(node, share)| {
+                    [0, 1].map(|i| sum[i] + share * points[node][i])
+                }),
             };
             data.polyline(&joints.into_iter().map(place).collect::<Vec<_>>(), false);
         }

@@ -19,7 +19,6 @@
 
 use super::path::Path;
 use crate::base::sparse::BlockMatrix;
-use crate::base::vector::distinct;
 use crate::elements::force::{Force, NodalForces, Reservoir, Tangents};
 use crate::integrators::ode::Failure;
 use crate::scene::forces::friction::Coulomb;
@@ -164,6 +163,6 @@ impl Force for CableForce {
     }
 
     fn nodes(&self) -> Option<Vec<usize>> {
-        Some(distinct(self.cable.path.nodes.iter().flatten().copied()))
+        Some(self.cable.path.nodes())
     }
 }

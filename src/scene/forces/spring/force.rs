@@ -2,7 +2,6 @@
 
 use super::path::Path;
 use crate::base::sparse::BlockMatrix;
-use crate::base::vector::distinct;
 use crate::elements::force::{Force, NodalForces, Reservoir, Tangents};
 use crate::integrators::ode::Failure;
 use crate::scene::forces::signal::{self, Signal, finite_at};
@@ -75,7 +74,7 @@ impl Force for Elastic {
     }
 
     fn nodes(&self) -> Option<Vec<usize>> {
-        Some(distinct(self.path.nodes.iter().flatten().copied()))
+        Some(self.path.nodes())
     }
 }
 
@@ -112,6 +111,6 @@ impl Force for Actuator {
     }
 
     fn nodes(&self) -> Option<Vec<usize>> {
-        Some(distinct(self.path.nodes.iter().flatten().copied()))
+        Some(self.path.nodes())
     }
 }

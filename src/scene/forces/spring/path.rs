@@ -2,7 +2,7 @@
 
 use super::bend::Bend;
 use crate::base::sparse::BlockMatrix;
-use crate::base::vector::{dot, norm};
+use crate::base::vector::{distinct, dot, norm};
 use crate::integrators::ode::Failure;
 use crate::scene::forces::friction::Coulomb;
 
@@ -21,8 +21,8 @@ pub(super) struct Path {
     pub(super) what: &'static str,
     pub(super) name: String,
     pub(super) dimension: usize,
-    /// The nodes that are its places, in order; none where that is a point of space.
-    pub(super) nodes: Vec<Option<usize>>,
+    /// The nodes with which its places move, in order, and their shares; none of points of space.
+    pub(super) places: Vec<Vec<(usize, f64)>>,
     /// From each place to the next in the undeformed shape (m).
     pub(super) natural: Vec<[f64; 3]>,
     /// The natural length L of all lines together (m).
@@ -56,10 +56,14 @@ impl Path {
 
     /// Difference of `x` between the two ends of a line; it is 0 at a point of space.
     fn difference(&self, line: usize, x: &[f64]) -> [f64; 3] {
-        let d = self.dimension;
-        let [first, second] = [self.nodes[line], self.nodes[line + 1]]
-            .map(|node| node.map_or(&[0.0; 3][..d], |node| &x[node * d..][..d]));
-        std::array::from_fn(|i| if i < d { second[i] - first[i] } else { 0.0 })
+        let (d, mut difference) = (self.dimension, [0.0; 3]);
+        for (place, sign) in self.places[line..].iter().zip([-1.0, 1.0]) {
+            for &(node, share) in place {
+                let own = &x[node * d..][..d];
+                difference.iter_mut().zip(own).for_each(|(sum, x)| *sum += sign * share * x);
+            }
+        }
+        difference
     }
 
     /// From the first end of a line to its second, with its length.
@@ -135,11 +139,10 @@ impl Path {
 
     /// Adds a force along one of the lines (N), which pushes its ends apart.
     pub(super) fn add(&self, line: usize, force: f64, direction: &[f64; 3], nodal: &mut [f64]) {
-        let ends = [self.nodes[line], self.nodes[line + 1]];
-        for (node, sign) in ends.into_iter().zip([-1.0, 1.0]) {
-            let Some(node) = node else { continue };
-            for i in 0..self.dimension {
-                nodal[node * self.dimension + i] += sign * force * direction[i];
+        for (place, sign) in self.places[line..].iter().zip([-1.0, 1.0]) {
+            for &(node, share) in place {
+                let own = &mut nodal[node * self.dimension..][..self.dimension];
+                own.iter_mut().zip(direction).for_each(|(x, e)| *x += sign * share * force * e);
             }
         }
     }
@@ -153,10 +156,18 @@ impl Path {
 
     /// The pairs of nodes that the lines join; with `all` those of all places, as their distances add up.
     pub(super) fn couplings(&self, all: bool) -> Vec<[usize; 2]> {
-        let places = self.nodes.len();
-        let pairs = (0..places).flat_map(|p| (p + 1..places).map(move |q| (p, q)));
-        let some = pairs.filter(|&(p, q)| all || q == p + 1);
-        some.filter_map(|(p, q)| Some([self.nodes[p]?, self.nodes[q]?])).collect()
+        let places = self.places.len();
+        let pairs = (0..places).flat_map(|p| (p..places).map(move |q| (p, q)));
+        let some = pairs.filter(|&(p, q)| all || q <= p + 1);
+        let nodes = |place: usize| self.places[place].iter().map(|&(node, _)| node);
+        let joined =
+            some.flat_map(|(p, q)| nodes(p).flat_map(move |a| nodes(q).map(move |b| [a, b])));
+        joined.filter(|[a, b]| a != b).collect()
+    }
+
+    /// The nodes with which its places move, each once.
+    pub(super) fn nodes(&self) -> Vec<usize> {
+        distinct(self.places.iter().flatten().map(|&(node, _)| node))
     }
 
     /// The derivative g of the length of the lines from number `first` on by a place, and g'.
@@ -222,8 +233,10 @@ impl Path {
         damping: &mut BlockMatrix,
     ) {
         let d = self.dimension;
-        for (q, column) in self.nodes.iter().enumerate() {
-            let Some(column) = *column else { continue };
+        for (q, columns) in self.places.iter().enumerate() {
+            if columns.is_empty() {
+                continue;
+            }
             let [of_length, turning] = self.gradient(0, q, u, v);
             // log r_k and its derivatives by the place q
             let (mut log, mut log_by_u, mut log_by_v) = (0.0, [0.0; 3], [0.0; 3]);
@@ -244,29 +257,30 @@ impl Path {
                 let part = log.exp();
                 let e = &line.direction;
                 for (p, sign) in [(k, -1.0), (k + 1, 1.0)] {
-                    let Some(row) = self.nodes[p] else { continue };
                     let bends = match q {
                         _ if q == p => 1.0,
                         _ if q == k || q == k + 1 => -1.0,
                         _ => 0.0,
                     };
-                    if let Some(block) = stiffness.block_mut(row, column) {
-                        for (entry, x) in block.iter_mut().enumerate() {
-                            let (i, j) = (entry / d, entry % d);
+                    let (mut by_place, mut by_speed) = ([[0.0; 3]; 3], [[0.0; 3]; 3]);
+                    for i in 0..d {
+                        for j in 0..d {
                             let change = by_length * of_length[j]
                                 + by_rate * turning[j]
                                 + tension * log_by_u[j];
                             let turn =
                                 bends * tension / line.length * (f64::from(i == j) - e[i] * e[j]);
-                            *x += part * (sign * e[i] * change + turn);
+                            let along = sign * e[i];
+                            by_place[i][j] = part * (along * change + turn);
+                            by_speed[i][j] = part
+                                * (by_rate * along * of_length[j] + along * tension * log_by_v[j]);
                         }
                     }
-                    if let Some(block) = damping.block_mut(row, column) {
-                        for (entry, x) in block.iter_mut().enumerate() {
-                            let (i, j) = (entry / d, entry % d);
-                            let along = sign * e[i];
-                            *x += part
-                                * (by_rate * along * of_length[j] + along * tension * log_by_v[j]);
+                    for &(row, of_row) in &self.places[p] {
+                        for &(column, of_column) in columns {
+                            let share = of_row * of_column;
+                            add_shared(stiffness, [row, column], share, &by_place);
+                            add_shared(damping, [row, column], share, &by_speed);
                         }
                     }
                 }
@@ -274,5 +288,19 @@ impl Path {
                 before = Some(line);
             }
         }
+    }
+}
+
+/// Adds `share` times the first rows and columns of `derivatives` to a block, if there is one.
+fn add_shared(
+    matrix: &mut BlockMatrix,
+    [row, column]: [usize; 2],
+    share: f64,
+    derivatives: &[[f64; 3]; 3],
+) {
+    let Some(block) = matrix.block_mut(row, column) else { return };
+    let d = block.len().isqrt();
+    for (entry, x) in block.iter_mut().enumerate() {
+        *x += share * derivatives[entry / d][entry % d];
     }
 }

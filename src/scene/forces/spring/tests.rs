@@ -43,6 +43,18 @@ fn cables() {
                 assert!(check(&**force, (dimension, &[]), 0.7, &u, &v, 1e-6) > 1.0);
             }
         }
+        // around places within the cells
+        let inside = |part: f64| {
+            Guide::inside(mesh.position(1).iter().map(|x| part * x).collect::<Vec<_>>())
+        };
+        let through = [places[0].clone(), Guide::nodes([3]), inside(0.3), inside(1.4)];
+        let through = Spring::cable(through).stiffness(20.0).damping(1.5).length(0.6 * length);
+        let rubbing = through.clone().friction_coefficients(0.5, 0.4).sticking_speed(1.0);
+        for cable in [through, rubbing] {
+            let force = &cable.forces(&mesh, drive()).unwrap()[0];
+            let (u, v) = (noise(n, 0.1, 7.0), noise(n, 0.5, 8.0));
+            assert!(check(&**force, (dimension, &[]), 0.7, &u, &v, 1e-6) > 1.0);
+        }
         // nothing is pushed
         let slack = &cable(&places).length(2.0 * length).forces(&mesh, Vec::new()).unwrap()[0];
         let (u, v) = (noise(n, 0.1, 3.0), noise(n, 0.5, 4.0));
