@@ -155,7 +155,6 @@ fn surroundings(scene: &Scene) -> Result<(), Failure> {
     let pipes = scene.pipes().iter().map(|pipe| pipe.name()).collect();
     let fluids = scene.fluids().iter().map(|fluid| fluid.name()).collect();
     let obstacles = scene.obstacles().iter().map(|obstacle| obstacle.name()).collect();
-    let touches = scene.touches().iter().map(|touch| touch.name()).collect();
     for (label, names) in [
         ("springs", springs),
         ("cables", cables),
@@ -170,14 +169,14 @@ fn surroundings(scene: &Scene) -> Result<(), Failure> {
         ("pipes", pipes),
         ("fluids", fluids),
         ("obstacles", obstacles),
-        ("touches", touches),
     ] {
         let names: Vec<&str> = names;
         if !names.is_empty() {
             line(label, &names.join(", "))?;
         }
     }
-    Ok(())
+    let touches = scene.touch_distances().map_err(pliant::Error::from)?;
+    touches.iter().try_for_each(|touch| line("touch", &touch.to_string()))
 }
 
 fn solver(file: &SceneFile) -> Result<(), Failure> {

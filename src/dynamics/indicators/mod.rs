@@ -10,13 +10,13 @@
 //! | [`units`]: remanence of magnets, magnetic field, moment of dipoles | 2 T, 10 T, 1e4 A m^2 |
 //! | [`gas`]: least absolute pressure; orifices beside their chambers | 5e4 Pa; a face of a cube as large |
 //! | [`mesh`]: Poisson's ratio of linear cells | 0.45 |
-//! | [`branches`]: stress of Maxwell branches at a stretch of 1.1 | 1.25 times their share |
 //! | [`mesh`]: pieces that nothing joins | one piece |
 //! | [`conformity`]: hanging nodes, and nodes in the same position that are not one | none |
 //! | [`overlap`]: how deep the body overlaps itself, as drawn and as it moves | a twentieth of a cell |
 //! | [`strain`]: how far cells turn under Cauchy strain | 10 degrees |
 //! | [`strain`]: cells turned inside out under Cauchy strain | none |
 //! | [`coarse`]: how much too stiff linear cells are for the strains that they show | 1.25 times; quadrilaterals and hexahedra 1.1 times |
+//! | [`pressed`]: energy of bodies that begin within the distance of their touch | 3 times that of bodies that lie on each other |
 //! | [`touch`]: how deep nodes are inside obstacles, at the start and later | half a cell, 2 % of the body; half of the thickness of the body, a quarter of that of the obstacle |
 //! | [`touch`]: points that went past the middle of an obstacle | none |
 //! | [`touch`]: how deep the surface between nodes is inside obstacles | as nodes |
@@ -50,7 +50,6 @@
 //! | [`symmetry`]: how far the motion is from its mirror images (+) | 0.1 % |
 
 mod bending;
-mod branches;
 mod chamber;
 mod coarse;
 mod conformity;
@@ -63,6 +62,7 @@ pub(crate) mod overlap;
 mod pace;
 mod penetration;
 mod points;
+mod pressed;
 mod reduced;
 mod rigid;
 mod shape;
@@ -114,8 +114,7 @@ impl Scene {
         let body = self.body();
         let of_body = |part: Part| {
             let measured = units::units(self, part.body).into_iter();
-            let measured =
-                measured.chain(mesh::locking(part.body)).chain(branches::stiffening(part.body));
+            let measured = measured.chain(mesh::locking(part.body));
             named(part.name, body, measured.chain(conformity::conformity(part.body)))
         };
         let each = body.parts().flat_map(of_body);
@@ -124,6 +123,7 @@ impl Scene {
             .chain(mesh::pieces(self))
             .chain(overlap::drawn(body))
             .chain(touch::begun_inside(self))
+            .chain(pressed::pressed(self))
             .chain(start::lacking(self))
             .collect()
     }

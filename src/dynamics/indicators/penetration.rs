@@ -8,7 +8,7 @@ use crate::base::vector::{difference, dot, norm};
 use crate::dynamics::trajectory::{Deepest, DepthLimit, Penetration};
 use crate::elements::body::{Body, Part};
 use crate::elements::force::{Force, Step};
-use crate::scene::forces::{Contact, SurfacePoint, boundary_area, boundary_nodes};
+use crate::scene::forces::{Contact, SurfacePoint, boundary_nodes, thickness};
 use crate::scene::timeline::{Phase, Scene};
 
 /// Part of a cell, or of the body if that is more, by which a node may be inside an obstacle.
@@ -22,7 +22,7 @@ const MOST_OF_OBSTACLE: f64 = 0.5;
 const REACH: f64 = 1.5;
 
 /// For each node the depth up to which it may be inside an obstacle of any thickness: by the smallest of its cells, and by
-/// the thickness of its body, 2 V/A of a band, a plate or the wall of a ring.
+/// the thickness of its body.
 pub(super) fn depth_limits(body: &Body) -> Vec<DepthLimit> {
     let least = MOST_OF_BODY * body.size();
     let of_cell = |size: f64| DepthLimit {
@@ -31,10 +31,8 @@ pub(super) fn depth_limits(body: &Body) -> Vec<DepthLimit> {
     };
     let mut limits: Vec<DepthLimit> = least_cell_sizes(body).into_iter().map(of_cell).collect();
     for Part { body: own, nodes, .. } in body.parts() {
-        let d = own.dimension();
-        let area = boundary_area(own).filter(|_| d > 1 && own.mesh().kind().dimension() == d);
-        let Some(area) = area else { continue };
-        let depth = MOST_OF_THICKNESS * 2.0 * own.volume() / area;
+        let Some(thickness) = thickness(own) else { continue };
+        let depth = MOST_OF_THICKNESS * thickness;
         let of_body = DepthLimit { depth, reason: "half of the thickness of the body" };
         limits[nodes].iter_mut().for_each(|limit| *limit = limit.or(of_body));
     }

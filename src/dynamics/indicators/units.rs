@@ -233,6 +233,8 @@ fn weight(scene: &Scene, body: &Body) -> Option<Indicator> {
 mod tests {
     use super::*;
     use crate::dynamics::indicators::gas::gas;
+    use crate::dynamics::indicators::pressed::pressed;
+    use crate::dynamics::indicators::pressed::tests::touching;
     use crate::scene::forces::{Chamber, Dipole, Gas, Magnet, Orifice};
     use crate::scene::timeline::UNITS;
     use crate::studies::samples::square_jump;
@@ -250,6 +252,7 @@ mod tests {
         let mut all = units(&scene, scene.body());
         all.extend(of_scene(&scene));
         all.extend(gas(&scene));
+        all.extend(pressed(&touching(1e-4)));
         let mut names: Vec<&str> = all.iter().map(|indicator| indicator.name).collect();
         names.sort_unstable();
         let mut known = UNITS.to_vec();

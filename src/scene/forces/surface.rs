@@ -106,9 +106,12 @@ pub(super) fn gauss_points(body: &Body) -> Option<Vec<SurfacePoint>> {
     Some(points)
 }
 
-/// Area (m^2) of the boundary of a body; a string has none: `None`.
-pub(crate) fn boundary_area(body: &Body) -> Option<f64> {
-    Some(gauss_points(body)?.iter().map(|point| point.area).sum())
+/// Thickness (m) of a single body, 2 V/A of a band, a plate or the wall of a ring; strings and membranes have none here.
+pub(crate) fn thickness(body: &Body) -> Option<f64> {
+    let d = body.dimension();
+    let points = gauss_points(body).filter(|_| d > 1 && body.mesh().kind().dimension() == d)?;
+    let area: f64 = points.iter().map(|point| point.area).sum();
+    Some(2.0 * body.volume() / area)
 }
 
 /// Quadrature points of some `faces` that lie at the nodes and between them, so that nothing sticks out beyond all of

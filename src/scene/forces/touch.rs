@@ -30,7 +30,9 @@ mod spec;
 mod surfaces;
 #[cfg(test)]
 mod tests;
+mod told;
 mod window;
 
 pub(crate) use force::TouchForce;
 pub use spec::Touch;
+pub use told::TouchDistance;

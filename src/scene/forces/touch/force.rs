@@ -16,7 +16,7 @@ use crate::scene::forces::friction::Coulomb;
 
 /// The forces between the surfaces of some bodies.
 pub(crate) struct TouchForce {
-    pub(super) name: String,
+    pub(crate) name: String,
     pub(super) surfaces: Surfaces,
     pub(super) edges: Edges,
     pub(super) law: Law,
@@ -111,6 +111,11 @@ impl TouchForce {
         ))
     }
 
+    /// The distance (m) from which on nothing acts.
+    pub(crate) fn distance(&self) -> f64 {
+        self.law.distance
+    }
+
     /// The least distance (m) of the surfaces, up to that from which on nothing acts.
     pub(crate) fn gap(&self, u: &[f64]) -> f64 {
         self.nearest(u).map_or(self.law.distance, |(gap, _)| gap)
@@ -135,7 +140,7 @@ impl TouchForce {
 
     /// The least distance (m) of any point from a feature that it feels, or of two edges, below that from which on nothing
     /// acts, and a node of each.
-    pub(super) fn nearest(&self, u: &[f64]) -> Option<(f64, [usize; 2])> {
+    pub(crate) fn nearest(&self, u: &[f64]) -> Option<(f64, [usize; 2])> {
         let mut nearest: Option<(f64, [usize; 2])> = None;
         self.each(u, |pair, _| {
             if nearest.is_none_or(|(least, _)| pair.distance < least) {

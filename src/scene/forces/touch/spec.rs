@@ -153,6 +153,16 @@ impl Touch {
             || names.iter().all(|name| has(name)) && (!itself || self.bodies.len() == 1)
     }
 
+    /// Whether it is of the body with this name.
+    pub(super) fn is_of(&self, name: &str) -> bool {
+        self.bodies.is_empty() || self.bodies.iter().any(|body| body == name)
+    }
+
+    /// Whether its distance is the default.
+    pub(super) fn has_default_distance(&self) -> bool {
+        self.distance.is_none()
+    }
+
     /// Whether its pressure grows without bound.
     pub(crate) fn is_barrier(&self) -> bool {
         self.kind == Kind::Barrier
