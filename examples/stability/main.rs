@@ -48,7 +48,7 @@ results of `pliant reduce`.
 | f | constraints in index 3 | index 1, stabilized; stabilized index 2 |
 | g | St. Venant-Kirchhoff material under strong compression | nothing beyond its limit; it is named |
 | h | linear triangles and rectangles as nu goes to 1/2 | quadratic triangles, alternating diagonals |
-| i | pulses as functions of time | tables, phases, stop times |
+| i | short pulses in functions of programs | tables, phases, stop times |
 | [r](#reduced-models) | reduced models of travelling contact, of what was not learned | all unknowns, wider ranges, more shapes |";
 
 /// What does not reduce: measured by the command.

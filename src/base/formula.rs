@@ -5,11 +5,15 @@
 //! derivatives by t too, by the rules of differentiation applied to numbers (truncated Taylor series;
 //! Griewank and Walther, *Evaluating Derivatives*, chapter 13), and allocates nothing.
 
+mod enclosure;
+mod kinks;
 mod parse;
 #[cfg(test)]
 mod tests;
 
 use std::fmt;
+
+pub(crate) use enclosure::Bounds;
 
 use crate::base::input::InputError;
 

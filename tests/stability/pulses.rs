@@ -19,12 +19,13 @@ fn what_is_said_by_points_is_not_skipped() {
 }
 
 #[test]
-fn a_function_of_time_is_stepped_over() {
+fn a_function_of_time_is_found() {
     for method in METHODS {
-        for (width, vibrates) in [(0.1, false), (1e-5, false), (1e-5, true)] {
+        for (width, vibrates) in [(0.1, false), (1e-3, false), (1e-3, true), (1e-4, false)] {
             let momentum = Pulse { width, told: false, vibrates }.momentum(method, 1e-5).unwrap();
-            // what is left of none: vibrations add up to no momentum but for round-off
-            assert!(momentum.abs() < 1e-13, "{method} {width} {vibrates}: {momentum}");
+            // a function has kinks, before which a step may end: 3.9e-3 by `ida` at 0.1 ms, by the others 6.5e-4 and less
+            let limit = if method == Method::Ida { 5e-3 } else { 1e-3 };
+            assert!((momentum - 1.0).abs() < limit, "{method} {width} {vibrates}: {momentum}");
         }
     }
 }

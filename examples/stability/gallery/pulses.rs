@@ -97,10 +97,11 @@ pub fn section(page: &mut Page) -> Outcome<()> {
         (1e-5, [Method::CvodeBdf, Method::CvodeAdams, Method::Ida, Method::Arkode, Method::Rk]);
     page.say(format!(
         "A bar floats; at t = {BEGIN} s one end gets a pulse of {IMPULSE} N s, as a function of time \
-         (`load_with`) or as a table (`load_table`). If nothing happens until then, steps grow as long as they \
-         may, and one of them passes the pulse: no stage or iterate lies within it, the error estimate is 0, \
-         and the run succeeds. If the bar vibrates (undamped, 0.1 m/s at its ends, \
-         slowest period 28 ms), steps stay short, and pulses are missed that are shorter than they are. \
+         (`load_with`) or as a table (`load_table`). If nothing happened until then, steps would be as long as they \
+         may, and one of them would pass the pulse: no stage or iterate would lie within it, and the error estimate be 0. \
+         Steps are therefore no longer than the time in which what acts is a polynomial of degree 4, to a tolerance; \
+         functions are looked at ahead for that, at some 1e5 times between two breaks. \
+         The bar rests before, or vibrates (undamped, 0.1 m/s at its ends, slowest period 28 ms). \
          Momentum at {END} s over the impulse, exactly 1, at rtol {rtol:e}:"
     ));
     let mut rows = Vec::new();
@@ -154,11 +155,11 @@ pub fn section(page: &mut Page) -> Outcome<()> {
         few((general(1e-3, true, rtol)? - 1.0).abs()),
     ));
     page.say(
-        "**What works:** saying it. Phases end steps; so do the points of tables (`load_table`, \
-         `actuate_table`, `pressure_table`) and of paths: `Scene::breaks` lists them, each is the end of a leg \
-         with a fresh integrator, and no pulse is skipped, however short. **What does not:** a function \
-         (`load_with` and its like) says nothing of its kinks, and scenes cannot know them. In the general \
-         layer, `set_stop_time` and `reinit` do the same.",
+        "**What works:** phases end steps; so do the points of tables (`load_table`, `actuate_table`, `pressure_table`) and of \
+         paths, and kinks and jumps of formulas, which bounds on their parts find: `Scene::breaks` lists them, each is the end of a \
+         leg with a fresh integrator, and no pulse is skipped, however short. Of a function (`load_with` and its like) pulses are \
+         found that last longer than about a hundred-thousandth of the time between two breaks. **What does not:** shorter ones, which need \
+         breaks (`Signal::with_breaks`) or a table. In the general layer, `set_stop_time` and `reinit` do the same.",
     );
     Ok(())
 }

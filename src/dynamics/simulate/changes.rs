@@ -315,9 +315,7 @@ impl Run {
     /// Size of the next step (s), if it is known.
     fn next_step(&self) -> Option<f64> {
         match &self.integration {
-            Integration::Running(work) => {
-                Some(work.stepper.next_step()).filter(|h| h.is_finite() && *h > 0.0)
-            }
+            Integration::Running(work) => work.next_step(),
             _ => self.phase_run.first_step,
         }
     }
@@ -356,8 +354,7 @@ impl Run {
 
     /// Finds the ends of the intervals that are left of the phase in force.
     fn find_stops(&mut self) {
-        let mut stops = self.scene.breaks_in(&self.phase);
-        stops.retain(|&stop| self.time < stop && stop < self.phase.until);
+        let mut stops = self.scene.breaks_within(&self.phase, self.time);
         stops.push(self.phase.until);
         stops.reverse();
         (self.phase_run.stops, self.phase_run.interval.inside) = (stops, None);

@@ -25,6 +25,7 @@ mod progress;
 mod reading;
 mod records;
 mod reduced_checks;
+mod resolution;
 mod run;
 mod sampling;
 mod sensor;

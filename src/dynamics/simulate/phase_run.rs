@@ -83,6 +83,11 @@ impl Running {
         let sample = vec![0.0; stepper.state().len()];
         Self { stepper, stop, sample, steps: 0, trial_began: time, means: [f64::INFINITY; TRIALS] }
     }
+
+    /// Size of the next step (s), if it is known.
+    pub(super) fn next_step(&self) -> Option<f64> {
+        Some(self.stepper.next_step()).filter(|h| h.is_finite() && *h > 0.0)
+    }
 }
 
 impl PhaseRun {

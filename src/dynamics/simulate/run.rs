@@ -12,6 +12,7 @@ use super::phase_run::{Integration, PhaseRun, Running};
 use super::progress::Observer;
 use super::records::{self, begin_to_move, energy, project};
 use super::reduced_checks::{ReducedChecks, locked};
+use super::resolution::Resolution;
 use super::sampling::Sampling;
 use super::sensor::Sensors;
 use super::stepper::{self, Failed};
@@ -30,6 +31,12 @@ use crate::integrators::ode::Failure;
 use crate::scene::constraint::{PhaseStart, check_rigid_holds, prescribe};
 use crate::scene::settings::{Method, Scales, Settings};
 use crate::scene::timeline::{Phase, Scene};
+
+/// The next step in multiples of the size that is known, at most.
+const AHEAD: f64 = 2.0;
+
+/// Breaks no farther away than this, in parts of their time, are passed without a step, which round-off would take.
+const NEAREST: f64 = 16.0 * f64::EPSILON;
 
 /// The run of a scene.
 pub(super) struct Run {
@@ -75,6 +82,8 @@ pub(super) struct Run {
     pub(super) least_energy: f64,
     /// A time (s) at which steps end, though no interval does.
     pub(super) pause: Option<f64>,
+    /// What bounds the steps of the interval.
+    resolution: Resolution,
     /// What is known of the error of a reduced model, if the scene is run by one.
     pub(super) reduced: Option<Mutex<ReducedChecks>>,
 }
@@ -159,6 +168,7 @@ impl Run {
             trajectory,
             least_energy: least_energy(scene.body()),
             pause: None,
+            resolution: Resolution::default(),
             reduced: scene
                 .reduced_model()
                 .map(|model| Mutex::new(ReducedChecks::new(model, sampling.keeps_lacking()))),
@@ -175,7 +185,8 @@ impl Run {
         loop {
             let system = match take(&mut self.integration) {
                 Integration::Running(mut work) if self.phase_run.ended.is_none() => {
-                    let ended = self.try_step(&mut work, observer);
+                    let bound = self.bound(work.next_step());
+                    let ended = self.try_step(&mut work, bound, observer);
                     self.integration = Integration::Running(work);
                     self.phase_run.ended = ended.map_err(|source| self.give_up(source))?;
                     return Ok(true);
@@ -223,7 +234,12 @@ impl Run {
                 }
                 None => {}
             }
-            if self.time < self.phase_run.interval.end() {
+            let end = self.phase_run.interval.end();
+            let is_break = end < self.phase.until && end == self.phase_run.interval.stop;
+            if is_break && self.time < end && end - self.time <= NEAREST * end.abs() {
+                self.time = end;
+            }
+            if self.time < end {
                 break;
             }
             // an event, or a review of the method, exactly at the end of the interval
@@ -245,6 +261,28 @@ impl Run {
     /// Where steps end (s).
     pub(super) fn stop(&self) -> f64 {
         self.pause.unwrap_or(f64::INFINITY).min(self.phase_run.interval.end())
+    }
+
+    /// Where the next step ends at the latest (s), if its size (s) is known to be `next`: before it passes over what changes with time,
+    /// and before a jump at the end of the interval.
+    pub(super) fn bound(&mut self, next: Option<f64>) -> f64 {
+        let stop = self.phase_run.interval.stop;
+        if !self.resolution.is_of(&self.phase, self.time, stop) {
+            let span = [self.time, stop];
+            self.resolution = Resolution::new(&self.scene, &self.phase, span, self.settings.rtol);
+        }
+        let end = match self.stop() {
+            end if end == stop => self.resolution.end(),
+            end => end,
+        };
+        // a step that is known may be stretched towards its end
+        let until = next.map_or(end, |next| end.min(self.time + AHEAD * next));
+        self.resolution.bound(self.time, until).unwrap_or(end)
+    }
+
+    /// Where the last step of the interval ends (s).
+    pub(super) fn resolution_end(&self) -> f64 {
+        self.resolution.end()
     }
 
     pub(super) fn is_last_phase(&self) -> bool {
@@ -341,6 +379,7 @@ impl Run {
             balance: self.balance,
             least_energy: self.least_energy,
             pause: None,
+            resolution: Resolution::default(),
             reduced: self.reduced.as_ref().map(|checks| Mutex::new(locked(checks).clone())),
         }
     }

@@ -26,22 +26,22 @@ const PARTS: usize = 4;
 const CLEAN: f64 = 0.001;
 
 impl Run {
-    /// Takes one step of an interval; returns how the interval ended, if it did.
+    /// Takes one step of an interval, up to the time `bound` (s) at most; returns how the interval ended, if it did.
     ///
     /// The energy balance is checked now and then, and may make a method doubtful that can be replaced.
     pub(super) fn try_step(
         &mut self,
         work: &mut Running,
+        bound: f64,
         observer: Observer,
     ) -> Result<Option<Ending>, Failed> {
         if self.phase_run.interval.steps == 0 {
             return Err(too_many_steps(self.settings.max_steps, &work.stepper.counts()));
         }
         self.phase_run.interval.steps -= 1;
-        let stop = self.stop();
-        if work.stop != stop {
-            work.stepper.stop_at(stop)?;
-            work.stop = stop;
+        if work.stop != bound {
+            work.stepper.stop_at(bound)?;
+            work.stop = bound;
         }
         let start = self.time;
         let (step, is_event) = match self.step(work)? {
@@ -130,9 +130,10 @@ impl Run {
     /// Takes one step, up to the first contact event within it, and the samples within it.
     fn step(&mut self, work: &mut Running) -> Result<Outcome, Failed> {
         let (n, length) = (self.scene.body().dofs(), self.state.len());
-        let Running { stepper, stop, sample, .. } = work;
+        let (end, stop) = (self.stop(), self.phase_run.interval.stop);
+        let Running { stepper, sample, .. } = work;
         let stepper = &mut **stepper;
-        let reached = stepper.step(*stop)?;
+        let reached = stepper.step(end)?;
         let times = [self.time, reached];
         let (events, tolerance) = (&mut self.phase_run.interval.events, self.atol_position);
         let event = match events.met(stepper, &self.state, times, tolerance, sample)? {
@@ -140,7 +141,9 @@ impl Run {
             Met::Event(t) => Some(t),
             Met::Passage(t) => return Ok(Outcome::Refused(t)),
         };
-        let time = event.unwrap_or(reached);
+        // steps that end just before a jump end at it
+        let is_at_jump = event.is_none() && reached >= self.resolution_end() && reached < stop;
+        let time = if is_at_jump { stop } else { event.unwrap_or(reached) };
         self.standing = if time > self.time { 0 } else { self.standing + 1 };
         if self.standing == STANDING {
             return Err(standing_still(stepper.system().refusal()));
@@ -151,14 +154,14 @@ impl Run {
         system.check_step(time, before, arrived).map_err(Failure::into_error)?;
         while let Some(t) = self.phase_run.interval.next_sample().filter(|&t| t <= time) {
             self.phase_run.interval.taken += 1;
-            stepper.interpolate(t, sample)?;
+            stepper.interpolate(t.min(reached), sample)?;
             let taken = records::sample(self.number, stepper.system_mut(), t, sample);
             let mut taken = taken.map_err(Failure::into_error)?;
             self.complete(&mut taken);
             self.trajectory.push(taken);
         }
         if self.sampling.finds_peaks() {
-            self.find_peaks(stepper, time, sample)?;
+            self.find_peaks(stepper, time.min(reached), sample)?;
         }
         let (system, arrived) = arrival(stepper, event, sample)?;
         self.follower.follow(

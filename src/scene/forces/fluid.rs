@@ -161,6 +161,11 @@ impl Fluid {
         Ok(Self { nodes: self.nodes.as_ref().map(change).transpose()?, ..self.clone() })
     }
 
+    /// Its velocity (m/s), if it flows.
+    pub(crate) fn flow(&self) -> Option<&VectorSignal> {
+        self.velocity.as_ref()
+    }
+
     /// Times (s) at which its velocity changes its law.
     pub(crate) fn breaks(&self) -> &[f64] {
         self.velocity.as_ref().map_or(&[], VectorSignal::breaks)

@@ -66,18 +66,15 @@ pub(crate) use pressure::FacePressure;
 pub(crate) use shape::Kind as ShapeKind;
 pub use shape::Shape;
 pub use signal::Signal;
-#[cfg(any(feature = "checkpoint", feature = "play"))]
-pub(crate) use signal::SignalKind;
-pub(crate) use signal::{Live, VectorSignal};
+pub(crate) use signal::{Live, SignalKind, VectorSignal};
 pub use signals::Signals;
 #[cfg(feature = "output")]
 pub(crate) use spring::Joint;
 pub(crate) use spring::SpringGauge;
 pub use spring::{Guide, Spring};
 pub(crate) use surface::{
-    SurfacePoint, boundary_area, boundary_nodes, edge_points, face_centre, natural, pieces,
-    weighted,
+    SurfacePoint, boundary_nodes, edge_points, face_centre, natural, pieces, thickness, weighted,
 };
 pub(crate) use time_table::TimeTable;
-pub use touch::Touch;
 pub(crate) use touch::TouchForce;
+pub use touch::{Touch, TouchDistance};

@@ -372,6 +372,14 @@ impl Obstacle {
         self.travel.splines().first().map_or(&[], Spline::times)
     }
 
+    /// The formulas that it follows, one per component.
+    pub(crate) fn formulas(&self) -> &[Formula] {
+        match &self.travel {
+            Travel::Formulas(formulas) => formulas,
+            Travel::Uniform(_) | Travel::Path(_) => &[],
+        }
+    }
+
     /// The same obstacle with this [`offset`](Self::offset).
     #[cfg(feature = "checkpoint")]
     pub(crate) fn with_offset(mut self, offset: [f64; 3]) -> Self {

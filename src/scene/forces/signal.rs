@@ -69,6 +69,9 @@ impl Signal {
     }
 
     /// A function of time (s), smooth except at its [breaks](Self::with_breaks).
+    ///
+    /// It is evaluated at times ahead, up to the end of the phase, so that steps do not pass over pulses: those that last longer than
+    /// about a hundred-thousandth of the time between two breaks are found. Shorter ones need breaks.
     pub fn function(f: impl Fn(f64) -> f64 + Send + Sync + 'static) -> Self {
         Self(SignalKind::Function { function: Arc::new(f), breaks: Vec::new() })
     }
@@ -83,10 +86,16 @@ impl Signal {
         match self.value() {
             _ if factor == 1.0 => self,
             Some(value) => Self::constant(factor * value),
-            None => {
-                let breaks = self.breaks().to_vec();
-                Self::function(move |t| factor * self.at(t)).with_breaks(breaks)
-            }
+            None => match &self.0 {
+                SignalKind::Formula(formula) => {
+                    Self(SignalKind::Formula(Arc::new(formula.times(factor))))
+                }
+                SignalKind::TimeTable(table) => Self(SignalKind::TimeTable(table.times(factor))),
+                _ => {
+                    let breaks = self.breaks().to_vec();
+                    Self::function(move |t| factor * self.at(t)).with_breaks(breaks)
+                }
+            },
         }
     }
 
@@ -95,7 +104,7 @@ impl Signal {
     /// It consists of numbers, `t`, `pi`, `e`, `+ - * / ^`, parentheses and the functions `sin`, `cos`,
     /// `tan`, `asin`, `acos`, `atan`, `sinh`, `cosh`, `tanh`, `exp`, `ln`, `log10`, `sqrt`, `abs`, `min`,
     /// `max` (of two numbers) and `step` (0 below 0, else 1). Powers come before signs: `-t^2` is -(t^2).
-    /// Steps do not end at its kinks and jumps: for those there are [tables](Self::table).
+    /// Steps end at its kinks and jumps, and are never so long that they pass over what it does in between.
     ///
     /// # Errors
     /// A text that is no formula, with the place of the mistake.
@@ -356,9 +365,9 @@ impl VectorSignal {
         let scaled = |values: &[f64]| values.iter().map(|x| factor * x).collect::<Vec<f64>>();
         match self {
             Self::Constant(values) => Self::Constant(scaled(values)),
-            Self::TimeTable(TimeTable { times, values }) => {
-                let values = values.iter().map(|values| scaled(values)).collect();
-                Self::TimeTable(TimeTable::new(times.clone(), values))
+            Self::TimeTable(table) => Self::TimeTable(table.times(factor)),
+            Self::Formulas(formulas) if factor != 1.0 => {
+                Self::Formulas(formulas.iter().map(|formula| formula.times(factor)).collect())
             }
             _ if factor == 1.0 => self.clone(),
             varying => {

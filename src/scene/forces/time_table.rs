@@ -20,6 +20,12 @@ impl TimeTable {
         Self { times, values }
     }
 
+    /// The same table, times a `factor`.
+    pub(super) fn times(&self, factor: f64) -> Self {
+        let scaled = |values: &Vec<f64>| values.iter().map(|x| factor * x).collect();
+        Self::new(self.times.clone(), self.values.iter().map(scaled).collect())
+    }
+
     /// One component at time `t`.
     pub(super) fn at(&self, t: f64, component: usize) -> f64 {
         let value = |k: usize| self.values[k][component];

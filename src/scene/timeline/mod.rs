@@ -23,6 +23,7 @@ mod start;
 mod start_state;
 mod term;
 mod tie;
+mod varying;
 mod within;
 
 use std::collections::BTreeSet;
@@ -42,6 +43,7 @@ pub use smaller::Smaller;
 use start::Start;
 pub use term::Term;
 use tie::Tie;
+pub(crate) use varying::Varying;
 
 use crate::base::input::{InputError, find, finite};
 use crate::base::vector::largest;
@@ -54,7 +56,7 @@ use crate::scene::constraint::{
 };
 use crate::scene::forces::{
     ATMOSPHERE, Chamber, Contact, Dipole, Fluid, Gas, Growth, Lag, Liquid, Magnet, Muscle,
-    Obstacle, Orifice, Pipe, Spring, Supply, Touch, TouchForce,
+    Obstacle, Orifice, Pipe, Spring, Supply, Touch, TouchDistance, TouchForce,
 };
 use crate::scene::reduced_model::ReducedModel;
 
@@ -110,7 +112,7 @@ pub struct Scene {
 }
 
 /// The quantities of a scene that may be [unusual](Scene::unusual): the names of the indicators of its units.
-pub(crate) const UNITS: [&str; 12] = [
+pub(crate) const UNITS: [&str; 13] = [
     "size",
     "mass",
     "density",
@@ -123,6 +125,7 @@ pub(crate) const UNITS: [&str; 12] = [
     "dipole-moment",
     "absolute-pressure",
     "orifice-area",
+    "touch-start",
 ];
 
 impl Scene {
@@ -337,15 +340,13 @@ impl Scene {
         &self.phases
     }
 
-    /// Times (s) within a phase, counted from 0, at which what it prescribes changes its law: those
-    /// of its paths and tables.
+    /// Times (s) within a phase, counted from 0, at which what it prescribes changes its law: those of its
+    /// paths and tables, kinks and jumps of its formulas, and breaks of its functions.
     pub fn breaks(&self, phase: usize) -> Vec<f64> {
         let start = phase.checked_sub(1).and_then(|before| self.phases.get(before));
         let start = start.map_or(0.0, |before| before.until);
         let Some(phase) = self.phases.get(phase) else { return Vec::new() };
-        let mut breaks = self.breaks_in(phase);
-        breaks.retain(|&time| start < time && time < phase.until);
-        breaks
+        self.breaks_within(phase, start)
     }
 
     /// Ends of the intervals of a phase, counted from 0: its [`breaks`](Self::breaks) and its own end.
@@ -460,6 +461,17 @@ impl Scene {
     /// How bodies touch.
     pub fn touches(&self) -> &[Touch] {
         &self.touches
+    }
+
+    /// The distance of each touch, given or by default, beside the thickness of its bodies.
+    ///
+    /// # Errors
+    /// As [`validate`](Self::validate).
+    pub fn touch_distances(&self) -> Result<Vec<TouchDistance>, InputError> {
+        let told = |touch: &Touch| {
+            self.force_of(touch).map(|force| TouchDistance::new(touch, &force, &self.body))
+        };
+        self.touches.iter().map(told).collect()
     }
 
     /// The forces of all touches.
