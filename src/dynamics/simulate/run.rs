@@ -2,7 +2,7 @@
 
 use std::mem::take;
 use std::sync::{Arc, Mutex};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use super::angles::Angles;
 use super::auto::Plan;
@@ -46,6 +46,8 @@ pub(super) struct Run {
     pub(super) atol_position: f64,
     /// Started with the run.
     clock: Instant,
+    /// Wall-clock time of its start and its steps, if that is limited.
+    pub(super) spent: Duration,
     /// The phase in force, as commands have changed it, and its number.
     pub(super) phase: Arc<Phase>,
     pub(super) number: usize,
@@ -148,6 +150,7 @@ impl Run {
             angles,
             scales,
             atol_position,
+            spent: clock.elapsed(),
             clock,
             time: 0.0,
             state,
@@ -172,6 +175,16 @@ impl Run {
 
     /// Takes a step; `false` at the end of the scene, where there is none.
     pub(super) fn advance(&mut self, observer: Observer) -> Result<bool, Error> {
+        if self.settings.max_time.is_none() {
+            return self.take_step(observer);
+        }
+        let began = Instant::now();
+        let outcome = self.take_step(observer);
+        self.spent += began.elapsed();
+        outcome
+    }
+
+    fn take_step(&mut self, observer: Observer) -> Result<bool, Error> {
         loop {
             let system = match take(&mut self.integration) {
                 Integration::Running(mut work) if self.phase_run.ended.is_none() => {
@@ -330,6 +343,7 @@ impl Run {
             is_commanded: self.is_commanded,
             constraints: self.constraints.clone(),
             phase_run: self.new_phase_run(self.phase_run.plan.clone()),
+            spent: Duration::ZERO,
             integration: Integration::Absent,
             time: self.time,
             state: self.state.clone(),

@@ -2,7 +2,7 @@
 
 use super::auto::{LONG, TRIAL};
 use super::events::Met;
-use super::failure::{STANDING, crawling, standing_still, too_many_steps};
+use super::failure::{STANDING, crawling, out_of_time, standing_still, too_many_steps};
 use super::interval::{Ending, Outcome, RollbackPoint};
 use super::phase_run::Running;
 use super::progress::{Observer, Progress};
@@ -38,6 +38,12 @@ impl Run {
             return Err(too_many_steps(self.settings.max_steps, &work.stepper.counts()));
         }
         self.phase_run.interval.steps -= 1;
+        if let Some(limit) = self.settings.max_time
+            && self.spent.as_secs_f64() >= limit
+        {
+            let method = self.phase_run.plan.settings.method;
+            return Err(out_of_time(limit, method, &work.stepper.counts()));
+        }
         let stop = self.stop();
         if work.stop != stop {
             work.stepper.stop_at(stop)?;
