@@ -188,8 +188,13 @@ impl Run {
         loop {
             let system = match take(&mut self.integration) {
                 Integration::Running(mut work) if self.phase_run.ended.is_none() => {
-                    let ended = self.try_step(&mut work, observer);
+                    let mut ended = self.try_step(&mut work, observer);
                     self.integration = Integration::Running(work);
+                    if let Err(source) = &ended
+                        && let Some(before) = self.phase_run.plan.after_failure(source)
+                    {
+                        ended = Ok(Some(Ending::Better(before)));
+                    }
                     self.phase_run.ended = ended.map_err(|source| self.give_up(source))?;
                     return Ok(true);
                 }
@@ -338,12 +343,12 @@ impl Run {
             scales: self.scales,
             atol_position: self.atol_position,
             clock: Instant::now(),
+            spent: Duration::ZERO,
             phase: self.phase.clone(),
             number: self.number,
             is_commanded: self.is_commanded,
             constraints: self.constraints.clone(),
             phase_run: self.new_phase_run(self.phase_run.plan.clone()),
-            spent: Duration::ZERO,
             integration: Integration::Absent,
             time: self.time,
             state: self.state.clone(),

@@ -9,6 +9,7 @@ use super::progress::{Observer, Progress};
 use super::records::{self, energy};
 use super::reduced_checks::locked;
 use super::run::Run;
+use super::stalled::PATIENCE;
 use super::stepper::{Failed, Stepper};
 use crate::dynamics::report::creation;
 use crate::dynamics::system::System;
@@ -37,13 +38,13 @@ impl Run {
         if self.phase_run.interval.steps == 0 {
             return Err(too_many_steps(self.settings.max_steps, &work.stepper.counts()));
         }
-        self.phase_run.interval.steps -= 1;
         if let Some(limit) = self.settings.max_time
             && self.spent.as_secs_f64() >= limit
         {
             let method = self.phase_run.plan.settings.method;
             return Err(out_of_time(limit, method, &work.stepper.counts()));
         }
+        self.phase_run.interval.steps -= 1;
         let stop = self.stop();
         if work.stop != stop {
             work.stepper.stop_at(stop)?;
@@ -71,6 +72,10 @@ impl Run {
         }
         self.report_progress(step, work.stepper.last_order(), observer)?;
         let led = self.phase_run.mean_steps.add([start, self.time]);
+        let (taken, mean) = self.phase_run.mean_steps.since_review(self.time);
+        if let Some(before) = self.phase_run.plan.settle(taken, mean) {
+            return Ok(Some(Ending::Better(before)));
+        }
         if let Some(mean) = led {
             let refusal = work.stepper.system().refusal();
             if let Some(failed) = crawling(LONG, mean, self.time, refusal) {
@@ -79,6 +84,13 @@ impl Run {
             if let Some(other) = self.phase_run.plan.turned_back(mean) {
                 return Ok(Some(Ending::Better(other)));
             }
+        }
+        if taken >= self.phase_run.plan.patience_of_probes.max(PATIENCE) {
+            let left = self.phase.until - self.time;
+            if let Some(other) = self.phase_run.plan.stalled(mean, taken, left) {
+                return Ok(Some(Ending::Better(other)));
+            }
+            self.phase_run.mean_steps.begin_review();
         }
         if is_event {
             return Ok(Some(Ending::Event));
