@@ -6,7 +6,6 @@
 //! steps not much longer than its stability limit. With lumped inertia a step of central differences costs so
 //! little that they lead even with steps well above theirs.
 
-use super::stalled::{FAR_TOO_SHORT, PATIENCE, Probe};
 use crate::dynamics::system::{Spectrum, System};
 use crate::integrators::central_difference;
 use crate::integrators::ode::Rates;
@@ -35,6 +34,14 @@ pub(super) struct Plan {
     pub(super) patience_of_probes: usize,
     /// The plan that this one is tried in place of.
     pub(super) probe: Option<Probe>,
+}
+
+/// A trial of another method.
+#[derive(Clone)]
+pub(super) struct Probe {
+    /// The plan to return to, and the mean of its last steps (s).
+    pub(super) before: Box<Plan>,
+    pub(super) step: f64,
 }
 
 /// Damping ratio of the lowest vibration from which BDF is chosen. Hirai's bodies lie well on both sides:
@@ -107,6 +114,15 @@ pub(super) const TRIALS: usize = 4;
 
 /// Steps of a plan after which their mean size is checked, whatever intervals they lie in.
 pub(super) const LONG: usize = TRIAL * TRIALS;
+
+/// Steps of a plan after which another method is tried, if as many or more are still to come; twice as many before each
+/// further trial. The first trial of ARKODE costs as much as a third of them.
+pub(super) const PATIENCE: usize = 1024;
+
+/// Part of the period of the slowest vibration below which steps are far too short for the motion to be the reason. BDF takes
+/// some 100 steps for a period where accuracy bounds them, up to 5000 where nodes come to a floor and leave it, and above 10,000
+/// where undamped vibrations do.
+const FAR_TOO_SHORT: f64 = 1.0 / 8000.0;
 
 impl Plan {
     /// The plan for a phase whose equations are `system`, from time `t` and `state` = (u, v, ...).

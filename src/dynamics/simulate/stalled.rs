@@ -5,30 +5,13 @@
 //! lie outside of the stability regions of its orders above 2 (E. Hairer, G. Wanner, *Solving Ordinary Differential Equations
 //! II*, section V.2), which bounds its steps by the fastest of them, however small they are.
 
-use super::auto::{Plan, TRIAL};
+use super::auto::{Plan, Probe, TRIAL};
 use super::stepper::Failed;
 use crate::integrators::common::{self, Cause};
 use crate::scene::settings::Method;
 
-/// Steps of a plan after which another method is tried, if as many or more are still to come; twice as many before each
-/// further trial. The first trial of ARKODE costs as much as a third of them.
-pub(super) const PATIENCE: usize = 1024;
-
-/// Part of the period of the slowest vibration below which steps are far too short for the motion to be the reason. BDF takes
-/// some 100 steps for a period where accuracy bounds them, some 1000 on floors where nodes come and go, and above 10,000
-/// where undamped vibrations do.
-pub(super) const FAR_TOO_SHORT: f64 = 1.0 / 4000.0;
-
 /// Cost of a step of ARKODE in steps of BDF: 8 to 15 in the scenes whose runs were timed.
 const WORTH_BDF: f64 = 10.0;
-
-/// A trial of another method.
-#[derive(Clone)]
-pub(super) struct Probe {
-    /// The plan to return to, and the mean of its last steps (s).
-    before: Box<Plan>,
-    step: f64,
-}
 
 impl Plan {
     /// The plan to try when the last `taken` steps with this one, of `step` (s) in the mean, are far more than expected and the
@@ -103,6 +86,7 @@ impl Probe {
 
 #[cfg(test)]
 mod tests {
+    use super::super::auto::PATIENCE;
     use super::*;
     use crate::scene::settings::Settings;
 

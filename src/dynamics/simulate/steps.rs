@@ -1,6 +1,6 @@
 //! The steps of an interval: how far they go, what makes them doubtful, and the samples within them.
 
-use super::auto::{LONG, TRIAL};
+use super::auto::{LONG, PATIENCE, TRIAL};
 use super::events::Met;
 use super::failure::{STANDING, crawling, out_of_time, standing_still, too_many_steps};
 use super::interval::{Ending, Outcome, RollbackPoint};
@@ -9,7 +9,6 @@ use super::progress::{Observer, Progress};
 use super::records::{self, energy};
 use super::reduced_checks::locked;
 use super::run::Run;
-use super::stalled::PATIENCE;
 use super::stepper::{Failed, Stepper};
 use crate::dynamics::report::creation;
 use crate::dynamics::system::System;

@@ -39,9 +39,9 @@ impl<'a> Run<'a> {
         let mut roots = Vec::with_capacity(count);
         // where functions were found undefined
         let mut undefined = vec![None; count];
-        for i in 0..count {
+        for (i, undefined) in undefined.iter_mut().enumerate() {
             self.watches[i].begin_step(self.t, self.sign);
-            let sight = self.search(i, (t, is_last), tolerance, &mut undefined[i])?;
+            let sight = self.search(i, (t, is_last), tolerance, undefined)?;
             if let Sight::Passage(turn) = sight {
                 return Ok(Found::Accumulation(i, turn));
             }
