@@ -62,9 +62,8 @@ fn a_root_at_the_edge_of_its_function() {
 /// A function that does not come to zero before it is undefined is an error, as one that is an event the other way.
 #[test]
 fn a_function_that_ends_without_a_root_is_told() {
-    let functions: [(fn(f64) -> f64, bool); 3] =
-        [(|y| y.sqrt() + 0.1, false), (|y| y.ln() + 800.0, false), (f64::sqrt, true)];
-    for (g, rises) in functions {
+    let functions: [fn(f64) -> f64; 3] = [|y| y.sqrt() + 0.1, |y| y.ln() + 800.0, f64::sqrt];
+    for (g, rises) in functions.into_iter().zip([false, false, true]) {
         let event = Event::new(move |_, y| g(y[0])).terminal();
         let event = if rises { event.rising() } else { event };
         let error = solve(falling().event(event), Method::Bdf, (0.0, 5.0), &tight()).unwrap_err();
