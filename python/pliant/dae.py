@@ -100,7 +100,7 @@ def solve_dae(
         **limits,
         **wanted,
     )
-    return result_of(run, parts, 1.0, np.sign(end - start), t_eval, dense_output, watched, jac, is_sensitive, last_yp=run.last_yp)
+    return result_of(run, parts, "ida", 1.0, np.sign(end - start), t_eval, dense_output, watched, jac, is_sensitive, last_yp=run.last_yp)
 
 
 def equations_of(fun, y0, parts, yp0, differential, jac, jac_sparsity, lband, uband, given, start):

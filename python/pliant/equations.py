@@ -248,8 +248,8 @@ def _number(function, parts):
     return lambda t, y, *p: float(np.ravel(function(t, parts.whole(y), *p))[0])
 
 
-def result_of(run, parts, sign, direction, t_eval, dense_output, watched, jac, is_sensitive, **more):
-    """The result of a run along `sign` t, in the `direction` of t."""
+def result_of(run, parts, method, sign, direction, t_eval, dense_output, watched, jac, is_sensitive, **more):
+    """The result of a run by `method` along `sign` t, in the `direction` of t."""
     status = -1 if run.failure else int(run.ended_by_event)
     t, y = sign * run.t, parts.unpack(run.y)
     kept = slice(None)
@@ -274,6 +274,7 @@ def result_of(run, parts, sign, direction, t_eval, dense_output, watched, jac, i
         sol=OdeSolution(run, parts.unpack, sign) if dense_output else None,
         t_events=t_events,
         y_events=y_events,
+        method=method,
         nfev=run.evaluations,
         njev=run.jacobian_evaluations if jac is None or callable(jac) else 0,
         nlu=run.factorizations,

@@ -100,7 +100,8 @@ def solve_ivp(
     Returns
     -------
     OdeResult
-        As in SciPy, with `nsteps` in addition, and with `sensitivities` [unknown, parameter, time] if they are wanted.
+        As in SciPy, with `nsteps` and `method` in addition, the method that ran by the name it has here (such as
+        "dormand-prince" for SciPy's "RK45", or the table of ARKODE); and with `sensitivities` [unknown, parameter, time] if they are wanted.
 
     >>> import pliant
     >>> solution = pliant.solve_ivp(lambda t, y: -50.0 * y, (0.0, 1.0), [1.0], rtol=1e-8, atol=1e-10)
@@ -126,7 +127,7 @@ def solve_ivp(
     wanted = wanted_sensitivities(sensitivities, initial_sensitivities, len(given.parameters), parts, t_eval, dense_output)
     watched = watched_events(events, given, parts)
     if (start == end or parts.count == 0) and not is_sensitive:
-        return _at_once(start, end, parts.unpack(parts.pack(y0)[None, :]), t_eval, dense_output, watched)
+        return _at_once(start, end, parts.unpack(parts.pack(y0)[None, :]), t_eval, dense_output, watched, name)
     # what goes forward only goes back along s = -t
     sign = -1.0 if end < start and name in _FORWARD else 1.0
     if sign < 0.0:
@@ -157,7 +158,7 @@ def solve_ivp(
         **wanted,
         **matrices,
     )
-    return result_of(run, parts, sign, np.sign(end - start), t_eval, dense_output, watched, jac, is_sensitive)
+    return result_of(run, parts, name, sign, np.sign(end - start), t_eval, dense_output, watched, jac, is_sensitive)
 
 
 def engine_method(method):
@@ -199,7 +200,7 @@ def _reversed(function, watched, times):
     return back, None if watched is None else turned, None if times is None else [-t for t in times]
 
 
-def _at_once(t, end, y, t_eval, dense_output, watched):
+def _at_once(t, end, y, t_eval, dense_output, watched, name):
     """The result where nothing changes: the span has no length, or there are no unknowns."""
     times = np.array([t] if t == end else [t, end]) if t_eval is None else t_eval
     states = np.repeat(y.T, len(times), axis=1)
@@ -213,5 +214,5 @@ def _at_once(t, end, y, t_eval, dense_output, watched):
 
     return OdeResult(
         t=times, y=states, sol=Constant() if dense_output else None, t_events=nothing, y_events=nothing,
-        nfev=0, njev=0, nlu=0, nsteps=0, status=0, message=MESSAGES[0], success=True,
+        method=name, nfev=0, njev=0, nlu=0, nsteps=0, status=0, message=MESSAGES[0], success=True,
     )

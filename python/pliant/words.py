@@ -3845,6 +3845,7 @@ def solver(
     contact_events: Literal["auto", "step-over", "locate"] | None = None,
     max_step: float | None = None,
     max_steps: int | None = None,
+    max_time: float | None = None,
     quantity: str | None = None,
     reduced: str | None = None,
     half: Literal["x", "y", "z", ""] | None = None,
@@ -3879,6 +3880,8 @@ def solver(
         longest step (s). Default: none.
     max_steps
         steps that a phase may take. Default: 10000000.
+    max_time
+        wall-clock time that a run may take, each of them where there are several (s). Default: none.
     quantity
         what `accuracy` is of. Default: the whole motion. `motion`; a sensor or a set of nodes, with a component where
         need be, as `tip.y`; `com`, `rotation`; behind a colon the part that counts, where all times do not: `end`,
@@ -3907,6 +3910,7 @@ def solver(
         contact_events=contact_events,
         max_step=max_step,
         max_steps=max_steps,
+        max_time=max_time,
         quantity=quantity,
         reduced=reduced,
         half=half,

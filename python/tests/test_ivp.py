@@ -73,6 +73,30 @@ def test_events():
     assert np.allclose(solution.t_events[1], 1.0, atol=1e-7) and np.allclose(solution.y_events[1][0][0], 5.0)
 
 
+def test_events_at_the_edge_of_what_is_defined():
+    """An emptying tank, y = (1 - t/2)^2; and a logarithm, which is -4 at exp(-4). Behind both there are no numbers."""
+    empty = lambda t, y: y[0]
+    low = lambda t, y: np.log(y[0]) + 4
+    empty.terminal = low.terminal = True
+    with np.errstate(invalid="ignore", divide="ignore"):
+        for method in IMPLICIT + EXPLICIT:
+            if method not in ("RK23", "DOP853"):
+                tank = pliant.solve_ivp(lambda t, y: -np.sqrt(y), (0, 5), [1.0], method, events=empty, rtol=1e-6, atol=1e-8)
+                assert tank.status == 1 and abs(tank.t[-1] - 2.0) < 2e-2, (method, tank.message)
+            falling = pliant.solve_ivp(lambda t, y: [-1.0], (0, 5), [1.0], method, events=low)
+            assert falling.status == 1 and abs(falling.t[-1] - 1 + np.exp(-4)) < 1e-12, (method, falling.message)
+
+
+def test_the_method_that_ran_is_told():
+    """By the names of pliant and of ARKODE, also where there is nothing to integrate."""
+    own = {"esdirk": "ESDIRK436L2SA_6_3_4", "Radau": "ESDIRK547L2SA_7_4_5", "BDF": "bdf", "LSODA": "bdf"}
+    own |= {"RK45": "dormand-prince", "RK23": "BOGACKI_SHAMPINE_4_2_3", "DOP853": "VERNER_8_5_6"}
+    for method in IMPLICIT + EXPLICIT:
+        for end in (1.0, 0.0):
+            assert pliant.solve_ivp(lambda t, y: -y, (0.0, end), [1.0], method).method == own.get(method, method)
+    assert pliant.solve_dae(lambda t, y, yp: yp + y, (0.0, 1.0), [1.0], [-1.0]).method == "ida"
+
+
 def test_between_the_times():
     solution = pliant.solve_ivp(lambda t, y: [y[1], -y[0]], (0.0, 6.0), [0.0, 1.0], rtol=1e-8, atol=1e-10, dense_output=True)
     t = np.linspace(0.0, 6.0, 101)

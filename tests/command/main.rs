@@ -288,6 +288,11 @@ fn a_failing_run_keeps_what_it_has() {
     assert_eq!(output.status.code(), Some(1));
     says(&stderr(&output), &["pliant: phase \"pull\"", "max_steps"]);
     assert_eq!(place.report("out/scene")["steps"], 7);
+
+    let output = place.run(&["run", place.scene(&bar(1.0)), "--max-time", "1e-9"]);
+    assert_eq!(output.status.code(), Some(1));
+    says(&stderr(&output), &["pliant: phase \"pull\"", "stopped at t = 0", "max_time allows"]);
+    assert_eq!(place.report("out/scene")["status"], "failed");
 }
 
 #[test]
@@ -309,6 +314,7 @@ fn bad_input_writes_nothing() {
         (&["run", good, "--alpha", "nan"], &["pliant: alpha = NaN cannot be used"]),
         (&["run", good, "--max-order", "9"], &["pliant: max_order = 9", "1 to 5"]),
         (&["run", good, "--max-steps", "0"], &["pliant: max_steps = 0"]),
+        (&["run", good, "--max-time", "0"], &["pliant: max_time = 0"]),
         (&["run", good, "--step", "0"], &["pliant: sampling step = 0"]),
         (&["run", good, "--until", "-1"], &["pliant: end of phase \"pull\" = -1 s"]),
         (&["run", good, "--until", "nan"], &["pliant: end of phase \"pull\" = NaN"]),

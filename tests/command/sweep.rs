@@ -155,7 +155,11 @@ fn failures_are_rows() {
     let verdicts: Vec<&str> = rows.iter().map(|row| &row[4][..]).collect();
     assert_eq!(verdicts, ["failed", "fine", "failed", "fine"]);
     assert!(rows[0][3].is_empty() && !rows[0][6].is_empty() && rows[0][8] != "0.3", "{rows:?}");
-    place.study(&study.replace("values = [3, 100000]", "values = [3]"));
+    let study = study.replace("max_steps", "max_time");
+    place.study(&study.replace("[3, 100000]", "[1e-9, 1e3]"));
+    let said = place.sweep(&["--out", "timed"]);
+    says(&said, &["4 rows: 2 fine, 0 doubtful, 2 failed", "the first failure: ", "max_time"]);
+    place.study(&study.replace("[3, 100000]", "[1e-9]"));
     let output = place.run(&["sweep", "study.toml", "--out", "none"]);
     assert_eq!(output.status.code(), Some(1));
     says(&stderr(&output), &["no run succeeded"]);

@@ -118,6 +118,7 @@ fn in_space() {
         contact_events: ContactEvents::Locate,
         max_step: Some(0.01),
         max_steps: 5000,
+        max_time: Some(3600.0),
     };
     assert_eq!(file.settings, settings);
     assert_eq!(file.output, OutputRequest::default());

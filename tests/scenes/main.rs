@@ -67,6 +67,7 @@ mod simulation;
 mod slips;
 mod square_jump;
 mod square_press;
+mod stalled;
 mod start;
 mod states;
 mod sticking;

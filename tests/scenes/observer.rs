@@ -1,6 +1,8 @@
 //! Watching a run step by step, and stopping it.
 
 use std::ops::ControlFlow;
+use std::thread::sleep;
+use std::time::Duration;
 
 use pliant::samples::{ring_jump, square_jump};
 use pliant::simulate::Progress;
@@ -104,6 +106,36 @@ fn a_failure_is_no_interruption() {
     assert!(!end.is_interruption());
     assert!(end.time > 0.0 && end.trajectory.last().time == end.time);
     assert_eq!(end.trajectory.report().steps(), 40);
+}
+
+/// A run ends at its limit of wall-clock time, here by an observer that takes 20 ms for each step, and keeps what it has. Time
+/// between the calls of a simulation does not count.
+#[test]
+fn a_run_ends_at_its_limit_of_time() {
+    let scene = square_jump(4).unwrap();
+    let limited = Settings { max_time: Some(0.1), ..settings(Method::CvodeBdf) };
+    let out = run_until(&scene, &limited, |_| {
+        sleep(Duration::from_millis(20));
+        false
+    });
+    let Err(Error::Integration(end)) = out else { panic!("no failure") };
+    assert!(!end.is_interruption());
+    assert!((1..=5).contains(&end.trajectory.report().steps()), "{:?}", end.trajectory.report());
+    assert!(end.time > 0.0 && end.trajectory.last().time == end.time && end.step > 0.0);
+    let message = end.to_string();
+    for part in ["phase \"push\"", "the 0.1 s", "max_time", "(cvode-bdf", "raise"] {
+        assert!(message.contains(part), "{message}");
+    }
+    // far more than all steps take, and less than the pause
+    let limited = Settings { max_time: Some(30.0), ..limited };
+    let whole = scene.simulate(&limited, &Sampling::phase_ends()).unwrap();
+    let taken = whole.report().wall_seconds;
+    let limited = Settings { max_time: Some(10.0 * taken + 0.5), ..limited };
+    let mut simulation = scene.start(&limited).unwrap();
+    sleep(Duration::from_secs_f64(10.0 * taken + 0.6));
+    simulation.advance_to(scene.end()).unwrap();
+    let error = Settings { max_time: Some(0.0), ..limited }.validate().unwrap_err().to_string();
+    assert!(error.contains("max_time = 0"), "{error}");
 }
 
 /// Tangents are evaluated where forces are not linear: by IDA for each factorization, by CVODE

@@ -4,6 +4,7 @@ mod accumulation;
 mod bounds;
 mod breaks;
 mod difference_quotients;
+mod edges;
 mod ensembles;
 mod events;
 mod gradients;

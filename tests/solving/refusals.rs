@@ -57,7 +57,7 @@ fn spans_times_and_numbers_are_checked() {
     }
     for t in [0.0, 1.0, 2.0] {
         let text = refusal(sine().breaks([t]), bdf, (0.0, 1.0), &tight());
-        assert!(text.contains("it lies between 0 and 1"), "{text}");
+        assert!(text.contains("within the span from 0 to 1, not at its ends"), "{text}");
     }
     let text = refusal(sine(), bdf, (0.0, 1.0), &tight().initial_step(-0.1));
     assert!(text.contains("initial_step") && text.contains("span tells"), "{text}");

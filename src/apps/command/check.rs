@@ -181,14 +181,16 @@ fn surroundings(scene: &Scene) -> Result<(), Failure> {
 
 fn solver(file: &SceneFile) -> Result<(), Failure> {
     let SceneFile { scene, settings, output, .. } = file;
-    let Settings { method, rtol, alpha, max_order, contact_events, max_steps, .. } = settings;
+    let Settings { method, rtol, alpha, max_order, contact_events, max_steps, max_time, .. } =
+        settings;
     let atol = settings.tolerances(scene);
     line("solver", &format!("{method}, rtol {rtol:e}, alpha {alpha} 1/s"))?;
     let (position, velocity) = (atol.position, atol.velocity);
     line("", &format!("atol {position:.2e} m and {velocity:.2e} m/s"))?;
     let order = max_order.map_or(String::new(), |order| format!("order up to {order}, "));
     let events = format!("contact events: {contact_events}");
-    line("", &format!("{order}up to {max_steps} steps in a phase, {events}"))?;
+    let time = max_time.map_or(String::new(), |time| format!("{time} s of wall-clock time, "));
+    line("", &format!("{order}up to {max_steps} steps in a phase, {time}{events}"))?;
     for model in &file.smaller {
         line("run as", &model.to_string())?;
     }

@@ -9,6 +9,7 @@ use dissection::nested_dissection;
 use crate::base::sparse::{BlockMatrix, NodeMatrix, NodePattern};
 use crate::elements::body::{Body, Branches, LinearByCells, RigidPieces};
 use crate::elements::force::Force;
+use crate::elements::material::Substance;
 
 /// Inertia and the constant parts of the tangents. What is `None` is not needed.
 pub(crate) struct Matrices {
@@ -30,6 +31,8 @@ pub(crate) struct Matrices {
     pub(crate) damps_by_matrix: bool,
     /// The Maxwell branches.
     pub(crate) branches: Option<Branches>,
+    /// The longest of the times (s) that viscosities are over moduli, among soft materials; infinite if there are none.
+    pub(crate) retardation_time: f64,
     /// Typical displacements (m) and velocities (m/s) at small strains of 0.01.
     pub(crate) scales: [f64; 2],
     /// The nodes in an order of elimination that may leave less fill than minimum degree, on meshes
@@ -68,6 +71,7 @@ impl Matrices {
             mass_damping,
             damps_by_matrix,
             branches,
+            retardation_time: retardation_time(body),
             scales,
             dissection: None,
             rigid: body.rigid_pieces().cloned(),
@@ -122,6 +126,12 @@ impl Matrices {
     pub(crate) fn pattern(&self) -> &Arc<NodePattern> {
         self.inertia.pattern()
     }
+}
+
+fn retardation_time(body: &Body) -> f64 {
+    let soft = body.substances().filter(|substance| !substance.is_rigid);
+    let time = |substance: &Substance| substance.material.viscosity / substance.material.young;
+    soft.map(time).reduce(f64::max).unwrap_or(f64::INFINITY)
 }
 
 /// A second order of elimination, where it pays.

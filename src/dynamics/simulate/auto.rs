@@ -29,6 +29,19 @@ pub(super) struct Plan {
     pub(super) patience: usize,
     /// Mean step (s) of the implicit method when an explicit one took over from it; 0 as long as none has.
     pub(super) implicit_step: f64,
+    /// Steps (s) below which, after so many of them, another method is tried; 0 where none is.
+    pub(super) expected_step: f64,
+    pub(super) patience_of_probes: usize,
+    /// The plan that this one is tried in place of.
+    pub(super) probe: Option<Probe>,
+}
+
+/// A trial of another method.
+#[derive(Clone)]
+pub(super) struct Probe {
+    /// The plan to return to, and the mean of its last steps (s).
+    pub(super) before: Box<Plan>,
+    pub(super) step: f64,
 }
 
 /// Damping ratio of the lowest vibration from which BDF is chosen. Hirai's bodies lie well on both sides:
@@ -67,6 +80,11 @@ const SHORT: f64 = 0.1;
 /// while what bounds the steps stays the same.)
 const LOSING: f64 = 0.25;
 
+/// Part of the steps of an explicit method that lost so clearly as which they count from then on: it leaves fast vibrations
+/// behind, which the implicit method then has to follow, and for a part of twice at most that is no bargain. Two syringes of
+/// water and a pipe took 82,207 steps at 1e-6 where explicit steps counted as long as they were, and take 1042.
+const ONCE_LOST: f64 = 0.5;
+
 /// Stability limits of Dormand-Prince 5(4) on the real and on the imaginary axis: step times rate.
 const EXPLICIT_REACH: f64 = 3.3;
 const EXPLICIT_REACH_UNDAMPED: f64 = 1.0;
@@ -97,6 +115,15 @@ pub(super) const TRIALS: usize = 4;
 /// Steps of a plan after which their mean size is checked, whatever intervals they lie in.
 pub(super) const LONG: usize = TRIAL * TRIALS;
 
+/// Steps of a plan after which another method is tried, if as many or more are still to come; twice as many before each
+/// further trial. The first trial of ARKODE costs as much as a third of them.
+pub(super) const PATIENCE: usize = 1024;
+
+/// Part of the period of the slowest vibration below which steps are far too short for the motion to be the reason. BDF takes
+/// some 100 steps for a period where accuracy bounds them, up to 5000 where nodes come to a floor and leave it, and above 10,000
+/// where undamped vibrations do.
+const FAR_TOO_SHORT: f64 = 1.0 / 8000.0;
+
 impl Plan {
     /// The plan for a phase whose equations are `system`, from time `t` and `state` = (u, v, ...).
     pub(super) fn new(asked: &Settings, system: &mut System, t: f64, state: &[f64]) -> Self {
@@ -110,11 +137,16 @@ impl Plan {
                 central_step: 0.0,
                 patience: 0,
                 implicit_step: 0.0,
+                expected_step: 0.0,
+                patience_of_probes: 0,
+                probe: None,
             };
         }
         let n = system.dofs();
         let spectrum = system.spectrum(t, &state[..n], &state[n..2 * n]);
-        let (method, creeps, reason) = choose(&spectrum, asked.rtol);
+        let (method, creeps, reason) = choose(&spectrum, system.retardation_time(), asked.rtol);
+        let is_damped = spectrum.lowest_damping_ratio >= STRONG_DAMPING;
+        let period = spectrum.slowest_period().filter(|_| is_damped);
         let alpha = if system.is_constrained() { asked.alpha } else { 0.0 };
         let (part, max_order) = match asked.max_order {
             None if creeps && asked.rtol >= COARSE => (1.0, Some(3)),
@@ -131,6 +163,10 @@ impl Plan {
             central_step: if is_for_central { central_step(&spectrum) } else { 0.0 },
             patience: 8 * TRIAL,
             implicit_step: 0.0,
+            // steps over light vibrations are long, or as short as accuracy asks for
+            expected_step: FAR_TOO_SHORT * period.unwrap_or(0.0),
+            patience_of_probes: PATIENCE,
+            probe: None,
         }
     }
 
@@ -214,11 +250,12 @@ impl Plan {
     /// The plan to continue with when the steps of an explicit method that took over turn out to be only
     /// `step` (s) in the mean: the implicit method again, if it advanced farther for the same cost. (What
     /// bounds explicit steps may have begun since: a body that sticks to a floor, or events one after the
-    /// other.) From then on explicit steps count as that long.
+    /// other.) From then on explicit steps count as half as long.
     pub(super) fn turned_back(&self, step: f64) -> Option<Self> {
+        let lost = ONCE_LOST * step;
         let (worth, [explicit_step, central_step]) = match self.settings.method {
-            Method::Rk => (WORTH_EXPLICIT, [step, self.central_step]),
-            Method::CentralDifference => (WORTH_CENTRAL, [self.explicit_step, step]),
+            Method::Rk => (WORTH_EXPLICIT, [lost, self.central_step]),
+            Method::CentralDifference => (WORTH_CENTRAL, [self.explicit_step, lost]),
             _ => return None,
         };
         (worth * step < LOSING * self.implicit_step).then(|| {
@@ -261,13 +298,14 @@ impl Plan {
         Some(if order == 3 { plan.with_part(OLD_MATRIX) } else { plan })
     }
 
-    fn followed_by(&self, method: Method, max_order: Option<u32>, reason: &str) -> Self {
+    pub(super) fn followed_by(&self, method: Method, max_order: Option<u32>, reason: &str) -> Self {
         let part = part(method, self.asked.rtol);
         let before = self.reason.as_deref().unwrap_or_default();
         Self {
             settings: given(&self.asked, method, max_order, part),
             part,
             reason: Some(format!("{before}; then {method}, as {reason}")),
+            probe: None,
             ..self.clone()
         }
     }
@@ -318,8 +356,9 @@ fn cap(method: Method, max_order: Option<u32>) -> Option<u32> {
     }
 }
 
-/// The method, whether it follows a body that creeps, and why it was chosen.
-fn choose(spectrum: &Spectrum, rtol: f64) -> (Method, bool, String) {
+/// The method, whether it follows a body that creeps, and why it was chosen, for a body whose materials have a viscosity of
+/// `retardation_time` (s) times their stiffness at most.
+fn choose(spectrum: &Spectrum, retardation_time: f64, rtol: f64) -> (Method, bool, String) {
     // mass damping hardly affects fast vibrations, which are difficult for BDF
     let (by_mass, besides) = match spectrum.mass_damping_ratio {
         0.0 => (0.0, ""),
@@ -331,11 +370,16 @@ fn choose(spectrum: &Spectrum, rtol: f64) -> (Method, bool, String) {
         / spectrum.highest_frequency.powi(2);
     // the creeping of a body on a floor that damps says nothing about the vibrations within the body
     let creeps = ratio >= 1.0 && of_material < 1.0;
+    // nor does what a muscle or a damper brakes: it leaves motions across it to the material
+    let by_viscosity = 0.5 * retardation_time * spectrum.lowest_frequency.unwrap_or(0.0);
     let (method, limit) = match ratio {
         _ if creeps => (Method::Arkode, "overdamped from outside".into()),
         // nor does the slowest motion of a bent body if parts of it turn, which natural viscosity damps
         STRONG_DAMPING.. if of_material < STRONG_DAMPING && rtol > ROUGH => {
             (Method::Arkode, format!("by the fastest motions {of_material:.1e}"))
+        }
+        STRONG_DAMPING.. if by_viscosity < STRONG_DAMPING && rtol > ROUGH => {
+            (Method::Arkode, format!("by the viscosity of its material {by_viscosity:.1e}"))
         }
         STRONG_DAMPING.. => (Method::CvodeBdf, format!("{STRONG_DAMPING} or more")),
         _ => (Method::Arkode, format!("below {STRONG_DAMPING}")),
@@ -382,6 +426,9 @@ mod tests {
             central_step,
             patience: 8 * TRIAL,
             implicit_step: 0.0,
+            expected_step: 0.0,
+            patience_of_probes: PATIENCE,
+            probe: None,
         };
         plan.reconsidered(means, TRIAL).map(|plan| plan.settings.method)
     }

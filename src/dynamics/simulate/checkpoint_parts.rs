@@ -33,6 +33,11 @@ pub(crate) struct Choice {
     pub(crate) patience: usize,
     #[serde(default)]
     pub(crate) implicit_step: f64,
+    /// Steps (s) below which another method is tried, after how many of them: see [`Plan`].
+    #[serde(default)]
+    pub(crate) expected_step: f64,
+    #[serde(default)]
+    pub(crate) patience_of_probes: usize,
 }
 
 fn name<S: Serializer>(method: &Method, to: S) -> Result<S::Ok, S::Error> {
@@ -70,8 +75,10 @@ impl Checkpoint {
             central_step,
             patience,
             implicit_step,
+            expected_step,
+            patience_of_probes,
             ..
-        } = &self.plan;
+        } = self.plan.settled();
         Some(Choice {
             method: settings.method,
             max_order: settings.max_order,
@@ -81,6 +88,8 @@ impl Checkpoint {
             central_step: *central_step,
             patience: *patience,
             implicit_step: *implicit_step,
+            expected_step: *expected_step,
+            patience_of_probes: *patience_of_probes,
         })
     }
 }
@@ -97,6 +106,8 @@ impl Choice {
             central_step,
             patience,
             implicit_step,
+            expected_step,
+            patience_of_probes,
         } = self;
         if method == Method::Auto {
             return Err(InputError::new("chosen method", method, "it must be one of the others"));
@@ -109,6 +120,7 @@ impl Choice {
             not_negative("longest stable step", step, "s")?;
         }
         not_negative("mean step of the implicit method", implicit_step, "s")?;
+        not_negative("step below which another method is tried", expected_step, "s")?;
         let reason = Some(reason);
         let asked = asked.clone();
         Ok(Plan {
@@ -120,6 +132,9 @@ impl Choice {
             central_step,
             patience,
             implicit_step,
+            expected_step,
+            patience_of_probes,
+            probe: None,
         })
     }
 }

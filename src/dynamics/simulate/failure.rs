@@ -1,9 +1,11 @@
 //! Error messages of runs that do not reach their end.
 
 use super::stepper::Failed;
+use crate::base::input::told;
 use crate::dynamics::report::Counts;
 use crate::dynamics::trajectory::Interrupted;
 use crate::integrators::common::{self, Cause};
+use crate::scene::settings::Method;
 
 /// Number of steps in a row that may be too small to advance time in double precision.
 pub(super) const STANDING: usize = 100;
@@ -41,6 +43,15 @@ fn change_in_no_time(refusal: &str) -> &str {
 pub(super) fn too_many_steps(steps: usize, counts: &Counts) -> Failed {
     let reason = counts.notice.as_deref().unwrap_or("loosen rtol, or choose another method");
     format!("{steps} steps taken, as many as max_steps allows: {reason}").into()
+}
+
+pub(super) fn out_of_time(limit: f64, method: Method, counts: &Counts) -> Failed {
+    let (limit, steps) = (told(limit), counts.steps);
+    let reason = counts.notice.as_deref().unwrap_or(
+        "raise max_time, loosen rtol, choose another method or a coarser mesh, or continue from the state that was reached",
+    );
+    format!("it has taken the {limit} s of wall-clock time that max_time allows ({method}, {steps} steps since it last started): {reason}")
+        .into()
 }
 
 /// The error of an integrator in terms of mechanics, with the likely cause, which is the `doom` of the scene

@@ -30,6 +30,7 @@ mod run;
 mod sampling;
 mod sensor;
 mod simulation;
+mod stalled;
 mod stepper;
 mod steps;
 mod view;

@@ -59,12 +59,15 @@ pub(super) struct Running {
     pub(super) means: [f64; TRIALS],
 }
 
-/// The mean size of the last steps of a plan, whatever intervals they lie in.
+/// The mean size of the steps of a plan, whatever intervals they lie in: of the last ones, and of those since the last review.
 #[derive(Default)]
 pub(super) struct MeanSteps {
     steps: usize,
     /// When the first one began (s).
     began: f64,
+    reviewed: usize,
+    /// When the first one of these began (s).
+    review_began: f64,
 }
 
 impl MeanSteps {
@@ -73,8 +76,21 @@ impl MeanSteps {
         if self.steps == 0 {
             self.began = start;
         }
+        if self.reviewed == 0 {
+            self.review_began = start;
+        }
+        self.reviewed += 1;
         self.steps = (self.steps + 1) % LONG;
         (self.steps == 0).then(|| (end - self.began) / LONG as f64)
+    }
+
+    /// Steps up to `time` (s) since the last review, or since the plan was chosen, and their mean size (s).
+    pub(super) fn since_review(&self, time: f64) -> (usize, f64) {
+        (self.reviewed, (time - self.review_began) / self.reviewed.max(1) as f64)
+    }
+
+    pub(super) fn begin_review(&mut self) {
+        self.reviewed = 0;
     }
 }
 

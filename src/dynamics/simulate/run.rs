@@ -2,7 +2,7 @@
 
 use std::mem::take;
 use std::sync::{Arc, Mutex};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use super::angles::Angles;
 use super::auto::Plan;
@@ -53,6 +53,8 @@ pub(super) struct Run {
     pub(super) atol_position: f64,
     /// Started with the run.
     clock: Instant,
+    /// Wall-clock time of its start and its steps, if that is limited.
+    pub(super) spent: Duration,
     /// The phase in force, as commands have changed it, and its number.
     pub(super) phase: Arc<Phase>,
     pub(super) number: usize,
@@ -157,6 +159,7 @@ impl Run {
             angles,
             scales,
             atol_position,
+            spent: clock.elapsed(),
             clock,
             time: 0.0,
             state,
@@ -182,12 +185,27 @@ impl Run {
 
     /// Takes a step; `false` at the end of the scene, where there is none.
     pub(super) fn advance(&mut self, observer: Observer) -> Result<bool, Error> {
+        if self.settings.max_time.is_none() {
+            return self.take_step(observer);
+        }
+        let began = Instant::now();
+        let outcome = self.take_step(observer);
+        self.spent += began.elapsed();
+        outcome
+    }
+
+    fn take_step(&mut self, observer: Observer) -> Result<bool, Error> {
         loop {
             let system = match take(&mut self.integration) {
                 Integration::Running(mut work) if self.phase_run.ended.is_none() => {
-                    let bound = self.bound(work.next_step());
-                    let ended = self.try_step(&mut work, bound, observer);
+let bound = self.bound(work.next_step());
+                    let mut ended = self.try_step(&mut work, bound, observer);
                     self.integration = Integration::Running(work);
+                    if let Err(source) = &ended
+                        && let Some(before) = self.phase_run.plan.after_failure(source)
+                    {
+                        ended = Ok(Some(Ending::Better(before)));
+                    }
                     self.phase_run.ended = ended.map_err(|source| self.give_up(source))?;
                     return Ok(true);
                 }
@@ -363,6 +381,7 @@ impl Run {
             scales: self.scales,
             atol_position: self.atol_position,
             clock: Instant::now(),
+            spent: Duration::ZERO,
             phase: self.phase.clone(),
             number: self.number,
             is_commanded: self.is_commanded,

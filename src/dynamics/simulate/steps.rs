@@ -1,8 +1,8 @@
 //! The steps of an interval: how far they go, what makes them doubtful, and the samples within them.
 
-use super::auto::{LONG, TRIAL};
+use super::auto::{LONG, PATIENCE, TRIAL};
 use super::events::Met;
-use super::failure::{STANDING, crawling, standing_still, too_many_steps};
+use super::failure::{STANDING, crawling, out_of_time, standing_still, too_many_steps};
 use super::interval::{Ending, Outcome, RollbackPoint};
 use super::phase_run::Running;
 use super::progress::{Observer, Progress};
@@ -38,6 +38,12 @@ impl Run {
         if self.phase_run.interval.steps == 0 {
             return Err(too_many_steps(self.settings.max_steps, &work.stepper.counts()));
         }
+        if let Some(limit) = self.settings.max_time
+            && self.spent.as_secs_f64() >= limit
+        {
+            let method = self.phase_run.plan.settings.method;
+            return Err(out_of_time(limit, method, &work.stepper.counts()));
+        }
         self.phase_run.interval.steps -= 1;
         if work.stop != bound {
             work.stepper.stop_at(bound)?;
@@ -65,6 +71,10 @@ impl Run {
         }
         self.report_progress(step, work.stepper.last_order(), observer)?;
         let led = self.phase_run.mean_steps.add([start, self.time]);
+        let (taken, mean) = self.phase_run.mean_steps.since_review(self.time);
+        if let Some(before) = self.phase_run.plan.settle(taken, mean) {
+            return Ok(Some(Ending::Better(before)));
+        }
         if let Some(mean) = led {
             let refusal = work.stepper.system().refusal();
             if let Some(failed) = crawling(LONG, mean, self.time, refusal) {
@@ -73,6 +83,13 @@ impl Run {
             if let Some(other) = self.phase_run.plan.turned_back(mean) {
                 return Ok(Some(Ending::Better(other)));
             }
+        }
+        if taken >= self.phase_run.plan.patience_of_probes.max(PATIENCE) {
+            let left = self.phase.until - self.time;
+            if let Some(other) = self.phase_run.plan.stalled(mean, taken, left) {
+                return Ok(Some(Ending::Better(other)));
+            }
+            self.phase_run.mean_steps.begin_review();
         }
         if is_event {
             return Ok(Some(Ending::Event));

@@ -623,6 +623,11 @@ impl System {
         self.matrices.branches.as_ref().map_or(0.0, Branches::fastest)
     }
 
+    /// The longest time (s) that the viscosity of a soft material is over its modulus; infinite without soft materials.
+    pub(crate) fn retardation_time(&self) -> f64 {
+        self.matrices.retardation_time
+    }
+
     fn not_finite(&self, row: &ConstraintRow, t: f64) -> Failure {
         let Prescribed { displacement, velocity, acceleration } = row.prescribed(t);
         let label = row.label(self.matrices.dimension);

@@ -37,8 +37,11 @@ impl<'a> Run<'a> {
         let tolerance = time_tolerance(t, t - self.t);
         let count = self.counts.len();
         let mut roots = Vec::with_capacity(count);
-        for i in 0..count {
-            let sight = self.search(i, (t, is_last), tolerance)?;
+        // where functions were found undefined
+        let mut undefined = vec![None; count];
+        for (i, undefined) in undefined.iter_mut().enumerate() {
+            self.watches[i].begin_step(self.t, self.sign);
+            let sight = self.search(i, (t, is_last), tolerance, undefined)?;
             if let Sight::Passage(turn) = sight {
                 return Ok(Found::Accumulation(i, turn));
             }
@@ -47,6 +50,13 @@ impl<'a> Run<'a> {
         loop {
             let times = roots.iter().flatten().map(|root| root.t * self.sign);
             let first = times.fold(f64::INFINITY, f64::min);
+            for (event, t) in undefined.iter().enumerate() {
+                if let Some(t) = *t
+                    && first >= t * self.sign
+                {
+                    return Err(Reason::Event { event, t, value: f64::NAN });
+                }
+            }
             if first == f64::INFINITY {
                 return Ok(Found::Jumps(Vec::new()));
             }
@@ -76,19 +86,35 @@ impl<'a> Run<'a> {
                 return Ok(Found::Jumps(met));
             }
             for (i, _) in met {
-                roots[i] = self.search(i, (t, is_last), tolerance)?.root();
+                roots[i] = self.search(i, (t, is_last), tolerance, &mut undefined[i])?.root();
             }
         }
     }
 
-    /// What the tracker of event `i` finds next, up to a time in the step that has just been made.
-    fn search(&mut self, i: usize, up_to: (f64, bool), tolerance: f64) -> Result<Sight, Reason> {
-        let Self { engine, events, watches, scratch, parameters, .. } = self;
+    /// What the tracker of event `i` finds next, up to a time in the step that has just been made; and when its function was
+    /// first `undefined`.
+    fn search(
+        &mut self,
+        i: usize,
+        up_to: (f64, bool),
+        tolerance: f64,
+        undefined: &mut Option<f64>,
+    ) -> Result<Sight, Reason> {
+        let Self { engine, events, watches, scratch, parameters, sign, t, .. } = self;
         let event = &mut events[i];
-        watches[i].next_root(up_to, tolerance, &mut |at| {
+        let is_short = (up_to.0 - *t).abs() <= tolerance;
+        let mut value = |at: f64| {
             engine.interpolate(at, 0, scratch)?;
-            event.value(i, at, scratch, parameters)
-        })
+            let value = (event.function)(at, scratch, parameters);
+            if value.is_nan() && undefined.is_none_or(|first| at * *sign < first * *sign) {
+                *undefined = Some(at);
+            }
+            Ok::<f64, Reason>(value)
+        };
+        match is_short {
+            true => watches[i].leap(up_to, &mut value),
+            false => watches[i].next_root(up_to, tolerance, &mut value),
+        }
     }
 
     /// Whether the slope at the present time leads the function of event `i` back to the side that it came

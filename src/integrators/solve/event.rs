@@ -22,6 +22,9 @@ pub(super) type Action<'a> = Box<dyn FnMut(&mut Jump<'_>) + 'a>;
 ///   searched, so that two roots within one step are found, too.
 /// * A g that starts at zero is no event. It may become one when g returns to zero after it has left it.
 /// * A g that touches zero without a change of sign is an event only with [`touching`](Self::touching).
+/// * Where g is not a number, roots before that are found; without one it is an error
+///   ([`Reason::Event`](super::Reason::Event)). Where the equations are not defined behind an event that ends the run or has
+///   an action, it takes place where the state has come to it within the tolerances.
 /// * When an action makes g jump across zero, that is no event.
 /// * An action that turns the solution back, as at a floor, may be called at ever shorter intervals (Zeno's
 ///   paradox): such events [accumulate](Self::at_accumulation).

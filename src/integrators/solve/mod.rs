@@ -28,6 +28,7 @@
 //! all cores. What a method cannot do is an error before the first step, never replaced by something else.
 
 mod crossing;
+mod edge;
 mod engine;
 mod ensemble;
 mod error;

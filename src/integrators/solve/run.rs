@@ -157,7 +157,8 @@ impl<'a> Run<'a> {
         for Break { t, .. } in &breaks {
             check_time("break", *t)?;
             if (t - start) * sign <= 0.0 || (end - t) * sign <= 0.0 {
-                let help = format!("it lies between {start} and {end}");
+                let help =
+                    format!("it has to lie within the span from {start} to {end}, not at its ends");
                 return Err(InputError::new("break", t, help).into());
             }
         }

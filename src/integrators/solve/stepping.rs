@@ -32,8 +32,10 @@ impl Run<'_> {
         let (t_old, end) = (self.t, self.span.1);
         // no step from one number to the next, where a break directly follows another one, an event or the
         // start
-        if !self.is_before_break(t_old) {
-            self.engine.step(end)?;
+        if !self.is_before_break(t_old)
+            && let Err(error) = self.engine.step(end)
+        {
+            return self.at_edge(error).map(Some);
         }
         let mut t = self.engine.t();
         let at_break = self.is_before_break(t);
@@ -82,7 +84,7 @@ impl Run<'_> {
     }
 
     /// Shows the step to the observer, and to the caller.
-    fn made_step(&mut self) -> Step<'_> {
+    pub(super) fn made_step(&mut self) -> Step<'_> {
         self.report();
         Step {
             t_old: self.t_old,

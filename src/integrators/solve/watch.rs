@@ -103,6 +103,33 @@ impl EventTracker {
         self.acted.is_some_and(|last| (t - last).abs() < 0.5 * self.longest)
     }
 
+    /// Goes on from the start of a step at time `t`, along `sign` t, if a root just before it is where it was followed to.
+    pub(super) fn begin_step(&mut self, t: f64, sign: f64) {
+        if (t - self.t) * sign > 0.0 {
+            self.t = t;
+        }
+    }
+
+    /// The root in a step up to time `to` that is too short to be searched, placed there.
+    pub(super) fn leap<E>(
+        &mut self,
+        (to, is_last): (f64, bool),
+        g: &mut impl FnMut(f64) -> Result<f64, E>,
+    ) -> Result<Sight, E> {
+        if self.g == 0.0 || self.t == to {
+            return Ok(Sight::Nothing);
+        }
+        let before = self.g;
+        (self.t, self.g) = (to, g(to)?);
+        if self.g == 0.0 && !is_last {
+            self.g = f64::MIN_POSITIVE.copysign(before);
+        }
+        let sign = if before < 0.0 { 1 } else { -1 };
+        let is_met = crosses(before, self.g) && self.direction.counts(sign.into());
+        let is_met = is_met && !self.g.is_nan();
+        Ok(if is_met { Sight::Root(Root::at(to, self.g, sign)) } else { Sight::Nothing })
+    }
+
     /// The next root up to time `to`, to within `tolerance`. The tracker moves there, or to `to`.
     ///
     /// Whether a 0 at `to` is a root is decided in the next step, unless this one `is_last`.
@@ -150,11 +177,18 @@ impl EventTracker {
                 }
             }
             self.turn = None;
+            if last.g.is_nan() {
+                return Ok(Sight::Nothing);
+            }
         }
         let mut before: Option<Point> = None;
         for k in 1..=self.samples {
             let t = if k == self.samples { to } else { from + slice * f64::from(k) };
             let mut next = at(t)?;
+            if next.g.is_nan() {
+                let root = Root::up_to_edge(last, t, tolerance, &mut at)?;
+                return Ok(root.map_or(Sight::Nothing, Sight::Root));
+            }
             if last.g == 0.0 {
                 last = next;
                 continue;
@@ -249,7 +283,43 @@ fn falls_from<E>(
     Ok(is_lower(near, a) || crosses(a.g, near.g))
 }
 
+/// Part of the last value of a function that it has to fall below on its way to the edge of its domain, for that to be a root;
+/// less where it was followed to a smaller part of the distance, of which a square root falls to the root.
+const ZERO_AT_EDGE: f64 = 1e-3;
+
 impl Root {
+    /// A root at time `t`, where the function is `g`, of which no more is known.
+    pub(super) fn at(t: f64, g: f64, sign: i32) -> Self {
+        Self { t, sign, noise: 10.0 * g.abs(), behind: Point { t, g } }
+    }
+
+    /// The root between `near` and the edge of the domain of the function, before the time `beyond` where it is undefined.
+    fn up_to_edge<E>(
+        mut near: Point,
+        mut beyond: f64,
+        tolerance: f64,
+        at: &mut impl FnMut(f64) -> Result<Point, E>,
+    ) -> Result<Option<Self>, E> {
+        let first = near;
+        if first.g == 0.0 {
+            return Ok(None);
+        }
+        while (beyond - near.t).abs() > tolerance.max(2.0 * f64::EPSILON * beyond.abs()) {
+            let middle = at(0.5 * (near.t + beyond))?;
+            if middle.g.is_nan() {
+                beyond = middle.t;
+            } else if crosses(near.g, middle.g) {
+                return Self::between(near, middle, tolerance, at).map(Some);
+            } else {
+                near = middle;
+            }
+        }
+        let sign = if first.g < 0.0 { 1 } else { -1 };
+        let part = ((beyond - near.t) / (beyond - first.t)).cbrt().min(ZERO_AT_EDGE);
+        let falls = near.g.abs() < part * first.g.abs();
+        Ok(falls.then(|| Self::at(near.t, near.g, sign)))
+    }
+
     fn between<E>(
         near: Point,
         far: Point,

@@ -7,6 +7,7 @@ use super::{
     pattern::Pattern, shape::Shape, signs::Sign, vector::Vector,
 };
 use crate::integrators::common::{Error, Tolerances};
+use crate::integrators::ode::Failure;
 
 /// Difference quotients for the matrix of a linear solver.
 pub(crate) struct Differences {
@@ -27,6 +28,32 @@ pub(crate) struct Differences {
 
 /// Writes the function at a state. (`dyn`: what calls it is compiled once, not for each type of system.)
 type Evaluate<'a, E> = dyn FnMut(&[f64], &mut [f64]) -> Result<(), E> + 'a;
+
+/// An error of a function, which may mean that it is not defined there.
+pub(crate) trait Refused {
+    fn is_recoverable(&self) -> bool;
+}
+
+impl Refused for Failure {
+    fn is_recoverable(&self) -> bool {
+        matches!(self, Self::Recoverable(_))
+    }
+}
+
+/// What callbacks return to C.
+impl Refused for i32 {
+    fn is_recoverable(&self) -> bool {
+        *self > 0
+    }
+}
+
+/// Whether a function has no value where it was evaluated.
+fn is_undefined<E: Refused>(outcome: &Result<(), E>, value: &[f64]) -> bool {
+    match outcome {
+        Ok(()) => value.iter().any(|value| !value.is_finite()),
+        Err(error) => error.is_recoverable(),
+    }
+}
 
 /// How far the unknowns of an ODE are shifted.
 struct Increments {
@@ -123,8 +150,9 @@ impl Differences {
     /// Increments are fractions of the size of each unknown, in the direction in which it moves. They adapt
     /// to the change of the function: so large that it is not lost in rounding, and no larger than needed
     /// (D. E. Salane, "Adaptive routines for forming Jacobians numerically", Sandia report SAND86-1319, 1986).
-    /// A colour with a column whose change was lost takes a second evaluation.
-    pub(crate) fn of_rhs<E>(
+    /// A colour with a column whose change was lost takes a second evaluation; so does one whose shifts lead out of where the
+    /// function is defined, in the other direction.
+    pub(crate) fn of_rhs<E: Refused>(
         &mut self,
         y: &[f64],
         ydot: &[f64],
@@ -147,7 +175,19 @@ impl Differences {
             let columns = colouring.columns(colour);
             columns.iter().for_each(|&j| shifted[j] = shift(j, parts[j]));
             *evaluations += 1;
-            evaluate(shifted, value)?;
+            let outcome = evaluate(shifted, value);
+            if is_undefined(&outcome, value) {
+                for &j in columns {
+                    let back = 2.0 * y[j] - shifted[j];
+                    if signs.get(j).is_none_or(|sign| sign.allows(back)) {
+                        shifted[j] = back;
+                    }
+                }
+                *evaluations += 1;
+                evaluate(shifted, value)?;
+            } else {
+                outcome?;
+            }
             let mut again = false;
             for &j in columns {
                 let column = &mut values[shape.places(j, n, stored)];

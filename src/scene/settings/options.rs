@@ -41,7 +41,7 @@ impl SettingsOption {
     }
 
     /// All options, one for each field of [`Settings`].
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 11] = [
         Self {
             key: "method",
             meaning: "integration method: see \"pliant methods\"",
@@ -130,6 +130,14 @@ impl SettingsOption {
             value_name: "STEPS",
             value: SettingsValue::Count(|settings, steps| settings.max_steps = steps),
         },
+        Self {
+            key: "max_time",
+            meaning: "wall-clock time that a run may take, each of them where there are several",
+            unit: "s",
+            default: "none",
+            value_name: "SECONDS",
+            value: SettingsValue::Number(|settings, time| settings.max_time = Some(time)),
+        },
     ];
 }
 
@@ -168,10 +176,11 @@ mod tests {
             contact_events,
             max_step,
             max_steps,
+            max_time,
         } = all;
         assert_eq!((method, contact_events), (Method::CentralDifference, ContactEvents::Locate));
         assert_eq!([rtol, alpha], [0.123; 2]);
-        assert_eq!([atol_position, atol_velocity, max_step], [Some(0.123); 3]);
+        assert_eq!([atol_position, atol_velocity, max_step, max_time], [Some(0.123); 4]);
         assert_eq!((max_order, max_steps, stability_limit_detection), (Some(3), 3, true));
     }
 

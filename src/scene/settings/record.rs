@@ -45,6 +45,10 @@ pub struct Settings {
     pub max_step: Option<f64>,
     /// Steps that one phase may take. Default: 10 million, a guard against runs without end.
     pub max_steps: usize,
+    /// Wall-clock time (s) that a run may take, above 0; each of them where there are several, as in a sweep. It is looked at
+    /// between steps, so a run ends by the step in which it is reached; time in which nobody advances a simulation does not
+    /// count. Default: none.
+    pub max_time: Option<f64>,
 }
 
 impl Default for Settings {
@@ -60,6 +64,7 @@ impl Default for Settings {
             contact_events: ContactEvents::default(),
             max_step: None,
             max_steps: 10_000_000,
+            max_time: None,
         }
     }
 }
@@ -78,6 +83,7 @@ impl Settings {
         self.atol_position.map_or(Ok(1.0), |atol| positive("atol_position", atol, "m"))?;
         self.atol_velocity.map_or(Ok(1.0), |atol| positive("atol_velocity", atol, "m/s"))?;
         self.max_step.map_or(Ok(1.0), |step| positive("max_step", step, "s"))?;
+        self.max_time.map_or(Ok(1.0), |time| positive("max_time", time, "s"))?;
         let orders = self.method.orders();
         match self.max_order {
             Some(order) if matches!(self.method, Method::Rk | Method::CentralDifference) => {
