@@ -218,7 +218,9 @@ fn space(
         return match wanted {
             None if !faces => Ok(3),
             None => Err(format!(
-                "it has {cells} alone, which are faces, and {extends}: for a membrane in space set the dimension of space to 3 (dimension = 3 in a                  scene file); for a solid mesh its volume, too (in Gmsh: a 3D mesh; tetrahedra or hexahedra); for a rigid solid of a closed                  surface take mesh = {{ kind = \"surface\" }}; for a body in the plane make z the same everywhere"
+                "it has {cells} alone, which are faces, and {extends}: for a membrane in space set the dimension of space to 3 (dimension = 3 in a \
+                 scene file); for a solid mesh its volume, too (in Gmsh: a 3D mesh; tetrahedra or hexahedra); for a rigid solid of a closed \
+                 surface take mesh = {{ kind = \"surface\" }}; for a body in the plane make z the same everywhere"
             )),
             Some(_) => Err(format!(
                 "it {extends}, and space has two dimensions: make z the same everywhere, or set dimension = 3 for a membrane or a string in space"

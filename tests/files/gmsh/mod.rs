@@ -24,7 +24,7 @@ fn committed(file: &str) -> Mesh {
 }
 
 fn read(content: impl AsRef<[u8]>) -> Result<Mesh, InputError> {
-    read_by(content, |path| Mesh::read_gmsh(path))
+    read_by(content, Mesh::read_gmsh)
 }
 
 /// In a space of `dimension`.
@@ -203,7 +203,12 @@ fn space_has_the_dimensions_that_the_body_needs() {
         let file = msh(mesh, |node| node + 1);
         says(
             read(&file),
-            &["triangles alone", "along z, from 0 to 1 m", "dimension = 3", "3D mesh"],
+            &[
+                "triangles alone",
+                "along z, from 0 to 1 m",
+                "(dimension = 3 in a scene file)",
+                "3D mesh",
+            ],
         );
         says(read_in(2, &file), &["along z, from 0 to 1 m", "two dimensions"]);
     }
