@@ -2,6 +2,7 @@
 
 import os
 import tempfile
+import warnings
 
 import numpy as np
 
@@ -56,17 +57,26 @@ class Mesh:
         return f"Mesh({len(self.nodes)} nodes, {len(self.cells)} {self.kind}, sets {sorted(self.sets)})"
 
     @classmethod
-    def read_gmsh(cls, path):
-        """The mesh in a file of Gmsh; its physical groups are node sets, and groups of cells."""
-        return cls(*_pliant.read_gmsh(os.fspath(path)))
+    def read_gmsh(cls, path, dimension=None):
+        """The mesh in a file of Gmsh (4.1 or 2.2); its physical groups are node sets, and groups of cells.
+
+        Faces alone in space are a membrane with ``dimension=3`` only. What was changed is a :class:`ModelWarning`: cells that were turned
+        over, for one.
+        """
+        from .errors import ModelWarning  # which imports this
+
+        *mesh, notes = _pliant.read_gmsh(os.fspath(path), dimension)
+        for note in notes:
+            warnings.warn(f"{os.fspath(path)}: {note}", ModelWarning, stacklevel=2)
+        return cls(*mesh)
 
     @classmethod
-    def from_gmsh(cls, gmsh):
-        """The mesh of the present model of the module `gmsh`."""
+    def from_gmsh(cls, gmsh, dimension=None):
+        """The mesh of the present model of the module `gmsh`; see :meth:`read_gmsh`."""
         with tempfile.TemporaryDirectory() as directory:
             path = os.path.join(directory, "mesh.msh")
             gmsh.write(path)
-            return cls.read_gmsh(path)
+            return cls.read_gmsh(path, dimension)
 
     @classmethod
     def from_meshio(cls, mesh, dimension=None):

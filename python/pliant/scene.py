@@ -13,6 +13,7 @@ from .mesh import Mesh
 from .motion import Equilibrium, Motion
 from .plain import as_json
 from .progress import bar
+from .reduced import ReducedModel
 from .simulation import Simulation
 
 
@@ -180,7 +181,12 @@ class Scene:
         return self._scene.chart(os.fspath(directory), methods, [float(r) for r in rtol], repetitions)
 
     def reduced(self, model):
-        """The same scene by a reduced model of it, a :class:`ReducedModel`; by all its unknowns with None."""
+        """The same scene by a reduced model of it: a :class:`ReducedModel`, or the path of its file; by all its unknowns with None."""
+        if isinstance(model, (str, os.PathLike)):
+            path = os.path.abspath(model)
+            return Scene._of(self._scene.reduced(None)).with_values({"solver.reduced": path})
+        if model is not None and not isinstance(model, ReducedModel):
+            raise TypeError(f"a reduced model is a ReducedModel or the path of a file, not {type(model).__name__}")
         return Scene._of(self._scene.reduced(model and model._reduced))
 
     def half(self, axis):

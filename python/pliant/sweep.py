@@ -1,19 +1,25 @@
 """Studies of many runs: one scene for many values of its keys."""
 
 import os
+import tempfile
 import threading
+from collections.abc import Mapping
 
 import numpy as np
 
 from . import _pliant
+from .plain import as_json
 from .progress import bar
+from .scene import Scene
 
 
 class Sweep:
     """The rows of a study, in a directory with table.csv, plot.svg and sweep.html."""
 
-    def __init__(self, directory, rows, missing):
+    def __init__(self, directory, rows, missing, kept=None):
         self.directory, self.rows, self.missing = directory, rows, missing
+        #: A temporary directory, which is there as long as this is.
+        self._kept = kept
 
     @property
     def table(self):
@@ -32,19 +38,45 @@ class Sweep:
         return f"<pliant.Sweep in {self.directory!r}: {self.rows} rows{left}>"
 
 
-def sweep(study, client=None, *, directory=None, cores=None, limit=None, yes=False, progress=None):
-    """Computes a study, a file as `pliant sweep` takes it, and returns its :class:`Sweep`.
+def sweep(
+    study,
+    vary=None,
+    client=None,
+    *,
+    quantities=None,
+    accuracy=None,
+    sample=None,
+    directory=None,
+    cores=None,
+    limit=None,
+    yes=False,
+    progress=None,
+):
+    """Computes a study, and returns its :class:`Sweep`: that of a file as `pliant sweep` takes it, or of a scene and what varies.
 
     Rows that are there already, from this call, another process or the command, are not computed again; Ctrl-C loses none.
 
+    >>> import pliant
+    >>> scene = pliant.Scene.from_toml("scenes/square-press.toml")
+    >>> rows = pliant.sweep(scene, {"body.material.young": [5e5, 1e6]}, quantities=["com.y:end"])
+    >>> len(rows.table)
+    2
+
     Parameters
     ----------
-    study : path
-        The study file.
+    study : path or Scene
+        The study file; or a scene, with `vary` and `quantities`.
+    vary : dict
+        Values of keys of the scene, all combined: a list, or a range as in a study file,
+        ``{"body.material.young": {"from": 1e5, "to": 1e6, "count": 5}}``. Where `study` is a file, a client may stand here.
+    quantities : list of str
+        What is kept of each run of the scene: ``["tip.y:end"]``.
+    accuracy, sample : optional
+        As in study files.
     client : dask.distributed.Client, optional
         Where the rows are computed: one task each. Its workers have to see `directory`. Default: on the cores of this machine.
     directory : path, optional
-        Where rows and results are. Default: ``out/NAME-sweep``.
+        Where rows and results are. Default: ``out/NAME-sweep``; of a scene, a temporary one that is there as long as the :class:`Sweep`.
     cores : int, optional
         How many runs there are at once on this machine. Default: one on each core, as far as they fit into memory.
     limit : int, optional
@@ -54,9 +86,22 @@ def sweep(study, client=None, *, directory=None, cores=None, limit=None, yes=Fal
     progress : bool, optional
         Whether a bar is shown; by default in terminals and notebooks.
     """
-    study = os.path.abspath(study)
-    name = os.path.splitext(os.path.basename(study))[0]
-    directory = os.path.abspath(directory or os.path.join("out", f"{name}-sweep"))
+    kept = None
+    if isinstance(study, Scene):
+        if directory is None:
+            kept = tempfile.TemporaryDirectory(prefix="pliant-sweep-")
+            directory = kept.name
+        directory = os.path.abspath(directory)
+        name = study.title or "sweep"
+        study = _study_file(study, vary, quantities, accuracy, sample, directory)
+    else:
+        if vary is not None and not isinstance(vary, Mapping):
+            vary, client = None, vary
+        if any(value is not None for value in (vary, quantities, accuracy, sample)):
+            raise TypeError("a study file says what varies and what is kept: vary, quantities, accuracy and sample are for a Scene")
+        study = os.path.abspath(study)
+        name = os.path.splitext(os.path.basename(study))[0]
+        directory = os.path.abspath(directory or os.path.join("out", f"{name}-sweep"))
     opened = _pliant.Sweep(study, directory, yes)
     opened.check()
     numbers = opened.open()[:limit]
@@ -65,7 +110,29 @@ def sweep(study, client=None, *, directory=None, cores=None, limit=None, yes=Fal
             _here(opened, numbers, cores, show)
         else:
             _there(client, study, directory, numbers, show)
-    return Sweep(directory, *opened.gather())
+    return Sweep(directory, *opened.gather(), kept)
+
+
+def _study_file(scene, vary, quantities, accuracy, sample, directory):
+    """Writes a scene and the study of it into a directory, and returns the path of the study."""
+    if not isinstance(vary, Mapping) or not vary:
+        raise TypeError('vary is a dict of keys and their values: {"body.material.young": [1e5, 2e5]}')
+    if isinstance(quantities, str) or not quantities:
+        raise TypeError('quantities are a list of what is kept of each run: ["tip.y:end"]')
+    keys = [{"name": key, **(values if isinstance(values, Mapping) else {"values": list(values)})} for key, values in vary.items()]
+    study = {"title": scene.title, "scene": "scene.toml", "quantities": list(quantities), "key": keys, "accuracy": accuracy, "sample": sample}
+    texts = {"scene.toml": scene._scene.to_toml_anywhere(), "study.toml": _pliant.toml_of(as_json(study))}
+    os.makedirs(directory, exist_ok=True)
+    for name, text in texts.items():
+        path = os.path.join(directory, name)
+        if os.path.exists(path):
+            with open(path, encoding="utf-8") as file:
+                if file.read() != text:
+                    raise ValueError(f"{path} is of another study: name another directory")
+        else:
+            with open(path, "w", encoding="utf-8") as file:
+                file.write(text)
+    return os.path.join(directory, "study.toml")
 
 
 def _here(opened, numbers, cores, show):

@@ -416,7 +416,7 @@ def mesh_gmsh(
     halved_in: dict | Sequence[dict] | None = None,
     bubbles: bool | None = None,
 ) -> dict:
-    r"""Mesh of the kind "gmsh": a file of Gmsh; coordinates are metres.
+    r"""Mesh of the kind "gmsh": a file of Gmsh, of version 4.1 or 2.2; coordinates are metres.
 
     Parameters
     ----------

@@ -123,6 +123,15 @@ impl Scene {
         SceneFile::written_with(&self.text, &self.overrides).map_err(raised)
     }
 
+    /// The same with the whole paths of files that it names, so that it may stand anywhere.
+    fn to_toml_anywhere(&self) -> PyResult<String> {
+        if self.model.is_some() {
+            let help = "its reduced model is in no file: write it, and take scene.reduced(path)";
+            return Err(PyValueError::new_err(help));
+        }
+        SceneFile::moved_with(&self.text, &self.path, &self.overrides).map_err(raised)
+    }
+
     #[getter]
     fn title(&self) -> &str {
         &self.file.title
@@ -344,27 +353,35 @@ pub fn schema() -> String {
     pliant::scene_file::schema().to_string()
 }
 
-/// Nodes, cells, the word for these, and node sets of a file of Gmsh.
+/// Nodes, cells, the word for these, node sets, groups of cells and notes of a file of Gmsh.
 #[pyfunction]
 #[allow(clippy::type_complexity)]
+#[pyo3(signature = (path, dimension = None))]
 pub fn read_gmsh(
     py: Python<'_>,
     path: PathBuf,
+    dimension: Option<usize>,
 ) -> PyResult<(
     Bound<'_, PyArray2<f64>>,
     Bound<'_, PyArray2<i64>>,
     &'static str,
     Bound<'_, PyDict>,
     Bound<'_, PyDict>,
+    Vec<String>,
 )> {
-    let mesh = Mesh::read_gmsh(path).map_err(raised)?;
+    let mesh = match dimension {
+        Some(dimension) => Mesh::read_gmsh_in(path, dimension),
+        None => Mesh::read_gmsh(path),
+    };
+    let mesh = mesh.map_err(raised)?;
     let nodes = vectors(py, mesh.positions().to_vec(), mesh.dimension())?;
     let groups = PyDict::new(py);
     for (name, cells) in mesh.cell_groups() {
         groups.set_item(name, PyArray1::from_iter(py, cells.iter().map(|cell| *cell as i64)))?;
     }
     let word = mesh.kind().word();
-    Ok((nodes, cells(py, &mesh)?, word, sets(py, &mesh)?, groups))
+    let notes = mesh.notes().to_vec();
+    Ok((nodes, cells(py, &mesh)?, word, sets(py, &mesh)?, groups, notes))
 }
 
 /// Nodes of the cells, from 0: [cell, node].

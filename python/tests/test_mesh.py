@@ -53,3 +53,24 @@ def test_space_of_faces():
     with pytest.raises(ValueError, match="extend along 3 axes"):
         pliant.Mesh.from_meshio(meshio_mesh(bent, CELLS), dimension=2)
     assert pliant.Mesh.from_meshio(meshio_mesh(bent, CELLS), dimension=3).nodes.shape == (4, 3)
+
+
+def test_files_of_faces_and_of_both_windings(tmp_path):
+    """A surface in space is a membrane where that is asked for; cells that run the wrong way round are turned over, and told of."""
+
+    def write(z, second):
+        points = f"1 0 0 0\n2 1 0 0\n3 1 1 {z}\n4 0 1 0\n"
+        text = f"$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n4\n{points}$EndNodes\n$Elements\n2\n1 2 0 1 2 3\n2 2 0 {second}\n$EndElements\n"
+        (tmp_path / "faces.msh").write_text(text)
+
+    write(0.5, "1 3 4")
+    with pytest.raises(pliant.InputError, match="dimension = 3"):
+        pliant.Mesh.read_gmsh(tmp_path / "faces.msh")
+    membrane = pliant.Mesh.read_gmsh(tmp_path / "faces.msh", dimension=3)
+    assert membrane.nodes.shape == (4, 3) and membrane.nodes[2, 2] == 0.5
+    write(0, "1 4 3")
+    with pytest.warns(pliant.ModelWarning, match="1 of 2 cells run the other way round"):
+        mesh = pliant.Mesh.read_gmsh(tmp_path / "faces.msh")
+    assert mesh.nodes.shape == (4, 2)
+    a, b, c = (mesh.nodes[mesh.cells[1, k]] for k in range(3))
+    assert np.linalg.det([b - a, c - a]) == 1.0

@@ -41,6 +41,11 @@ def test_a_model_is_learned_and_run(scene, tmp_path):
     model.write_chart(tmp_path / "beam.svg")
     by_file = scene.run(sampling=0.02, reduced=str(tmp_path / "beam.reduced")).displacements
     assert np.array_equal(by_file, short)
+    read = scene.reduced(tmp_path / "beam.reduced")
+    assert np.array_equal(read.run(sampling=0.02).displacements, short)
+    assert np.array_equal(read.reduced(None).run(sampling=0.02).displacements, full)
+    with pytest.raises(TypeError, match="the path of a file, not int"):
+        scene.reduced(3)
     other = scene.with_values({"body.material.young": 2e5})
     with pytest.raises(pliant.SceneError, match="materials differ"):
         other.run(reduced=str(tmp_path / "beam.reduced"))

@@ -4,6 +4,7 @@ import os
 import signal
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import pliant
@@ -48,6 +49,47 @@ def test_rows_are_runs(study, tmp_path):
     for row in table[::5]:
         motion = pliant.Scene.from_toml(tmp_path / "beam.toml", set={"body.material.young": row["body.material.young"]}).run()
         assert motion.sensors["tip.y"][-1] == row["tip.y:end"]
+
+
+def test_a_scene_without_a_file(study, tmp_path):
+    """The rows of a scene and what varies are those of the same study from a file."""
+    by_file = pliant.sweep(study, directory=tmp_path / "rows").table
+    scene = pliant.Scene.from_toml(SCENE)
+    vary = {"body.material.young": {"from": 5e5, "to": 2e6, "count": 12}}
+    rows = pliant.sweep(scene, vary, quantities=["tip.y:end"], directory=tmp_path / "scene")
+    assert (rows.rows, rows.missing) == (12, 0)
+    for name in ("body.material.young", "tip.y:end"):
+        assert list(rows.table[name]) == list(by_file[name])
+    # in a temporary directory, over two keys, with values of the scene that are no more those of its text
+    heavy = scene.with_values({"body.material.density": 2e3})
+    few = pliant.sweep(heavy, {"body.material.young": np.array([5e5, 1e6]), "phase.until": [0.02, 0.05]}, quantities=["tip.y:end"])
+    assert len(few.table) == 4
+    for row in few.table:
+        values = {"body.material.young": row["body.material.young"], "phase.1.until": row["phase.until"]}
+        assert heavy.with_values(values).run().sensors["tip.y"][-1] == row["tip.y:end"]
+    with pytest.raises(ValueError, match="another study"):
+        pliant.sweep(heavy, vary, quantities=["tip.y:end"], directory=tmp_path / "scene")
+    with pytest.raises(TypeError, match="quantities"):
+        pliant.sweep(scene, vary)
+    with pytest.raises(TypeError, match="vary is a dict"):
+        pliant.sweep(scene, quantities=["tip.y:end"])
+    with pytest.raises(TypeError, match="for a Scene"):
+        pliant.sweep(study, vary)
+
+
+def test_a_scene_whose_mesh_is_in_a_file(tmp_path):
+    """Files that it names are found from wherever its rows are."""
+    (tmp_path / "beam.msh").write_text(
+        "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n1\n1 1 \"left\"\n$EndPhysicalNames\n"
+        "$Nodes\n4\n1 0 0 0\n2 0.1 0 0\n3 0.1 0.1 0\n4 0 0.1 0\n$EndNodes\n"
+        "$Elements\n3\n1 1 2 1 1 4 1\n2 2 2 0 1 1 2 3\n3 2 2 0 1 1 3 4\n$EndElements\n"
+    )
+    start, rest = SCENE.split("mesh = ")
+    text = f'{start}mesh = {{ kind = "gmsh", file = "beam.msh" }}\n' + rest.split("\n", 1)[1].replace('"right"', "2")
+    (tmp_path / "beam.toml").write_text(text)
+    scene = pliant.Scene.from_toml(tmp_path / "beam.toml")
+    rows = pliant.sweep(scene, {"body.material.young": [5e5, 1e6]}, quantities=["tip.y:end"])
+    assert (rows.rows, rows.missing) == (2, 0) and np.isfinite(rows.table["tip.y:end"]).all()
 
 
 def test_bad_studies(study, tmp_path):

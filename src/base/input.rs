@@ -20,7 +20,7 @@ pub(crate) use memory::free_memory;
 #[cfg(feature = "scene-file")]
 pub(crate) use nearest::list;
 pub(crate) use nearest::{unknown, unknown_among};
-pub(crate) use words::{percent, short, told};
+pub(crate) use words::{digits, percent, short, told};
 
 /// An input that cannot be used: which one, its value, and what is allowed.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]

@@ -313,11 +313,77 @@ fn cells_that_are_turned_over_are_named() {
             2 => mesh.mapped(|x| [x[1], x[0]]),
             _ => mesh.mapped(|x| [x[1], x[0], x[2]]),
         };
-        let builder = Body::new(turned.unwrap(), RUBBER).strain(Strain::Cauchy);
+        let turned = turned.unwrap();
+        let all = turned.cell_count();
+        let builder = Body::new(turned, RUBBER).strain(Strain::Cauchy);
         let builder = if dimension == 2 { builder.thickness(THICKNESS) } else { builder };
         let message = builder.build().unwrap_err().to_string();
-        assert!(message.starts_with("signed volume of cell 1 (nodes ["), "{kind:?}: {message}");
+        let told = format!("= {all} of {all} cannot be used: {all} run the wrong way round");
+        assert!(message.contains(&told), "{kind:?}: {message}");
+        assert!(message.contains("such as cell 1 (nodes ["), "{kind:?}: {message}");
     }
+}
+
+/// Cells with a quadrature point that is inside out are told as what they are, with how many there are of each.
+#[test]
+fn cells_of_no_good_shape_are_told_as_what_they_are() {
+    let says = |positions: &[[f64; 2]], kind, cells: &[usize], parts: &[&str]| {
+        let mesh = Mesh::new(2, positions.concat(), kind, cells.to_vec()).unwrap();
+        let body = Body::new(mesh, RUBBER).strain(Strain::Cauchy).thickness(THICKNESS);
+        let message = body.build().unwrap_err().to_string();
+        for part in parts {
+            assert!(message.contains(part), "\"{part}\" is missing from: {message}");
+        }
+    };
+    let quadrilaterals = CellKind::Quadrilateral;
+    let square = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
+    says(
+        &square,
+        quadrilaterals,
+        &[0, 2, 1, 3],
+        &["1 of 1 cannot be used: 1 are bow-ties", "cell 1 (nodes [1, 3, 2, 4]"],
+    );
+    let dart = [[0.0, 0.0], [1.0, 0.0], [0.2, 0.2], [0.0, 1.0]];
+    says(
+        &dart,
+        quadrilaterals,
+        &[0, 1, 2, 3],
+        &["1 of 1 cannot be used: 1 are concave", "two triangles"],
+    );
+    says(&square, CellKind::Triangle, &[0, 2, 1], &["1 run the wrong way round"]);
+    let line = [[0.0, 0.0], [1.0, 1.0], [2.0, 2.0]];
+    says(&line, CellKind::Triangle, &[0, 1, 2], &["1 are flat"]);
+    // a good square, a bow-tie, and two that are concave
+    let mut positions = Vec::new();
+    for (place, shape) in [square, square, dart, dart].iter().enumerate() {
+        positions.extend(shape.map(|[x, y]| [x + 2.0 * place as f64, y]));
+    }
+    let cells: Vec<usize> = (0..4).chain([4, 6, 5, 7]).chain(8..16).collect();
+    says(
+        &positions,
+        quadrilaterals,
+        &cells,
+        &[
+            "3 of 4 cannot be used: 1 are bow-ties",
+            "such as cell 2",
+            "2 are concave",
+            "such as cell 3",
+        ],
+    );
+    // the middle of the long side is beyond the opposite corner
+    let bulged = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [0.5, 0.8], [0.5, 0.5], [0.0, 0.5]];
+    says(&bulged, CellKind::Triangle6, &[0, 1, 2, 3, 4, 5], &["1 have sides so curved", "refine"]);
+}
+
+/// A hexahedron one end of which is turned over has corners of both orientations.
+#[test]
+fn twisted_hexahedra_are_told() {
+    let brick = Mesh::cuboid([1.0; 3], [2; 3], SolidCells::Hexahedra).unwrap();
+    let mut cell = brick.cells().next().unwrap().to_vec();
+    cell[4..].reverse();
+    let twisted = Mesh::new(3, brick.positions().to_vec(), brick.kind(), cell).unwrap();
+    let message = Body::new(twisted, RUBBER).strain(Strain::Cauchy).build().unwrap_err();
+    assert!(message.to_string().contains("1 of 1 cannot be used: 1 are twisted"), "{message}");
 }
 
 #[test]

@@ -82,6 +82,8 @@ fn rows_are_those_of_single_runs() {
         &place.sweep(&[]),
         &["6 rows: 6 fine, 0 doubtful, 0 failed", "table.csv, plot.svg, sweep.html"],
     );
+    let plot = fs::read_to_string(place.path("out/study-sweep/plot.svg")).unwrap();
+    assert!(plot.contains("body.material.young (kPa)"), "{plot}");
     let (head, rows) = place.rows("out/study-sweep");
     let names = "id body.material.young phase.pull.load.1.force com.x:end right.x:max tip:end verdict warnings failure \
                  difference reached steps wall_seconds processor_seconds";

@@ -171,7 +171,14 @@ fn snapshots_have_a_panel_per_time_and_all_cells() -> Outcome {
         assert_eq!(data.matches('z').count(), 18, "one closed line per cell: {data}");
     }
     let texts: Vec<&str> = document.descendants().filter_map(|node| node.text()).collect();
-    for label in ["A & B", "t = 0.01 s, press <down>", "t = 0.03 s, free", "held", "moved"] {
+    for label in [
+        "A & B",
+        "t = 0 s, press <down>",
+        "t = 0.01 s, press <down>",
+        "t = 0.03 s, free",
+        "held",
+        "moved",
+    ] {
         assert!(texts.iter().any(|text| text.trim() == label), "{label} in {texts:?}");
     }
     assert_eq!(picture(&path, "obstacle")?.1, 5);
@@ -279,6 +286,23 @@ fn a_chart_names_its_series() -> Outcome {
         let refused = bad.write(&path).unwrap_err();
         assert!(matches!(refused, pliant::Error::Input(_)), "{refused}");
     }
+    Ok(())
+}
+
+/// Each line of reference has dashes of its own, in the field and in the legend.
+#[test]
+fn lines_of_reference_differ_in_their_dashes() -> Outcome {
+    let directory = tempfile::tempdir()?;
+    let path = directory.path().join("chart.svg");
+    let chart = Chart::new("Levels").series("measured", [(0.0, 0.0), (1.0, 1.0)]);
+    let chart = chart.reference("wanted", [(0.0, 0.5), (1.0, 0.5)]);
+    chart.reference("all unknowns", [(0.5, 0.0), (0.5, 1.0)]).write(&path)?;
+    let text = fs::read_to_string(&path)?;
+    let document = roxmltree::Document::parse(&text)?;
+    let dashes = document.descendants().filter_map(|node| node.attribute("stroke-dasharray"));
+    let dashes: Vec<&str> = dashes.filter(|dashes| *dashes != "none").collect();
+    let [first, first_name, second, second_name] = *dashes else { return Err(text.into()) };
+    assert!(first == first_name && second == second_name && first != second, "{dashes:?}");
     Ok(())
 }
 

@@ -100,6 +100,50 @@ fn overrides_are_as_if_written_in_the_file() {
     assert_eq!(twice.settings.rtol, 1e-3);
 }
 
+/// A key that may hold one table or several is reached with and without the number, whichever of the two stands in the file.
+#[test]
+fn a_single_table_is_a_list_of_one() {
+    let with = |phase: &str| {
+        format!(
+            "[body]\nmesh = {{ kind = \"ring\", inner = 0.04, outer = 0.05, nodes = [8, 2], cells = \"triangles\" }}\n\
+             thickness = 0.01\nmaterial = {{ density = 1e3, young = 1e6, poisson = 0.4, viscosity = 0.0 }}\n\
+             [[chamber]]\nname = \"air\"\nnodes = \"inner\"\n{phase}"
+        )
+    };
+    let single = with(
+        "[phase]\nname = \"blow\"\nuntil = 1.0\npressure = { chamber = \"air\", value = 1.0 }\n",
+    );
+    let listed = with(
+        "[[phase]]\nname = \"blow\"\nuntil = 1.0\n[[phase.pressure]]\nchamber = \"air\"\nvalue = 1.0\n",
+    );
+    for text in [&single, &listed] {
+        let expected = contents(&read(&text.replace("value = 1.0", "value = 7.0"), &[]).unwrap());
+        assert!(contents(&read(text, &[]).unwrap()) != expected);
+        for key in [
+            "phase.blow.pressure.value",
+            "phase.blow.pressure.1.value",
+            "phase.1.pressure.1.value",
+            "phase.pressure.value",
+        ] {
+            let found = read(text, &[&format!("{key}=7.0")]).unwrap();
+            assert!(contents(&found) == expected, "{key}");
+            #[cfg(feature = "play")]
+            {
+                let written = SceneFile::written_with(text, &[format!("{key}=7.0")]).unwrap();
+                assert_eq!(written, text.replace("value = 1.0", "value = 7.0"), "{key}");
+            }
+        }
+        for (over, expected) in [
+            ("phase.blow.pressure.2.value=7.0", "pressure"),
+            ("phase.blwo.until=7.0", "phase.blwo"),
+            ("phase.blow.pressure.valeu=7.0", "valeu"),
+        ] {
+            let error = read(text, &[over]).unwrap_err().to_string();
+            assert!(error.contains(expected), "{over}: {error}");
+        }
+    }
+}
+
 #[test]
 fn mistakes_in_overrides_are_named() {
     let cases: [(&[&str], &str); 9] = [

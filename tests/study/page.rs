@@ -91,7 +91,8 @@ fn between<'a>(text: &'a str, from: &str, to: &str) -> Option<&'a str> {
     Some(&text[begin..begin + end + to.len()])
 }
 
-/// Places of points follow from the axes: logarithmic, six hundredths of the decades more at both ends.
+/// Places of points follow from the axes: logarithmic, six hundredths of the decades more at both ends. The least error that is told apart is
+/// a thousandth of the accuracy.
 #[test]
 fn points_stand_where_error_and_time_are() -> Outcome {
     let page = page(&advice(), &beam_jump()?, false)?;
@@ -99,7 +100,7 @@ fn points_stand_where_error_and_time_are() -> Outcome {
     let chart = roxmltree::Document::parse(chart)?;
     let [left, top, right, bottom] = [74.0, 14.0, 586.0, 404.0];
     let place = |error: f64, seconds: f64| {
-        let (lowest, highest) = (0.001_f64.log10(), 0.5_f64.log10());
+        let (lowest, highest) = (1e-5_f64.log10(), 0.5_f64.log10());
         let more = 0.06 * (highest - lowest);
         let part = (error.log10() - lowest + more) / (highest - lowest + 2.0 * more);
         let x = left + (seconds.log10() + 3.24) / 4.48 * (right - left);
@@ -128,9 +129,12 @@ fn points_stand_where_error_and_time_are() -> Outcome {
         let apart = (number(circle, "cx") - x).abs().max((number(circle, "cy") - y).abs());
         assert!(apart < 0.006, "{rtol}: {apart}");
     }
-    // without an error of its own, at the bottom
+    // without an error of its own, at the least one, and not on the edge of the field
     let truth = named("1e-9")?.descendants().find_map(|node| node.attribute("d"));
-    assert!(truth.is_some_and(|d| d.contains(&format!(" {bottom:.2} "))), "{truth:?}");
+    let least = place(1e-5, 10.0)[1];
+    assert!(bottom - least > 8.0);
+    assert!(truth.is_some_and(|d| d.contains(&format!(" {least:.2} "))), "{truth:?}");
+    assert!(chart.descendants().filter_map(|n| n.text()).any(|t| t.trim() == "0.001 % or less"));
 
     let asked = chart.descendants().find(|node| node.attribute("class") == Some("asked"));
     assert!((number(asked.ok_or("no line")?, "y1") - place(0.01, 1.0)[1]).abs() < 0.006);
@@ -196,6 +200,11 @@ fn it_stands_without_motions() -> Outcome {
         assert!(page.contains(&line), "{line}");
     }
     assert!(page.contains("solver.rtol=1e-5"));
+    // nothing to set, and no list of that
+    let enough = Candidate { set: Vec::new(), ..candidate(1e-5, 0.1, Some(0.005)) };
+    let as_it_is = Advice { enough: Some(enough), ..advice.clone() };
+    let as_it_is = self::page(&as_it_is, &beam_jump()?, false)?;
+    assert!(as_it_is.contains("nothing has to be set") && !as_it_is.contains("<pre></pre>"));
 
     // without errors there is no chart
     let strip = |candidate: &Candidate| Candidate { error: None, ..candidate.clone() };
@@ -218,6 +227,7 @@ fn motions_of_both_are_shown() -> Outcome {
     let scene = beam_jump()?.ended_at(0.3);
     let names = |advice: &Advice| -> Result<Vec<(String, f64)>, Box<dyn std::error::Error>> {
         let page = page(advice, &scene, true)?;
+        assert_eq!(page.matches("<ul>\n</ul>").count(), 0);
         let data = between(&page, "id=\"data\">", "</script>").ok_or("no data")?;
         let data = data.trim_start_matches("id=\"data\">").trim_end_matches("</script>");
         let data: Value = serde_json::from_str(data)?;

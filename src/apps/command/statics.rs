@@ -79,7 +79,9 @@ impl Arguments {
                 let apart = before.map_or_else(String::new, |before| {
                     format!(", {:.2} % of its change from the one before", by(before))
                 });
-                print(format_args!("{count} nodes: {quantity} is {value:.6} {unit}{apart}"))?;
+                // six digits, without zeros at the end
+                let rounded = format!("{value:.5e}").parse().unwrap_or(value);
+                print(format_args!("{count} nodes: {quantity} is {rounded} {unit}{apart}"))?;
             }
             if count >= nodes {
                 found.mesh_estimate = Some(estimate);

@@ -2,7 +2,12 @@
 
 /// A number with four significant digits, as messages show times.
 pub(crate) fn told(value: f64) -> String {
-    let rounded = format!("{value:.3e}").parse().unwrap_or(value);
+    digits(value, 4)
+}
+
+/// A number with so many significant digits at most, one at least, without zeros at its end.
+pub(crate) fn digits(value: f64, count: usize) -> String {
+    let rounded = format!("{value:.*e}", count.max(1) - 1).parse().unwrap_or(value);
     format!("{rounded:?}").trim_end_matches(".0").to_owned()
 }
 

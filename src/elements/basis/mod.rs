@@ -110,8 +110,8 @@ pub(crate) struct MassPoint<const N: usize> {
     pub volume: f64,
 }
 
-/// The strain points of the cell with the natural nodal positions `nodes`; fails with the volume
-/// of a point where the map is not invertible with positive volume.
+/// The strain points of the cell with the natural nodal positions `nodes`; none if the map of one of them is not
+/// invertible with positive volume.
 pub(crate) fn strain_points<
     C: ReferenceCell<N, M>,
     const N: usize,
@@ -119,19 +119,19 @@ pub(crate) fn strain_points<
     const D: usize,
 >(
     nodes: &[[f64; D]; N],
-) -> Result<Vec<StrainPoint<f64, N, M, D>>, f64> {
+) -> Option<Vec<StrainPoint<f64, N, M, D>>> {
     let smallest = 1e-12 * size(nodes).powi(M as i32);
     let point = |&(xi, weight): &([f64; M], f64)| {
         let derivatives = C::derivatives(xi).map(SVector::from);
         let (frame, map) = split(&jacobian(nodes, &derivatives));
         let volume = weight * determinant(&map.into());
         match map.try_inverse() {
-            Some(inverse) if volume > smallest => Ok(StrainPoint {
+            Some(inverse) if volume > smallest => Some(StrainPoint {
                 gradients: derivatives.map(|derivative| inverse.tr_mul(&derivative).into()),
                 frame: frame.into(),
                 volume,
             }),
-            _ => Err(volume),
+            _ => None,
         }
     };
     C::STIFFNESS_RULE.iter().map(point).collect()

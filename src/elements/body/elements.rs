@@ -82,10 +82,13 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<
         let (mut nodes, mut points, mut products) = (Vec::new(), Vec::new(), Vec::new());
         let mut modes = Vec::new();
         let mut entries = Vec::with_capacity(mesh.cell_count());
+        let mut flawed = Vec::new();
         for (number, cell) in mesh.cells().enumerate() {
             let natural: [[f64; D]; N] = std::array::from_fn(|a| positions[cell[a]]);
-            let of_cell = strain_points::<C, N, M, D>(&natural)
-                .map_err(|volume| bad_cell(number, cell, volume))?;
+            let Some(of_cell) = strain_points::<C, N, M, D>(&natural) else {
+                flawed.push(number);
+                continue;
+            };
             if dilatation == Dilatation::Linear {
                 modes.push(linear_modes::<M, Q>(&std::array::from_fn(|q| {
                     // such cells fill space
@@ -114,6 +117,9 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<
             }
             entries.push(of_pairs);
             nodes.push(std::array::from_fn(|a| cell[a]));
+        }
+        if !flawed.is_empty() {
+            return Err(mesh.flawed_cells(&flawed));
         }
         let points = side_by_side::<N, M, D, Q>(&points);
         let modes = modes_side_by_side(&modes);
@@ -343,18 +349,4 @@ pub(super) fn pairs<const N: usize>() -> impl Iterator<Item = (usize, usize)> {
 pub(super) fn too_many(pattern: &NodePattern) -> InputError {
     let help = "4,294,967,296 are the most: take a coarser mesh";
     InputError::new("number of pairs of nodes that share a cell", pattern.entries(), help)
-}
-
-fn bad_cell(number: usize, cell: &[usize], volume: f64) -> InputError {
-    let nodes: Vec<usize> = cell.iter().map(|node| node + 1).collect();
-    let help = if volume < 0.0 {
-        "its nodes run the wrong way round (clockwise, in two dimensions): reverse them"
-    } else {
-        "it is flat: move its nodes apart or leave the cell out"
-    };
-    InputError::new(
-        format!("signed volume of cell {} (nodes {nodes:?})", number + 1),
-        format!("{volume:.3e}"),
-        format!("{help} (numbers count from 1)"),
-    )
 }

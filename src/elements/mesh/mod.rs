@@ -11,6 +11,7 @@ mod gmsh;
 mod mirror;
 mod prism;
 mod select;
+mod shape;
 mod surface;
 
 use std::collections::BTreeMap;

@@ -23,6 +23,8 @@ const RADIUS: f64 = 3.0;
 /// Approximate number of lines across the field.
 const LINES: usize = 9;
 const GREY: &str = "#777777";
+/// Dashes of one line of reference after the other, which short ones in the legend tell apart, too.
+const DASHES: [&str; 3] = ["6 5", "2 3", "10 3 2 3"];
 const GRID: &str = "#dedede";
 
 /// A line chart with named series, on linear or logarithmic axes.
@@ -59,7 +61,7 @@ enum Style {
     Line,
     /// A line with its points marked.
     Marked,
-    /// A dashed grey line.
+    /// A dashed grey line; each has dashes of its own.
     Reference,
 }
 
@@ -171,12 +173,16 @@ impl Chart {
             .add(field.floor(&name(&self.axes[0], &field.x)).set("font-size", 13))
             .add(field.side(&name(&self.axes[1], &field.y), 62.0).set("font-size", 13));
         let mut colours = COLOURS[..6].iter().cycle();
+        let mut dashed = DASHES.iter().cycle();
         for (series, [x, y]) in self.series.iter().zip(places) {
             let colour = match series.style {
                 Style::Reference => GREY,
                 Style::Line | Style::Marked => colours.next().unwrap_or(&GREY),
             };
-            let dashes = if series.style == Style::Reference { "6 5" } else { "none" };
+            let dashes = match series.style {
+                Style::Reference => dashed.next().unwrap_or(&"none"),
+                Style::Line | Style::Marked => "none",
+            };
             let mut marks = Vec::new();
             if series.style == Style::Marked {
                 marks = series.points.iter().map(|(x, y)| field.place(*x, *y)).collect();

@@ -113,9 +113,49 @@ impl TableKeys {
         Self { one_of: groups, ..self }
     }
 
+    /// The unit of what stands at a place, as `material.young`, with or without numbers of elements of lists; empty where there is
+    /// none, and where it depends on other keys.
+    #[cfg(feature = "sweep")]
+    pub(super) fn unit(&self, place: &[String]) -> &'static str {
+        let mut units = Vec::new();
+        self.add_units(place, &mut units);
+        match *units {
+            [first, ref others @ ..] if others.iter().all(|unit| *unit == first) => first,
+            _ => "",
+        }
+    }
+
+    #[cfg(feature = "sweep")]
+    fn add_units(&self, place: &[String], units: &mut Vec<&'static str>) {
+        let is_number = |word: &&String| word.parse::<usize>().is_ok();
+        let Some((name, rest)) = place.split_first() else { return };
+        let rest = &rest[rest.iter().take_while(is_number).count()..];
+        for key in self.all().filter(|key| key.name == name) {
+            match rest {
+                [] => units.push(key.meaning.unit),
+                _ => key.holds.each_table(&mut |table| table.add_units(rest, units)),
+            }
+        }
+    }
+
     /// The keys of all kinds and its own.
     pub(super) fn all(&self) -> impl Iterator<Item = &'static Key> {
         self.kinds.iter().flat_map(|kind| kind.keys).chain(self.keys)
+    }
+}
+
+#[cfg(feature = "sweep")]
+impl Holds {
+    /// The tables that may stand there.
+    fn each_table(&self, see: &mut dyn FnMut(&'static TableKeys)) {
+        match self {
+            Self::Table(table) | Self::Tables(table) => see(table),
+            Self::Array(inner, _) | Self::List(inner) | Self::OneOrMore(inner) => {
+                inner.each_table(see);
+            }
+            Self::Either(all) => all.iter().for_each(|one| one.each_table(see)),
+            _ => {}
+        }
     }
 }
 

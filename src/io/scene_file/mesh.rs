@@ -79,7 +79,7 @@ pub(super) const MESH: TableKeys = TableKeys::new(
     },
     Kind {
         word: "gmsh",
-        about: "a file of Gmsh; coordinates are metres",
+        about: "a file of Gmsh, of version 4.1 or 2.2; coordinates are metres",
         keys: &[Key::new("file", Holds::Text, "the path of a Gmsh mesh, relative to the scene file")
             .required()],
     },
@@ -186,7 +186,7 @@ pub(super) fn mesh(
     auto: AutoCells,
 ) -> Result<Mesh, Error> {
     let table = value.table(&MESH)?;
-    let mesh = generate(&table, auto).map_err(|error| table.blame(error))?;
+    let mesh = generate(&table, dimension, auto).map_err(|error| table.blame(error))?;
     mesh.notes().iter().for_each(|note| value.source.note(format!("{}: {note}", mesh.origin())));
     let mesh = match dimension {
         Some(dimension) => placed(mesh, dimension)?,
@@ -281,7 +281,7 @@ pub(super) fn has_auto_cells(value: &Value) -> Result<bool, Error> {
     }
 }
 
-fn generate(table: &Table, auto: AutoCells) -> Result<Mesh, Error> {
+fn generate(table: &Table, dimension: Option<&Value>, auto: AutoCells) -> Result<Mesh, Error> {
     let number = |key: &str| table.required(key, Value::number);
     let cells = |value: &Value| value.word(&plane_cells(auto));
     Ok(match table.kind() {
@@ -323,7 +323,11 @@ fn generate(table: &Table, auto: AutoCells) -> Result<Mesh, Error> {
         }
         _ => table.required("file", |value| {
             let file = value.source.beside(value.string()?);
-            Mesh::read_gmsh(file).map_err(|error| value.error(error))
+            let mesh = match dimension {
+                Some(dimension) => Mesh::read_gmsh_in(file, dimension.count()?),
+                None => Mesh::read_gmsh(file),
+            };
+            mesh.map_err(|error| value.error(error))
         })?,
     })
 }

@@ -107,7 +107,7 @@ pub use self::study::{
 use self::table::Table;
 use self::top::TOP;
 #[cfg(any(feature = "play", feature = "study"))]
-use self::written::written;
+use self::written::{whole_paths, written};
 use crate::dynamics::error::Error;
 
 impl SceneFile {
@@ -122,7 +122,7 @@ impl SceneFile {
 
     /// As [`read`](Self::read), with other values: each of `overrides` is as `body.material.young=2e5` or
     /// `phase.free.until=1.5`, where a list of tables is followed by the name or the number (from 1) of one
-    /// of them.
+    /// of them. Of an only one the number may be left out, and a single table may have one, 1.
     ///
     /// # Errors
     /// As [`read`](Self::read); [`Error::Input`] for an override that is no key and value.
@@ -151,6 +151,18 @@ impl SceneFile {
         overrides.iter().try_fold(text.to_owned(), |text, over| written(&text, over))
     }
 
+    /// As [`written_with`](Self::written_with), of the text of a file at `path`, with the whole paths of the files that it names, so
+    /// that it may stand anywhere.
+    ///
+    /// # Errors
+    /// As there.
+    #[cfg(any(feature = "play", feature = "study"))]
+    pub fn moved_with(text: &str, path: &Path, overrides: &[String]) -> Result<String, Error> {
+        let text = Self::written_with(text, overrides)?;
+        let files = whole_paths(&text, path)?;
+        Self::written_with(&text, &files)
+    }
+
     /// The places that keys, as those of [`read_with`](Self::read_with), have in a scene file: the same for the
     /// name and the number of an element of a list.
     ///
@@ -162,6 +174,15 @@ impl SceneFile {
         let source = SourceText { path, text: &text, own: text.len(), notes: RefCell::default() };
         let document = DeTable::parse(&text).map_err(|error| no_toml(&source, &error))?;
         Ok(keys.iter().map(|key| overrides::place(document.get_ref(), key)).collect())
+    }
+
+    /// The units of keys, as those of [`read_with`](Self::read_with): empty for words, and where they depend on other keys.
+    ///
+    /// # Errors
+    /// A file that cannot be read, or is not TOML.
+    #[cfg(feature = "sweep")]
+    pub(crate) fn units(path: &Path, keys: &[&str]) -> Result<Vec<&'static str>, Error> {
+        Ok(Self::places(path, keys)?.iter().map(|place| TOP.unit(place)).collect())
     }
 
     /// As [`read`](Self::read), from the `text` of a file at `path`.

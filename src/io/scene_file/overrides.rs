@@ -41,7 +41,8 @@ pub(super) fn as_toml(text: &str) -> Result<String, Error> {
 }
 
 /// Puts the values of `over` in the places of those in `table`. In a list of tables a key is the name of one,
-/// or its number (from 1).
+/// or its number (from 1). A single table counts as a list of one where a key says so, and the number of the only table in a list
+/// may be left out.
 pub(super) fn merge<'a>(
     table: &mut DeTable<'a>,
     over: DeTable<'a>,
@@ -50,9 +51,17 @@ pub(super) fn merge<'a>(
     for (key, value) in over {
         let (is_whole, span) = (is_whole(&value, text), value.span());
         match (table.get_mut(key.get_ref().as_ref()), value.into_inner()) {
+            (Some(old), DeValue::Table(new))
+                if !is_whole && new.keys().all(|key| is_name_of(old, key.get_ref())) =>
+            {
+                new.into_iter().try_for_each(|(_, value)| put(old, value, text))?;
+            }
             (Some(old), DeValue::Table(new)) if !is_whole => match old.get_mut() {
                 DeValue::Table(old) => merge(old, new, text)?,
-                DeValue::Array(list) => merge_list(key.get_ref(), list, new, text)?,
+                DeValue::Array(list) => match only(list, &new, text) {
+                    Some(old) => merge(old, new, text)?,
+                    None => merge_list(key.get_ref(), list, new, text)?,
+                },
                 _ => *old = Spanned::new(span, DeValue::Table(new)),
             },
             (Some(old), value) => *old = Spanned::new(span, value),
@@ -60,6 +69,53 @@ pub(super) fn merge<'a>(
         }
     }
     Ok(())
+}
+
+/// Puts a value in the place of another one, or in it if both are tables and it is not in braces.
+fn put<'a>(
+    old: &mut Spanned<DeValue<'a>>,
+    value: Spanned<DeValue<'a>>,
+    text: &str,
+) -> Result<(), Error> {
+    let (is_whole, span) = (is_whole(&value, text), value.span());
+    match (old.get_mut(), value.into_inner()) {
+        (DeValue::Table(old), DeValue::Table(new)) if !is_whole => merge(old, new, text)?,
+        (_, value) => *old = Spanned::new(span, value),
+    }
+    Ok(())
+}
+
+/// Whether a key names a single table, as it would in a list of one: by its name or the number 1.
+pub(super) fn is_name_of(value: &Spanned<DeValue>, key: &str) -> bool {
+    let is_new = value.get_ref().as_table().is_some_and(|table| !table.contains_key(key));
+    is_new && (key == "1" || name_of(value) == Some(key))
+}
+
+/// Whether a key is one in the only table of a list, whose number is left out: one that the table has, or, for what is no key
+/// in a further table, any that is no number.
+pub(super) fn is_key_of_only(list: &[Spanned<DeValue>], key: &str, is_last: bool) -> bool {
+    let [only] = list else { return false };
+    let table = only.get_ref().as_table().filter(|_| element(list, key).is_none());
+    table.is_some_and(|table| table.contains_key(key) || (is_last && key.parse::<usize>().is_err()))
+}
+
+/// The only table of a list, if all keys of `over` are in it.
+fn only<'l, 'a>(
+    list: &'l mut [Spanned<DeValue<'a>>],
+    over: &DeTable,
+    text: &str,
+) -> Option<&'l mut DeTable<'a>> {
+    let mut entries = over.iter();
+    let is_last =
+        |value: &Spanned<DeValue>| value.get_ref().as_table().is_none() || is_whole(value, text);
+    let are_its = entries.all(|(key, value)| is_key_of_only(list, key.get_ref(), is_last(value)));
+    match list {
+        [only] if are_its => match only.get_mut() {
+            DeValue::Table(table) => Some(table),
+            _ => None,
+        },
+        _ => None,
+    }
 }
 
 /// Whether a value takes the place of all that was there, as tables in braces do.
@@ -74,13 +130,25 @@ pub(super) fn element(list: &[Spanned<DeValue>], key: &str) -> Option<usize> {
     by_name.or_else(by_number).filter(|at| *at < list.len())
 }
 
-/// The place that a key has in a file, whatever way it is written: of elements of lists, which have names or numbers, the number.
+/// The place that a key has in a file, whatever way it is written: of elements of lists, which have names or numbers, the number,
+/// and of a single table neither.
 #[cfg(feature = "sweep")]
 pub(super) fn place(document: &DeTable, key: &str) -> Vec<String> {
     let mut here = Some(document);
     let mut list: Option<&[Spanned<DeValue>]> = None;
     let mut place = Vec::new();
-    for word in key.split('.').map(|word| word.trim().trim_matches(['"', '\''])) {
+    let words: Vec<&str> =
+        key.split('.').map(|word| word.trim().trim_matches(['"', '\''])).collect();
+    let mut single: Option<&Spanned<DeValue>> = None;
+    for (depth, &word) in words.iter().enumerate() {
+        if single.is_some_and(|table| is_name_of(table, word)) {
+            single = None;
+            continue;
+        }
+        if let Some(of) = list.filter(|of| is_key_of_only(of, word, depth + 1 == words.len())) {
+            place.push("1".to_owned());
+            (here, list) = (of[0].get_ref().as_table(), None);
+        }
         let at = list.and_then(|list| element(list, word));
         let value = match (at, list, here) {
             (Some(at), Some(list), _) => list.get(at),
@@ -88,6 +156,7 @@ pub(super) fn place(document: &DeTable, key: &str) -> Vec<String> {
             _ => None,
         };
         place.push(at.map_or_else(|| word.to_owned(), |at| (at + 1).to_string()));
+        single = value.filter(|_| at.is_none());
         (here, list) = match value.map(Spanned::get_ref) {
             Some(DeValue::Table(table)) => (Some(table), None),
             Some(DeValue::Array(items)) => (None, Some(&items[..])),
@@ -117,11 +186,7 @@ fn merge_list<'a>(
         };
         let at = element(list, key);
         let element = at.and_then(|at| list.get_mut(at)).ok_or_else(missing)?;
-        let (is_whole, span) = (is_whole(&value, text), value.span());
-        match (element.get_mut(), value.into_inner()) {
-            (DeValue::Table(old), DeValue::Table(new)) if !is_whole => merge(old, new, text)?,
-            (_, value) => *element = Spanned::new(span, value),
-        }
+        put(element, value, text)?;
     }
     Ok(())
 }

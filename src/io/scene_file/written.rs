@@ -1,11 +1,13 @@
 //! Overrides written into the text of a scene file; all else stays as it was written.
 
 use std::ops::Range;
+use std::path::Path;
 
 use toml::Spanned;
 use toml::de::{DeString, DeTable, DeValue};
 
-use super::overrides::{as_toml, element, is_whole, merge};
+use super::overrides::{as_toml, element, is_key_of_only, is_name_of, is_whole, merge};
+use super::set_value::quoted;
 use crate::base::input::InputError;
 use crate::dynamics::error::Error;
 
@@ -24,6 +26,47 @@ pub(super) fn written(text: &str, over: &str) -> Result<String, Error> {
     })
 }
 
+/// Keys that name files.
+const FILES: [&str; 3] = ["file", "from", "reduced"];
+
+/// Overrides that give the files which the `text` of a scene at `path` names by their whole paths: it may be moved then.
+///
+/// # Errors
+/// A text that is no TOML.
+pub(super) fn whole_paths(text: &str, path: &Path) -> Result<Vec<String>, Error> {
+    let document = DeTable::parse(text)
+        .map_err(|error| InputError::new("scene file", path.display(), error.message()))?;
+    let mut found = Vec::new();
+    add_files(document.get_ref(), "", &mut |key, file| {
+        let file = path.parent().unwrap_or(Path::new("")).join(file);
+        // a text of that name which is no file is the name of something else, and a missing file an error of the reader
+        if file.is_file()
+            && let Ok(whole) = std::path::absolute(&file)
+        {
+            found.push(format!("{key}={}", quoted(&whole.to_string_lossy())));
+        }
+    });
+    Ok(found)
+}
+
+fn add_files(table: &DeTable, before: &str, see: &mut dyn FnMut(&str, &str)) {
+    for (name, value) in table {
+        let key = format!("{before}{}", name.get_ref());
+        match value.get_ref() {
+            DeValue::String(file) if FILES.contains(&name.get_ref().as_ref()) => see(&key, file),
+            DeValue::Table(inner) => add_files(inner, &format!("{key}."), see),
+            DeValue::Array(list) => {
+                let tables = list.iter().map(|item| item.get_ref().as_table());
+                for (number, inner) in (1..).zip(tables) {
+                    let Some(inner) = inner else { continue };
+                    add_files(inner, &format!("{key}.{number}."), see);
+                }
+            }
+            _ => {}
+        }
+    }
+}
+
 /// The `text` with the entry `toml`.
 fn changed(text: &str, toml: &str) -> Option<String> {
     let (document, over) = (DeTable::parse(text).ok()?, DeTable::parse(toml).ok()?);
@@ -32,7 +75,12 @@ fn changed(text: &str, toml: &str) -> Option<String> {
     for (depth, key) in path.iter().enumerate() {
         let next = match found.map(Spanned::get_ref) {
             None => document.get_ref().get(*key),
+            Some(DeValue::Table(_)) if found.is_some_and(|table| is_name_of(table, key)) => found,
             Some(DeValue::Table(table)) => table.get(*key),
+            Some(DeValue::Array(list)) if is_key_of_only(list, key, depth + 1 == path.len()) => {
+                found = list.first();
+                list.first()?.get_ref().as_table()?.get(*key)
+            }
             Some(DeValue::Array(list)) => list.get(element(list, key)?),
             Some(_) => return None,
         };
@@ -138,6 +186,11 @@ mod tests {
             ("phase.press.until=3", "1.0 # s", "3 # s"),
             ("phase.2.until=3", "2.0", "3"),
             ("phase.1.hold.1.nodes=right", "\"left\"", "\"right\""),
+            // the only table of a list, and a single one as the first of a list
+            ("phase.press.hold.nodes=right", "\"left\"", "\"right\""),
+            ("body.1.material.1.young=2e5", "1e5", "2e5"),
+            ("body.1.area=2.0", "area = 1.0", "area = 2.0"),
+            ("phase.press.hold.axes=x", "nodes = \"left\"", "nodes = \"left\", \"axes\" = \"x\""),
             // what was not there before
             ("body.mesh.length=2", "nodes = 3", "nodes = 3, \"length\" = 2"),
             ("body.material.poisson=0.3", "1e5 # Pa", "1e5 # Pa\n\"poisson\" = 0.3"),

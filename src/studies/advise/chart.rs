@@ -13,7 +13,7 @@ use crate::studies::work_precision::frame::Frame;
 const FIELD: [f64; 4] = [74.0, 14.0, 586.0, 404.0];
 /// Width and height of the chart (px), with room for what levels mean on its right.
 const SIZE: [f64; 2] = [720.0, 456.0];
-/// Errors below this part of the accuracy are drawn at the bottom: they are good enough for anything.
+/// Errors below this part of the accuracy are drawn there: they are good enough for anything.
 const LEAST: f64 = 1e-3;
 /// Between the lines of two labels (px).
 const APART: f64 = 17.0;
@@ -75,8 +75,9 @@ impl Advice {
         if known.is_empty() {
             return None;
         }
-        let errors = known.iter().map(|(error, _)| *error).chain([self.resolution]);
-        let errors = errors.filter(|error| *error > LEAST * self.accuracy).chain([self.accuracy]);
+        let errors = known.iter().map(|(error, _)| self.shown(*error));
+        let resolution = Some(self.resolution).filter(|error| *error > LEAST * self.accuracy);
+        let errors = errors.chain(resolution).chain([self.accuracy]);
         let times = known.iter().map(|(_, candidate)| candidate.seconds);
         let colours = ["var(--muted)", "var(--line)", "var(--grid)"];
         let frame = Frame::new(FIELD, colours, times, errors);
@@ -93,7 +94,7 @@ impl Advice {
             .add(self.levels(&frame));
         let front = self.front();
         let line = front.iter().map(|(error, one)| {
-            let [x, y] = frame.place(*error, one.seconds);
+            let [x, y] = frame.place(self.shown(*error), one.seconds);
             format!("{x:.2},{y:.2}")
         });
         let line = Polyline::new()
@@ -107,9 +108,15 @@ impl Advice {
         let mut known = known;
         known.sort_by_key(|(_, one)| (self.roles_of(one).len(), self.is_on_front(one)));
         for (error, candidate) in known {
-            points = points.add(self.point(candidate, frame.place(error, candidate.seconds)));
+            points = points
+                .add(self.point(candidate, frame.place(self.shown(error), candidate.seconds)));
         }
         Some(document.add(line).add(points).add(self.labels(&frame)))
+    }
+
+    /// The error at which one is drawn: the least are alike, so that none is on the edge of the field.
+    fn shown(&self, error: f64) -> f64 {
+        error.max(LEAST * self.accuracy)
     }
 
     /// A band over the errors that the comparison may have itself.
@@ -134,9 +141,15 @@ impl Advice {
         let [_, asked] = frame.place(self.accuracy, 1.0);
         let line = stroke([left, asked], [right, asked], "var(--push)");
         let label = text(format!("asked: {}", percent(self.accuracy)), [right + 8.0, asked + 4.0]);
-        let levels = Group::new()
+        let mut levels = Group::new()
             .add(line.set("class", "asked").set("stroke-width", 1.6).set("stroke-dasharray", "7 4"))
             .add(label);
+        let least = LEAST * self.accuracy;
+        if self.candidates.iter().filter_map(Candidate::measured).any(|error| error < least) {
+            let [_, level] = frame.place(least, 1.0);
+            let label = text(format!("{} or less", percent(least)), [right + 8.0, level + 4.0]);
+            levels = levels.add(label.set("fill", "var(--muted)"));
+        }
         let Some(hidden) = self.hidden_below(frame) else { return levels };
         let gap = hidden - asked;
         let hidden = asked + if gap.abs() < APART { APART.copysign(gap) } else { gap };
@@ -173,7 +186,7 @@ impl Advice {
 
     /// The names of what was written and of what is enough, away from each other.
     fn labels(&self, frame: &Frame) -> Group {
-        let place = |one: &Candidate| Some(frame.place(one.measured()?, one.seconds));
+        let place = |one: &Candidate| Some(frame.place(self.shown(one.measured()?), one.seconds));
         let written = place(&self.written);
         let enough = self.enough.as_ref().filter(|enough| !enough.is(&self.written));
         let enough = enough.and_then(place);

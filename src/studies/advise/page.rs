@@ -71,9 +71,13 @@ impl Advice {
         let answer = paragraphs(&self.to_string());
         let sets = self.enough.as_ref().map_or_else(String::new, |_| {
             let lines = escaped(&self.set().join("\n"));
-            format!(
-                "<h3>What is enough, as <code>--set</code> takes it:</h3>\n<pre>{lines}</pre>\n"
-            )
+            match &lines[..] {
+                "" => "<p>What is enough stands in the scene file: nothing has to be set.</p>\n"
+                    .into(),
+                _ => format!(
+                    "<h3>What is enough, as <code>--set</code> takes it:</h3>\n<pre>{lines}</pre>\n"
+                ),
+            }
         });
         // beneath the names of what is enough and of what was written
         let answer = answer.replacen("</dl>\n", &format!("</dl>\n{sets}"), 1);
@@ -90,12 +94,14 @@ impl Advice {
         };
         let left_out: String =
             left_out.iter().map(|why| format!("<li>{}</li>\n", escaped(why))).collect();
+        let left_out =
+            if left_out.is_empty() { left_out } else { format!("<ul>\n{left_out}</ul>\n") };
         format!(
             "<div class=\"advice\">\n<section class=\"card\" aria-labelledby=\"needs\">\n\
              <h2 id=\"needs\">What it needs</h2>\n{answer}</section>\n{chart}</div>\n\
              <section class=\"card\" aria-labelledby=\"candidates\">\n\
              <h2 id=\"candidates\">All that was run, the fastest first</h2>\n{}</section>\n\
-             <section class=\"shown\">\n<p>{shown}</p>\n<ul>\n{left_out}</ul>\n</section>",
+             <section class=\"shown\">\n<p>{shown}</p>\n{left_out}</section>",
             self.table()
         )
     }

@@ -94,10 +94,14 @@ impl Reduced {
             .logarithmic(true, true)
             .marked("reduced models", points.iter().copied());
         if let Some(full) = self.full_seconds {
-            chart = chart.reference("all unknowns", [(full, least), (full, most)]);
+            let name = format!("time with all unknowns: {} s", told(full));
+            chart = chart.reference(name, [(full, least), (full, most)]);
         }
         chart
-            .reference(format!("wanted: {}", percent(within)), [(first, within), (last, within)])
+            .reference(
+                format!("error that is wanted: {}", percent(within)),
+                [(first, within), (last, within)],
+            )
             .write(path)
     }
 }

@@ -58,29 +58,44 @@ fn what_is_no_mesh_gets_a_message() {
     says(read(""), &["it is empty"]);
     says(read("solid cube\nfacet normal 0 0 1\n"), &["$MeshFormat"]);
     says(read("$MeshFormat\n"), &["format is missing"]);
-    says(with("4.1 0 8", "2.2 0 8"), &["version 2.2", "gmsh -format msh41"]);
+    says(with("4.1 0 8", "1.0 0 8"), &["version 1.0", "gmsh -format msh41"]);
     says(with("4.1 0 8", "4 0 8"), &["version 4", "gmsh -format msh41"]);
     says(with("4.1 0 8", "4.1 1 4"), &["\"4.1 1 4\"", "4.1 1 8"]);
     says(with("4.1 0 8", "4.1 0 99999999999999999999"), &["4.1 0 8"]);
     says(read(&good[..good.find("$Nodes").unwrap()]), &["one section $Nodes"]);
     says(read(&good[..good.find("$Elements").unwrap()]), &["one section $Elements"]);
-    says(with("$Nodes", "$Nodes\n$EndNodes\n$Nodes"), &["one section $Nodes"]);
-    says(with("1 4 1 4", "0 0 1 1"), &["$Nodes is empty", "mesh the geometry"]);
-    says(with("1 2 1 2", "0 0 1 1"), &["$Elements is empty"]);
-    says(with("1 2 1 2", "0 2 1 2"), &["broken at line"]);
-    says(with("1 4 1 4", "1 4 1"), &["header of its section $Nodes"]);
-    says(with("1 4 1 4", "1 four 1 4"), &["header of its section $Nodes"]);
-    says(with("\n0 1 0", "\n0 one 0"), &["broken at line 13", "y coordinate"]);
+    says(with("$Nodes", "$Nodes\n0 0 0 0\n$EndNodes\n$Nodes"), &["one section $Nodes"]);
+    let up_to = |name: &str| &good[..good.find(name).unwrap()];
+    let no_elements = "$Elements\n0 0 0 0\n$EndElements\n";
+    let no_nodes = format!("{}$Nodes\n0 0 0 0\n$EndNodes\n{no_elements}", up_to("$Nodes"));
+    says(read(no_nodes), &["$Nodes is empty", "mesh the geometry"]);
+    says(
+        read(up_to("$Elements").to_owned() + no_elements),
+        &["$Elements is empty", "mesh the geometry"],
+    );
+    says(with("1 2 1 2", "0 2 1 2"), &["broken at line", "$Elements", "its end is expected"]);
+    says(with("1 4 1 4", "1 4 1"), &["broken at line", "$Nodes"]);
+    says(
+        with("1 4 1 4", "1 four 1 4"),
+        &["broken at line 5, in its section $Nodes", "\"four\" is no number of nodes"],
+    );
+    says(with("\n0 1 0", "\n0 one 0"), &["broken at line 13", "\"one\" is no y coordinate"]);
     says(with("\n0 1 0", "\n0 NaN 0"), &["NaN", "finite"]);
     says(with("\n0 1 0", "\n0 1e999 0"), &["inf"]);
     says(with("\n4\n", "\n3\n"), &["same tag"]);
     says(with("1 1 2 3\n", "1 1 2 9\n"), &["node 9", "does not exist"]);
-    says(with("2 1 2 2", "2 1 141 2"), &["broken at line", "value 141"]);
-    says(with("2 1 2 2", "2 1 34 2"), &["cannot be read at line", "simple cells"]);
-    says(with("2 1 0 4", "2 1 1 4"), &["cannot be read at line 7", "Mesh.SaveParametric = 0"]);
+    says(with("2 1 2 2", "2 1 141 2"), &["broken at line", "type 141"]);
+    says(with("2 1 2 2", "2 1 34 2"), &["broken at line", "type 34", "Mesh.ElementOrder"]);
+    says(with("2 1 0 4", "2 1 1 4"), &["broken at line 15", "\"$EndNodes\" is no z coordinate"]);
     says(with("2 1 0 4", "2 1 0 99999999999"), &["broken at line"]);
     says(with("$Nodes", "$PartitionedEntities\n$EndPartitionedEntities\n$Nodes"), &["partitioned"]);
-    says(with("$Nodes", "$Comments\nno end\n$Nodes"), &["broken at line"]);
+    says(with("$Nodes", "$Comments\nno end\n$Nodes"), &["broken at line", "$Comments", "no end"]);
+    // nodes with coordinates on their surface, as of Mesh.SaveParametric = 1
+    let parametric = good.replacen("2 1 0 4", "2 1 1 4", 1);
+    let parametric = ["\n0 0 0", "\n1 0 0", "\n0 1 0", "\n1 1 0"]
+        .iter()
+        .fold(parametric, |file, point| file.replacen(point, &format!("{point} 0.5 0.25"), 1));
+    assert_same(&read(parametric).unwrap(), &read(&good).unwrap());
     let missing = Mesh::read_gmsh("no/such/test.msh");
     says(missing, &["no/such/test.msh", "No such file"]);
 }

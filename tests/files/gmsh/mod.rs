@@ -3,6 +3,7 @@
 
 mod drawn;
 mod mistakes;
+mod version_2;
 
 use std::fmt::Write as _;
 use std::fs;
@@ -23,10 +24,22 @@ fn committed(file: &str) -> Mesh {
 }
 
 fn read(content: impl AsRef<[u8]>) -> Result<Mesh, InputError> {
+    read_by(content, Mesh::read_gmsh)
+}
+
+/// In a space of `dimension`.
+fn read_in(dimension: usize, content: impl AsRef<[u8]>) -> Result<Mesh, InputError> {
+    read_by(content, |path| Mesh::read_gmsh_in(path, dimension))
+}
+
+fn read_by(
+    content: impl AsRef<[u8]>,
+    read: impl Fn(PathBuf) -> Result<Mesh, InputError>,
+) -> Result<Mesh, InputError> {
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("test.msh");
     fs::write(&path, content).unwrap();
-    Mesh::read_gmsh(path)
+    read(path)
 }
 
 /// The message of the error says all of `parts`, and names the file.
@@ -124,14 +137,7 @@ fn tags_may_come_in_any_order() {
 #[test]
 fn meshes_that_were_drawn_the_other_way_round_are_turned_over() {
     for mesh in generated() {
-        let (d, kind) = (mesh.dimension(), mesh.kind());
-        // mirrored, all cells are inverted
-        let mirrored = |mesh: &Mesh| {
-            let positions = mesh.positions().chunks(d);
-            let positions = positions.flat_map(|x| [-x[0], x[1 % d], x[2 % d]].into_iter().take(d));
-            let cells = mesh.cells().flatten().copied().collect();
-            Mesh::new(d, positions.collect(), kind, cells).unwrap()
-        };
+        let kind = mesh.kind();
         let turned = read(msh(&mirrored(&mesh), |node| node + 1)).unwrap();
         assert!(body(&mirrored(&mesh)).is_err());
         let [volume, expected] = [&turned, &mesh].map(|mesh| body(mesh).unwrap().volume());
@@ -139,24 +145,101 @@ fn meshes_that_were_drawn_the_other_way_round_are_turned_over() {
         assert!((volume / expected - 1.0).abs() < 1e-13, "{kind:?} {volume} {expected}");
         assert_eq!(turned.boundary_nodes(), mesh.boundary_nodes());
         assert!(patch_test(&turned) < 2e-13, "{kind:?}");
+        assert!(turned.notes().is_empty(), "{:?}", turned.notes());
     }
 }
 
-/// Surfaces in space are membranes, and lines in the plane are strings.
+/// Cells of both windings, as they are after a mesh was mirrored in part, are turned to one, with a note that counts them.
+#[test]
+fn cells_of_both_windings_are_turned_to_one() {
+    for mesh in generated() {
+        let kind = mesh.kind();
+        let mut cells: Vec<Vec<usize>> = mesh.cells().map(<[usize]>::to_vec).collect();
+        let turned_over = read(msh(&mirrored(&mesh), |node| node + 1)).unwrap();
+        let other_way: Vec<&[usize]> = turned_over.cells().collect();
+        // cells that were turned over, in the mesh that was not mirrored, run the wrong way round
+        let wrong: Vec<usize> = (1..cells.len()).step_by(2).collect();
+        wrong.iter().for_each(|&cell| cells[cell] = other_way[cell].to_vec());
+        let mixed =
+            Mesh::new(mesh.dimension(), mesh.positions().to_vec(), kind, cells.concat()).unwrap();
+        assert!(body(&mixed).is_err());
+        let mended = read(msh(&mixed, |node| node + 1)).unwrap();
+        let [volume, expected] = [&mended, &mesh].map(|mesh| body(mesh).unwrap().volume());
+        assert!((volume / expected - 1.0).abs() < 1e-13, "{kind:?} {volume} {expected}");
+        assert!(patch_test(&mended) < 2e-13, "{kind:?}");
+        let told = format!("{} of {} cells run the other way round", wrong.len(), cells.len());
+        let notes = mended.notes();
+        assert!(notes.len() == 1 && notes[0].starts_with(&told), "{notes:?}");
+        assert!(notes[0].contains("such as cell 2,"), "{notes:?}");
+    }
+}
+
+/// With all cells inverted.
+fn mirrored(mesh: &Mesh) -> Mesh {
+    let d = mesh.dimension();
+    let positions = mesh.positions().chunks(d);
+    let positions = positions.flat_map(|x| [-x[0], x[1 % d], x[2 % d]].into_iter().take(d));
+    let cells = mesh.cells().flatten().copied().collect();
+    Mesh::new(d, positions.collect(), mesh.kind(), cells).unwrap()
+}
+
+/// Faces in space are membranes where that is asked for, and lines in the plane are strings.
 #[test]
 fn space_has_the_dimensions_that_the_body_needs() {
     let square = Mesh::rectangle([1.0, 1.0], [3, 3], Cells::Triangles).unwrap();
     let tent = square.clone().mapped(|x| [x[0], x[1], x[0] * x[1]]).unwrap();
     let upright = square.clone().mapped(|x| [x[0], 0.0, x[1]]).unwrap();
     let above = square.clone().mapped(|x| [x[0], x[1], 1.0]).unwrap();
-    let flat = square.clone().mapped(|x| [x[0], x[1], 1e-12]).unwrap();
     let bar = Mesh::bar(1.0, 5).unwrap();
     let arc = bar.clone().mapped(|x| [x[0], x[0] * x[0]]).unwrap();
     let helix = bar.clone().mapped(|x| [x[0].cos(), x[0].sin(), x[0]]).unwrap();
-    for mesh in [&tent, &upright, &above, &arc, &helix] {
+    for mesh in [&arc, &helix] {
         assert_same(&read(msh(mesh, |node| node + 1)).unwrap(), mesh);
     }
-    assert_same(&read(msh(&flat, |node| node + 1)).unwrap(), &square);
+    for mesh in [&tent, &upright, &above, &helix] {
+        assert_same(&read_in(3, msh(mesh, |node| node + 1)).unwrap(), mesh);
+    }
+    for mesh in [&tent, &upright] {
+        let file = msh(mesh, |node| node + 1);
+        says(
+            read(&file),
+            &[
+                "triangles alone",
+                "along z, from 0 to 1 m",
+                "(dimension = 3 in a scene file)",
+                "3D mesh",
+            ],
+        );
+        says(read_in(2, &file), &["along z, from 0 to 1 m", "two dimensions"]);
+    }
+}
+
+/// A plane mesh that was drawn at another height, or whose z was rounded, is one: with a note, but for round-off.
+#[test]
+fn a_plane_need_not_be_at_z_0() {
+    let square = Mesh::rectangle([1.0, 1.0], [3, 3], Cells::Triangles).unwrap();
+    for (z, noise, note) in [
+        (0.0, 1e-12, None),
+        (0.0, 1e-8, Some("z from -1e-8 to 1e-8 m, which is round-off beside its size of 1 m,")),
+        (0.5, 0.0, Some("z = 0.5 m, the same everywhere,")),
+        (-2.0, 1e-12, Some("z = -2 m, the same everywhere,")),
+    ] {
+        let mut sign = -1.0;
+        let moved = |x: &[f64]| {
+            sign = -sign;
+            [x[0], x[1], z + sign * noise]
+        };
+        let file = msh(&square.clone().mapped(moved).unwrap(), |node| node + 1);
+        for mesh in [read(&file), read_in(2, &file)] {
+            let mesh = mesh.unwrap();
+            assert_same(&mesh, &square);
+            match (mesh.notes(), note) {
+                ([], None) => {}
+                ([told], Some(note)) => assert!(told.starts_with(note), "{told}"),
+                (told, note) => panic!("{told:?} {note:?}"),
+            }
+        }
+    }
 }
 
 /// A body of any kind of cells, section 0.01.

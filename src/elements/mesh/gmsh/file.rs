@@ -1,13 +1,13 @@
-//! The file: what `mshio` reads of it, guarded where it would panic or lose data, and the names of
-//! physical groups.
+//! The sections of a file of Gmsh, of version 4.1 and 2 (<https://gmsh.info/doc/texinfo/gmsh.html#Gmsh-file-formats>).
 
-use std::collections::HashMap;
+use std::collections::hash_map::Entry;
+use std::collections::{HashMap, HashSet};
 
-use mshio::error::MshParserErrorKind;
-use mshio::{ElementType, Entities, MshData, MshParserError};
+use super::reader::Reader;
+use super::types::ElementType;
 
 /// Physical groups and entities are identified by dimension and tag.
-type Key = (i32, i32);
+type Key = (usize, i32);
 
 /// What a mesh is made from.
 pub(super) struct Contents {
@@ -20,178 +20,328 @@ pub(super) struct Contents {
 /// Elements of one type on one entity (point, curve, surface or volume).
 pub(super) struct Block {
     pub(super) kind: ElementType,
-    /// Dimension of the entity.
-    pub(super) dimension: i32,
     /// Names of the physical groups of the entity.
     pub(super) groups: Vec<String>,
-    /// The nodes of each element, counted from 0 in the order of the file.
-    pub(super) elements: Vec<Vec<usize>>,
+    /// The nodes of one element after the other, counted from 0 in the order of the file.
+    pub(super) nodes: Vec<usize>,
+}
+
+impl Block {
+    pub(super) fn elements(&self) -> std::slice::ChunksExact<'_, usize> {
+        self.nodes.chunks_exact(self.kind.nodes)
+    }
+}
+
+/// Elements of one type with the same entity and physical groups, as the file has them: nodes by their tags.
+struct Run {
+    kind: ElementType,
+    entity: i32,
+    groups: Vec<i32>,
+    tags: Vec<u64>,
+}
+
+/// What the sections of a file hold.
+#[derive(Default)]
+struct Sections {
+    names: HashMap<Key, String>,
+    /// Physical groups of the entities; files of version 2 have them with the elements.
+    groups: HashMap<Key, Vec<i32>>,
+    /// The place of each node by its tag.
+    places: HashMap<u64, usize>,
+    positions: Vec<[f64; 3]>,
+    runs: Vec<Run>,
 }
 
 impl Contents {
     /// Reads a file, or says what is wrong with it.
-    pub(super) fn read(mut file: Vec<u8>) -> Result<Self, String> {
-        let binary = check_format(&file)?;
-        if find(&file, "$PartitionedEntities").next().is_some() {
-            return Err("its mesh is partitioned: save it in one piece".into());
+    pub(super) fn read(file: &[u8]) -> Result<Self, String> {
+        let mut reader = Reader::new(file);
+        let is_old = read_format(&mut reader)?;
+        let mut sections = Sections::default();
+        let mut seen = HashSet::new();
+        while let Some(name) = reader.section()? {
+            if matches!(name, b"Nodes" | b"Elements") && !seen.insert(name) {
+                return Err(one_section(name));
+            }
+            match name {
+                b"PartitionedEntities" => {
+                    return Err("its mesh is partitioned: save it in one piece".into());
+                }
+                b"PhysicalNames" => sections.names = physical_names(reader.up_to_end(name)?),
+                b"Entities" if !is_old => sections.groups = groups(&mut reader)?,
+                b"Nodes" if is_old => sections.nodes_2(&mut reader)?,
+                b"Nodes" => sections.nodes_4(&mut reader)?,
+                b"Elements" if is_old => sections.elements_2(&mut reader)?,
+                b"Elements" => sections.elements_4(&mut reader)?,
+                _ => {
+                    reader.up_to_end(name)?;
+                }
+            }
+            reader.end(name)?;
         }
-        prepare_section(&mut file, "$Nodes", binary)?;
-        prepare_section(&mut file, "$Elements", binary)?;
-        let data =
-            mshio::parse_msh_bytes(&file).map_err(|error| broken(&file, binary, &error))?.data;
-        let MshData { entities, nodes: Some(nodes), elements: Some(elements) } = data else {
-            return Err("it has no nodes, or no elements".into());
-        };
-
-        let (mut positions, mut places) = (Vec::new(), HashMap::new());
-        for block in nodes.node_blocks {
-            let tags = block.node_tags.into_iter().flatten();
-            places.extend(tags.map(|(tag, index)| (tag, positions.len() + index)));
-            positions.extend(block.nodes.iter().map(|node| [node.x, node.y, node.z]));
+        for (name, count) in
+            [("Nodes", sections.positions.len()), ("Elements", sections.runs.len())]
+        {
+            if !seen.contains(name.as_bytes()) {
+                return Err(one_section(name.as_bytes()));
+            }
+            if count == 0 {
+                let help = "mesh the geometry before saving";
+                return Err(format!("its section ${name} is empty: {help}"));
+            }
         }
-        if places.len() != positions.len() {
-            return Err("several of its nodes have the same tag".into());
-        }
-        let place = |tag: &u64| {
-            let place = places.get(tag).copied();
-            place.ok_or_else(|| format!("an element has the node {tag}, which does not exist"))
-        };
-        let names = physical_names(&file);
-        let groups = entities.map(|entities| groups(&entities, &names)).unwrap_or_default();
-        let mut blocks = Vec::with_capacity(elements.element_blocks.len());
-        for block in elements.element_blocks {
-            let nodes = |element: &mshio::Element<u64>| element.nodes.iter().map(place).collect();
-            let entity = (block.entity_dim, block.entity_tag);
-            blocks.push(Block {
-                kind: block.element_type,
-                dimension: block.entity_dim,
-                groups: groups.get(&entity).cloned().unwrap_or_default(),
-                elements: block.elements.iter().map(nodes).collect::<Result<_, String>>()?,
-            });
-        }
-        Ok(Self { nodes: positions, blocks })
+        sections.contents()
     }
 }
 
-/// Checks the first two lines, and returns whether the rest is binary.
-fn check_format(file: &[u8]) -> Result<bool, String> {
-    let mut lines = file.split(|&byte| byte == b'\n').map(|line| line.trim_ascii());
-    match lines.next() {
-        None | Some(b"") => return Err("it is empty".into()),
-        Some(b"$MeshFormat") => {}
-        Some(_) => {
-            return Err("it does not begin with $MeshFormat, so Gmsh did not write it".into());
-        }
+/// Checks the first section, and returns whether the file is of version 2.
+fn read_format(reader: &mut Reader) -> Result<bool, String> {
+    match reader.section() {
+        Ok(None) => return Err("it is empty".into()),
+        Ok(Some(b"MeshFormat")) => {}
+        _ => return Err("it does not begin with $MeshFormat, so Gmsh did not write it".into()),
     }
-    let format = String::from_utf8_lossy(lines.next().unwrap_or_default());
-    match *format.split_whitespace().collect::<Vec<_>>() {
-        ["4.1", "0", "8"] => Ok(false),
-        ["4.1", "1", "8"] => Ok(true),
-        ["4.1", ..] => {
-            Err(format!("its format is \"{format}\": only \"4.1 0 8\" and \"4.1 1 8\" are known"))
+    let format = String::from_utf8_lossy(reader.line().unwrap_or_default());
+    let is_old = match *format.split_whitespace().collect::<Vec<_>>() {
+        [version @ ("4.1" | "2.2" | "2.1" | "2.0" | "2"), encoding @ ("0" | "1"), "8"] => {
+            if encoding == "1" {
+                reader.find_byte_order()?;
+            }
+            version != "4.1"
+        }
+        [version @ ("4.1" | "2.2"), ..] => {
+            let known =
+                format!("\"{version} 0 8\" (text) and \"{version} 1 8\" (binary) are known");
+            return Err(format!("its format is \"{format}\": only {known}"));
         }
         [version, ..] => {
-            let help = "export it as 4.1: `gmsh -format msh41`, or \"Version 4 ASCII\" when saving";
-            Err(format!("it has version {version} of the format: {help}"))
+            let help =
+                "export it as 4.1 or 2.2: `gmsh -format msh41`, or \"Version 4 ASCII\" when saving";
+            return Err(format!("it has version {version} of the format: {help}"));
         }
-        [] => Err("its format is missing".into()),
-    }
-}
-
-/// Where `name` stands in the file: the places after it.
-fn find<'a>(file: &'a [u8], name: &'a str) -> impl Iterator<Item = usize> + 'a {
-    let windows = file.windows(name.len()).enumerate();
-    windows.filter(|(_, window)| *window == name.as_bytes()).map(|(at, _)| at + name.len())
-}
-
-/// Checks that a section exists and is not empty, which `mshio` takes for granted, and sets the greatest tag
-/// in its header to the greatest number. For `mshio` keeps tags only if the header says that they have gaps;
-/// but tags without gaps may be out of order, too (as after the order of a mesh was raised), and elements
-/// would get wrong nodes.
-fn prepare_section(file: &mut Vec<u8>, name: &str, binary: bool) -> Result<(), String> {
-    let mut places = find(file, name);
-    let (Some(start), None) = (places.next(), places.next()) else {
-        return Err(format!("it must have one section {name}"));
+        [] => return Err("its format is missing: export it anew".into()),
     };
-    drop(places);
-    let header = line_end(file, start);
-    let broken = || format!("the header of its section {name} is broken");
-    let count = if binary {
-        let count = file.get(header + 8..header + 16).ok_or_else(broken)?.iter().any(|&b| b != 0);
-        file.get_mut(header + 24..header + 32).ok_or_else(broken)?.fill(u8::MAX);
-        usize::from(count)
-    } else {
-        let end = line_end(file, header);
-        let line = String::from_utf8_lossy(&file[header..end]).into_owned();
-        let [blocks, count, least, _] = *line.split_whitespace().collect::<Vec<_>>() else {
-            return Err(broken());
-        };
-        let largest = format!("{blocks} {count} {least} {}\n", u64::MAX);
-        file.splice(header..end, largest.into_bytes());
-        count.parse().map_err(|_| broken())?
-    };
-    if count == 0 {
-        return Err(format!("its section {name} is empty: mesh the geometry before saving"));
-    }
-    Ok(())
+    reader.end(b"MeshFormat")?;
+    Ok(is_old)
 }
 
-/// The beginning of the next line, or the end of the file.
-fn line_end(file: &[u8], from: usize) -> usize {
-    let length = file[from..].iter().position(|&byte| byte == b'\n');
-    length.map_or(file.len(), |length| from + length + 1)
+fn one_section(name: &[u8]) -> String {
+    let name = String::from_utf8_lossy(name);
+    format!("it must have one section ${name}: save the mesh of one model, and all of it")
 }
 
-/// Where and what `mshio` could not read. (Its own message would hold all the rest of the file.)
-fn broken(file: &[u8], binary: bool, error: &MshParserError<&[u8]>) -> String {
-    let at = error.backtrace.first().map_or(0, |(rest, _)| file.len() - rest.len());
-    let place = match binary {
-        true => format!("byte {at}"),
-        false => format!("line {}", file[..at].iter().filter(|&&byte| byte == b'\n').count() + 1),
-    };
-    let kinds = || error.backtrace.iter().rev().map(|(_, kind)| kind);
-    let reading: Vec<&str> = kinds().filter_map(MshParserErrorKind::context).collect();
-    let reading = if reading.is_empty() { "sections".into() } else { reading.join(", ") };
-    match kinds().any(|kind| *kind == MshParserErrorKind::Unimplemented) {
-        true => {
-            let help = "save it with Mesh.SaveParametric = 0, and with simple cells";
-            format!("it cannot be read at {place}, in its {reading}: {help}")
-        }
-        false => format!("it is broken at {place}, in its {reading}"),
-    }
-}
-
-/// The section of physical names: a dimension, a tag and a name in quotes on each line.
-fn physical_names(file: &[u8]) -> HashMap<Key, String> {
-    let bounds = (find(file, "$PhysicalNames").next(), find(file, "$EndPhysicalNames").next());
-    let (Some(start), Some(end)) = bounds else { return HashMap::new() };
-    let section = String::from_utf8_lossy(file.get(start..end).unwrap_or_default());
+/// A dimension, a tag and a name in quotes on each line.
+fn physical_names(section: &[u8]) -> HashMap<Key, String> {
     let name = |line: &str| {
         let (numbers, rest) = line.split_once('"')?;
         let (name, _) = rest.rsplit_once('"')?;
-        let mut numbers = numbers.split_whitespace().map(|number| number.parse().ok());
-        Some(((numbers.next()??, numbers.next()??), name.to_owned()))
+        let mut numbers = numbers.split_whitespace();
+        let key = (numbers.next()?.parse().ok()?, numbers.next()?.parse().ok()?);
+        Some((key, name.to_owned()))
     };
-    section.lines().filter_map(name).collect()
+    String::from_utf8_lossy(section).lines().filter_map(name).collect()
 }
 
-/// Names of the groups of each entity. A group without a name is called by what it consists of and
-/// its tag: `curve 7`.
-fn groups(
-    entities: &Entities<i32, f64>,
-    names: &HashMap<Key, String>,
-) -> HashMap<Key, Vec<String>> {
+/// The physical groups of each entity.
+fn groups(reader: &mut Reader) -> Result<HashMap<Key, Vec<i32>>, String> {
+    let mut counts = [0; 4];
+    for count in &mut counts {
+        *count = reader.size("number of entities")?;
+    }
     let mut groups = HashMap::new();
-    let mut add = |dimension: i32, what: &str, entity: i32, tags: &[i32]| {
-        let name = |tag: &i32| {
-            let tag = tag.wrapping_abs(); // its sign is the orientation in the group
-            names.get(&(dimension, tag)).cloned().unwrap_or_else(|| format!("{what} {tag}"))
+    for (dimension, count) in counts.into_iter().enumerate() {
+        for _ in 0..count {
+            let tag = reader.int("tag of an entity")?;
+            // where a point is, or the box around an entity
+            for _ in 0..if dimension == 0 { 3 } else { 6 } {
+                reader.real("bound of an entity")?;
+            }
+            let mut tags = || -> Result<Vec<i32>, String> {
+                let count = reader.size("number of tags")?;
+                (0..count).map(|_| reader.int("tag")).collect()
+            };
+            groups.insert((dimension, tag), tags()?);
+            if dimension > 0 {
+                tags()?; // what bounds it
+            }
+        }
+    }
+    Ok(groups)
+}
+
+impl Sections {
+    fn add_node(&mut self, tag: u64, position: [f64; 3]) -> Result<(), String> {
+        match self.places.entry(tag) {
+            Entry::Occupied(_) => {
+                Err(format!("several of its nodes have the tag {tag}, the same tag: renumber them"))
+            }
+            Entry::Vacant(place) => {
+                place.insert(self.positions.len());
+                self.positions.push(position);
+                Ok(())
+            }
+        }
+    }
+
+    fn nodes_4(&mut self, reader: &mut Reader) -> Result<(), String> {
+        let blocks = reader.size("number of blocks")?;
+        for what in ["number of nodes", "least tag", "greatest tag"] {
+            reader.size(what)?;
+        }
+        for _ in 0..blocks {
+            let dimension = reader.int("dimension of an entity")?;
+            reader.int("tag of an entity")?;
+            // coordinates on the entity follow those in space
+            let parameters = if reader.int("flag")? == 0 { 0 } else { dimension.clamp(0, 3) };
+            let count = reader.size("number of nodes")?;
+            let tags = (0..count).map(|_| reader.size("tag of a node"));
+            for tag in tags.collect::<Result<Vec<u64>, String>>()? {
+                let position = reader.point()?;
+                for _ in 0..parameters {
+                    reader.real("parametric coordinate")?;
+                }
+                self.add_node(tag, position)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn nodes_2(&mut self, reader: &mut Reader) -> Result<(), String> {
+        for _ in 0..reader.count_line()? {
+            let tag = reader.int("number of a node")?;
+            let tag =
+                u64::try_from(tag).map_err(|_| reader.broken("a node has a number below 0"))?;
+            let position = reader.point()?;
+            self.add_node(tag, position)?;
+        }
+        Ok(())
+    }
+
+    fn elements_4(&mut self, reader: &mut Reader) -> Result<(), String> {
+        let blocks = reader.size("number of blocks")?;
+        for what in ["number of elements", "least tag", "greatest tag"] {
+            reader.size(what)?;
+        }
+        for _ in 0..blocks {
+            reader.int("dimension of an entity")?;
+            let entity = reader.int("tag of an entity")?;
+            let kind = kind(reader)?;
+            let count = reader.size("number of elements")?;
+            let groups = self.groups.get(&(kind.dimension, entity)).cloned().unwrap_or_default();
+            let mut tags = Vec::new();
+            for _ in 0..count {
+                reader.size("tag of an element")?;
+                for _ in 0..kind.nodes {
+                    tags.push(reader.size("node of an element")?);
+                }
+            }
+            if count > 0 {
+                self.runs.push(Run { kind, entity, groups, tags });
+            }
+        }
+        Ok(())
+    }
+
+    fn elements_2(&mut self, reader: &mut Reader) -> Result<(), String> {
+        let count = reader.count_line()?;
+        let (mut done, mut last) = (0, None);
+        while done < count {
+            // in a text each element has a head of its own, after its number; in binary files a head serves several
+            if reader.is_text() {
+                reader.int("number of an element")?;
+            }
+            let kind = kind(reader)?;
+            let elements = if reader.is_text() { 1 } else { reader.int("number of elements")? };
+            let tags = reader.int("number of tags")?;
+            let elements =
+                usize::try_from(elements).ok().filter(|n| (1..=count - done).contains(n));
+            let elements = elements.ok_or_else(|| reader.broken("its counts do not agree"))?;
+            for _ in 0..elements {
+                if !reader.is_text() {
+                    reader.int("number of an element")?;
+                }
+                // the physical group, the entity, and partitions
+                let [mut group, mut entity] = [0; 2];
+                for place in 0..tags {
+                    let tag = reader.int("tag of an element")?;
+                    match place {
+                        0 => group = tag,
+                        1 => entity = tag,
+                        _ => {}
+                    }
+                }
+                let node = |_| {
+                    let tag = reader.int("node of an element")?;
+                    u64::try_from(tag).map_err(|_| reader.broken("an element has a node below 0"))
+                };
+                let tags = (0..kind.nodes).map(node).collect::<Result<Vec<u64>, String>>()?;
+                let groups = Vec::from_iter(Some(group).filter(|group| *group != 0));
+                self.add_element(&mut last, Run { kind, entity, groups, tags });
+            }
+            done += elements;
+        }
+        last.into_iter().for_each(|last| self.push(last));
+        Ok(())
+    }
+
+    /// Adds an element of a file of version 2 after the `last` one. Elements of several groups are written once for each of
+    /// these, one after the other.
+    fn add_element(&mut self, last: &mut Option<Run>, element: Run) {
+        match last {
+            Some(last)
+                if (last.kind, last.entity, &last.tags)
+                    == (element.kind, element.entity, &element.tags)
+                    && element.groups.iter().any(|group| !last.groups.contains(group)) =>
+            {
+                last.groups.extend(element.groups);
+            }
+            _ => last.replace(element).into_iter().for_each(|last| self.push(last)),
+        }
+    }
+
+    /// Adds elements, to those before them if these are of the same kind, entity and groups.
+    fn push(&mut self, run: Run) {
+        match self.runs.last_mut() {
+            Some(last)
+                if (last.kind, last.entity, &last.groups)
+                    == (run.kind, run.entity, &run.groups) =>
+            {
+                last.tags.extend(run.tags);
+            }
+            _ => self.runs.push(run),
+        }
+    }
+
+    /// The mesh that the sections describe.
+    fn contents(self) -> Result<Contents, String> {
+        let place = |tag: &u64| {
+            let place = self.places.get(tag).copied();
+            place.ok_or_else(|| {
+                format!("an element has the node {tag}, which does not exist: save all elements")
+            })
         };
-        groups.insert((dimension, entity), tags.iter().map(name).collect());
-    };
-    entities.points.iter().for_each(|e| add(0, "point", e.tag, &e.physical_tags));
-    entities.curves.iter().for_each(|e| add(1, "curve", e.tag, &e.physical_tags));
-    entities.surfaces.iter().for_each(|e| add(2, "surface", e.tag, &e.physical_tags));
-    entities.volumes.iter().for_each(|e| add(3, "volume", e.tag, &e.physical_tags));
-    groups
+        let mut blocks = Vec::with_capacity(self.runs.len());
+        for run in &self.runs {
+            let group = |tag: &i32| {
+                let tag = tag.wrapping_abs(); // its sign is the orientation in the group
+                let named = self.names.get(&(run.kind.dimension, tag)).cloned();
+                named.unwrap_or_else(|| format!("{} {tag}", run.kind.entity()))
+            };
+            blocks.push(Block {
+                kind: run.kind,
+                groups: run.groups.iter().map(group).collect(),
+                nodes: run.tags.iter().map(place).collect::<Result<_, _>>()?,
+            });
+        }
+        Ok(Contents { nodes: self.positions, blocks })
+    }
+}
+
+fn kind(reader: &mut Reader) -> Result<ElementType, String> {
+    let number = reader.int("type of elements")?;
+    ElementType::of(number).ok_or_else(|| {
+        reader.broken(format!(
+            "elements of type {number} are not known: take Mesh.ElementOrder 1 or 2"
+        ))
+    })
 }

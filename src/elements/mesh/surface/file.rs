@@ -35,7 +35,7 @@ impl Mesh {
             Some(extension) if extension == "stl" => stl,
             Some(extension) if extension == "obj" => obj,
             #[cfg(feature = "gmsh")]
-            Some(extension) if extension == "msh" => return Self::read_gmsh(path)?.closed(),
+            Some(extension) if extension == "msh" => return Self::read_gmsh_in(path, 3)?.closed(),
             _ => {
                 let help = "surfaces are read from files .stl, .obj and, of Gmsh, .msh";
                 return Err(InputError::new("mesh file", path.display(), help));

@@ -158,7 +158,11 @@ fn nearest(trajectory: &Trajectory, time: f64) -> &Sample {
 fn captions(trajectory: &Trajectory, samples: &[&Sample]) -> Vec<String> {
     let decimals = decimals(samples);
     let phases = trajectory.scene().phases();
-    let caption = |s: &&Sample| format!("t = {:.decimals$} s, {}", s.time, phases[s.phase].name());
+    let caption = |s: &&Sample| {
+        let time = format!("{:.decimals$}", s.time);
+        let time = time.trim_end_matches('0').trim_end_matches('.');
+        format!("t = {time} s, {}", phases[s.phase].name())
+    };
     samples.iter().map(caption).collect()
 }
 

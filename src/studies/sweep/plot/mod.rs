@@ -14,6 +14,7 @@ use self::scale::Variable;
 use super::row::{Row, RowVerdict};
 use super::run::Sweep;
 use super::table::Results;
+use crate::base::input::digits;
 use crate::dynamics::error::Error;
 use crate::io::output::{page, text, write_figure};
 
@@ -110,7 +111,7 @@ impl Plot<'_> {
         lines.extend(
             row.quantities
                 .iter()
-                .filter_map(|(name, value)| Some(format!("{name} = {:.6}", (*value)?))),
+                .filter_map(|(name, value)| Some(format!("{name} = {}", digits((*value)?, 6)))),
         );
         lines.push(row.verdict.to_string());
         Title::new(lines.join("\n"))

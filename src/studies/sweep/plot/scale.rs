@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use super::super::row::Row;
 use super::super::run::Sweep;
 use crate::io::output::{Axis, power_text};
-use crate::io::scene_file::{SetValue, Varied};
+use crate::io::scene_file::{SceneFile, SetValue, Varied};
 
 /// A key or a quantity, with its values in the rows that are drawn.
 pub(super) struct Variable {
@@ -52,7 +52,9 @@ impl Variable {
             Some(Varied::Range { is_logarithmic, .. }) => *is_logarithmic,
             _ => least > 0.0 && largest > DECADES * least,
         };
-        let unit = String::new();
+        // a scene that cannot be read any more has rows all the same
+        let units = SceneFile::units(&sweep.file().scene, &[key]).unwrap_or_default();
+        let unit = units.first().filter(|unit| **unit != "1").copied().unwrap_or_default().into();
         Some(Self { name, unit, values: numbers, words: Vec::new(), is_logarithmic })
     }
 
@@ -89,7 +91,7 @@ impl Variable {
 
     /// What stands along its axis.
     pub(super) fn label(&self, axis: &Axis) -> String {
-        match &axis.unit[..] {
+        match if self.is_logarithmic { &self.unit[..] } else { &axis.unit } {
             "" => self.name.clone(),
             unit => format!("{} ({unit})", self.name),
         }
