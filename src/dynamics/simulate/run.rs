@@ -198,7 +198,7 @@ impl Run {
         loop {
             let system = match take(&mut self.integration) {
                 Integration::Running(mut work) if self.phase_run.ended.is_none() => {
-let bound = self.bound(work.next_step());
+                    let bound = self.bound(work.next_step());
                     let mut ended = self.try_step(&mut work, bound, observer);
                     self.integration = Integration::Running(work);
                     if let Err(source) = &ended
