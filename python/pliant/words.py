@@ -1163,8 +1163,8 @@ def cable(
     Parameters
     ----------
     path
-        nodes, by number, name or box, and points of space, in order. Required. Those of a set or a box follow each
-        other by their distance from the place before them, or from the first of them.
+        nodes, by number, name or box, places in the body, and points of space, in order. Required. Nodes of a set or
+        a box follow each other by their distance from the place before them, or from the first of them.
     name
         the name of the cable. Default: spring 1, spring 2, ...
     stiffness
@@ -1190,6 +1190,22 @@ def cable(
         winch=winch,
         friction_coefficient=friction_coefficient,
         sticking_speed=sticking_speed,
+    )
+
+
+def inside(
+    *,
+    inside: Vector,
+) -> dict:
+    r"""A place in the body by which a cable is led. It moves with the body, and is the same on a finer mesh.
+
+    Parameters
+    ----------
+    inside
+        its undeformed position, within a cell or on the surface (m). Required.
+    """
+    return _table(
+        inside=inside,
     )
 
 
@@ -4028,6 +4044,7 @@ __all__ = [
     "hold_combination",
     "initial",
     "initial_nodes",
+    "inside",
     "lag",
     "law_corotated",
     "law_mooney_rivlin",
