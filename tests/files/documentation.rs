@@ -4,10 +4,26 @@ use std::path::Path;
 
 use pliant::{Dilatation, SceneFile};
 
-const PAGE: &str = include_str!("../../docs/scene-files.md");
+const PAGE: &str = concat!(
+    include_str!("../../docs/scene-files.md"),
+    include_str!("../../docs/scenes/bodies.md"),
+    include_str!("../../docs/scenes/motion.md"),
+    include_str!("../../docs/scenes/contact.md"),
+    include_str!("../../docs/scenes/sensors.md"),
+    include_str!("../../docs/scenes/meshes.md"),
+    include_str!("../../docs/scenes/warnings.md"),
+    include_str!("../../docs/scenes/accuracy.md"),
+    include_str!("../../docs/scenes/long-runs.md"),
+    include_str!("../../docs/scenes/cables.md"),
+    include_str!("../../docs/scenes/gas-and-liquids.md"),
+    include_str!("../../docs/scenes/muscles.md"),
+    include_str!("../../docs/scenes/magnets.md"),
+    include_str!("../../docs/scenes/growth.md"),
+    include_str!("../../docs/scenes/fluids.md"),
+);
 const SILICONE: &str = include_str!("../../docs/silicone.md");
 
-/// The blocks of the page on scene files in a language.
+/// The blocks of the pages on scene files in a language.
 fn blocks(language: &str) -> Vec<&'static str> {
     blocks_of(PAGE, language)
 }
@@ -37,8 +53,9 @@ fn all_scenes_are_run() {
         second,
         third,
         fourth,
-        fifth,
         sixth,
+        fifth,
+        sensors,
         seventh,
         eighth,
         ninth,
@@ -46,7 +63,6 @@ fn all_scenes_are_run() {
         tenth,
         curl,
         eleventh,
-        sensors,
     ] = blocks("toml")[..]
     else {
         panic!("fourteen blocks")
