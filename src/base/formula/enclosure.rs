@@ -87,8 +87,8 @@ fn combined(a: Bounds, operator: Operator, b: Bounds) -> Bounds {
         Operator::Divide if b[0] < 0.0 && b[1] > 0.0 => ALL,
         Operator::Divide => times(match b {
             [0.0, 0.0] => return UNDEFINED,
-            [low, high] if high == 0.0 => [f64::NEG_INFINITY, low.recip()],
-            [low, high] if low == 0.0 => [high.recip(), f64::INFINITY],
+            [low, 0.0] => [f64::NEG_INFINITY, low.recip()],
+            [0.0, high] => [high.recip(), f64::INFINITY],
             [low, high] => [high.recip(), low.recip()],
         }),
         Operator::Power => power(a, b),
@@ -129,10 +129,12 @@ fn through(name: &str, [low, high]: Bounds) -> Bounds {
         let least = if low <= 0.0 && high >= 0.0 { 0.0 } else { low.abs().min(high.abs()) };
         [f(least), largest]
     };
+    // not a number between infinities
+    let is_longer = |period: f64| high - low >= period || (high - low).is_nan();
     // whether `at` or a time that lies periods after it is among the arguments
     let meets = |at: f64, period: f64| at + ((low - at) / period).ceil() * period <= high;
     let wave = |f: fn(f64) -> f64, top: f64| {
-        if !(high - low < TAU) {
+        if is_longer(TAU) {
             return [-1.0, 1.0];
         }
         let ends = hull([f(low), f(high)]);
@@ -143,7 +145,7 @@ fn through(name: &str, [low, high]: Bounds) -> Bounds {
     rounded(match name {
         "sin" => wave(f64::sin, 0.5 * PI),
         "cos" => wave(f64::cos, 0.0),
-        "tan" if !(high - low < PI) || meets(0.5 * PI, PI) => ALL,
+        "tan" if is_longer(PI) || meets(0.5 * PI, PI) => ALL,
         "tan" => [low.tan(), high.tan()],
         "asin" => rising(f64::asin, [-1.0, 1.0]),
         "acos" => negative(rising(|x| -x.acos(), [-1.0, 1.0])),

@@ -54,7 +54,7 @@ impl Formula {
     /// The terms of which it is a sum; factors that do not depend on time are taken into them. Terms without time are left out.
     pub(crate) fn terms(&self) -> Vec<Self> {
         let mut terms = Vec::new();
-        let mut left = vec![0..self.steps.len()];
+        let mut left: Vec<Range<usize>> = std::iter::once(0..self.steps.len()).collect();
         while let Some(range) = left.pop() {
             let Some(last) = range.end.checked_sub(1) else { continue };
             let is_constant =

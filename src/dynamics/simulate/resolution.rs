@@ -123,7 +123,7 @@ impl Course {
             }
         }
         let is_formula = varying.bounds(span).is_some();
-        if is_formula && !(range[1] > range[0]) {
+        if is_formula && range[0] >= range[1] {
             return None;
         }
         let looks = LOOKS * (1e-3 / deviation).powf(0.2);
@@ -247,7 +247,7 @@ impl Course {
             }
             let middle = 0.5 * (start + end);
             let off = self.varying.at(middle) - cell.polynomial((middle - cell.span[0]) * scale);
-            if !(off.abs() <= self.tolerance()) {
+            if off.is_nan() || off.abs() > self.tolerance() {
                 return false;
             }
             if end - start > 1e-3 * self.narrowest {

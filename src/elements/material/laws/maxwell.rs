@@ -315,10 +315,10 @@ impl Step {
         let passed = by_own * (self.solved * self.slopes.rate[0]) * self.gamma;
         let all = by_strain + passed;
         let mut elasticity = Elasticity::default();
-        for v in 0..components(M) {
-            for w in 0..components(M) {
-                let of = |v: usize, w: usize| all[(v, w)] / if w < M { 1.0 } else { 2.0 };
-                elasticity[v][w] = 0.5 * (of(v, w) + of(w, v));
+        let of = |v: usize, w: usize| all[(v, w)] / if w < M { 1.0 } else { 2.0 };
+        for (v, row) in elasticity.iter_mut().enumerate().take(components(M)) {
+            for (w, entry) in row.iter_mut().enumerate().take(components(M)) {
+                *entry = 0.5 * (of(v, w) + of(w, v));
             }
         }
         elasticity
