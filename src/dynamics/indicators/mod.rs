@@ -16,6 +16,7 @@
 //! | [`strain`]: how far cells turn under Cauchy strain | 10 degrees |
 //! | [`strain`]: cells turned inside out under Cauchy strain | none |
 //! | [`coarse`]: how much too stiff linear cells are for the strains that they show | 1.25 times; quadrilaterals and hexahedra 1.1 times |
+//! | [`early`]: tables that end before their phase, and act as a step | none |
 //! | [`pressed`]: energy of bodies that begin within the distance of their touch | 3 times that of bodies that lie on each other |
 //! | [`touch`]: how deep nodes are inside obstacles, at the start and later | half a cell, 2 % of the body; half of the thickness of the body, a quarter of that of the obstacle |
 //! | [`touch`]: points that went past the middle of an obstacle | none |
@@ -55,6 +56,7 @@ mod coarse;
 mod conformity;
 mod deformed;
 mod each;
+mod early;
 mod felt;
 mod gas;
 mod mesh;
@@ -124,6 +126,7 @@ impl Scene {
             .chain(overlap::drawn(body))
             .chain(touch::begun_inside(self))
             .chain(pressed::pressed(self))
+            .chain(early::tables(self))
             .chain(start::lacking(self))
             .collect()
     }

@@ -323,7 +323,7 @@ impl VectorSignal {
     }
 
     /// Writes it at time `t`.
-    pub(super) fn at(&self, t: f64, vector: &mut [f64]) {
+    pub(crate) fn at(&self, t: f64, vector: &mut [f64]) {
         match self {
             Self::Constant(constant) => {
                 vector.iter_mut().zip(constant).for_each(|(x, constant)| *x = *constant);

@@ -27,7 +27,7 @@ impl TimeTable {
     }
 
     /// One component at time `t`.
-    pub(super) fn at(&self, t: f64, component: usize) -> f64 {
+    pub(crate) fn at(&self, t: f64, component: usize) -> f64 {
         let value = |k: usize| self.values[k][component];
         match self.times.partition_point(|&time| time <= t) {
             0 => value(0),

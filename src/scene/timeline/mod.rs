@@ -3,6 +3,7 @@
 mod changed;
 mod contacts;
 mod dipole;
+mod early;
 mod finer;
 mod fluid;
 mod forces;
