@@ -174,7 +174,7 @@ fn tip(scene: &Scene) -> f64 {
 }
 
 /// Places that are nodes are these nodes, to the tolerance of equilibria; places in cells are the same on any mesh, whose cells are
-/// off by less than 1 % (measured: 0.2 %); a finer mesh of a scene keeps them.
+/// off by less than 0.6 % (measured: 0.36 %, halved once 0.08 %); a finer mesh of a scene keeps them.
 #[test]
 fn places_are_kept_on_finer_meshes() {
     let places: Vec<[f64; 2]> = (0..5).map(|k| [0.025 * f64::from(k), 0.01]).collect();
@@ -195,10 +195,10 @@ fn places_are_kept_on_finer_meshes() {
     let between: Vec<[f64; 2]> = places.iter().map(|x| [0.97 * x[0] + 0.001, 0.0083]).collect();
     let [first, second] = [[8, 1], [19, 3]].map(|cells| tip(&bent(cells, inside(&between))));
     println!("{first:e} {second:e}");
-    assert!((first / second - 1.0).abs() < 0.01, "{first} {second}");
+    assert!((first / second - 1.0).abs() < 0.006, "{first} {second}");
     let halved = tip(&bent([8, 1], inside(&between)).halved().unwrap());
     println!("{halved:e}");
-    assert!((halved / second - 1.0).abs() < 0.01, "{halved} {second}");
+    assert!((halved / second - 1.0).abs() < 0.002, "{halved} {second}");
     let outside = bent([8, 1], vec![Guide::inside([0.0, 0.01]), Guide::inside([0.05, 0.02])]);
     let error = outside.equilibrium(&Statics::default()).unwrap_err().to_string();
     assert!(error.contains("cable \"tendon\" place 2") && error.contains("outside"), "{error}");
