@@ -114,7 +114,8 @@ fn the_balance_closes() {
     };
     let tip = 2 * (21 * 5 - 1) + 1;
     let run = |muscle: Muscle, method: Method| {
-        let settings = Settings { method, rtol: 1e-6, ..Settings::default() };
+        // at 1e-6 the balance of BDF, by its first steps, is off by 3e-6 to 4e-5, as it happens
+        let settings = Settings { method, rtol: 1e-7, ..Settings::default() };
         scene(muscle).simulate(&settings, &Sampling::phase_ends()).unwrap()
     };
     let along = || Muscle::along([1.0, 0.0]);
