@@ -46,7 +46,7 @@ impl Scene {
     /// The tables of later phases that act as steps.
     pub(crate) fn early_tables(&self) -> Vec<EarlyTable> {
         let mut early = Vec::new();
-        for [before, phase] in self.phases.array_windows() {
+        for (before, phase) in self.phases.iter().zip(self.phases.iter().skip(1)) {
             let start = before.until;
             let mut add = |of: String, last: f64, values: [f64; 2]| {
                 if jumps(values) {
