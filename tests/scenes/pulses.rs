@@ -59,7 +59,7 @@ fn loads_that_begin_later_act() {
     }
 }
 
-/// What is prescribed goes along as well: a bar that is led by a pulse goes all of its way.
+/// Prescribed motion goes along as well: a bar that is led by a pulse goes all of its way.
 #[test]
 fn motion_that_begins_later_is_followed() {
     for method in METHODS {

@@ -36,7 +36,7 @@ const INTERVALS: usize = 8;
 /// Round-off of values, in parts of the largest.
 const ROUND_OFF: f64 = 64.0 * f64::EPSILON;
 
-/// What bounds the steps up to a time at which they end.
+/// The bounds of the steps up to a time at which they end.
 #[derive(Default)]
 pub(super) struct Resolution {
     /// The phase that it is of.

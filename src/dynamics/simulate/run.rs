@@ -84,7 +84,7 @@ pub(super) struct Run {
     pub(super) least_energy: f64,
     /// A time (s) at which steps end, though no interval does.
     pub(super) pause: Option<f64>,
-    /// What bounds the steps of the interval.
+    /// The bounds of the steps of the interval.
     resolution: Resolution,
     /// What is known of the error of a reduced model, if the scene is run by one.
     pub(super) reduced: Option<Mutex<ReducedChecks>>,
@@ -283,7 +283,7 @@ impl Run {
 
     /// Where the next step ends at the latest (s), if its size (s) is known to be `next`: before it passes over what changes with time,
     /// and before a jump at the end of the interval.
-    pub(super) fn bound(&mut self, next: Option<f64>) -> f64 {
+    fn bound(&mut self, next: Option<f64>) -> f64 {
         let stop = self.phase_run.interval.stop;
         if !self.resolution.is_of(&self.phase, self.time, stop) {
             let span = [self.time, stop];

@@ -60,7 +60,7 @@ pub(crate) struct Relaxing {
     strain: Strain,
     dimension: usize,
     flowing: Option<Flowing>,
-    /// What it is beside a law of rubber.
+    /// Its spring and damper beside a law of rubber.
     pub(crate) rubber: Option<Maxwell>,
 }
 

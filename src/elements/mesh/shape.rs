@@ -46,7 +46,7 @@ pub(super) fn corner_measures(
     corners.iter().map(measure).collect()
 }
 
-/// What is wrong with a cell.
+/// A reason for which a cell cannot be used.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Flaw {
     Reversed,

@@ -91,7 +91,7 @@ impl<'a> Run<'a> {
         }
     }
 
-    /// What the tracker of event `i` finds next, up to a time in the step that has just been made; and when its function was
+    /// The next root that the tracker of event `i` finds, up to a time in the step that has just been made; and when its function was
     /// first `undefined`.
     fn search(
         &mut self,

@@ -11,7 +11,7 @@ use crate::base::root::crosses;
 use crate::integrators::common::{self, Cause, Tolerances};
 
 impl Run<'_> {
-    /// What follows a step that failed by `error`: the events that the solution has come to within its tolerances, as where
+    /// The step in place of one that failed by `error`: to the events that the solution has come to within its tolerances, as where
     /// the right-hand side is undefined behind them and steps become ever shorter; or else the error.
     pub(super) fn at_edge(&mut self, error: common::Error) -> Result<Step<'_>, Reason> {
         let met = self.events_ahead(&error);

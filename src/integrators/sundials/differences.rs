@@ -40,7 +40,7 @@ impl Refused for Failure {
     }
 }
 
-/// What callbacks return to C.
+/// Results of callbacks, as C takes them.
 impl Refused for i32 {
     fn is_recoverable(&self) -> bool {
         *self > 0

@@ -114,7 +114,7 @@ impl Guide {
     }
 }
 
-/// What a spring is joined to: a place in the mesh, or a point of space.
+/// An end of a spring or a place of a cable: in the mesh, or a point of space.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Joint {
     /// Its undeformed position (m); components beyond the dimension are 0.

@@ -6,19 +6,19 @@ use crate::scene::forces::{Signal, VectorSignal};
 /// A table whose last value acts from the start of its phase on, where something else acted before.
 pub(crate) struct EarlyTable {
     pub(crate) phase: String,
-    /// What it is of, in words.
+    /// Its quantity, in words.
     pub(crate) of: String,
     /// Start of the phase, and last time of the table (s).
     pub(crate) start: f64,
     pub(crate) last: f64,
-    /// What acts before and behind the start.
+    /// The values before and behind the start.
     pub(crate) values: [f64; 2],
 }
 
 /// A jump counts from this part of its values on.
 const JUMP: f64 = 1e-6;
 
-/// What a phase lists by names and is nothing where it is not listed: what it is, and the names and signals.
+/// Quantities that a phase lists by names, and that are 0 where it does not: in words, with names and signals.
 fn named(phase: &Phase) -> [(&'static str, Vec<(&str, &Signal)>); 3] {
     fn one(list: &[(String, Signal)]) -> Vec<(&str, &Signal)> {
         list.iter().map(|(name, signal)| (name.as_str(), signal)).collect()

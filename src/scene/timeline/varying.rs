@@ -1,4 +1,4 @@
-//! What changes with time in a phase: loads, pressures, actuation, prescribed motion, paths of obstacles, fields, as single numbers.
+//! Numbers that change with time in a phase: loads, pressures, actuation, prescribed motion, paths of obstacles, fields.
 
 use std::sync::Arc;
 
@@ -92,7 +92,7 @@ impl List {
 }
 
 impl Scene {
-    /// What changes with time in a phase otherwise than along lines and cubics between [breaks](Self::breaks_within).
+    /// The numbers that change with time in a phase otherwise than along lines and cubics between [breaks](Self::breaks_within).
     pub(crate) fn varying_in(&self, phase: &Phase) -> Vec<Varying> {
         let mut list = List::default();
         phase.constraints.iter().for_each(|constraint| list.motion(&constraint.how));

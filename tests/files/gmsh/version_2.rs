@@ -2,7 +2,7 @@
 
 use super::*;
 
-/// What meshio 5.3 has made of files that Gmsh has written: all that they hold is there, groups as well.
+/// Files that meshio 5.3 has made of those that Gmsh has written: all that they hold is there, groups as well.
 #[test]
 fn files_of_meshio_are_those_of_gmsh() {
     for cells in ["triangles6", "hexahedra"] {

@@ -40,7 +40,7 @@ struct Run {
     tags: Vec<u64>,
 }
 
-/// What the sections of a file hold.
+/// The contents of the sections of a file.
 #[derive(Default)]
 struct Sections {
     names: HashMap<Key, String>,

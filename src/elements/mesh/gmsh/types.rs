@@ -58,7 +58,7 @@ impl ElementType {
         known.map(|&(number, dimension, nodes, shape)| Self { number, dimension, nodes, shape })
     }
 
-    /// What such elements are on, in words.
+    /// The entity on which such elements lie.
     pub(super) fn entity(self) -> &'static str {
         ["point", "curve", "surface", "volume"][self.dimension]
     }

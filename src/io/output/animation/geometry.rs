@@ -13,7 +13,7 @@ pub(super) struct Geometry {
     bodies: Vec<(String, &'static str, usize)>,
     /// The drawn nodes.
     pub(super) nodes: Vec<usize>,
-    /// What springs are joined to apart from nodes, drawn after those.
+    /// Ends of springs and places of cables apart from nodes, drawn after those.
     anchors: Vec<Joint>,
     /// The cell of each face.
     pub(super) cells: Vec<usize>,
