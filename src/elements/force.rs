@@ -445,6 +445,22 @@ pub trait Flow: Send + Sync {
     /// A state at which the run ends.
     fn check(&self, t: f64, u: &[f64], amounts: &[f64]) -> Result<(), Failure>;
 
+    /// Whether liquids fill rooms whole, so that errors of their volumes within tolerances are errors of their pressures.
+    fn is_stiff(&self) -> bool;
+
+    /// Writes the pressures (Pa) above that outside of what fills rooms whole, NaN of all others.
+    fn write_pressures(&self, u: &[f64], amounts: &[f64], pressures: &mut [f64]);
+
+    /// What the volume of a room lacks (m^3) of that in which an amount (kg) has a pressure (Pa above that outside), and that volume;
+    /// writes dV/du (m^2). `None` of what does not fill a room whole.
+    fn missing(
+        &self,
+        room: usize,
+        u: &[f64],
+        content: [f64; 2],
+        gradient: &mut [f64],
+    ) -> Option<[f64; 2]>;
+
     /// Adds -p d^2V/du^2 to `stiffness`, and writes all other derivatives, `at` (u, v, m).
     fn linearize(
         &self,

@@ -123,7 +123,8 @@ impl System {
 
     /// The `count` lowest vibrations by the tangents at rest.
     fn vibrations(&mut self, count: usize) -> Vibrations {
-        let highest = self.highest(|system| system.tangents().0);
+        let highest =
+            self.highest(|system, x, image| system.tangents().0.add_product(1.0, x, image));
         let rigid = self.rigid_motions(&vec![0.0; self.dofs()], RIGID * highest);
         let lowest = self.lowest(highest, &rigid, count);
         Vibrations { stiffness: self.tangents().0.values.clone(), rigid, lowest }

@@ -20,6 +20,7 @@
 //! constraints (Woodbury's identity), the pressures s = gamma^2 C (I + gamma^2 H C)^-1 G^T N^-1 r resist, and
 //! N xv - A mu = r - G s.
 
+use crate::base::simd::add_multiple;
 use crate::base::vector::dot;
 use crate::elements::force::FlowDerivatives;
 
@@ -144,6 +145,14 @@ impl FlowMatrix {
         x.iter_mut().zip(&*changes).for_each(|(x, follows)| *x += follows);
         let [by_volumes, by_amounts] = &derivatives.power;
         [dot(&derivatives.heat, x), dot(by_volumes, volumes) + dot(by_amounts, x)]
+    }
+
+    /// Adds G Pv G^T `x`: the forces (N) of amounts that stay against the displacements `x` (m).
+    pub(super) fn add_stiffness(&self, x: &[f64], forces: &mut [f64]) {
+        let FlowDerivatives { gradients, pressures: [stiff, _], .. } = &self.derivatives;
+        for (gradient, stiff) in gradients.chunks(x.len()).zip(stiff) {
+            add_multiple(stiff * dot(gradient, x), gradient, forces);
+        }
     }
 
     /// Changes of the pressures (Pa) of the rooms, after those of the unknowns of the flow were [solved](Self::solve) for, `x`.

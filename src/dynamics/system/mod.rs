@@ -48,6 +48,7 @@ mod reduction;
 pub(crate) mod rigid;
 mod scene;
 mod second_order;
+mod settled;
 mod shape;
 mod shapes;
 mod source;
@@ -72,6 +73,7 @@ pub(crate) use reduced_dae::ReducedDae;
 pub(crate) use reduced_form::{Lift, ReducedForm};
 use reduction::Reduction;
 pub(crate) use second_order::SecondOrderForm;
+use settled::Ends;
 use source::Coupling;
 pub use spectrum::Spectrum;
 pub use summary::PhaseSummary;
@@ -110,6 +112,8 @@ pub(crate) struct System {
     at: Evaluation,
     /// Why a force was undefined, the last time that one was.
     refusal: String,
+    /// Pressures of liquids at the ends of the last step.
+    ends: Ends,
     /// The reduced model, where the phase is run by one.
     reduction: Option<Box<Reduction>>,
 }
@@ -247,6 +251,7 @@ impl System {
             newton,
             at,
             refusal,
+            ends: Ends::default(),
             reduction: None,
         })
     }

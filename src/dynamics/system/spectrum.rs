@@ -9,7 +9,7 @@ use super::rigid::{self, Shape};
 use super::shapes::Shapes;
 use super::source::Coupling;
 use crate::base::simd::add_multiple;
-use crate::base::sparse::{BlockMatrix, NodeMatrix};
+use crate::base::sparse::NodeMatrix;
 use crate::base::vector::{dot, noise};
 use crate::dynamics::matrices::Matrices;
 
@@ -88,8 +88,9 @@ impl System {
         }
         self.edges.move_to(self.alpha, u, v);
         self.turn_inertia(false);
-        let highest = self.highest(|system| system.tangents().0);
-        let damping_rate = self.highest(|system| system.tangents().1);
+        let highest = self.highest(Self::add_stiffness);
+        let damping_rate =
+            self.highest(|system, x, image| system.tangents().1.add_product(1.0, x, image));
         let mut spectrum = Spectrum {
             highest_frequency: highest.sqrt(),
             lowest_frequency: None,
@@ -117,8 +118,8 @@ impl System {
             let entry = |i: usize, j: usize| 0.5 * (all[i * count + j] + all[j * count + i]);
             DMatrix::from_fn(free, free, entry)
         };
-        let (k, d) = self.tangents();
-        let stiffness = SymmetricEigen::new(along(&|x, y| k.add_product(1.0, x, y)));
+        let d = self.tangents().1;
+        let stiffness = SymmetricEigen::new(along(&|x, y| self.add_stiffness(x, y)));
         let damping = along(&|x, y| d.add_product(1.0, x, y));
         let highest = stiffness.eigenvalues.iter().copied().fold(0.0, f64::max);
         // shapes hold rigid motions with a little strain
@@ -154,9 +155,17 @@ impl System {
         spectrum
     }
 
-    /// Largest eigenvalue of X x = eigenvalue M x, X symmetric, by power iteration; 0 if nothing can
-    /// move.
-    pub(super) fn highest(&mut self, matrix: impl Fn(&Self) -> &BlockMatrix) -> f64 {
+    /// Adds Kt `x` to `forces`, with what amounts that flow resist as long as they stay, which is no part of the pattern.
+    fn add_stiffness(&self, x: &[f64], forces: &mut [f64]) {
+        self.tangents().0.add_product(1.0, x, forces);
+        if let Some(flow) = &self.newton.flow {
+            flow.add_stiffness(x, forces);
+        }
+    }
+
+    /// Largest eigenvalue of X x = eigenvalue M x, X symmetric, whose product is added by `add_product`, by power iteration; 0 if
+    /// nothing can move.
+    pub(super) fn highest(&mut self, add_product: impl Fn(&Self, &[f64], &mut [f64])) -> f64 {
         let (dofs, count) = (self.dofs(), self.rows.len());
         let (mut x, mut image) = (noise(dofs, 0), vec![0.0; dofs]);
         let (nowhere, mut mu) = (vec![0.0; count], vec![0.0; count]);
@@ -168,7 +177,7 @@ impl System {
                 0 => {
                     self.matrices.inertia.add_product(self.matrices.dimension, 1.0, &x, &mut image)
                 }
-                _ => matrix(self).add_product(1.0, &x, &mut image),
+                _ => add_product(self, &x, &mut image),
             }
             if iteration > 0 {
                 // x has length 1 in the norm of M

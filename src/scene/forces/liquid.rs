@@ -281,4 +281,12 @@ impl Content for Poured {
     fn gauge(&self, u: &[f64], amount: f64) -> Result<f64, Failure> {
         self.held.gauge(u, amount)
     }
+
+    fn is_stiff(&self) -> bool {
+        self.held.is_stiff()
+    }
+
+    fn volume_under(&self, amount: f64, gauge: f64) -> Option<f64> {
+        self.held.volume_under(amount, gauge)
+    }
 }

@@ -120,6 +120,32 @@ impl Flow for AmountFlow {
         self.all().zip(amounts).try_for_each(|(content, &amount)| content.check(t, u, amount))
     }
 
+    fn is_stiff(&self) -> bool {
+        self.liquids.iter().any(Content::is_stiff)
+    }
+
+    fn write_pressures(&self, u: &[f64], amounts: &[f64], pressures: &mut [f64]) {
+        pressures.fill(f64::NAN);
+        let each = self.all().zip(amounts).zip(pressures);
+        for ((content, &amount), pressure) in each.filter(|((content, _), _)| content.is_stiff()) {
+            *pressure = content.gauge(u, amount).unwrap_or(f64::NAN);
+        }
+    }
+
+    fn missing(
+        &self,
+        room: usize,
+        u: &[f64],
+        [amount, pressure]: [f64; 2],
+        gradient: &mut [f64],
+    ) -> Option<[f64; 2]> {
+        let content = self.all().nth(room)?;
+        let volume = content.volume_under(amount, pressure)?;
+        gradient.fill(0.0);
+        content.walls().add_gradient(1.0, u, gradient);
+        Some([volume - content.walls().volume(u), volume])
+    }
+
     /// Leaves all at 0 where there is no pressure: the step will be refused by the forces.
     fn linearize(
         &self,

@@ -153,6 +153,14 @@ impl Content for Whole {
     fn gauge(&self, u: &[f64], amount: f64) -> Result<f64, Failure> {
         Ok(self.full(u, amount)?.pressure)
     }
+
+    fn is_stiff(&self) -> bool {
+        true
+    }
+
+    fn volume_under(&self, amount: f64, gauge: f64) -> Option<f64> {
+        Some(self.natural(amount) * (1.0 - gauge / self.bulk))
+    }
 }
 
 impl Held for Whole {

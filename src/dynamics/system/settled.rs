@@ -1,0 +1,123 @@
+//! Pressures of liquids between the ends of steps.
+//!
+//! A liquid that fills its chamber whole turns an error of the volume of a millionth into 2.2 kPa, and an interpolated state has
+//! errors as large as its tolerances: by itself it says nothing about the pressure. At the ends of steps that is part of a balance of
+//! forces. So it is interpolated in between, along a straight line, and the walls are moved to the volume that has it: by less than
+//! the tolerances, and as an impulse of the pressure would move them.
+
+use std::ops::Range;
+
+use super::{System, flow_of};
+use crate::base::simd::add_multiple;
+use crate::base::vector::dot;
+use crate::dynamics::state::{self, State};
+
+/// Multiples of the tolerance of an amount by which volumes are changed at most, each relative to the whole. Beyond them the pressure
+/// does what a straight line does not.
+const LARGEST_CHANGE: f64 = 10.0;
+
+/// Rounds over the chambers: walls of one may be those of another.
+const ROUNDS: usize = 3;
+
+/// Pressures (Pa) of liquids at the ends of the last step.
+#[derive(Default)]
+pub(crate) struct Ends {
+    /// Tolerances (kg) of the amounts; none without liquids that fill their chambers.
+    tolerances: Vec<f64>,
+    times: [f64; 2],
+    pressures: [Vec<f64>; 2],
+    gradient: Vec<f64>,
+    motion: Vec<f64>,
+    demands: Vec<f64>,
+    multipliers: Vec<f64>,
+}
+
+impl Ends {
+    /// Keeps the pressures of a `state` at time `t` (s) to which a step has led, or from which one begins.
+    pub(crate) fn keep(&mut self, system: &System, t: f64, state: &[f64]) {
+        let Some(flow) = flow_of(&system.flow).filter(|_| !self.tolerances.is_empty()) else {
+            return;
+        };
+        if self.times[1] == t {
+            return;
+        }
+        self.times = [self.times[1], t];
+        self.pressures.swap(0, 1);
+        let State { u, others, .. } = State::of(state, system.dofs());
+        flow.write_pressures(u, &others[system.amount_range()], &mut self.pressures[1]);
+    }
+}
+
+impl System {
+    /// Whether liquids fill their chambers whole.
+    pub(crate) fn holds_liquid(&self) -> bool {
+        flow_of(&self.flow).is_some_and(|flow| flow.is_stiff())
+    }
+
+    /// Lets pressures between the ends of steps be interpolated, where amounts have these `tolerances`.
+    pub(crate) fn settle_between(&mut self, tolerances: &[f64]) {
+        if self.holds_liquid() {
+            let nothing = vec![f64::NAN; tolerances.len()];
+            let [gradient, motion] = [vec![0.0; self.dofs()], vec![0.0; self.dofs()]];
+            let demands = vec![0.0; self.rows.len()];
+            self.ends = Ends {
+                tolerances: tolerances.to_vec(),
+                times: [f64::NAN; 2],
+                pressures: [nothing.clone(), nothing],
+                gradient,
+                motion,
+                multipliers: demands.clone(),
+                demands,
+            };
+        }
+    }
+
+    /// What is known of the ends of the last step.
+    pub(crate) fn ends_mut(&mut self) -> &mut Ends {
+        &mut self.ends
+    }
+
+    /// Gives liquids in an interpolated `state` at time `t` (s) the pressures between those at the ends of the last step.
+    pub(crate) fn settle(&mut self, t: f64, state: &mut [f64]) {
+        let (range, dofs) = (self.amount_range(), self.dofs());
+        let Self { flow, ends, rows, inertia, .. } = self;
+        let Some(flow) = flow_of(flow).filter(|_| !ends.tolerances.is_empty()) else { return };
+        let Ends {
+            tolerances,
+            times: [start, end],
+            pressures: [first, last],
+            gradient,
+            motion,
+            demands,
+            multipliers,
+        } = ends;
+        if !(*start..=*end).contains(&t) {
+            return;
+        }
+        // rigid pieces turn on as they do
+        inertia.edges.iter_mut().for_each(|edges| edges.demands.fill(0.0));
+        let part = (t - *start) / (*end - *start);
+        let (u, others) = state.split_at_mut(dofs);
+        let amounts = &others[state::length(dofs) - dofs..][range];
+        for (room, &amount) in (0..ROUNDS).flat_map(|_| amounts.iter().enumerate()) {
+            let pressure = first[room] + part * (last[room] - first[room]);
+            let lacks = flow.missing(room, u, [amount, pressure], gradient);
+            let largest = LARGEST_CHANGE * tolerances[room] / amount;
+            let Some([lacks, _]) = lacks.filter(|[lacks, volume]| lacks.abs() < largest * volume)
+            else {
+                continue;
+            };
+            inertia.solve(rows, gradient, demands, motion, multipliers);
+            let compliance = dot(gradient, motion);
+            if compliance > 0.0 {
+                add_multiple(lacks / compliance, motion, u);
+            }
+        }
+    }
+
+    /// The amounts among the last part of a state.
+    fn amount_range(&self) -> Range<usize> {
+        let strains = self.at.relaxing.len();
+        strains..strains + self.amounts().len()
+    }
+}
