@@ -158,7 +158,7 @@ fn rows_of_equilibria_are_those_of_single_ones() {
     let place = Place::of_study(AT_REST);
     let speed = SENSOR.replace("tip", "speed").replace("position", "velocity");
     let green = bar(0.3).replace("area =", "strain = \"green\"\narea =");
-    place.scene(&(green + SENSOR + &speed));
+    place.scene(&(green.replace("[output]", "[output]\nformats = [\"plot\"]") + SENSOR + &speed));
     says(&place.sweep(&["--keep", "tip > 0.1"]), &["6 rows: 6 fine, 0 doubtful, 0 failed"]);
     let plot = fs::read_to_string(place.path("out/study-sweep/plot.svg")).unwrap();
     assert!(plot.contains("6 equilibria") && plot.contains("tip (mm)"), "{plot}");
@@ -184,7 +184,8 @@ fn rows_of_equilibria_are_those_of_single_ones() {
         assert!((held / number(force) - 1.0).abs() < 2e-10, "{row:?}: {held}");
 
         let kept = place.path("out/study-sweep/runs").join(&row[0]);
-        assert_eq!(kept.exists(), at_rest > 0.1);
+        // a single state has no plot
+        assert_eq!((kept.exists(), kept.join("plot.svg").exists()), (at_rest > 0.1, false));
         for name in ["trajectory.csv", "state.json"].into_iter().filter(|_| kept.exists()) {
             let single = fs::read(place.path("out/scene-static").join(name)).unwrap();
             assert_eq!(fs::read(kept.join(name)).unwrap(), single, "{name}");
@@ -331,6 +332,9 @@ fn tasks_and_limits_are_parts_of_a_study() {
 #[test]
 fn outputs_are_kept() {
     let place = Place::of_study(STUDY);
+    place.scene(
+        &(bar(0.3).replace("[output]", "[output]\nformats = [\"html\", \"plot\"]") + SENSOR),
+    );
     place.sweep(&["-q", "--keep", "body.material.young > 5e4 and right.x:max < 0.1015"]);
     let kept = place.files("out/study-sweep/runs");
     let rows = place.row_files("out/study-sweep");
@@ -344,7 +348,7 @@ fn outputs_are_kept() {
     let run = format!("out/study-sweep/runs/{}", kept[0]);
     assert_eq!(
         place.files(&run),
-        ["animation.html", "report.json", "state.json", "trajectory.csv"]
+        ["animation.html", "plot.svg", "report.json", "state.json", "trajectory.csv"]
     );
     // nothing of what reads the quantities is left
     assert!(!place.table(&run).0.iter().any(|name| name.contains("sweep")));

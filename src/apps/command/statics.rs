@@ -109,18 +109,10 @@ fn run_in(arguments: &Arguments, place: &Path) -> Result<(), Failure> {
     if let Some(quantity) = &quantity {
         MeshEstimate::check(&file.scene, quantity)?;
     }
-    let mut request = file.output.clone();
-    // a single state has nothing to plot
-    if !file.statics.options.is_curve() {
-        let asked = request.formats.len();
-        request.formats.retain(|format| ![Format::Plot, Format::Png].contains(format));
-        if request.formats.len() < asked && !output.quiet {
-            print(
-                "plots are of load curves, as with --load-steps 20: a single equilibrium has none",
-            )?;
-        }
+    let request = &file.output.clone();
+    if !file.statics.options.is_curve() && request.formats.iter().any(is_plot) && !output.quiet {
+        print("plots are of load curves, as with --load-steps 20: a single equilibrium has none")?;
     }
-    let request = &request;
 
     let (refined, file, result) = match arguments.refine {
         Some(nodes) => {
@@ -184,9 +176,15 @@ pub fn keep(
     if outcome.is_ok() {
         directory.write_state(trajectory)?;
     }
-    let (files, pictures) = request.formats.iter().partition(|&&format| format == Format::Vtk);
+    // a single state has nothing to plot
+    let formats = request.formats.iter().filter(|format| is_curve || !is_plot(format));
+    let (files, pictures) = formats.partition(|&&format| format == Format::Vtk);
     for (shown, formats) in [(&found, files), (trajectory, pictures)] {
         directory.write_formats(shown, title, &OutputRequest { formats, ..request.clone() })?;
     }
     Ok(())
+}
+
+fn is_plot(format: &Format) -> bool {
+    [Format::Plot, Format::Png].contains(format)
 }

@@ -323,22 +323,22 @@ impl Study<'_> {
         let (Some(file), Some(outcome)) = (&run.file, &run.outcome) else { return Ok(()) };
         let SceneFile { title, output: request, .. } = file;
         let mut request = request.clone();
-        if !request.formats.contains(&Format::Html) {
-            request.formats.push(Format::Html);
-        }
+        // the animation comes last: with it the output is complete
+        request.formats.retain(|format| *format != Format::Html);
+        request.formats.push(Format::Html);
         let values: Vec<String> =
             run.row.keys.iter().map(|(key, value)| format!("{key}={value}")).collect();
         let title = format!("{title} ({})", values.join(", "));
         let mut directory = Directory::new(self.store.run_directory(&run.row.id))?;
         directory.claim()?;
-        // the report comes last: with it the output is complete
         match outcome {
             Outcome::Motion(motion) => {
-                let trajectory = outcome.trajectory();
-                directory.write_formats(trajectory, &title, &request)?;
-                keep(motion.as_ref().map_err(|failure| &**failure), &mut directory, |directory| {
+                let (motion, trajectory) = (motion.as_ref(), outcome.trajectory());
+                keep(motion.map_err(|failure| &**failure), &mut directory, |directory| {
                     directory.write_table(trajectory, &request)
-                })
+                })?;
+                // plots are of what was written
+                directory.write_formats(trajectory, &title, &request)
             }
             Outcome::Equilibrium(found) => {
                 let found = found.as_ref().map_err(|failure| &**failure);

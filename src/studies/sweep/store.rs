@@ -114,7 +114,7 @@ impl Store {
 
     /// Whether the whole output of a run is there.
     pub fn is_kept(&self, id: &str) -> bool {
-        self.run_directory(id).join("report.json").exists()
+        self.run_directory(id).join("animation.html").exists()
     }
 
     /// A row, if it is there. What is no row counts as none.
