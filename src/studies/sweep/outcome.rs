@@ -45,6 +45,19 @@ impl Outcome {
         matches!(self, Self::Motion(Err(failure)) if failure.is_interruption())
     }
 
+    /// Time reached (s), or the part of the phase's end to which the load of an equilibrium was brought on.
+    pub(super) fn reached(&self) -> f64 {
+        let trajectory = self.trajectory();
+        let last = trajectory.last();
+        match self {
+            // by arc length samples are spread over the phase whatever the load
+            Self::Equilibrium(Err(failure)) => {
+                failure.fraction * trajectory.scene().phases()[last.phase].end()
+            }
+            _ => last.time,
+        }
+    }
+
     /// Steps of the integrator, or Newton's iterations.
     pub(super) fn steps(&self) -> usize {
         match self {

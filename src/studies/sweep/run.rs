@@ -257,7 +257,7 @@ impl Sweep {
         row.failure = outcome.failure();
         row.warnings = outcome.warnings();
         row.difference = trajectory.report().achieved.as_ref().map(|achieved| achieved.difference);
-        row.reached = Some(trajectory.last().time);
+        row.reached = Some(outcome.reached());
         row.steps = outcome.steps();
         if row.failure.is_none() {
             row.quantities = self.quantities().map(String::from).zip(numbers).collect();
