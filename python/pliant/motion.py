@@ -223,14 +223,15 @@ class Motion:
         return pyvista.from_meshio(self.to_meshio(sample))
 
     def plot(self, *names, axes=None):
-        """Draws columns over time by matplotlib; by default the sensors, or the centre of mass if there are none.
+        """Draws columns over time by matplotlib, those of a load curve over its load factor; by default the sensors, or the centre of mass if there are none.
 
         Each unit has an axis of values of its own: the first one is that of `axes`, which is returned.
         """
         import matplotlib.pyplot as plt
 
         columns = self.columns()
-        names = names or tuple(self.sensors) or tuple(name for name in columns if name.startswith("centre"))
+        along, label = self._along()
+        names = names or tuple(name for name in self.sensors if columns[name] is not along) or tuple(name for name in columns if name.startswith("centre"))
         for name in names:
             if name not in columns:
                 raise KeyError(f"{name!r} is none of {', '.join(map(repr, columns))}")
@@ -244,10 +245,14 @@ class Motion:
                 by_unit[unit].set_ylabel(unit)
                 # further axes stand beside the second one
                 by_unit[unit].spines["right"].set_position(("outward", 55.0 * max(len(by_unit) - 2, 0)))
-            lines += by_unit[unit].plot(self.times, columns[name], f"C{number}", label=name)
-        axes.set_xlabel("time (s)")
+            lines += by_unit[unit].plot(along, columns[name], f"C{number}", label=name)
+        axes.set_xlabel(label)
         axes.legend(handles=lines)
         return axes
+
+    def _along(self):
+        """What plots are drawn over, with its name and unit."""
+        return self.times, "time (s)"
 
     def _unit(self, name):
         """The unit of a column."""
@@ -267,3 +272,7 @@ class Equilibrium(Motion):
     def report(self):
         """How the equilibrium was found, as a dict."""
         return json.loads(self._report)
+
+    def _along(self):
+        factor = "load factor"
+        return (self.sensors[factor], f"{factor} (1)") if factor in self.sensors else super()._along()

@@ -150,7 +150,7 @@ class Scene:
         text, data = self._scene.advise(within, quantity, budget)
         return Advice(text, json.loads(data))
 
-    def fit(self, measured, unknowns):
+    def fit(self, measured, unknowns, *, static=False):
         """Fits keys of the scene to measurements, as `pliant fit` does: a :class:`Fit`.
 
         Parameters
@@ -159,7 +159,14 @@ class Scene:
             The times (s) in ``t`` or ``time``, or as the index of a DataFrame; readings by the names of sensors: ``tip.y``.
         unknowns : dict
             The least and the most of each key: ``{"body.material.young": (1e5, 5e5)}``.
+        static : bool
+            Whether the rows are equilibria. There are no times then: columns that are no sensors are keys of the scene with their values
+            there, ``phase.blow.pressure.value``.
         """
+        limits = [(key, float(least), float(most)) for key, (least, most) in unknowns.items()]
+        if static:
+            values = [(str(name), [as_json(value) for value in column]) for name, column in dict(measured).items()]
+            return Fit._of(self._scene.fit_at_rest(values, limits))
         columns = {str(name): np.asarray(values, dtype=float).tolist() for name, values in dict(measured).items()}
         times = [columns.pop(name) for name in ("t", "time") if name in columns]
         if hasattr(measured, "index") and not times:
@@ -168,9 +175,7 @@ class Scene:
             raise ValueError("measurements have their times (s) in one column, t or time")
         if any(len(values) != len(times[0]) for values in columns.values()):
             raise ValueError("all columns of measurements are as long as their times")
-        limits = [(key, float(least), float(most)) for key, (least, most) in unknowns.items()]
-        text, found, columns = self._scene.fit(times[0], list(columns.items()), limits)
-        return Fit(text, {key: value for key, value, _ in found}, {key: half for key, _, half in found}, dict(columns))
+        return Fit._of(self._scene.fit(times[0], list(columns.items()), limits))
 
     def chart(self, directory, methods=None, rtol=(1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8), repetitions=3):
         """Charts speed against accuracy, as `pliant chart` does: chart.svg, .png, .md and .csv in `directory`.
@@ -240,6 +245,11 @@ class Fit:
     values: dict
     half_widths: dict
     rms: dict
+
+    @classmethod
+    def _of(cls, fitted):
+        text, found, columns = fitted
+        return cls(text, {key: value for key, value, _ in found}, {key: half for key, _, half in found}, dict(columns))
 
     def __str__(self):
         return self.text

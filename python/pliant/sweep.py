@@ -44,6 +44,7 @@ def sweep(
     client=None,
     *,
     quantities=None,
+    static=False,
     accuracy=None,
     sample=None,
     directory=None,
@@ -71,6 +72,8 @@ def sweep(
         ``{"body.material.young": {"from": 1e5, "to": 1e6, "count": 5}}``. Where `study` is a file, a client may stand here.
     quantities : list of str
         What is kept of each run of the scene: ``["tip.y:end"]``.
+    static : bool
+        Whether each point is an equilibrium of the scene, as :meth:`Scene.static` finds it, and not a run; quantities are ``["tip.y"]`` then.
     accuracy, sample : optional
         As in study files.
     client : dask.distributed.Client, optional
@@ -93,12 +96,12 @@ def sweep(
             directory = kept.name
         directory = os.path.abspath(directory)
         name = study.title or "sweep"
-        study = _study_file(study, vary, quantities, accuracy, sample, directory)
+        study = _study_file(study, vary, quantities, static, accuracy, sample, directory)
     else:
         if vary is not None and not isinstance(vary, Mapping):
             vary, client = None, vary
-        if any(value is not None for value in (vary, quantities, accuracy, sample)):
-            raise TypeError("a study file says what varies and what is kept: vary, quantities, accuracy and sample are for a Scene")
+        if static or any(value is not None for value in (vary, quantities, accuracy, sample)):
+            raise TypeError("a study file says what varies and what is kept: vary, quantities, static, accuracy and sample are for a Scene")
         study = os.path.abspath(study)
         name = os.path.splitext(os.path.basename(study))[0]
         directory = os.path.abspath(directory or os.path.join("out", f"{name}-sweep"))
@@ -113,7 +116,7 @@ def sweep(
     return Sweep(directory, *opened.gather(), kept)
 
 
-def _study_file(scene, vary, quantities, accuracy, sample, directory):
+def _study_file(scene, vary, quantities, static, accuracy, sample, directory):
     """Writes a scene and the study of it into a directory, and returns the path of the study."""
     if not isinstance(vary, Mapping) or not vary:
         raise TypeError('vary is a dict of keys and their values: {"body.material.young": [1e5, 2e5]}')
@@ -121,6 +124,7 @@ def _study_file(scene, vary, quantities, accuracy, sample, directory):
         raise TypeError('quantities are a list of what is kept of each run: ["tip.y:end"]')
     keys = [{"name": key, **(values if isinstance(values, Mapping) else {"values": list(values)})} for key, values in vary.items()]
     study = {"title": scene.title, "scene": "scene.toml", "quantities": list(quantities), "key": keys, "accuracy": accuracy, "sample": sample}
+    study["static"] = static or None
     texts = {"scene.toml": scene._scene.to_toml_anywhere(), "study.toml": _pliant.toml_of(as_json(study))}
     os.makedirs(directory, exist_ok=True)
     for name, text in texts.items():

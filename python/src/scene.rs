@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
-use pliant::fit::{Measured, SceneFit, Unknown};
-use pliant::scene_file::{override_of, toml_of as toml_of_scene};
+use pliant::fit::{Measured, MeasuredAtRest, SceneFit, Unknown};
+use pliant::scene_file::{SetValue, override_of, toml_of as toml_of_scene};
 use pliant::study::{Adviser, Quantity, Scenes, Study, Verification, all_methods};
 use pliant::{Error, Mesh, Part, ReducedModel, SceneFile, Settings, Trajectory};
 use pyo3::exceptions::PyValueError;
@@ -243,34 +243,32 @@ impl Scene {
     }
 
     /// Fits keys, each with the least and the most that it may be, to what was measured: times (s) and readings by the
-    /// names of sensors. Returns the answer in words; the keys with their values and the half widths of their intervals of
-    /// confidence; root mean squares of the residuals before and after, by sensors.
-    #[allow(clippy::type_complexity)]
+    /// names of sensors.
     fn fit(
         &self,
         py: Python<'_>,
         times: Vec<f64>,
         columns: Vec<(String, Vec<f64>)>,
         unknowns: Vec<(String, f64, f64)>,
-    ) -> PyResult<(String, Vec<(String, f64, f64)>, Vec<(String, [f64; 2])>)> {
-        let fitted = py.detach(|| {
-            let measured = Measured { times, columns };
-            let fit = SceneFit::of_text(&*self.text, &self.path, &self.overrides, &measured)?;
-            let unknowns: Vec<Unknown> = unknowns
-                .into_iter()
-                .map(|(key, least, most)| Unknown::new(key, least, most))
-                .collect();
-            fit.fit(&unknowns, &mut |_, _| {})
-        });
-        let fitted = fitted.map_err(raised)?;
-        let found = fitted
-            .fitted
-            .unknowns
-            .iter()
-            .map(|found| (found.unknown.name.clone(), found.value, found.confidence));
-        let columns =
-            fitted.columns.iter().map(|column| (column.quantity.name.clone(), column.rms));
-        Ok((fitted.to_string(), found.collect(), columns.collect()))
+    ) -> PyResult<FoundByFit> {
+        let measured = Measured { times, columns };
+        let fit = || SceneFit::of_text(&*self.text, &self.path, &self.overrides, &measured);
+        fitted(py, fit, unknowns)
+    }
+
+    /// As `fit`, to equilibria: values of keys and readings, as JSON.
+    fn fit_at_rest(
+        &self,
+        py: Python<'_>,
+        columns: Vec<(String, Vec<String>)>,
+        unknowns: Vec<(String, f64, f64)>,
+    ) -> PyResult<FoundByFit> {
+        let of_column = |(name, values): (String, Vec<String>)| {
+            (name, values.iter().map(|value| SetValue::read(value)).collect())
+        };
+        let measured = MeasuredAtRest { columns: columns.into_iter().map(of_column).collect() };
+        let fit = || SceneFit::at_rest_of_text(&*self.text, &self.path, &self.overrides, &measured);
+        fitted(py, fit, unknowns)
     }
 
     /// Charts speed against accuracy of methods at tolerances, into a directory. Returns the table of the fastest.
@@ -325,6 +323,30 @@ impl Scene {
         });
         Ok(Simulation::new(started.map_err(raised)?, self.file.title.clone()))
     }
+}
+
+/// The answer of a fit in words; the keys with their values and the half widths of their intervals of confidence; root mean
+/// squares of the residuals before and after, by sensors.
+type FoundByFit = (String, Vec<(String, f64, f64)>, Vec<(String, [f64; 2])>);
+
+fn fitted(
+    py: Python<'_>,
+    fit: impl FnOnce() -> Result<SceneFit, Error> + Send,
+    unknowns: Vec<(String, f64, f64)>,
+) -> PyResult<FoundByFit> {
+    let fitted = py.detach(|| {
+        let unknown = |(key, least, most)| Unknown::new::<String>(key, least, most);
+        let unknowns: Vec<Unknown> = unknowns.into_iter().map(unknown).collect();
+        fit()?.fit(&unknowns, &mut |_, _| {})
+    });
+    let fitted = fitted.map_err(raised)?;
+    let found = fitted
+        .fitted
+        .unknowns
+        .iter()
+        .map(|found| (found.unknown.name.clone(), found.value, found.confidence));
+    let columns = fitted.columns.iter().map(|column| (column.quantity.name.clone(), column.rms));
+    Ok((fitted.to_string(), found.collect(), columns.collect()))
 }
 
 fn overriding(key: &str, value: &str) -> PyResult<String> {

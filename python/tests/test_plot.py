@@ -6,7 +6,7 @@ from types import ModuleType, SimpleNamespace
 import numpy as np
 import pytest
 
-from pliant.motion import Motion
+from pliant.motion import Equilibrium, Motion
 from pliant.progress import bar
 
 
@@ -42,6 +42,20 @@ def test_each_unit_has_an_axis_of_its_own():
     plt.close(figure)
     with pytest.raises(KeyError, match="'none' is none of"):
         motion().plot("none")
+
+
+def test_load_curves_are_drawn_over_their_factor():
+    matplotlib = pytest.importorskip("matplotlib")
+    matplotlib.use("Agg")
+    import matplotlib.pyplot as plt
+
+    curve = motion()._motion
+    curve.sensor_names[0] = ("load factor", "1")
+    axes = Equilibrium(curve, "{}").plot()
+    assert axes.get_xlabel() == "load factor (1)"
+    assert [line.get_label() for line in axes.lines] == ["gas"]
+    assert list(axes.lines[0].get_xdata()) == [0.0, 1e4]
+    plt.close(axes.figure)
 
 
 @pytest.mark.parametrize("is_notebook", [False, True])

@@ -315,6 +315,18 @@ def test_a_modulus_is_found():
         pliant.Scene(BEAM).fit({"tip.y": [0.0]}, {"body.material.young": (5e5, 2e6)})
 
 
+def test_a_fit_to_equilibria():
+    """A beam under several weights, each a list."""
+    scene = pliant.Scene(BEAM)
+    weights = [[0.0, -1.0], [0.0, -5.0], [0.0, -9.8]]
+    truth = scene.with_values({"body.material.young": 8e5})
+    tips = [truth.with_values(gravity=weight).static().sensors["tip.y"][-1] for weight in weights]
+    fit = scene.fit({"gravity": weights, "tip.y": tips}, {"body.material.young": (5e5, 2e6)}, static=True)
+    assert abs(fit.values["body.material.young"] / 8e5 - 1.0) < 1e-6
+    with pytest.raises(pliant.InputError, match="tip.y"):
+        scene.fit({"gravity": weights, "tpi.y": tips}, {"body.material.young": (5e5, 2e6)}, static=True)
+
+
 def test_advice():
     beam = pliant.Scene({**BEAM, "title": "a beam"})
     advice = beam.advise(0.1, "tip.y:end", budget=5.0)

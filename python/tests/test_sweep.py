@@ -51,6 +51,17 @@ def test_rows_are_runs(study, tmp_path):
         assert motion.sensors["tip.y"][-1] == row["tip.y:end"]
 
 
+def test_rows_are_equilibria(tmp_path):
+    scene = pliant.Scene.from_toml(SCENE)
+    vary = {"body.material.young": [5e5, 2e6]}
+    rows = pliant.sweep(scene, vary, quantities=["tip.y"], static=True, directory=tmp_path / "rest")
+    for row in rows.table:
+        found = scene.with_values({"body.material.young": row["body.material.young"]}).static()
+        assert found.sensors["tip.y"][-1] == row["tip.y"]
+    with pytest.raises(TypeError, match="static"):
+        pliant.sweep(tmp_path / "rest" / "study.toml", static=True)
+
+
 def test_a_scene_without_a_file(study, tmp_path):
     """The rows of a scene and what varies are those of the same study from a file."""
     by_file = pliant.sweep(study, directory=tmp_path / "rows").table

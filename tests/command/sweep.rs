@@ -137,6 +137,108 @@ fn rows_have_an_accuracy() {
     assert_eq!((&row[6][..], &row[11]), ("fine", &report["steps"].to_string()));
 }
 
+/// A bar of Green's strain under dead loads, at rest: E A (s^3 - s)/2 at a stretch s.
+const AT_REST: &str = r#"
+scene = "scene.toml"
+static = true
+quantities = ["tip", "right.x:end", "speed"]
+
+[[key]]
+name = "body.material.young"
+values = [4e4, 8e4]
+
+[[key]]
+name = "phase.pull.load.1.force"
+values = [[0.1], [2.0], [-0.4]]
+"#;
+
+/// Rows of equilibria are what `pliant static --set` finds, to the last digit, and so is the output that is kept.
+#[test]
+fn rows_of_equilibria_are_those_of_single_ones() {
+    let place = Place::of_study(AT_REST);
+    let speed = SENSOR.replace("tip", "speed").replace("position", "velocity");
+    let green = bar(0.3).replace("area =", "strain = \"green\"\narea =");
+    place.scene(&(green.replace("[output]", "[output]\nformats = [\"plot\"]") + SENSOR + &speed));
+    says(&place.sweep(&["--keep", "tip > 0.1"]), &["6 rows: 6 fine, 0 doubtful, 0 failed"]);
+    let plot = fs::read_to_string(place.path("out/study-sweep/plot.svg")).unwrap();
+    assert!(plot.contains("6 equilibria") && plot.contains("tip (mm)"), "{plot}");
+    let (_, rows) = place.rows("out/study-sweep");
+    for row in &rows {
+        let [young, force] = [&row[1], &row[2]];
+        let set =
+            [format!("body.material.young={young}"), format!("phase.pull.load.1.force={force}")];
+        let found = ["static", "scene.toml", "-q", "--set", &set[0], "--set", &set[1]];
+        assert!(place.run(&found).status.success());
+        let (columns, table) = place.table("out/scene-static");
+        let tip = columns.iter().position(|name| name == "tip.x").unwrap();
+        let [at_rest, right, speed] = [3, 4, 5].map(|at| row[at].parse::<f64>().unwrap());
+        assert_eq!([at_rest, right, speed], [table[0][tip], table[0][tip], 0.0], "{row:?}");
+        let report = place.report("out/scene-static");
+        assert_eq!([&row[11], &row[6]], [&report["iterations"].to_string(), "fine"]);
+
+        let number = |text: &str| text.trim_matches(['[', ']']).parse::<f64>().unwrap();
+        let (stretch, stiffness) = (at_rest / 0.1, number(young) * 2e-4);
+        let held = 0.5 * stiffness * (stretch.powi(3) - stretch);
+        println!("{row:?}: {held}");
+        // forces are in balance to 1e-10 of the largest
+        assert!((held / number(force) - 1.0).abs() < 2e-10, "{row:?}: {held}");
+
+        let kept = place.path("out/study-sweep/runs").join(&row[0]);
+        // a single state has no plot
+        assert_eq!((kept.exists(), kept.join("plot.svg").exists()), (at_rest > 0.1, false));
+        for name in ["trajectory.csv", "state.json"].into_iter().filter(|_| kept.exists()) {
+            let single = fs::read(place.path("out/scene-static").join(name)).unwrap();
+            assert_eq!(fs::read(kept.join(name)).unwrap(), single, "{name}");
+        }
+    }
+}
+
+/// Equilibria that are not found are rows; one that a small push ends is doubtful.
+#[test]
+fn equilibria_that_fail_are_rows() {
+    let steps = "
+        scene = \"scene.toml\"
+        static = true
+        quantities = [\"com.x\"]
+        set = [\"body.strain=green\", \"statics.load_steps=20\"]
+        [[key]]
+        name = \"statics.arc_steps\"
+        values = [3, 0]
+    ";
+    let place = Place::of_study(steps);
+    let said = place.sweep(&["--keep", "all"]);
+    says(&said, &["2 rows: 1 fine, 0 doubtful, 1 failed", "the first failure: phase \"pull\": no"]);
+    let (_, rows) = place.rows("out/study-sweep");
+    assert_eq!([&rows[0][3], &rows[1][3]], ["failed", "fine"]);
+    // part of the load, and the whole
+    let reached = |at: usize| rows[at][7].parse::<f64>().unwrap();
+    assert!(rows[0][2].is_empty() && reached(0) < 0.2 && reached(1) == 0.3, "{rows:?}");
+    let kept = place.files(&format!("out/study-sweep/runs/{}", rows[0][0]));
+    assert_eq!(kept, ["animation.html", "report.json", "trajectory.csv"]);
+
+    // a column below and above Euler's load, pi^2 E I/(4 L^2) = 0.0164 N
+    let column = r#"
+        [body]
+        mesh = { kind = "rectangle", size = [0.1, 0.002], nodes = [21, 3], cells = "triangles6" }
+        thickness = 0.01
+        strain = "green"
+        material = { density = 1000.0, young = 1e6, poisson = 0.0, viscosity = 0.0 }
+        [[phase]]
+        name = "press"
+        until = 1.0
+        hold = { nodes = "left" }
+        load = { nodes = "right", total = [-0.01, 0.0] }
+    "#;
+    place.scene(column);
+    place.study(
+        "scene = \"scene.toml\"\nstatic = true\nquantities = [\"com.x\"]\n[[key]]\n\
+         name = \"phase.press.load.total\"\nvalues = [[-0.0148, 0.0], [-0.0189, 0.0]]",
+    );
+    says(&place.sweep(&["--out", "column"]), &["1 fine, 1 doubtful", "warnings: unstable (1)"]);
+    let (_, rows) = place.rows("column");
+    assert_eq!([&rows[0][4], &rows[1][4]], ["", "unstable"]);
+}
+
 /// A run that fails, or cannot begin, is a row; the others go on.
 #[test]
 fn failures_are_rows() {
@@ -232,6 +334,9 @@ fn tasks_and_limits_are_parts_of_a_study() {
 #[test]
 fn outputs_are_kept() {
     let place = Place::of_study(STUDY);
+    place.scene(
+        &(bar(0.3).replace("[output]", "[output]\nformats = [\"html\", \"plot\"]") + SENSOR),
+    );
     place.sweep(&["-q", "--keep", "body.material.young > 5e4 and right.x:max < 0.1015"]);
     let kept = place.files("out/study-sweep/runs");
     let rows = place.row_files("out/study-sweep");
@@ -245,7 +350,7 @@ fn outputs_are_kept() {
     let run = format!("out/study-sweep/runs/{}", kept[0]);
     assert_eq!(
         place.files(&run),
-        ["animation.html", "report.json", "state.json", "trajectory.csv"]
+        ["animation.html", "plot.svg", "report.json", "state.json", "trajectory.csv"]
     );
     // nothing of what reads the quantities is left
     assert!(!place.table(&run).0.iter().any(|name| name.contains("sweep")));
@@ -329,7 +434,7 @@ fn bad_studies_are_refused() {
     let place = Place::of_study(STUDY);
     let young = "[[key]]\nname = \"body.material.young\"\n";
     let head = "scene = \"scene.toml\"\nquantities = [\"com.x:end\"]\n";
-    let cases: [(String, &[&str]); 21] = [
+    let cases: [(String, &[&str]); 24] = [
         (STUDY.replace("young", "yuong"), &["study.toml:7", "yuong", "did you mean \"young\""]),
         (STUDY.replace("4e4, 8e4", "4e4,\n -1"), &["study.toml:9", "young", "-1", "above 0"]),
         (STUDY.replace("[4e4, 8e4]", "[]"), &["study.toml:7", "body.material.young", "empty"]),
@@ -373,6 +478,18 @@ fn bad_studies_are_refused() {
             &["study.toml:7", "sobol"],
         ),
         (head.into(), &["none is varied"]),
+        (
+            AT_REST.replace("\"tip\"", "\"tip:max\"").replace(", \"speed\"", ""),
+            &["study.toml:4", "tip:max", "does not move"],
+        ),
+        (
+            AT_REST.replace("static = true", "static = 1"),
+            &["study.toml:3", "static", "true or false"],
+        ),
+        (
+            format!("accuracy = 0.01\n{}", AT_REST.replace(", \"speed\"", "")),
+            &["accuracy of equilibria = 0.01", "rtol"],
+        ),
         (format!("table = \"points.csv\"\n{head}"), &["points.csv"]),
     ];
     for (study, parts) in cases {
@@ -435,5 +552,13 @@ fn another_study_is_refused() {
     place.study(STUDY);
     place.scene(&(bar(0.2) + SENSOR));
     refused(&[], &["its scene differs"]);
+
+    // equilibria and runs of the same quantities
+    let ends = STUDY.replace(":max", ":end");
+    place.study(&ends);
+    place.sweep(&["-q", "--limit", "1", "--out", "ends"]);
+    place.study(&("static = true".to_owned() + &ends));
+    let output = place.run(&["sweep", "study.toml", "--out", "ends"]);
+    says(&stderr(&output), &["holds another study: static = false there, true here"]);
     assert_eq!(place.row_files("out/study-sweep").len(), 1);
 }

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use pliant::fit::{Measured, SceneFit, Unknown};
+use pliant::fit::{Measured, MeasuredAtRest, SceneFit, Unknown};
 
 use crate::failure::{Failure, print};
 use crate::progress::spinner;
@@ -11,10 +11,10 @@ use crate::scene::SceneArguments;
 
 /// Fit keys of a scene file to measurements
 ///
-/// Runs the scene again and again, and finds the values that bring its sensors nearest to what was measured, by least
+/// Runs the scene again and again, or seeks its equilibria, and finds the values that bring its sensors nearest to what was measured, by least
 /// squares. Prints them with intervals of 95 % confidence (right if what is left over is noise, too narrow if the model is
 /// off), what was and is left over, and the values as --set flags. Derivatives are central differences by the root of
-/// solver.rtol, in parts of the ranges; the runs for them go on all cores.
+/// solver.rtol, or of statics.rtol, in parts of the ranges; the runs for them go on all cores.
 #[derive(Args)]
 pub struct Arguments {
     #[command(flatten)]
@@ -22,10 +22,14 @@ pub struct Arguments {
     /// Table (CSV) of what was measured: a column t or time (s), the others with names of sensors of the scene, as tip.y
     #[arg(long, value_name = "FILE")]
     data: PathBuf,
+    /// The rows of the table are equilibria, as `pliant static` finds them: its columns are keys of the scene with their values there, as
+    /// phase.blow.pressure.value, and sensors
+    #[arg(long = "static")]
+    at_rest: bool,
     /// A key to be found, and the range in which it lies, as body.material.young=1e5..5e5; may be given several times
     #[arg(long, value_name = "KEY=LEAST..MOST", required = true, value_parser = unknown)]
     unknown: Vec<Unknown>,
-    /// Draw what is left over, over time, to this file (SVG)
+    /// Draw what is left over, over time or over the first key of equilibria, to this file (SVG)
     #[arg(long, value_name = "FILE")]
     plot: Option<PathBuf>,
     /// Show no progress
@@ -42,8 +46,11 @@ fn unknown(text: &str) -> Result<Unknown, String> {
 }
 
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let Arguments { scene, data, unknown, plot, quiet } = arguments;
-    let fit = SceneFit::new(&scene.path, &scene.set, &Measured::read(data)?)?;
+    let Arguments { scene, data, at_rest, unknown, plot, quiet } = arguments;
+    let fit = match at_rest {
+        true => SceneFit::at_rest(&scene.path, &scene.set, &MeasuredAtRest::read(data)?)?,
+        false => SceneFit::new(&scene.path, &scene.set, &Measured::read(data)?)?,
+    };
     let progress = spinner(*quiet);
     let fitted = fit.fit(unknown, &mut |runs, rms| {
         progress.set_message(format!("{runs} runs, {rms:.4e} left over"));

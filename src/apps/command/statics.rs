@@ -7,7 +7,7 @@ use clap::Args;
 use pliant::output::write_static_report;
 use pliant::scene_file::Format;
 use pliant::studies::work_precision::Quantity;
-use pliant::{Equilibrium, Error, MeshEstimate, OutputRequest, SceneFile};
+use pliant::{Equilibrium, Error, MeshEstimate, NoEquilibrium, OutputRequest, SceneFile};
 
 use crate::failure::{Failure, print};
 use crate::files::{Directory, OutputArguments, REFINED, REPORT, without_older};
@@ -109,18 +109,10 @@ fn run_in(arguments: &Arguments, place: &Path) -> Result<(), Failure> {
     if let Some(quantity) = &quantity {
         MeshEstimate::check(&file.scene, quantity)?;
     }
-    let mut request = file.output.clone();
-    // a single state has nothing to plot
-    if !file.statics.options.is_curve() {
-        let asked = request.formats.len();
-        request.formats.retain(|format| ![Format::Plot, Format::Png].contains(format));
-        if request.formats.len() < asked && !output.quiet {
-            print(
-                "plots are of load curves, as with --load-steps 20: a single equilibrium has none",
-            )?;
-        }
+    let request = &file.output.clone();
+    if !file.statics.options.is_curve() && request.formats.iter().any(is_plot) && !output.quiet {
+        print("plots are of load curves, as with --load-steps 20: a single equilibrium has none")?;
     }
-    let request = &request;
 
     let (refined, file, result) = match arguments.refine {
         Some(nodes) => {
@@ -141,12 +133,7 @@ fn run_in(arguments: &Arguments, place: &Path) -> Result<(), Failure> {
         Err(Error::Statics(failure)) => Err(&**failure),
         Err(_) => return result.map(|_| ()).map_err(Failure::from),
     };
-    let trajectory = match outcome {
-        Ok(equilibrium) => equilibrium.trajectory(),
-        Err(failure) => &failure.trajectory,
-    };
     directory.claim()?;
-    directory.write(REPORT, |path| write_static_report(outcome, path))?;
     if let Some(mut set) = refined {
         set.extend(scene.mesh_for(&directory.beside(REFINED))?);
         let text = scene.text(&set)?;
@@ -154,17 +141,7 @@ fn run_in(arguments: &Arguments, place: &Path) -> Result<(), Failure> {
             fs::write(path, text).map_err(|source| Error::Output { path: path.into(), source })
         })?;
     }
-    // the states from the undeformed shape to a single equilibrium are not a motion of the body: only
-    // pictures show both
-    let found = if statics.options.is_curve() { trajectory.clone() } else { trajectory.at_end() };
-    directory.write_table(&found, request)?;
-    if outcome.is_ok() {
-        directory.write_state(trajectory)?;
-    }
-    let (files, pictures) = request.formats.iter().partition(|&&format| format == Format::Vtk);
-    for (shown, formats) in [(&found, files), (trajectory, pictures)] {
-        directory.write_formats(shown, title, &OutputRequest { formats, ..request.clone() })?;
-    }
+    keep(outcome, statics.options.is_curve(), title, request, &mut directory)?;
 
     if !output.quiet && !title.is_empty() {
         print(title)?;
@@ -176,4 +153,38 @@ fn run_in(arguments: &Arguments, place: &Path) -> Result<(), Failure> {
         directory.tell()?;
     }
     result.map(|_| ()).map_err(Failure::from)
+}
+
+/// Writes what was found, or how far the search came; of a load curve all equilibria.
+pub fn keep(
+    outcome: Result<&Equilibrium, &NoEquilibrium>,
+    is_curve: bool,
+    title: &str,
+    request: &OutputRequest,
+    directory: &mut Directory,
+) -> Result<(), Failure> {
+    let trajectory = match outcome {
+        Ok(equilibrium) => equilibrium.trajectory(),
+        Err(failure) => &failure.trajectory,
+    };
+    directory.claim()?;
+    directory.write(REPORT, |path| write_static_report(outcome, path))?;
+    // the states from the undeformed shape to a single equilibrium are not a motion of the body: only
+    // pictures show both
+    let found = if is_curve { trajectory.clone() } else { trajectory.at_end() };
+    directory.write_table(&found, request)?;
+    if outcome.is_ok() {
+        directory.write_state(trajectory)?;
+    }
+    // a single state has nothing to plot
+    let formats = request.formats.iter().filter(|format| is_curve || !is_plot(format));
+    let (files, pictures) = formats.partition(|&&format| format == Format::Vtk);
+    for (shown, formats) in [(&found, files), (trajectory, pictures)] {
+        directory.write_formats(shown, title, &OutputRequest { formats, ..request.clone() })?;
+    }
+    Ok(())
+}
+
+fn is_plot(format: &Format) -> bool {
+    [Format::Plot, Format::Png].contains(format)
 }

@@ -10,7 +10,9 @@ use std::sync::{Arc, Mutex};
 use clap::Args;
 use indicatif::ProgressBar;
 use pliant::scene_file::{Format, StudyFile, Written};
-use pliant::sweep::{Condition, PointRun, Results, Row, RowVerdict, Runner, Store, Sweep, Watch};
+use pliant::sweep::{
+    Condition, Outcome, PointRun, Results, Row, RowVerdict, Runner, Store, Sweep, Watch,
+};
 use pliant::{Error, Fraction, SceneFile};
 
 use crate::engine::{Engine, TaskArray};
@@ -18,9 +20,10 @@ use crate::failure::{Failure, print};
 use crate::files::{Directory, place, without_older};
 use crate::progress::{KILLED, rows_bar};
 use crate::run::keep;
+use crate::statics;
 use crate::task::Tasks;
 
-/// Run a scene for many values of its keys
+/// Run a scene, or find its equilibrium, for many values of its keys
 ///
 /// The study file names the scene, the keys with their values (lists, ranges, a Latin hypercube, Sobol's sequence, the rows of a table), and the
 /// quantities that are kept. Writes table.csv (a row for each run: keys, quantities, verdict, warnings, times), plot.svg, and
@@ -317,25 +320,32 @@ impl Study<'_> {
 
     /// Keeps the whole output of a run.
     fn keep_output(&self, run: &PointRun) -> Result<(), Failure> {
-        let (Some(file), Some(motion)) = (&run.file, &run.motion) else { return Ok(()) };
-        let outcome = match motion {
-            Ok(trajectory) => Ok(trajectory),
-            Err(failure) => Err(&**failure),
-        };
+        let (Some(file), Some(outcome)) = (&run.file, &run.outcome) else { return Ok(()) };
         let SceneFile { title, output: request, .. } = file;
         let mut request = request.clone();
-        if !request.formats.contains(&Format::Html) {
-            request.formats.push(Format::Html);
-        }
+        // the animation comes last: with it the output is complete
+        request.formats.retain(|format| *format != Format::Html);
+        request.formats.push(Format::Html);
         let values: Vec<String> =
             run.row.keys.iter().map(|(key, value)| format!("{key}={value}")).collect();
         let title = format!("{title} ({})", values.join(", "));
-        let trajectory = outcome.unwrap_or_else(|failure| &failure.trajectory);
         let mut directory = Directory::new(self.store.run_directory(&run.row.id))?;
         directory.claim()?;
-        directory.write_formats(trajectory, &title, &request)?;
-        // the report comes last: with it the output is complete
-        keep(outcome, &mut directory, |directory| directory.write_table(trajectory, &request))
+        match outcome {
+            Outcome::Motion(motion) => {
+                let (motion, trajectory) = (motion.as_ref(), outcome.trajectory());
+                keep(motion.map_err(|failure| &**failure), &mut directory, |directory| {
+                    directory.write_table(trajectory, &request)
+                })?;
+                // plots are of what was written
+                directory.write_formats(trajectory, &title, &request)
+            }
+            Outcome::Equilibrium(found) => {
+                let found = found.as_ref().map_err(|failure| &**failure);
+                let is_curve = file.statics.options.is_curve();
+                statics::keep(found, is_curve, &title, &request, &mut directory)
+            }
+        }
     }
 }
 

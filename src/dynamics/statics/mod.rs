@@ -90,8 +90,18 @@ impl Scene {
     /// # Errors
     /// As [`equilibrium`](Self::equilibrium); no phase of that name.
     pub fn equilibrium_of(&self, phase: &str, statics: &Statics) -> Result<Equilibrium, Error> {
-        let names = self.phases().iter().map(Phase::name);
-        self.equilibrium_in(find(phase, names, "phase of statics", "phases")?, statics)
+        self.equilibrium_in(self.phase_of_statics(phase)?, statics)
+    }
+
+    fn phase_of_statics(&self, phase: &str) -> Result<usize, InputError> {
+        find(phase, self.phases().iter().map(Phase::name), "phase of statics", "phases")
+    }
+
+    /// Checks that the first phase, or that of a name, has an equilibrium to be sought.
+    #[cfg(feature = "sweep")]
+    pub(crate) fn check_equilibrium(&self, phase: Option<&str>) -> Result<(), InputError> {
+        let number = phase.map_or(Ok(0), |phase| self.phase_of_statics(phase))?;
+        self.at_rest_in(number).map(|_| ())
     }
 
     /// The phase of that `number` (from 0) at rest.

@@ -1,6 +1,8 @@
 //! What a scene file says.
 
 use crate::base::input::Fraction;
+#[cfg(feature = "sweep")]
+use crate::base::input::InputError;
 use crate::dynamics::equilibrium::Equilibrium;
 use crate::dynamics::error::Error;
 use crate::dynamics::simulate::{Reading, Sampling};
@@ -77,6 +79,15 @@ impl SceneFile {
             Err(_) => {}
         }
         result
+    }
+
+    /// Checks that the scene has an equilibrium to be sought, without a search.
+    ///
+    /// # Errors
+    /// Bad input; orifices, pipes and flows, which statics does not have.
+    #[cfg(feature = "sweep")]
+    pub(crate) fn check_equilibrium(&self) -> Result<(), InputError> {
+        self.scene.check_equilibrium(self.statics.phase.as_deref())
     }
 }
 

@@ -115,7 +115,7 @@ impl TableKeys {
 
     /// The unit of what stands at a place, as `material.young`, with or without numbers of elements of lists; empty where there is
     /// none, and where it depends on other keys.
-    #[cfg(feature = "sweep")]
+    #[cfg(any(feature = "fit", feature = "sweep"))]
     pub(super) fn unit(&self, place: &[String]) -> &'static str {
         let mut units = Vec::new();
         self.add_units(place, &mut units);
@@ -125,7 +125,7 @@ impl TableKeys {
         }
     }
 
-    #[cfg(feature = "sweep")]
+    #[cfg(any(feature = "fit", feature = "sweep"))]
     fn add_units(&self, place: &[String], units: &mut Vec<&'static str>) {
         let is_number = |word: &&String| word.parse::<usize>().is_ok();
         let Some((name, rest)) = place.split_first() else { return };
@@ -144,7 +144,7 @@ impl TableKeys {
     }
 }
 
-#[cfg(feature = "sweep")]
+#[cfg(any(feature = "fit", feature = "sweep"))]
 impl Holds {
     /// The tables that may stand there.
     fn each_table(&self, see: &mut dyn FnMut(&'static TableKeys)) {

@@ -89,6 +89,8 @@ use toml::de::DeTable;
 pub use self::contents::{
     AccuracyRequest, AutoRequest, Format, OutputRequest, SceneFile, StaticsRequest,
 };
+#[cfg(any(feature = "fit", feature = "sweep"))]
+pub(crate) use self::overrides::problem;
 use self::overrides::{as_toml, merge};
 pub use self::overrides::{override_of, toml_of};
 #[cfg(feature = "sweep")]
@@ -163,26 +165,33 @@ impl SceneFile {
         Self::written_with(&text, &files)
     }
 
-    /// The places that keys, as those of [`read_with`](Self::read_with), have in a scene file: the same for the
+    /// The places that keys, as those of [`read_with`](Self::read_with), have in the `text` of a scene file: the same for the
     /// name and the number of an element of a list.
     ///
     /// # Errors
-    /// A file that cannot be read, or is not TOML.
-    #[cfg(feature = "sweep")]
-    pub(crate) fn places(path: &Path, keys: &[&str]) -> Result<Vec<Vec<String>>, Error> {
-        let text = text_of(path)?;
-        let source = SourceText { path, text: &text, own: text.len(), notes: RefCell::default() };
-        let document = DeTable::parse(&text).map_err(|error| no_toml(&source, &error))?;
+    /// A text that is not TOML.
+    #[cfg(any(feature = "fit", feature = "sweep"))]
+    pub(crate) fn places(
+        text: &str,
+        path: &Path,
+        keys: &[&str],
+    ) -> Result<Vec<Vec<String>>, Error> {
+        let source = SourceText { path, text, own: text.len(), notes: RefCell::default() };
+        let document = DeTable::parse(text).map_err(|error| no_toml(&source, &error))?;
         Ok(keys.iter().map(|key| overrides::place(document.get_ref(), key)).collect())
     }
 
     /// The units of keys, as those of [`read_with`](Self::read_with): empty for words, and where they depend on other keys.
     ///
     /// # Errors
-    /// A file that cannot be read, or is not TOML.
-    #[cfg(feature = "sweep")]
-    pub(crate) fn units(path: &Path, keys: &[&str]) -> Result<Vec<&'static str>, Error> {
-        Ok(Self::places(path, keys)?.iter().map(|place| TOP.unit(place)).collect())
+    /// As of [`places`](Self::places).
+    #[cfg(any(feature = "fit", feature = "sweep"))]
+    pub(crate) fn units(
+        text: &str,
+        path: &Path,
+        keys: &[&str],
+    ) -> Result<Vec<&'static str>, Error> {
+        Ok(Self::places(text, path, keys)?.iter().map(|place| TOP.unit(place)).collect())
     }
 
     /// As [`read`](Self::read), from the `text` of a file at `path`.

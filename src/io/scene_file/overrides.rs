@@ -1,5 +1,8 @@
 //! Values that take the place of those in the file, as `body.material.young=2e5`.
 
+#[cfg(any(feature = "fit", feature = "sweep"))]
+use std::path::Path;
+
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
@@ -28,6 +31,22 @@ pub fn override_of(key: &str, value: &serde_json::Value) -> Result<String, Error
 fn not_of_toml(key: &str, value: &serde_json::Value, error: &toml::ser::Error) -> Error {
     let beginning: String = value.to_string().chars().take(60).collect();
     InputError::new(key, beginning, error.to_string()).into()
+}
+
+/// The message of an error of the scene, without the place where it was found if that is an override.
+#[cfg(any(feature = "fit", feature = "sweep"))]
+pub(crate) fn problem(error: Error) -> String {
+    match error {
+        Error::SceneFile { path, key, message, .. } if path == Path::new("--set") => match &key[..]
+        {
+            "" => message,
+            key => format!("{key}: {message}"),
+        },
+        Error::Input(InputError { input, value, help }) if input == "--set" => {
+            format!("{value}: {help}")
+        }
+        error => error.to_string(),
+    }
 }
 
 /// The text of an override as TOML: `KEY=VALUE`, in which a text needs no quotes.
@@ -132,7 +151,7 @@ pub(super) fn element(list: &[Spanned<DeValue>], key: &str) -> Option<usize> {
 
 /// The place that a key has in a file, whatever way it is written: of elements of lists, which have names or numbers, the number,
 /// and of a single table neither.
-#[cfg(feature = "sweep")]
+#[cfg(any(feature = "fit", feature = "sweep"))]
 pub(super) fn place(document: &DeTable, key: &str) -> Vec<String> {
     let mut here = Some(document);
     let mut list: Option<&[Spanned<DeValue>]> = None;

@@ -27,6 +27,8 @@ pub struct StudyFile {
     pub set: Vec<Written>,
     /// The quantities that are kept, each as `com.y:max`.
     pub quantities: Vec<Written>,
+    /// Whether each point is an equilibrium, and not a run.
+    pub is_static: bool,
     /// How accurate each run has to be.
     pub accuracy: Option<Fraction>,
     /// A table (CSV) each row of which is a point.
@@ -155,7 +157,7 @@ const SCALES: [(&str, bool); 2] = [("linear", false), ("logarithmic", true)];
 /// The file.
 pub(super) const STUDY: TableKeys = TableKeys::new(
     "The study file",
-    "The keys before the first table. `pliant sweep` runs the scene once for each combination of the values of all keys.",
+    "The keys before the first table. `pliant sweep` runs the scene, or finds its equilibrium, once for each combination of the values of all keys.",
     &[
         Key::new("title", Holds::Text, "the title, for pictures and pages"),
         Key::new("scene", Holds::Text, "the scene file, relative to this one").required(),
@@ -171,6 +173,12 @@ pub(super) const STUDY: TableKeys = TableKeys::new(
         )
         .law("As `\"com.y:max\"`; `:end`, `:max`, `:min`, `:frequency`, `:damping`.")
         .required(),
+        Key::new("static", Holds::Flag, "whether equilibria are sought, and nothing is run")
+            .law(
+                "As `pliant static` does, by `[statics]` of the scene. Quantities are those of the equilibrium: `\"tip.y\"`. Not beside \
+                 `accuracy`.",
+            )
+            .default("false"),
         Key::new(
             "accuracy",
             Holds::Either(&[Holds::Text, Holds::Number]),
@@ -238,6 +246,7 @@ fn study(top: &Table) -> Result<StudyFile, Error> {
         scene,
         set: texts("set")?,
         quantities: texts("quantities")?,
+        is_static: top.optional("static", Value::flag)?.unwrap_or(false),
         accuracy: top.optional("accuracy", Value::fraction)?,
         table: text("table")?,
         keys,

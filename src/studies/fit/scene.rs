@@ -1,10 +1,14 @@
-//! Keys of a scene file, fitted to what sensors of the scene have measured.
+//! Keys of a scene file, fitted to what sensors of the scene have measured, in motion or at rest.
 
 use std::fmt;
 use std::path::{Path, PathBuf};
 
+use rayon::prelude::*;
+
+use super::at_rest::equilibria;
 use super::least_squares::{Determined, Fitted, least_squares};
-use super::measured::Measured;
+use super::measured::{Measured, MeasuredAtRest};
+use super::rows::{Columns, Rows};
 use super::unknown::Unknown;
 use crate::base::input::{InputError, unknown_among};
 use crate::dynamics::error::Error;
@@ -15,7 +19,7 @@ use crate::io::scene_file::{SceneFile, text_of};
 
 /// A scene file, and what was measured of the scene.
 ///
-/// Runs have the tolerance of the file, `solver.rtol`. Measurements outside the time of the scene do not
+/// Runs have the tolerance of the file, `solver.rtol`, and equilibria `statics.rtol`. Measurements outside the time of the scene do not
 /// count. If sensors have several units, residuals are divided by the root mean square variation of what was
 /// measured in their unit.
 #[derive(Debug, Clone)]
@@ -23,10 +27,10 @@ pub struct SceneFit {
     text: String,
     path: PathBuf,
     overrides: Vec<String>,
-    /// Times of the scene at which something was measured, ascending.
-    times: Vec<f64>,
-    /// Each sensor that was measured, with its readings at these times.
-    columns: Vec<(Quantity, Vec<f64>)>,
+    /// Where something was measured.
+    rows: Rows,
+    /// What was measured there.
+    columns: Columns,
     /// What the residuals of each column are divided by.
     scales: Vec<f64>,
     precision: f64,
@@ -39,7 +43,7 @@ pub struct SceneFitted {
     pub fitted: Fitted,
     /// Sensors, one by one.
     pub columns: Vec<FittedColumn>,
-    times: Vec<f64>,
+    rows: Rows,
 }
 
 /// The residuals of a sensor.
@@ -50,7 +54,7 @@ pub struct FittedColumn {
     /// Root mean square of the residuals, in its unit: in the middle of the ranges, and at the values that
     /// were found.
     pub rms: [f64; 2],
-    /// The model less what was measured, in its unit, over time.
+    /// The model less what was measured, in its unit, over time, or equilibrium by equilibrium.
     pub residuals: Vec<f64>,
 }
 
@@ -108,10 +112,64 @@ impl SceneFit {
             })?;
             Ok((quantity.clone(), rows.iter().map(|&row| values[row]).collect()))
         });
-        let columns = columns.collect::<Result<Vec<(Quantity, Vec<f64>)>, Error>>()?;
-        let scales = columns.iter().map(|(quantity, _)| scale(&columns, &quantity.unit)).collect();
-        let precision = file.settings.rtol;
-        Ok(Self { text, path, overrides: overrides.into(), times, columns, scales, precision })
+        let columns = columns.collect::<Result<Columns, Error>>()?;
+        let (overrides, rows, precision) =
+            (overrides.into(), Rows::Times(times), file.settings.rtol);
+        let scales = scales(&columns);
+        Ok(Self { text, path, overrides, rows, columns, scales, precision })
+    }
+
+    /// A fit of the scene file at `path` to equilibria, each at other values of its keys, as
+    /// [`SceneFile::equilibrium`] finds them; with other values for all of them as [`SceneFile::read_with`] takes them.
+    ///
+    /// ```
+    /// use pliant::fit::{MeasuredAtRest, SceneFit, Unknown};
+    ///
+    /// # let place = tempfile::tempdir().unwrap();
+    /// # let [scene, curve] = ["bar.toml", "curve.csv"].map(|name| place.path().join(name));
+    /// # std::fs::write(&scene, r#"
+    /// #     body = { mesh = { kind = "bar", length = 0.1, nodes = 2 }, area = 1e-4, strain = "cauchy", material = { density = 1e3, young = 1e5, poisson = 0.0, viscosity = 0.0 } }
+    /// #     phase = { name = "pull", until = 1.0, hold = { nodes = "left" }, load = { nodes = "right", force = [0.1] } }
+    /// #     sensor = { name = "tip", kind = "displacement", nodes = "right" }
+    /// # "#).unwrap();
+    /// // stretched by F L / (E A) with E = 2e5 Pa
+    /// std::fs::write(&curve, "phase.pull.load.force, tip.x\n[0.1], 5e-4\n[0.2], 1e-3\n[0.4], 2e-3\n").unwrap();
+    /// let measured = MeasuredAtRest::read(&curve)?;
+    /// let young = Unknown::new("body.material.young", 5e4, 1e6);
+    /// let fitted = SceneFit::at_rest(&scene, &[], &measured)?.fit(&[young], &mut |_, _| {})?;
+    /// assert!((fitted.fitted.unknowns[0].value / 2e5 - 1.0).abs() < 1e-6);
+    /// # Ok::<(), pliant::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`SceneFile::read_with`]; a column that is neither a sensor nor a key of the scene, or stands twice; no column of a sensor; a
+    /// reading that is no number, and a value that the scene does not take, with its row.
+    pub fn at_rest(
+        path: impl Into<PathBuf>,
+        overrides: &[String],
+        measured: &MeasuredAtRest,
+    ) -> Result<Self, Error> {
+        let path = path.into();
+        Self::at_rest_of_text(text_of(&path)?, path, overrides, measured)
+    }
+
+    /// As [`at_rest`](Self::at_rest), of the `text` of a file at `path`.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn at_rest_of_text(
+        text: impl Into<String>,
+        path: impl Into<PathBuf>,
+        overrides: &[String],
+        measured: &MeasuredAtRest,
+    ) -> Result<Self, Error> {
+        let (text, path) = (text.into(), path.into());
+        let file = SceneFile::parse_with(&text, &path, overrides)?;
+        let known = sensors(&file)?;
+        let (rows, columns) = equilibria((&text, &path), overrides, measured, &known)?;
+        let (overrides, precision) = (overrides.into(), file.statics.options.rtol);
+        let scales = scales(&columns);
+        Ok(Self { text, path, overrides, rows, columns, scales, precision })
     }
 
     /// Fits keys of the file, as `body.material.young`. `tell` is as in [`least_squares`].
@@ -142,40 +200,67 @@ impl SceneFit {
                 residuals,
             },
         );
-        Ok(SceneFitted { fitted, columns: columns.collect(), times: self.times.clone() })
+        Ok(SceneFitted { fitted, columns: columns.collect(), rows: self.rows.clone() })
     }
 
     /// The model less what was measured, column by column.
     fn residuals(&self, unknowns: &[Unknown], values: &[f64]) -> Result<Vec<Vec<f64>>, Error> {
         let set = unknowns.iter().zip(values).map(|(unknown, value)| set(&unknown.name, *value));
         let overrides: Vec<String> = self.overrides.iter().cloned().chain(set).collect();
-        let file = SceneFile::parse_with(&self.text, &self.path, &overrides)?;
-        let last = self.times.last().copied().unwrap_or_default();
+        let read = match &self.rows {
+            Rows::Times(times) => self.in_motion(&overrides, times)?,
+            Rows::Equilibria { set, .. } => {
+                let rows =
+                    set.par_iter().map(|set| self.in_equilibrium(&[&overrides[..], set].concat()));
+                // of several errors the first one, whichever was found first
+                let rows: Vec<_> = rows.collect();
+                rows.into_iter().collect::<Result<Vec<Vec<f64>>, Error>>()?
+            }
+        };
+        let columns = self.columns.iter().enumerate().map(|(at, (_, measured))| {
+            read.iter().zip(measured).map(|(row, measured)| row[at] - measured).collect()
+        });
+        Ok(columns.collect())
+    }
+
+    /// What the sensors read in a motion at some times (s).
+    fn in_motion(&self, overrides: &[String], times: &[f64]) -> Result<Vec<Vec<f64>>, Error> {
+        let file = SceneFile::parse_with(&self.text, &self.path, overrides)?;
+        let last = times.last().copied().unwrap_or_default();
         let scene = match last > 0.0 {
             true => file.scene.clone().ended_at(last),
             false => file.scene.clone(),
         };
-        let sampling = Sampling::at(&*self.times);
+        let sampling = Sampling::at(times);
         let sampling = file
             .output
             .sensors
             .iter()
             .fold(sampling, |sampling, (name, reading)| sampling.read(name, reading.clone()));
         let motion = scene.simulate(&file.settings, &sampling)?;
-        self.columns
-            .iter()
-            .map(|(quantity, measured)| {
-                let sensors = motion.sensors().iter();
-                let place = sensors.clone().position(|sensor| sensor.name == quantity.name);
-                let place = place.ok_or_else(|| {
-                    let known: Vec<&str> = sensors.map(|sensor| &sensor.name[..]).collect();
-                    let help = unknown_among(&quantity.name, &known, "scene", "sensors");
-                    InputError::new("column of the data", format!("\"{}\"", quantity.name), help)
-                })?;
-                let pairs = self.times.iter().zip(measured);
-                Ok(pairs.map(|(time, measured)| read(&motion, *time, place) - measured).collect())
+        let places = self.places(&motion)?;
+        let row = |time: &f64| places.iter().map(|place| read(&motion, *time, *place)).collect();
+        Ok(times.iter().map(row).collect())
+    }
+
+    /// What the sensors read in an equilibrium.
+    fn in_equilibrium(&self, overrides: &[String]) -> Result<Vec<f64>, Error> {
+        let found = SceneFile::parse_with(&self.text, &self.path, overrides)?.equilibrium()?;
+        let places = self.places(found.trajectory())?;
+        Ok(places.into_iter().map(|place| found.sample().sensors[place]).collect())
+    }
+
+    /// Where the sensors of the columns are among those that were read.
+    fn places(&self, motion: &Trajectory) -> Result<Vec<usize>, InputError> {
+        let sensors = motion.sensors().iter();
+        let place = |(quantity, _): &(Quantity, Vec<f64>)| {
+            sensors.clone().position(|sensor| sensor.name == quantity.name).ok_or_else(|| {
+                let known: Vec<&str> = sensors.clone().map(|sensor| &sensor.name[..]).collect();
+                let help = unknown_among(&quantity.name, &known, "scene", "sensors");
+                InputError::new("column of the data", format!("\"{}\"", quantity.name), help)
             })
-            .collect()
+        };
+        self.columns.iter().map(place).collect()
     }
 }
 
@@ -198,6 +283,11 @@ fn sensors(file: &SceneFile) -> Result<Vec<Quantity>, Error> {
         .iter()
         .fold(none, |sampling, (name, reading)| sampling.read(name, reading.clone()));
     Ok(sampling.columns(&file.scene)?)
+}
+
+/// What the residuals of each column are divided by.
+fn scales(columns: &Columns) -> Vec<f64> {
+    columns.iter().map(|(quantity, _)| scale(columns, &quantity.unit)).collect()
 }
 
 /// Root mean square variation of all columns of a unit; 1 if all columns have this unit, or these do not
@@ -230,17 +320,22 @@ impl SceneFitted {
         self.fitted.unknowns.iter().map(|found| set(&found.unknown.name, found.value)).collect()
     }
 
-    /// Draws the residuals of each sensor over time.
+    /// Draws the residuals of each sensor over time; those of equilibria over the first key that is a number.
     ///
     /// # Errors
     /// [`Error::Output`] if the file cannot be written.
     pub fn write_chart(&self, path: impl AsRef<Path>) -> Result<(), Error> {
         let chart = Chart::new("What the fit leaves over");
-        let chart = chart.axes("time (s)", "model - measured, in the sensor's unit");
+        let (along, label) = self.rows.along();
+        let chart = chart.axes(label, "model - measured, in the sensor's unit");
         let chart = self.columns.iter().fold(chart, |chart, column| {
             let FittedColumn { quantity: Quantity { name, unit }, residuals, .. } = column;
-            let points = self.times.iter().copied().zip(residuals.iter().copied());
-            chart.series(format!("{name} ({unit})"), points)
+            let points = along.iter().copied().zip(residuals.iter().copied());
+            let name = format!("{name} ({unit})");
+            match &self.rows {
+                Rows::Times(_) => chart.series(name, points),
+                Rows::Equilibria { .. } => chart.marked(name, points),
+            }
         });
         chart.write(path)
     }
@@ -278,7 +373,7 @@ impl fmt::Display for SceneFitted {
         if *independent < *residuals as f64 {
             writeln!(
                 f,
-                "what is left over is alike from one time to the next: {residuals} residuals count as {independent:.0} independent ones"
+                "what is left over is alike from one row to the next: {residuals} residuals count as {independent:.0} independent ones"
             )?;
         }
         let end = if *is_converged { "" } else { "; the search has not come to its end" };

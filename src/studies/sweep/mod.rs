@@ -2,6 +2,7 @@
 
 mod condition;
 mod factor;
+mod outcome;
 mod page;
 mod plan;
 mod plot;
@@ -14,6 +15,7 @@ mod table;
 
 pub use condition::Condition;
 pub use factor::MANY;
+pub use outcome::Outcome;
 pub use plan::{Plan, Point};
 pub(crate) use points::{MOST_AXES, sobol};
 pub use row::{Cost, Row, RowVerdict};

@@ -9,7 +9,7 @@ use siphasher::sip::SipHasher13;
 use super::factor::{Factor, MANY, TOO_MANY, factors, table_path};
 use crate::base::input::InputError;
 use crate::dynamics::error::Error;
-use crate::io::scene_file::{SceneFile, SetValue, StudyFile};
+use crate::io::scene_file::{SceneFile, SetValue, StudyFile, text_of};
 
 /// The points of a study, in the order of its table: the values of the last key change fastest.
 #[derive(Debug, Clone)]
@@ -132,7 +132,7 @@ fn id(keys: &[String], values: &[SetValue]) -> String {
 /// A key that stands twice, under any of its names, or within another one.
 fn check_keys(file: &StudyFile) -> Result<(), Error> {
     let names: Vec<&str> = file.keys.iter().map(|key| &key.name.text[..]).collect();
-    let places = SceneFile::places(&file.scene, &names)?;
+    let places = SceneFile::places(&text_of(&file.scene)?, &file.scene, &names)?;
     for (at, (place, key)) in places.iter().zip(&file.keys).enumerate() {
         for (other, before) in places.iter().zip(&file.keys).take(at) {
             let (name, first) = (&key.name.text, &before.name.text);

@@ -18,15 +18,15 @@ pub struct Row {
     /// Whether they can be trusted.
     pub verdict: RowVerdict,
     /// Names of the warnings: of the indicators that are beyond their limits, and `integrator`, `energy-balance`,
-    /// `accuracy`.
+    /// `accuracy`, of equilibria `unstable`.
     pub warnings: Vec<String>,
     /// Why the run failed.
     pub failure: Option<String>,
     /// Relative difference of the last two runs, if an accuracy was asked for.
     pub difference: Option<f64>,
-    /// Time reached (s).
+    /// Time reached (s); in an equilibrium the end of its phase, or that part of it to which the load was brought on.
     pub reached: Option<f64>,
-    /// Steps of the integrator.
+    /// Steps of the integrator; of an equilibrium Newton's iterations.
     pub steps: usize,
     /// What it cost: the one part that differs when the same point is run again.
     pub cost: Cost,

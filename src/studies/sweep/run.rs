@@ -1,18 +1,16 @@
 //! A study, and the run of one of its points.
 
 use std::ops::ControlFlow;
-use std::path::Path;
 use std::time::{Duration, Instant};
 
 use super::factor::{Factor, looked_at, table_path};
+use super::outcome::{self, Computed, Outcome};
 use super::plan::{Plan, Point};
 use super::row::{Cost, Row, RowVerdict};
 use crate::base::input::InputError;
 use crate::dynamics::error::{Error, guarded};
-use crate::dynamics::simulate::{Sampling, Simulation};
-use crate::dynamics::trajectory::{IntegrationFailure, Trajectory};
-use crate::io::scene_file::{SceneFile, StudyFile};
-use crate::studies::work_precision::Verification;
+use crate::dynamics::simulate::Simulation;
+use crate::io::scene_file::{SceneFile, StudyFile, problem};
 use crate::studies::work_precision::quantity::Quantity;
 use crate::studies::work_precision::timing::Budget;
 
@@ -54,14 +52,9 @@ pub struct PointRun {
     pub row: Row,
     /// The scene, and what it asks for; none if it cannot be read.
     pub file: Option<SceneFile>,
-    /// The motion, as `pliant run` has it; none if the run did not begin.
-    pub motion: Option<Result<Trajectory, Box<IntegrationFailure>>>,
+    /// What it has come to; none if the run did not begin.
+    pub outcome: Option<Outcome>,
 }
-
-/// Names of sensors that read quantities begin so.
-const SENSOR: &str = "\u{1}sweep";
-/// Times at which swings are looked at.
-const LOOKS: usize = 2000;
 
 impl Sweep {
     /// The study of a file; one of more than [`MANY`](super::MANY) runs only if that `is_meant`.
@@ -72,6 +65,11 @@ impl Sweep {
         if file.quantities.is_empty() {
             let help = "name one at least, as \"com.y:max\"";
             return Err(file.error(1, "quantities", format!("none is kept: {help}")));
+        }
+        if let (true, Some(accuracy)) = (file.is_static, file.accuracy) {
+            let help =
+                "equilibria are found to `rtol` of [statics] of the scene: leave accuracy out";
+            return Err(InputError::new("accuracy of equilibria", accuracy.0, help).into());
         }
         let plan = Plan::new(&file, is_meant)?;
         Ok(Self { file, plan })
@@ -110,7 +108,10 @@ impl Sweep {
         self.check_keys(&first)?;
         let scene = self.scene(&first)?;
         let units = self.check_quantities(&scene)?;
-        scene.scene.start(&scene.settings)?;
+        match self.file.is_static {
+            true => scene.check_equilibrium()?,
+            false => _ = scene.scene.start(&scene.settings)?,
+        }
         Ok(units)
     }
 
@@ -160,7 +161,9 @@ impl Sweep {
             if self.quantities().take(at).any(|other| other == text) {
                 return refuse("it stands twice: leave one out".into());
             }
-            if quantity.is_over_time() {
+            if self.file.is_static {
+                quantity.at_rest(&scene.scene).map_err(bad)?;
+            } else if quantity.is_over_time() {
                 return refuse(format!(
                     "a row has one number of it: add which one, as {text}:end, :max, :min, :frequency or :damping"
                 ));
@@ -185,7 +188,7 @@ impl Sweep {
                 path: table_path(&self.file),
                 line: lines[number],
                 key: String::new(),
-                message: message(error),
+                message: problem(error),
             },
             _ => {
                 let key = factor.keys().next().unwrap_or_default();
@@ -201,23 +204,29 @@ impl Sweep {
 
     /// An error of the scene, at a line of the study.
     fn at(&self, line: usize, key: &str, error: Error) -> Error {
-        let message = message(error);
+        let message = problem(error);
         match message.strip_prefix(key).and_then(|rest| rest.strip_prefix(": ")) {
             Some(problem) => self.file.error(line, key, problem),
             None => self.file.error(line, key, &message),
         }
     }
 
-    /// Runs a point. `observer` is called after each step, and stops the run by [`ControlFlow::Break`]: then there is
-    /// no result. A run that fails, or cannot begin, is a row.
+    /// Runs a point, or finds its equilibrium if the study says so. `observer` is called after each step of a run, and stops it by
+    /// [`ControlFlow::Break`]: then there is no result. What fails, or cannot begin, is a row.
     pub fn run(
         &self,
         point: &Point,
         observer: &mut dyn FnMut(&Simulation) -> ControlFlow<()>,
     ) -> Option<PointRun> {
         let (clock, budget) = (Instant::now(), Budget::new(Duration::MAX));
-        let found = guarded(|| self.compute(point, observer));
-        let found = found.unwrap_or_else(|panic| Err(panic.into()));
+        let compute = || {
+            let scene = self.scene(point)?;
+            match self.file.is_static {
+                true => outcome::equilibrium(scene, &self.file),
+                false => outcome::motion(scene, &self.file, observer),
+            }
+        };
+        let found = guarded(compute).unwrap_or_else(|panic| Err(panic.into()));
         let cost =
             Cost { wall_seconds: clock.elapsed().as_secs_f64(), processor_seconds: budget.spent() };
         let keys = point.keys.iter().cloned();
@@ -234,141 +243,27 @@ impl Sweep {
             steps: 0,
             cost,
         };
-        let (numbers, file, motion) = match found {
+        let Computed { file, numbers, outcome } = match found {
             Ok(found) => found,
             Err(error) => {
                 row.failure = Some(error.to_string());
-                return Some(PointRun { row, file: None, motion: None });
+                return Some(PointRun { row, file: None, outcome: None });
             }
         };
-        let trajectory = match &motion {
-            Ok(trajectory) => trajectory,
-            Err(failure) if failure.is_interruption() => return None,
-            Err(failure) => {
-                row.failure = Some(failure.to_string());
-                &failure.trajectory
-            }
-        };
-        let report = trajectory.report();
-        row.warnings = report.named_warnings().into_iter().map(|(name, _)| name.into()).collect();
-        row.warnings.dedup();
-        row.difference = report.achieved.as_ref().map(|achieved| achieved.difference);
-        row.reached = Some(trajectory.last().time);
-        row.steps = report.steps();
+        if outcome.is_interruption() {
+            return None;
+        }
+        let trajectory = outcome.trajectory();
+        row.failure = outcome.failure();
+        row.warnings = outcome.warnings();
+        row.difference = trajectory.report().achieved.as_ref().map(|achieved| achieved.difference);
+        row.reached = Some(outcome.reached());
+        row.steps = outcome.steps();
         if row.failure.is_none() {
-            row.quantities = numbers.into_iter().collect();
+            row.quantities = self.quantities().map(String::from).zip(numbers).collect();
             let is_fine = row.warnings.is_empty();
             row.verdict = if is_fine { RowVerdict::Fine } else { RowVerdict::Doubtful };
         }
-        Some(PointRun { row, file: Some(file), motion: Some(motion) })
-    }
-
-    #[allow(clippy::type_complexity, reason = "taken apart at once")]
-    fn compute(
-        &self,
-        point: &Point,
-        observer: &mut dyn FnMut(&Simulation) -> ControlFlow<()>,
-    ) -> Result<
-        (Vec<(String, Option<f64>)>, SceneFile, Result<Trajectory, Box<IntegrationFailure>>),
-        Error,
-    > {
-        let mut file = self.scene(point)?;
-        let within = self.file.accuracy.or(file.accuracy.within);
-        if file.accuracy.quantity.is_none() {
-            file.accuracy.quantity = self.quantities().next().map(String::from);
-        }
-        let named = |text: &str| Quantity::named(text, &file.scene, &file.output.sensors);
-        let quantities = self.quantities().map(named).collect::<Result<Vec<_>, _>>()?;
-        let sampling = sampling(&file, &quantities, within.is_some());
-        let result = match within {
-            None => {
-                let mut simulation = file.scene.start(&file.settings)?;
-                simulation.record(&sampling)?;
-                simulation.finish(observer)
-            }
-            Some(within) => {
-                Verification::of_file(&file, within)?.sampling(sampling.clone()).finish(observer)
-            }
-        };
-        let mut motion = match result {
-            Ok(trajectory) => Ok(trajectory),
-            Err(Error::Integration(failure)) => Err(failure),
-            Err(error) => return Err(error),
-        };
-        let trajectory = match &mut motion {
-            Ok(trajectory) => trajectory,
-            Err(failure) => &mut failure.trajectory,
-        };
-        let numbers = self.quantities().zip(&quantities).enumerate();
-        let numbers =
-            numbers.map(|(at, (name, quantity))| (name.into(), read(trajectory, quantity, at)));
-        let numbers = numbers.collect();
-        trajectory.drop_sensors(|name| name.starts_with(SENSOR));
-        let ends: Vec<f64> =
-            file.scene.phases().iter().map(crate::scene::timeline::Phase::end).collect();
-        trajectory
-            .keep_samples(|sample| !sampling.is_extra(sample.time) || ends.contains(&sample.time));
-        file.explain(trajectory);
-        Ok((numbers, file, motion))
-    }
-}
-
-/// What is sampled: what the scene asks for, and the quantities.
-fn sampling(file: &SceneFile, quantities: &[Quantity], is_verified: bool) -> Sampling {
-    let end = file.scene.end();
-    let mut sampling = match is_verified {
-        false => file.output.sampling(),
-        true => file.output.verified_sampling(end),
-    };
-    if quantities.iter().any(Quantity::is_of_swings) {
-        let times: Vec<f64> = (1..LOOKS).map(|k| end * (k as f64 / LOOKS as f64)).collect();
-        sampling = match is_verified {
-            false => sampling.also_at(times),
-            // verified runs have extra times of their own
-            true => {
-                let sensors = file.output.sensors.iter().cloned();
-                sensors.fold(Sampling::at(times), |all, (name, reading)| all.read(name, reading))
-            }
-        };
-    }
-    for (at, quantity) in quantities.iter().enumerate() {
-        if let Some(reading) = quantity.read_for_it() {
-            sampling = sampling.read(format!("{SENSOR}{at}"), reading.clone());
-        }
-    }
-    match quantities.iter().any(Quantity::is_peak) {
-        true => sampling.finding_peaks(),
-        false => sampling,
-    }
-}
-
-/// The number of the quantity that sensor `at` reads.
-fn read(motion: &Trajectory, quantity: &Quantity, at: usize) -> Option<f64> {
-    let name = format!("{SENSOR}{at}");
-    // a vector on a line has one component, which the name of its column has, too
-    let is_own = |column: &str| {
-        column.strip_prefix(&name).is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
-    };
-    let column = motion.sensors().iter().position(|sensor| is_own(&sensor.name))?;
-    let samples = motion.samples().iter();
-    let (times, series): (Vec<f64>, Vec<f64>) =
-        samples.map(|sample| (sample.time, sample.sensors[column])).unzip();
-    let none = [f64::INFINITY, f64::NEG_INFINITY];
-    let read = motion.peaks.get(column).copied().unwrap_or(none);
-    quantity.number(&times, &series, read).filter(|number| number.is_finite())
-}
-
-/// An error without the place where it was found.
-fn message(error: Error) -> String {
-    match error {
-        Error::SceneFile { path, key, message, .. } if path == Path::new("--set") => match &key[..]
-        {
-            "" => message,
-            key => format!("{key}: {message}"),
-        },
-        Error::Input(InputError { input, value, help }) if input == "--set" => {
-            format!("{value}: {help}")
-        }
-        error => error.to_string(),
+        Some(PointRun { row, file: Some(file), outcome: Some(outcome) })
     }
 }

@@ -85,7 +85,8 @@ impl<'a> Runner<'a> {
         let bytes = ends.into_iter().flatten().map(|file| {
             let body = file.scene.body();
             let every = file.output.step.map_or(0.0, |step| file.scene.end() / step);
-            let samples = file.output.times.as_ref().map_or(every, |times| times.len() as f64);
+            let times = file.output.times.as_ref().map_or(every, |times| times.len() as f64);
+            let samples = if self.sweep.file().is_static { 0.0 } else { times };
             BYTES_PER_NODE * body.mesh().node_count() as f64
                 + SAMPLE_BYTES * samples * body.dofs() as f64
         });

@@ -44,12 +44,14 @@ pub struct Claim {
 #[serde(deny_unknown_fields)]
 struct Identity {
     version: String,
-    /// The scene with what is set, and its solver, as a hash.
+    /// The scene with what is set, and its solver or how its equilibrium is sought, as a hash.
     scene: String,
     set: Vec<String>,
     keys: Vec<String>,
     quantities: Vec<String>,
     accuracy: Option<f64>,
+    #[serde(rename = "static", default, skip_serializing_if = "std::ops::Not::not")]
+    is_static: bool,
 }
 
 const STUDY: &str = "study.json";
@@ -112,7 +114,7 @@ impl Store {
 
     /// Whether the whole output of a run is there.
     pub fn is_kept(&self, id: &str) -> bool {
-        self.run_directory(id).join("report.json").exists()
+        self.run_directory(id).join("animation.html").exists()
     }
 
     /// A row, if it is there. What is no row counts as none.
@@ -208,16 +210,20 @@ impl Identity {
         let file = sweep.file();
         let set: Vec<String> = file.set.iter().map(|written| written.text.clone()).collect();
         let scene = SceneFile::read_with(&file.scene, &set)?;
-        let solver = format_args!("{:?} {:?}", scene.settings, scene.accuracy);
+        let solver = match file.is_static {
+            true => format!("{:?}", scene.statics),
+            false => format!("{:?} {:?}", scene.settings, scene.accuracy),
+        };
         let mut keys = sweep.plan().keys().to_vec();
         keys.sort_unstable();
         Ok(Self {
             version: env!("CARGO_PKG_VERSION").into(),
-            scene: format!("{:016x}", of_text(solver, &[of_scene(&scene.scene)])),
+            scene: format!("{:016x}", of_text(format_args!("{solver}"), &[of_scene(&scene.scene)])),
             set,
             keys,
             quantities: sweep.quantities().map(String::from).collect(),
             accuracy: file.accuracy.map(|accuracy| accuracy.0),
+            is_static: file.is_static,
         })
     }
 
@@ -240,6 +246,7 @@ impl Identity {
         other("version of pliant", self.version.clone(), new.version.clone())
             .or(list)
             .or_else(|| other("accuracy", accuracy(self), accuracy(new)))
+            .or_else(|| other("static", self.is_static.to_string(), new.is_static.to_string()))
             .or_else(|| {
                 (self != new).then(|| "its scene differs from the one that there is now".into())
             })

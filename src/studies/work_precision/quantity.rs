@@ -127,31 +127,40 @@ impl Quantity {
         Ok(())
     }
 
-    /// The reading, if the error of the mesh can be estimated for it.
+    /// What it reads of an equilibrium.
     ///
     /// # Errors
-    /// Anything else: a motion, a part that equilibria do not have, several components, a reading without a
-    /// known derivative.
-    pub(crate) fn of_equilibrium(&self, scene: &Scene) -> Result<&Reading, InputError> {
-        let refused =
-            |help: &str| InputError::new("quantity of an equilibrium", format!("\"{self}\""), help);
+    /// A motion, a part that equilibria do not have, several components.
+    pub(crate) fn at_rest(&self, scene: &Scene) -> Result<&Reading, InputError> {
+        let refused = |help: &str| Err(self.refused(help));
         let Some(reading) = &self.reading else {
-            return Err(refused("the whole motion is no single number: name a reading, as tip.y"));
+            return refused("the whole motion is no single number: name a reading, as tip.y");
         };
         if ![Part::OverTime, Part::End].contains(&self.part) {
-            return Err(refused(
-                "an equilibrium does not move: leave out what stands after the colon",
-            ));
+            return refused("an equilibrium does not move: leave out what stands after the colon");
         }
         if self.columns(scene)? > 1 {
-            return Err(refused("it has several components: choose one, as in tip.y"));
+            return refused("it has several components: choose one, as in tip.y");
         }
+        Ok(reading)
+    }
+
+    /// As [`at_rest`](Self::at_rest), if the error of the mesh can be estimated for it.
+    ///
+    /// # Errors
+    /// As there; a reading without a known derivative.
+    pub(crate) fn of_equilibrium(&self, scene: &Scene) -> Result<&Reading, InputError> {
+        let reading = self.at_rest(scene)?;
         if !reading.has_derivative() {
             let help = "the error of the mesh is estimated of positions, displacements, distances, angles between lines, \
                         centres of mass, volumes of chambers and constraint forces";
-            return Err(refused(help));
+            return Err(self.refused(help));
         }
         Ok(reading)
+    }
+
+    fn refused(&self, help: &str) -> InputError {
+        InputError::new("quantity of an equilibrium", format!("\"{self}\""), help)
     }
 
     /// Its value in an equilibrium, to be compared with what is [seen](Self::seen) at the end of a motion.

@@ -69,7 +69,8 @@ impl Results {
         let quantities = quantities.map(|(name, unit)| Variable::quantity(name, unit, &rows));
         let plot = Plot { keys: keys.collect(), quantities: quantities.collect(), rows, is_told };
         let failed = plot.rows.iter().filter(|(_, row)| row.verdict == RowVerdict::Failed).count();
-        let mut about = format!("{} runs", self.rows.len());
+        let what = if sweep.file().is_static { "equilibria" } else { "runs" };
+        let mut about = format!("{} {what}", self.rows.len());
         if stride > 1 {
             about += &format!(", {} of them drawn", plot.rows.len());
         }

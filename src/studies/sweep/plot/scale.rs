@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use super::super::row::Row;
 use super::super::run::Sweep;
 use crate::io::output::{Axis, power_text};
-use crate::io::scene_file::{SceneFile, SetValue, Varied};
+use crate::io::scene_file::{SceneFile, SetValue, Varied, text_of};
 
 /// A key or a quantity, with its values in the rows that are drawn.
 pub(super) struct Variable {
@@ -53,7 +53,9 @@ impl Variable {
             _ => least > 0.0 && largest > DECADES * least,
         };
         // a scene that cannot be read any more has rows all the same
-        let units = SceneFile::units(&sweep.file().scene, &[key]).unwrap_or_default();
+        let scene = &sweep.file().scene;
+        let units = text_of(scene).and_then(|text| SceneFile::units(&text, scene, &[key]));
+        let units = units.unwrap_or_default();
         let unit = units.first().filter(|unit| **unit != "1").copied().unwrap_or_default().into();
         Some(Self { name, unit, values: numbers, words: Vec::new(), is_logarithmic })
     }

@@ -1,0 +1,25 @@
+//! Where a scene was measured: at times, or in equilibria.
+
+use crate::dynamics::trajectory::Quantity;
+
+/// What was measured: each sensor, with what it has read row by row.
+pub(super) type Columns = Vec<(Quantity, Vec<f64>)>;
+
+/// The rows of measurements.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum Rows {
+    /// Times of a motion (s), ascending.
+    Times(Vec<f64>),
+    /// Equilibria: what is set for each of them, and what they are drawn over.
+    Equilibria { set: Vec<Vec<String>>, label: String, along: Vec<f64> },
+}
+
+impl Rows {
+    /// What they are drawn over, and its name with its unit.
+    pub(super) fn along(&self) -> (&[f64], &str) {
+        match self {
+            Self::Times(times) => (times, "time (s)"),
+            Self::Equilibria { along, label, .. } => (along, label),
+        }
+    }
+}
