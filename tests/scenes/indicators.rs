@@ -337,3 +337,74 @@ fn motions_that_are_their_mirror_images() {
     let motion = started(body, |x| vec![0.01 * x[0], 0.0]);
     assert_eq!(find(&motion, "mirror-x"), None);
 }
+
+/// A path counts from the undeformed place: one of a later phase that begins there is told by how far it is away from its nodes, and one
+/// that begins where they are is not.
+#[test]
+fn paths_that_begin_elsewhere() {
+    let away = |begin: f64, displaced: f64| {
+        let first = Phase::until(0.1).hold("left").move_axis("right", Axis::X, 0.1);
+        let displacements = [begin, begin + 0.01];
+        let second = Phase::until(0.2).named("on").hold("left");
+        let second = second.path("right", Axis::X, [0.1, 0.2], displacements);
+        let body = bar(4, Strain::Green, Material { viscosity: 10.0, ..SOFT });
+        let scene = Scene::new(body).initial_displacement(move |x| vec![displaced * x[0] / 0.1]);
+        run(&scene.phase(first).phase(second), 0.01)
+    };
+    let is_told = |motion: &Trajectory, leap: f64, way: f64| {
+        let told = find(motion, "path-leap").unwrap();
+        assert!((told.value - leap / way).abs() < 1e-3 && told.verdict == Doubtful, "{told}");
+        assert!(motion.report().warnings().iter().any(|warning| warning == &told.text), "{told}");
+        assert!(told.text.contains("the path of node 5 x in phase \"on\" begins at"), "{told}");
+    };
+    // from 10 mm, where `move` has led it, back to the undeformed place, and on
+    is_told(&away(0.0, 0.0), 0.01, 0.01);
+    is_told(&away(0.015, 0.0), 0.005, 0.025);
+    assert!(find(&away(0.01, 0.0), "path-leap").is_none());
+    // `move` goes on from a place at the start
+    assert!(find(&away(0.012, 0.002), "path-leap").is_none());
+    let body = bar(4, Strain::Green, SOFT);
+    let first = Phase::until(0.1).hold("left").path("right", Axis::X, [0.0, 0.1], [0.001, 0.01]);
+    let told = find(&run(&Scene::new(body).phase(first), 0.01), "path-leap").unwrap();
+    assert!((told.value - 0.1).abs() < 1e-3, "{told}");
+}
+
+/// Pinched rings of one layer, against the finest of them: too stiff by 0.07 times the fourth power of the length of a cell over sqrt(R t),
+/// which is told from 1 on, with how many cells would do. (Rectangles of nine nodes, rings 20 and 100 times as large as thick.)
+#[test]
+fn arched_cells_lock() {
+    let pinched = |thickness: f64, around: usize| {
+        let (radius, half) = (1.0, 0.5 * thickness);
+        let nodes = [2 * around + 1, 2];
+        let mesh =
+            Mesh::half_ring(radius - half, radius + half, nodes, Cells::Rectangles9).unwrap();
+        let middle: Vec<usize> = (0..mesh.node_count())
+            .filter(|&node| mesh.position(node)[0].abs() < 1e-9)
+            .map(|node| node + 1)
+            .collect();
+        let body = Body::new(mesh, SOFT).plane(Plane::Stress).thickness(0.1).strain(Strain::Cauchy);
+        let phase = Phase::until(1.0)
+            .hold_axes("left", [Axis::Y])
+            .hold_axes("right", [Axis::Y])
+            .hold_axes(middle.clone(), [Axis::X])
+            .load_total(middle.clone(), [0.0, -1e-6]);
+        let found = rest(&Scene::new(body.build().unwrap()).phase(phase));
+        let sinks = found.last().u[2 * (middle[0] - 1) + 1];
+        (sinks, found)
+    };
+    for (thickness, meshes) in [(0.05, [5, 6, 8]), (0.01, [8, 12, 16])] {
+        let (truth, finest) = pinched(thickness, 64);
+        assert_eq!(find(&finest, "arched-cells").unwrap().verdict, Fine);
+        for around in meshes {
+            let (sinks, found) = pinched(thickness, around);
+            let told = find(&found, "arched-cells").unwrap();
+            let stiffer = truth / sinks - 1.0;
+            let ratio = 0.5 * PI / around as f64 / thickness.sqrt();
+            println!("{thickness} {around}: {stiffer} {} {told}", 0.07 * told.value.powi(4));
+            assert!((told.value / ratio - 1.0).abs() < 0.03, "{told}: {ratio}");
+            assert_eq!(told.verdict == Doubtful, ratio > 1.0, "{told}");
+            let part = 0.07 * told.value.powi(4);
+            assert!((part / stiffer - 1.0).abs() < 0.2, "{part} {stiffer}");
+        }
+    }
+}

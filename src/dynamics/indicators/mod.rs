@@ -11,6 +11,8 @@
 //! | [`gas`]: least absolute pressure; orifices beside their chambers | 5e4 Pa; a face of a cube as large |
 //! | [`mesh`]: Poisson's ratio of linear cells | 0.45 |
 //! | [`mesh`]: pieces that nothing joins | one piece |
+//! | [`arched`]: cells of curved walls of one layer, beside sqrt(R t) | 1 |
+//! | [`faceted`]: what facets of a mesh from a file leave out of the curves that they stand for | 2 % |
 //! | [`conformity`]: hanging nodes, and nodes in the same position that are not one | none |
 //! | [`overlap`]: how deep the body overlaps itself, as drawn and as it moves | a twentieth of a cell |
 //! | [`strain`]: how far cells turn under Cauchy strain | 10 degrees |
@@ -23,10 +25,12 @@
 //! | [`touch`]: how deep the surface between nodes is inside obstacles | as nodes |
 //! | [`touch`]: obstacles with friction that are touched in statics, where it does not act | none |
 //! | [`touch`]: obstacles that act and are never touched | none |
+//! | [`creep`]: how far surfaces creep that friction holds | 1 % of the distance that nodes travel |
 //! | [`start`]: unknowns that the scene or the state from which it starts does not have | none |
 //! | [`chamber`]: the least volume of a chamber | 0 |
 //! | [`pace`]: absolute tolerance of displacements | 1 % of the distance that nodes travel, or 10 `rtol` |
 //! | [`pace`]: drift of constraints after the starts of phases | 0.1 % of the distance that nodes travel |
+//! | [`pace`]: how far paths begin away from their nodes | 1 % of the distance that nodes travel |
 //! | [`reduced`]: the error that a run by a reduced model tells | twice what was wanted |
 //! | [`reduced`]: how far it was outside of what the model has learned | 5 % of the range |
 //!
@@ -50,13 +54,16 @@
 //! | [`symmetry`]: how far the motion is from one in a plane (+) | 1 % |
 //! | [`symmetry`]: how far the motion is from its mirror images (+) | 0.1 % |
 
+mod arched;
 mod bending;
 mod chamber;
 mod coarse;
 mod conformity;
+mod creep;
 mod deformed;
 mod each;
 mod early;
+mod faceted;
 mod felt;
 mod gas;
 mod mesh;
@@ -117,6 +124,8 @@ impl Scene {
         let of_body = |part: Part| {
             let measured = units::units(self, part.body).into_iter();
             let measured = measured.chain(mesh::locking(part.body));
+            let measured = measured.chain(faceted::faceted(part.body));
+            let measured = measured.chain(arched::arched(part.body));
             named(part.name, body, measured.chain(conformity::conformity(part.body)))
         };
         let each = body.parts().flat_map(of_body);
@@ -188,10 +197,12 @@ pub(crate) fn of_motion(trajectory: &Trajectory) -> Vec<Indicator> {
     let measured = measured.chain(touch::depths(trajectory.scene(), &meetings));
     let measured = measured.chain(touch::passages(trajectory));
     let measured = measured.chain(touch::between_nodes(trajectory));
+    let measured = measured.chain(crept(trajectory));
     let measured = measured.chain(chamber::volumes(scene, trajectory.samples()));
     let measured = measured.chain(overlaps(trajectory));
     let measured = measured.chain(pace::tolerance(trajectory, &samples));
     let measured = measured.chain(pace::lasting_drift(trajectory, &samples));
+    let measured = measured.chain(pace::leaps(trajectory, &samples));
     let measured = measured.chain(trajectory.report().reduced.iter().flat_map(reduced));
     measured.chain(is_whole.then(missed).into_iter().flatten()).collect()
 }
@@ -225,6 +236,14 @@ pub(crate) fn largest_turn(trajectory: &Trajectory, part: &Part) -> f64 {
     strain::largest_turn(part.body, samples.map(|sample| &sample.u[part.dofs()]))
 }
 
+/// How far surfaces have crept that friction holds.
+fn crept(trajectory: &Trajectory) -> Vec<Indicator> {
+    creep::creep(
+        trajectory,
+        &spread(trajectory, MOST_SAMPLES_FOR_OVERLAPS, MOST_CELLS_FOR_OVERLAPS),
+    )
+}
+
 /// Whether the body passes through itself.
 fn overlaps(trajectory: &Trajectory) -> Option<Indicator> {
     let samples = spread(trajectory, MOST_SAMPLES_FOR_OVERLAPS, MOST_CELLS_FOR_OVERLAPS);
@@ -247,7 +266,7 @@ fn of_cells(trajectory: &Trajectory, samples: &[&Sample]) -> Vec<Indicator> {
 const MOST_SAMPLES: usize = 200;
 const MOST_CELLS: usize = 50_000;
 const FEW_SAMPLES: usize = 10;
-/// The same for overlaps, which come and go and cost less to find.
+/// The same for overlaps and creep, which come and go and cost less to find.
 const MOST_SAMPLES_FOR_OVERLAPS: usize = 1000;
 const MOST_CELLS_FOR_OVERLAPS: usize = 2_000_000;
 
