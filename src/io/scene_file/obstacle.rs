@@ -99,10 +99,20 @@ const DISC: Kind = Kind {
 
 const BOX: Kind = Kind {
     word: "box",
-    about: "a box along the axes",
+    about: "a box along the axes, unless it is turned",
     keys: &[
         Key::vector("min", "the lower corner", "m"),
         Key::vector("max", "the upper corner", "m"),
+        Key::new(
+            "turn",
+            Holds::OneOrMore(&Holds::Number),
+            "the angle by which the box is turned about its middle",
+        )
+        .in_unit("rad")
+        .law(
+            "One number in the plane, counter-clockwise; in space three, the axis times the angle.",
+        )
+        .default("0"),
     ],
 };
 
@@ -222,7 +232,10 @@ fn shape(table: &Table, dimension: usize) -> Result<Shape, Error> {
                 false => Shape::disc(centre, radius()?),
             }
         }
-        "box" => Shape::box_between(vector("min")?, vector("max")?),
+        "box" => match table.optional("turn", Value::one_or_more_numbers)? {
+            Some(turn) => Shape::turned_box(vector("min")?, vector("max")?, turn),
+            None => Shape::box_between(vector("min")?, vector("max")?),
+        },
         "capsule" => Shape::capsule(vector("from")?, vector("to")?, radius()?),
         _ => {
             let part = |part: &Table| {

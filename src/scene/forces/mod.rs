@@ -35,6 +35,7 @@ mod tests;
 mod time_table;
 mod touch;
 mod travel;
+mod turned;
 
 pub use chamber::Chamber;
 pub(crate) use chamber::{ChamberForce, TURNED};
@@ -80,3 +81,5 @@ pub(crate) use surface::{
 pub(crate) use time_table::TimeTable;
 pub(crate) use touch::TouchForce;
 pub use touch::{Touch, TouchDistance};
+#[cfg(feature = "output")]
+pub(crate) use turned::corners;

@@ -138,6 +138,15 @@ impl Obstacle {
         Self::new(Shape::box_between(min, max))
     }
 
+    /// As [`Shape::turned_box`].
+    pub fn turned_box(
+        min: impl Into<Vec<f64>>,
+        max: impl Into<Vec<f64>>,
+        turn: impl Into<Vec<f64>>,
+    ) -> Self {
+        Self::new(Shape::turned_box(min, max, turn))
+    }
+
     /// As [`Shape::capsule`].
     pub fn capsule(from: impl Into<Vec<f64>>, to: impl Into<Vec<f64>>, radius: f64) -> Self {
         Self::new(Shape::capsule(from, to, radius))

@@ -3,6 +3,7 @@
 use std::fmt;
 use std::sync::Arc;
 
+use super::turned::{Turned, corners};
 use crate::base::input::{InputError, finite, positive};
 use crate::base::vector::{axes_across, dot, norm, padded};
 
@@ -19,7 +20,7 @@ pub struct Shape(Kind);
 pub(crate) enum Kind {
     HalfPlane { point: Vec<f64>, normal: Vec<f64> },
     Ball { centre: Vec<f64>, radius: f64, cavity: bool },
-    Box { min: Vec<f64>, max: Vec<f64> },
+    Box { min: Vec<f64>, max: Vec<f64>, turned: Option<Turned> },
     Capsule { from: Vec<f64>, to: Vec<f64>, radius: f64 },
     Union(Vec<Shape>),
     Custom(Arc<Distance>),
@@ -31,7 +32,10 @@ impl fmt::Debug for Shape {
             Kind::HalfPlane { point, normal } => write!(f, "half-plane at {point:?} {normal:?}"),
             Kind::Ball { centre, radius, cavity: false } => write!(f, "disc {centre:?} {radius}"),
             Kind::Ball { centre, radius, cavity: true } => write!(f, "cavity {centre:?} {radius}"),
-            Kind::Box { min, max } => write!(f, "box {min:?} {max:?}"),
+            Kind::Box { min, max, turned: None } => write!(f, "box {min:?} {max:?}"),
+            Kind::Box { min, max, turned: Some(turned) } => {
+                write!(f, "box {min:?} {max:?} turned {:?}", turned.by)
+            }
             Kind::Capsule { from, to, radius } => write!(f, "capsule {from:?} {to:?} {radius}"),
             Kind::Union(parts) => f.debug_tuple("union").field(parts).finish(),
             Kind::Custom(_) => f.write_str("custom"),
@@ -94,7 +98,35 @@ impl Shape {
 
     /// The box between the corners `min` and `max` (m), its edges parallel to the axes.
     pub fn box_between(min: impl Into<Vec<f64>>, max: impl Into<Vec<f64>>) -> Self {
-        Self(Kind::Box { min: min.into(), max: max.into() })
+        Self(Kind::Box { min: min.into(), max: max.into(), turned: None })
+    }
+
+    /// The box between `min` and `max` (m), turned about its middle by `turn` (rad): one angle in the plane, counter-clockwise; in space
+    /// three numbers, the axis times the angle.
+    ///
+    /// ```
+    /// use pliant::{Body, Cells, Material, Mesh, Obstacle, Phase, Sampling, Scene, Settings};
+    ///
+    /// let mesh = Mesh::rectangle([0.02, 0.02], [3, 3], Cells::Rectangles)?.translated(&[0.0, 0.005])?;
+    /// let body = Body::new(mesh, Material::rigid(1000.0)).thickness(0.02).build()?;
+    /// // a slope of 30 degrees, with its upper face through the origin nearly
+    /// let slope = Obstacle::turned_box([-0.5, -0.01], [0.5, 0.0], [-30_f64.to_radians()]);
+    /// let scene = Scene::new(body)
+    ///     .gravity([0.0, -9.8])
+    ///     .obstacle(slope.stiffness(2e3).damping(2.0))
+    ///     .phase(Phase::until(0.2));
+    /// let motion = scene.simulate(&Settings::default(), &Sampling::phase_ends())?;
+    /// let moved = &motion.last().u[..2];
+    /// assert!(moved[0] > 0.05 && moved[1] < -0.03); // it slides down to the right
+    /// # Ok::<(), pliant::Error>(())
+    /// ```
+    pub fn turned_box(
+        min: impl Into<Vec<f64>>,
+        max: impl Into<Vec<f64>>,
+        turn: impl Into<Vec<f64>>,
+    ) -> Self {
+        let turned = Some(Turned::new(turn.into()));
+        Self(Kind::Box { min: min.into(), max: max.into(), turned })
     }
 
     /// All points nearer than `radius` (m) to the straight line between `from` and `to` (m), in the
@@ -126,7 +158,15 @@ impl Shape {
         match &self.0 {
             Kind::HalfPlane { normal, .. } => normal[axis].abs() <= ROUND_OFF * norm(normal),
             Kind::Ball { centre, .. } => is_same(centre[axis], at),
-            Kind::Box { min, max } => is_same(at - min[axis], max[axis] - at),
+            Kind::Box { min, max, turned: None } => is_same(at - min[axis], max[axis] - at),
+            Kind::Box { min, max, turned } => {
+                let corners = corners(min, max, turned.as_ref());
+                let image = |i: usize, x: f64| if i == axis { 2.0 * at - x } else { x };
+                let is_image = |one: &[f64], other: &[f64]| {
+                    one.iter().zip(other).enumerate().all(|(i, (a, b))| is_same(image(i, *a), *b))
+                };
+                corners.iter().all(|one| corners.iter().any(|other| is_image(one, other)))
+            }
             Kind::Capsule { from, to, .. } => {
                 let image = |i: usize| if i == axis { 2.0 * at - from[i] } else { from[i] };
                 let is_across = (0..to.len()).all(|i| is_same(image(i), to[i]));
@@ -149,7 +189,7 @@ impl Shape {
         match &self.0 {
             Kind::HalfPlane { point, normal } => (normal[axis].abs() <= ROUND_OFF * norm(normal))
                 .then(|| Self::half_plane(own(point), own(normal))),
-            Kind::Box { min, max } => {
+            Kind::Box { min, max, turned: None } => {
                 let [a, b] = axes.map(|i| 0.5 * (max[i] - min[i]));
                 covers([min[axis], max[axis]], a.min(b))
                     .then(|| Self::box_between(own(min), own(max)))
@@ -163,7 +203,7 @@ impl Shape {
                 let parts = parts.iter().map(|part| part.section(axis, ends, tolerance));
                 parts.collect::<Option<Vec<_>>>().map(Self::union)
             }
-            Kind::Ball { .. } | Kind::Custom(_) => None,
+            Kind::Ball { .. } | Kind::Box { .. } | Kind::Custom(_) => None,
         }
     }
 
@@ -178,9 +218,12 @@ impl Shape {
                 let along = dot(normal, &moved(point)) / dot(normal, normal);
                 Some(normal.iter().map(|n| along * n).collect())
             }
-            Kind::Ball { centre: point, .. }
-            | Kind::Box { min: point, .. }
-            | Kind::Capsule { from: point, .. } => Some(moved(point)),
+            Kind::Ball { centre: point, .. } | Kind::Capsule { from: point, .. } => {
+                Some(moved(point))
+            }
+            Kind::Box { min, max, turned } => {
+                corners(min, max, turned.as_ref()).first().map(|corner| moved(corner))
+            }
             Kind::Union(parts) => parts.first()?.reference(displacement),
             Kind::Custom(_) => None,
         }
@@ -207,7 +250,16 @@ impl Shape {
                     axis: around.axis,
                 }
             }
-            Kind::Box { min, max } => nearest_of_box(min, max, x),
+            Kind::Box { min, max, turned: None } => nearest_of_box(min, max, x),
+            Kind::Box { min, max, turned: Some(turned) } => {
+                let own = turned.back(min, max, x);
+                let nearest = nearest_of_box(min, max, &own[..x.len()]);
+                Nearest {
+                    normal: turned.direction(nearest.normal),
+                    axis: turned.direction(nearest.axis),
+                    ..nearest
+                }
+            }
             Kind::Capsule { from, to, radius } => {
                 let (along, away) = (from_to(from, to), from_to(from, x));
                 let square = dot(&along, &along);
@@ -243,7 +295,7 @@ impl Shape {
                 f64::INFINITY
             }
             Kind::Ball { radius, .. } | Kind::Capsule { radius, .. } => *radius,
-            Kind::Box { min, max } => {
+            Kind::Box { min, max, .. } => {
                 let halves = min.iter().zip(max).map(|(min, max)| 0.5 * (max - min));
                 halves.fold(f64::INFINITY, f64::min)
             }
@@ -293,9 +345,12 @@ impl Shape {
                 vector("centre", centre)?;
                 positive(&input("radius"), *radius, "m")?;
             }
-            Kind::Box { min, max } => {
+            Kind::Box { min, max, turned } => {
                 vector("min", min)?;
                 vector("max", max)?;
+                if let Some(turned) = turned {
+                    turned.validate(dimension, &input("turn"))?;
+                }
                 if min.iter().zip(&*max).any(|(min, max)| min >= max) {
                     let help = format!("it must lie above min, {min:?}, in all components");
                     return Err(InputError::new(input("max"), format!("{max:?}"), help));
@@ -377,6 +432,9 @@ mod tests {
             Shape::box_between(cut([-0.5, -0.4, -0.3]), cut([0.6, 0.5, 0.4])),
         ];
         if dimension > 1 {
+            let turn = if dimension == 2 { vec![0.7] } else { vec![0.3, -0.8, 0.5] };
+            let (min, max) = (cut([-0.5, -0.4, -0.3]), cut([0.6, 0.5, 0.4]));
+            shapes.push(Shape::turned_box(min, max, turn));
             shapes.push(Shape::capsule(cut([-0.5, 0.1, 0.2]), cut([0.6, -0.3, 0.4]), 0.3));
         }
         shapes.push(Shape::union([shapes[1].clone(), shapes[3].clone()]));

@@ -15,7 +15,7 @@ use crate::dynamics::trajectory::{Sample, Trajectory};
 use crate::elements::mesh::Mesh;
 use crate::io::output::role::Role;
 use crate::io::output::svg::{View, displaced, positions};
-use crate::scene::forces::{Joint, Obstacle, Shape, ShapeKind, Spring};
+use crate::scene::forces::{Joint, Obstacle, Shape, ShapeKind, Spring, corners};
 use crate::scene::timeline::{Phase, Scene};
 
 /// Most samples that a page holds, the bytes that they may take together before encoding, and the number of
@@ -269,8 +269,20 @@ fn add_shape(shape: &Shape, courses: &Value, shapes: &mut Vec<Value>) {
             let kind = if *cavity { "cavity" } else { "disc" };
             add(kind, json!({ "centre": in_view(centre), "radius": radius }));
         }
-        ShapeKind::Box { min, max } => {
+        ShapeKind::Box { min, max, turned: None } => {
             add("box", json!({ "min": in_view(min), "max": in_view(max) }));
+        }
+        ShapeKind::Box { min, max, turned } => {
+            let corners = corners(min, max, turned.as_ref());
+            // the box around it, for the choice of the part of space that is shown
+            let around = |choose: fn(f64, f64) -> f64| -> Vec<f64> {
+                let along = |axis: usize| corners.iter().map(move |corner| corner[axis]);
+                (0..min.len()).filter_map(|axis| along(axis).reduce(choose)).collect()
+            };
+            let (min, max) = (around(f64::min), around(f64::max));
+            let corners: Vec<_> = corners.iter().map(|corner| in_view(corner)).collect();
+            let shape = json!({ "min": in_view(&min), "max": in_view(&max), "corners": corners });
+            add("box", shape);
         }
         ShapeKind::Capsule { from, to, radius } => {
             let (from, to) = (in_view(from), in_view(to));

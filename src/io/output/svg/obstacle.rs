@@ -4,7 +4,7 @@ use std::f64::consts::{PI, TAU};
 
 use super::projection::{Point, drawn};
 use crate::dynamics::trajectory::{Sample, Trajectory};
-use crate::scene::forces::{Shape, ShapeKind};
+use crate::scene::forces::{Shape, ShapeKind, corners};
 
 /// Chords of a full circle.
 const CHORDS: usize = 96;
@@ -46,10 +46,9 @@ fn add(shape: &Shape, offset: Point, dimension: usize, outlines: &mut Vec<Outlin
             let circle = arc(at(centre), *radius, 0.0, CHORDS, TAU);
             outlines.push(if *cavity { Outline::Cavity(circle) } else { Outline::Solid(circle) });
         }
-        (ShapeKind::Box { min, max }, 2) => {
-            let (low, high) = (at(min), at(max));
-            let corners = vec![low, [high[0], low[1]], high, [low[0], high[1]]];
-            outlines.push(Outline::Solid(corners));
+        (ShapeKind::Box { min, max, turned }, 2) => {
+            let corners = corners(min, max, turned.as_ref());
+            outlines.push(Outline::Solid([0, 1, 3, 2].map(|k| at(&corners[k])).to_vec()));
         }
         (ShapeKind::Capsule { from, to, radius }, 2) => {
             let (from, to) = (at(from), at(to));

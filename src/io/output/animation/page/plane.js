@@ -140,6 +140,8 @@ function drawObstacle(context, layout, obstacle, time, hatch) {
       context.moveTo(...at([obstacle.centre[0] + obstacle.radius, obstacle.centre[1]]));
       circle();
     });
+  } else if (obstacle.corners) {
+    drawSolid(context, hatch, () => tracePolygon(context, [0, 1, 3, 2].map((k) => at(obstacle.corners[k]))));
   } else if (obstacle.kind === "box") {
     // in one dimension a box has no width of its own either
     const [left, low] = at([obstacle.min[0] - barWidth, obstacle.min[1]]);

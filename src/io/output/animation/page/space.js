@@ -118,7 +118,7 @@ function obstacleInSpace(obstacle, eye, time) {
     disc: () => ball(at(obstacle.centre), obstacle.radius),
     // around everything: its outline alone
     cavity: () => ({ ...ball(at(obstacle.centre), obstacle.radius), depth: Infinity, open: true }),
-    box: () => boxInSpace(at(obstacle.min), at(obstacle.max), eye),
+    box: () => boxInSpace(cornersOf(obstacle).map(at), eye),
     capsule: () => capsuleInSpace(at(obstacle.from), at(obstacle.to), obstacle.radius, eye),
   }[obstacle.kind]();
   const draw = (context, opacity) => {
@@ -162,16 +162,22 @@ function patch(point, normal, eye) {
   };
 }
 
-function boxInSpace(min, max, eye) {
+/** The corners of a box: at the digits 1 of their binary numbers they are at the upper ends of its edges. */
+function cornersOf({ corners, min, max }) {
   const corner = (k) => [0, 1, 2].map((axis) => ((k >> axis) & 1 ? max : min)[axis]);
+  return corners ?? [0, 1, 2, 3, 4, 5, 6, 7].map(corner);
+}
+
+function boxInSpace(corners, eye) {
+  const along = (axis) => corners[1 << axis].map((x, i) => x - corners[0][i]);
   // the three faces at the corner next to the viewer, which hide the others
-  const near = [0, 1, 2].reduce((k, axis) => k | (eye.away[axis] < 0 ? 1 << axis : 0), 0);
+  const near = [0, 1, 2].reduce((k, axis) => k | (dot(eye.away, along(axis)) < 0 ? 1 << axis : 0), 0);
   const faces = [0, 1, 2].map((axis) => {
     const [u, v] = [1 << ((axis + 1) % 3), 1 << ((axis + 2) % 3)];
-    return [near, near ^ u, near ^ u ^ v, near ^ v].map((k) => eye.place(corner(k)));
+    return [near, near ^ u, near ^ u ^ v, near ^ v].map((k) => eye.place(corners[k]));
   });
   return {
-    depth: eye.depth(min.map((x, axis) => (x + max[axis]) / 2)),
+    depth: eye.depth(corners[0].map((x, axis) => (x + corners[7][axis]) / 2)),
     trace: (context) => faces.forEach((face) => tracePolygon(context, face)),
   };
 }
