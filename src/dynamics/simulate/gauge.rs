@@ -95,7 +95,10 @@ impl Reading {
                 })?;
                 Box::new(move |view, sample| Value::Vector(sum(view, sample)))
             }
-            What::ConstraintMoment(nodes, lever) => moment(scene, select(nodes)?, lever)?,
+            What::ConstraintMoment(nodes, lever) => {
+                scene.body().refuse_around("sensor", "moment of constraints")?;
+                moment(scene, select(nodes)?, lever)?
+            }
             What::Contact(of, by, nodes) => {
                 let of_body = self.body.as_deref();
                 let contact = ContactGauge::new(scene, by, nodes.as_ref(), of_body)?;
@@ -277,6 +280,7 @@ impl Reading {
             let help = "a body turns by one angle in two dimensions only: take the angle between two lines";
             return Err(InputError::new("rotation in dimension", d, help));
         }
+        scene.body().refuse_around("sensor", "rotation")?;
         let first_node = self.first_node(scene)?;
         let arms = part(scene.body(), first_node).body.arms();
         Ok(Arc::new(move |view| {
