@@ -86,7 +86,7 @@ fn a_balloon_of_rubber() {
     let simpson = |k: usize| at(2 * k) + 4.0 * at(2 * k + 1) + at(2 * k + 2);
     let p = h / 3.0 * (0..n).map(simpson).sum::<f64>();
     for (cells, nodes, tolerance) in
-        [(Cells::Rectangles9, [9, 9], 2e-4), (Cells::Rectangles, [13, 13], 2e-2)]
+        [(Cells::Rectangles9, [9, 9], 1e-4), (Cells::Rectangles, [13, 13], 4e-3)]
     {
         let dilatation = match cells {
             Cells::Rectangles9 => Dilatation::Linear,
