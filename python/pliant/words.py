@@ -33,7 +33,7 @@ def body(
     strain: Literal["cauchy", "green", "auto"] | None = None,
     viscous: Literal["natural", "objective"] | None = None,
     inertia: Literal["consistent", "lumped"] | None = None,
-    plane: Literal["strain", "stress"] | None = None,
+    plane: Literal["strain", "stress", "axisymmetric"] | None = None,
     dilatation: Literal["points", "mean", "linear"] | None = None,
     region: dict | Sequence[dict] | None = None,
     velocity: Vector | None = None,
@@ -52,7 +52,7 @@ def body(
         its name among several bodies. Default: `body 1`, `body 2` and so on. It is a node set and a group of cells,
         and stands before the node sets and groups of the body: `finger/tip`.
     thickness
-        the thickness of a body in the plane (m). Default: required in two dimensions.
+        the thickness of a body in the plane (m). Default: required in two dimensions; none if axisymmetric.
     area
         the cross section of a string (m^2). Default: required in one dimension.
     strain
@@ -65,8 +65,10 @@ def body(
     inertia
         how inertia is shared out. Default: consistent. Consistent with the shape functions, or lumped at the nodes.
     plane
-        the quantity that is 0 across cells of two dimensions. Default: strain in the plane, stress in space
-        (membranes). Strain: of bodies that are long across the plane. Stress: of sheets, whose thickness changes.
+        the quantity that is 0 across cells of two dimensions, or that they are turned about the axis. Default: strain
+        in the plane, stress in space (membranes). Strain: of bodies that are long across the plane. Stress: of
+        sheets, whose thickness changes. Axisymmetric: x is the radius r, 0 or above, and y the height z of a body of
+        revolution about r = 0; it has no thickness, and forces and masses are those of a whole turn.
     dilatation
         where the body resists a change of its volume. Default: points, or what goes with `cells = "auto"` and
         `bubbles`. At each point of a cell, a nearly incompressible body locks. `linear`: projected onto linear

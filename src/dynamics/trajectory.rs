@@ -332,10 +332,13 @@ impl Trajectory {
 
     /// Angular momentum (kg m^2/s) about the centre of mass: the sum of (x - c) x (M v) over the
     /// nodes, M the consistent inertia matrix. One number in two dimensions (counter-clockwise), a
-    /// vector in three, nothing in one.
+    /// vector in three, nothing in one. That of a body of revolution is 0.
     pub fn angular_momentum(&self, sample: &Sample) -> Vec<f64> {
         let body = self.body();
         let d = body.dimension();
+        if body.is_axisymmetric() {
+            return vec![0.0];
+        }
         let centre = self.centre_of_mass(sample);
         let mut momenta = vec![0.0; body.dofs()];
         body.inertia().add_product(d, 1.0, &sample.v, &mut momenta);

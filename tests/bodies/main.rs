@@ -11,6 +11,7 @@ mod meshes;
 mod own_force;
 mod pieces;
 mod polynomial;
+mod revolution;
 mod rotations;
 mod rubber;
 mod solids;

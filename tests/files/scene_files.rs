@@ -211,6 +211,7 @@ const LONG: &[&str] = &[
     "ball-in-hand-3d",
     "ball-in-bowl",
     "bellows",
+    "diaphragm",
     "heap",
     "hydraulic-finger",
     "pneumatic-finger",

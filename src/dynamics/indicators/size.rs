@@ -8,9 +8,10 @@ use crate::scene::forces::natural;
 /// The size (m) of each cell: the edge of a square or cube that is cut into such cells, or that is such a cell.
 pub(super) fn cell_sizes(body: &Body) -> Vec<f64> {
     let of_body = |part: Part| {
-        let (dimension, section) = (part.body.mesh().kind().dimension(), part.body.section());
-        let size = move |volume: f64| (volume / section).powf(1.0 / dimension as f64);
-        block_volumes(part.body).map(size).collect::<Vec<f64>>()
+        let dimension = part.body.mesh().kind().dimension();
+        let blocks = block_volumes(part.body).zip(part.body.cell_sections());
+        let size = |(volume, section): (f64, f64)| (volume / section).powf(1.0 / dimension as f64);
+        blocks.map(size).collect::<Vec<f64>>()
     };
     body.parts().flat_map(of_body).collect()
 }
@@ -26,9 +27,9 @@ pub(super) fn block_volumes(body: &Body) -> impl Iterator<Item = f64> {
 
 /// The least length (m) of each cell of a single body, nearly: of its shortest edge, or of its height over the others.
 pub(super) fn least_cell_lengths(body: &Body) -> Vec<f64> {
-    let (mesh, section) = (body.mesh(), body.section());
+    let mesh = body.mesh();
     let position = |node: usize| SVector::<f64, 3>::from(natural(mesh, node));
-    let of_cell = |(cell, volume): (&[usize], f64)| {
+    let of_cell = |(cell, (volume, section)): (&[usize], (f64, f64))| {
         let edges = mesh.kind().edges().iter();
         let lengths = edges.map(|edge| (position(cell[edge[1]]) - position(cell[edge[0]])).norm());
         let (least, most) = lengths.fold((f64::INFINITY, 0.0_f64), |(least, most), length| {
@@ -36,7 +37,8 @@ pub(super) fn least_cell_lengths(body: &Body) -> Vec<f64> {
         });
         least.min(volume / section / most.powi(mesh.kind().dimension() as i32 - 1))
     };
-    mesh.cells().zip(block_volumes(body)).map(of_cell).collect()
+    let blocks = block_volumes(body).zip(body.cell_sections());
+    mesh.cells().zip(blocks).map(of_cell).collect()
 }
 
 /// For each node the size (m) of the smallest of its cells. Infinite for a node without cells.

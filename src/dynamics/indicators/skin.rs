@@ -99,8 +99,8 @@ pub(super) fn points(body: &Body, least: usize) -> Vec<SurfacePoint> {
         return points;
     }
     let of_body = |part: Part| {
-        let section = part.body.section();
-        block_volumes(part.body).map(|volume| volume / section).collect::<Vec<f64>>()
+        let blocks = block_volumes(part.body).zip(part.body.cell_sections());
+        blocks.map(|(volume, section)| volume / section).collect::<Vec<f64>>()
     };
     let blocks: Vec<f64> = body.parts().flat_map(of_body).collect();
     // an edge of two cells is divided as the thinner one requires

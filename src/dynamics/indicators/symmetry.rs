@@ -43,7 +43,8 @@ pub(super) fn plane(body: &Body, samples: &[&Sample]) -> Option<Indicator> {
 /// symmetry of its mesh.
 pub(super) fn mirrors(body: &Body, samples: &[&Sample]) -> Vec<Indicator> {
     let d = body.dimension();
-    let Some(scale) = motion(body, samples).filter(|_| d > 1) else { return Vec::new() };
+    let can_be_halved = d > 1 && !body.is_axisymmetric();
+    let Some(scale) = motion(body, samples).filter(|_| can_be_halved) else { return Vec::new() };
     let images = (0..d).filter_map(|axis| Some((axis, body.mesh().mirror(axis)?.images)));
     let parts = images.map(|(axis, partner)| {
         let square = |sample: &&Sample| {

@@ -181,6 +181,9 @@ fn thickness(body: &Body) -> Option<Indicator> {
     let mesh = body.mesh();
     let (thickness, size) = (body.section(), mesh.size());
     let is_per_metre = body.plane() == Some(Plane::Strain) && thickness == PER_METRE;
+    if body.is_axisymmetric() {
+        return None;
+    }
     if mesh.kind().dimension() != 2 || mesh.is_surface() || is_per_metre {
         return None;
     }

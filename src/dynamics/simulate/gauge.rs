@@ -91,7 +91,10 @@ impl Reading {
                 })?;
                 Box::new(move |view, sample| Value::Vector(sum(view, sample)))
             }
-            What::ConstraintMoment(nodes, lever) => moment(scene, select(nodes)?, lever)?,
+            What::ConstraintMoment(nodes, lever) => {
+                scene.body().refuse_around("sensor", "moment of constraints")?;
+                moment(scene, select(nodes)?, lever)?
+            }
             What::Contact(of, by, nodes) => {
                 let of_body = self.body.as_deref();
                 let contact = ContactGauge::new(scene, by, nodes.as_ref(), of_body)?;
@@ -293,6 +296,7 @@ impl Reading {
 
     /// The rigid motion of `nodes`, or else of the body that was named, or of all.
     fn fit(&self, scene: &Scene, nodes: Option<&Selection>) -> Result<RigidFit, InputError> {
+        scene.body().refuse_around("sensor", "rotation")?;
         let mesh = scene.body().mesh();
         match (nodes, &self.body) {
             (None, _) => RigidFit::of_part(mesh, &part(scene.body(), self.first_node(scene)?)),

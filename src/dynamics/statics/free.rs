@@ -131,7 +131,7 @@ impl Search<'_> {
         if self.turns_in_circles() {
             positions.iter_mut().zip(u).for_each(|(x, u)| *x += u);
         }
-        let shape = Shape { dimension: mesh.dimension(), size: self.size, positions: &positions };
+        let shape = Shape { size: self.size, positions: &positions, ..Shape::natural(self.body) };
         rigid::free_motions(shape, self.body.inertia().pattern(), self.rest.system().rows())
     }
 

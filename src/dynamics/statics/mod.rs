@@ -147,7 +147,7 @@ impl Scene {
         statics.validate()?;
         let rest = self.at_rest_in(number)?;
         let phase = &self.phases()[number];
-        let natural = rigid::Shape::natural(self.body().mesh());
+        let natural = rigid::Shape::natural(self.body());
         let pattern = self.body().inertia().pattern();
         let free = rigid::free_motions(natural, pattern, rest.system().rows());
         let words: Vec<&str> = free.iter().map(|motion| &*motion.words).collect();

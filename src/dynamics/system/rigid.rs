@@ -4,7 +4,7 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::base::sparse::{NodeMatrix, NodePattern};
 use crate::base::vector::{dot, norm};
-use crate::elements::mesh::Mesh;
+use crate::elements::body::Body;
 use crate::scene::constraint::ConstraintRow;
 
 /// Squares of velocities below this, relative to the largest, are round-off.
@@ -21,12 +21,20 @@ pub(crate) struct Shape<'a> {
     pub(crate) size: f64,
     /// Positions (m), dimension components per node.
     pub(crate) positions: &'a [f64],
+    /// Whether it is a section of a body of revolution, which is free along its axis alone.
+    pub(crate) is_turned: bool,
 }
 
 impl<'a> Shape<'a> {
     /// The undeformed body.
-    pub(crate) fn natural(mesh: &'a Mesh) -> Self {
-        Self { dimension: mesh.dimension(), size: mesh.size(), positions: mesh.positions() }
+    pub(crate) fn natural(body: &'a Body) -> Self {
+        let mesh = body.mesh();
+        Self {
+            dimension: mesh.dimension(),
+            size: mesh.size(),
+            positions: mesh.positions(),
+            is_turned: body.is_axisymmetric(),
+        }
     }
 
     fn position(&self, node: usize) -> &'a [f64] {
@@ -207,6 +215,12 @@ impl Modes {
     ) -> Vec<Vec<f64>> {
         let count = self.products.nrows();
         let mut hold = DMatrix::zeros(count, count);
+        if shape.is_turned {
+            // along r circles get longer, and around the plane cones of discs
+            for mode in [0, 2] {
+                hold[(mode, mode)] = 1.0;
+            }
+        }
         for row in rows {
             let largest = row.terms.iter().fold(0.0_f64, |most, (_, c)| most.max(c.abs()));
             let mut values = vec![0.0; count];

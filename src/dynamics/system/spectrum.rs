@@ -202,7 +202,9 @@ impl System {
         if stiffness.is_none() {
             positions.iter_mut().zip(u).for_each(|(x, u)| *x += u);
         }
-        let shape = Shape { dimension: *dimension, size: *size, positions: &positions };
+        // what is stiff is left out below, such as circles that get longer
+        let shape =
+            Shape { dimension: *dimension, size: *size, positions: &positions, is_turned: false };
         let free = rigid::free_motions(shape, inertia.pattern(), &self.rows);
         let mut motions = free.into_iter().map(|motion| motion.values).collect();
         self.orthonormalize(&[], &mut motions);

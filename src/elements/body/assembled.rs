@@ -73,7 +73,12 @@ impl fmt::Debug for Body {
                 .entries(self.parts().map(|part| (part.name, part.body)))
                 .finish();
         }
-        f.debug_struct("Body")
+        let mut parts = f.debug_struct("Body");
+        // as it was before there were bodies of revolution: checkpoints tell scenes apart by it
+        if self.is_axisymmetric() {
+            parts.field("plane", &Plane::Axisymmetric);
+        }
+        parts
             .field("nodes", &self.mesh.node_count())
             .field("cells", &self.mesh.cell_count())
             .field("kind", &self.mesh.kind())
@@ -117,10 +122,12 @@ impl Body {
             let parts = self.parts().filter(|part| part.body.plane() == Some(plane));
             (plane, parts.map(|part| part.name.to_owned()).collect::<Vec<_>>())
         };
-        let mut all: Vec<_> = [Plane::Strain, Plane::Stress].map(with_names).into();
+        let mut all: Vec<_> =
+            [Plane::Strain, Plane::Stress, Plane::Axisymmetric].map(with_names).into();
         all.retain(|(_, names)| !names.is_empty());
         match &all[..] {
             [] => None,
+            [(Plane::Axisymmetric, _)] => Some("axisymmetric".into()),
             [(plane, _)] => Some(format!("plane {}", plane.name())),
             both => {
                 let text = |(plane, names): &(Plane, Vec<String>)| {
@@ -204,8 +211,8 @@ impl Body {
         self.continua[0].viscosity
     }
 
-    /// Thickness (m) of a body of two-dimensional cells, cross-sectional area (m^2) of one of
-    /// segments, 1 otherwise.
+    /// Thickness (m) of a body of two-dimensional cells (of a body of revolution the length of its circles in the mean), cross-sectional
+    /// area (m^2) of one of segments, 1 otherwise.
     pub(crate) fn section(&self) -> f64 {
         self.continua[0].section
     }
@@ -354,7 +361,7 @@ impl Body {
     }
 
     /// What each cell has, body by body.
-    fn by_cell<T>(&self, of_body: impl Fn(&Continuum) -> Vec<T>) -> Vec<T> {
+    pub(super) fn by_cell<T>(&self, of_body: impl Fn(&Continuum) -> Vec<T>) -> Vec<T> {
         match &self.continua[..] {
             [single] => of_body(single),
             several => several.iter().flat_map(of_body).collect(),

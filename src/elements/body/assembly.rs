@@ -5,15 +5,17 @@ use std::sync::Arc;
 use super::branch_modes::BranchModal;
 use super::branches::Branched;
 use super::dilatation::Dilatation;
-use super::elements::{ElementsOf, Offset};
+use super::elements::ElementsOf;
 use super::fibres::Reinforced;
 use super::fields::{BranchFields, Fields, GrownFields};
 use super::forces::Forces;
 use super::inertia::Masses;
 use super::magnetized_points::InDipoleField;
 use super::magnets::Magnetized;
+use super::offset::Offset;
 use super::oriented::Orientable;
 use super::recovery::Recovery;
+use super::section::Section;
 use super::strain_modes::StrainProducts;
 use super::tangents::Tangents;
 use crate::base::input::InputError;
@@ -83,7 +85,7 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Elements
 /// the body.
 pub(super) fn elements(
     mesh: &Mesh,
-    section: f64,
+    section: Section,
     dilatation: Dilatation,
     pattern: &NodePattern,
 ) -> Result<Arc<dyn Elements>, InputError> {
@@ -92,7 +94,7 @@ pub(super) fn elements(
 
 fn of<C: ReferenceCell<N, M>, const N: usize, const M: usize, const D: usize, const Q: usize>(
     mesh: &Mesh,
-    section: f64,
+    section: Section,
     dilatation: Dilatation,
     pattern: &NodePattern,
 ) -> Result<Arc<dyn Elements>, InputError> {

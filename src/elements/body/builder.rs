@@ -6,6 +6,7 @@ use std::sync::Arc;
 
 use super::assembled::Body;
 use super::assembly::elements;
+use super::axis::mean_section;
 use super::continuum::Continuum;
 use super::dilatation::Dilatation;
 use super::inertia::Inertia;
@@ -15,6 +16,7 @@ use super::recipe::Recipe;
 use super::regions::{CellSelection, Laws, Regions};
 use super::reinforcement::{add_at_rest, families};
 use super::rigid::RigidPieces;
+use super::section::Section;
 use super::whole::{MassMoments, Whole};
 use crate::base::input::{InputError, positive};
 use crate::base::sparse::{BlockMatrix, NodeMatrix, NodePattern};
@@ -85,8 +87,8 @@ impl BodyBuilder {
         self.each(|recipe| recipe.points.push(point.clone()))
     }
 
-    /// Plane strain or plane stress, for cells of two dimensions. Default: plane strain in the plane, plane stress in space
-    /// (membranes).
+    /// Plane strain, plane stress or a body of revolution, for cells of two dimensions. Default: plane strain in the plane, plane stress in
+    /// space (membranes).
     pub fn plane(self, plane: Plane) -> Self {
         self.each(|recipe| recipe.plane = Some(plane))
     }
@@ -241,6 +243,9 @@ impl Body {
     /// The single body of a recipe.
     fn made(mut mesh: Mesh, mut recipe: Recipe) -> Result<Self, InputError> {
         let section = recipe.section(&mesh)?;
+        if section == Section::Turn {
+            recipe.turn(&mut mesh)?;
+        }
         let (strain, plane) = (recipe.strain, recipe.plane(&mesh));
         let viscosity = recipe.viscosity.unwrap_or(match strain {
             Strain::Cauchy => Viscosity::Natural,
@@ -296,6 +301,7 @@ impl Body {
             damping.add_on_all_axes(&matrix);
             Arc::new(matrix)
         });
+        let section = mean_section(section, &*elements);
         let cells = regions.by_substance(mesh.cell_count()).into_iter();
         let substances = std::iter::once(material).chain(recipe.regions.iter().map(|(_, s)| s));
         let substances = substances.map(|substance| &substance.fibres[..]).zip(cells);

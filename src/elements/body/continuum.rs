@@ -4,8 +4,8 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use super::assembly::Elements;
-use super::elements::Offset;
 use super::forces::Terms;
+use super::offset::Offset;
 use super::recipe::Recipe;
 use super::regions::Regions;
 use super::reinforcement::{Families, among_others};

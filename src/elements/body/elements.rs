@@ -8,14 +8,18 @@
 
 #![allow(clippy::needless_range_loop, reason = "indices that several arrays share read best")]
 
+use std::f64::consts::TAU;
 use std::sync::Arc;
 
 use pulp::Simd;
 
 use super::contiguous::ContiguousCells;
 use super::dilatation::Dilatation;
+use super::offset::Offset;
 use super::partition::Partition;
 use super::projection::{linear_modes, modes_side_by_side};
+use super::revolved::Revolved;
+use super::section::Section;
 use crate::base::input::InputError;
 use crate::base::lane::{Lane, Packed, SIDE_BY_SIDE};
 use crate::base::sparse::NodePattern;
@@ -49,16 +53,8 @@ pub(super) struct ElementsOf<const N: usize, const M: usize, const D: usize, con
     pub(super) rows: ContiguousCells<N>,
     /// Numbers of the cells of a sample among those of the whole body; empty where they are all.
     pub(super) numbers: Vec<usize>,
-}
-
-/// Where the nodes of a body are among those of several.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Offset {
-    /// The first node, and the entry in the pattern of all nodes at which its row begins.
-    pub(super) node: usize,
-    pub(super) entry: usize,
-    /// Number of all nodes.
-    pub(super) count: usize,
+    /// The same cells turned about the axis, in a body of revolution, whose forces and fields are theirs.
+    pub(super) revolved: Option<Arc<Revolved>>,
 }
 
 impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<N, M, D, Q> {
@@ -72,7 +68,7 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<
     /// of the body.
     pub(super) fn new<C: ReferenceCell<N, M>>(
         mesh: &Mesh,
-        section: f64,
+        section: Section,
         dilatation: Dilatation,
         pattern: &NodePattern,
     ) -> Result<Self, InputError> {
@@ -83,30 +79,34 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<
         let mut modes = Vec::new();
         let mut entries = Vec::with_capacity(mesh.cell_count());
         let mut flawed = Vec::new();
+        let mut circles = Vec::new();
         for (number, cell) in mesh.cells().enumerate() {
             let natural: [[f64; D]; N] = std::array::from_fn(|a| positions[cell[a]]);
             let Some(of_cell) = strain_points::<C, N, M, D>(&natural) else {
                 flawed.push(number);
                 continue;
             };
+            let place = |values: &[f64; N], k: usize| {
+                (0..N).map(|a| values[a] * natural[a][k]).sum::<f64>()
+            };
+            let around: [f64; Q] = std::array::from_fn(|q| section.around(place(&values[q], 0)));
             if dilatation == Dilatation::Linear {
                 modes.push(linear_modes::<M, Q>(&std::array::from_fn(|q| {
                     // such cells fill space
-                    let position = std::array::from_fn(|k| {
-                        (0..N).map(|a| values[q][a] * natural[a][k]).sum::<f64>()
-                    });
-                    (position, of_cell[q].volume)
+                    let position = std::array::from_fn(|k| place(&values[q], k));
+                    (position, of_cell[q].volume * around[q])
                 })));
             }
-            points.extend(
-                of_cell
-                    .into_iter()
-                    .map(|point| StrainPoint { volume: section * point.volume, ..point }),
-            );
+            points.extend(of_cell.into_iter().zip(around).map(|(point, around)| StrainPoint {
+                volume: section.uniform() * point.volume * around,
+                ..point
+            }));
+            circles.push(around);
             let mut product = [[0.0; N]; N];
             for MassPoint { values, volume } in mass_points::<C, N, M, D>(&natural) {
+                let volume = section.uniform() * volume * section.around(place(&values, 0));
                 for (a, b) in pairs::<N>() {
-                    product[a][b] += section * volume * values[a] * values[b];
+                    product[a][b] += volume * values[a] * values[b];
                 }
             }
             products.push(product);
@@ -121,6 +121,37 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<
         if !flawed.is_empty() {
             return Err(mesh.flawed_cells(&flawed));
         }
+        let extrapolation = extrapolation::<C, N, M, Q>();
+        let revolved = (section == Section::Turn).then(|| Revolved {
+            of_cell: N,
+            points: Q,
+            nodes: nodes.as_flattened().to_vec(),
+            entries: entries.as_flattened().as_flattened().to_vec(),
+            shapes: points
+                .iter()
+                .zip(circles.as_flattened())
+                .enumerate()
+                .flat_map(|(k, (point, circle))| {
+                    let hoops = values[k % Q].map(|value| TAU * value / circle);
+                    point
+                        .gradients
+                        .iter()
+                        .zip(hoops)
+                        .map(|(g, hoop)| [g[0], g[M - 1], hoop])
+                        .collect::<Vec<_>>()
+                })
+                .collect(),
+            volumes: points.iter().map(|point| point.volume).collect(),
+            circles: circles.as_flattened().to_vec(),
+            is_projected: dilatation != Dilatation::AtPoints,
+            modes: modes
+                .as_flattened()
+                .iter()
+                .map(|of_point| [of_point[0], of_point[M - 1]])
+                .collect(),
+            extrapolation: extrapolation.as_flattened().to_vec(),
+            numbers: Vec::new(),
+        });
         let points = side_by_side::<N, M, D, Q>(&points);
         let modes = modes_side_by_side(&modes);
         let quadratic = mesh.kind().is_quadratic();
@@ -131,7 +162,7 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<
             entries,
             points: points.into(),
             values,
-            extrapolation: extrapolation::<C, N, M, Q>(),
+            extrapolation,
             products: products.into(),
             quadratic,
             dilatation,
@@ -139,6 +170,7 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<
             shares,
             rows,
             numbers: Vec::new(),
+            revolved: revolved.map(Arc::new),
         })
     }
 
@@ -163,12 +195,14 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<
             shares: Partition::new(&nodes, node_count),
             rows: ContiguousCells::new(&nodes),
             numbers: Vec::new(),
+            revolved: None,
             nodes,
         }
     }
 
     /// The same elements on the nodes of several bodies, with entries in the pattern of all of them.
-    pub(super) fn among_others(&self, Offset { node, entry, count }: Offset) -> Self {
+    pub(super) fn among_others(&self, offset: Offset) -> Self {
+        let Offset { node, entry, count } = offset;
         let nodes: Vec<[usize; N]> =
             self.nodes.iter().map(|cell| cell.map(|own| node + own)).collect();
         let moved = |own: u32| (entry + own as usize) as u32;
@@ -185,6 +219,7 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<
             shares: Partition::new(&nodes, count),
             rows: ContiguousCells::new(&nodes),
             numbers: self.numbers.clone(),
+            revolved: self.revolved.as_ref().map(|own| Arc::new(own.among_others(offset))),
             nodes,
         }
     }

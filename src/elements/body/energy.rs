@@ -9,12 +9,16 @@ use pulp::{Arch, Simd, WithSimd};
 use super::elements::{ElementsOf, gradient};
 use super::projection::Projected;
 use super::regions::Regions;
+use super::revolved::Revolved;
 use crate::base::lane::{Lane, SIDE_BY_SIDE};
 use crate::elements::material::{CellLaw, Deformation, Elastic};
 
 impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<N, M, D, Q> {
     /// Strain energy (J), added up in the order of cells, however many the machine computes at once.
     pub(super) fn strain_energy(&self, regions: &Regions, u: &[f64]) -> f64 {
+        if let Some(revolved) = &self.revolved {
+            return revolved.strain_energy(regions, u);
+        }
         let all = 0..self.nodes.len();
         regions.runs(&all).fold(0.0, |sum, (cells, laws)| match &laws.elastic {
             Elastic::Linear(law) => self.add_energy(cells, law, u, sum),
@@ -91,6 +95,39 @@ impl<L: CellLaw, const N: usize, const M: usize, const D: usize, const Q: usize>
             energy.store(&mut numbers, 0);
             for cell in cells.start.max(start)..cells.end.min(start + S::F64_LANES) {
                 sum += numbers[cell - start];
+            }
+        }
+        sum
+    }
+}
+
+impl Revolved {
+    /// Strain energy (J).
+    fn strain_energy(&self, regions: &Regions, u: &[f64]) -> f64 {
+        regions.runs(&(0..self.count())).fold(0.0, |sum, (cells, laws)| match &laws.elastic {
+            Elastic::Linear(law) => self.add_energy(cells, law, u, sum),
+            Elastic::StVenantKirchhoff(law) => self.add_energy(cells, law, u, sum),
+            Elastic::ByPoint(law) => self.add_energy(cells, law, u, sum),
+        })
+    }
+
+    /// The energy of cells of one law, added to a `sum`.
+    fn add_energy(&self, cells: Range<usize>, law: &impl CellLaw, u: &[f64], mut sum: f64) -> f64 {
+        for cell in cells {
+            let at = |point| self.deformed(cell, point, u);
+            let dilatation = self
+                .is_projected
+                .then(|| self.projected(cell, |point| law.dilatation_at(&at(point))));
+            for point in self.points_of(cell) {
+                let density = match &dilatation {
+                    None => law.energy_at(&at(point)),
+                    Some(dilatation) => {
+                        let [of_shape, _] = law.shape_and_volume(&at(point));
+                        let [of_volume, ..] = law.of_projected(dilatation.at(self.modes_at(point)));
+                        of_shape + of_volume
+                    }
+                };
+                sum += self.volumes[point] * density;
             }
         }
         sum

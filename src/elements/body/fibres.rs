@@ -4,8 +4,9 @@
 //! same nodes: its gradients are those of the shape functions along it, and its frame is its direction.
 
 use super::contraction::{Contraction, ContractionTangent};
-use super::elements::{ElementsOf, Offset};
+use super::elements::ElementsOf;
 use super::forces::ElasticStress;
+use super::offset::Offset;
 use super::tangents::ElasticTangent;
 use crate::base::input::InputError;
 use crate::base::sparse::BlockMatrix;

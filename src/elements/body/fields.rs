@@ -14,6 +14,7 @@
 mod branches;
 mod grown;
 mod nodal;
+mod revolved;
 #[cfg(test)]
 mod tests;
 
@@ -109,6 +110,9 @@ pub(super) trait Fields {
 
     /// Natural volume of each cell (m^3).
     fn volumes(&self) -> Vec<f64>;
+
+    /// The lengths (m) that make the volumes of cells of their areas in a body of revolution.
+    fn circles(&self) -> Option<Vec<f64>>;
 }
 
 impl<const N: usize, const M: usize, const D: usize, const Q: usize> Fields
@@ -119,6 +123,9 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Fields
     }
 
     fn fields(&self, regions: &Regions, u: &[f64]) -> Vec<CellField> {
+        if let Some(revolved) = &self.revolved {
+            return revolved.fields(regions, u);
+        }
         let of_cell = |cell| {
             with_law!(regions.of(cell).elastic, law => {
                 let of_volume = self.of_volume(&law, cell, self.dilatations(&law, cell, u));
@@ -137,6 +144,9 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Fields
         cell: usize,
         see: &mut dyn FnMut(usize, usize, &Tensors),
     ) {
+        if let Some(revolved) = &self.revolved {
+            return revolved.each_node(regions, u, cell, see);
+        }
         let mut at_nodes = [Tensors::default(); N];
         with_law!(regions.of(cell).elastic, law => {
             let of_volume = self.of_volume(&law, cell, self.dilatations(&law, cell, u));
@@ -169,12 +179,18 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Fields
     }
 
     fn inverted(&self, u: &[f64]) -> Vec<usize> {
+        if let Some(revolved) = &self.revolved {
+            return revolved.inverted(u);
+        }
         let is_inverted =
             |&cell: &usize| M == D && self.deformed(cell, u).any(|(_, at)| at.stretch() <= 0.0);
         (0..self.nodes.len()).filter(is_inverted).collect()
     }
 
     fn volume_ratios(&self, u: &[f64]) -> Vec<f64> {
+        if let Some(revolved) = &self.revolved {
+            return revolved.volume_ratios(u);
+        }
         let of_cell = |(cell, natural): (usize, f64)| {
             let present = self.deformed(cell, u).map(|(volume, at)| volume * at.stretch());
             present.sum::<f64>() / natural
@@ -185,6 +201,10 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Fields
     fn volumes(&self) -> Vec<f64> {
         let of_cell = |cell| self.points(cell).map(|point| point.volume).sum();
         (0..self.nodes.len()).map(of_cell).collect()
+    }
+
+    fn circles(&self) -> Option<Vec<f64>> {
+        self.revolved.as_ref().map(|revolved| revolved.sections())
     }
 }
 

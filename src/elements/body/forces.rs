@@ -27,6 +27,7 @@ use crate::elements::material::{
 };
 use crate::integrators::ode::Failure;
 
+mod revolved;
 mod stress;
 
 use stress::ViscousStress;
@@ -80,6 +81,9 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Forces
         v: &[f64],
         forces: &mut NodalForces,
     ) -> Result<(), Failure> {
+        if let Some(revolved) = &self.revolved {
+            return revolved.add_forces(regions, terms, u, v, forces);
+        }
         if terms.elastic {
             self.shares.each_force(D, &mut forces.conservative, &|run, first, forces| {
                 regions.runs(run).try_for_each(|(cells, laws)| {
@@ -130,6 +134,9 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Forces
         v: &[f64],
         forces: &mut NodalForces,
     ) -> Result<(), Failure> {
+        if let Some(revolved) = &self.revolved {
+            return revolved.add_linear_forces(regions, terms, u, v, forces);
+        }
         let add = |x: &[f64], hooke: fn(&Laws) -> Hooke, forces: &mut [f64]| {
             self.shares.each_force(D, forces, &|run, first, forces| {
                 regions.runs(run).try_for_each(|(cells, laws)| {

@@ -9,8 +9,9 @@ use std::sync::Arc;
 
 use super::assembled::{Body, Joined};
 use super::continuum::Continuum;
-use super::elements::{Offset, too_many};
+use super::elements::too_many;
 use super::nodal_masses::NodalMasses;
+use super::offset::Offset;
 use super::rigid::RigidPieces;
 use crate::base::input::{InputError, find};
 use crate::base::sparse::{BlockMatrix, NodeMatrix};
@@ -87,6 +88,13 @@ impl Body {
             let help = format!("that of body \"{}\" is {dimension}: all share one space", names[0]);
             let input = format!("dimension of body \"{name}\"");
             return Err(InputError::new(input, body.dimension(), help));
+        }
+        let turned: Vec<bool> = bodies.iter().map(Self::is_axisymmetric).collect();
+        if let Some(other) = turned.iter().position(|own| *own != turned[0]) {
+            let words = |turned: bool| if turned { "axisymmetric" } else { "not axisymmetric" };
+            let help = format!("body \"{}\" is {}: all are, or none", names[0], words(turned[0]));
+            let input = format!("plane of body \"{}\"", names[other]);
+            return Err(InputError::new(input, words(turned[other]), help));
         }
         let mesh =
             Mesh::join(names.iter().map(|name| &name[..]).zip(bodies.iter().map(Self::mesh)));

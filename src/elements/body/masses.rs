@@ -15,14 +15,23 @@ impl Body {
         self.masses.of_nodes.clone()
     }
 
-    /// Mean of `x` (dimension components per node), weighted by mass.
+    /// Mean of `x` (dimension components per node), weighted by mass. Of a body of revolution it is along the axis.
     pub(crate) fn mass_average(&self, x: &[f64]) -> Vec<f64> {
-        self.masses.average(x, self.dimension())
+        self.along_axis(self.masses.average(x, self.dimension()))
+    }
+
+    /// A mean vector; the components along r of a body of revolution cancel each other.
+    fn along_axis(&self, mut mean: Vec<f64>) -> Vec<f64> {
+        if self.is_axisymmetric() {
+            mean[0] = 0.0;
+        }
+        mean
     }
 
     /// Centre of mass (m) under the displacements `u` (m).
     pub fn centre_of_mass(&self, u: &[f64]) -> Vec<f64> {
-        self.masses.centre.iter().zip(self.mass_average(u)).map(|(x, u)| x + u).collect()
+        let centre = self.masses.centre.iter().zip(self.mass_average(u));
+        self.along_axis(centre.map(|(x, u)| x + u).collect())
     }
 
     /// Velocity (m/s) of the centre of mass, where nodes have the velocities `v` (m/s).
@@ -32,9 +41,9 @@ impl Body {
 
     /// Angle (rad, counter-clockwise) by which a body in the plane has turned as a whole under the
     /// displacements `u` (m): that of the rotation which, in the mean over its mass, brings the undeformed
-    /// shape nearest to the present one. `None` in other dimensions.
+    /// shape nearest to the present one. `None` in other dimensions, and of a body of revolution.
     pub(crate) fn rotation(&self, u: &[f64]) -> Option<f64> {
-        if self.dimension() != 2 {
+        if self.dimension() != 2 || self.is_axisymmetric() {
             return None;
         }
         let nodes = self.mesh().positions().chunks_exact(2).zip(u.chunks_exact(2));

@@ -2,6 +2,7 @@
 
 mod assembled;
 mod assembly;
+mod axis;
 mod branch_modes;
 mod branch_state;
 mod branches;
@@ -27,6 +28,7 @@ mod magnetized_points;
 mod magnets;
 mod masses;
 mod nodal_masses;
+mod offset;
 mod oriented;
 mod partition;
 mod polynomial;
@@ -36,8 +38,10 @@ mod recovery;
 mod regions;
 mod reinforcement;
 mod relaxing;
+mod revolved;
 mod rigid;
 mod sample;
+mod section;
 mod strain_modes;
 mod strands;
 mod tangents;

@@ -3,6 +3,7 @@
 use super::dilatation::Dilatation;
 use super::inertia::Inertia;
 use super::regions::CellSelection;
+use super::section::Section;
 use crate::base::input::{InputError, positive};
 use crate::elements::material::{Plane, Strain, Substance, Viscosity};
 use crate::elements::mesh::Mesh;
@@ -36,7 +37,27 @@ impl Recipe {
     ///
     /// # Errors
     /// One that is missing, or that such cells do not have.
-    pub(super) fn section(&self, mesh: &Mesh) -> Result<f64, InputError> {
+    pub(super) fn section(&self, mesh: &Mesh) -> Result<Section, InputError> {
+        if self.plane != Some(Plane::Axisymmetric) {
+            return self.uniform_section(mesh).map(Section::Uniform);
+        }
+        let kind = mesh.kind();
+        if kind.dimension() != 2 || mesh.dimension() != 2 {
+            let value = format!("of {kind:?} cells in {} dimension(s)", mesh.dimension());
+            let help = "a body of revolution has cells of two dimensions in the plane (r, z)";
+            return Err(InputError::new("axisymmetric body", value, help));
+        }
+        for (name, given) in [("thickness", self.thickness), ("area", self.area)] {
+            if let Some(value) = given {
+                let help = "a body of revolution is as thick as its circles are long, 2 pi r: leave it out";
+                return Err(InputError::new(name, value, help));
+            }
+        }
+        Ok(Section::Turn)
+    }
+
+    /// That of a body that is no body of revolution.
+    fn uniform_section(&self, mesh: &Mesh) -> Result<f64, InputError> {
         let kind = mesh.kind();
         let misplaced = |name: &str, value: f64| {
             Err(InputError::new(name, value, format!("a body of {kind:?} cells has no {name}")))

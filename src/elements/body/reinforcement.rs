@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use super::assembly::Elements;
-use super::elements::Offset;
 use super::fibres::Strings;
+use super::offset::Offset;
 use crate::base::input::InputError;
 use crate::base::sparse::BlockMatrix;
 use crate::elements::force::{Force, NodalForces, Reservoir, Tangents};

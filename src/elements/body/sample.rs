@@ -64,8 +64,13 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<
                 std::array::from_fn(|b| entry(nodes[a], nodes[b], self.entries[cell][a][b]))
             })
         });
+        let entries: Vec<[[u32; N]; N]> = entries.collect();
+        let revolved = self.revolved.as_ref().map(|own| {
+            let entries = entries.as_flattened().as_flattened().to_vec();
+            Arc::new(own.sampled(cells, weights, entries))
+        });
         Self {
-            entries: entries.collect(),
+            entries,
             points: side_by_side::<N, M, D, Q>(&points).into(),
             values: self.values,
             extrapolation: self.extrapolation,
@@ -76,6 +81,7 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<
             shares: Partition::new(&nodes, node_count),
             rows: ContiguousCells::new(&nodes),
             numbers: cells.iter().map(|&cell| self.number(cell)).collect(),
+            revolved,
             nodes,
         }
     }

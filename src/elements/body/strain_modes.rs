@@ -142,7 +142,9 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> StrainProdu
                 && (!terms.viscous || matches!(laws.objective, ObjectiveViscosity::Hookean(_)))
         };
         let all = 0..self.nodes.len();
-        !self.is_projected() && regions.runs(&all).all(|(_, laws)| are_quadratic(laws))
+        !self.is_projected()
+            && self.revolved.is_none()
+            && regions.runs(&all).all(|(_, laws)| are_quadratic(laws))
     }
 
     fn work(&self) -> usize {

@@ -18,6 +18,7 @@ use crate::base::tensor::{Matrix, times};
 use crate::elements::material::{Blocks, Deformation, Elastic, ObjectiveViscosity, ViscousLaw};
 
 mod pass;
+mod revolved;
 mod tangent;
 #[cfg(test)]
 mod tests;
@@ -58,6 +59,9 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Tangents
         law: &dyn Fn(&Laws) -> Elastic,
         stiffness: &mut BlockMatrix,
     ) {
+        if let Some(revolved) = &self.revolved {
+            return revolved.add_stiffness(regions, law, stiffness);
+        }
         let mut rows = stiffness.rows_mut::<D>();
         for cell in 0..self.nodes.len() {
             let is_projected = self.is_projected();
@@ -84,6 +88,9 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Tangents
         stiffness: &mut BlockMatrix,
         damping: &mut BlockMatrix,
     ) {
+        if let Some(revolved) = &self.revolved {
+            return revolved.add_tangents(regions, terms, [u, v], stiffness, damping);
+        }
         let add = |share: usize, mut stiffness: Rows<'_, D>, mut damping: Rows<'_, D>| {
             for (cells, laws) in self.shares.cells[share].iter().flat_map(|run| regions.runs(run)) {
                 let is_projected = self.is_projected();

@@ -24,14 +24,18 @@ pub enum Plane {
     /// No stress across the plane, so that the thickness changes: lambda becomes 2 lambda mu / (lambda + 2 mu). The default of
     /// membranes in space.
     Stress,
+    /// Bodies of revolution: the plane is the half r >= 0 of (r, z), turned about the axis r = 0, x being r and y being z. Around it
+    /// the strain is u_r / R.
+    Axisymmetric,
 }
 
 impl Plane {
-    /// Name: `strain`, `stress`.
+    /// Name: `strain`, `stress`, `axisymmetric`.
     pub fn name(self) -> &'static str {
         match self {
             Self::Strain => "strain",
             Self::Stress => "stress",
+            Self::Axisymmetric => "axisymmetric",
         }
     }
 
@@ -126,7 +130,7 @@ impl Hooke {
         let swelling = trace(twice) * 0.5;
         let zero = swelling.constant(0.0);
         match self.across {
-            Plane::Strain => [zero, swelling * lambda],
+            Plane::Strain | Plane::Axisymmetric => [zero, swelling * lambda],
             Plane::Stress => [swelling * (-lambda / (2.0 * mu)), zero],
         }
     }

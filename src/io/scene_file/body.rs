@@ -28,7 +28,7 @@ pub(super) const BODY: TableKeys = TableKeys::new(
             .default("`body 1`, `body 2` and so on"),
         Key::new("mesh", Holds::Table(&MESH), "the mesh").required(),
         Key::number("thickness", "the thickness of a body in the plane", "m")
-            .default("required in two dimensions"),
+            .default("required in two dimensions; none if axisymmetric"),
         Key::number("area", "the cross section of a string", "m^2")
             .default("required in one dimension"),
         Key::new(
@@ -58,9 +58,10 @@ pub(super) const BODY: TableKeys = TableKeys::new(
         Key::new(
             "plane",
             Holds::Word(|| PLANE.map(|(word, _)| word).into()),
-            "the quantity that is 0 across cells of two dimensions",
+            "the quantity that is 0 across cells of two dimensions, or that they are turned about the axis",
         )
-        .law("Strain: of bodies that are long across the plane. Stress: of sheets, whose thickness changes.")
+        .law("Strain: of bodies that are long across the plane. Stress: of sheets, whose thickness changes. Axisymmetric: x is the radius r, 0 or \
+              above, and y the height z of a body of revolution about r = 0; it has no thickness, and forces and masses are those of a whole turn.")
         .default("strain in the plane, stress in space (membranes)"),
         Key::new(
             "dilatation",
@@ -101,7 +102,8 @@ const INERTIA: [(&str, Inertia); 2] =
     [("consistent", Inertia::Consistent), ("lumped", Inertia::Lumped)];
 const DILATATION: [(&str, Dilatation); 3] =
     [("points", Dilatation::AtPoints), ("mean", Dilatation::Mean), ("linear", Dilatation::Linear)];
-const PLANE: [(&str, Plane); 2] = [("strain", Plane::Strain), ("stress", Plane::Stress)];
+const PLANE: [(&str, Plane); 3] =
+    [("strain", Plane::Strain), ("stress", Plane::Stress), ("axisymmetric", Plane::Axisymmetric)];
 
 const REGION: TableKeys = TableKeys::new(
     "[[body.region]]",

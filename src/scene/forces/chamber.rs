@@ -1,5 +1,6 @@
 //! Chambers: pressure within walls of nodes, a closed polygon or a closed surface.
 
+mod circles;
 mod depth;
 mod enclosure;
 mod force;
@@ -11,19 +12,20 @@ mod walls;
 
 use std::fmt;
 
+use circles::Circles;
 use enclosure::{Polygon, Surface};
 
 use super::signal::Signal;
 use crate::base::input::{InputError, positive};
 use crate::base::sparse::BlockMatrix;
 use crate::elements::body::Body;
-use crate::elements::mesh::Selection;
+use crate::elements::mesh::{Face, Selection};
 
 /// A chamber filled with a gas of given pressure p (Pa), which pushes its walls apart, unless it has [gas](crate::Gas) or a
 /// [liquid](crate::Liquid) with a pressure of its own.
 ///
 /// The force on its nodes is p h dS/du in the plane, with the area S within its walls and the thickness h,
-/// and p dV/du in space, with the enclosed volume V. Walls with mid nodes are curved according to the shape
+/// and p dV/du in space and in a body of revolution, with the enclosed volume V. Walls with mid nodes are curved according to the shape
 /// functions. Phases set the pressure ([`Phase::pressure`](crate::Phase::pressure)); without it a chamber
 /// does nothing.
 ///
@@ -67,6 +69,7 @@ impl Chamber {
     /// to it. The chamber lies on the side of these faces that is opposite to the body.
     /// - In the plane they form closed loops, rooms with the same pressure; one of them may be open if it is
     ///   [closed by a line](Self::closed_by_line).
+    /// - In a body of revolution walls that end on the axis are closed there.
     /// - In space they form closed surfaces.
     ///
     /// Numbers in the plane form a closed polygon, in their order around it, in either direction; it need not
@@ -110,8 +113,8 @@ impl Chamber {
 
     /// Closes walls in the plane that are open at one place by the straight line between their ends.
     ///
-    /// Each end takes half of the force of the pressure on that line (if it is held, this has no effect).
-    /// Without this a gap is an error.
+    /// Each end takes half of the force of the pressure on that line (if it is held, this has no effect). In a body of revolution whose walls
+    /// have one end off the axis, a level disc closes them, whose force the circle at that end takes. Without this a gap is an error.
     pub fn closed_by_line(mut self) -> Self {
         self.is_closed_by_line = true;
         self
@@ -178,6 +181,7 @@ impl Chamber {
         let burst = self.burst.map(|burst| positive(&self.input("burst"), burst, "Pa"));
         let burst = burst.transpose()?;
         let geometry = match (&self.walls, body.dimension()) {
+            (Walls::Nodes(nodes), 2) if body.is_axisymmetric() => self.circles(body, nodes)?,
             (Walls::Nodes(nodes), 2) => self.polygon(body, nodes)?,
             (Walls::Nodes(nodes), 3) => {
                 let surface = Surface::new(
@@ -214,7 +218,6 @@ impl Chamber {
     /// Checks that closed walls on the boundary of a body that fills its space do not run around the body:
     /// the chamber lies on the side of them that is opposite to the body.
     pub(crate) fn check_side(&self, body: &Body, force: &ChamberForce) -> Result<(), InputError> {
-        let mesh = body.mesh();
         let Walls::Nodes(nodes @ (Selection::Set(_) | Selection::Box { .. })) = &self.walls else {
             return Ok(());
         };
@@ -222,7 +225,7 @@ impl Chamber {
         if !is_closed || !self.fill_space(body, nodes)? {
             return Ok(());
         }
-        match sides::around_the_body(force, mesh) {
+        match sides::around_the_body(force, body) {
             Some((node, volume)) => Err(InputError::new(
                 self.input("nodes"),
                 format!("{nodes:?}"),
@@ -239,21 +242,48 @@ impl Chamber {
 
     fn polygon(&self, body: &Body, selection: &Selection) -> Result<Geometry, InputError> {
         let mesh = body.mesh();
-        let edges = self.edges(mesh, selection)?;
+        let edges = self.edges(body, selection)?;
         let polygon = Polygon::new(mesh, walls::edge_parts(&edges, walls::Shape::Curved));
         let area = polygon.measure(&vec![0.0; body.dofs()]);
-        let by_area = orientation(area, body);
-        let by_boundary = || walls::against_boundary(mesh, &edges);
-        let sign = match selection {
+        let sign = self.sense(body, selection, &edges, area)?;
+        let sign = sign.ok_or_else(|| self.encloses_nothing("area (m^2)", area))?;
+        let height = self.height(body, selection)?;
+        Ok(Geometry::Polygon(polygon, sign * height))
+    }
+
+    fn circles(&self, body: &Body, selection: &Selection) -> Result<Geometry, InputError> {
+        if let Some(thickness) = self.thickness {
+            let help = "a chamber of a body of revolution goes all around: leave it out";
+            return Err(InputError::new(self.input("thickness"), thickness, help));
+        }
+        let edges = self.edges(body, selection)?;
+        let circles = Circles::new(body, edges.clone());
+        let circles =
+            circles.map_err(|help| InputError::new(self.input("nodes"), selection, help))?;
+        let volume = circles.measure(&vec![0.0; body.dofs()]);
+        let sign = self.sense(body, selection, &edges, volume)?;
+        let sign = sign.ok_or_else(|| self.encloses_nothing("volume (m^3)", volume))?;
+        Ok(Geometry::Circles(circles, sign))
+    }
+
+    /// 1 or -1, so that pressure in the chamber pushes these `edges`, which enclose an area or volume with a sign, off the body, or else
+    /// enlarges that.
+    fn sense(
+        &self,
+        body: &Body,
+        selection: &Selection,
+        edges: &[Face],
+        enclosed: f64,
+    ) -> Result<Option<f64>, InputError> {
+        let by_measure = orientation(enclosed, body);
+        let by_boundary = || walls::against_boundary(body.mesh(), edges);
+        Ok(match selection {
             // the cells of a string have no sides
             Selection::Set(_) | Selection::Box { .. } if self.fill_space(body, selection)? => {
                 by_boundary()
             }
-            _ => by_area.or_else(by_boundary),
-        };
-        let sign = sign.ok_or_else(|| self.encloses_nothing("area (m^2)", area))?;
-        let height = self.height(body, selection)?;
-        Ok(Geometry::Polygon(polygon, sign * height))
+            _ => by_measure.or_else(by_boundary),
+        })
     }
 
     /// 1 or -1, so that pressure enlarges the volume.
@@ -293,7 +323,8 @@ impl Chamber {
 /// 1 or -1, so that pressure enlarges the area or volume `enclosed`, which is signed; `None` if it is 0 up to
 /// round-off.
 fn orientation(enclosed: f64, body: &Body) -> Option<f64> {
-    let least = 1e-9 * body.size().powi(body.dimension() as i32);
+    let degree = if body.is_axisymmetric() { 3 } else { body.dimension() };
+    let least = 1e-9 * body.size().powi(degree as i32);
     (enclosed.abs() > least).then(|| enclosed.signum())
 }
 
@@ -318,6 +349,7 @@ impl ChamberForce {
         match &self.geometry {
             Geometry::Polygon(polygon, factor) => factor * polygon.measure(u),
             Geometry::Surface(surface, factor) => factor * surface.measure(u),
+            Geometry::Circles(circles, sign) => sign * circles.measure(u),
         }
     }
 
@@ -331,6 +363,7 @@ impl ChamberForce {
         match &self.geometry {
             Geometry::Polygon(polygon, sign) => polygon.add_hessian(factor * sign, matrix),
             Geometry::Surface(surface, sign) => surface.add_hessian(factor * sign, u, matrix),
+            Geometry::Circles(circles, sign) => circles.add_hessian(factor * sign, u, matrix),
         }
     }
 
@@ -344,13 +377,15 @@ impl ChamberForce {
         match &self.geometry {
             Geometry::Polygon(polygon, sign) => polygon.add_gradient(factor * sign, u, gradient),
             Geometry::Surface(surface, sign) => surface.add_gradient(factor * sign, u, gradient),
+            Geometry::Circles(circles, sign) => circles.add_gradient(factor * sign, u, gradient),
         }
     }
 }
 
 /// What encloses a chamber, and the factor by which p times the gradient of its area or volume becomes the
-/// force: +-h in the plane, +-1 in space.
+/// force: +-h in the plane, +-1 in space and in a body of revolution.
 enum Geometry {
     Polygon(Polygon, f64),
     Surface(Surface, f64),
+    Circles(Circles, f64),
 }

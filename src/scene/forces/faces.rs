@@ -7,7 +7,7 @@ use crate::base::tensor::determinant;
 use crate::base::vector::{cross, norm};
 use crate::elements::basis::{FacePoint, face_points};
 use crate::elements::body::Body;
-use crate::elements::mesh::{Face, FaceKind, Mesh};
+use crate::elements::mesh::{Face, FaceKind};
 
 /// The number of a kind of face among those `seen`; what all faces of a new one share is computed by `make`.
 pub(super) fn number_of<T>(
@@ -120,11 +120,11 @@ pub(super) fn loaded_faces(body: &Body, nodes: &[usize]) -> Result<Vec<LoadedFac
 }
 
 /// The integral of the shape function of each node of `faces` in the undeformed shape: the length (m) or area
-/// (m^2) that the node stands for, 1 for a point.
-fn integrals(faces: &[LoadedFace], mesh: &Mesh) -> BTreeMap<usize, f64> {
+/// (m^2; of a body of revolution, too) that the node stands for, 1 for a point.
+fn integrals(faces: &[LoadedFace], body: &Body) -> BTreeMap<usize, f64> {
     let (mut integrals, mut points) = (BTreeMap::new(), Vec::new());
     for LoadedFace { nodes, kind, .. } in faces {
-        let x: Vec<[f64; 3]> = nodes.iter().map(|&node| natural(mesh, node)).collect();
+        let x: Vec<[f64; 3]> = nodes.iter().map(|&node| natural(body.mesh(), node)).collect();
         let number = number_of(*kind, &mut points, face_points);
         for point in &points[number].1 {
             let [along, across] = point.tangents(&x);
@@ -133,6 +133,8 @@ fn integrals(faces: &[LoadedFace], mesh: &Mesh) -> BTreeMap<usize, f64> {
                 1 => norm(&along),
                 _ => norm(&cross(&along, &across)),
             };
+            let r = x.iter().zip(point.values).map(|(x, value)| value * x[0]).sum();
+            let measure = measure * body.around(r);
             for (&node, value) in nodes.iter().zip(point.values) {
                 *integrals.entry(node).or_default() += point.weight * value * measure;
             }
@@ -147,7 +149,7 @@ pub(crate) fn shares(body: &Body, nodes: &[usize]) -> Vec<f64> {
     let Ok(faces) = loaded_faces(body, nodes) else {
         return vec![1.0 / nodes.len() as f64; nodes.len()];
     };
-    let integrals = integrals(&faces, body.mesh());
+    let integrals = integrals(&faces, body);
     let whole: f64 = integrals.values().sum();
     nodes.iter().map(|node| integrals[node] / whole).collect()
 }
@@ -165,7 +167,7 @@ pub(crate) fn areas(body: &Body, nodes: &[usize]) -> Result<Vec<f64>, String> {
         };
         sections.extend(face.nodes.iter().map(|node| (*node, section)));
     }
-    let integrals = integrals(&faces, body.mesh());
+    let integrals = integrals(&faces, body);
     Ok(nodes.iter().map(|node| sections[node] * integrals[node]).collect())
 }
 

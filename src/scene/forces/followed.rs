@@ -1,12 +1,14 @@
 //! Faces of the boundary with their quadrature points, where they are in the deformed shape: for loads that follow their normals.
 
 use std::collections::BTreeMap;
+use std::f64::consts::TAU;
 
 use super::faces::{LoadedFace, number_of};
 use super::surface::natural;
 use crate::base::sparse::BlockMatrix;
 use crate::base::vector::{cross, distinct, dot, norm};
 use crate::elements::basis::{FacePoint, MOST_NODES, face_points};
+use crate::elements::body::Body;
 use crate::elements::mesh::{FaceKind, Mesh};
 
 /// What is round-off in the rim of a closed surface, over the sizes of the parts that cancel.
@@ -18,6 +20,8 @@ pub(super) struct FollowedFaces {
     faces: Vec<FollowedFace>,
     /// The quadrature points of each kind of face.
     points: Vec<(FaceKind, Vec<FacePoint>)>,
+    /// Whether they are turned about the axis, so that the present length 2 pi r of circles stands for the thickness.
+    is_turned: bool,
 }
 
 struct FollowedFace {
@@ -39,6 +43,8 @@ pub(super) struct Followed<'a> {
     /// The derivatives x,1 and x,2 of the position: x,1 x x,2 is the outward normal times the area per reference area. In
     /// the plane the thickness along z stands for x,2.
     pub(super) tangents: [[f64; 3]; 2],
+    /// The derivative of that normal by the radius r of the point, at the same x,1, in a body of revolution.
+    pub(super) by_r: Option<[f64; 3]>,
 }
 
 impl FollowedFaces {
@@ -56,7 +62,12 @@ impl FollowedFaces {
             let natural = nodes.iter().map(|&node| natural(mesh, node)).collect();
             faces.push(FollowedFace { nodes, natural, kind, across });
         }
-        Ok(Self { dimension: mesh.dimension(), faces, points })
+        Ok(Self { dimension: mesh.dimension(), faces, points, is_turned: false })
+    }
+
+    /// The same faces of a `body`, which may be one of revolution.
+    pub(super) fn of(self, body: &Body) -> Self {
+        Self { is_turned: body.is_axisymmetric(), ..self }
     }
 
     /// Their nodes, ascending.
@@ -76,8 +87,13 @@ impl FollowedFaces {
             let places = &x[..nodes.len()];
             for point in &self.points[*kind].1 {
                 let [first, second] = point.tangents(places);
-                let tangents = [first, across.unwrap_or(second)];
-                see(&Followed { nodes, places, point, tangents });
+                let mut tangents = [first, across.unwrap_or(second)];
+                if self.is_turned {
+                    let r = places.iter().zip(point.values).map(|(x, value)| value * x[0]);
+                    tangents[1] = [0.0, 0.0, TAU * r.sum::<f64>()];
+                }
+                let by_r = self.is_turned.then(|| cross(&first, &[0.0, 0.0, TAU]));
+                see(&Followed { nodes, places, point, tangents, by_r });
             }
         }
     }

@@ -13,7 +13,7 @@ use crate::integrators::ode::Failure;
 
 /// Pressure p on faces: f_a = -sum w p N_a n over their quadrature points, with n = x,1 x x,2, the outward
 /// normal of the deformed face times its area per reference area. In the plane the thickness along z stands
-/// for x,2.
+/// for x,2, in a body of revolution the present length 2 pi r of a circle.
 ///
 /// Hibbitt, *Some follower forces and load stiffness*, Int. J. Numer. Meth. Engng. 14 (1979).
 pub(crate) struct FacePressure {
@@ -38,7 +38,7 @@ impl FacePressure {
         let loaded = loaded_faces(body, &nodes).map_err(|loose| bad(on_no_face(&loose)))?;
         let faces = FollowedFaces::new(mesh, loaded);
         let faces = faces.map_err(|help| bad(format!("{help}: give a traction or forces")))?;
-        Ok(Self { faces, pressure })
+        Ok(Self { faces: faces.of(body), pressure })
     }
 }
 
@@ -78,8 +78,11 @@ impl Force for FacePressure {
     ) -> Tangents {
         let pressure = self.pressure.at(t);
         self.faces.each_point(u, |at| {
-            for (column, c) in at.nodes.iter().zip(at.turning()) {
-                let times = cross_with(c);
+            for ((column, c), share) in at.nodes.iter().zip(at.turning()).zip(at.point.values) {
+                let mut times = cross_with(c);
+                for (i, by_r) in at.by_r.iter().flatten().enumerate() {
+                    times[i][0] += share * by_r;
+                }
                 for (row, value) in at.nodes.iter().zip(at.point.values) {
                     add_block(
                         stiffness,

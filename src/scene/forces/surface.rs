@@ -45,11 +45,13 @@ pub(crate) fn weighted(
     sum
 }
 
-/// Each boundary node by itself; on a plane of symmetry at which the mesh was cut, half of it.
+/// Each boundary node by itself; on a plane of symmetry at which the mesh was cut, half of it, but not on the axis of a body of revolution.
 pub(crate) fn boundary_nodes(body: &Body) -> Vec<SurfacePoint> {
     let mesh = body.mesh();
     let mut parts = vec![1.0; mesh.node_count()];
-    mesh.plane_of_symmetry().iter().for_each(|&node| parts[node] = 0.5);
+    if !body.is_axisymmetric() {
+        mesh.plane_of_symmetry().iter().for_each(|&node| parts[node] = 0.5);
+    }
     mesh.boundary_nodes().iter().map(|&node| point(&[node], &[1.0], parts[node])).collect()
 }
 
@@ -170,6 +172,8 @@ fn measured_points(
                 1 => norm(&along) * (corners[1][0] - corners[0][0]).abs(),
                 _ => norm(&cross(&along, &across)) * reference_area(&corners),
             };
+            let r = at.iter().zip(place.values).map(|(x, share)| share * x[0]).sum();
+            let stretch = stretch * body.around(r);
             let nodes = face.iter().copied().zip(place.values);
             points.push((
                 nodes.filter(|(_, share)| *share != 0.0).collect(),
@@ -195,16 +199,19 @@ pub(super) fn measured_pieces<'a>(
     let section = section(body, face)?;
     Some(pieces(body.mesh().face_kind(face)).map(move |(part, weight)| {
         let corners: Vec<usize> = part.iter().map(|&local| face[local]).collect();
-        let area = weight * section * measure(body, &corners);
+        let r = corners.iter().map(|&node| natural(body.mesh(), node)[0]).sum::<f64>();
+        let around = body.around(r / corners.len() as f64);
+        let area = weight * section * measure(body, &corners) * around;
         (corners, area)
     }))
 }
 
 /// Factor from lengths of a face of the boundary to areas (m^2): the thickness of a body in the plane, the
-/// cross-section of a bar; 1 in space. A string has no surface: `None`.
+/// cross-section of a bar; 1 in space, and of a body of revolution, beside what is [around](Body::around). A string has no surface: `None`.
 pub(super) fn section(body: &Body, face: &[usize]) -> Option<f64> {
     let of_face = body.part_of(face[0]).body;
     match (of_face.mesh().kind().dimension(), body.dimension()) {
+        _ if of_face.is_axisymmetric() => Some(1.0),
         (cell, space) if cell == space => Some(of_face.section()),
         (2, 3) => Some(1.0),
         _ => None,

@@ -20,6 +20,7 @@ type Build<'a> = &'a dyn Fn(Vec<Signal>) -> Result<Forces, InputError>;
 impl Scene {
     /// The forces in one phase, except those of constant matrices.
     pub(crate) fn forces_in(&self, phase: &Phase) -> Result<Forces, InputError> {
+        self.check_around(phase)?;
         let dimension = self.body.dimension();
         let mut forces = Forces::new();
         if let Some(elastic) = self.body.elastic_outside(&self.growing_cells(phase)?) {

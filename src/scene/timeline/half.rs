@@ -88,6 +88,7 @@ impl Scene {
     pub(crate) fn half(&self, axis: Axis, is_upper: bool) -> Result<Half, InputError> {
         self.validate()?;
         self.start.refuse_branches("a half")?;
+        self.body.refuse_around("half of the scene", format!("at a plane across {axis:?}"))?;
         let symmetry = Symmetry::of(self, axis)?;
         let mirror = &symmetry.mirror;
         let mesh = self.body.mesh();

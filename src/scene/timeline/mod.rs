@@ -1,5 +1,6 @@
 //! Scenes: a body, what surrounds it, and a timeline of phases.
 
+mod around;
 mod changed;
 mod contacts;
 mod dipole;
@@ -523,8 +524,8 @@ impl Scene {
         phase: &Phase,
         start: &PhaseStart,
     ) -> Result<Vec<ConstraintRow>, InputError> {
-        let tied = self.tied()?;
-        let all = phase.constraints.iter().chain(tied);
+        let (tied, on_axis) = (self.tied()?, self.held_on_axis());
+        let all = phase.constraints.iter().chain(tied).chain(&on_axis);
         rows(all, &self.body, &phase.name, start)
     }
 }

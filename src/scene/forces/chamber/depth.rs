@@ -21,6 +21,7 @@ impl Chamber {
         force: &ChamberForce,
         down: [f64; 3],
     ) -> Result<Moment, InputError> {
+        body.refuse_around(&self.input("liquid"), "with weight")?;
         if self.is_closed_by_lid {
             let help = "a lid does not feel the weight of a liquid: leave gravity out, or close the chamber by walls of the body or by triangles";
             return Err(InputError::new(self.input("closed_by_lid"), true, help));
@@ -28,10 +29,10 @@ impl Chamber {
         let mesh = body.mesh();
         let (factor, section) = match &force.geometry {
             Geometry::Polygon(_, factor) => (factor, Some(factor.abs())),
-            Geometry::Surface(_, factor) => (factor, None),
+            Geometry::Surface(_, factor) | Geometry::Circles(_, factor) => (factor, None),
         };
         let faces = match (&self.walls, body.dimension()) {
-            (Walls::Nodes(nodes), 2) => self.edges(mesh, nodes)?,
+            (Walls::Nodes(nodes), 2) => self.edges(body, nodes)?,
             (Walls::Nodes(nodes), _) => self.boundary(mesh, nodes)?,
             (Walls::Triangles(triangles), _) => {
                 triangles.iter().map(|triangle| triangle.map(|node| node - 1).to_vec()).collect()
@@ -59,13 +60,14 @@ impl Chamber {
         force: &ChamberForce,
         down: [f64; 3],
     ) -> Result<Basin, InputError> {
+        body.refuse_around(&self.input("liquid"), "with weight")?;
         let mesh = body.mesh();
-        let factor = match &force.geometry {
-            Geometry::Polygon(_, factor) | Geometry::Surface(_, factor) => *factor,
-        };
+        let (Geometry::Polygon(_, factor)
+        | Geometry::Surface(_, factor)
+        | Geometry::Circles(_, factor)) = force.geometry;
         Ok(match (&self.walls, body.dimension()) {
             (Walls::Nodes(nodes), 2) => {
-                let edges = edge_parts(&self.edges(mesh, nodes)?, Shape::Straight);
+                let edges = edge_parts(&self.edges(body, nodes)?, Shape::Straight);
                 Basin::new(mesh, edges, factor, down)
             }
             (Walls::Nodes(nodes), _) => {

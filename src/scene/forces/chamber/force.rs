@@ -14,6 +14,8 @@ impl ChamberForce {
         match &mut self.geometry {
             Geometry::Polygon(polygon, _) => polygon.anchor(),
             Geometry::Surface(surface, _) => surface.anchor(),
+            // the axis is where volumes are counted from
+            Geometry::Circles(..) => {}
         }
         self
     }
@@ -87,6 +89,7 @@ impl Force for ChamberForce {
         match &self.geometry {
             Geometry::Polygon(polygon, _) => polygon.couplings(),
             Geometry::Surface(surface, _) => surface.couplings(),
+            Geometry::Circles(circles, _) => circles.couplings(),
         }
     }
 

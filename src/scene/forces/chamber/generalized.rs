@@ -31,6 +31,9 @@ impl ChamberForce {
             Geometry::Surface(surface, _) => {
                 shapes.saturating_pow(3) <= OF_PART * surface.parts() * shapes
             }
+            Geometry::Circles(circles, _) => {
+                shapes.saturating_pow(3) <= OF_PART * circles.edges() * shapes
+            }
         }
     }
 
@@ -51,7 +54,7 @@ impl ChamberForce {
         let start = gradient(&[]);
         let once: Vec<Vec<f64>> = (0..count).map(|k| gradient(&[k])).collect();
         let mut third = Vec::new();
-        if let Geometry::Surface(..) = self.geometry {
+        if !matches!(self.geometry, Geometry::Polygon(..)) {
             third = vec![0.0; count * count * count];
             for k in 0..count {
                 for l in 0..=k {

@@ -5,6 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::Chamber;
 use super::enclosure::Part;
 use crate::base::input::InputError;
+use crate::elements::body::Body;
 use crate::elements::mesh::{CellKind, Face, FaceKind, Mesh, Selection};
 use crate::scene::forces::faces::{between, list, number_of, straight_parts, volume_parts};
 
@@ -30,9 +31,10 @@ impl Chamber {
     /// The edges of closed polygons: their ends and, of curved ones, the node in their middle.
     pub(super) fn edges(
         &self,
-        mesh: &Mesh,
+        body: &Body,
         selection: &Selection,
     ) -> Result<Vec<Face>, InputError> {
+        let mesh = body.mesh();
         let nodes = mesh.select(selection)?;
         if nodes.len() < 3 {
             let help = "a polygon needs 3 nodes at least";
@@ -43,7 +45,9 @@ impl Chamber {
             Selection::Set(_) | Selection::Box { .. } => {
                 let nodes = nodes.into_iter().collect();
                 let edges = walls(mesh.boundary_faces(), &nodes);
-                let edges = edges.and_then(|edges| closed(edges, self.is_closed_by_line));
+                let axis = body.is_axisymmetric().then(|| body.nodes_on_axis());
+                let edges =
+                    edges.and_then(|edges| closed(edges, self.is_closed_by_line, axis.as_deref()));
                 edges.map_err(|problem| self.bad_walls(selection, &problem))
             }
         }
@@ -217,17 +221,31 @@ fn walls(faces: Vec<Face>, nodes: &BTreeSet<usize>) -> Result<Vec<Face>, String>
     })
 }
 
-/// Loops of edges as they are; one open chain with the edge that closes it added, if `by_line`.
-fn closed(mut edges: Vec<Face>, by_line: bool) -> Result<Vec<Face>, String> {
+/// Loops of edges as they are; one open chain with the edge that closes it added, if `by_line`. In a body of revolution chains are closed
+/// where they end at nodes on the `axis`, and the disc that closes one at its other end has no edge: it encloses nothing more.
+fn closed(
+    mut edges: Vec<Face>,
+    by_line: bool,
+    axis: Option<&[usize]>,
+) -> Result<Vec<Face>, String> {
     // how many more edges begin at a node than end there
     let mut surplus: BTreeMap<usize, i32> = BTreeMap::new();
     for edge in &edges {
         *surplus.entry(edge[0]).or_default() += 1;
         *surplus.entry(edge[1]).or_default() -= 1;
     }
-    surplus.retain(|_, surplus| *surplus != 0);
+    let is_on_axis = |node: &usize| axis.is_some_and(|axis| axis.contains(node));
+    surplus.retain(|node, surplus| *surplus != 0 && !is_on_axis(node));
     match *surplus.iter().collect::<Vec<_>>() {
         [] => Ok(edges),
+        [(end, 1 | -1)] if axis.is_some() => match by_line {
+            true => Ok(edges),
+            false => Err(format!(
+                "they are open between node {} and the axis: add the walls that are missing, or say closed_by_line if a level disc there is to \
+                 close the chamber",
+                end + 1
+            )),
+        },
         [(&first, 1), (&last, -1)] | [(&last, -1), (&first, 1)] if by_line => {
             edges.push(vec![last, first]);
             Ok(edges)

@@ -1,0 +1,87 @@
+//! Scenes of bodies of revolution: what holds on the axis, and what they do not have.
+
+use super::{Phase, Scene};
+use crate::base::input::InputError;
+use crate::elements::mesh::Selection;
+use crate::scene::constraint::{Axes, Axis, Constrained, Constraint, Motion};
+use crate::scene::forces::{Fluid, Spring, Touch};
+
+impl Scene {
+    /// The nodes on the axis of a body of revolution, held there.
+    pub(super) fn held_on_axis(&self) -> Option<Constraint> {
+        let nodes = self.body.nodes_on_axis();
+        (!nodes.is_empty()).then(|| Constraint {
+            what: Constrained::Nodes(
+                Selection::Numbers(nodes.iter().map(|node| node + 1).collect()),
+                Axes::These(vec![Axis::X]),
+            ),
+            how: Motion::Hold,
+        })
+    }
+
+    /// Refuses what a body of revolution does not have, in the scene and in `phase`.
+    ///
+    /// # Errors
+    /// Anything that is not the same all around the axis, or whose forces are not known there.
+    pub(super) fn check_around(&self, phase: &Phase) -> Result<(), InputError> {
+        if !self.body.is_axisymmetric() {
+            return Ok(());
+        }
+        let refuse = |what: &str, name: &str| {
+            let help =
+                "an axisymmetric body does not have it: leave it out, or mesh the body in space";
+            Err(InputError::new(what, format!("\"{name}\""), help))
+        };
+        let cable = self.springs.iter().find(|spring| spring.is_cable()).map(Spring::name);
+        let muscle = self.muscles.first().map(|muscle| muscle.name());
+        let growth = self.growths.first().map(|growth| growth.name());
+        let magnet = self.magnets.first().map(|_| "magnet 1");
+        let dipole = self.dipoles.first().map(|dipole| dipole.name());
+        let fluid = self.fluids.first().map(Fluid::name);
+        let touch = self.touches.first().map(Touch::name);
+        for (what, name) in [
+            ("cable", cable),
+            ("muscle", muscle),
+            ("growth", growth),
+            ("magnet", magnet),
+            ("dipole", dipole),
+            ("fluid", fluid),
+            ("touch", touch),
+        ] {
+            name.map_or(Ok(()), |name| refuse(what, name))?;
+        }
+        if self.reduced.is_some() {
+            self.body.refuse_around("reduced model", "given")?;
+        }
+        if let Some(gravity) = self.gravity_in(phase)
+            && gravity.first().is_some_and(|along_r| *along_r != 0.0)
+        {
+            let help = "gravity acts along the axis of an axisymmetric body, which is y: its first component is 0";
+            return Err(InputError::new("gravity", format!("{gravity:?}"), help));
+        }
+        if phase.constraints.iter().any(|own| matches!(own.how, Motion::Turn(_))) {
+            let input = format!("rotation in phase \"{}\"", phase.name);
+            self.body.refuse_around(&input, "in the plane")?;
+        }
+        if self.start.spin.is_some() || !self.start.of_bodies.is_empty() {
+            self.body.refuse_around("spin", "in the plane")?;
+        }
+        let (u, v) = (self.initial_displacements(), self.initial_velocities()?);
+        for (what, unit, field) in
+            [("initial displacement", "m", u), ("initial velocity", "m/s", &v[..])]
+        {
+            for node in self.body.nodes_on_axis() {
+                if field[2 * node] != 0.0 {
+                    let input = format!("{what} along r of node {}", node + 1);
+                    let help = "the node is on the axis of the body, and stays there: give 0";
+                    return Err(InputError::new(
+                        input,
+                        format!("{} {unit}", field[2 * node]),
+                        help,
+                    ));
+                }
+            }
+        }
+        Ok(())
+    }
+}
