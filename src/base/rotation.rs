@@ -16,3 +16,14 @@ pub(crate) fn nearest_rotation(correlation: Matrix3<f64>) -> Matrix3<f64> {
         _ => Matrix3::identity(),
     }
 }
+
+/// The angle (rad, counter-clockwise, between -pi and pi) of the rotation in the plane that brings vectors x nearest to vectors y, of pairs of
+/// x times its weight, which add up to 0, and y.
+pub(crate) fn plane_rotation(pairs: impl Iterator<Item = ([f64; 2], [f64; 2])>) -> f64 {
+    let (mut along, mut across) = (0.0, 0.0);
+    for ([a, b], [x, y]) in pairs {
+        along += a * x + b * y;
+        across += a * y - b * x;
+    }
+    across.atan2(along)
+}

@@ -43,6 +43,8 @@ pub struct Sample {
     pub constraint_drift: f64,
     /// What the [sensors](Trajectory::sensors) read.
     pub sensors: Vec<f64>,
+    /// Accelerations (m/s^2), until sensors have read them.
+    pub(crate) accelerations: Vec<f64>,
     pub(crate) commanded: Commanded,
 }
 

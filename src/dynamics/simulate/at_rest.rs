@@ -49,12 +49,20 @@ fn read(trajectory: &mut Trajectory, sampling: &Sampling) -> Result<(), InputErr
         return Ok(());
     }
     let (gauges, mut angles) = (Gauges::new(scene)?, Angles::default());
+    let at_rest = vec![0.0; scene.body().dofs()];
     let mut rows = Vec::with_capacity(trajectory.samples().len());
     for sample in trajectory.samples() {
         let (u, v, others) = (&sample.u, &sample.v, &sample.amounts);
         let state = State { u, v, dissipated: 0.0, supplied: sample.energy.supplied, others };
         let phase = trajectory.phase_of(sample)?;
-        let view = View { scene, phase, gauges: &gauges, time: sample.time, state };
+        let view = View {
+            scene,
+            phase,
+            gauges: &gauges,
+            time: sample.time,
+            state,
+            accelerations: &at_rest,
+        };
         rows.push(sensors.read(&view, sample, &angles));
         sensors.follow(&view, &mut angles);
     }

@@ -87,7 +87,8 @@ impl Run {
     /// The sample of `state` = (u, v, energies) at time `t` (s).
     pub(super) fn sample(&mut self, t: f64, state: &[f64]) -> Result<Sample, Error> {
         let number = self.number;
-        let sample = records::sample(number, self.system_mut()?, t, state);
+        let accelerates = self.sensors.need_accelerations();
+        let sample = records::sample(number, self.system_mut()?, t, state, accelerates);
         let mut sample = sample.map_err(|failure| self.failure(failure.into_error(), 0.0))?;
         self.complete(&mut sample);
         Ok(sample)
@@ -380,6 +381,14 @@ impl Run {
         (self.sampling, self.sensors) = (sampling.clone(), sensors);
         if self.trajectory.last().time == self.time {
             let mut now = self.trajectory.last().clone();
+            if self.sensors.need_accelerations() {
+                let (number, time, state) = (self.number, self.time, self.state.clone());
+                let again = self.system_mut().ok().map(|system| {
+                    records::sample(number, system, time, &state, true)
+                        .map(|again| again.accelerations)
+                });
+                now.accelerations = again.and_then(Result::ok).unwrap_or_default();
+            }
             self.complete(&mut now);
             self.trajectory.replace_last(now);
         }

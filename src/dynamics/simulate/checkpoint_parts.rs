@@ -154,7 +154,7 @@ impl Simulation {
             let help = format!("the phase has {} rows of constraints", system.rows().len());
             return Err(InputError::new("number of origins", kept.origins.len(), help).into());
         }
-        let reason = match records::sample(number, &mut system, time, state) {
+        let reason = match records::sample(number, &mut system, time, state, false) {
             Ok(sample) if sample.energy.balance().is_finite() => None,
             Ok(_) => Some("the energies are beyond the range of double precision".into()),
             Err(failure) => Some(failure.into_error().to_string()),

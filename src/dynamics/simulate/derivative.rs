@@ -4,6 +4,7 @@ use std::f64::consts::TAU;
 
 use super::gauge::Value;
 use super::reading::{Component, Reading, What};
+use super::spot::{At, Spot};
 use super::view::{Gauges, View, mean};
 use crate::base::input::InputError;
 use crate::base::vector::{cross, dot, norm};
@@ -57,19 +58,24 @@ impl Reading {
             others: &sample.amounts,
         };
         let phase = &scene.phases()[sample.phase];
-        Ok(gauge(&View { scene, phase, gauges: &gauges, time: sample.time, state }, sample))
+        Ok(gauge(
+            &View { scene, phase, gauges: &gauges, time: sample.time, state, accelerations: &[] },
+            sample,
+        ))
     }
 
     /// Whether [`linearized`](Self::linearized) can compute its derivative.
     pub(crate) fn has_derivative(&self) -> bool {
-        match self.what {
-            What::Position(_) | What::Displacement(_) | What::CentreOfMass => true,
+        match &self.what {
+            What::Position(spot) | What::Displacement(spot) => !matches!(spot.0, At::Marker(..)),
+            What::CentreOfMass => true,
             What::Distance(_) | What::Angle(_) | What::ChamberVolume(_) => true,
             What::ConstraintForce(_) => true,
             What::ConstraintMoment(..) => false,
-            What::Velocity(_) | What::Momentum => false,
+            What::Velocity(_) | What::Acceleration(_) | What::Momentum => false,
+            What::AngularVelocity(_) | What::AngularAcceleration(_) => false,
             What::Contact(..) | What::Gap(_) | What::TensionAtEnd(_) => false,
-            What::Rotation | What::Pressure(_) | What::AbsolutePressure(_) => false,
+            What::Rotation(_) | What::Pressure(_) | What::AbsolutePressure(_) => false,
             What::GasAmount(_) | What::GasFlow(_) => false,
             What::LiquidVolume(_) | What::LiquidFlow(_) | What::LiquidLevel(_) => false,
             What::PipeFlow(_) => false,
@@ -121,7 +127,15 @@ impl Reading {
             std::array::from_fn(|i| to[i] - from[i])
         };
         match &self.what {
-            What::Position(nodes) | What::Displacement(nodes) => {
+            What::Position(Spot(At::Inside(place)))
+            | What::Displacement(Spot(At::Inside(place))) => {
+                let along = self.direction(scene, sample)?;
+                for (node, share) in body.shares_at(place)? {
+                    let dofs = linearized.by_displacements[node * d..].iter_mut().take(d);
+                    dofs.zip(along).for_each(|(dof, along)| *dof += share * along);
+                }
+            }
+            What::Position(Spot(At::Nodes(nodes))) | What::Displacement(Spot(At::Nodes(nodes))) => {
                 add_mean(&self.counted(select(nodes)?), self.direction(scene, sample)?);
             }
             What::Distance([from, to]) => {

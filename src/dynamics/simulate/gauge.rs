@@ -3,8 +3,12 @@
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
+use nalgebra::Vector3;
+
 use super::contact_gauge::ContactGauge;
 use super::reading::{Component, Lever, OfContact, Place, Reading, What};
+use super::rigid_fit::{RigidFit, Turning};
+use super::spot::Motion;
 use super::view::{View, mean};
 use crate::base::input::{InputError, finite};
 use crate::base::vector::{cross, dot, norm};
@@ -77,18 +81,10 @@ impl Reading {
         let select = |nodes: &Selection| scene.body().mesh().select(nodes);
         let d = scene.body().dimension();
         Ok(match &self.what {
-            What::Position(nodes) => {
-                let nodes = self.counted(select(nodes)?);
-                Box::new(move |view, _| Value::Vector(position(view, &nodes)))
-            }
-            What::Displacement(nodes) => {
-                let nodes = self.counted(select(nodes)?);
-                Box::new(move |view, _| Value::Vector(mean(&nodes, view.displacements(), d)))
-            }
-            What::Velocity(nodes) => {
-                let nodes = self.counted(select(nodes)?);
-                Box::new(move |view, _| Value::Vector(mean(&nodes, view.velocities(), d)))
-            }
+            What::Position(spot) => self.of_spot(scene, spot, Motion::Position)?,
+            What::Displacement(spot) => self.of_spot(scene, spot, Motion::Displacement)?,
+            What::Velocity(spot) => self.of_spot(scene, spot, Motion::Velocity)?,
+            What::Acceleration(spot) => self.of_spot(scene, spot, Motion::Acceleration)?,
             What::ConstraintForce(nodes) => {
                 let sum = constraint_sum(scene, select(nodes)?, move |_, dof| {
                     std::array::from_fn(|i| f64::from(i == dof % d))
@@ -199,7 +195,19 @@ impl Reading {
                 let (from, to) = (select(from)?, select(to)?);
                 Box::new(move |view, _| Value::Number(norm(&between(view, [&from, &to]))))
             }
-            What::Angle(_) | What::Rotation => {
+            What::Rotation(nodes) if d == 3 => {
+                let (fit, in_turn) = (self.fit(scene, nodes.as_ref())?, self.full_turn() / TAU);
+                Box::new(move |view, _| {
+                    Value::Vector(fit.rotation_vector(view).map(|angle| in_turn * angle))
+                })
+            }
+            What::AngularVelocity(nodes) => {
+                turning(self.fit(scene, nodes.as_ref())?, d, |turning| turning.velocity)
+            }
+            What::AngularAcceleration(nodes) => {
+                turning(self.fit(scene, nodes.as_ref())?, d, |turning| turning.acceleration)
+            }
+            What::Angle(_) | What::Rotation(_) => {
                 let angle = self.angle_gauge(scene)?;
                 Box::new(move |view, _| Value::Number(angle(view)))
             }
@@ -264,6 +272,10 @@ impl Reading {
     pub(super) fn angle_gauge(&self, scene: &Scene) -> Result<AngleGauge, InputError> {
         let d = scene.body().dimension();
         let in_turn = self.full_turn() / TAU;
+        let on = match &self.what {
+            What::Rotation(on) => on.as_ref(),
+            _ => None,
+        };
         if let What::Angle([from, to]) = &self.what {
             let lines = [line(scene, from)?, line(scene, to)?];
             return Ok(Arc::new(move |view| {
@@ -273,17 +285,30 @@ impl Reading {
                 in_turn * across.atan2(dot(&a, &b))
             }));
         }
-        if d != 2 {
-            let help = "a body turns by one angle in two dimensions only: take the angle between two lines";
-            return Err(InputError::new("rotation in dimension", d, help));
-        }
-        let first_node = self.first_node(scene)?;
-        let arms = part(scene.body(), first_node).body.arms();
-        Ok(Arc::new(move |view| {
-            let part = part(view.body(), first_node);
-            in_turn * part.body.rotation_by(&arms, &view.displacements()[part.dofs()])
-        }))
+        let fit = self.fit(scene, on)?;
+        Ok(Arc::new(move |view| in_turn * fit.angle(view)))
     }
+
+    /// The rigid motion of `nodes`, or else of the body that was named, or of all.
+    fn fit(&self, scene: &Scene, nodes: Option<&Selection>) -> Result<RigidFit, InputError> {
+        let mesh = scene.body().mesh();
+        match (nodes, &self.body) {
+            (None, _) => RigidFit::of_part(mesh, &part(scene.body(), self.first_node(scene)?)),
+            (Some(nodes), None) => RigidFit::of_nodes(mesh, mesh.select(nodes)?),
+            (Some(nodes), Some(name)) => {
+                let help = format!("{nodes} are read: leave one of them out");
+                Err(InputError::new("body", format!("\"{name}\""), help))
+            }
+        }
+    }
+}
+
+/// The function that reads a rate of a rotation: in the plane a number, in space a vector.
+fn turning(fit: RigidFit, dimension: usize, rate: fn(&Turning) -> Vector3<f64>) -> Gauge {
+    Box::new(move |view, _| match rate(&fit.turning(view)) {
+        rate if dimension == 2 => Value::Number(rate.z),
+        rate => Value::Vector(rate.into()),
+    })
 }
 
 /// The body with this first node, or all together.

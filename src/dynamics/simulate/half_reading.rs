@@ -1,6 +1,7 @@
 //! What a reading of a symmetric scene is in its half.
 
 use super::reading::{Component, Reading, What};
+use super::spot::{At, Spot};
 use crate::base::input::InputError;
 use crate::elements::mesh::Selection;
 use crate::scene::timeline::{Half, Scene};
@@ -39,9 +40,9 @@ impl Reading {
             }
         };
         let what = match &self.what {
-            What::Position(nodes) => What::Position(means(nodes)?),
-            What::Displacement(nodes) => What::Displacement(means(nodes)?),
-            What::Velocity(nodes) => What::Velocity(means(nodes)?),
+            What::Position(Spot(At::Nodes(nodes))) => What::Position(means(nodes)?.into()),
+            What::Displacement(Spot(At::Nodes(nodes))) => What::Displacement(means(nodes)?.into()),
+            What::Velocity(Spot(At::Nodes(nodes))) => What::Velocity(means(nodes)?.into()),
             What::CentreOfMass if is_along => What::CentreOfMass,
             What::CentreOfMass => return Err(only_along("centre of mass")),
             _ => {

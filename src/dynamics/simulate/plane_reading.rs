@@ -1,6 +1,7 @@
 //! What a reading of a scene that is the same all along an axis is in its section.
 
 use super::reading::{By, Component, OfContact, Reading, What};
+use super::spot::{At, Spot};
 use crate::base::input::InputError;
 use crate::elements::mesh::Selection;
 use crate::scene::constraint::Axis;
@@ -40,9 +41,9 @@ impl Reading {
             Ok(Selection::of_nodes(own))
         };
         let what = match &self.what {
-            What::Position(nodes) => What::Position(means(nodes)?),
-            What::Displacement(nodes) => What::Displacement(means(nodes)?),
-            What::Velocity(nodes) => What::Velocity(means(nodes)?),
+            What::Position(Spot(At::Nodes(nodes))) => What::Position(means(nodes)?.into()),
+            What::Displacement(Spot(At::Nodes(nodes))) => What::Displacement(means(nodes)?.into()),
+            What::Velocity(Spot(At::Nodes(nodes))) => What::Velocity(means(nodes)?.into()),
             What::ConstraintForce(nodes) => match plane.prism.whole_columns(&select(nodes)?) {
                 Some(own) => What::ConstraintForce(Selection::of_nodes(own)),
                 None => {

@@ -3,6 +3,7 @@
 use std::f64::consts::TAU;
 use std::iter::repeat_n;
 
+use super::spot::Spot;
 use crate::base::input::{InputError, unknown_among};
 use crate::dynamics::trajectory::DEGREES;
 use crate::elements::mesh::Selection;
@@ -25,9 +26,10 @@ pub struct Reading {
 /// What is read.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum What {
-    Position(Selection),
-    Displacement(Selection),
-    Velocity(Selection),
+    Position(Spot),
+    Displacement(Spot),
+    Velocity(Spot),
+    Acceleration(Spot),
     ConstraintForce(Selection),
     ConstraintMoment(Selection, Lever),
     /// Of an obstacle on all nodes, of a touch on the body that is read, of both on these nodes.
@@ -61,7 +63,10 @@ pub(super) enum What {
     Angle([[Selection; 2]; 2]),
     CentreOfMass,
     Momentum,
-    Rotation,
+    /// Of a body, or of these nodes.
+    Rotation(Option<Selection>),
+    AngularVelocity(Option<Selection>),
+    AngularAcceleration(Option<Selection>),
 }
 
 /// What is read of a contact.
@@ -159,19 +164,25 @@ impl Component {
 }
 
 impl Reading {
-    /// Where nodes are (m).
-    pub fn position(nodes: impl Into<Selection>) -> Self {
-        What::Position(nodes.into()).into()
+    /// Where nodes, or another [place](Spot), are (m).
+    pub fn position(place: impl Into<Spot>) -> Self {
+        What::Position(place.into()).into()
     }
 
-    /// How far nodes are from their undeformed positions (m).
-    pub fn displacement(nodes: impl Into<Selection>) -> Self {
-        What::Displacement(nodes.into()).into()
+    /// How far nodes, or another [place](Spot), are from their undeformed positions (m).
+    pub fn displacement(place: impl Into<Spot>) -> Self {
+        What::Displacement(place.into()).into()
     }
 
-    /// How fast nodes move (m/s).
-    pub fn velocity(nodes: impl Into<Selection>) -> Self {
-        What::Velocity(nodes.into()).into()
+    /// How fast nodes, or another [place](Spot), move (m/s).
+    pub fn velocity(place: impl Into<Spot>) -> Self {
+        What::Velocity(place.into()).into()
+    }
+
+    /// How the velocity of nodes, or of another [place](Spot), changes (m/s^2): what the equations of motion say in the state of a sample.
+    /// In equilibria it is 0.
+    pub fn acceleration(place: impl Into<Spot>) -> Self {
+        What::Acceleration(place.into()).into()
     }
 
     /// Force of the constraints on nodes together (N), their reaction:
@@ -248,9 +259,15 @@ impl Reading {
     }
 
     /// The part of the force of a contact or a fluid, or of an area in touch, that belongs to some nodes; the largest contact pressure at
-    /// these.
+    /// these; how these turn, instead of a body.
     pub fn on(mut self, nodes: impl Into<Selection>) -> Self {
-        if let What::Contact(_, _, on) | What::FluidForce(_, on) = &mut self.what {
+        use What::*;
+        if let Contact(_, _, on)
+        | FluidForce(_, on)
+        | Rotation(on)
+        | AngularVelocity(on)
+        | AngularAcceleration(on) = &mut self.what
+        {
             *on = Some(nodes.into());
         }
         self
@@ -405,12 +422,29 @@ impl Reading {
         What::CentreOfMass.into()
     }
 
-    /// Angle (rad, counter-clockwise) by which a body in the plane has turned as a whole.
+    /// Rotation (rad) of a body as a whole, or [of some nodes](Self::on), from the undeformed shape.
     ///
-    /// It is that of [`Trajectory::rotation`](crate::Trajectory::rotation), but continuous over whole turns
-    /// like [`angle`](Self::angle).
+    /// It is the rotation that brings the undeformed shape nearest to the present one, in the mean square over the mass of a
+    /// body, or over nodes that count alike. In the plane it is an angle, counter-clockwise, continuous over whole turns like
+    /// [`angle`](Self::angle) (and that of [`Trajectory::rotation`](crate::Trajectory::rotation) up to these); in space a vector along the axis, of a length
+    /// between 0 and pi. Nodes in one place, in space on one line, do not tell it.
     pub fn rotation() -> Self {
-        What::Rotation.into()
+        What::Rotation(None).into()
+    }
+
+    /// Angular velocity (rad/s) of a body as a whole, or [of some nodes](Self::on): in the plane a number, counter-clockwise, in
+    /// space a vector.
+    ///
+    /// It is the rate at which the [rotation](Self::rotation) R changes, omega x = R' R^T. Of what moves as a rigid body that is inertia^-1
+    /// times angular momentum, whatever the weights.
+    pub fn angular_velocity() -> Self {
+        What::AngularVelocity(None).into()
+    }
+
+    /// Rate (rad/s^2) of the [angular velocity](Self::angular_velocity), by the accelerations that the equations of motion say; 0 in
+    /// equilibria.
+    pub fn angular_acceleration() -> Self {
+        What::AngularAcceleration(None).into()
     }
 
     /// Momentum of all bodies, or of one [of them](Self::of_body) (kg m/s).
@@ -418,7 +452,7 @@ impl Reading {
         What::Momentum.into()
     }
 
-    /// Of one of several bodies: its centre of mass, its rotation, its momentum, what a touch or a fluid does to it. Default: of all together.
+    /// Of one of several bodies: its centre of mass, how it turns, its momentum, what a touch or a fluid does to it. Default: of all together.
     pub fn of_body(mut self, name: impl Into<String>) -> Self {
         self.body = Some(name.into());
         self
@@ -442,6 +476,9 @@ impl Reading {
             What::Position(_) | What::Displacement(_) | What::CentreOfMass => "m",
             What::SpringLength(_) | What::Distance(_) => "m",
             What::Velocity(_) => "m/s",
+            What::Acceleration(_) => "m/s^2",
+            What::AngularVelocity(_) => "rad/s",
+            What::AngularAcceleration(_) => "rad/s^2",
             What::Momentum => "kg m/s",
             What::MagneticMoment => "A m^2",
             What::ConstraintForce(_) | What::Contact(OfContact::Force, ..) => "N",
@@ -461,8 +498,8 @@ impl Reading {
             What::LiquidLevel(_) => "m",
             What::Temperature(_) => "K",
             What::Strain(_) | What::MuscleStretch(_) | What::Activation(_) => "1",
-            What::Angle(_) | What::Rotation if self.in_degrees => DEGREES,
-            What::Angle(_) | What::Rotation => "rad",
+            What::Angle(_) | What::Rotation(_) if self.in_degrees => DEGREES,
+            What::Angle(_) | What::Rotation(_) => "rad",
         }
     }
 
@@ -483,6 +520,11 @@ impl Reading {
         matches!(self.what, What::ConstraintForce(_) | What::ConstraintMoment(..))
     }
 
+    /// Whether it reads accelerations, which take one, too.
+    pub(super) fn is_of_accelerations(&self) -> bool {
+        matches!(self.what, What::Acceleration(_) | What::AngularAcceleration(_))
+    }
+
     /// Whether it follows from the places of nodes alone.
     pub(super) fn is_of_places(&self) -> bool {
         use What::*;
@@ -493,7 +535,7 @@ impl Reading {
                 | Distance(_)
                 | Angle(_)
                 | CentreOfMass
-                | Rotation
+                | Rotation(_)
                 | Strain(_)
                 | SpringLength(_)
                 | MuscleStretch(_)
@@ -507,7 +549,7 @@ impl Reading {
     }
 
     fn is_angle(&self) -> bool {
-        matches!(self.what, What::Angle(_) | What::Rotation)
+        matches!(self.what, What::Angle(_) | What::Rotation(_))
     }
 
     /// The components that are read for a body in `dimension` dimensions; none for a number.
@@ -523,13 +565,15 @@ impl Reading {
         let is_of_bodies = matches!(
             self.what,
             What::CentreOfMass
-                | What::Rotation
+                | What::Rotation(_)
+                | What::AngularVelocity(_)
+                | What::AngularAcceleration(_)
                 | What::Momentum
                 | What::Contact(_, By::Touch(_), _)
                 | What::FluidForce(..)
         );
         if let Some(name) = self.body.as_ref().filter(|_| !is_of_bodies) {
-            let help = "the centre of mass, the rotation, the momentum and what a touch or a fluid does are all that is read of a body: name its nodes instead";
+            let help = "the centre of mass, how it turns, the momentum and what a touch or a fluid does are all that is read of a body: name its nodes instead";
             return Err(InputError::new("body", format!("\"{name}\""), help));
         }
         // the components that are columns by default, and one more that must be requested
@@ -540,13 +584,16 @@ impl Reading {
             (What::Strain(_), 1) => (&[XX], None),
             (What::Strain(_), 2) => (&[XX, YY, ZZ, XY], None),
             (What::Strain(_), _) => (&[XX, YY, ZZ, XY, YZ, XZ], None),
-            (What::Position(_) | What::Displacement(_) | What::Velocity(_), _)
+            (What::Position(_) | What::Displacement(_), _)
+            | (What::Velocity(_) | What::Acceleration(_), _)
             | (What::ConstraintForce(_) | What::Contact(OfContact::Force, ..), _)
             | (What::CentreOfMass | What::Momentum | What::MagneticMoment, _)
             | (What::FluidForce(..) | What::DipoleForce(_) | What::DipolePosition(_), _) => {
                 (&[X, Y, Z][..dimension], Some(Norm))
             }
-            (What::ConstraintMoment(_, Lever { axis: None, .. }), 3) => (&[X, Y, Z], Some(Norm)),
+            (What::ConstraintMoment(_, Lever { axis: None, .. }), 3)
+            | (What::Rotation(_) | What::AngularVelocity(_), 3)
+            | (What::AngularAcceleration(_), 3) => (&[X, Y, Z], Some(Norm)),
             _ => (&[], None),
         };
         let Some(one) = self.component else { return Ok(all.to_vec()) };

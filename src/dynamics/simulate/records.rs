@@ -1,5 +1,6 @@
 //! What follows from a state (u, v, energies, ...) of the run: energies, samples, projected velocities.
 
+use std::mem::take;
 use std::sync::Arc;
 
 use super::angles::Angles;
@@ -32,22 +33,28 @@ pub(super) fn of_state(phase: usize, system: &System, time: f64, state: &[f64]) 
         energy: Energy { dissipated, supplied, ..Energy::default() },
         constraint_drift: 0.0,
         sensors: Vec::new(),
+        accelerations: Vec::new(),
         commanded: Commanded::default(),
     }
 }
 
-/// The sample of `state` = (u, v, energies, ...) at `time`, without readings of sensors.
+/// The sample of `state` = (u, v, energies, ...) at `time`, without readings of sensors. Accelerations are for
+/// sensors that read them, and kept until then.
 pub(super) fn sample(
     phase: usize,
     system: &mut System,
     time: f64,
     state: &[f64],
+    accelerates: bool,
 ) -> Result<Sample, Failure> {
     let State { u, v, others, .. } = State::of(state, system.dofs());
     let multipliers = system.multipliers(time, u, v, internal(system, others))?.to_vec();
+    let accelerations =
+        if accelerates { system.computed_accelerations().to_vec() } else { Vec::new() };
     let energy = energy(system, time, state);
     let constraint_drift = system.drift(time, u);
-    Ok(Sample { multipliers, energy, constraint_drift, ..of_state(phase, system, time, state) })
+    let sample = of_state(phase, system, time, state);
+    Ok(Sample { multipliers, energy, constraint_drift, accelerations, ..sample })
 }
 
 /// Adds to a sample what `sensors` read, and the phase in force if commands have changed it.
@@ -62,10 +69,11 @@ pub(super) fn complete(
     if sensors.is_empty() {
         return;
     }
+    let accelerations = &take(&mut sample.accelerations)[..];
     let Sample { time, ref u, ref v, energy, .. } = *sample;
     let Energy { dissipated, supplied, .. } = energy;
     let state = State { u, v, dissipated, supplied, others: &sample.amounts };
-    let view = View { scene, phase, gauges, time, state };
+    let view = View { scene, phase, gauges, time, state, accelerations };
     let readings = sensors.read(&view, sample, angles);
     sample.sensors = readings;
 }

@@ -120,7 +120,7 @@ impl Run {
         }
         let mut state = [u, &v, &[0.0; ENERGIES], &internal].concat();
         begin_to_move(settings, phase, &mut system, &mut state);
-        let mut first = records::sample(0, &mut system, 0.0, &state)
+        let mut first = records::sample(0, &mut system, 0.0, &state, sensors.need_accelerations())
             .map_err(|failure| scene.bad_start(failure))?;
         if !first.energy.balance().is_finite() {
             let reason = "the energies are beyond the range of double precision";
@@ -437,7 +437,7 @@ impl Run {
         let Self { scene, phase, gauges, .. } = self;
         let view = |u| {
             let state = State { u, v, dissipated: 0.0, supplied: 0.0, others: &[] };
-            View { scene, phase, gauges, time: at.time, state }
+            View { scene, phase, gauges, time: at.time, state, accelerations: &[] }
         };
         let sample = self.trajectory.last();
         self.sensors.changes([(&view(u), sample), (&view(&moved), sample)])
@@ -463,7 +463,9 @@ impl Run {
         let step = work.stepper.counts().last_step;
         let mut system = self.phase_run.rest(work);
         if self.time > self.trajectory.last().time {
-            let last = records::sample(self.number, &mut system, self.time, &self.state);
+            let accelerates = self.sensors.need_accelerations();
+            let last =
+                records::sample(self.number, &mut system, self.time, &self.state, accelerates);
             if let Ok(mut last) = last {
                 self.complete(&mut last);
                 self.trajectory.push(last);
@@ -487,7 +489,7 @@ impl Run {
         }
         let Self { scene, phase, gauges, time, state, sensors, angles, .. } = self;
         let state = State::of(state, scene.body().dofs());
-        let view = View { scene, phase, gauges, time: *time, state };
+        let view = View { scene, phase, gauges, time: *time, state, accelerations: &[] };
         sensors.follow(&view, angles);
     }
 

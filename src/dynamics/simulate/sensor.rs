@@ -43,8 +43,10 @@ pub(super) struct Sensors {
     angles: Vec<Angle>,
     /// Those that follow from the places of nodes: numbers among `reads`, and their columns.
     of_places: Vec<(usize, Range<usize>)>,
-    /// Whether one reads forces of constraints or energies of a sample, for which all forces are evaluated.
+    /// Whether one reads forces of constraints, accelerations or energies of a sample, for which all forces are evaluated.
     need_forces: bool,
+    /// Whether one reads accelerations.
+    need_accelerations: bool,
 }
 
 /// An angle that is continuous over whole turns.
@@ -91,7 +93,8 @@ impl Sensors {
         };
         let components = reading.components(scene.body().dimension())?;
         let gauge = reading.gauge(scene)?;
-        self.need_forces |= reading.is_of_constraints();
+        self.need_accelerations |= reading.is_of_accelerations();
+        self.need_forces |= reading.is_of_constraints() || reading.is_of_accelerations();
         let unit = reading.unit();
         if reading.turns(scene.body().dimension()) {
             let (gauge, full_turn) = (reading.angle_gauge(scene)?, reading.full_turn());
@@ -121,6 +124,10 @@ impl Sensors {
 
     pub(super) fn need_forces(&self) -> bool {
         self.need_forces
+    }
+
+    pub(super) fn need_accelerations(&self) -> bool {
+        self.need_accelerations
     }
 
     /// Their readings, with angles continued from the last ones, `angles`.

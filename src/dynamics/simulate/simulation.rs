@@ -106,7 +106,14 @@ impl Simulation {
     pub fn view(&self) -> View<'_> {
         let Self { run, time, now, .. } = self;
         let state = State::of(now, run.scene.body().dofs());
-        View { scene: &run.scene, phase: &run.phase, gauges: &run.gauges, time: *time, state }
+        View {
+            scene: &run.scene,
+            phase: &run.phase,
+            gauges: &run.gauges,
+            time: *time,
+            state,
+            accelerations: &[],
+        }
     }
 
     /// The energies at the present time; computing them costs about an evaluation of the forces.

@@ -172,7 +172,9 @@ impl Run {
         while let Some(t) = self.phase_run.interval.next_sample().filter(|&t| t <= time) {
             self.phase_run.interval.taken += 1;
             stepper.interpolate(t.min(reached), sample)?;
-            let taken = records::sample(self.number, stepper.system_mut(), t, sample);
+            let accelerates = self.sensors.need_accelerations();
+            let system = stepper.system_mut();
+            let taken = records::sample(self.number, system, t, sample, accelerates);
             let mut taken = taken.map_err(Failure::into_error)?;
             self.complete(&mut taken);
             self.trajectory.push(taken);
@@ -235,8 +237,9 @@ impl Run {
                 _ => self.time + (time - self.time) * k as f64 / PARTS as f64,
             };
             stepper.interpolate(t, state)?;
+            let accelerates = self.sensors.need_accelerations();
             let mut seen = match self.sensors.need_forces() {
-                true => records::sample(self.number, stepper.system_mut(), t, state)
+                true => records::sample(self.number, stepper.system_mut(), t, state, accelerates)
                     .map_err(Failure::into_error)?,
                 false => records::of_state(self.number, stepper.system(), t, state),
             };

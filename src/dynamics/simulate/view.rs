@@ -20,6 +20,8 @@ pub struct View<'a> {
     pub(super) gauges: &'a Gauges,
     pub(super) time: f64,
     pub(super) state: State<'a>,
+    /// Accelerations (m/s^2) where a sensor reads them, or else none.
+    pub(super) accelerations: &'a [f64],
 }
 
 /// The forces by which chambers, springs and muscles are measured, in the order of the scene.

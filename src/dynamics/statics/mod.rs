@@ -269,6 +269,7 @@ impl Scene {
                 energy,
                 constraint_drift: point.drift,
                 sensors: if is_curve { vec![point.fraction] } else { Vec::new() },
+                accelerations: Vec::new(),
                 commanded: Commanded(Some(Arc::new(commanded))),
             })
         };

@@ -335,6 +335,11 @@ impl System {
         Ok(&self.at.multipliers)
     }
 
+    /// The accelerations (m/s^2) where [`multipliers`](Self::multipliers) were computed last.
+    pub(crate) fn computed_accelerations(&self) -> &[f64] {
+        &self.at.acceleration
+    }
+
     /// The velocities nearest to `v`, in the sense of kinetic energy, that the constraints allow
     /// at time `t` and the displacements `u`.
     pub(crate) fn project(&mut self, t: f64, u: &[f64], v: &mut [f64]) {

@@ -1,6 +1,7 @@
 //! Masses of nodes, and means over them: the centre of mass, the rotation.
 
 use super::assembled::Body;
+use crate::base::rotation::plane_rotation;
 
 impl Body {
     /// Total mass (kg).
@@ -36,34 +37,28 @@ impl Body {
         if self.dimension() != 2 {
             return None;
         }
-        Some(self.rotation_by(&self.arms(), u))
+        let nodes = self.mesh().positions().chunks_exact(2).zip(u.chunks_exact(2));
+        let places = nodes.map(|(x, u)| [x[0] + u[0], x[1] + u[1]]);
+        Some(plane_rotation(self.arms().into_iter().map(|[a, b, _]| [a, b]).zip(places)))
     }
 
-    /// The mass of each node of a body in the plane, times its natural position relative to the centre of
-    /// mass (kg m). They add up to 0.
-    pub(crate) fn arms(&self) -> Vec<[f64; 2]> {
-        let (positions, centre) = (self.mesh().positions(), &self.masses.centre);
+    /// The mass of each node, times its natural position relative to the centre of mass (kg m); 0 beyond the dimension. They
+    /// add up to 0.
+    pub(crate) fn arms(&self) -> Vec<[f64; 3]> {
+        let (positions, centre, d) =
+            (self.mesh().positions(), &self.masses.centre, self.dimension());
+        let filled = |arm: &[f64]| std::array::from_fn(|i| arm.get(i).copied().unwrap_or(0.0));
         if self.substances().any(|substance| substance.mass.is_some()) {
             // all mass is at the nodes of a frame, where row sums may be below 0: the whole matrix counts
-            let from_centre = self.mesh().field(|x| vec![x[0] - centre[0], x[1] - centre[1]]);
+            let from_centre =
+                self.mesh().field(|x| x.iter().zip(centre).map(|(x, c)| x - c).collect());
             let mut arms = vec![0.0; from_centre.len()];
-            self.inertia.add_product(2, 1.0, &from_centre, &mut arms);
-            return arms.as_chunks::<2>().0.to_vec();
+            self.inertia.add_product(d, 1.0, &from_centre, &mut arms);
+            return arms.chunks_exact(d).map(filled).collect();
         }
-        let arm = |(mass, x): (&f64, &[f64])| [0, 1].map(|i| mass * (x[i] - centre[i]));
-        self.masses.of_nodes.iter().zip(positions.chunks_exact(2)).map(arm).collect()
-    }
-
-    /// The [`rotation`](Self::rotation) of a body in the plane, by its `arms`.
-    pub(crate) fn rotation_by(&self, arms: &[[f64; 2]], u: &[f64]) -> f64 {
-        let nodes = self.mesh().positions().chunks_exact(2).zip(u.chunks_exact(2));
-        let (mut along, mut across) = (0.0, 0.0);
-        for ([a, b], (x, u)) in arms.iter().zip(nodes) {
-            // relative to any point: the arms add up to 0
-            let [x, y] = [x[0] + u[0], x[1] + u[1]];
-            along += a * x + b * y;
-            across += a * y - b * x;
-        }
-        across.atan2(along)
+        let arm = |(mass, x): (&f64, &[f64])| {
+            filled(&x.iter().zip(centre).map(|(x, c)| mass * (x - c)).collect::<Vec<_>>())
+        };
+        self.masses.of_nodes.iter().zip(positions.chunks_exact(d)).map(arm).collect()
     }
 }

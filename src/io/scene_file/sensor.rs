@@ -5,7 +5,7 @@ use super::selection::selection;
 use super::table::Table;
 use super::value::{Value, number_of};
 use crate::dynamics::error::Error;
-use crate::dynamics::simulate::{Component, Reading, Sampling};
+use crate::dynamics::simulate::{Component, Reading, Sampling, Spot};
 use crate::elements::mesh::{Mesh, Selection};
 use crate::scene::timeline::Scene;
 
@@ -23,13 +23,22 @@ pub(super) const SENSOR: TableKeys = TableKeys::new(
     "[[sensor]]\nname = \"bottom\"\nkind = \"constraint-force\"\nnodes = \"all\"\ncomponent = \"y\"",
 )
 .kinds(&[
-    Kind { word: "position", about: "where nodes are (m)", keys: &[NODES] },
+    Kind { word: "position", about: "where nodes, a point of a body or a marker are (m)", keys: &SPOT },
     Kind {
         word: "displacement",
-        about: "how far nodes are from their undeformed positions (m)",
-        keys: &[NODES],
+        about: "how far nodes, a point of a body or a marker are from where they are in the undeformed shape (m)",
+        keys: &SPOT,
     },
-    Kind { word: "velocity", about: "how fast nodes move (m/s)", keys: &[NODES] },
+    Kind {
+        word: "velocity",
+        about: "how fast nodes, a point of a body or a marker move (m/s)",
+        keys: &SPOT,
+    },
+    Kind {
+        word: "acceleration",
+        about: "how the velocity of nodes, of a point of a body or of a marker changes (m/s^2)",
+        keys: &SPOT,
+    },
     Kind {
         word: "constraint-force",
         about: "the force of what holds or moves nodes, their reaction (N)",
@@ -185,10 +194,31 @@ pub(super) const SENSOR: TableKeys = TableKeys::new(
     Kind { word: "momentum", about: "the momentum (kg m/s)", keys: &[BODY] },
     Kind {
         word: "rotation",
-        about: "the angle by which a body in the plane has turned as a whole, counter-clockwise; it goes on over whole turns",
-        keys: &[UNIT, BODY],
+        about: "the rotation of a body, or of nodes, as a whole, the one nearest to its motion: in the plane an angle, counter-clockwise, \
+                which goes on over whole turns; in space a vector along the axis, of a length of at most half a turn",
+        keys: &[UNIT, TURNED, BODY],
+    },
+    Kind {
+        word: "angular-velocity",
+        about: "the rate of that rotation (rad/s): in the plane counter-clockwise, in space a vector",
+        keys: &[TURNED, BODY],
+    },
+    Kind {
+        word: "angular-acceleration",
+        about: "the rate of that angular velocity (rad/s^2)",
+        keys: &[TURNED, BODY],
     },
 ]);
+
+const MARKER: TableKeys = TableKeys::new(
+    "marker",
+    "A point beside the body, as on a post or a plate: it moves with nodes as if both were one rigid body, by the rigid motion nearest to theirs.",
+    &[
+        Key::new("nodes", Holds::Nodes, "the nodes that it moves with").required(),
+        Key::vector("at", "where it is in the undeformed shape", "m"),
+    ],
+    "[[sensor]]\nname = \"lamp\"\nkind = \"position\"\nmarker = { nodes = \"top\", at = [0.05, 0.15] }",
+);
 
 const OBSTACLE: Key =
     Key::new("obstacle", Holds::Text, "the name of the obstacle").default("`touch`");
@@ -201,6 +231,25 @@ const TOUCHED: Key = Key::new("nodes", Holds::Nodes, "the nodes on which it acts
 const TOUCHED_BODY: Key =
     Key::new("body", Holds::Text, "the body on which a `touch` acts").default("`nodes`");
 const NODES: Key = Key::new("nodes", Holds::Nodes, "the nodes").required();
+const SPOT: [Key; 3] = [
+    Key::new("nodes", Holds::Nodes, "the nodes").default("`inside` or `marker`"),
+    Key::new(
+        "inside",
+        Holds::Vector,
+        "the undeformed position of a point of a body, whatever nodes are near",
+    )
+    .in_unit("m")
+    .default("`nodes` or `marker`"),
+    Key::new(
+        "marker",
+        Holds::Table(&MARKER),
+        "a point beside the body that moves with nodes of it",
+    )
+    .default("`nodes` or `inside`"),
+];
+const TURNED: Key =
+    Key::new("nodes", Holds::Nodes, "the nodes that turn, all of which count alike")
+        .default("the body");
 const PLACES: Key = Key::new("nodes", Holds::Nodes, "the nodes").default("`point`");
 const POINT: Key =
     Key::new("point", Holds::Vector, "the undeformed position of a point of the body")
@@ -224,9 +273,10 @@ pub(super) fn sensor(value: &Value, scene: &Scene) -> Result<(String, Reading), 
     let named = |key: &str| table.required(key, Value::string);
     let ends = |key: &str| table.required(key, |value| line(value, mesh));
     let reading = match table.kind() {
-        "position" => Reading::position(nodes()?),
-        "displacement" => Reading::displacement(nodes()?),
-        "velocity" => Reading::velocity(nodes()?),
+        "position" => Reading::position(spot(&table, mesh)?),
+        "displacement" => Reading::displacement(spot(&table, mesh)?),
+        "velocity" => Reading::velocity(spot(&table, mesh)?),
+        "acceleration" => Reading::acceleration(spot(&table, mesh)?),
         "constraint-force" => Reading::constraint_force(nodes()?),
         "constraint-moment" => {
             let vector = |value: &Value| value.vector(mesh.dimension());
@@ -253,8 +303,7 @@ pub(super) fn sensor(value: &Value, scene: &Scene) -> Result<(String, Reading), 
         "dipole-force" => Reading::dipole_force(named("dipole")?),
         "dipole-position" => Reading::dipole_position(named("dipole")?),
         "fluid-force" => {
-            let force = of_body(&table, Reading::fluid_force(named("fluid")?))?;
-            table.added(force, "nodes", |value| selection(value, mesh), Reading::on)?
+            of_nodes(&table, mesh, of_body(&table, Reading::fluid_force(named("fluid")?))?)?
         }
         "pressure" => Reading::pressure(named("chamber")?),
         "absolute-pressure" => Reading::absolute_pressure(named("chamber")?),
@@ -274,7 +323,9 @@ pub(super) fn sensor(value: &Value, scene: &Scene) -> Result<(String, Reading), 
         "angle" => in_unit(&table, Reading::angle(ends("from")?, ends("to")?))?,
         "centre-of-mass" => of_body(&table, Reading::centre_of_mass())?,
         "momentum" => of_body(&table, Reading::momentum())?,
-        _ => of_body(&table, in_unit(&table, Reading::rotation())?)?,
+        "angular-velocity" => turning(&table, mesh, Reading::angular_velocity())?,
+        "angular-acceleration" => turning(&table, mesh, Reading::angular_acceleration())?,
+        _ => turning(&table, mesh, in_unit(&table, Reading::rotation())?)?,
     };
     let component = table.optional("component", |value| value.word(&Component::WORDS))?;
     let reading = match component {
@@ -284,6 +335,34 @@ pub(super) fn sensor(value: &Value, scene: &Scene) -> Result<(String, Reading), 
     let alone = Sampling::phase_ends().read(name, reading.clone());
     alone.check(scene).map_err(|error| table.blame(error))?;
     Ok((name.into(), reading))
+}
+
+/// A place whose motion is read.
+fn spot(table: &Table, mesh: &Mesh) -> Result<Spot, Error> {
+    let vector = |value: &Value| value.vector(mesh.dimension());
+    let marker = |value: &Value| {
+        let marker = value.table(&MARKER)?;
+        let nodes = marker.required("nodes", |value| selection(value, mesh))?;
+        Ok(Spot::marker(nodes, marker.required("at", vector)?))
+    };
+    let nodes = table.optional("nodes", |value| selection(value, mesh))?.map(Spot::from);
+    let inside = table.optional("inside", vector)?.map(Spot::inside);
+    let mut given = [nodes, inside, table.optional("marker", marker)?].into_iter().flatten();
+    match (given.next(), given.next()) {
+        (Some(spot), None) => Ok(spot),
+        (None, _) => Err(table.missing("nodes", "expected either nodes, inside or marker")),
+        _ => Err(table.error("expected either nodes, inside or marker; found several of them")),
+    }
+}
+
+/// How the nodes or the body of the table turn.
+fn turning(table: &Table, mesh: &Mesh, reading: Reading) -> Result<Reading, Error> {
+    of_nodes(table, mesh, of_body(table, reading)?)
+}
+
+/// What is read on the nodes of the table, if there are any.
+fn of_nodes(table: &Table, mesh: &Mesh, reading: Reading) -> Result<Reading, Error> {
+    table.added(reading, "nodes", |value| selection(value, mesh), Reading::on)
 }
 
 /// What an obstacle, or bodies that touch, do.
