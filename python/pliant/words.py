@@ -1900,8 +1900,9 @@ def obstacle_box(
     adhesion: bool | None = None,
     velocity: Vector | None = None,
     path: dict | None = None,
+    turn: float | Sequence[float] | None = None,
 ) -> dict:
-    r"""Obstacle of the kind "box": a box along the axes.
+    r"""Obstacle of the kind "box": a box along the axes, unless it is turned.
 
     Parameters
     ----------
@@ -1931,6 +1932,9 @@ def obstacle_box(
         the velocity of the obstacle (m/s). Default: 0.
     path
         the path of the obstacle, in place of a velocity. Default: none.
+    turn
+        the angle by which the box is turned about its middle (rad). Default: 0. One number in the plane,
+        counter-clockwise; in space three, the axis times the angle.
     """
     return _table(
         kind="box",
@@ -1947,6 +1951,7 @@ def obstacle_box(
         adhesion=adhesion,
         velocity=velocity,
         path=path,
+        turn=turn,
     )
 
 
@@ -2130,8 +2135,9 @@ def obstacle_parts_box(
     *,
     min: Vector,
     max: Vector,
+    turn: float | Sequence[float] | None = None,
 ) -> dict:
-    r"""Obstacle.parts of the kind "box": a box along the axes.
+    r"""Obstacle.parts of the kind "box": a box along the axes, unless it is turned.
 
     Parameters
     ----------
@@ -2139,11 +2145,15 @@ def obstacle_parts_box(
         the lower corner (m). Required.
     max
         the upper corner (m). Required.
+    turn
+        the angle by which the box is turned about its middle (rad). Default: 0. One number in the plane,
+        counter-clockwise; in space three, the axis times the angle.
     """
     return _table(
         kind="box",
         min=min,
         max=max,
+        turn=turn,
     )
 
 
@@ -2222,6 +2232,7 @@ def phase(
     *,
     until: float,
     name: str | None = None,
+    end: dict | None = None,
     gravity: Vector | None = None,
     hold: dict | Sequence[dict] | None = None,
     move: dict | Sequence[dict] | None = None,
@@ -2249,6 +2260,8 @@ def phase(
         the end of the phase (s). Required.
     name
         the name of the phase. Default: phase 1, ...
+    end
+        a sensor that ends the phase before. Default: at `until` alone.
     gravity
         the acceleration of gravity in this phase (m/s^2). Default: that of the file.
     hold
@@ -2288,6 +2301,7 @@ def phase(
     return _table(
         until=until,
         name=name,
+        end=end,
         gravity=gravity,
         hold=hold,
         move=move,
@@ -2305,6 +2319,32 @@ def phase(
         magnetic_field=magnetic_field,
         contact=contact,
         project_velocity=project_velocity,
+    )
+
+
+def end(
+    *,
+    sensor: str,
+    above: float | None = None,
+    below: float | None = None,
+) -> dict:
+    r"""A sensor that ends the phase as its reading passes a level, at `until` at the latest. One that begins beyond the
+    level does not count before it has been on the other side. The next phase begins at once, and ends at its own
+    `until`; the last phase has no such end.
+
+    Parameters
+    ----------
+    sensor
+        the name of the sensor, of one with several columns that of the column: `tip.y`. Required.
+    above
+        the level above which it rises, in the unit of the sensor. Default: none.
+    below
+        the level below which it falls. Default: none.
+    """
+    return _table(
+        sensor=sensor,
+        above=above,
+        below=below,
     )
 
 
@@ -2836,78 +2876,137 @@ def magnetic_field(
 def sensor_position(
     *,
     name: str,
-    nodes: Nodes,
     component: Literal["x", "y", "z", "norm", "xx", "yy", "zz", "xy", "yz", "xz", "von-mises"] | None = None,
+    nodes: Nodes | None = None,
+    inside: Vector | None = None,
+    marker: dict | None = None,
 ) -> dict:
-    r"""Sensor of the kind "position": where nodes are (m).
+    r"""Sensor of the kind "position": where nodes, a point of a body or a marker are (m).
 
     Parameters
     ----------
     name
         the name of the sensor. Required.
-    nodes
-        the nodes. Required.
     component
         one component alone. Default: all, each a column. Vectors have `x`, `y`, `z` and their length `norm`; tensors
         `xx` and so on; stress has `von-mises` besides.
+    nodes
+        the nodes. Default: `inside` or `marker`.
+    inside
+        the undeformed position of a point of a body, whatever nodes are near (m). Default: `nodes` or `marker`.
+    marker
+        a point beside the body that moves with nodes of it. Default: `nodes` or `inside`.
     """
     return _table(
         kind="position",
         name=name,
-        nodes=nodes,
         component=component,
+        nodes=nodes,
+        inside=inside,
+        marker=marker,
     )
 
 
 def sensor_displacement(
     *,
     name: str,
-    nodes: Nodes,
     component: Literal["x", "y", "z", "norm", "xx", "yy", "zz", "xy", "yz", "xz", "von-mises"] | None = None,
+    nodes: Nodes | None = None,
+    inside: Vector | None = None,
+    marker: dict | None = None,
 ) -> dict:
-    r"""Sensor of the kind "displacement": how far nodes are from their undeformed positions (m).
+    r"""Sensor of the kind "displacement": how far nodes, a point of a body or a marker are from where they are in the
+    undeformed shape (m).
 
     Parameters
     ----------
     name
         the name of the sensor. Required.
-    nodes
-        the nodes. Required.
     component
         one component alone. Default: all, each a column. Vectors have `x`, `y`, `z` and their length `norm`; tensors
         `xx` and so on; stress has `von-mises` besides.
+    nodes
+        the nodes. Default: `inside` or `marker`.
+    inside
+        the undeformed position of a point of a body, whatever nodes are near (m). Default: `nodes` or `marker`.
+    marker
+        a point beside the body that moves with nodes of it. Default: `nodes` or `inside`.
     """
     return _table(
         kind="displacement",
         name=name,
-        nodes=nodes,
         component=component,
+        nodes=nodes,
+        inside=inside,
+        marker=marker,
     )
 
 
 def sensor_velocity(
     *,
     name: str,
-    nodes: Nodes,
     component: Literal["x", "y", "z", "norm", "xx", "yy", "zz", "xy", "yz", "xz", "von-mises"] | None = None,
+    nodes: Nodes | None = None,
+    inside: Vector | None = None,
+    marker: dict | None = None,
 ) -> dict:
-    r"""Sensor of the kind "velocity": how fast nodes move (m/s).
+    r"""Sensor of the kind "velocity": how fast nodes, a point of a body or a marker move (m/s).
 
     Parameters
     ----------
     name
         the name of the sensor. Required.
-    nodes
-        the nodes. Required.
     component
         one component alone. Default: all, each a column. Vectors have `x`, `y`, `z` and their length `norm`; tensors
         `xx` and so on; stress has `von-mises` besides.
+    nodes
+        the nodes. Default: `inside` or `marker`.
+    inside
+        the undeformed position of a point of a body, whatever nodes are near (m). Default: `nodes` or `marker`.
+    marker
+        a point beside the body that moves with nodes of it. Default: `nodes` or `inside`.
     """
     return _table(
         kind="velocity",
         name=name,
-        nodes=nodes,
         component=component,
+        nodes=nodes,
+        inside=inside,
+        marker=marker,
+    )
+
+
+def sensor_acceleration(
+    *,
+    name: str,
+    component: Literal["x", "y", "z", "norm", "xx", "yy", "zz", "xy", "yz", "xz", "von-mises"] | None = None,
+    nodes: Nodes | None = None,
+    inside: Vector | None = None,
+    marker: dict | None = None,
+) -> dict:
+    r"""Sensor of the kind "acceleration": how the velocity of nodes, of a point of a body or of a marker changes (m/s^2).
+
+    Parameters
+    ----------
+    name
+        the name of the sensor. Required.
+    component
+        one component alone. Default: all, each a column. Vectors have `x`, `y`, `z` and their length `norm`; tensors
+        `xx` and so on; stress has `von-mises` besides.
+    nodes
+        the nodes. Default: `inside` or `marker`.
+    inside
+        the undeformed position of a point of a body, whatever nodes are near (m). Default: `nodes` or `marker`.
+    marker
+        a point beside the body that moves with nodes of it. Default: `nodes` or `inside`.
+    """
+    return _table(
+        kind="acceleration",
+        name=name,
+        component=component,
+        nodes=nodes,
+        inside=inside,
+        marker=marker,
     )
 
 
@@ -3833,10 +3932,12 @@ def sensor_rotation(
     name: str,
     component: Literal["x", "y", "z", "norm", "xx", "yy", "zz", "xy", "yz", "xz", "von-mises"] | None = None,
     unit: Literal["rad", "deg"] | None = None,
+    nodes: Nodes | None = None,
     body: str | None = None,
 ) -> dict:
-    r"""Sensor of the kind "rotation": the angle by which a body in the plane has turned as a whole, counter-clockwise; it
-    goes on over whole turns.
+    r"""Sensor of the kind "rotation": the rotation of a body, or of nodes, as a whole, the one nearest to its motion: in
+    the plane an angle, counter-clockwise, which goes on over whole turns; in space a vector along the axis, of a
+    length of at most half a turn.
 
     Parameters
     ----------
@@ -3847,6 +3948,8 @@ def sensor_rotation(
         `xx` and so on; stress has `von-mises` besides.
     unit
         the unit. Default: rad.
+    nodes
+        the nodes that turn, all of which count alike. Default: the body.
     body
         the name of one of several bodies. Default: all together.
     """
@@ -3855,7 +3958,90 @@ def sensor_rotation(
         name=name,
         component=component,
         unit=unit,
+        nodes=nodes,
         body=body,
+    )
+
+
+def sensor_angular_velocity(
+    *,
+    name: str,
+    component: Literal["x", "y", "z", "norm", "xx", "yy", "zz", "xy", "yz", "xz", "von-mises"] | None = None,
+    nodes: Nodes | None = None,
+    body: str | None = None,
+) -> dict:
+    r"""Sensor of the kind "angular-velocity": the rate of that rotation (rad/s): in the plane counter-clockwise, in space
+    a vector.
+
+    Parameters
+    ----------
+    name
+        the name of the sensor. Required.
+    component
+        one component alone. Default: all, each a column. Vectors have `x`, `y`, `z` and their length `norm`; tensors
+        `xx` and so on; stress has `von-mises` besides.
+    nodes
+        the nodes that turn, all of which count alike. Default: the body.
+    body
+        the name of one of several bodies. Default: all together.
+    """
+    return _table(
+        kind="angular-velocity",
+        name=name,
+        component=component,
+        nodes=nodes,
+        body=body,
+    )
+
+
+def sensor_angular_acceleration(
+    *,
+    name: str,
+    component: Literal["x", "y", "z", "norm", "xx", "yy", "zz", "xy", "yz", "xz", "von-mises"] | None = None,
+    nodes: Nodes | None = None,
+    body: str | None = None,
+) -> dict:
+    r"""Sensor of the kind "angular-acceleration": the rate of that angular velocity (rad/s^2).
+
+    Parameters
+    ----------
+    name
+        the name of the sensor. Required.
+    component
+        one component alone. Default: all, each a column. Vectors have `x`, `y`, `z` and their length `norm`; tensors
+        `xx` and so on; stress has `von-mises` besides.
+    nodes
+        the nodes that turn, all of which count alike. Default: the body.
+    body
+        the name of one of several bodies. Default: all together.
+    """
+    return _table(
+        kind="angular-acceleration",
+        name=name,
+        component=component,
+        nodes=nodes,
+        body=body,
+    )
+
+
+def marker(
+    *,
+    nodes: Nodes,
+    at: Vector,
+) -> dict:
+    r"""A point beside the body, as on a post or a plate: it moves with nodes as if both were one rigid body, by the rigid
+    motion nearest to theirs.
+
+    Parameters
+    ----------
+    nodes
+        the nodes that it moves with. Required.
+    at
+        where it is in the undeformed shape (m). Required.
+    """
+    return _table(
+        nodes=nodes,
+        at=at,
     )
 
 
@@ -4041,6 +4227,7 @@ __all__ = [
     "chamber",
     "dipole",
     "drive",
+    "end",
     "ends",
     "fibres",
     "flow",
@@ -4067,6 +4254,7 @@ __all__ = [
     "load",
     "magnet",
     "magnetic_field",
+    "marker",
     "material",
     "mesh_bar",
     "mesh_cuboid",
@@ -4100,8 +4288,11 @@ __all__ = [
     "region",
     "rotate",
     "sensor_absolute_pressure",
+    "sensor_acceleration",
     "sensor_activation",
     "sensor_angle",
+    "sensor_angular_acceleration",
+    "sensor_angular_velocity",
     "sensor_centre_of_mass",
     "sensor_constraint_force",
     "sensor_constraint_moment",

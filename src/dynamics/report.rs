@@ -122,6 +122,8 @@ pub struct PhaseReport {
     pub name: String,
     /// Time reached (s).
     pub end: f64,
+    /// The sensor that [ended](crate::Phase::ends_above) it before its time, if one did.
+    pub ended_by: Option<String>,
     /// Unknowns of the integrator.
     pub states: usize,
     /// Wall-clock time (s).
@@ -302,7 +304,9 @@ impl fmt::Display for Report {
                  for {tangents} Newton matrices; `Force::add_tangents` saves them"
             )?;
         }
-        for PhaseReport { name, reason, counts, slips, .. } in &self.phases {
+        for PhaseReport { name, reason, counts, slips, ended_by, end, .. } in &self.phases {
+            let ended_by =
+                ended_by.as_ref().map(|by| format!("ended by sensor \"{by}\" at t = {end} s"));
             let events = match counts.contact_events {
                 0 => None,
                 1 => Some("1 contact event located".to_owned()),
@@ -310,7 +314,8 @@ impl fmt::Display for Report {
             };
             let slips = slips_in_words(slips);
             let remarks = reason.as_deref().into_iter().chain(events.as_deref());
-            let remarks: Vec<&str> = remarks.chain(slips.as_deref()).collect();
+            let remarks = remarks.chain(slips.as_deref()).chain(ended_by.as_deref());
+            let remarks: Vec<&str> = remarks.collect();
             if !remarks.is_empty() {
                 write!(f, "\nphase \"{name}\": {}", remarks.join("; "))?;
             }

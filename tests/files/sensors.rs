@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use pliant::simulate::{Component, Reading};
+use pliant::simulate::{Component, Reading, Spot};
 use pliant::{Error, SceneFile, Selection};
 
 const SCENE: &str = r#"
@@ -113,6 +113,21 @@ fn every_kind_reads_what_the_api_reads() -> Result<(), Error> {
         ),
         (r#"kind = "rotation", unit = "rad""#, Reading::rotation()),
         (r#"kind = "rotation", unit = "deg""#, Reading::rotation().in_degrees()),
+        (r#"kind = "rotation", nodes = "top""#, Reading::rotation().on("top")),
+        (r#"kind = "angular-velocity""#, Reading::angular_velocity()),
+        (
+            r#"kind = "angular-acceleration", nodes = "top""#,
+            Reading::angular_acceleration().on("top"),
+        ),
+        (r#"kind = "acceleration", nodes = [8, 9]"#, Reading::acceleration([8, 9])),
+        (
+            r#"kind = "velocity", inside = [0.01, 0.02]"#,
+            Reading::velocity(Spot::inside([0.01, 0.02])),
+        ),
+        (
+            r#"kind = "position", marker = { nodes = "top", at = [0.1, 0.2] }, component = "y""#,
+            Reading::position(Spot::marker("top", [0.1, 0.2])).component(Component::Y),
+        ),
         (
             r#"kind = "angle", from = [1, 3], to = ["left", 5]"#,
             Reading::angle([Selection::from([1]), [3].into()], ["left".into(), [5].into()]),
@@ -132,8 +147,10 @@ fn every_kind_reads_what_the_api_reads() -> Result<(), Error> {
     }
     let motion = file.scene.simulate(&file.settings, &file.output.sampling())?;
     // vectors of two and tensors of four components
-    let columns =
-        [2, 1, 2, 1, 2, 2, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 4, 4, 4, 1, 1, 1, 1, 1];
+    let columns = [
+        2, 1, 2, 1, 2, 2, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 4, 4, 4, 1, 1, 1, 1, 1, 1,
+        1, 2, 2, 1, 1,
+    ];
     assert_eq!(motion.sensors().len(), columns.iter().sum::<usize>());
     assert!(motion.last().sensors.iter().all(|number| number.is_finite()));
     assert!(parse("")?.output.sensors.is_empty());
@@ -158,6 +175,9 @@ fn mistakes_are_on_their_lines() {
         ("kind = \"spring-pull\"\nspring = \"tendn\"", 3, "did you mean \"tendon\"?"),
         ("kind = \"volume\"\nchamber = \"outside\"", 3, "the chambers \"inside\""),
         ("kind = \"gas-flow\"\norifice = \"leek\"", 3, "did you mean \"leak\"?"),
+        ("kind = \"velocity\"\nnodes = 1\ninside = [0.0, 0.0]", 0, "found several of them"),
+        ("kind = \"velocity\"\nmarker = { nodes = 1, at = [0.0, 0.0] }", 0, "in one place"),
+        ("kind = \"velocity\"\nmarker = { nodes = \"top\" }", 3, "sensor.marker.at: missing"),
         ("kind = \"stress\"", 0, "expected either nodes or point"),
         ("kind = \"stress\"\nnodes = 1\npoint = [0.0, 0.0]", 0, "found both"),
         ("kind = \"stress\"\npoint = [0.0, 0.2]", 3, "outside the body"),

@@ -45,6 +45,7 @@ mod muscles;
 mod observer;
 mod oscillating;
 mod overlaps;
+mod phase_ends;
 mod pipes;
 mod planes;
 mod poses;

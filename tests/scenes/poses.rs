@@ -55,22 +55,22 @@ fn a_rigid_bar_in_flight() {
             let drift: [f64; 2] = [0, 1].map(|i| THROWN[i] + GRAVITY[i] * t);
             let lamp: [f64; 2] = [0, 1].map(|i| middle[i] + out[i]);
             let expected = [
-                ("turn", angle(t), 2e-6),
-                ("side", angle(t), 2e-6),
-                ("spin", SPIN, 2e-6),
+                ("turn", angle(t), 1e-5),
+                ("side", angle(t), 1e-5),
+                ("spin", SPIN, 4e-5),
                 ("change", 0.0, 2e-4),
                 ("middle.x", middle[0], 2e-7),
                 ("middle.y", middle[1], 2e-7),
                 ("fall.x", GRAVITY[0], 2e-5),
                 ("fall.y", GRAVITY[1], 2e-5),
-                ("lamp.x", lamp[0], 4e-7),
-                ("lamp.y", lamp[1], 4e-7),
-                ("way.x", lamp[0] - centre[0] - arm[0], 4e-7),
-                ("way.y", lamp[1] - centre[1] - arm[1], 4e-7),
-                ("speed.x", drift[0] + along[0], 1e-5),
-                ("speed.y", drift[1] + along[1], 1e-5),
-                ("lamp'.x", GRAVITY[0] - SPIN * SPIN * out[0], 3e-4),
-                ("lamp'.y", GRAVITY[1] - SPIN * SPIN * out[1], 3e-4),
+                ("lamp.x", lamp[0], 1e-6),
+                ("lamp.y", lamp[1], 1e-6),
+                ("way.x", lamp[0] - centre[0] - arm[0], 1e-6),
+                ("way.y", lamp[1] - centre[1] - arm[1], 1e-6),
+                ("speed.x", drift[0] + along[0], 3e-5),
+                ("speed.y", drift[1] + along[1], 3e-5),
+                ("lamp'.x", GRAVITY[0] - SPIN * SPIN * out[0], 6e-4),
+                ("lamp'.y", GRAVITY[1] - SPIN * SPIN * out[1], 6e-4),
             ];
             for (name, expected, tolerance) in expected {
                 let apart = (series(&motion, name)[number] - expected).abs();
@@ -142,7 +142,7 @@ fn a_place_within_a_cell() {
     let fine = [[9, 3], [14, 4]].map(|cells| series(&sway(cells, Cells::Rectangles9), "by.y"));
     let sway = fine[0].iter().fold(0.0_f64, |most, u| most.max(u.abs()));
     assert!(sway > 5e-3, "{sway}");
-    close(&fine[0], &fine[1], 1e-3 * sway);
+    close(&fine[0], &fine[1], 4e-3 * sway);
 }
 
 /// What was read at three times in a row: the rate in between by differences, and the largest rate.
@@ -207,9 +207,9 @@ fn rates_are_those_of_what_is_read() {
         }
         let settings = Settings { method: Method::Rk, rtol: 1e-10, ..Settings::default() };
         let motion = scene.simulate(&settings, &sampling).unwrap();
-        let mut check = |of: String, rate: String| {
+        let check = |of: String, rate: String| {
             let (apart, most) = rates(&motion, &of, &rate);
-            assert!(apart < 1e-5 * most && most > 1e-3, "{of} and {rate}: {apart:e} of {most}");
+            assert!(apart < 3e-5 * most && most > 1e-3, "{of} and {rate}: {apart:e} of {most}");
         };
         for axis in axes {
             for (name, _) in spots() {

@@ -96,7 +96,7 @@ impl Run {
 
     /// Whether another phase follows at time `t` (s), at or before the end of the last step.
     pub(super) fn is_past_phase(&self, t: f64) -> bool {
-        self.time <= t && self.time >= self.phase.until && !self.is_last_phase()
+        self.time <= t && self.time >= self.phase_end() && !self.is_last_phase()
     }
 
     /// Enters the next phase if the present one is at its end.
@@ -350,13 +350,25 @@ impl Run {
     /// Finds the end of the interval that the present time lies in, and of those after it.
     pub(super) fn find_interval(&mut self) {
         self.find_stops();
-        self.phase_run.interval.stop = self.phase_run.stops.pop().unwrap_or(self.phase.until);
+        self.phase_run.interval.stop = self.phase_run.stops.pop().unwrap_or(self.phase_end());
+    }
+
+    /// When the phase in force ends (s), as far as that is known.
+    fn phase_end(&self) -> f64 {
+        self.phase_run.cut.unwrap_or(self.phase.until)
     }
 
     /// Finds the ends of the intervals that are left of the phase in force.
     fn find_stops(&mut self) {
-        let mut stops = self.scene.breaks_within(&self.phase, self.time);
-        stops.push(self.phase.until);
+        if self.phase_run.cut.is_some_and(|cut| self.time < cut) {
+            self.phase_run.cut = None;
+            self.phase_run.interval.times.uncut();
+        }
+        let mut stops = Vec::new();
+        if self.phase_run.cut.is_none() {
+            stops = self.scene.breaks_within(&self.phase, self.time);
+            stops.push(self.phase.until);
+        }
         stops.reverse();
         (self.phase_run.stops, self.phase_run.interval.inside) = (stops, None);
     }

@@ -18,6 +18,7 @@ mod gauge;
 #[cfg(any(feature = "scene-file", feature = "study"))]
 mod half_reading;
 mod interval;
+mod phase_end;
 mod phase_run;
 #[cfg(any(feature = "scene-file", feature = "study"))]
 mod plane_reading;
@@ -32,6 +33,7 @@ mod sampling;
 mod sensor;
 mod simulation;
 mod spot;
+mod spot_gauge;
 mod stalled;
 mod stepper;
 mod steps;

@@ -10,6 +10,7 @@ use super::stepper::Stepper;
 use crate::dynamics::report::{Counts, PhaseReport};
 use crate::dynamics::system::System;
 use crate::scene::settings::Method;
+use crate::scene::timeline::Phase;
 
 /// A phase that is being run.
 pub(super) struct PhaseRun {
@@ -20,6 +21,8 @@ pub(super) struct PhaseRun {
     pub(super) stops: Vec<f64>,
     /// How the last interval ended, once it has.
     pub(super) ended: Option<Ending>,
+    /// When (s) it has ended before its time.
+    pub(super) cut: Option<f64>,
     /// Changes of the forces by commands.
     pub(super) commands: usize,
     /// Time (s) of the last one.
@@ -116,6 +119,7 @@ impl PhaseRun {
             interval: Interval { times, taken: 0, stop: 0.0, inside: None, steps, events },
             stops: stops.into_iter().rev().collect(),
             ended: Some(Ending::Reached),
+            cut: None,
             commands: 0,
             commanded: f64::NAN,
             first_step: None,
@@ -138,8 +142,8 @@ impl PhaseRun {
         work.stepper.into_system()
     }
 
-    /// The report on the phase `name` up to time `end` (s), with the present integration `at`.
-    pub(super) fn report(&self, name: &str, end: f64, at: &Integration) -> PhaseReport {
+    /// The report on `phase` up to time `end` (s), with the present integration `at`.
+    pub(super) fn report(&self, phase: &Phase, end: f64, at: &Integration) -> PhaseReport {
         let (mut counts, mut states) = (self.counts.clone(), self.states);
         if let Integration::Running(work) = at {
             counts.add(work.stepper.counts());
@@ -152,8 +156,13 @@ impl PhaseRun {
             counts.notice = None;
         }
         PhaseReport {
-            name: name.to_owned(),
+            name: phase.name.clone(),
             end,
+            ended_by: phase
+                .ends
+                .as_ref()
+                .filter(|_| self.cut.is_some())
+                .map(|by| by.sensor.clone()),
             states,
             wall_seconds: self.clock.elapsed().as_secs_f64(),
             method: settings.method,

@@ -104,6 +104,7 @@ impl Run {
         forces: Forces,
     ) -> Result<Self, Error> {
         let phase = scene.first_phase()?;
+        scene.check_ends()?;
         let (u, v) = (scene.initial_displacements(), scene.initial_velocities()?);
         let start = PhaseStart { time: 0.0, u };
         let mut system = scene.system(&matrices, phase, forces, &start, settings.alpha)?;
@@ -190,6 +191,7 @@ impl Run {
 
     /// Takes a step; `false` at the end of the scene, where there is none.
     pub(super) fn advance(&mut self, observer: Observer) -> Result<bool, Error> {
+        self.sensors.ending(&self.phase)?;
         if self.settings.max_time.is_none() {
             return self.take_step(observer);
         }
@@ -428,7 +430,7 @@ impl Run {
     /// The same, with what is known already of the error of a reduced model: the rest takes factorizations with all unknowns.
     pub(super) fn settled_report(&self) -> Report {
         let mut report = self.trajectory.report.clone();
-        let phase = self.phase_run.report(&self.phase.name, self.time, &self.integration);
+        let phase = self.phase_run.report(&self.phase, self.time, &self.integration);
         report.wall_seconds = self.clock.elapsed().as_secs_f64();
         report.states = phase.states;
         report.phases.push(phase);

@@ -164,6 +164,20 @@ impl Sampling {
         Sensors::new(&self.sensors, scene).map(|sensors| sensors.quantities)
     }
 
+    /// Checks that phases of `scene` end as they say.
+    ///
+    /// # Errors
+    /// Sensors that are not read, and ends that a scene cannot have.
+    #[cfg(feature = "scene-file")]
+    pub(crate) fn check_ends(&self, scene: &Scene) -> Result<(), InputError> {
+        if scene.phases().iter().all(|phase| phase.ends.is_none()) {
+            return Ok(());
+        }
+        scene.check_ends()?;
+        let sensors = self.sensors(scene)?;
+        scene.phases().iter().try_for_each(|phase| sensors.ending(phase).map(|_| ()))
+    }
+
     /// Checks the times for `scene`, and that it has what the sensors read.
     ///
     /// # Errors
@@ -227,7 +241,7 @@ impl Sampling {
                 (Inner::Listed(times), count)
             }
         };
-        let asked = Schedule { inner, count, end };
+        let asked = Schedule { inner, count, end, cut: None };
         if self.also.is_empty() {
             return asked;
         }
@@ -241,7 +255,7 @@ impl Sampling {
         times.extend(new);
         times.sort_by(f64::total_cmp);
         let count = times.len();
-        Schedule { inner: Inner::Listed(times), count, end }
+        Schedule { inner: Inner::Listed(times), count, end, cut: None }
     }
 }
 
@@ -257,6 +271,8 @@ pub(super) struct Schedule {
     inner: Inner,
     count: usize,
     end: f64,
+    /// The number of those before an end that came sooner, and that end.
+    cut: Option<(usize, f64)>,
 }
 
 enum Inner {
@@ -269,10 +285,23 @@ enum Inner {
 }
 
 impl Schedule {
+    /// Ends it at a time (s) before the one that was planned, after `taken` of the times.
+    pub(super) fn cut(&mut self, taken: usize, end: f64) {
+        let is_before = |number: &usize| self.get(*number).is_some_and(|t| t < end);
+        let count = (taken..self.count).take_while(is_before).count();
+        self.cut = Some((taken + count, end));
+    }
+
+    /// Ends it as planned.
+    pub(super) fn uncut(&mut self) {
+        self.cut = None;
+    }
+
     /// One of the times, counted from 0.
     pub(super) fn get(&self, number: usize) -> Option<f64> {
-        if number >= self.count {
-            return (number == self.count).then_some(self.end);
+        let (count, end) = self.cut.unwrap_or((self.count, self.end));
+        if number >= count {
+            return (number == count).then_some(end);
         }
         match &self.inner {
             Inner::Multiples { step, first } => Some((first + number as f64) * step),

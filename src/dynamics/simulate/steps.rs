@@ -12,7 +12,7 @@ use super::run::Run;
 use super::stepper::{Failed, Stepper};
 use crate::dynamics::report::creation;
 use crate::dynamics::system::System;
-use crate::dynamics::trajectory::Interrupted;
+use crate::dynamics::trajectory::{Interrupted, Sample};
 use crate::elements::force::Step;
 use crate::integrators::ode::Failure;
 
@@ -158,17 +158,25 @@ impl Run {
             Met::Event(t) => Some(t),
             Met::Passage(t) => return Ok(Outcome::Refused(t)),
         };
+        let cut = self.end_within(stepper, event.unwrap_or(reached), sample)?;
+        let event = event.filter(|_| cut.is_none());
         // steps that end just before a jump end at it
-        let is_at_jump = event.is_none() && reached >= self.resolution_end() && reached < stop;
-        let time = if is_at_jump { stop } else { event.unwrap_or(reached) };
+        let is_at_jump =
+            event.or(cut).is_none() && reached >= self.resolution_end() && reached < stop;
+        let time = if is_at_jump { stop } else { event.or(cut).unwrap_or(reached) };
         self.standing = if time > self.time { 0 } else { self.standing + 1 };
         if self.standing == STANDING {
             return Err(standing_still(stepper.system().refusal()));
         }
         // a step that is refused leaves no samples
-        let (system, arrived) = arrival(stepper, event, sample)?;
+        let (system, arrived) = arrival(stepper, event.or(cut), sample)?;
         let before = &self.state[..n];
         system.check_step(time, before, arrived).map_err(Failure::into_error)?;
+        if let Some(end) = cut {
+            self.phase_run.cut = cut;
+            self.phase_run.stops.clear();
+            self.phase_run.interval.cut(end);
+        }
         while let Some(t) = self.phase_run.interval.next_sample().filter(|&t| t <= time) {
             self.phase_run.interval.taken += 1;
             stepper.interpolate(t.min(reached), sample)?;
@@ -182,7 +190,7 @@ impl Run {
         if self.sampling.finds_peaks() {
             self.find_peaks(stepper, time.min(reached), sample)?;
         }
-        let (system, arrived) = arrival(stepper, event, sample)?;
+        let (system, arrived) = arrival(stepper, event.or(cut), sample)?;
         self.follower.follow(
             &Step {
                 times: [self.time, time],
@@ -236,17 +244,28 @@ impl Run {
                 PARTS => time,
                 _ => self.time + (time - self.time) * k as f64 / PARTS as f64,
             };
-            stepper.interpolate(t, state)?;
-            let accelerates = self.sensors.need_accelerations();
-            let mut seen = match self.sensors.need_forces() {
-                true => records::sample(self.number, stepper.system_mut(), t, state, accelerates)
-                    .map_err(Failure::into_error)?,
-                false => records::of_state(self.number, stepper.system(), t, state),
-            };
-            self.complete(&mut seen);
+            let seen = self.seen(stepper, t, state)?;
             self.trajectory.note_peaks(&seen.sensors);
         }
         Ok(())
+    }
+
+    /// What sensors see at time `t` (s) within the last step; `state` has room for a state.
+    pub(super) fn seen(
+        &self,
+        stepper: &mut dyn Stepper,
+        t: f64,
+        state: &mut [f64],
+    ) -> Result<Sample, Failed> {
+        stepper.interpolate(t, state)?;
+        let accelerates = self.sensors.need_accelerations();
+        let mut seen = match self.sensors.need_forces() {
+            true => records::sample(self.number, stepper.system_mut(), t, state, accelerates)
+                .map_err(Failure::into_error)?,
+            false => records::of_state(self.number, stepper.system(), t, state),
+        };
+        self.complete(&mut seen);
+        Ok(seen)
     }
 
     /// Reports to the observer how far the run has come.

@@ -147,9 +147,10 @@ impl Identity {
 
 impl PhaseIdentity {
     fn of(phase: &Phase) -> Self {
-        // without a magnetic field or dipoles as in files that were written before there were any
+        // without a magnetic field, dipoles or an end by a sensor as in files that were written before there were any
         let said = format!("{phase:?}");
         let said = said.replace(", dipoles: []", "").replace(", magnetic_field: None", "");
+        let said = said.replace(", ends: None", "");
         let mut hasher = SipHasher13::new();
         hasher.write(said.as_bytes());
         let hash = hasher.finish();

@@ -152,6 +152,7 @@ table! {
     OfPhase((report, phase): (&Report, &PhaseReport)) {
         "name", "", "name of the phase" => phase.name;
         "end", "s", "time reached" => phase.end;
+        "ended_by", "", "the sensor that ended it before its time; `null` if none did" => phase.ended_by;
         "method", "", "method in the end" => phase.method.name();
         "reason", "", "why that method; `null` if it was asked for" => phase.reason;
         "rtol", "1", "as above, of this phase alone, as are all that follow" => report.rtol;

@@ -6,7 +6,7 @@ use super::course::{course, vectors_until};
 use super::keys::TableKeys;
 use super::magnet::magnetic_field;
 use super::phase_keys::{
-    ACTUATE, DRIVE, FLOW, HOLD, HOLD_COMBINATION, LOAD, MOVE, OPEN, PATH, PHASE, PRESSURE,
+    ACTUATE, DRIVE, END, FLOW, HOLD, HOLD_COMBINATION, LOAD, MOVE, OPEN, PATH, PHASE, PRESSURE,
     PRESSURE_ON, ROTATE, SYMMETRY, TERMS,
 };
 use super::selection::selection;
@@ -66,6 +66,14 @@ fn add_phase(scene: Scene, value: &Value, check: &Check) -> Result<Scene, Error>
     })?;
     let mut phase = Phase::until(until);
     phase = table.added(phase, "name", Value::string, Phase::named)?;
+    if let Some(value) = table.get("end") {
+        let end = value.table(&END)?;
+        let sensor = end.required("sensor", Value::string)?;
+        phase = match end.optional("above", Value::finite)? {
+            Some(level) => phase.ends_above(sensor, level),
+            None => phase.ends_below(sensor, end.required("below", Value::finite)?),
+        };
+    }
     if let Some(value) = table.get("contact") {
         phase = contact(phase, &value, &scene)?;
     }

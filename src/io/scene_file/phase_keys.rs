@@ -9,6 +9,8 @@ pub(super) const PHASE: TableKeys = TableKeys::new(
     &[
         Key::new("name", Holds::Text, "the name of the phase").default("phase 1, ..."),
         Key::number("until", "the end of the phase", "s").required(),
+        Key::new("end", Holds::Table(&END), "a sensor that ends the phase before")
+            .default("at `until` alone"),
         Key::new("gravity", Holds::Vector, "the acceleration of gravity in this phase")
             .in_unit("m/s^2")
             .default("that of the file"),
@@ -43,6 +45,22 @@ pub(super) const PHASE: TableKeys = TableKeys::new(
     ],
     "[[phase]]\nname = \"push\"\nuntil = 0.5\nhold = [{ nodes = \"bottom\" }]\ncontact = false",
 );
+
+pub(super) const END: TableKeys = TableKeys::new(
+    "end",
+    "A sensor that ends the phase as its reading passes a level, at `until` at the latest. One that begins beyond the level \
+     does not count before it has been on the other side. The next phase begins at once, and ends at its own `until`; the last \
+     phase has no such end.",
+    &[
+        Key::new("sensor", Holds::Text, "the name of the sensor, of one with several columns that of the column: `tip.y`").required(),
+        Key::number("above", "the level above which it rises, in the unit of the sensor", ""),
+        Key::number("below", "the level below which it falls", ""),
+    ],
+    "[[sensor]]\nname = \"height\"\nkind = \"position\"\nnodes = \"top\"\ncomponent = \"y\"\n\n\
+     [[phase]]\nuntil = 0.7\nend = { sensor = \"height\", below = 0.05 }\n\n\
+     [[phase]]\nuntil = 1.0",
+)
+.one_of(&[&["above"], &["below"]]);
 
 const fn part(keys: &'static TableKeys, meaning: &'static str) -> Key {
     Key::new(keys.name, Holds::Tables(keys), meaning)

@@ -151,6 +151,9 @@ pub(super) fn scene_file(top: &Table) -> Result<SceneFile, Error> {
         output.sensors = sensors.collect::<Result<_, _>>()?;
         output.sampling().check(&scene).map_err(|error| values.error(error))?;
     }
+    if let Some(phases) = top.get("phase") {
+        output.sampling().check_ends(&scene).map_err(|error| phases.error(error))?;
+    }
     let mut smaller = Vec::new();
     if let Some(solver) = top.get("solver") {
         (scene, output, smaller) = smaller::smaller(scene, output, &solver.table(&SOLVER)?)?;

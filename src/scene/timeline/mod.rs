@@ -16,6 +16,7 @@ mod liquid;
 mod load;
 mod loading;
 mod phase;
+mod phase_end;
 mod pipe;
 mod plane;
 mod reduced;

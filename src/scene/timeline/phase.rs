@@ -18,6 +18,8 @@ use crate::scene::forces::{DipolePart, MagneticField, Obstacle, Signal, VectorSi
 pub struct Phase {
     pub(crate) name: String,
     pub(crate) until: f64,
+    /// What ends it before.
+    pub(crate) ends: Option<PhaseEnd>,
     /// Acceleration of gravity (m/s^2), if it is another one than the scene's.
     pub(crate) gravity: Option<Vec<f64>>,
     pub(crate) constraints: Vec<Constraint>,
@@ -42,6 +44,16 @@ pub struct Phase {
     pub(crate) dipoles: Vec<(String, DipolePart, VectorSignal)>,
 }
 
+/// What ends a phase before its time.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct PhaseEnd {
+    /// Name of the column of a sensor.
+    pub(crate) sensor: String,
+    /// The level (in the unit of the sensor) that it passes, upwards or downwards.
+    pub(crate) level: f64,
+    pub(crate) rises: bool,
+}
+
 /// The obstacles that act.
 #[derive(Debug, Clone)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
@@ -58,6 +70,7 @@ impl Phase {
         Self {
             name: String::new(),
             until,
+            ends: None,
             gravity: None,
             constraints: Vec::new(),
             loads: Vec::new(),

@@ -100,6 +100,7 @@ impl<'a> Adviser<'a> {
         positive("budget", *budget, "s")?;
         settings.validate()?;
         self.scene.validate()?;
+        self.scene.refuse_ends("the adviser")?;
         quantity.check(self.scene)?;
         let runs = Runs::open(self.file.as_deref())?;
         let look = Look::of(self.scene, settings, LOOK.min(LOOK_SHARE * budget))?;

@@ -400,6 +400,7 @@ fn check(training: &Training) -> Result<(), InputError> {
     first.check_reducible()?;
     for scene in scenes.iter().chain(held_out) {
         scene.validate()?;
+        scene.refuse_ends("a reduced model")?;
         if let Some(part) = differing_part(first, scene)? {
             let help = "all have the body of the first one, and hold and move the same nodes: vary signals and loads";
             return Err(InputError::new("training scenes", format!("with other {part}"), help));

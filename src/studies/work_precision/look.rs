@@ -52,6 +52,7 @@ impl Look {
     pub fn of(scene: &Scene, settings: &Settings, seconds: f64) -> Result<Self, Error> {
         positive("seconds", seconds, "s")?;
         settings.validate()?;
+        scene.refuse_ends("the first look")?;
         let Settings { alpha, contact_events, .. } = *settings;
         let (method, rtol) = (Method::Auto, RTOL);
         let coarse = Settings { method, rtol, alpha, contact_events, ..Settings::default() };

@@ -130,6 +130,7 @@ impl<'a> Verification<'a> {
         &mut self,
         observer: impl FnMut(&Simulation) -> ControlFlow<()>,
     ) -> Result<bool, Error> {
+        self.scene.refuse_ends("an accuracy")?;
         let settings = match &self.last {
             None => self.first()?,
             Some(last) => self.tighter(last),
