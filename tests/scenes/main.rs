@@ -57,6 +57,7 @@ mod reduced_flow;
 mod reduced_relaxing;
 mod relaxing;
 mod relaxing_rubber;
+mod revolution;
 mod rigid;
 mod rigid_holds;
 mod rigid_mass;

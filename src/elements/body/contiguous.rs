@@ -111,6 +111,7 @@ mod tests {
     use crate::elements::body::elements::ElementsOf;
     use crate::elements::body::forces::{Forces, Terms};
     use crate::elements::body::regions::Regions;
+    use crate::elements::body::section::Section;
     use crate::elements::body::tests::noise;
     use crate::elements::force::NodalForces;
     use crate::elements::material::{Material, Plane, Strain};
@@ -131,7 +132,8 @@ mod tests {
     ) {
         let pattern = NodePattern::new(mesh.node_count(), mesh.cells());
         let mut elements =
-            ElementsOf::<N, M, D, Q>::new::<C>(mesh, 1.0, dilatation, &pattern).unwrap();
+            ElementsOf::<N, M, D, Q>::new::<C>(mesh, Section::Uniform(1.0), dilatation, &pattern)
+                .unwrap();
         let base = Material { viscosity: 3.0, ..SQUARE_MATERIAL };
         let stiff =
             (CellSelection::Numbers((13..=27).collect()), Material { young: 2e6, ..base }.into());

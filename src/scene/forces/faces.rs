@@ -183,7 +183,7 @@ pub(super) fn on_no_face(loose: &[usize]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::elements::mesh::{Cells, SolidCells};
+    use crate::elements::mesh::{Cells, Mesh, SolidCells};
     use crate::scene::forces::surface::gauss_points;
     use crate::studies::samples::SQUARE_MATERIAL;
 

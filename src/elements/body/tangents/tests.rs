@@ -11,6 +11,7 @@ use crate::elements::basis::{
     Hexahedron, Hexahedron20, Quadrilateral9, ReferenceCell, Segment, Tetrahedron10, Triangle,
     Triangle6, Triangle7,
 };
+use crate::elements::body::section::Section;
 use crate::elements::body::tests::{bodies, noise};
 use crate::elements::body::{Body, CellSelection, Dilatation};
 use crate::elements::force::{Force, NodalForces};
@@ -31,7 +32,9 @@ fn is_the_same_on_all_machines<
     dilatation: Dilatation,
 ) {
     let pattern = Arc::new(NodePattern::new(mesh.node_count(), mesh.cells()));
-    let elements = ElementsOf::<N, M, D, Q>::new::<C>(mesh, 1.0, dilatation, &pattern).unwrap();
+    let elements =
+        ElementsOf::<N, M, D, Q>::new::<C>(mesh, Section::Uniform(1.0), dilatation, &pattern)
+            .unwrap();
     let is_projected = elements.is_projected();
     let dofs = mesh.node_count() * D;
     let (u, v) = (noise(dofs, 0.01, 1.0), noise(dofs, 1.0, 2.0));

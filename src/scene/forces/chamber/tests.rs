@@ -48,6 +48,7 @@ fn enclosed(body: &Body, walls: impl Into<Selection>) -> f64 {
     match &force.geometry {
         Geometry::Polygon(polygon, factor) => factor / 0.01 * polygon.measure(&rest),
         Geometry::Surface(surface, factor) => factor * surface.measure(&rest),
+        Geometry::Circles(circles, factor) => factor * circles.measure(&rest),
     }
 }
 
