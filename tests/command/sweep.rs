@@ -216,7 +216,7 @@ fn equilibria_that_fail_are_rows() {
     let kept = place.files(&format!("out/study-sweep/runs/{}", rows[0][0]));
     assert_eq!(kept, ["animation.html", "report.json", "trajectory.csv"]);
 
-    // a column below and above Euler's load, pi^2 E I/(4 L^2) = 0.0164 N
+    // a column below and above Euler's load, pi^2 E I/(4 L^2) = 0.00164 N
     let column = r#"
         [body]
         mesh = { kind = "rectangle", size = [0.1, 0.002], nodes = [21, 3], cells = "triangles6" }
@@ -227,12 +227,12 @@ fn equilibria_that_fail_are_rows() {
         name = "press"
         until = 1.0
         hold = { nodes = "left" }
-        load = { nodes = "right", total = [-0.01, 0.0] }
+        load = { nodes = "right", total = [-0.001, 0.0] }
     "#;
     place.scene(column);
     place.study(
         "scene = \"scene.toml\"\nstatic = true\nquantities = [\"com.x\"]\n[[key]]\n\
-         name = \"phase.press.load.total\"\nvalues = [[-0.0148, 0.0], [-0.0189, 0.0]]",
+         name = \"phase.press.load.total\"\nvalues = [[-0.00148, 0.0], [-0.00189, 0.0]]",
     );
     says(&place.sweep(&["--out", "column"]), &["1 fine, 1 doubtful", "warnings: unstable (1)"]);
     let (_, rows) = place.rows("column");
