@@ -11,6 +11,7 @@
 //! | [`gas`]: least absolute pressure; orifices beside their chambers | 5e4 Pa; a face of a cube as large |
 //! | [`mesh`]: Poisson's ratio of linear cells | 0.45 |
 //! | [`mesh`]: pieces that nothing joins | one piece |
+//! | [`faceted`]: what facets of a mesh from a file leave out of the curves that they stand for | 2 % |
 //! | [`conformity`]: hanging nodes, and nodes in the same position that are not one | none |
 //! | [`overlap`]: how deep the body overlaps itself, as drawn and as it moves | a twentieth of a cell |
 //! | [`strain`]: how far cells turn under Cauchy strain | 10 degrees |
@@ -57,6 +58,7 @@ mod conformity;
 mod deformed;
 mod each;
 mod early;
+mod faceted;
 mod felt;
 mod gas;
 mod mesh;
@@ -117,6 +119,7 @@ impl Scene {
         let of_body = |part: Part| {
             let measured = units::units(self, part.body).into_iter();
             let measured = measured.chain(mesh::locking(part.body));
+            let measured = measured.chain(faceted::faceted(part.body));
             named(part.name, body, measured.chain(conformity::conformity(part.body)))
         };
         let each = body.parts().flat_map(of_body);

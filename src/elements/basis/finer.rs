@@ -43,7 +43,8 @@ pub(super) type Point = [f64; 3];
 impl Mesh {
     /// The same mesh with each cell divided into 2, 4 or 8 of its kind, at the middles of its edges.
     ///
-    /// Nodes keep their numbers, and new ones follow. A new node belongs to the node sets that all corners
+    /// Nodes keep their numbers, and new ones follow: on the circles of [rings](Self::ring), and else at the middles as the cells have
+    /// them. A new node belongs to the node sets that all corners
     /// around it belong to. Cell c (from 0), divided into n cells, becomes the cells n c to n c + n - 1.
     ///
     /// ```
@@ -185,7 +186,8 @@ impl Finer {
             }
             finer.first_child.push(connectivity.len() / kind.nodes());
         }
-        let positions = finer.interpolated(mesh.positions(), mesh.dimension());
+        let mut positions = finer.interpolated(mesh.positions(), mesh.dimension());
+        finer.onto_circles(mesh, &mut positions);
         finer.mesh = mesh.with_cells(positions, kind, connectivity);
         finer.is_boundary = vec![false; finer.places.len()];
         if !mesh.plane_of_symmetry().is_empty() {
@@ -203,6 +205,21 @@ impl Finer {
             finer.mesh.set_cells(name, finer.children_of(cells));
         }
         finer
+    }
+
+    /// Brings new nodes of a ring onto its circles: halves of a polygon would be the same polygon.
+    fn onto_circles(&self, mesh: &Mesh, positions: &mut [f64]) {
+        if !mesh.is_round() {
+            return;
+        }
+        let nodes = positions.chunks_exact_mut(mesh.dimension()).zip(&self.places);
+        for (position, place) in nodes.skip(self.olds.len()) {
+            let share = |(node, part): &(usize, u32)| (*node, f64::from(*part) / WHOLE);
+            let shares: Vec<(usize, f64)> = place.corners.iter().map(share).collect();
+            if let Some(on_circle) = mesh.between_on_circle(&shares) {
+                position.copy_from_slice(&on_circle);
+            }
+        }
     }
 
     /// The cells (from 0) into which these `cells` of the first mesh are divided.

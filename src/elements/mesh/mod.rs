@@ -10,6 +10,7 @@ mod generate;
 mod gmsh;
 mod mirror;
 mod prism;
+mod round;
 mod select;
 mod shape;
 mod surface;
@@ -49,6 +50,8 @@ pub struct Mesh {
     cell_groups: BTreeMap<String, Vec<usize>>,
     /// Nodes of a plane of symmetry at which it was cut.
     plane: Vec<usize>,
+    /// The circles on which its nodes lie.
+    round: Option<round::Round>,
     /// The file that it was read from, for messages.
     file: Option<Arc<Path>>,
     /// Changes that were made as it was read, in words.
@@ -143,6 +146,7 @@ impl Mesh {
             sets,
             cell_groups,
             plane,
+            round: None,
             file: None,
             notes: Vec::new(),
         };
@@ -188,6 +192,7 @@ impl Mesh {
         let mut mesh = Self::named(self.dimension, positions, kind, connectivity);
         mesh.blocks[0].is_surface = self.blocks[0].is_surface;
         mesh.file.clone_from(&self.file);
+        mesh.round.clone_from(&self.round);
         mesh
     }
 
@@ -197,6 +202,11 @@ impl Mesh {
             Some(file) => format!("mesh of file {}", file.display()),
             None => "mesh".into(),
         }
+    }
+
+    /// Whether it was read from a file, which knows no shape but that of the cells.
+    pub(crate) fn is_from_file(&self) -> bool {
+        self.file.is_some()
     }
 
     /// Names nodes (from 0).
@@ -225,6 +235,7 @@ impl Mesh {
         for position in self.positions.chunks_exact_mut(self.dimension) {
             position.iter_mut().zip(offset).for_each(|(x, d)| *x += d);
         }
+        self.move_circles(offset);
         Ok(self)
     }
 
@@ -259,6 +270,7 @@ impl Mesh {
             let turned = rotation * place;
             position.iter_mut().zip(&turned).for_each(|(x, turned)| *x = *turned);
         }
+        self.turn_circles(&rotation);
         Ok(self)
     }
 
@@ -294,6 +306,7 @@ impl Mesh {
             moved.extend(to);
         }
         self.positions = moved;
+        self.round = None;
         if D != self.dimension {
             self.dimension = D;
             self.sets.insert("boundary".into(), self.find_boundary_nodes());
@@ -352,6 +365,7 @@ impl Mesh {
             sets: BTreeMap::new(),
             cell_groups: BTreeMap::new(),
             plane: Vec::new(),
+            round: None,
             file: None,
             notes: Vec::new(),
         };

@@ -114,7 +114,7 @@ const HALVED_IN: TableKeys = TableKeys::new(
 .one_of(&[&["nodes"], &["cells"]]);
 
 const FINER: &str = "Triangles, tetrahedra and hexahedra; quadrilaterals are divided into triangles first. Numbers of nodes in the file are \
-     those of the mesh without this; where several nodes are held, moved or under tractions, those between them are, too. Forces \
+     those of the mesh without this; new nodes of rings are on their circles; where several nodes are held, moved or under tractions, those between them are, too. Forces \
      on each node stay at the nodes that there were, and stiffness and damping of obstacles per node are shared out.";
 
 const SIZE: Key =
@@ -338,7 +338,7 @@ fn placed(mesh: Mesh, dimension: &Value) -> Result<Mesh, Error> {
         (own, wanted) if own == wanted => mesh,
         (1, 2) => mesh.mapped(|x| [x[0], 0.0])?,
         (1, 3) => mesh.mapped(|x| [x[0], 0.0, 0.0])?,
-        (2, 3) => mesh.mapped(|x| [x[0], x[1], 0.0])?,
+        (2, 3) => mesh.in_space()?,
         (own, _) => {
             let allowed = ["1, 2 or 3", "2 or 3", "3"][own - 1];
             return Err(dimension.unexpected(format!("{allowed} for this mesh")));

@@ -161,10 +161,13 @@ impl fmt::Display for Advice {
                  Allow more time (--budget); loads on single nodes and sharp corners may leave no limit.",
                 percent(apart)
             )?,
-            None if self.resolution.is_nan() => writeln!(
-                f,
-                "What the mesh lacks is not known: no finer one gave a motion to compare with."
-            )?,
+            None if self.resolution.is_nan() => {
+                let lacks = match self.written.parts.is_some_and(|parts| !parts.mesh.is_nan()) {
+                    true => "What the mesh lacks was estimated at rest",
+                    false => "What the mesh lacks is not known",
+                };
+                writeln!(f, "{lacks}: no finer one gave a motion to compare with.")?;
+            }
             None => {
                 let resolution = percent(self.resolution);
                 let rate = "as the last three meshes tell";

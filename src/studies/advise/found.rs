@@ -150,7 +150,7 @@ impl Found {
 
     /// The parts of the error of a run, if the runs between it and the truth were made, too: its own model
     /// with hardly any error of the integration, and the richest model on its own mesh. A mesh that was compared with no other is
-    /// taken as it is.
+    /// off by what residuals tell, if they do, and else taken as it is.
     pub(super) fn parts(&self, of: &Solved) -> Option<Parts> {
         let truth = self.truth()?;
         let own = self.exact(&of.choice)?;
@@ -159,7 +159,20 @@ impl Found {
         let parts @ [time, model, mesh] = [apart(of, own), apart(own, mesh), apart(mesh, truth)];
         // where a run does not have the quantity, the parts are not known
         let is_known = parts.iter().all(|part| part.is_finite());
-        is_known.then(|| Parts { time, model, mesh: mesh + self.resolution() })
+        let left = match self.resolution() {
+            resolution if resolution.is_nan() => self.off_at_rest(),
+            resolution => resolution,
+        };
+        is_known.then(|| Parts { time, model, mesh: mesh + left })
+    }
+
+    /// By how much the mesh as it was written is off at rest (relative), if it is compared with no other and residuals tell; else NaN.
+    pub(super) fn off_at_rest(&self) -> f64 {
+        let estimate = self.mesh_estimate.as_ref().filter(|estimate| estimate.is_reliable());
+        match (estimate, self.truth(), &self.meshes[..]) {
+            (Some(estimate), Some(truth), [_]) => estimate.correction.abs() / truth.seen.scale,
+            _ => f64::NAN,
+        }
     }
 }
 
@@ -234,6 +247,35 @@ mod tests {
             assert!((part - expected).abs() < 1e-12, "{parts:?}");
         }
         assert!(!found.is_right(&lucky, 0.038) && found.is_right(&lucky, 0.039));
+    }
+
+    #[test]
+    fn a_mesh_that_residuals_show_to_be_off_is_not_enough() {
+        let mut found = meshes(&[(true, 0.0)]);
+        let written = found.meshes[0].clone();
+        (found.written, found.tight) = (Some(written.clone()), Some(written.clone()));
+        assert!(found.is_right(&written, 0.02) && found.best(0.02).is_some());
+        let estimate = |remainder| MeshEstimate {
+            quantity: "bend:end".into(),
+            unit: "deg".into(),
+            value: 1.0,
+            change: 1.0,
+            correction: -0.039,
+            remainder,
+            cells: Vec::new(),
+            unknowns: 1,
+            seconds: 0.0,
+        };
+        found.mesh_estimate = Some(estimate(0.01));
+        assert!(found.best(0.02).is_none() && found.best(0.04).is_some());
+        assert_eq!(found.parts(&written).unwrap().mesh, 0.039);
+        // no estimate by which to judge
+        found.mesh_estimate = Some(estimate(1.0));
+        assert!(found.best(0.02).is_some());
+        // finer meshes tell themselves
+        let mut found = meshes(&[(true, 0.02), (true, 0.005), (true, 0.00125)]);
+        found.mesh_estimate = Some(estimate(0.01));
+        assert!(found.off_at_rest().is_nan());
     }
 
     #[test]

@@ -59,6 +59,9 @@ impl Search<'_> {
         self.known_or_run(&enough, found)?;
         if self.request.quantity.is_at_end() {
             self.rest(&enough, found)?;
+            if found.off_at_rest() > self.request.accuracy {
+                return Ok(()); // nothing is enough on this mesh
+            }
         }
         self.sweep(&enough, found)?;
         self.rigid(found)?;

@@ -10,7 +10,7 @@ use std::fmt;
 pub struct Parts {
     /// Of the model: measure of strain, inertia, alpha, what is left out.
     pub model: f64,
-    /// Of the mesh, with what the finest mesh may be off by itself; NaN if no other mesh was compared with.
+    /// Of the mesh, with what the finest mesh may be off by itself. If no other mesh was compared with, what residuals tell, or NaN.
     pub mesh: f64,
     /// Of the integration over time.
     pub time: f64,

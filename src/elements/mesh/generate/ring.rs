@@ -16,7 +16,8 @@ impl Mesh {
     /// `s * radial + k + 1`. Node sets are `inner` and `outer`, counter-clockwise from straight down.
     ///
     /// All corner nodes lie on circles, so do mid nodes: edges along the circles of a mesh of
-    /// [`Cells::Triangles6`] are curved, and its diagonals a little.
+    /// [`Cells::Triangles6`] are curved, and its diagonals a little. So do the nodes of [finer](Mesh::halved)
+    /// meshes.
     ///
     /// # Errors
     /// An inner radius that is not above 0 or not below the outer one, fewer than 3 nodes around
@@ -87,7 +88,7 @@ fn annulus(
     };
     let mesh = grid.mesh(cells, Diagonal::Rising, position)?;
     let mesh = grid.name_side(mesh, "inner", 0, false)?;
-    grid.name_side(mesh, "outer", 0, true)
+    Ok(grid.name_side(mesh, "outer", 0, true)?.around_origin())
 }
 
 /// Direction at an angle of `count`/`of` quarter turns from x. Whole and half quarter turns are
