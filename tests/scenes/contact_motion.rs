@@ -214,22 +214,28 @@ fn a_block_on_a_slope() {
             .touch(touch)
             .gravity([0.0, -G])
             .phase(Phase::until(0.3).hold("slope/bottom"));
-        let sampling = Sampling::every(0.1).read("p", Reading::momentum().of_body("block"));
+        let sampling = Sampling::every(0.02).read("p", Reading::momentum().of_body("block"));
         let motion = scene.simulate(&settings(Method::Rosenbrock, 1e-6), &sampling).unwrap();
         let speed = |sample: usize| {
             let p = &motion.samples()[sample].sensors;
             (p[0] * angle.cos() - p[1] * angle.sin()) / (2000.0 * 0.03 * 0.02 * 0.01)
         };
         println!("mu {friction}: {} steps", motion.report().steps());
-        [(speed(3) - speed(1)) / 0.2, speed(3)]
+        let creep = motion.report().indicators.iter().find(|told| told.name == "creep");
+        // of a hundredth of the size of the slope, which is more than the way of the block
+        let crept = creep.map_or(0.0, |told| told.value * 0.01 * 0.2_f64.hypot(0.02));
+        [(speed(15) - speed(5)) / 0.2, speed(15), crept]
     };
-    let [acceleration, _] = slides(0.2);
+    let [acceleration, ..] = slides(0.2);
     let expected = G * (angle.sin() - 0.2 * angle.cos());
     println!("{acceleration} m/s^2 where {expected} were expected");
     assert!((acceleration / expected - 1.0).abs() < 2e-4, "{acceleration} {expected}");
-    let [_, speed] = slides(0.45);
-    println!("creeps at {speed} m/s");
+    let [_, speed, crept] = slides(0.45);
+    println!("creeps at {speed} m/s, by {crept} m");
     assert!(speed > 0.0 && speed < CREEP, "{speed}");
+    // the law under the part tan a/mu of what holds, but for the time in which the block bounces at first (measured: 0.82 of it)
+    let expected = 0.3 * 2.0 * CREEP * ((angle.tan() / 0.45).asin() / 3.0).sin();
+    assert!((0.75..1.0).contains(&(crept / expected)), "{crept} {expected}");
 }
 
 /// Central differences follow the collision of blocks with friction and damping, with lumped inertia and with the

@@ -50,6 +50,31 @@ pub(super) fn assert_balanced(trajectory: &Trajectory, tolerance: f64) {
     assert!(part < tolerance, "{}: {part:e}", report.method);
 }
 
+/// How far a block creeps under a steady pull is told: 2 v0 sin(asin(r)/3) times the time, on a plane that moves along, too, where it is
+/// little beside the way.
+#[test]
+fn creep_is_told() {
+    let (mu, part, end) = (0.5, 0.5_f64, 2.0);
+    for (v0, speed, is_doubtful) in [(V0, 0.0, true), (V0, 0.05, false), (0.03 * V0, 0.0, false)] {
+        let floor = plane(0.0).friction_coefficient(mu).sticking_speed(v0).velocity([speed, 0.0]);
+        let scene = Scene::new(block(0.0)).gravity([0.0, -G]).obstacle(floor.named("floor"));
+        let pull = part * mu * scene.body().mass() * G;
+        let scene = scene
+            .initial_velocity(|_| vec![speed, 0.0])
+            .phase(Phase::until(end).load_total("all", [pull, 0.0]));
+        let motion = scene.simulate(&Settings::default(), &Sampling::every(0.05)).unwrap();
+        let creep = 2.0 * v0 * (part.asin() / 3.0).sin() * end;
+        let way = (creep + speed * end).max(0.01 * scene.body().mesh().size());
+        let told = motion.report().indicators.iter().find(|told| told.name == "creep").unwrap();
+        println!("{told}; {:e} of {way:e} m expected", creep / way);
+        // before it creeps steadily it is sheared, and rocks
+        assert!((told.value * way / creep - 1.0).abs() < 0.03, "{told}");
+        assert_eq!(told.is_doubtful(), is_doubtful, "{told}");
+        let warnings = motion.report().warnings().join(" ");
+        assert_eq!(warnings.contains("obstacle \"floor\" creeps by"), is_doubtful, "{warnings}");
+    }
+}
+
 /// A block on a plate that starts and stops along a path is carried along: at the plate's acceleration a it
 /// lags by the creep speed of its law, 2 v0 sin(asin(a/(mu g))/3), and rocks on the springs below it, by the angle
 /// m a h/(k b w^3/12), as a changes.

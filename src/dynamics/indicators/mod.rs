@@ -24,6 +24,7 @@
 //! | [`touch`]: how deep the surface between nodes is inside obstacles | as nodes |
 //! | [`touch`]: obstacles with friction that are touched in statics, where it does not act | none |
 //! | [`touch`]: obstacles that act and are never touched | none |
+//! | [`creep`]: how far surfaces creep that friction holds | 1 % of the distance that nodes travel |
 //! | [`start`]: unknowns that the scene or the state from which it starts does not have | none |
 //! | [`chamber`]: the least volume of a chamber | 0 |
 //! | [`pace`]: absolute tolerance of displacements | 1 % of the distance that nodes travel, or 10 `rtol` |
@@ -55,6 +56,7 @@ mod bending;
 mod chamber;
 mod coarse;
 mod conformity;
+mod creep;
 mod deformed;
 mod each;
 mod early;
@@ -191,6 +193,7 @@ pub(crate) fn of_motion(trajectory: &Trajectory) -> Vec<Indicator> {
     let measured = measured.chain(touch::depths(trajectory.scene(), &meetings));
     let measured = measured.chain(touch::passages(trajectory));
     let measured = measured.chain(touch::between_nodes(trajectory));
+    let measured = measured.chain(crept(trajectory));
     let measured = measured.chain(chamber::volumes(scene, trajectory.samples()));
     let measured = measured.chain(overlaps(trajectory));
     let measured = measured.chain(pace::tolerance(trajectory, &samples));
@@ -228,6 +231,14 @@ pub(crate) fn largest_turn(trajectory: &Trajectory, part: &Part) -> f64 {
     strain::largest_turn(part.body, samples.map(|sample| &sample.u[part.dofs()]))
 }
 
+/// How far surfaces have crept that friction holds.
+fn crept(trajectory: &Trajectory) -> Vec<Indicator> {
+    creep::creep(
+        trajectory,
+        &spread(trajectory, MOST_SAMPLES_FOR_OVERLAPS, MOST_CELLS_FOR_OVERLAPS),
+    )
+}
+
 /// Whether the body passes through itself.
 fn overlaps(trajectory: &Trajectory) -> Option<Indicator> {
     let samples = spread(trajectory, MOST_SAMPLES_FOR_OVERLAPS, MOST_CELLS_FOR_OVERLAPS);
@@ -250,7 +261,7 @@ fn of_cells(trajectory: &Trajectory, samples: &[&Sample]) -> Vec<Indicator> {
 const MOST_SAMPLES: usize = 200;
 const MOST_CELLS: usize = 50_000;
 const FEW_SAMPLES: usize = 10;
-/// The same for overlaps, which come and go and cost less to find.
+/// The same for overlaps and creep, which come and go and cost less to find.
 const MOST_SAMPLES_FOR_OVERLAPS: usize = 1000;
 const MOST_CELLS_FOR_OVERLAPS: usize = 2_000_000;
 

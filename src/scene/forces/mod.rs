@@ -28,6 +28,7 @@ mod shape;
 mod signal;
 mod signals;
 mod spring;
+mod stuck;
 mod surface;
 #[cfg(test)]
 mod tests;
@@ -72,6 +73,7 @@ pub use signals::Signals;
 pub(crate) use spring::Joint;
 pub(crate) use spring::SpringGauge;
 pub use spring::{Guide, Spring};
+pub(crate) use stuck::Stuck;
 pub(crate) use surface::{
     SurfacePoint, boundary_nodes, edge_points, face_centre, natural, pieces, thickness, weighted,
 };

@@ -4,6 +4,7 @@ use super::Contact;
 use crate::base::vector::norm;
 use crate::integrators::ode::Failure;
 use crate::scene::forces::nodal::{NodalContact, Tributary};
+use crate::scene::forces::stuck::Stuck;
 
 impl Contact {
     /// Adds what the obstacle does at the nodes to `nodal`.
@@ -34,5 +35,22 @@ impl Contact {
             }
         }
         Ok(())
+    }
+
+    /// Passes to `see` the points that friction holds.
+    pub(crate) fn each_stuck(&self, t: f64, [u, v]: [&[f64]; 2], mut see: impl FnMut(Stuck)) {
+        let Some(law) = self.coulomb else { return };
+        for touch in self.touches(t, u, v) {
+            let Some(slip) = touch.slip.filter(|slip| law.sticks(norm(&slip.sliding))) else {
+                continue;
+            };
+            see(Stuck {
+                point: touch.point.on.nodes().collect(),
+                place: Vec::new(),
+                normal: touch.nearest.normal,
+                pressing: slip.pressing,
+                sticking_speed: law.sticking_speed,
+            });
+        }
     }
 }

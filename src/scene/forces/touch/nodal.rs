@@ -4,6 +4,7 @@ use super::force::TouchForce;
 use crate::base::vector::norm;
 use crate::integrators::ode::Failure;
 use crate::scene::forces::nodal::{NodalContact, Tributary};
+use crate::scene::forces::stuck::Stuck;
 
 impl TouchForce {
     /// Adds what the surfaces do at the nodes of both to `nodal`: each half of the area in touch is that of the points of
@@ -37,5 +38,25 @@ impl TouchForce {
             }
         });
         if is_passed { Err(self.passed()) } else { Ok(()) }
+    }
+
+    /// Passes to `see` the points that friction holds on the other surface.
+    pub(crate) fn each_stuck(&self, [u, v]: [&[f64]; 2], mut see: impl FnMut(Stuck)) {
+        let Some(law) = self.coulomb else { return };
+        self.each(u, |pair, share| {
+            let action = self.action(pair, share, v);
+            if !(action.presses && action.pressing() > 0.0 && law.sticks(norm(&action.sliding))) {
+                return;
+            }
+            let shares = pair.nodes.into_iter().zip(pair.shares).take(pair.count);
+            let place = shares.clone().skip(pair.of_point).map(|(node, share)| (node, -share));
+            see(Stuck {
+                point: shares.take(pair.of_point).collect(),
+                place: place.collect(),
+                normal: pair.normal,
+                pressing: action.pressing(),
+                sticking_speed: law.sticking_speed,
+            });
+        });
     }
 }
