@@ -1,6 +1,7 @@
 //! The result of a run: sampled states, how they were obtained, and why it ended early.
 
 mod forces;
+mod leap;
 mod penetration;
 mod state;
 
@@ -8,6 +9,7 @@ use std::error::Error;
 use std::fmt;
 use std::sync::{Arc, OnceLock};
 
+pub(crate) use leap::Leap;
 pub(crate) use penetration::{Deepest, DepthLimit, Penetration};
 
 use crate::base::input::{InputError, told};
@@ -103,6 +105,8 @@ pub struct Trajectory {
     pub(crate) report: Report,
     /// How deep the surface got into each obstacle.
     pub(crate) penetrations: Vec<Penetration>,
+    /// Paths that began away from their nodes.
+    pub(crate) leaps: Vec<Leap>,
     /// What reads contact, once that was asked for.
     contact: OnceLock<Arc<ContactReader>>,
     /// What a reduced model lacks, as the run has told; empty unless requested.
@@ -131,6 +135,7 @@ impl Trajectory {
             peaks: Vec::new(),
             report,
             penetrations: Vec::new(),
+            leaps: Vec::new(),
             contact: OnceLock::new(),
             lacking: Vec::new(),
             angles: Vec::new(),
@@ -259,8 +264,19 @@ impl Trajectory {
         let (scene, sensors) = (self.scene.clone(), self.sensors.clone());
         let (peaks, contact) = (self.peaks.clone(), self.contact.clone());
         let (report, penetrations) = (self.report.clone(), self.penetrations.clone());
-        let (lacking, angles) = (Vec::new(), self.angles.clone());
-        Self { scene, samples, sensors, peaks, report, penetrations, contact, lacking, angles }
+        let (leaps, lacking, angles) = (self.leaps.clone(), Vec::new(), self.angles.clone());
+        Self {
+            scene,
+            samples,
+            sensors,
+            peaks,
+            report,
+            penetrations,
+            leaps,
+            contact,
+            lacking,
+            angles,
+        }
     }
 
     /// The scene that was run.

@@ -337,3 +337,35 @@ fn motions_that_are_their_mirror_images() {
     let motion = started(body, |x| vec![0.01 * x[0], 0.0]);
     assert_eq!(find(&motion, "mirror-x"), None);
 }
+
+/// A path counts from the undeformed place: one of a later phase that begins there is told by how far it is away from its nodes, and one
+/// that begins where they are is not.
+#[test]
+fn paths_that_begin_elsewhere() {
+    let away = |begin: f64, displaced: f64| {
+        let first = Phase::until(0.1).hold("left").move_axis("right", Axis::X, 0.1);
+        let displacements = [begin, begin + 0.01];
+        let second = Phase::until(0.2).named("on").hold("left");
+        let second = second.path("right", Axis::X, [0.1, 0.2], displacements);
+        let body = bar(4, Strain::Green, Material { viscosity: 10.0, ..SOFT });
+        let scene = Scene::new(body).initial_displacement(move |x| vec![displaced * x[0] / 0.1]);
+        run(&scene.phase(first).phase(second), 0.01)
+    };
+    let is_told = |motion: &Trajectory, leap: f64, way: f64| {
+        let told = find(motion, "path-leap").unwrap();
+        assert!((told.value - leap / way).abs() < 1e-3 && told.verdict == Doubtful, "{told}");
+        assert!(motion.report().warnings().iter().any(|warning| warning == &told.text), "{told}");
+        assert!(told.text.contains("the path of node 5 x in phase \"on\" begins at"), "{told}");
+    };
+    // from 10 mm, where `move` has led it, back to the undeformed place, and on
+    is_told(&away(0.0, 0.0), 0.01, 0.01);
+    is_told(&away(0.015, 0.0), 0.005, 0.025);
+    assert!(find(&away(0.01, 0.0), "path-leap").is_none());
+    // `move` goes on from a place at the start
+    assert!(find(&away(0.012, 0.002), "path-leap").is_none());
+    let body = bar(4, Strain::Green, SOFT);
+    let first = Phase::until(0.1).hold("left").path("right", Axis::X, [0.0, 0.1], [0.001, 0.01]);
+    let told = find(&run(&Scene::new(body).phase(first), 0.01), "path-leap").unwrap();
+    assert!((told.value - 0.1).abs() < 1e-3, "{told}");
+}
+

@@ -29,6 +29,7 @@
 //! | [`chamber`]: the least volume of a chamber | 0 |
 //! | [`pace`]: absolute tolerance of displacements | 1 % of the distance that nodes travel, or 10 `rtol` |
 //! | [`pace`]: drift of constraints after the starts of phases | 0.1 % of the distance that nodes travel |
+//! | [`pace`]: how far paths begin away from their nodes | 1 % of the distance that nodes travel |
 //! | [`reduced`]: the error that a run by a reduced model tells | twice what was wanted |
 //! | [`reduced`]: how far it was outside of what the model has learned | 5 % of the range |
 //!
@@ -198,6 +199,7 @@ pub(crate) fn of_motion(trajectory: &Trajectory) -> Vec<Indicator> {
     let measured = measured.chain(overlaps(trajectory));
     let measured = measured.chain(pace::tolerance(trajectory, &samples));
     let measured = measured.chain(pace::lasting_drift(trajectory, &samples));
+    let measured = measured.chain(pace::leaps(trajectory, &samples));
     let measured = measured.chain(trajectory.report().reduced.iter().flat_map(reduced));
     measured.chain(is_whole.then(missed).into_iter().flatten()).collect()
 }

@@ -4,13 +4,15 @@
 use super::rigid::travel;
 use crate::base::input::{percent, short, told};
 use crate::dynamics::report::Indicator;
-use crate::dynamics::trajectory::{Sample, Trajectory};
+use crate::dynamics::trajectory::{Leap, Sample, Trajectory};
 use crate::scene::timeline::{Phase, Scene};
 
 /// Kinetic over stored energy below which a motion is a sequence of equilibria.
 const STATIC: f64 = 0.01;
 /// Largest error of constraints relative to the distance that nodes travel.
 const MOST_DRIFT: f64 = 1e-3;
+/// Largest distance of the beginning of a path from its nodes, relative to the distance that nodes travel.
+const MOST_LEAP: f64 = 0.01;
 /// Times 1/alpha after which a jump w of a prescribed velocity, which leaves w t exp(-alpha t), is below 2e-3 of its largest
 /// value.
 const DECAY: f64 = 10.0;
@@ -135,6 +137,39 @@ pub(super) fn lasting_drift(trajectory: &Trajectory, samples: &[&Sample]) -> Opt
     };
     let limits = [0.0, MOST_DRIFT];
     Some(Indicator::trusted("lasting-drift", (part, "1"), limits, || said.clone(), beyond))
+}
+
+/// Paths that begin away from their nodes, which are drawn there at once, within some 1/alpha.
+pub(super) fn leaps(trajectory: &Trajectory, samples: &[&Sample]) -> Vec<Indicator> {
+    let way = travel(trajectory.body(), samples).max(REST * trajectory.body().size());
+    let indicator = |leap: &Leap| {
+        let part = leap.by() / way;
+        let Leap { phase, time, count, row, from, to } = leap;
+        let others = match count - 1 {
+            0 => String::new(),
+            others => format!(" (and {others} more such rows)"),
+        };
+        let said = format!(
+            "the path of {row} in phase \"{phase}\"{others} begins at {} m where the node is at {} m, at t = {} s: a leap of {} m, {} of \
+             the way that nodes go (limit: {})",
+            short(*to),
+            short(*from),
+            told(*time),
+            short(leap.by()),
+            percent(part),
+            percent(MOST_LEAP)
+        );
+        let beyond = || {
+            format!(
+                "{said}; the displacements of a path count from the undeformed place, not from that at the start of the phase: begin it \
+                 with {} m, or take a velocity (`move`), which goes on from there",
+                short(*from)
+            )
+        };
+        let limits = [0.0, MOST_LEAP];
+        Indicator::trusted("path-leap", (part, "1"), limits, || said.clone(), beyond)
+    };
+    trajectory.leaps.iter().map(indicator).collect()
 }
 
 /// Whether the tolerance of displacements is small compared with them.

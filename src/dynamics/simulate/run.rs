@@ -24,7 +24,7 @@ use crate::dynamics::matrices::Matrices;
 use crate::dynamics::report::{Report, ToldReading, creation};
 use crate::dynamics::state::{ENERGIES, State};
 use crate::dynamics::system::{LeftOver, System};
-use crate::dynamics::trajectory::{IntegrationFailure, Interrupted, Sample, Trajectory};
+use crate::dynamics::trajectory::{IntegrationFailure, Interrupted, Leap, Sample, Trajectory};
 use crate::elements::body::{Body, Part};
 use crate::elements::force::Forces;
 use crate::integrators::ode::Failure;
@@ -34,6 +34,9 @@ use crate::scene::timeline::{Phase, Scene};
 
 /// The next step in multiples of the size that is known, at most.
 const AHEAD: f64 = 2.0;
+
+/// Paths that begin nearer to their nodes than this part of the size of the body begin there: the rest is rounding.
+const LEAST_LEAP: f64 = 1e-9;
 
 /// Breaks no farther away than this, in parts of their time, are passed without a step, which round-off would take.
 const NEAREST: f64 = 16.0 * f64::EPSILON;
@@ -178,6 +181,8 @@ impl Run {
             scene: Arc::new(scene.clone()),
         };
         run.follow_angles();
+        let phase = run.phase.clone();
+        run.note_leap(&system, &phase, u);
         run.begin(&system);
         run.integration = Integration::Idle(system);
         Ok(run)
@@ -333,12 +338,20 @@ impl Run {
         let mut u = self.state[..n].to_vec();
         prescribe(system.rows(), self.time, &mut u);
         let next = self.equations(phase, &u)?;
+        self.note_leap(&next, phase, &u);
         // an obstacle that begins or ceases to act with nodes inside it changes the stored energy: the
         // difference is supplied from outside
         let [before, after] =
             [system, &next].map(|system| energy(system, self.time, &self.state).balance());
         self.supply(after - before);
         Ok(next)
+    }
+
+    /// Notes paths of the phase of `system` that begin away from where the displacements `u` (m) have their nodes.
+    fn note_leap(&mut self, system: &System, phase: &Phase, u: &[f64]) {
+        let body = self.scene.body();
+        let (at, least) = ((u, body.dimension()), LEAST_LEAP * body.size());
+        self.trajectory.leaps.extend(Leap::of(system.rows(), phase.name(), self.time, at, least));
     }
 
     /// The equations of a phase that begins with the displacements at the beginning of `u`.

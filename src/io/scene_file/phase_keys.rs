@@ -89,6 +89,7 @@ pub(super) const PATH: TableKeys = TableKeys::new(
             Holds::List(&Holds::Along),
             "displacements from the undeformed position at these times",
         )
+        .law("Not from where the nodes are when the phase begins: a path that begins elsewhere draws them there at once, which is warned of.")
         .in_unit("m"),
         Key::new(
             "displacement",

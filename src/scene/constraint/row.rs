@@ -62,6 +62,11 @@ impl RowMotion {
 }
 
 impl ConstraintRow {
+    /// Whether it leads nodes to places that do not depend on where they are as the phase begins.
+    pub(crate) fn is_placed(&self) -> bool {
+        !matches!(self.motion, RowMotion::Linear { .. } | RowMotion::Turning(_))
+    }
+
     /// b, b', b'' at time `t`.
     #[inline]
     pub(crate) fn prescribed(&self, t: f64) -> Prescribed {
