@@ -369,3 +369,42 @@ fn paths_that_begin_elsewhere() {
     assert!((told.value - 0.1).abs() < 1e-3, "{told}");
 }
 
+/// Pinched rings of one layer, against the finest of them: too stiff by 0.07 times the fourth power of the length of a cell over sqrt(R t),
+/// which is told from 1 on, with how many cells would do. (Rectangles of nine nodes, rings 20 and 100 times as large as thick.)
+#[test]
+fn arched_cells_lock() {
+    let pinched = |thickness: f64, around: usize| {
+        let (radius, half) = (1.0, 0.5 * thickness);
+        let nodes = [2 * around + 1, 2];
+        let mesh =
+            Mesh::half_ring(radius - half, radius + half, nodes, Cells::Rectangles9).unwrap();
+        let middle: Vec<usize> = (0..mesh.node_count())
+            .filter(|&node| mesh.position(node)[0].abs() < 1e-9)
+            .map(|node| node + 1)
+            .collect();
+        let body = Body::new(mesh, SOFT).plane(Plane::Stress).thickness(0.1).strain(Strain::Cauchy);
+        let phase = Phase::until(1.0)
+            .hold_axes("left", [Axis::Y])
+            .hold_axes("right", [Axis::Y])
+            .hold_axes(middle.clone(), [Axis::X])
+            .load_total(middle.clone(), [0.0, -1e-6]);
+        let found = rest(&Scene::new(body.build().unwrap()).phase(phase));
+        let sinks = found.last().u[2 * (middle[0] - 1) + 1];
+        (sinks, found)
+    };
+    for (thickness, meshes) in [(0.05, [5, 6, 8]), (0.01, [8, 12, 16])] {
+        let (truth, finest) = pinched(thickness, 64);
+        assert_eq!(find(&finest, "arched-cells").unwrap().verdict, Fine);
+        for around in meshes {
+            let (sinks, found) = pinched(thickness, around);
+            let told = find(&found, "arched-cells").unwrap();
+            let stiffer = truth / sinks - 1.0;
+            let ratio = 0.5 * PI / around as f64 / thickness.sqrt();
+            println!("{thickness} {around}: {stiffer} {} {told}", 0.07 * told.value.powi(4));
+            assert!((told.value / ratio - 1.0).abs() < 0.03, "{told}: {ratio}");
+            assert_eq!(told.verdict == Doubtful, ratio > 1.0, "{told}");
+            let part = 0.07 * told.value.powi(4);
+            assert!((part / stiffer - 1.0).abs() < 0.2, "{part} {stiffer}");
+        }
+    }
+}

@@ -11,6 +11,7 @@
 //! | [`gas`]: least absolute pressure; orifices beside their chambers | 5e4 Pa; a face of a cube as large |
 //! | [`mesh`]: Poisson's ratio of linear cells | 0.45 |
 //! | [`mesh`]: pieces that nothing joins | one piece |
+//! | [`arched`]: cells of curved walls of one layer, beside sqrt(R t) | 1 |
 //! | [`faceted`]: what facets of a mesh from a file leave out of the curves that they stand for | 2 % |
 //! | [`conformity`]: hanging nodes, and nodes in the same position that are not one | none |
 //! | [`overlap`]: how deep the body overlaps itself, as drawn and as it moves | a twentieth of a cell |
@@ -53,6 +54,7 @@
 //! | [`symmetry`]: how far the motion is from one in a plane (+) | 1 % |
 //! | [`symmetry`]: how far the motion is from its mirror images (+) | 0.1 % |
 
+mod arched;
 mod bending;
 mod chamber;
 mod coarse;
@@ -123,6 +125,7 @@ impl Scene {
             let measured = units::units(self, part.body).into_iter();
             let measured = measured.chain(mesh::locking(part.body));
             let measured = measured.chain(faceted::faceted(part.body));
+            let measured = measured.chain(arched::arched(part.body));
             named(part.name, body, measured.chain(conformity::conformity(part.body)))
         };
         let each = body.parts().flat_map(of_body);
