@@ -190,6 +190,7 @@ mod tests {
             runs: 3,
             within: 0.02,
             learned_from: "two runs".into(),
+            learned_keys: BTreeMap::new(),
         }
     }
 

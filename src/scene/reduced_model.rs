@@ -6,7 +6,7 @@
 //! negative, such that they do the work of all cells along Phi (energy-conserving sampling and weighting, C. Farhat,
 //! P. Avery, T. Chapman, J. Cortial, Int. J. Numer. Meth. Engng 98 (2014) 625-662).
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 
 use crate::base::input::percent;
@@ -39,6 +39,81 @@ pub struct ReducedModel {
     pub(crate) runs: usize,
     /// What it was learned from, in words.
     pub(crate) learned_from: String,
+    /// What the files of the scenes that it was learned from and checked with say happens in them, by their keys; nothing of scenes
+    /// without files.
+    #[cfg_attr(feature = "checkpoint", serde(default, skip_serializing_if = "BTreeMap::is_empty"))]
+    pub(crate) learned_keys: BTreeMap<String, LearnedKey>,
+}
+
+/// The values of a key of scene files that a reduced model was learned from.
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "checkpoint", serde(untagged))]
+pub(crate) enum LearnedKey {
+    /// Numbers: the least and the largest.
+    Range([f64; 2]),
+    /// Texts, each once; an empty one where a scene does not have the key.
+    Texts(Vec<String>),
+}
+
+/// Part of its range by which a number may be outside: points inside of ranges of many keys do not reach their ends.
+const NEAR: f64 = 0.05;
+
+impl LearnedKey {
+    /// The values of all keys in these scenes.
+    #[cfg(any(feature = "study", test))]
+    pub(crate) fn of(scenes: &[&BTreeMap<String, String>]) -> BTreeMap<String, Self> {
+        let keys = scenes.iter().flat_map(|scene| scene.keys());
+        let learned = |key: &String| {
+            let values = scenes.iter().map(|scene| scene.get(key).map_or("", String::as_str));
+            let numbers: Option<Vec<f64>> = values.clone().map(finite).collect();
+            match numbers {
+                Some(numbers) => {
+                    let least = numbers.iter().copied().fold(f64::INFINITY, f64::min);
+                    let most = numbers.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+                    Self::Range([least, most])
+                }
+                None => {
+                    let mut texts: Vec<String> = values.map(str::to_owned).collect();
+                    texts.sort();
+                    texts.dedup();
+                    Self::Texts(texts)
+                }
+            }
+        };
+        keys.map(|key| (key.clone(), learned(key))).collect()
+    }
+
+    fn has(&self, value: &str) -> bool {
+        match self {
+            Self::Range([least, most]) => finite(value).is_some_and(|number| {
+                let near = NEAR * (most - least);
+                (least - near..=most + near).contains(&number)
+            }),
+            Self::Texts(texts) => texts.iter().any(|text| text == value),
+        }
+    }
+}
+
+impl fmt::Display for LearnedKey {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Range([least, most]) if least == most => write!(f, "{least}"),
+            Self::Range([least, most]) => write!(f, "{least} to {most}"),
+            Self::Texts(texts) => {
+                let texts: Vec<&str> = texts.iter().map(|text| said(text)).collect();
+                f.write_str(&texts.join(" or "))
+            }
+        }
+    }
+}
+
+fn finite(value: &str) -> Option<f64> {
+    value.parse().ok().filter(|number: &f64| number.is_finite())
+}
+
+fn said(value: &str) -> &str {
+    if value.is_empty() { "not given" } else { value }
 }
 
 /// The shapes of one phase.
@@ -84,6 +159,24 @@ impl ReducedModel {
         &self.learned_from
     }
 
+    /// The keys of a scene file, with their values, that the model has not learned: `phase.push.gravity.2 = -9.8 (learned: -5 to 0)`.
+    /// Nothing where it was learned from no file.
+    pub(crate) fn unlearned(&self, keys: &BTreeMap<String, String>) -> Vec<String> {
+        if self.learned_keys.is_empty() || keys.is_empty() {
+            return Vec::new();
+        }
+        let none = LearnedKey::Texts(vec![String::new()]);
+        let all = self.learned_keys.keys().chain(keys.keys()).collect::<BTreeSet<_>>();
+        let pairs = all.into_iter().map(|key| {
+            let value = keys.get(key).map_or("", String::as_str);
+            (key, value, self.learned_keys.get(key).unwrap_or(&none))
+        });
+        let strange = pairs.filter(|(_, value, learned)| !learned.has(value));
+        strange
+            .map(|(key, value, learned)| format!("{key} = {} (learned: {learned})", said(value)))
+            .collect()
+    }
+
     /// Adds what the scenes that it was learned from differ in, in words.
     pub fn learned_over(mut self, words: &str) -> Self {
         self.learned_from = format!("{}: {words}", self.learned_from);
@@ -100,5 +193,29 @@ impl fmt::Display for ReducedModel {
         }
         write!(f, ", off by {}", percent(self.error))?;
         if self.is_estimate { write!(f, " as its own runs tell") } else { Ok(()) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Numbers may be a little outside of their range, and within it in between; words have to be known, and so have keys.
+    #[test]
+    fn keys_have_values_that_were_learned() {
+        let keys = |of: &[(&str, &str)]| -> BTreeMap<String, String> {
+            of.iter().map(|(key, value)| ((*key).to_owned(), (*value).to_owned())).collect()
+        };
+        let scenes = [("0.0", "\"sin(t)\""), ("2.0", "\"sin(t)\""), ("1.0", "\"cos(t)\"")];
+        let scenes = scenes.map(|(x, y)| keys(&[("load.1", x), ("load.2", y), ("until", "0.5")]));
+        let learned = LearnedKey::of(&scenes.each_ref());
+        let value_of = |x: &str| learned["load.1"].has(x);
+        assert!(value_of("1.3") && value_of("2.09") && !value_of("2.11") && !value_of("-0.2"));
+        assert!(!value_of("") && !value_of("inf") && !value_of("\"t\""));
+        assert!(learned["load.2"].has("\"cos(t)\"") && !learned["load.2"].has("\"tan(t)\""));
+        assert!(learned["until"].has("0.5") && !learned["until"].has("0.50001"));
+        assert_eq!(learned["load.1"].to_string(), "0 to 2");
+        assert_eq!(learned["until"].to_string(), "0.5");
+        assert_eq!(learned["load.2"].to_string(), "\"cos(t)\" or \"sin(t)\"");
     }
 }

@@ -82,6 +82,18 @@ fn a_model_is_learned_written_and_run() {
         assert!(run.status.success(), "{run:?}");
         says(&stdout(&run), &["reduced model"]);
     }
+    // a key that is outside of its range, and one that was the same in all runs that were learned from
+    for (set, told) in [
+        (format!("{FORCE}=0.03"), Some("phase.pull.actuate.force = 0.03 (learned: 0.005 to 0.02)")),
+        ("gravity=[0.0, -0.5]".to_owned(), Some("gravity.2 = -0.5 (learned: not given)")),
+        (format!("{FORCE}=0.01"), None),
+    ] {
+        let run = place.run(&["run", scene, "--reduced", "scene.reduced", "--set", &set]);
+        let said = stdout(&run) + &stderr(&run);
+        assert_eq!(said.contains("was not learned over"), told.is_some(), "{set}: {said}");
+        told.into_iter().for_each(|told| says(&said, &[told]));
+    }
+    place.run(&["run", scene, "--step", "0.02", "--reduced", "scene.reduced", "--quiet"]);
     let reduced = place.table("out/scene").1;
     place.run(&["run", scene, "--step", "0.02", "--quiet"]);
     let full = place.table("out/scene").1;

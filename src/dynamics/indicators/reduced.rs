@@ -11,7 +11,10 @@ const MOST_OUTSIDE: f64 = 0.05;
 /// that run: methods and tolerances may be others.
 const SAME_RUN: f64 = 0.05;
 
-/// The error that the run tells, how far it was outside of what the model has learned, and whether that was another run.
+/// The most keys that are named.
+const MOST_KEYS: usize = 5;
+
+/// The error that the run tells, how far it was outside of what the model has learned, whether that was another run, and keys that it has not learned.
 pub(crate) fn reduced(run: &ReducedReport) -> Vec<Indicator> {
     let limit = TIMES_WANTED * run.within;
     let said = format!(
@@ -48,5 +51,22 @@ pub(crate) fn reduced(run: &ReducedReport) -> Vec<Indicator> {
         let value = (apart, "1");
         Indicator::trusted("reduced-one-run", value, [0.0, SAME_RUN], || said.clone(), beyond)
     });
-    [error, range].into_iter().chain(other).collect()
+    let unlearned = (!run.unlearned.is_empty()).then(|| {
+        let first: Vec<&str> = run.unlearned.iter().take(MOST_KEYS).map(String::as_str).collect();
+        let others = match run.unlearned.len() - first.len() {
+            0 => String::new(),
+            others => format!(" and {others} more"),
+        };
+        let beyond = || {
+            format!(
+                "the reduced model was not learned over {}{others} (limit: no such key): it may be off by many times the {} that this run \
+                 tells; reduce the scene over a range of these keys (--vary), or have a run such as this one checked (pliant reduce --verify)",
+                first.join(", "),
+                percent(run.told_error)
+            )
+        };
+        let value = (run.unlearned.len() as f64, "");
+        Indicator::trusted("reduced-keys", value, [0.0, 0.0], String::new, beyond)
+    });
+    [error, range].into_iter().chain(other).chain(unlearned).collect()
 }

@@ -1,5 +1,6 @@
 //! What a run by a reduced model tells about its error.
 
+use std::collections::BTreeMap;
 use std::fmt;
 
 use crate::base::input::{percent, told};
@@ -23,6 +24,9 @@ pub struct ReducedReport {
     pub outside: f64,
     /// The errors of what sensors read that follows from where the nodes are, as this run tells them.
     pub readings: Vec<ToldReading>,
+    /// The keys of the scene's file, with their values, that the model was not learned over: neither the error that this run tells nor that
+    /// where it was checked is one of such scenes.
+    pub unlearned: Vec<String>,
     /// Whether its error is not that of any run with all unknowns, but what its own runs told.
     pub is_estimate: bool,
     /// Whether it was learned from one run.
@@ -46,7 +50,7 @@ pub struct ToldReading {
 
 impl ReducedReport {
     /// A run by `model` at its start.
-    pub(crate) fn new(model: &ReducedModel) -> Self {
+    pub(crate) fn new(model: &ReducedModel, keys: &BTreeMap<String, String>) -> Self {
         Self {
             shapes: model.unknowns(),
             cells: [model.cells(), model.cell_count],
@@ -55,6 +59,7 @@ impl ReducedReport {
             told_error: 0.0,
             outside: 0.0,
             readings: Vec::new(),
+            unlearned: model.unlearned(keys),
             is_estimate: model.is_estimate,
             is_of_one_run: model.runs == 1,
             per_imbalance: model.error_per_imbalance,

@@ -7,6 +7,7 @@ use crate::base::vector::largest;
 use crate::dynamics::report::{ReducedReport, ToldReading};
 use crate::dynamics::system::{Lacking, LeftOver, System};
 use crate::scene::reduced_model::ReducedModel;
+use crate::scene::timeline::Scene;
 
 /// What is known, and what is not known yet.
 #[derive(Clone)]
@@ -20,8 +21,8 @@ pub(super) struct ReducedChecks {
 
 impl ReducedChecks {
     /// At the start of a run by `model`, which keeps the displacements that it lacks or not.
-    pub(super) fn new(model: &ReducedModel, keeps_lacking: bool) -> Self {
-        let report = ReducedReport::new(model);
+    pub(super) fn new(scene: &Scene, model: &ReducedModel, keeps_lacking: bool) -> Self {
+        let report = ReducedReport::new(model, scene.written_keys());
         Self { report, left_over: Vec::new(), lacking: keeps_lacking.then(Vec::new) }
     }
 
@@ -82,7 +83,7 @@ mod tests {
 
     use super::*;
     use crate::reduce::{Training, reduce};
-    use crate::{Body, Cells, Material, Mesh, Phase, Scene, Settings, Strain};
+    use crate::{Body, Cells, Material, Mesh, Phase, Settings, Strain};
 
     /// Six states of each of two phases, however often they are run; none where nobody has asked.
     #[test]
@@ -104,7 +105,7 @@ mod tests {
         let scene = scene.reduced(model.clone()).unwrap();
         for (is_asked, expected) in [(true, [6, 6]), (false, [0, 0])] {
             let mut strip = scene.start(&settings).unwrap();
-            strip.run.reduced = Some(Mutex::new(ReducedChecks::new(&model, is_asked)));
+            strip.run.reduced = Some(Mutex::new(ReducedChecks::new(&scene, &model, is_asked)));
             strip.advance_to(0.05).unwrap();
             let halfway = strip.checkpoint();
             for _ in 0..4 {

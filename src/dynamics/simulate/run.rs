@@ -175,9 +175,9 @@ impl Run {
             least_energy: least_energy(scene.body()),
             pause: None,
             resolution: Resolution::default(),
-            reduced: scene
-                .reduced_model()
-                .map(|model| Mutex::new(ReducedChecks::new(model, sampling.keeps_lacking()))),
+            reduced: scene.reduced_model().map(|model| {
+                Mutex::new(ReducedChecks::new(scene, model, sampling.keeps_lacking()))
+            }),
             scene: Arc::new(scene.clone()),
         };
         run.follow_angles();

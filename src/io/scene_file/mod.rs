@@ -50,6 +50,7 @@ mod growth;
 mod initial;
 mod keys;
 mod lag;
+mod leaves;
 mod liquid;
 mod listed;
 mod magnet;
@@ -221,5 +222,6 @@ fn parse(mut text: String, path: &Path, overrides: &[String]) -> Result<SceneFil
     }
     let top = Table::new(&source, String::new(), at, &entries, &TOP)?;
     let file = top::scene_file(&top)?;
-    Ok(SceneFile { notes: source.notes.take(), ..file })
+    let scene = file.scene.written_with(leaves::leaves(&entries));
+    Ok(SceneFile { scene, notes: source.notes.take(), ..file })
 }

@@ -166,7 +166,7 @@ pub(super) fn place(document: &DeTable, key: &str) -> Vec<String> {
     place
 }
 
-fn name_of<'t>(value: &'t Spanned<DeValue>) -> Option<&'t str> {
+pub(super) fn name_of<'t>(value: &'t Spanned<DeValue>) -> Option<&'t str> {
     value.get_ref().as_table()?.get("name")?.get_ref().as_str()
 }
 

@@ -93,7 +93,7 @@ pub(super) fn number(value: &DeValue) -> Option<f64> {
     }
 }
 
-fn canonical(value: &DeValue) -> String {
+pub(super) fn canonical(value: &DeValue) -> String {
     if let Some(number) = number(value) {
         return of_number(number);
     }

@@ -26,6 +26,7 @@ mod term;
 mod tie;
 mod varying;
 mod within;
+mod written;
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -45,6 +46,7 @@ use start::Start;
 pub use term::Term;
 use tie::Tie;
 pub(crate) use varying::Varying;
+use written::WrittenKeys;
 
 use crate::base::input::{InputError, find, finite};
 use crate::base::vector::largest;
@@ -110,6 +112,7 @@ pub struct Scene {
     start: Start,
     unusual: Vec<String>,
     reduced: Option<Arc<ReducedModel>>,
+    written: WrittenKeys,
 }
 
 /// The quantities of a scene that may be [unusual](Scene::unusual): the names of the indicators of its units.
@@ -159,6 +162,7 @@ impl Scene {
             phases: Vec::new(),
             unusual: Vec::new(),
             reduced: None,
+            written: WrittenKeys::default(),
         }
     }
 

@@ -1,13 +1,28 @@
 //! Scenes by a reduced model.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use super::Scene;
+#[cfg(feature = "scene-file")]
+use super::written::WrittenKeys;
 use crate::base::input::InputError;
 use crate::scene::constraint::PhaseStart;
 use crate::scene::reduced_model::ReducedModel;
 
 impl Scene {
+    /// The same scene with what its file says happens in it, value by value, by their keys.
+    #[cfg(feature = "scene-file")]
+    pub(crate) fn written_with(mut self, keys: BTreeMap<String, String>) -> Self {
+        self.written = WrittenKeys(Arc::new(keys));
+        self
+    }
+
+    /// What its file says happens in it; nothing without a file.
+    pub(crate) fn written_keys(&self) -> &BTreeMap<String, String> {
+        &self.written.0
+    }
+
     /// The same scene by a reduced model of it, which all its runs then use; equilibria are those of all unknowns.
     ///
     /// # Errors

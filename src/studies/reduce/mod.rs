@@ -39,6 +39,7 @@ use crate::dynamics::trajectory::Trajectory;
 use crate::elements::body::{ByCell, Elastic};
 use crate::integrators::ode::Failure;
 use crate::scene::ReducedModel;
+use crate::scene::reduced_model::LearnedKey;
 use crate::scene::settings::Settings;
 use crate::scene::timeline::Scene;
 
@@ -256,6 +257,8 @@ impl<'a> Kit<'a> {
         } else {
             (0..body.mesh().cell_count()).map(|cell| (cell, 1.0)).collect()
         };
+        let seen = training.scenes.iter().chain(&training.held_out);
+        let written: Vec<_> = seen.map(Scene::written_keys).collect();
         Ok(ReducedModel {
             dofs: body.dofs(),
             cell_count: body.mesh().cell_count(),
@@ -268,6 +271,7 @@ impl<'a> Kit<'a> {
             is_estimate: false,
             runs: training.scenes.len(),
             learned_from: learned(training.scenes.len(), ""),
+            learned_keys: LearnedKey::of(&written),
         })
     }
 }

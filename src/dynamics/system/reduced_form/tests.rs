@@ -189,6 +189,7 @@ fn model(scene: &Scene, most: usize) -> ReducedModel {
         is_estimate: false,
         runs: 1,
         learned_from: "nothing".into(),
+        learned_keys: BTreeMap::new(),
     }
 }
 
