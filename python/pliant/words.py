@@ -126,9 +126,10 @@ def mesh_bar(
         it.
     quadratic
         whether cells get mid nodes. Default: false. Triangles, tetrahedra and hexahedra; quadrilaterals are divided
-        into triangles first. Numbers of nodes in the file are those of the mesh without this; where several nodes are
-        held, moved or under tractions, those between them are, too. Forces on each node stay at the nodes that there
-        were, and stiffness and damping of obstacles per node are shared out.
+        into triangles first. Numbers of nodes in the file are those of the mesh without this; new nodes of rings are
+        on their circles; where several nodes are held, moved or under tractions, those between them are, too. Forces
+        on each node stay at the nodes that there were, and stiffness and damping of obstacles per node are shared
+        out.
     halved
         how often each cell is divided at the middles of its edges. Default: 0. After `quadratic`, and like it.
     halved_in
@@ -185,9 +186,10 @@ def mesh_rectangle(
         it.
     quadratic
         whether cells get mid nodes. Default: false. Triangles, tetrahedra and hexahedra; quadrilaterals are divided
-        into triangles first. Numbers of nodes in the file are those of the mesh without this; where several nodes are
-        held, moved or under tractions, those between them are, too. Forces on each node stay at the nodes that there
-        were, and stiffness and damping of obstacles per node are shared out.
+        into triangles first. Numbers of nodes in the file are those of the mesh without this; new nodes of rings are
+        on their circles; where several nodes are held, moved or under tractions, those between them are, too. Forces
+        on each node stay at the nodes that there were, and stiffness and damping of obstacles per node are shared
+        out.
     halved
         how often each cell is divided at the middles of its edges. Default: 0. After `quadratic`, and like it.
     halved_in
@@ -252,9 +254,10 @@ def mesh_ring(
         it.
     quadratic
         whether cells get mid nodes. Default: false. Triangles, tetrahedra and hexahedra; quadrilaterals are divided
-        into triangles first. Numbers of nodes in the file are those of the mesh without this; where several nodes are
-        held, moved or under tractions, those between them are, too. Forces on each node stay at the nodes that there
-        were, and stiffness and damping of obstacles per node are shared out.
+        into triangles first. Numbers of nodes in the file are those of the mesh without this; new nodes of rings are
+        on their circles; where several nodes are held, moved or under tractions, those between them are, too. Forces
+        on each node stay at the nodes that there were, and stiffness and damping of obstacles per node are shared
+        out.
     halved
         how often each cell is divided at the middles of its edges. Default: 0. After `quadratic`, and like it.
     halved_in
@@ -315,9 +318,10 @@ def mesh_half_ring(
         it.
     quadratic
         whether cells get mid nodes. Default: false. Triangles, tetrahedra and hexahedra; quadrilaterals are divided
-        into triangles first. Numbers of nodes in the file are those of the mesh without this; where several nodes are
-        held, moved or under tractions, those between them are, too. Forces on each node stay at the nodes that there
-        were, and stiffness and damping of obstacles per node are shared out.
+        into triangles first. Numbers of nodes in the file are those of the mesh without this; new nodes of rings are
+        on their circles; where several nodes are held, moved or under tractions, those between them are, too. Forces
+        on each node stay at the nodes that there were, and stiffness and damping of obstacles per node are shared
+        out.
     halved
         how often each cell is divided at the middles of its edges. Default: 0. After `quadratic`, and like it.
     halved_in
@@ -375,9 +379,10 @@ def mesh_cuboid(
         it.
     quadratic
         whether cells get mid nodes. Default: false. Triangles, tetrahedra and hexahedra; quadrilaterals are divided
-        into triangles first. Numbers of nodes in the file are those of the mesh without this; where several nodes are
-        held, moved or under tractions, those between them are, too. Forces on each node stay at the nodes that there
-        were, and stiffness and damping of obstacles per node are shared out.
+        into triangles first. Numbers of nodes in the file are those of the mesh without this; new nodes of rings are
+        on their circles; where several nodes are held, moved or under tractions, those between them are, too. Forces
+        on each node stay at the nodes that there were, and stiffness and damping of obstacles per node are shared
+        out.
     halved
         how often each cell is divided at the middles of its edges. Default: 0. After `quadratic`, and like it.
     halved_in
@@ -431,9 +436,10 @@ def mesh_gmsh(
         it.
     quadratic
         whether cells get mid nodes. Default: false. Triangles, tetrahedra and hexahedra; quadrilaterals are divided
-        into triangles first. Numbers of nodes in the file are those of the mesh without this; where several nodes are
-        held, moved or under tractions, those between them are, too. Forces on each node stay at the nodes that there
-        were, and stiffness and damping of obstacles per node are shared out.
+        into triangles first. Numbers of nodes in the file are those of the mesh without this; new nodes of rings are
+        on their circles; where several nodes are held, moved or under tractions, those between them are, too. Forces
+        on each node stay at the nodes that there were, and stiffness and damping of obstacles per node are shared
+        out.
     halved
         how often each cell is divided at the middles of its edges. Default: 0. After `quadratic`, and like it.
     halved_in
@@ -482,9 +488,10 @@ def mesh_surface(
         it.
     quadratic
         whether cells get mid nodes. Default: false. Triangles, tetrahedra and hexahedra; quadrilaterals are divided
-        into triangles first. Numbers of nodes in the file are those of the mesh without this; where several nodes are
-        held, moved or under tractions, those between them are, too. Forces on each node stay at the nodes that there
-        were, and stiffness and damping of obstacles per node are shared out.
+        into triangles first. Numbers of nodes in the file are those of the mesh without this; new nodes of rings are
+        on their circles; where several nodes are held, moved or under tractions, those between them are, too. Forces
+        on each node stay at the nodes that there were, and stiffness and damping of obstacles per node are shared
+        out.
     halved
         how often each cell is divided at the middles of its edges. Default: 0. After `quadratic`, and like it.
     halved_in
@@ -543,9 +550,10 @@ def mesh_listed(
         it.
     quadratic
         whether cells get mid nodes. Default: false. Triangles, tetrahedra and hexahedra; quadrilaterals are divided
-        into triangles first. Numbers of nodes in the file are those of the mesh without this; where several nodes are
-        held, moved or under tractions, those between them are, too. Forces on each node stay at the nodes that there
-        were, and stiffness and damping of obstacles per node are shared out.
+        into triangles first. Numbers of nodes in the file are those of the mesh without this; new nodes of rings are
+        on their circles; where several nodes are held, moved or under tractions, those between them are, too. Forces
+        on each node stay at the nodes that there were, and stiffness and damping of obstacles per node are shared
+        out.
     halved
         how often each cell is divided at the middles of its edges. Default: 0. After `quadratic`, and like it.
     halved_in
@@ -2362,7 +2370,8 @@ def path(
     times
         times in ascending order (s). Default: none.
     displacements
-        displacements from the undeformed position at these times (m). Default: none.
+        displacements from the undeformed position at these times (m). Default: none. Not from where the nodes are
+        when the phase begins: a path that begins elsewhere draws them there at once, which is warned of.
     displacement
         the displacement from the undeformed position, for each of the axes (m). Default: none.
     """
@@ -3646,8 +3655,8 @@ def sensor_stress(
     nodes: Nodes | None = None,
     point: Vector | None = None,
 ) -> dict:
-    r"""Sensor of the kind "stress": the stress of the elastic law alone, without viscosity and Maxwell branches, at nodes
-    or at a point, extrapolated from the cells around (Pa).
+    r"""Sensor of the kind "stress": the stress of the elastic law and of Maxwell branches, without viscosity, at nodes or
+    at a point, extrapolated from the cells around (Pa).
 
     Parameters
     ----------

@@ -9,7 +9,7 @@ use super::view::{View, mean};
 use crate::base::input::{InputError, finite};
 use crate::base::vector::{cross, dot, norm};
 use crate::dynamics::trajectory::Sample;
-use crate::elements::body::{Body, NodalField, Part, von_mises};
+use crate::elements::body::{Body, Branches, NodalField, Part, von_mises};
 use crate::elements::mesh::Selection;
 use crate::scene::constraint::{ConstraintRow, PhaseStart};
 use crate::scene::forces::FluidForce;
@@ -193,8 +193,10 @@ impl Reading {
                 of_dipole(scene, dipole, |view, name| view.dipole_position(name))?
             }
             What::FluidForce(fluid, nodes) => self.of_fluid(scene, fluid, nodes.as_ref())?,
-            What::Stress(place) => field(scene, place, |field| field.stress)?,
-            What::Strain(place) => field(scene, place, |field| field.strain)?,
+            What::Stress(place) => {
+                field(scene, place, scene.body().branches(), |field| field.stress)?
+            }
+            What::Strain(place) => field(scene, place, None, |field| field.strain)?,
             What::Distance([from, to]) => {
                 let (from, to) = (select(from)?, select(to)?);
                 Box::new(move |view, _| Value::Number(norm(&between(view, [&from, &to]))))
@@ -324,10 +326,11 @@ fn line(scene: &Scene, ends: &[Selection; 2]) -> Result<[Vec<usize>; 2], InputEr
     Ok([from, to])
 }
 
-/// Strain or stress at a place.
+/// Strain or stress at a place, with that of the `branches`.
 fn field(
     scene: &Scene,
     place: &Place,
+    branches: Option<Branches>,
     tensor: fn(&NodalField) -> [[f64; 3]; 3],
 ) -> Result<Gauge, InputError> {
     let body = scene.body();
@@ -339,8 +342,15 @@ fn field(
         Place::Point(x) => body.shares_at(x)?,
     };
     let probe = body.probe(&weights);
-    Ok(Box::new(move |view, _| {
-        Value::Tensor(tensor(&view.body().probed(&probe, view.displacements(), &view.grown())))
+    Ok(Box::new(move |view, sample| {
+        let u = view.displacements();
+        let mut field = view.body().probed(&probe, u, &view.grown());
+        // in equilibria they are relaxed
+        let has_strains = |own: &&Branches| sample.internal_strains.len() == own.unknowns();
+        if let Some(branches) = branches.as_ref().filter(has_strains) {
+            field = field.with_stress(&branches.probed(&probe, u, &sample.internal_strains));
+        }
+        Value::Tensor(tensor(&field))
     }))
 }
 

@@ -360,8 +360,8 @@ impl Reading {
         What::ChamberVolume(chamber.into()).into()
     }
 
-    /// Stress at nodes (Pa), of the elastic law alone, without viscosity and Maxwell branches: see
-    /// [`Body::nodal_fields`](crate::Body::nodal_fields).
+    /// Stress at nodes (Pa), of the elastic law and of Maxwell branches, without viscosity: see
+    /// [`Body::nodal_fields`](crate::Body::nodal_fields), which has that of the elastic law alone.
     pub fn stress(nodes: impl Into<Selection>) -> Self {
         What::Stress(Place::Nodes(nodes.into())).into()
     }

@@ -7,7 +7,7 @@ use super::branches::Branched;
 use super::dilatation::Dilatation;
 use super::elements::{ElementsOf, Offset};
 use super::fibres::Reinforced;
-use super::fields::{Fields, GrownFields};
+use super::fields::{BranchFields, Fields, GrownFields};
 use super::forces::Forces;
 use super::inertia::Masses;
 use super::magnetized_points::InDipoleField;
@@ -32,6 +32,7 @@ pub(super) trait Elements:
     + InDipoleField
     + Tangents
     + Fields
+    + BranchFields
     + GrownFields
     + Recovery
     + StrainProducts

@@ -80,21 +80,22 @@ pub(super) struct Site<'a, const N: usize, const M: usize, const D: usize> {
     pub(super) point: &'a StrainPoint<f64, N, M, D>,
     pub(super) at: Strained<M, D>,
     pub(super) cell: usize,
+    /// The number of the point in its cell.
+    pub(super) number: usize,
     /// Index of the first component of its internal strain.
     pub(super) first: usize,
 }
 
 impl<'a, const N: usize, const M: usize, const D: usize> Site<'a, N, M, D> {
-    /// Of a point of a `cell` whose nodes are displaced by `x`, relative to the first.
+    /// Of a point of that number in a `cell` whose nodes are displaced by `x`, relative to the first.
     fn new(
         branch: &'a Relaxing,
         point: &'a StrainPoint<f64, N, M, D>,
         x: &[[f64; D]; N],
-        cell: usize,
-        first: usize,
+        [cell, number, first]: [usize; 3],
     ) -> Self {
         let at = branch.at(point.frame, gradient(1, x, &point.gradients));
-        Self { branch, point, at, cell, first }
+        Self { branch, point, at, cell, number, first }
     }
 
     /// Its components of the internal strains, or of their rates or residuals.
@@ -115,7 +116,7 @@ impl<'a, const N: usize, const M: usize, const D: usize> Site<'a, N, M, D> {
     }
 
     /// Its spring and damper at the point, beside a law of rubber; without `internal` strains those without stress.
-    fn rubber(&self, internal: &[f64]) -> Option<(&'a Maxwell, Sprung)> {
+    pub(super) fn rubber(&self, internal: &[f64]) -> Option<(&'a Maxwell, Sprung)> {
         let spring = self.branch.rubber.as_ref()?;
         let strain = self.at.strain();
         let own = if internal.is_empty() { strain } else { self.own(internal) };
@@ -161,7 +162,7 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<
                     let (mut sums, mut volume) = ([Projected::new(0.0); K], 0.0);
                     for (q, point) in self.points(cell).enumerate() {
                         let (branch, first) = (&branches[start], own(q, start));
-                        let strains = strains(&Site::new(branch, &point, &x, cell, first));
+                        let strains = strains(&Site::new(branch, &point, &x, [cell, q, first]));
                         let modes = self.modes_of(cell, q);
                         for k in 0..K {
                             sums[k].add(point.volume * trace::<M>(&strains[k]), modes.as_ref());
@@ -174,7 +175,7 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<
                     let mut first = own(q, start);
                     let modes = self.modes_of(cell, q);
                     for branch in &branches[start..start + together] {
-                        let site = Site::new(branch, &point, &x, cell, first);
+                        let site = Site::new(branch, &point, &x, [cell, q, first]);
                         let strains = strains(&site);
                         let traces = match &projected {
                             Some(projected) => {

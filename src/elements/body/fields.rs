@@ -11,11 +11,13 @@
 //! Across a cell there is either no strain (plane strain: e = 0, s = lambda tr E) or no stress (plane
 //! stress and segments: s = 0, e = -lambda tr E / (2 mu) with their reduced lambda).
 
+mod branches;
 mod grown;
 mod nodal;
 #[cfg(test)]
 mod tests;
 
+pub(super) use branches::BranchFields;
 pub(super) use grown::GrownFields;
 use nalgebra::{Matrix3, SMatrix, SVD, Vector3};
 pub use nodal::NodalField;
@@ -37,7 +39,7 @@ pub struct CellField {
     /// present area; thickness and cross-section of cells that do not fill space count as they were in the
     /// undeformed shape in St. Venant-Kirchhoff material, and as deformed with the other laws. It is the
     /// stress of the elasticity alone: that of Maxwell branches depends on earlier deformations, and not on
-    /// the shape.
+    /// the shape ([`Reading::stress`](crate::simulate::Reading::stress) has it in a run).
     pub stress: [[f64; 3]; 3],
     /// Strain energy per natural volume (J/m^3), of the elasticity alone.
     pub energy_density: f64,
@@ -304,10 +306,7 @@ impl PointField {
             None => law.energy(&point),
             Some(of_volume) => law.energy_of_shape(&point) + of_volume.energy,
         };
-        let swelling = match L::SMALL_STRAIN {
-            true => 1.0,
-            false => at.stretch() * law.thickness(&point),
-        };
+        let swelling = swelling(law, at);
         let [frame, shape] =
             [at.frame(), L::shape(at)].map(|columns| in_space(&SMatrix::from(columns)));
         let strain = SMatrix::from(twice_strain) * 0.5;
@@ -318,6 +317,17 @@ impl PointField {
                 / swelling,
         };
         Self { tensors, energy_density }
+    }
+}
+
+/// Ratio of present to natural volume, to which the true stress refers.
+fn swelling<L: ElasticLaw, const M: usize, const D: usize>(
+    law: &L,
+    at: &Deformation<f64, M, D>,
+) -> f64 {
+    match L::SMALL_STRAIN {
+        true => 1.0,
+        false => at.stretch() * law.thickness(&law.point(L::twice_strain(at))),
     }
 }
 

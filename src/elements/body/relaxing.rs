@@ -3,10 +3,13 @@
 use std::ops::Range;
 use std::sync::Arc;
 
+use nalgebra::Matrix3;
+
 use super::assembly::Elements;
 use super::branch_modes::{BranchModes, Found};
 use super::branch_state::BranchState;
 use super::continuum::Continuum;
+use super::fields::Probe;
 use super::regions::Regions;
 use super::strain_modes::pay;
 use crate::base::sparse::BlockMatrix;
@@ -24,7 +27,8 @@ struct OfBody {
     body: usize,
     elements: Arc<dyn Elements>,
     regions: Arc<Regions>,
-    /// Its internal strains among those of all.
+    /// Its first cell, and its internal strains, among those of all.
+    first_cell: usize,
     internal: Range<usize>,
 }
 
@@ -35,10 +39,11 @@ impl Branches {
         let relaxing =
             bodies.enumerate().filter(|(_, body)| body.regions.branches().next().is_some());
         let bodies: Vec<OfBody> = relaxing
-            .map(|(body, Continuum { elements, regions, .. })| {
+            .map(|(body, Continuum { elements, regions, cells, .. })| {
                 let internal = first..first + elements.internal_strains(regions);
                 first = internal.end;
-                OfBody { body, elements: elements.clone(), regions: regions.clone(), internal }
+                let (elements, regions) = (elements.clone(), regions.clone());
+                OfBody { body, elements, regions, first_cell: cells.start, internal }
             })
             .collect();
         (!bodies.is_empty()).then_some(Self { bodies })
@@ -99,6 +104,20 @@ impl Branches {
     pub(crate) fn fastest(&self) -> f64 {
         let branches = self.bodies.iter().flat_map(|body| body.regions.branches());
         branches.map(|branch| 1.0 / branch.time).fold(0.0, f64::max)
+    }
+
+    /// The stress (Pa) of the branches that `probe` reads at the displacements `u` (m).
+    pub(crate) fn probed(&self, probe: &Probe, u: &[f64], internal: &[f64]) -> [[f64; 3]; 3] {
+        let mut sum = Matrix3::zeros();
+        for OfBody { elements, regions, first_cell, internal: own, .. } in &self.bodies {
+            let shares = |cell: usize| probe.shares(first_cell + cell);
+            let at = [u, &internal[own.clone()]];
+            let mut see = |cell: usize, a: usize, stress: &Matrix3<f64>| {
+                sum += stress * shares(cell).map_or(0.0, |shares| shares[a]);
+            };
+            elements.each_branch_stress(regions, at, &|cell| shares(cell).is_some(), &mut see);
+        }
+        ((sum + sum.transpose()) * 0.5).into()
     }
 
     /// Writes the internal strains with which the branches have no stress at the displacements `u` (m).

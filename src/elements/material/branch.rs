@@ -216,6 +216,14 @@ impl Relaxing {
         self.hooke.stress(&doubled::<M>(&apart.strain), Some(pull), weight)
     }
 
+    /// Stress (Pa) of the strain E - G across a cell, where that cannot change its thickness.
+    pub(crate) fn stress_across<const M: usize>(&self, apart: &Stretch) -> f64 {
+        if M != 2 || self.hooke.is_free_across(M) {
+            return 0.0;
+        }
+        self.lambda() * apart.trace + 2.0 * self.hooke.lame.mu * apart.strain[3]
+    }
+
     /// First Piola stress (Pa) of the strain E - G, times `weight`.
     pub(crate) fn stress<const M: usize, const D: usize>(
         &self,
@@ -260,6 +268,11 @@ impl<const M: usize, const D: usize> Strained<M, D> {
     /// The change of E with the displacements, whose change has the gradient `h`.
     pub(crate) fn change(&self, h: &Matrix<f64, D, M>) -> Components {
         halved(&self.shape.twice_green_rate(h))
+    }
+
+    /// The shape in which the stress acts, by columns as a frame.
+    pub(crate) fn shape(&self) -> Matrix<f64, D, M> {
+        self.shape.gradient()
     }
 
     /// First Piola stress (Pa) of the `second`, times `weight`.

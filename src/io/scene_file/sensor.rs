@@ -155,7 +155,7 @@ pub(super) const SENSOR: TableKeys = TableKeys::new(
     },
     Kind {
         word: "stress",
-        about: "the stress of the elastic law alone, without viscosity and Maxwell branches, at nodes or at a point, extrapolated from the cells around (Pa)",
+        about: "the stress of the elastic law and of Maxwell branches, without viscosity, at nodes or at a point, extrapolated from the cells around (Pa)",
         keys: &[PLACES, POINT],
     },
     Kind {

@@ -20,6 +20,13 @@ impl NodalField {
         von_mises(&self.stress)
     }
 
+    /// The same with another stress (Pa) added.
+    pub(crate) fn with_stress(mut self, more: &[[f64; 3]; 3]) -> Self {
+        let sum = self.stress.as_flattened_mut().iter_mut().zip(more.as_flattened());
+        sum.for_each(|(sum, more)| *sum += more);
+        self
+    }
+
     fn new(sum: &Tensors, weight: f64) -> Self {
         let [strain, stress] = sum.over(weight);
         Self { strain, stress }
@@ -73,6 +80,12 @@ impl Probe {
             (number, cell.iter().map(|node| share(node, volume)).collect())
         });
         Self { cells: shares.collect() }
+    }
+
+    /// The weights of what a cell has at its nodes, if it is read.
+    pub(in crate::elements::body) fn shares(&self, cell: usize) -> Option<&[f64]> {
+        let number = self.cells.binary_search_by_key(&cell, |(cell, _)| *cell).ok()?;
+        Some(&self.cells[number].1)
     }
 
     pub(in crate::elements::body) fn read(

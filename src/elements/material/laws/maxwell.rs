@@ -189,6 +189,11 @@ impl Maxwell {
         listed::<M>(&self.second(at), components(M))
     }
 
+    /// The same across a cell, where that cannot change its thickness.
+    pub(crate) fn stress_across<const M: usize>(&self, at: &Sprung) -> f64 {
+        if M == 2 && !self.is_free { self.second(at)[(2, 2)] } else { 0.0 }
+    }
+
     fn second(&self, at: &Sprung) -> Matrix3<f64> {
         let pull = self.bulk * at.dilatation;
         (at.sheared * self.shear + Matrix3::identity() * pull) * at.inverse
