@@ -40,7 +40,7 @@ impl Creep {
     /// Adds what the points that are `stuck` do in a time of `dt` (s), in which they slide as `slide` returns (m).
     fn add(&mut self, stuck: &[Stuck], dt: f64, slide: impl Fn(&Stuck) -> [f64; 3]) {
         // a point may lie on several faces: it creeps by the mean
-        let mut means: BTreeMap<Vec<(usize, u64)>, ([f64; 3], f64)> = BTreeMap::new();
+        let mut means = BTreeMap::<Vec<_>, ([f64; 3], f64)>::new();
         for point in stuck {
             self.sticking_speed = point.sticking_speed;
             let by = slide(point);

@@ -112,9 +112,12 @@ fn facets(faces: usize, ridges: &[Ridge]) -> Vec<usize> {
     (0..faces).map(|face| root(&mut first, face)).collect()
 }
 
+/// A face at one of its sides: its number, the direction into it, and how wide (m) it is from there.
+type Side = (usize, Vector3<f64>, f64);
+
 /// Where exactly two faces meet.
 fn ridges(mesh: &Mesh, faces: &[Vec<usize>]) -> Vec<Ridge> {
-    let mut sides: BTreeMap<[usize; 2], Vec<(usize, Vector3<f64>, f64)>> = BTreeMap::new();
+    let mut sides = BTreeMap::<[usize; 2], Vec<Side>>::new();
     let at = |node: usize| Vector3::from(natural(mesh, node));
     for (number, face) in faces.iter().enumerate() {
         let kind = mesh.face_kind(face);
@@ -154,7 +157,7 @@ fn ridges(mesh: &Mesh, faces: &[Vec<usize>]) -> Vec<Ridge> {
             sides.entry(key).or_default().push((number, inward, width));
         }
     }
-    let ridge = |(ends, sides): (&[usize; 2], &Vec<(usize, Vector3<f64>, f64)>)| {
+    let ridge = |(ends, sides): (&[usize; 2], &Vec<Side>)| {
         let [(first, p, wide), (second, q, other)] = &sides[..] else { return None };
         let length = if ends[0] == ends[1] { 1.0 } else { (at(ends[1]) - at(ends[0])).norm() };
         let turn = p.angle(&-q);

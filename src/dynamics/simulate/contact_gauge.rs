@@ -20,7 +20,7 @@ pub(super) struct ContactGauge {
 
 /// What exerts a contact.
 enum Acting {
-    Obstacle(ActingObstacle),
+    Obstacle(Box<ActingObstacle>),
     Touch(TouchForce),
 }
 
@@ -44,7 +44,7 @@ impl ContactGauge {
     ) -> Result<Self, InputError> {
         let body = scene.body();
         let acting = match by {
-            By::Obstacle(name) => Acting::Obstacle(ActingObstacle::new(scene, name)?),
+            By::Obstacle(name) => Acting::Obstacle(Box::new(ActingObstacle::new(scene, name)?)),
             By::Touch(name) => Acting::Touch(scene.touch_force(name, "touch")?),
         };
         let count = body.mesh().node_count();

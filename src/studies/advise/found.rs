@@ -163,7 +163,7 @@ impl Found {
             resolution if resolution.is_nan() => self.off_at_rest(),
             resolution => resolution,
         };
-        is_known.then(|| Parts { time, model, mesh: mesh + left })
+        is_known.then_some(Parts { time, model, mesh: mesh + left })
     }
 
     /// By how much the mesh as it was written is off at rest (relative), if it is compared with no other and residuals tell; else NaN.
