@@ -61,11 +61,7 @@ const NEAR: f64 = 0.05;
 
 impl LearnedKey {
     /// The values of all keys in these scenes.
-<<<<<<< HEAD
-    #[cfg(feature = "study")]
-=======
     #[cfg(any(feature = "study", test))]
->>>>>>> h4
     pub(crate) fn of(scenes: &[&BTreeMap<String, String>]) -> BTreeMap<String, Self> {
         let keys = scenes.iter().flat_map(|scene| scene.keys());
         let learned = |key: &String| {
@@ -200,11 +196,7 @@ impl fmt::Display for ReducedModel {
     }
 }
 
-<<<<<<< HEAD
-#[cfg(all(test, feature = "study"))]
-=======
 #[cfg(test)]
->>>>>>> h4
 mod tests {
     use super::*;
 
@@ -217,11 +209,6 @@ mod tests {
         let scenes = [("0.0", "\"sin(t)\""), ("2.0", "\"sin(t)\""), ("1.0", "\"cos(t)\"")];
         let scenes = scenes.map(|(x, y)| keys(&[("load.1", x), ("load.2", y), ("until", "0.5")]));
         let learned = LearnedKey::of(&scenes.each_ref());
-<<<<<<< HEAD
-        let text = serde_json::to_string(&learned).unwrap();
-        assert_eq!(serde_json::from_str::<BTreeMap<String, LearnedKey>>(&text).unwrap(), learned);
-=======
->>>>>>> h4
         let value_of = |x: &str| learned["load.1"].has(x);
         assert!(value_of("1.3") && value_of("2.09") && !value_of("2.11") && !value_of("-0.2"));
         assert!(!value_of("") && !value_of("inf") && !value_of("\"t\""));
