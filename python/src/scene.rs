@@ -335,7 +335,7 @@ fn fitted(
     unknowns: Vec<(String, f64, f64)>,
 ) -> PyResult<FoundByFit> {
     let fitted = py.detach(|| {
-        let unknown = |(key, least, most)| Unknown::new::<String>(key, least, most);
+        let unknown = |(key, least, most): (String, f64, f64)| Unknown::new(key, least, most);
         let unknowns: Vec<Unknown> = unknowns.into_iter().map(unknown).collect();
         fit()?.fit(&unknowns, &mut |_, _| {})
     });

@@ -79,7 +79,7 @@ fn a_balloon_of_rubber() {
     let (a, b, mu) = (0.01, 0.03, 1e5);
     let rubber = Material::of_moduli(1000.0, mu, 1e5 * mu, 0.0).law(Law::NeoHookean);
     let inside = 1.6_f64;
-    let outside = (1.0 + (a / b as f64).powi(3) * (inside.powi(3) - 1.0)).cbrt();
+    let outside = f64::cbrt(1.0 + f64::powi(a / b, 3) * (inside.powi(3) - 1.0));
     let slope = |l: f64| 2.0 * mu * (l - l.powi(-5)) / (l.powi(3) - 1.0);
     let (n, h) = (1000, (inside - outside) / 2000.0);
     let at = |k: usize| slope(outside + h * k as f64);

@@ -21,7 +21,7 @@ pub(super) struct ContactGauge {
 /// What exerts a contact.
 enum Acting {
     Obstacle(Box<ActingObstacle>),
-    Touch(TouchForce),
+    Touch(Box<TouchForce>),
 }
 
 /// The contact with an obstacle, and how often each phase of the scene names it.
@@ -45,7 +45,7 @@ impl ContactGauge {
         let body = scene.body();
         let acting = match by {
             By::Obstacle(name) => Acting::Obstacle(Box::new(ActingObstacle::new(scene, name)?)),
-            By::Touch(name) => Acting::Touch(scene.touch_force(name, "touch")?),
+            By::Touch(name) => Acting::Touch(Box::new(scene.touch_force(name, "touch")?)),
         };
         let count = body.mesh().node_count();
         let nodes: Vec<usize> = match (nodes, of_body, by) {
