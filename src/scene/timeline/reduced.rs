@@ -66,6 +66,7 @@ impl Scene {
     /// # Errors
     /// Constraints that cannot be used.
     pub(crate) fn reduced_parts(&self) -> Result<Vec<(String, Vec<u8>)>, InputError> {
+        self.body.refuse_around("reduced model", "learned")?;
         let (body, mesh) = (&self.body, self.body.mesh());
         let bytes =
             |numbers: &[f64]| numbers.iter().flat_map(|x| x.to_le_bytes()).collect::<Vec<u8>>();

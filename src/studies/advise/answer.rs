@@ -138,6 +138,10 @@ impl fmt::Display for Advice {
             (None, None) => format!("{}: {}", candidate.choice, time_text(candidate.seconds)),
         };
         match &self.enough {
+            Some(enough) if self.mesh.is_some() => {
+                let besides = "Nothing that was tried is enough: no mesh is. On this one, besides what the mesh lacks:";
+                writeln!(f, "\n{besides} {}", run(enough))?;
+            }
             Some(enough) if self.resolution.is_nan() => {
                 writeln!(f, "\nEnough on this mesh: {}", run(enough))?;
             }
