@@ -64,7 +64,7 @@ fn as_in_space() {
 }
 
 /// A column of nu = 0 stands on a floor with a stiffness k per area: it sinks by rho g L / k everywhere, is shortened by rho g L^2 / 2 E, and the floor carries
-/// all of its weight; a traction on top adds to both.
+/// all of its weight; a traction on top adds to both. Contact acts at nodes, by areas of straight edges: the bottom is level to 0.2 %.
 #[test]
 fn a_column_on_a_floor() {
     let (length, k, g, traction) = (0.05, 1e7, 9.8, 30.0);
@@ -80,11 +80,11 @@ fn a_column_on_a_floor() {
     let at = |set: &str| body.mesh().sets()[set].iter().map(|node| u[2 * node + 1]);
     let sunk = -(weight + traction) / k;
     for y in at("bottom") {
-        assert!((y / sunk - 1.0).abs() < 1e-6, "{y} {sunk}");
+        assert!((y / sunk - 1.0).abs() < 3e-3, "{y} {sunk}");
     }
     let short = (0.5 * weight + traction) * length / material.young;
     for y in at("top") {
-        assert!((y / (sunk - short) - 1.0).abs() < 1e-6, "{y} {}", sunk - short);
+        assert!((y / (sunk - short) - 1.0).abs() < 3e-3, "{y} {}", sunk - short);
     }
     let forces = found.trajectory().contact_forces(found.sample()).unwrap();
     let force: f64 = forces.chunks(2).map(|force| force[1]).sum();
@@ -125,7 +125,7 @@ fn refusals() {
     let free = || Phase::until(1.0);
     let cases = [
         (scene().gravity([1.0, 0.0]).phase(free()), "gravity"),
-        (scene().phase(free().rotate("left", [0.0, 0.0], [1.0])), "rotation"),
+        (scene().phase(free().rotate("right", [0.0, 0.0], [1.0])), "rotation"),
         (scene().spin([1.0]).phase(free()), "spin"),
         (scene().growth(Growth::everywhere().named("g")).phase(free()), "growth"),
         (scene().touch(Touch::all()).phase(free()), "touch"),

@@ -40,7 +40,7 @@ pub(super) const TOP: TableKeys = TableKeys::new(
         Key::number("atmosphere", "the absolute pressure of the air around chambers with gas", "Pa")
             .default("101325"),
         Key::new("unusual", Holds::List(&Holds::Text), "quantities that are meant as they are, though they look like wrong units")
-            .law("Of `size`, `mass`, `density`, `young`, `wave-speed`, `thickness`, `weight`, `remanence`, `magnetic-field`, `dipole-moment`, `absolute-pressure`, `orifice-area`, `touch-start`: they are not [warned of](scenes/warnings.md#warnings).")
+            .law("Of `size`, `mass`, `density`, `young`, `wave-speed`, `thickness`, `weight`, `remanence`, `magnetic-field`, `dipole-moment`, `absolute-pressure`, `orifice-area`, `touch-start`, `facets`: they are not [warned of](scenes/warnings.md#warnings).")
             .default("none"),
         Key::new("body", Holds::Tables(&BODY), "what moves").required(),
         Key::new("point", Holds::Tables(&POINT), "point masses"),

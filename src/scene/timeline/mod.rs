@@ -118,7 +118,7 @@ pub struct Scene {
 }
 
 /// The quantities of a scene that may be [unusual](Scene::unusual): the names of the indicators of its units.
-pub(crate) const UNITS: [&str; 13] = [
+pub(crate) const UNITS: [&str; 14] = [
     "size",
     "mass",
     "density",
@@ -132,6 +132,7 @@ pub(crate) const UNITS: [&str; 13] = [
     "absolute-pressure",
     "orifice-area",
     "touch-start",
+    "facets",
 ];
 
 impl Scene {
@@ -248,7 +249,7 @@ impl Scene {
     ///
     /// They are among `size`, `mass`, `density`, `young`, `wave-speed`, `thickness`, `weight` (the strain
     /// of a column as high as the body under its own weight), `remanence`, `magnetic-field`, `dipole-moment`, `absolute-pressure` (of gas and
-    /// supplies) and `orifice-area`. [Indicators](Self::indicators) with these names
+    /// supplies), `orifice-area`, `touch-start` and `facets` (of a mesh from a file). [Indicators](Self::indicators) with these names
     /// keep their numbers and do not warn.
     ///
     /// ```
