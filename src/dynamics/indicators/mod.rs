@@ -124,7 +124,8 @@ impl Scene {
         let of_body = |part: Part| {
             let measured = units::units(self, part.body).into_iter();
             let measured = measured.chain(mesh::locking(part.body));
-            let measured = measured.chain(faceted::faceted(part.body));
+            let facets = faceted::faceted(part.body).into_iter().collect();
+            let measured = measured.chain(units::as_meant(self, facets));
             let measured = measured.chain(arched::arched(part.body));
             named(part.name, body, measured.chain(conformity::conformity(part.body)))
         };
