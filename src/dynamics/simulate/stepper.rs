@@ -115,7 +115,8 @@ impl<I: Integrator<System: Form> + Send> Stepper for I {
 /// Lets the system keep what it needs of the state that is reached, to interpolate.
 fn keep_end<I: Integrator<System: Form>>(integrator: &mut I) {
     let mut ends = take(Integrator::system_mut(integrator).system_mut().ends_mut());
-    ends.keep(Integrator::system(integrator).system(), integrator.t(), integrator.y());
+    let system = Integrator::system(integrator).system();
+    system.keep_end(&mut ends, integrator.t(), integrator.y());
     *Integrator::system_mut(integrator).system_mut().ends_mut() = ends;
 }
 

@@ -7,6 +7,7 @@
 
 use std::ops::Range;
 
+use super::ends::Ends;
 use super::{System, flow_of};
 use crate::base::simd::add_multiple;
 use crate::base::vector::dot;
@@ -18,35 +19,6 @@ const LARGEST_CHANGE: f64 = 10.0;
 
 /// Rounds over the chambers: walls of one may be those of another.
 const ROUNDS: usize = 3;
-
-/// Pressures (Pa) of liquids at the ends of the last step.
-#[derive(Default)]
-pub(crate) struct Ends {
-    /// Tolerances (kg) of the amounts; none without liquids that fill their chambers.
-    tolerances: Vec<f64>,
-    times: [f64; 2],
-    pressures: [Vec<f64>; 2],
-    gradient: Vec<f64>,
-    motion: Vec<f64>,
-    demands: Vec<f64>,
-    multipliers: Vec<f64>,
-}
-
-impl Ends {
-    /// Keeps the pressures of a `state` at time `t` (s) to which a step has led, or from which one begins.
-    pub(crate) fn keep(&mut self, system: &System, t: f64, state: &[f64]) {
-        let Some(flow) = flow_of(&system.flow).filter(|_| !self.tolerances.is_empty()) else {
-            return;
-        };
-        if self.times[1] == t {
-            return;
-        }
-        self.times = [self.times[1], t];
-        self.pressures.swap(0, 1);
-        let State { u, others, .. } = State::of(state, system.dofs());
-        flow.write_pressures(u, &others[system.amount_range()], &mut self.pressures[1]);
-    }
-}
 
 impl System {
     /// Whether liquids fill their chambers whole.
@@ -70,6 +42,20 @@ impl System {
                 demands,
             };
         }
+    }
+
+    /// Keeps the pressures of a `state` at time `t` (s) to which a step has led, or from which one begins.
+    pub(crate) fn keep_end(&self, ends: &mut Ends, t: f64, state: &[f64]) {
+        let Some(flow) = flow_of(&self.flow).filter(|_| !ends.tolerances.is_empty()) else {
+            return;
+        };
+        if ends.times[1] == t {
+            return;
+        }
+        ends.times = [ends.times[1], t];
+        ends.pressures.swap(0, 1);
+        let State { u, others, .. } = State::of(state, self.dofs());
+        flow.write_pressures(u, &others[self.amount_range()], &mut ends.pressures[1]);
     }
 
     /// What is known of the ends of the last step.
