@@ -451,7 +451,7 @@ pub trait Flow: Send + Sync {
     /// Writes the pressures (Pa) above that outside of what fills rooms whole, NaN of all others.
     fn write_pressures(&self, u: &[f64], amounts: &[f64], pressures: &mut [f64]);
 
-    /// What the volume of a room lacks (m^3) of that in which an amount (kg) has a pressure (Pa above that outside), and that volume;
+    /// The difference (m^3) from the volume of a room to that in which an amount (kg) has a pressure (Pa above that outside), and the latter;
     /// writes dV/du (m^2). `None` of what does not fill a room whole.
     fn missing(
         &self,

@@ -160,7 +160,7 @@ fn pulled(material: &str) -> String {
     )
 }
 
-/// What the command finds of an unknown, and what it says.
+/// The value that the command finds of an unknown, and its words.
 fn found_at_rest(place: &Place, unknowns: &[&str]) -> (Vec<f64>, String) {
     let mut arguments = vec!["fit", "scene.toml", "--static", "--data", "curve.csv", "--quiet"];
     arguments.extend(unknowns.iter().flat_map(|unknown| ["--unknown", unknown]));

@@ -9,7 +9,7 @@ use pliant::{
 
 const GRAVITY: [f64; 2] = [0.0, -9.8];
 
-/// What a sensor read with each sample.
+/// The readings of a sensor, sample by sample.
 fn series(motion: &Trajectory, name: &str) -> Vec<f64> {
     let number = motion.sensors().iter().position(|sensor| sensor.name == name).unwrap();
     motion.samples().iter().map(|sample| sample.sensors[number]).collect()
@@ -146,7 +146,7 @@ fn a_place_within_a_cell() {
     close(&fine[0], &fine[1], 6e-3 * sway);
 }
 
-/// What was read at three times in a row: the rate in between by differences, and the largest rate.
+/// Readings at three times in a row: the rate in between by differences, and the largest rate.
 fn rates(motion: &Trajectory, of: &str, rate: &str) -> (f64, f64) {
     let (values, rates) = (series(motion, of), series(motion, rate));
     let times: Vec<f64> = motion.samples().iter().map(|sample| sample.time).collect();
@@ -233,7 +233,7 @@ fn rates_are_those_of_what_is_read() {
     }
 }
 
-/// What cannot be read says why.
+/// Sensors that cannot be read say why.
 #[test]
 fn refusals() {
     let mesh = Mesh::cuboid([0.1; 3], [2; 3], SolidCells::Hexahedra).unwrap();

@@ -99,7 +99,7 @@ fn refused(found: Result<(), InputError>, words: &[&str]) {
     }
 }
 
-/// What a body of revolution does not have is named, with what to do.
+/// Parts that a body of revolution cannot have are named, with the mend.
 #[test]
 fn refusals() {
     let build = |body: BodyBuilder| body.build().map(|_| ());

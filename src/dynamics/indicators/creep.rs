@@ -20,7 +20,7 @@ const MOST_CREEP: f64 = 0.01;
 /// ... or to this part of the size of the body where that is more.
 const LEAST_WAY: f64 = 0.01;
 
-/// What creeps on an obstacle, or where bodies touch.
+/// The creep on an obstacle, or where bodies touch.
 #[derive(Default)]
 struct Creep {
     /// By the nodes and shares of each point.
@@ -67,7 +67,7 @@ impl Creep {
     }
 }
 
-/// What sticks to an obstacle, or where bodies touch, and how far it creeps, contact by contact.
+/// How far surfaces creep that stick to an obstacle or to another body, contact by contact.
 pub(super) fn creep(trajectory: &Trajectory, samples: &[&Sample]) -> Vec<Indicator> {
     let scene = trajectory.scene();
     let rubs = scene.obstacles().iter().any(|obstacle| obstacle.has_friction())

@@ -21,9 +21,10 @@ impl Sensors {
     /// A sensor that is not read.
     pub(super) fn ending(&self, phase: &Phase) -> Result<Option<usize>, InputError> {
         let Some(end) = &phase.ends else { return Ok(None) };
-        let names: Vec<&str> = self.quantities.iter().map(|column| &column.name[..]).collect();
-        let column = names.iter().position(|name| *name == end.sensor);
+        let mut names = self.quantities.iter().map(|column| &column.name[..]);
+        let column = names.position(|name| name == end.sensor);
         column.map(Some).ok_or_else(|| {
+            let names: Vec<&str> = self.quantities.iter().map(|column| &column.name[..]).collect();
             let input = format!("end of phase \"{}\"", phase.name());
             let help = unknown_among(&end.sensor, &names, "run", "sensors");
             InputError::new(input, format!("sensor \"{}\"", end.sensor), help)

@@ -33,7 +33,7 @@ pub(super) enum At {
     Marker(Selection, Vec<f64>),
 }
 
-/// What is read of its motion.
+/// The quantity that is read of its motion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Motion {
     Position,

@@ -11,7 +11,7 @@ use crate::base::input::{InputError, finite};
 use crate::scene::timeline::Scene;
 
 impl Motion {
-    /// What is read of a place that moves by a sum over the values of nodes.
+    /// The reading of a place that moves by a sum over the values of nodes.
     fn of(self, view: &View, sum: impl Fn(&[f64]) -> [f64; 3]) -> [f64; 3] {
         match self {
             Self::Position => {

@@ -250,7 +250,7 @@ impl Run {
         Ok(())
     }
 
-    /// What sensors see at time `t` (s) within the last step; `state` has room for a state.
+    /// The sample that sensors see at time `t` (s) within the last step; `state` has room for a state.
     pub(super) fn seen(
         &self,
         stepper: &mut dyn Stepper,

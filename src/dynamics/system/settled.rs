@@ -58,7 +58,7 @@ impl System {
         flow.write_pressures(u, &others[self.amount_range()], &mut ends.pressures[1]);
     }
 
-    /// What is known of the ends of the last step.
+    /// The pressures at the ends of the last step.
     pub(crate) fn ends_mut(&mut self) -> &mut Ends {
         &mut self.ends
     }

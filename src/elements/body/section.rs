@@ -1,4 +1,4 @@
-//! What makes volumes of the lengths or areas of cells.
+//! Factors from the lengths or areas of cells to their volumes.
 
 use std::f64::consts::TAU;
 

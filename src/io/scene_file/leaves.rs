@@ -12,7 +12,7 @@ use super::set_value::canonical;
 const NOT_WHAT_HAPPENS: [&str; 9] =
     ["title", "dimension", "unusual", "body", "point", "sensor", "solver", "statics", "output"];
 
-/// What happens in a scene: numbers and words by their keys, as `phase.push.load.total.2`. Elements of lists have their names or numbers,
+/// Numbers and words of a scene by their keys, as `phase.push.load.total.2`. Elements of lists have their names or numbers,
 /// but for the only one.
 pub(super) fn leaves(entries: &DeTable) -> BTreeMap<String, String> {
     let mut found = BTreeMap::new();

@@ -360,7 +360,7 @@ fn turning(table: &Table, mesh: &Mesh, reading: Reading) -> Result<Reading, Erro
     of_nodes(table, mesh, of_body(table, reading)?)
 }
 
-/// What is read on the nodes of the table, if there are any.
+/// The nodes of the table that are read, if there are any.
 fn of_nodes(table: &Table, mesh: &Mesh, reading: Reading) -> Result<Reading, Error> {
     table.added(reading, "nodes", |value| selection(value, mesh), Reading::on)
 }

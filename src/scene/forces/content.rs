@@ -39,12 +39,8 @@ pub(crate) trait Content: Send + Sync {
     /// As [`press`](Self::press).
     fn gauge(&self, u: &[f64], amount: f64) -> Result<f64, Failure>;
 
-    /// Whether it hardly changes its volume: an error of that which tolerances allow is one of many kilopascals.
-    fn is_stiff(&self) -> bool {
-        false
-    }
-
-    /// The volume (m^3) in which an `amount` (kg) has the pressure `gauge` (Pa), of what is [stiff](Self::is_stiff).
+    /// The volume (m^3) in which an `amount` (kg) has the pressure `gauge` (Pa), of what hardly changes it: there an error of the volume that
+    /// tolerances allow is one of many kilopascals.
     fn volume_under(&self, _amount: f64, _gauge: f64) -> Option<f64> {
         None
     }

@@ -282,10 +282,6 @@ impl Content for Poured {
         self.held.gauge(u, amount)
     }
 
-    fn is_stiff(&self) -> bool {
-        self.held.is_stiff()
-    }
-
     fn volume_under(&self, amount: f64, gauge: f64) -> Option<f64> {
         self.held.volume_under(amount, gauge)
     }

@@ -18,7 +18,7 @@ use crate::scene::forces::{DipolePart, MagneticField, Obstacle, Signal, VectorSi
 pub struct Phase {
     pub(crate) name: String,
     pub(crate) until: f64,
-    /// What ends it before.
+    /// The level of a sensor that ends it before.
     pub(crate) ends: Option<PhaseEnd>,
     /// Acceleration of gravity (m/s^2), if it is another one than the scene's.
     pub(crate) gravity: Option<Vec<f64>>,
@@ -44,7 +44,7 @@ pub struct Phase {
     pub(crate) dipoles: Vec<(String, DipolePart, VectorSignal)>,
 }
 
-/// What ends a phase before its time.
+/// The level of a sensor that ends a phase before its time.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct PhaseEnd {
     /// Name of the column of a sensor.

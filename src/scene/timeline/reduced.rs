@@ -18,7 +18,7 @@ impl Scene {
         self
     }
 
-    /// What its file says happens in it; nothing without a file.
+    /// The keys of its file that say what happens in it, with their values; none without a file.
     pub(crate) fn written_keys(&self) -> &BTreeMap<String, String> {
         &self.written.0
     }

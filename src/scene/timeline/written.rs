@@ -1,10 +1,10 @@
-//! What a scene file says, beside the scene that was made of it.
+//! Keys of a scene file, beside the scene that was made of it.
 
 use std::collections::BTreeMap;
 use std::fmt;
 use std::sync::Arc;
 
-/// What a scene file says happens in the scene, by its keys. The same for all scenes in their Debug text, as the scene has it all itself.
+/// Values by the keys of a scene file that say what happens in the scene. The same for all scenes in their Debug text, as the scene has it all itself.
 #[derive(Clone, Default)]
 pub(super) struct WrittenKeys(pub(super) Arc<BTreeMap<String, String>>);
 

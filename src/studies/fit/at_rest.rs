@@ -83,7 +83,7 @@ fn numbers(name: &str, values: &[SetValue]) -> Result<Vec<f64>, InputError> {
     values.iter().enumerate().map(number).collect()
 }
 
-/// What the equilibria are drawn over: the first key that is a number, with its unit, or else their own numbers.
+/// The abscissa of equilibria: the first key that is a number, with its unit, or else their own numbers.
 fn along(
     text: &str,
     path: &Path,

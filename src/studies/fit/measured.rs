@@ -1,4 +1,4 @@
-//! What was measured: a table over time, or of equilibria.
+//! Measurements: a table over time, or of equilibria.
 
 use std::io;
 use std::path::Path;

@@ -2,7 +2,7 @@
 
 use crate::dynamics::trajectory::Quantity;
 
-/// What was measured: each sensor, with what it has read row by row.
+/// Measurements: each sensor, with what it has read row by row.
 pub(super) type Columns = Vec<(Quantity, Vec<f64>)>;
 
 /// The rows of measurements.
@@ -15,7 +15,7 @@ pub(super) enum Rows {
 }
 
 impl Rows {
-    /// What they are drawn over, and its name with its unit.
+    /// Their abscissa, and its name with its unit.
     pub(super) fn along(&self) -> (&[f64], &str) {
         match self {
             Self::Times(times) => (times, "time (s)"),

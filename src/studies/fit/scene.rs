@@ -29,9 +29,9 @@ pub struct SceneFit {
     overrides: Vec<String>,
     /// Where something was measured.
     rows: Rows,
-    /// What was measured there.
+    /// The measurements there.
     columns: Columns,
-    /// What the residuals of each column are divided by.
+    /// The scale of the residuals of each column.
     scales: Vec<f64>,
     precision: f64,
 }
@@ -223,7 +223,7 @@ impl SceneFit {
         Ok(columns.collect())
     }
 
-    /// What the sensors read in a motion at some times (s).
+    /// Readings of the sensors in a motion at some times (s).
     fn in_motion(&self, overrides: &[String], times: &[f64]) -> Result<Vec<Vec<f64>>, Error> {
         let file = SceneFile::parse_with(&self.text, &self.path, overrides)?;
         let last = times.last().copied().unwrap_or_default();
@@ -243,7 +243,7 @@ impl SceneFit {
         Ok(times.iter().map(row).collect())
     }
 
-    /// What the sensors read in an equilibrium.
+    /// Readings of the sensors in an equilibrium.
     fn in_equilibrium(&self, overrides: &[String]) -> Result<Vec<f64>, Error> {
         let found = SceneFile::parse_with(&self.text, &self.path, overrides)?.equilibrium()?;
         let places = self.places(found.trajectory())?;

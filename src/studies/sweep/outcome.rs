@@ -1,4 +1,4 @@
-//! What a point comes to: a motion, or an equilibrium.
+//! The outcome of a point: a motion, or an equilibrium.
 
 use std::ops::ControlFlow;
 
@@ -11,7 +11,7 @@ use crate::io::scene_file::{SceneFile, StudyFile};
 use crate::studies::work_precision::Verification;
 use crate::studies::work_precision::quantity::Quantity;
 
-/// What a point has come to.
+/// The outcome of a point.
 #[derive(Debug)]
 #[allow(clippy::large_enum_variant, reason = "there is one of them at a time")]
 pub enum Outcome {
@@ -85,7 +85,7 @@ impl Outcome {
 /// The warning of an equilibrium that a small push ends.
 const UNSTABLE: &str = "unstable";
 
-/// What was computed for a point: the scene, the number of each quantity, and the whole.
+/// The results for a point: the scene, the number of each quantity, and the whole.
 pub(super) struct Computed {
     pub(super) file: SceneFile,
     pub(super) numbers: Vec<Option<f64>>,
@@ -167,7 +167,7 @@ pub(super) fn equilibrium(file: SceneFile, study: &StudyFile) -> Result<Computed
     Ok(Computed { file, numbers, outcome: Outcome::Equilibrium(Ok(found)) })
 }
 
-/// What is sampled: what the scene asks for, and the quantities.
+/// The sampling that the scene asks for, with the quantities.
 fn sampling(file: &SceneFile, quantities: &[Quantity], is_verified: bool) -> Sampling {
     let end = file.scene.end();
     let mut sampling = match is_verified {

@@ -52,7 +52,7 @@ pub struct PointRun {
     pub row: Row,
     /// The scene, and what it asks for; none if it cannot be read.
     pub file: Option<SceneFile>,
-    /// What it has come to; none if the run did not begin.
+    /// Its outcome; none if the run did not begin.
     pub outcome: Option<Outcome>,
 }
 

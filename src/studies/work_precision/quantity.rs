@@ -127,7 +127,7 @@ impl Quantity {
         Ok(())
     }
 
-    /// What it reads of an equilibrium.
+    /// The reading of an equilibrium.
     ///
     /// # Errors
     /// A motion, a part that equilibria do not have, several components.

@@ -46,6 +46,11 @@ impl AmountFlow {
     }
 }
 
+/// Whether it hardly changes its volume.
+fn is_stiff(content: &dyn Content) -> bool {
+    content.volume_under(content.amount(), 0.0).is_some()
+}
+
 impl Flow for AmountFlow {
     fn rooms(&self) -> usize {
         self.gases.len() + self.liquids.len() + self.lagging.len()
@@ -121,13 +126,13 @@ impl Flow for AmountFlow {
     }
 
     fn is_stiff(&self) -> bool {
-        self.liquids.iter().any(Content::is_stiff)
+        self.all().any(is_stiff)
     }
 
     fn write_pressures(&self, u: &[f64], amounts: &[f64], pressures: &mut [f64]) {
         pressures.fill(f64::NAN);
         let each = self.all().zip(amounts).zip(pressures);
-        for ((content, &amount), pressure) in each.filter(|((content, _), _)| content.is_stiff()) {
+        for ((content, &amount), pressure) in each.filter(|((content, _), _)| is_stiff(*content)) {
             *pressure = content.gauge(u, amount).unwrap_or(f64::NAN);
         }
     }

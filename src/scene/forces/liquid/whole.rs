@@ -154,10 +154,6 @@ impl Content for Whole {
         Ok(self.full(u, amount)?.pressure)
     }
 
-    fn is_stiff(&self) -> bool {
-        true
-    }
-
     fn volume_under(&self, amount: f64, gauge: f64) -> Option<f64> {
         Some(self.natural(amount) * (1.0 - gauge / self.bulk))
     }
