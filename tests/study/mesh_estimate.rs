@@ -124,10 +124,10 @@ fn beams_in_the_plane() -> Outcome {
                 match strain {
                     // one linear solve has it all; round-off is 2e-9
                     Strain::Cauchy => assert!((effectivity / of_pair - 1.0).abs() < 1e-7, "{what}"),
-                    // found: 0.89 to 0.99 by 11 to 17 factorizations instead of one
+                    // found: 0.89 to 0.99 by 8 to 10 factorizations instead of one
                     Strain::Green if cells != Triangles6 => {
                         assert_within(of_pair, &(0.88..=1.0), &what);
-                        assert!(solve(&richer(&scene)?)?.factorizations >= 10, "{what}");
+                        assert!(solve(&richer(&scene)?)?.factorizations >= 8, "{what}");
                     }
                     Strain::Green => assert_within(of_pair, &(0.66..=0.74), &what),
                 }

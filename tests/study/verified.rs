@@ -233,3 +233,27 @@ fn peaks_of_constraint_forces_are_found() -> Outcome {
     assert!((largest / expected - 1.0).abs() < 0.003, "{largest} {expected}");
     Ok(())
 }
+
+/// A pulse of a function of a program between the looks of the first run, and between those of the second were they but as often as its tolerance
+/// takes: the second looks at other times, and runs go on until they agree that it is there.
+#[test]
+fn a_pulse_between_looks_is_seen() -> Outcome {
+    // a look of the second run; 0.66 and 0.5 of the way between the others
+    let (middle, width, impulse) = (0.300015, 3e-6, 1e-4);
+    let load = move |t: f64| {
+        let acts = (t - middle).abs() < 0.5 * width;
+        [if acts { impulse / width } else { 0.0 }]
+    };
+    let material = Material { density: 1000.0, young: 1e6, poisson: 0.3, viscosity: 3e3 };
+    let body = Body::new(Mesh::bar(0.1, 4)?, material).area(1e-4).build()?;
+    let mass = body.mass();
+    let scene = Scene::new(body)
+        .initial_velocity(|_| vec![0.01])
+        .phase(Phase::until(1.0).load_with("right", load));
+    let motion = verify(Verification::new(&scene, 1e-2))?;
+    let (found, expected) = (motion.momentum(motion.last())[0], 0.01 * mass + impulse);
+    println!("{found} N s, {expected} N s: {}", achieved(&motion));
+    assert!(achieved(&motion).is_enough());
+    assert!((found / expected - 1.0).abs() < 1e-2, "{found} {expected}");
+    Ok(())
+}

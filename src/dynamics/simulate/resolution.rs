@@ -55,7 +55,13 @@ impl Resolution {
         is_same && self.span[0] <= t && self.span[1] == stop
     }
 
-    pub(super) fn new(scene: &Scene, phase: &Arc<Phase>, span: [f64; 2], rtol: f64) -> Self {
+    /// That of a `phase` for the tolerance `rtol`, in a `span` (s). Functions of programs are looked at so many `times` as often as that takes.
+    pub(super) fn new(
+        scene: &Scene,
+        phase: &Arc<Phase>,
+        span: [f64; 2],
+        [rtol, times]: [f64; 2],
+    ) -> Self {
         let all = scene.varying_in(phase);
         let before = span[1] - 32.0 * f64::EPSILON * span[1].abs();
         let jumps = |varying: &Varying| {
@@ -65,7 +71,9 @@ impl Resolution {
         let end = if before > span[0] && all.iter().any(jumps) { before } else { span[1] };
         let [least, most] = DEVIATIONS;
         let deviation = (DEVIATION * rtol).clamp(least, most);
-        let courses = all.into_iter().filter_map(|one| Course::new(one, [span[0], end], deviation));
+        let looks = times * LOOKS * (1e-3 / deviation).powf(0.2);
+        let course = |one| Course::new(one, [span[0], end], [deviation, looks]);
+        let courses = all.into_iter().filter_map(course);
         Self { courses: courses.collect(), phase: Some(phase.clone()), span, end }
     }
 
@@ -105,7 +113,7 @@ struct Cell {
 
 impl Course {
     /// None if the number does not change.
-    fn new(varying: Varying, span: [f64; 2], deviation: f64) -> Option<Self> {
+    fn new(varying: Varying, span: [f64; 2], [deviation, looks]: [f64; 2]) -> Option<Self> {
         let length = span[1] - span[0];
         let time = |k: usize, n: usize| span[0] + k as f64 / n as f64 * length;
         let mut range = [f64::INFINITY, f64::NEG_INFINITY];
@@ -126,7 +134,6 @@ impl Course {
         if is_formula && range[0] >= range[1] {
             return None;
         }
-        let looks = LOOKS * (1e-3 / deviation).powf(0.2);
         let narrowest = NARROWEST[usize::from(!is_formula)] * length;
         // integrators take times that are nearer for the same
         let narrowest = narrowest.max(1e-10 * span[0].abs().max(span[1].abs()));

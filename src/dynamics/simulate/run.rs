@@ -87,8 +87,10 @@ pub(super) struct Run {
     pub(super) least_energy: f64,
     /// A time (s) at which steps end, though no interval does.
     pub(super) pause: Option<f64>,
-    /// The bounds of the steps of the interval.
+    /// The bounds of the steps of the interval, and how many times as often as its tolerance takes functions of programs are looked at for
+    /// them.
     resolution: Resolution,
+    pub(super) looks: f64,
     /// What is known of the error of a reduced model, if the scene is run by one.
     pub(super) reduced: Option<Mutex<ReducedChecks>>,
 }
@@ -176,6 +178,7 @@ impl Run {
             least_energy: least_energy(scene.body()),
             pause: None,
             resolution: Resolution::default(),
+            looks: 1.0,
             reduced: scene.reduced_model().map(|model| {
                 Mutex::new(ReducedChecks::new(scene, model, sampling.keeps_lacking()))
             }),
@@ -294,7 +297,8 @@ impl Run {
         let stop = self.phase_run.interval.stop;
         if !self.resolution.is_of(&self.phase, self.time, stop) {
             let span = [self.time, stop];
-            self.resolution = Resolution::new(&self.scene, &self.phase, span, self.settings.rtol);
+            let looks = [self.settings.rtol, self.looks];
+            self.resolution = Resolution::new(&self.scene, &self.phase, span, looks);
         }
         let end = match self.stop() {
             end if end == stop => self.resolution.end(),
@@ -414,6 +418,7 @@ impl Run {
             least_energy: self.least_energy,
             pause: None,
             resolution: Resolution::default(),
+            looks: self.looks,
             reduced: self.reduced.as_ref().map(|checks| Mutex::new(locked(checks).clone())),
         }
     }

@@ -129,6 +129,12 @@ impl Simulation {
         self.run.sample(self.time, &self.now)
     }
 
+    /// Looks so many `times` as often at functions of programs, to see pulses in them, from the next step on.
+    #[cfg(feature = "study")]
+    pub(crate) fn look_more_often(&mut self, times: f64) {
+        self.run.looks = times;
+    }
+
     /// The scene.
     pub fn scene(&self) -> &Scene {
         &self.run.scene

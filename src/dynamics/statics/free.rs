@@ -117,11 +117,15 @@ impl Search<'_> {
         self.balance(self.statics.max_iterations)
     }
 
-    /// Resultants of the loads, in words, along the motions that nothing restrains, where the search has
-    /// arrived.
-    pub(super) fn resultants(&self) -> Vec<String> {
+    /// Resultants of the loads last tried, in words, along the motions that nothing restrains, where the search has arrived.
+    pub(super) fn resultants(&mut self) -> Vec<String> {
         let motions = self.free_motions(&self.u);
-        motions.iter().filter_map(|motion| motion.resultant(&self.at.total)).collect()
+        if self.evaluate().is_err() {
+            return Vec::new();
+        }
+        self.rest.update_tangent(self.tried, &self.u);
+        let round_off = self.round_off();
+        motions.iter().filter_map(|motion| motion.resultant(&self.at.total, round_off)).collect()
     }
 
     /// The rigid motions that the constraints leave free, of the body with the displacements `u`.
@@ -137,7 +141,7 @@ impl Search<'_> {
 
     /// Whether a turn along circles causes no strain; with linear strain, one along straight lines causes
     /// none.
-    fn turns_in_circles(&self) -> bool {
+    pub(super) fn turns_in_circles(&self) -> bool {
         self.body.constant_stiffness().is_none()
     }
 

@@ -28,6 +28,7 @@
 
 mod arc_length;
 mod continuation;
+mod descent;
 mod free;
 mod newton;
 mod options;
@@ -176,10 +177,12 @@ impl Scene {
         if !free.is_empty() && search.rest.is_under_dead_loads() {
             // forces are defined in the undeformed shape
             let _ = search.rest.evaluate(1.0, &search.u, &mut search.at);
+            let round_off = search.round_off();
             // a turn may balance a moment
             let is_lost = |motion: &&RigidMotion| !motion.is_turn && search.is_neutral(motion, 0.0);
             let mut lost = free.iter().filter(|motion| linear || is_lost(motion));
-            if let Some(resultant) = lost.find_map(|motion| motion.resultant(&search.at.total)) {
+            let resultant = |motion: &RigidMotion| motion.resultant(&search.at.total, round_off);
+            if let Some(resultant) = lost.find_map(resultant) {
                 let freedom = format!("for {words}; {resultant}");
                 return Err(loose(&freedom, "hold more of its nodes, or balance the loads"));
             }

@@ -1,8 +1,7 @@
 //! The search for an equilibrium: Newton's method with falling energy, load step by load step.
 
 use super::options::Statics;
-use crate::base::simd::add_multiple;
-use crate::base::vector::{dot, largest};
+use crate::base::vector::largest;
 use crate::dynamics::equilibrium::Stability;
 use crate::dynamics::system::{AtRest, ForceBalance};
 use crate::elements::body::Body;
@@ -94,7 +93,8 @@ const NEAR: f64 = 0.5;
 pub(super) const SHIFTS: [f64; 2] = [1e-10, 1e3];
 
 /// Why a step is not taken.
-const PASSED: &str = "surfaces that touch would pass through each other: take more load_steps";
+pub(super) const PASSED: &str =
+    "surfaces that touch would pass through each other: take more load_steps";
 
 impl<'a> Search<'a> {
     /// From the start of `rest`.
@@ -162,7 +162,8 @@ impl<'a> Search<'a> {
         self.residual = f64::INFINITY;
         let from = self.u.clone();
         self.evaluate()?;
-        for iteration in 0..max_iterations {
+        let predicted = usize::from(max_iterations > 1 && self.predict()?);
+        for iteration in predicted..max_iterations {
             self.iterations += 1;
             self.turn();
             self.prepare()?;
@@ -177,12 +178,7 @@ impl<'a> Search<'a> {
             }
             if lacking > 1e-12 * self.size && iteration < 2 {
                 // the constraints are met first, even if the energy rises
-                self.work.copy_from_slice(&self.u);
-                self.u.iter_mut().zip(&self.x).for_each(|(u, x)| *u += x);
-                if self.rest.passage(&self.work, &self.u).is_some() {
-                    return Err(self.stuck(PASSED.into()));
-                }
-                self.evaluate()?;
+                self.meet()?;
                 continue;
             }
             let is_newton = self.shift == self.floor;
@@ -252,8 +248,13 @@ impl<'a> Search<'a> {
         if self.residual < 0.5 * before {
             return false;
         }
+        self.residual <= self.round_off()
+    }
+
+    /// Size of the round-off in nodal forces (N) where the search is.
+    pub(super) fn round_off(&mut self) -> f64 {
         self.work.iter_mut().zip(&self.u).for_each(|(size, u)| *size = u.abs());
-        self.residual <= self.rest.round_off(&self.work)
+        self.rest.round_off(&self.work)
     }
 
     pub(super) fn evaluate(&mut self) -> Result<(), Stuck> {
@@ -278,45 +279,6 @@ impl<'a> Search<'a> {
         }
         self.is_done = true;
         Ok(())
-    }
-
-    /// Line search: goes along x, `factor` times its length at most, so far that the energy falls.
-    fn descend(&mut self, mut factor: f64) -> Result<(), Stuck> {
-        let slope = -dot(&self.at.total, &self.x);
-        let mut refused = None;
-        for _ in 0..40 {
-            self.work.copy_from_slice(&self.u);
-            add_multiple(factor, &self.x, &mut self.work);
-            if let Some(part) = self.rest.passage(&self.u, &self.work) {
-                refused = Some(PASSED.to_owned());
-                factor *= part.clamp(0.1, 0.9);
-                continue;
-            }
-            let shorter = match self.rest.evaluate(self.tried, &self.work, &mut self.trial) {
-                Ok(()) => {
-                    let rise = self.trial.energy_since(&self.at, factor, &self.x);
-                    let round_off = self.trial.round_off(&self.u) + self.at.round_off(&self.u);
-                    if rise <= 1e-4 * factor * slope + round_off {
-                        std::mem::swap(&mut self.at, &mut self.trial);
-                        std::mem::swap(&mut self.u, &mut self.work);
-                        return Ok(());
-                    }
-                    // minimum of the parabola through the known values
-                    -0.5 * slope * factor / (rise / factor - slope)
-                }
-                Err(Failure::Recoverable(message)) => {
-                    refused = Some(message);
-                    0.5 * factor
-                }
-                Err(fatal) => return Err(self.stuck(reason(fatal))),
-            };
-            // if it is NaN, for example: half
-            let shorter = if shorter.is_finite() { shorter } else { 0.5 * factor };
-            factor = shorter.clamp(0.1 * factor, 0.5 * factor);
-        }
-        let stalled = "the energy falls no further along the Newton step: forces without a \
-                       potential, or with a jump, may have no equilibrium here";
-        Err(self.stuck(refused.unwrap_or_else(|| stalled.into())))
     }
 
     /// Stability of the equilibrium at `u`, by the last factorization: that of K there.

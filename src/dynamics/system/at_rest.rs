@@ -366,6 +366,20 @@ impl AtRest {
         8.0 * f64::EPSILON * terms.fold(0.0, f64::max)
     }
 
+    /// Factorizes the matrix that `add` makes in the place of K. A slight multiple of M holds what it does not hold.
+    pub(crate) fn factorize_other(&mut self, add: impl FnOnce(&mut BlockMatrix)) -> bool {
+        let Some(matrix) = self.system.newton.stiffness.begin(&None) else { return false };
+        add(matrix);
+        self.factorize(SLIGHT * self.highest())
+    }
+
+    /// The change x, which the constraints allow, by the last factorization.
+    pub(crate) fn solve_other(&mut self, right: &[f64], x: &mut [f64]) {
+        let System { rows, newton, .. } = &mut self.system;
+        let nowhere = vec![0.0; rows.len()];
+        newton.solver.solve(rows, right, &nowhere, x, &mut nowhere.clone());
+    }
+
     /// Largest component of f + A mu (N).
     pub(crate) fn residual(&self, f: &[f64], mu: &[f64], work: &mut [f64]) -> f64 {
         work.copy_from_slice(f);
@@ -418,6 +432,9 @@ pub(super) fn shifted(
     let mass = if axes[0] == axes[1] { inertia.values[entry] } else { 0.0 };
     shift * mass + stiffness.symmetric(entry, transposed, axes)
 }
+
+/// That multiple, as a part of the largest ratio of entries.
+const SLIGHT: f64 = 1e-10;
 
 /// Bound on inverse iterations: enough for six digits even of close pairs of eigenvalues.
 const ITERATIONS: usize = 300;

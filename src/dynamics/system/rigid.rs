@@ -89,13 +89,14 @@ impl RigidMotion {
         self.nodes.iter().map(work).sum()
     }
 
-    /// The resultant along the motion, in words, of the nodal `loads` (N) if they are not in balance.
-    pub(crate) fn resultant(&self, loads: &[f64]) -> Option<String> {
+    /// The resultant along the motion, in words, of the nodal `loads` (N) if they are not in balance, but for this `round_off` (N) of each.
+    pub(crate) fn resultant(&self, loads: &[f64], round_off: f64) -> Option<String> {
         let sum = dot(&self.values, loads);
-        let terms: f64 = self.values.iter().zip(loads).map(|(r, f)| (r * f).abs()).sum();
+        let terms = self.values.iter().zip(loads);
+        let nothing: f64 = terms.map(|(r, f)| r.abs() * (BALANCED * f.abs() + round_off)).sum();
         let what = if self.is_turn { "moment of" } else { "force of" };
         let unit = if self.is_turn { "N m" } else { "N" };
-        (sum.abs() > BALANCED * terms)
+        (sum.abs() > nothing)
             .then(|| format!("loads leave a {what} {sum:.3e} {unit} for {}", self.words))
     }
 }

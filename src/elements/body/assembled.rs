@@ -409,6 +409,17 @@ impl Body {
         })
     }
 
+    /// Adds to `matrix` that of the Poisson equation of [steps that turn](super::turning).
+    pub(crate) fn add_gradients(&self, matrix: &mut BlockMatrix) {
+        self.continua.iter().for_each(|own| own.elements.add_gradients(matrix));
+    }
+
+    /// Adds its right-hand side for a `step` (m) from displacements `u` (m) to `right`. Returns the largest turn (rad) of a cell.
+    pub(crate) fn add_turned(&self, u: &[f64], step: &[f64], right: &mut [f64]) -> f64 {
+        let turns = self.continua.iter().map(|own| own.elements.add_turned(u, step, right));
+        turns.fold(0.0, f64::max)
+    }
+
     /// Volume of the cells (m^3).
     pub fn volume(&self) -> f64 {
         self.cell_volumes().iter().sum()

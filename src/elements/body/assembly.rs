@@ -18,6 +18,7 @@ use super::recovery::Recovery;
 use super::section::Section;
 use super::strain_modes::StrainProducts;
 use super::tangents::Tangents;
+use super::turning::Turning;
 use crate::base::input::InputError;
 use crate::base::sparse::NodePattern;
 use crate::elements::basis::{ReferenceCell, with_element};
@@ -33,6 +34,7 @@ pub(super) trait Elements:
     + Magnetized
     + InDipoleField
     + Tangents
+    + Turning
     + Fields
     + BranchFields
     + GrownFields

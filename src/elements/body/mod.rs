@@ -47,6 +47,7 @@ mod strands;
 mod tangents;
 #[cfg(test)]
 mod tests;
+mod turning;
 mod whole;
 
 pub use assembled::Body;

@@ -95,16 +95,26 @@ pub(super) struct Troubles {
 /// The error of the user's system, for the integrator's own error.
 pub(super) type ErrorSource = Option<Box<dyn error::Error + Send + Sync>>;
 
+/// Most requests for a smaller step at the same time.
+const MOST_STUCK: u32 = 30;
+
 impl Troubles {
     /// Notes a request for a smaller step, and stops where that no longer helps: near a time that cannot be
     /// passed, SUNDIALS would forever make steps that are lost in rounding.
     fn retry(&mut self, t: f64, cause: Cause) -> i32 {
-        const MOST: u32 = 30;
         let same_time = |at: f64| (t - at).abs() <= 4.0 * f64::EPSILON * t.abs();
         let again = self.retry.as_ref().is_some_and(|(at, _)| same_time(*at));
         self.stuck = if again { self.stuck + 1 } else { 0 };
         self.retry = Some((t, cause));
-        if self.stuck < MOST { RETRY } else { STOP }
+        if self.stuck < MOST_STUCK { RETRY } else { STOP }
+    }
+
+    /// Whether all that went wrong is a request for a smaller step, at another time than `start`, from where the step goes.
+    pub(super) fn ask_for_less(&self, start: f64) -> bool {
+        let is_worse = self.panic.is_some() || self.fatal.is_some() || self.wrong.is_some();
+        !is_worse
+            && self.stuck < MOST_STUCK
+            && self.retry.as_ref().is_some_and(|(t, _)| *t != start)
     }
 
     /// Forgets everything, keeping allocations.

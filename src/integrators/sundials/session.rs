@@ -57,6 +57,8 @@ pub(super) struct Session<K, S> {
     pub(super) progress: Progress,
     /// Size of the first step, if it is not estimated.
     pub(super) initial_step: Option<f64>,
+    /// Whether all steps have the same size.
+    pub(super) has_fixed_step: bool,
     /// Whether there is a step to interpolate in. C does not check, and returns NaN or what the previous run
     /// has left.
     pub(super) has_step: bool,
@@ -152,6 +154,7 @@ impl<K, S> Session<K, S> {
             stop_time: StopTime::default(),
             progress: Progress::new(start.t),
             initial_step: None,
+            has_fixed_step: false,
             has_step: false,
             failed_within: false,
             history_lost: false,

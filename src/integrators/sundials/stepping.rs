@@ -193,7 +193,7 @@ impl<K, S> Session<K, S> {
         self.host.get_mut().troubles.begin(self.t);
         self.failed_within = false;
         let (single, mut taken) = (if stops { ffi::CV_ONE_STEP } else { task }, 0);
-        let mut shortened = 0;
+        let (mut shortened, mut is_shortened) = (0, false);
         let code = loop {
             let most = STRETCH.min(u64::from(self.max_steps) - taken);
             // SAFETY: the value is a plain number.
@@ -211,6 +211,10 @@ impl<K, S> Session<K, S> {
                 self.host.get_mut().troubles.clear();
                 continue;
             }
+            if self.shortens_explicit_step(code, stop)? {
+                is_shortened = true;
+                continue;
+            }
             let goes_on = code == ffi::CV_TOO_MUCH_WORK || stops && code == DONE;
             if !goes_on || self.progress.stands || taken >= u64::from(self.max_steps) {
                 break code;
@@ -219,6 +223,10 @@ impl<K, S> Session<K, S> {
         if shortened > 0 || whole.is_some() {
             // SAFETY: the value is a plain number, which requests an estimate.
             unsafe { self.set(functions.set_initial_step, 0.0)? };
+        }
+        if is_shortened {
+            // SAFETY: the value is a plain number.
+            unsafe { self.set(functions.set_initial_step, self.initial_step.unwrap_or(0.0))? };
         }
         if stops {
             // C has forgotten the stop time of the caller
@@ -303,6 +311,35 @@ impl<K, S> Session<K, S> {
         self.start_c_again(before)?;
         // SAFETY: the value is a plain number.
         unsafe { self.set(self.memory.functions.set_initial_step, h)? };
+        Ok(true)
+    }
+
+    /// After an explicit stage of ARKODE without a right-hand side: lets C go on from the end of the last step with a smaller one, up to the time
+    /// `stop`, with its counts as they are, if that may help. C has no retry there.
+    fn shortens_explicit_step(&mut self, code: i32, stop: Option<f64>) -> Result<bool, Error> {
+        let functions = self.memory.functions;
+        let (Some(reset), Some(end)) = (functions.reset, self.host.get().step_end) else {
+            return Ok(false);
+        };
+        let failed = [ffi::ARK_UNREC_RHSFUNC_ERR, ffi::ARK_RHSFUNC_FAIL].contains(&code);
+        let h = 0.25 * self.step_statistics().current_step;
+        // a state where the right-hand side is undefined itself stays so
+        if !failed
+            || self.has_fixed_step
+            || !self.host.get().troubles.ask_for_less(end)
+            || end + h == end
+        {
+            return Ok(false);
+        }
+        // SAFETY: memory and vector are alive; C has written the end of the last step there, and copies it. The values are plain numbers.
+        unsafe {
+            self.host.call(reset, |reset| reset(self.memory.raw, end, self.scratch.raw()))?;
+            self.set(functions.set_initial_step, h)?;
+            if let Some(stop) = stop {
+                self.set(functions.set_stop_time, stop)?;
+            }
+        }
+        self.t = end;
         Ok(true)
     }
 

@@ -14,8 +14,8 @@ pub(crate) struct Closed<C> {
     content: C,
     /// The whole amount (kg).
     amount: f64,
-    /// The amount (kg) at t = 0, and the time (s) at which it has risen along a straight line to the whole one; none where it is
-    /// constant.
+    /// The amount (kg) at t = 0, and the time (s) at which it has risen along a straight line to the whole one, and its weight from nothing; none where
+    /// they are constant.
     rise: Option<[f64; 2]>,
     /// The nodes of the walls.
     nodes: Vec<usize>,
@@ -31,14 +31,15 @@ impl<C: Content> Closed<C> {
         Self { content, amount, rise: None, nodes, gradient }
     }
 
-    /// With an amount that rises along a straight line `from` one (kg) at t = 0 to `amount` at time `end` (s).
+    /// With an amount that rises along a straight line `from` one (kg) at t = 0 to `amount` at time `end` (s), and a weight that rises with it.
     pub(crate) fn rising(content: C, amount: f64, dofs: usize, [from, end]: [f64; 2]) -> Self {
         Self { rise: Some([from, end]), ..Self::new(content, amount, dofs) }
     }
 
-    /// The amount (kg) at time `t` (s).
-    fn amount(&self, t: f64) -> f64 {
-        self.rise.map_or(self.amount, |[from, end]| from + t / end * (self.amount - from))
+    /// The amount (kg) at time `t` (s), and the part of its weight that acts.
+    fn at(&self, t: f64) -> (f64, f64) {
+        let risen = |[from, end]: [f64; 2]| (from + t / end * (self.amount - from), t / end);
+        self.rise.map_or((self.amount, 1.0), risen)
     }
 }
 
@@ -50,11 +51,12 @@ impl<C: Content> Force for Closed<C> {
         _v: &[f64],
         forces: &mut NodalForces,
     ) -> Result<(), Failure> {
-        self.content.press(u, self.amount(t), forces)
+        let (amount, weight) = self.at(t);
+        self.content.press(u, amount, weight, forces)
     }
 
     fn check_step(&self, t: f64, _before: &[f64], after: &[f64]) -> Result<(), Failure> {
-        self.content.check(t, after, self.amount(t))
+        self.content.check(t, after, self.at(t).0)
     }
 
     fn add_tangents(
@@ -67,7 +69,8 @@ impl<C: Content> Force for Closed<C> {
     ) -> Tangents {
         let mut gradient = self.gradient.lock().unwrap_or_else(PoisonError::into_inner);
         gradient.fill(0.0);
-        let linear = self.content.linearize(u, self.amount(t), stiffness, &mut gradient);
+        let (amount, weight) = self.at(t);
+        let linear = self.content.linearize(u, amount, weight, stiffness, &mut gradient);
         // the forces refuse such a state
         let Some([_, factor, _]) = linear else { return Tangents::Added };
         let d = stiffness.dimension();
@@ -85,7 +88,8 @@ impl<C: Content> Force for Closed<C> {
     }
 
     fn potential(&self, t: f64, u: &[f64]) -> f64 {
-        self.content.potential(u, self.amount(t))
+        let (amount, weight) = self.at(t);
+        self.content.potential(u, amount, weight)
     }
 
     fn reservoir(&self) -> Reservoir {

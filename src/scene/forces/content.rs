@@ -13,11 +13,18 @@ pub(crate) trait Content: Send + Sync {
     /// The amount (kg) at the start.
     fn amount(&self) -> f64;
 
-    /// Adds the forces of an `amount` (kg) under the displacements `u` (m).
+    /// Adds the forces of an `amount` (kg) under the displacements `u` (m). In a chamber that it fills whole, the part `weight` of its weight acts;
+    /// otherwise the amount says it.
     ///
     /// # Errors
     /// A state without meaning: walls that have passed through each other, no amount that is left.
-    fn press(&self, u: &[f64], amount: f64, forces: &mut NodalForces) -> Result<(), Failure>;
+    fn press(
+        &self,
+        u: &[f64],
+        amount: f64,
+        weight: f64,
+        forces: &mut NodalForces,
+    ) -> Result<(), Failure>;
 
     /// Adds the tangent under a pressure that stays to `stiffness`, and the derivative of what the pressure acts on (dV/du, m^2) to `gradient`. Returns the
     /// pressure (Pa), of gas the absolute one, and its derivatives by the volume, -dp/dV (Pa/m^3), and by the amount, dp/dm (Pa/kg). `None` where
@@ -26,12 +33,13 @@ pub(crate) trait Content: Send + Sync {
         &self,
         u: &[f64],
         amount: f64,
+        weight: f64,
         stiffness: &mut BlockMatrix,
         gradient: &mut [f64],
     ) -> Option<[f64; 3]>;
 
     /// Potential energy (J), 0 at the start.
-    fn potential(&self, u: &[f64], amount: f64) -> f64;
+    fn potential(&self, u: &[f64], amount: f64, weight: f64) -> f64;
 
     /// By what the pressure of an `amount` (kg) exceeds that outside (Pa) under the displacements `u` (m).
     ///

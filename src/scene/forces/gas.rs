@@ -198,7 +198,13 @@ impl Content for Filled {
         self.amount
     }
 
-    fn press(&self, u: &[f64], amount: f64, forces: &mut NodalForces) -> Result<(), Failure> {
+    fn press(
+        &self,
+        u: &[f64],
+        amount: f64,
+        _weight: f64,
+        forces: &mut NodalForces,
+    ) -> Result<(), Failure> {
         self.push(u, amount, forces).map(|_| ())
     }
 
@@ -206,6 +212,7 @@ impl Content for Filled {
         &self,
         u: &[f64],
         amount: f64,
+        _weight: f64,
         stiffness: &mut BlockMatrix,
         gradient: &mut [f64],
     ) -> Option<[f64; 3]> {
@@ -217,7 +224,7 @@ impl Content for Filled {
     }
 
     /// With that of the air around.
-    fn potential(&self, u: &[f64], amount: f64) -> f64 {
+    fn potential(&self, u: &[f64], amount: f64, _weight: f64) -> f64 {
         let Ok([pressure, volume]) = self.pressure(u, amount) else { return f64::NAN };
         let [work, _] = self.work(pressure);
         let more = amount - self.amount;

@@ -260,22 +260,29 @@ impl Content for Poured {
         self.held.amount()
     }
 
-    fn press(&self, u: &[f64], amount: f64, forces: &mut NodalForces) -> Result<(), Failure> {
-        self.held.press(u, amount, forces)
+    fn press(
+        &self,
+        u: &[f64],
+        amount: f64,
+        weight: f64,
+        forces: &mut NodalForces,
+    ) -> Result<(), Failure> {
+        self.held.press(u, amount, weight, forces)
     }
 
     fn linearize(
         &self,
         u: &[f64],
         amount: f64,
+        weight: f64,
         stiffness: &mut BlockMatrix,
         gradient: &mut [f64],
     ) -> Option<[f64; 3]> {
-        self.held.linearize(u, amount, stiffness, gradient)
+        self.held.linearize(u, amount, weight, stiffness, gradient)
     }
 
-    fn potential(&self, u: &[f64], amount: f64) -> f64 {
-        self.held.potential(u, amount)
+    fn potential(&self, u: &[f64], amount: f64, weight: f64) -> f64 {
+        self.held.potential(u, amount, weight)
     }
 
     fn gauge(&self, u: &[f64], amount: f64) -> Result<f64, Failure> {

@@ -29,8 +29,8 @@ use crate::integrators::{
 /// [`ButcherTable::imex`](super::ButcherTable::imex) makes it a pair of both, for a right-hand side that is
 /// [split](Ode::is_split).
 ///
-/// After a recoverable failure of the right-hand side, implicit methods retry with a smaller step; explicit
-/// ones and explicit parts stop, as SUNDIALS has no retry there.
+/// After a recoverable failure of the right-hand side it retries with a smaller step; with a fixed step, explicit methods and explicit
+/// parts stop.
 ///
 /// Interpolation between the steps is by Hermite polynomials, of a degree one less than the order of the
 /// method, at most 3 for implicit and 5 for explicit methods. Degrees 4 and 5 evaluate the right-hand side.
@@ -253,6 +253,7 @@ impl<S: Ode> Session<ArkodeKind, S> {
             // Post-processing of steps makes ARKODE evaluate the right-hand side at their ends; it is used
             // for fixed steps only.
             if let Some(h) = options.fixed_step {
+                arkode.has_fixed_step = true;
                 arkode.set(named!(ARKStepSetFixedStep), h)?;
                 arkode
                     .set(named!(ARKStepSetPostprocessStepFn as _), Some(note_step_end::<S> as _))?;

@@ -99,7 +99,7 @@ impl Flow for AmountFlow {
         let [liquids, lagging] = self.parts();
         let each = amounts[liquids..].iter().zip(&mut rates[liquids..]);
         for (liquid, (&amount, rate)) in self.liquids.iter().zip(each) {
-            liquid.press(u, amount, forces)?;
+            liquid.press(u, amount, 1.0, forces)?;
             *rate = liquid.rate(t)?;
             if *rate != 0.0 {
                 power += liquid.brought(u, amount)?[0] * *rate;
@@ -113,7 +113,7 @@ impl Flow for AmountFlow {
     }
 
     fn potential_of(&self, u: &[f64], amounts: &[f64]) -> f64 {
-        self.all().zip(amounts).map(|(content, &amount)| content.potential(u, amount)).sum()
+        self.all().zip(amounts).map(|(content, &amount)| content.potential(u, amount, 1.0)).sum()
     }
 
     fn kinetic_of(&self, unknowns: &[f64]) -> f64 {
@@ -168,7 +168,7 @@ impl Flow for AmountFlow {
         [&mut *by_volumes, by_amounts, stiff, pressing, flows].iter_mut().for_each(|x| x.fill(0.0));
         for (number, (content, &amount)) in self.all().zip(amounts).enumerate() {
             let gradient = &mut gradients[number * u.len()..][..u.len()];
-            let linear = content.linearize(u, amount, stiffness, gradient);
+            let linear = content.linearize(u, amount, 1.0, stiffness, gradient);
             let Some([pressure, by_volume, by_amount]) = linear else { return };
             (pressures[number], stiff[number], pressing[number]) = (pressure, by_volume, by_amount);
         }
@@ -226,7 +226,7 @@ impl Force for AmountFlow {
         forces: &mut NodalForces,
     ) -> Result<(), Failure> {
         let mut all = self.all().zip(&self.start);
-        all.try_for_each(|(content, &amount)| content.press(u, amount, forces))
+        all.try_for_each(|(content, &amount)| content.press(u, amount, 1.0, forces))
     }
 
     fn add_tangents(

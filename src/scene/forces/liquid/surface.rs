@@ -49,7 +49,7 @@ impl Pool {
         let rest = vec![0.0; dofs];
         let mut pool = Self { walls, basin, density, gravity, amount, first: 0.0, zero: 0.0 };
         pool.first = pool.basin.level(pool.natural(amount), &rest)?.height;
-        pool.zero = pool.potential(&rest, amount);
+        pool.zero = pool.potential(&rest, amount, 1.0);
         Ok(pool)
     }
 
@@ -90,7 +90,13 @@ impl Content for Pool {
         self.amount
     }
 
-    fn press(&self, u: &[f64], amount: f64, forces: &mut NodalForces) -> Result<(), Failure> {
+    fn press(
+        &self,
+        u: &[f64],
+        amount: f64,
+        _weight: f64,
+        forces: &mut NodalForces,
+    ) -> Result<(), Failure> {
         let Level { height, .. } = self.level_of(u, amount)?;
         let factors = [self.heaviness(), 0.0];
         self.basin.add_gradients(factors, height, u, &mut forces.conservative);
@@ -102,6 +108,7 @@ impl Content for Pool {
         &self,
         u: &[f64],
         amount: f64,
+        _weight: f64,
         stiffness: &mut BlockMatrix,
         gradient: &mut [f64],
     ) -> Option<[f64; 3]> {
@@ -112,7 +119,7 @@ impl Content for Pool {
         Some([heaviness * (height - self.first), heaviness / area, self.gravity / area])
     }
 
-    fn potential(&self, u: &[f64], amount: f64) -> f64 {
+    fn potential(&self, u: &[f64], amount: f64, _weight: f64) -> f64 {
         let Ok(Level { height, .. }) = self.level_of(u, amount) else { return f64::NAN };
         let weight = (height - self.first) * self.natural(amount) - self.basin.moment(height, u);
         self.heaviness() * weight - self.zero + self.lifted() * (amount - self.amount)

@@ -84,7 +84,8 @@ impl Whole {
         0.5 * self.bulk * (natural - volume).powi(2) / natural
     }
 
-    fn full(&self, u: &[f64], amount: f64) -> Result<Full, Failure> {
+    /// With a part `weight` of its weight.
+    fn full(&self, u: &[f64], amount: f64, weight: f64) -> Result<Full, Failure> {
         let (volume, name) = (self.walls.volume(u), self.walls.name());
         let refused = |words: String| {
             Err(Failure::Recoverable(format!("chamber \"{name}\" with a liquid {words}")))
@@ -98,7 +99,7 @@ impl Whole {
         let natural = self.natural(amount);
         let pressure = self.bulk * (natural - volume) / natural;
         let [heaviness, middle] = self.weight.as_ref().map_or([0.0; 2], |(moment, gravity)| {
-            [amount * gravity / volume, moment.value(u) / volume]
+            [weight * amount * gravity / volume, moment.value(u) / volume]
         });
         Ok(Full { pressure, volume, heaviness, middle })
     }
@@ -113,8 +114,14 @@ impl Content for Whole {
         self.amount
     }
 
-    fn press(&self, u: &[f64], amount: f64, forces: &mut NodalForces) -> Result<(), Failure> {
-        let Full { pressure, heaviness, middle, .. } = self.full(u, amount)?;
+    fn press(
+        &self,
+        u: &[f64],
+        amount: f64,
+        weight: f64,
+        forces: &mut NodalForces,
+    ) -> Result<(), Failure> {
+        let Full { pressure, heaviness, middle, .. } = self.full(u, amount, weight)?;
         let forces = &mut forces.conservative;
         self.walls.add_gradient(pressure - heaviness * middle, u, forces);
         if let Some((moment, _)) = &self.weight {
@@ -127,10 +134,11 @@ impl Content for Whole {
         &self,
         u: &[f64],
         amount: f64,
+        weight: f64,
         stiffness: &mut BlockMatrix,
         gradient: &mut [f64],
     ) -> Option<[f64; 3]> {
-        let Full { pressure, volume, heaviness, middle } = self.full(u, amount).ok()?;
+        let Full { pressure, volume, heaviness, middle } = self.full(u, amount, weight).ok()?;
         let stiff = self.bulk / self.natural(amount);
         let part = heaviness / (stiff * volume);
         self.walls.add_hessian(heaviness * middle - pressure, u, stiffness);
@@ -142,16 +150,16 @@ impl Content for Whole {
         Some([pressure, stiff, self.pressing(volume, amount)])
     }
 
-    fn potential(&self, u: &[f64], amount: f64) -> f64 {
-        let Ok(Full { volume, heaviness, middle, .. }) = self.full(u, amount) else {
+    fn potential(&self, u: &[f64], amount: f64, weight: f64) -> f64 {
+        let Ok(Full { volume, heaviness, middle, .. }) = self.full(u, amount, weight) else {
             return f64::NAN;
         };
-        let weight = self.lifted * (amount - self.amount) - heaviness * volume * middle;
+        let weight = weight * self.lifted * (amount - self.amount) - heaviness * volume * middle;
         self.strain_energy(volume, amount) - self.zero + weight
     }
 
     fn gauge(&self, u: &[f64], amount: f64) -> Result<f64, Failure> {
-        Ok(self.full(u, amount)?.pressure)
+        Ok(self.full(u, amount, 1.0)?.pressure)
     }
 
     fn volume_under(&self, amount: f64, gauge: f64) -> Option<f64> {
@@ -161,7 +169,7 @@ impl Content for Whole {
 
 impl Held for Whole {
     fn brought(&self, u: &[f64], amount: f64) -> Result<[f64; 2], Failure> {
-        let Full { pressure, volume, middle, .. } = self.full(u, amount)?;
+        let Full { pressure, volume, middle, .. } = self.full(u, amount, 1.0)?;
         let part = pressure / self.bulk;
         let compressed = pressure * (1.0 - 0.5 * part) / self.density;
         let gravity = self.weight.as_ref().map_or(0.0, |(_, gravity)| *gravity);
