@@ -695,7 +695,7 @@ def material(
         Poisson's ratio at small strains, below 0.5 (no unit). Default: required; in a region, that of the body. It
         follows from the law's `bulk`, if that is given.
     viscosity
-        the viscous modulus (Pa s). Default: required; in a region, that of the body.
+        the viscous modulus (Pa s). Default: 0; in a region, that of the body. Equilibria do not depend on it.
     mass_damping
         damping in proportion to mass: force -a M v (1/s). Default: 0; in a region, that of the body. As of air or
         water around: it brakes motions of the whole body, too. Vibrations of circular frequency omega are damped by

@@ -53,7 +53,8 @@ fn free_growth_has_no_stress() {
         let stress = stress.fold(0.0, |most: f64, s| most.max(s.abs())) / YOUNG;
         let strain = motion.cell_fields(sample).unwrap()[0].strain[0][0];
         println!("{d} dimensions: {apart:.1e} apart, stress {stress:.1e} of young");
-        assert!(apart < 1e-14 && stress < 1e-13, "{d} dimensions: {apart:e}, {stress:e}");
+        // equilibria have a tolerance of 1e-10; the last step of Newton's method leaves 3e-14
+        assert!(apart < 6e-14 && stress < 6e-14, "{d} dimensions: {apart:e}, {stress:e}");
         assert!((strain - 0.22).abs() < 1e-13, "{strain}"); // (1.2^2 - 1)/2
     }
 }

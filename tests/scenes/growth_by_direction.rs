@@ -221,7 +221,7 @@ fn growth_in_plane_strain_is_pressed() {
         let expected = YOUNG * across / (g * square);
         let energy = g.powi(3) * 0.5 * YOUNG * across * across;
         println!("{moved:.1e} m, {strain:.1e}, {stress} Pa, expected {expected}");
-        assert!(moved < 1e-15 && strain.abs() < 1e-15, "{moved} {strain}");
+        assert!(moved < 3e-15 && strain.abs() < 1e-15, "{moved} {strain}");
         assert!((stress / expected - 1.0).abs() < 1e-12, "{stress} {expected}");
         assert!((field.energy_density / energy - 1.0).abs() < 1e-12, "{}", field.energy_density);
     }

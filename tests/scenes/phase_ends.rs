@@ -62,6 +62,10 @@ fn a_fall_to_a_height() {
 /// A height that is not reached ends nothing; nor does a level that is passed the other way, or that the sensor begins beyond.
 #[test]
 fn until_at_the_latest() {
+    let told = falling(0.25).summary().unwrap();
+    let words = told[0].ends.as_deref();
+    assert_eq!(words, Some("ends as \"height\" falls below -0.42"));
+    assert_eq!((told[0].end, told[1].ends.as_deref()), (0.25, None));
     let early = falling(0.25).simulate(&Settings::default(), &sampling()).unwrap();
     let fall = &early.report().phases[0];
     assert_eq!((fall.end, fall.ended_by.as_deref()), (0.25, None));

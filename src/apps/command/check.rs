@@ -124,6 +124,9 @@ fn made_of(substance: &Substance, strain: Strain) -> String {
     if *mass_damping > 0.0 {
         text += &format!(", mass damping {mass_damping} 1/s");
     }
+    if material.viscosity == 0.0 && *mass_damping == 0.0 && branches.is_empty() {
+        text += ", undamped";
+    }
     for (count, what) in
         [(branches.len(), "Maxwell branches"), (fibres.len(), "families of fibres")]
     {
@@ -234,7 +237,7 @@ fn timeline(phases: &[PhaseSummary]) -> Result<(), Failure> {
 
 /// What acts in a phase, in words.
 fn acting(phase: &PhaseSummary) -> String {
-    let mut words = Vec::new();
+    let mut words: Vec<String> = phase.ends.iter().cloned().collect();
     if let Some(gravity) = &phase.gravity {
         words.push(format!("gravity {gravity:?} m/s^2"));
     }

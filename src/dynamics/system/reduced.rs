@@ -16,24 +16,19 @@ mod tests;
 
 use std::sync::Arc;
 
-use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
-use faer::linalg::cholesky::llt::factor::{
-    LltError, LltRegularization, cholesky_in_place, cholesky_in_place_scratch,
-};
-use faer::linalg::cholesky::llt::solve::{solve_in_place, solve_in_place_scratch};
 use faer::sparse::SymbolicSparseColMat;
-use faer::{Mat, MatMut, Par, Spec};
 
 use super::cholesky::Indefinite;
 use super::edge_solver::EdgeSolver;
 use super::edges::Edge;
+use super::general_rows::{GeneralRow, GeneralRows};
 use super::gradients::Gradients;
 use super::source::{Coupling, EntrySource};
 use super::symmetric::Symmetric;
 use crate::base::sparse::NodePattern;
 use crate::dynamics::matrices::Matrices;
 use crate::elements::body::RigidPieces;
-use crate::scene::constraint::{ConstraintRow, independent_terms};
+use crate::scene::constraint::ConstraintRow;
 
 /// Residual, relative to the right-hand side, that is round-off.
 pub(super) const EXACT: f64 = 1e-13;
@@ -201,7 +196,7 @@ impl Reduced {
         self.assemble_border(&value);
         self.general.rows.iter_mut().for_each(|row| row.spring = 0.0);
         self.symmetric.begin(accuracy, value)?;
-        self.eliminate()
+        self.eliminate(true)
     }
 
     /// Factorizes X, positive definite where the general rows of single nodes hold, whose entries `value`
@@ -218,18 +213,18 @@ impl Reduced {
             self.stiffening.extend(entries.iter().map(|&(at, product)| (at, stiffness * product)));
         }
         self.symmetric.factorize(value, &self.stiffening)?;
-        self.eliminate()
+        self.eliminate(true)
     }
 
     /// Factorizes the X last given, which has turned out not to be positive definite.
     pub(super) fn factorize_indefinite(&mut self) -> Result<(), Indefinite> {
         self.symmetric.factorize_indefinite()?;
-        self.eliminate()
+        self.eliminate(false)
     }
 
-    /// Prepares what the general rows and the edges need of the X in force.
-    fn eliminate(&mut self) -> Result<(), Indefinite> {
-        self.general.factorize(&mut self.symmetric)?;
+    /// Prepares what the general rows and the edges need of the X in force, `definite` or not.
+    fn eliminate(&mut self, definite: bool) -> Result<(), Indefinite> {
+        self.general.factorize(&mut self.symmetric, definite)?;
         let Some(edges) = &mut self.edges else { return Ok(()) };
         for column in 0..edges.frames.len() {
             let z = edges.z.col_as_slice_mut(column);
@@ -323,142 +318,6 @@ impl Reduced {
     /// The general row found to follow from the others (its number in the list of all rows).
     pub(super) fn dependent_row(&self) -> Option<usize> {
         self.general.dependent
-    }
-}
-
-/// The Schur complement S = G^T X^-1 G of the general rows, with G their free part.
-struct GeneralRows {
-    /// Number of each general row in the list of all rows, its free and its fixed terms.
-    rows: Vec<GeneralRow>,
-    /// X^-1 G, one column per row.
-    inverse_g: Mat<f64>,
-    schur: Mat<f64>,
-    right: Vec<f64>,
-    memory: MemBuffer,
-    dependent: Option<usize>,
-}
-
-struct GeneralRow {
-    number: usize,
-    free: Vec<(usize, f64)>,
-    fixed: Vec<(usize, f64)>,
-    /// Stiffness of the spring along it in the X in force.
-    spring: f64,
-}
-
-impl GeneralRows {
-    fn new(
-        rows: &[ConstraintRow],
-        position: &[Option<usize>],
-        rigid: Option<&RigidPieces>,
-        dimension: usize,
-    ) -> Self {
-        let general = rows.iter().enumerate().filter(|(_, row)| row.nodal().is_none());
-        let rows: Vec<GeneralRow> = general
-            .map(|(number, row)| {
-                let terms = independent_terms(&row.terms, rigid, dimension);
-                let split = |&(dof, c): &(usize, f64)| position[dof].map(|at| (at, c));
-                let is_fixed = |&&(dof, _): &&(usize, f64)| position[dof].is_none();
-                GeneralRow {
-                    number,
-                    free: terms.iter().filter_map(split).collect(),
-                    fixed: terms.iter().filter(is_fixed).copied().collect(),
-                    spring: 0.0,
-                }
-            })
-            .collect();
-        let (free, count) = (position.iter().flatten().count(), rows.len());
-        let memory = MemBuffer::new(StackReq::any_of(&[
-            cholesky_in_place_scratch::<f64>(count, Par::Seq, Spec::default()),
-            solve_in_place_scratch::<f64>(count, 1, Par::Seq),
-        ]));
-        Self {
-            rows,
-            inverse_g: Mat::zeros(free, count),
-            schur: Mat::zeros(count, count),
-            right: vec![0.0; count],
-            memory,
-            dependent: None,
-        }
-    }
-
-    fn factorize(&mut self, symmetric: &mut Symmetric) -> Result<(), Indefinite> {
-        if self.rows.is_empty() {
-            return Ok(());
-        }
-        for (k, row) in self.rows.iter().enumerate() {
-            let column = self.inverse_g.col_as_slice_mut(k);
-            column.fill(0.0);
-            row.free.iter().for_each(|&(at, coefficient)| column[at] = coefficient);
-            symmetric.solve(column);
-        }
-        for (i, row) in self.rows.iter().enumerate() {
-            for j in 0..self.rows.len() {
-                let column = self.inverse_g.col_as_slice(j);
-                self.schur[(i, j)] = row.free.iter().map(|&(at, c)| c * column[at]).sum();
-            }
-        }
-        let diagonal: Vec<f64> = (0..self.rows.len()).map(|i| self.schur[(i, i)]).collect();
-        let factorized = cholesky_in_place(
-            self.schur.as_mut(),
-            LltRegularization::default(),
-            Par::Seq,
-            MemStack::new(&mut self.memory),
-            Spec::default(),
-        );
-        // A row that follows from the rows before it leaves a pivot of the size of round-off.
-        let pivot_is_lost = |&i: &usize| self.schur[(i, i)].powi(2) <= 1e-12 * diagonal[i];
-        let lost = match factorized {
-            Err(LltError::NonPositivePivot { index }) => Some(index),
-            Ok(_) => (0..self.rows.len()).find(pivot_is_lost),
-        };
-        self.dependent = lost.map(|i| self.rows[i].number);
-        if lost.is_some() { Err(Indefinite) } else { Ok(()) }
-    }
-
-    /// Corrects `free` = X^-1 f so that the rows hold.
-    fn solve(
-        &mut self,
-        all: &[ConstraintRow],
-        d: &[f64],
-        x: &[f64],
-        free: &mut [f64],
-        mu: &mut [f64],
-    ) {
-        if self.rows.is_empty() {
-            return;
-        }
-        debug_assert_eq!(all.len(), d.len());
-        for (right, row) in self.right.iter_mut().zip(&self.rows) {
-            let fixed: f64 = row.fixed.iter().map(|&(dof, c)| c * x[dof]).sum();
-            *right = d[row.number] - fixed;
-        }
-        self.correct(free);
-        for (multiplier, row) in self.right.iter().zip(&self.rows) {
-            let fixed: f64 = row.fixed.iter().map(|&(dof, c)| c * x[dof]).sum();
-            mu[row.number] = *multiplier - row.spring * (d[row.number] - fixed);
-        }
-    }
-
-    /// Corrects `free` = X^-1 f so that the rows have the values `right`, which becomes their multipliers.
-    fn correct(&mut self, free: &mut [f64]) {
-        if self.rows.is_empty() {
-            return;
-        }
-        for (right, row) in self.right.iter_mut().zip(&self.rows) {
-            *right -= row.free.iter().map(|&(at, c)| c * free[at]).sum::<f64>();
-        }
-        let count = self.rows.len();
-        solve_in_place(
-            self.schur.as_ref(),
-            MatMut::from_column_major_slice_mut(&mut self.right, count, 1),
-            Par::Seq,
-            MemStack::new(&mut self.memory),
-        );
-        for (k, multiplier) in self.right.iter().enumerate() {
-            let column = self.inverse_g.col_as_slice(k);
-            free.iter_mut().zip(column).for_each(|(x, g)| *x += g * multiplier);
-        }
     }
 }
 

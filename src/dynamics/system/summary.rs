@@ -13,8 +13,10 @@ pub struct PhaseSummary {
     pub name: String,
     /// When it begins (s).
     pub start: f64,
-    /// When it ends (s).
+    /// When it ends (s), at the latest.
     pub end: f64,
+    /// The sensor that ends it before, and the level that this passes, in words.
+    pub ends: Option<String>,
     /// Acceleration of gravity (m/s^2), if it differs from the scene's.
     pub gravity: Option<Vec<f64>>,
     /// Number of rows of its constraints: one for each component of a node that is held or moved.
@@ -67,6 +69,7 @@ impl Scene {
             name: phase.name.clone(),
             start,
             end: phase.until,
+            ends: phase.ends.as_ref().map(ToString::to_string),
             gravity: gravity.map(Into::into),
             constraints: rows.len(),
             loaded_nodes,

@@ -44,7 +44,9 @@ pub(super) const MATERIAL: TableKeys = TableKeys::new(
         Key::number("poisson", "Poisson's ratio at small strains, below 0.5", "1")
             .law("It follows from the law's `bulk`, if that is given.")
             .default(OF_BODY),
-        Key::number("viscosity", "the viscous modulus", "Pa s").default(OF_BODY),
+        Key::number("viscosity", "the viscous modulus", "Pa s")
+            .law("Equilibria do not depend on it.")
+            .default("0; in a region, that of the body"),
         Key::number("mass_damping", "damping in proportion to mass: force -a M v", "1/s")
             .law("As of air or water around: it brakes motions of the whole body, too. Vibrations of circular frequency omega are damped by \
                   the ratio a / (2 omega).")
@@ -209,7 +211,7 @@ pub(super) fn substance(value: &Value, base: Option<&Substance>) -> Result<Subst
         }
         (None, _) => number("density", of_body)?,
     };
-    let viscosity = number("viscosity", known.map(|m| m.viscosity))?;
+    let viscosity = number("viscosity", Some(known.map_or(0.0, |m| m.viscosity)))?;
     let material = match (shear, bulk) {
         (Some(shear), Some(bulk)) => Material::of_moduli(density, shear, bulk, viscosity),
         _ => {

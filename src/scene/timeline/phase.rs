@@ -1,5 +1,6 @@
 //! Phases: what is held, moved, loaded and touched during a stretch of time.
 
+use std::fmt;
 use std::sync::Arc;
 
 use super::load::Load;
@@ -52,6 +53,13 @@ pub(crate) struct PhaseEnd {
     /// The level (in the unit of the sensor) that it passes, upwards or downwards.
     pub(crate) level: f64,
     pub(crate) rises: bool,
+}
+
+impl fmt::Display for PhaseEnd {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let passes = if self.rises { "rises above" } else { "falls below" };
+        write!(f, "ends as \"{}\" {passes} {}", self.sensor, self.level)
+    }
 }
 
 /// The obstacles that act.
