@@ -64,7 +64,7 @@ fn a_fall_to_a_height() {
 fn until_at_the_latest() {
     let told = falling(0.25).summary().unwrap();
     let words = told[0].ends.as_deref();
-    assert_eq!(words, Some("ends as \"height\" falls below -0.42"));
+    assert_eq!(words.unwrap(), format!("ends as \"height\" falls below {}", 0.03 - DROP));
     assert_eq!((told[0].end, told[1].ends.as_deref()), (0.25, None));
     let early = falling(0.25).simulate(&Settings::default(), &sampling()).unwrap();
     let fall = &early.report().phases[0];
