@@ -16,14 +16,14 @@ use super::Outcome;
 use super::page::*;
 
 /// The data that a page holds of its motion.
-fn data(page: &Page) -> Result<Value, Box<dyn Error>> {
+pub fn data(page: &Page) -> Result<Value, Box<dyn Error>> {
     let text = fs::read_to_string(&page.path)?;
     let (_, data) = text.split_once("id=\"data\">").ok_or("no data")?;
     let data: Value = serde_json::from_str(data.split_once("</script>").ok_or("no end")?.0)?;
     Ok(data["motions"][0].clone())
 }
 
-fn decoded(base64: &Value) -> Result<Vec<u8>, Box<dyn Error>> {
+pub fn decoded(base64: &Value) -> Result<Vec<u8>, Box<dyn Error>> {
     Ok(STANDARD.decode(base64.as_str().ok_or("no text")?)?)
 }
 

@@ -3,6 +3,7 @@
 //! Needs Debian's package `chromium`. The start of a browser takes as long as many of the cases: they
 //! share two, one after the other.
 
+mod acting;
 mod advice;
 mod beside;
 // its other users need what these tests do not
@@ -74,6 +75,7 @@ fn it_is_looked_at() -> Outcome {
         ("phone and dark", showing::it_fits_a_phone_and_the_dark),
         ("names", showing::names_are_text),
         ("warnings", showing::warnings_are_shown),
+        ("what acts", acting::what_acts_is_seen),
         ("bodies", showing::bodies_of_all_dimensions),
         ("near side", showing::the_near_side_of_a_solid_is_seen),
         ("long runs", showing::long_runs_are_thinned),

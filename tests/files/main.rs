@@ -1,5 +1,6 @@
 //! What is read and written: scene files, meshes from Gmsh, tables, pictures, reports.
 
+mod acting;
 mod documentation;
 mod gmsh;
 mod output;

@@ -81,9 +81,13 @@ impl Client {
 
 /// Positions of the nodes (m), of a mesh that is drawn in the order of its cells.
 pub fn places(frame: &Value) -> Result<Vec<[f64; 2]>> {
-    let bytes = STANDARD.decode(frame["places"].as_str().ok_or("no places")?)?;
-    let single = |four: &[u8]| f64::from(f32::from_le_bytes([four[0], four[1], four[2], four[3]]));
-    Ok(bytes.chunks_exact(8).map(|eight| [single(&eight[..4]), single(&eight[4..])]).collect())
+    Ok(singles(&frame["places"])?.as_chunks::<2>().0.to_vec())
+}
+
+/// Numbers in single precision.
+pub fn singles(packed: &Value) -> Result<Vec<f64>> {
+    let bytes = STANDARD.decode(packed.as_str().ok_or("no text")?)?;
+    Ok(bytes.as_chunks::<4>().0.iter().map(|&four| f32::from_le_bytes(four).into()).collect())
 }
 
 /// Largest distance between places and positions, each with the nearest.

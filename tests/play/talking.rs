@@ -9,7 +9,7 @@ use pliant::{Sampling, Scene, SceneFile, Settings};
 use serde_json::json;
 use tungstenite::Message;
 
-use super::client::{Client, apart, places};
+use super::client::{Client, apart, places, singles};
 use super::{BEAM, Outcome, PATH, served, served_scene};
 
 /// Where the nodes are at the end of a scene that is run as a film.
@@ -321,5 +321,33 @@ fn pages_come_and_go() -> Outcome {
         drop(std::mem::replace(&mut client, Client::at(&address)?));
     }
     assert!(client.look()?["time"].as_f64() > Some(0.0));
+    Ok(())
+}
+
+/// Gravity and the field are told as they are, the field after a slider, too; and arrows along the remanence of a magnet, at rest in the middles of its two cells, half of its length apart.
+#[test]
+fn what_acts_is_told() -> Outcome {
+    let scene = r#"
+        gravity = [0.0, -9.8]
+        [body]
+        mesh = { kind = "rectangle", size = [0.1, 0.04], nodes = [3, 2], cells = "rectangles" }
+        thickness = 0.01
+        material = { density = 1e3, young = 1e6, poisson = 0.3, viscosity = 100.0 }
+        [[magnet]]
+        remanence = [0.0, 0.1]
+        [[phase]]
+        until = 0.1
+        hold = [{ nodes = "left" }]
+        magnetic_field = { field = [0.0, 0.01] }
+    "#;
+    let mut client = Client::at(&served_scene(scene, |_| {})?)?;
+    let frame = client.look()?;
+    assert_eq!(frame["everywhere"], json!([[0.0, -9.8], [0.0, 0.01]]));
+    let arrows = singles(&frame["remanence"])?;
+    let expected = [0.025, 0.02, 0.0, 0.0375, 0.075, 0.02, 0.0, 0.0375];
+    assert_eq!(arrows.len(), 8);
+    assert!(arrows.iter().zip(expected).all(|(x, y)| (x - y).abs() < 1e-8), "{arrows:?}");
+    client.order(json!({ "do": "slide", "slider": 0, "value": 0.02 }))?;
+    assert_eq!(client.play()?["everywhere"], json!([[0.0, -9.8], [0.02, 0.01]]));
     Ok(())
 }

@@ -49,6 +49,8 @@ pub(super) fn of(present: &Present, colours: Option<usize>, since: Option<f64>) 
         "past": past.after(since),
         "sliders": values.collect::<Vec<_>>(),
         "dipoles": picture.dipoles(&view),
+        "everywhere": Picture::everywhere(&view),
+        "remanence": picture.remanence(&view),
         "water": picture.water(&view),
         "actuations": actuations.collect::<Vec<_>>(),
         "pull": hand.map(Hand::to_json),

@@ -474,9 +474,7 @@ impl<'a> View<'a> {
 
     /// The uniform part of the magnetic field (T) that acts on magnets, one component per dimension.
     pub fn magnetic_field(&self) -> Vec<f64> {
-        let d = self.body().dimension();
-        let field = self.phase.magnetic_field.as_ref();
-        field.map_or_else(|| vec![0.0; d], |field| field.field.components(self.time, d))
+        self.phase.magnetic_field_at(self.time, self.body().dimension())
     }
 
     /// Strain, stress and strain energy density of each cell.

@@ -14,6 +14,7 @@
 //! Directories are created as needed. A file is written under another name first and renamed when it is
 //! complete: a file under its own name is always complete.
 
+mod acting;
 mod animation;
 mod chart;
 mod columns;

@@ -97,8 +97,11 @@ impl Magnet {
         Ok(())
     }
 
-    /// Its cells, counted from 0.
-    fn cells_in(&self, body: &Body, number: usize) -> Result<Vec<usize>, InputError> {
+    /// Its cells, counted from 0; `number` is its own, from 1.
+    ///
+    /// # Errors
+    /// Cells that the body does not have.
+    pub(crate) fn cells_in(&self, body: &Body, number: usize) -> Result<Vec<usize>, InputError> {
         let cells = CellSelection::cells_or_all(self.cells.as_ref(), body.mesh());
         cells.map_err(|error| blamed(number, error))
     }

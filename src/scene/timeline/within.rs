@@ -1,6 +1,6 @@
 //! What acts within the material of the bodies: muscles, growth, magnets.
 
-use super::Scene;
+use super::{Phase, Scene};
 use crate::base::input::{InputError, find};
 use crate::elements::body::Magnets;
 use crate::scene::forces::{Growth, Magnet, Muscle, Spring};
@@ -84,5 +84,13 @@ impl Scene {
         let springs = self.springs.iter().map(Spring::name);
         let muscles = self.muscles.iter().map(Muscle::name);
         springs.chain(muscles).chain(self.growths.iter().map(Growth::name))
+    }
+}
+
+impl Phase {
+    /// The uniform part of its magnetic field (T) at time `t` (s), one component per `dimension`; 0 without a field.
+    pub(crate) fn magnetic_field_at(&self, t: f64, dimension: usize) -> Vec<f64> {
+        let field = self.magnetic_field.as_ref();
+        field.map_or_else(|| vec![0.0; dimension], |field| field.field.components(t, dimension))
     }
 }

@@ -74,8 +74,12 @@ const quantities = data.quantities.map((quantity) => ({ ...quantity, scale: 0, p
 const springs = data.springs.map((spring) => ({ ...spring, forces: [-1, 1] }));
 /** Their numbers. */
 const dipoles = magnets.map((_, number) => number);
+/** Gravity and the magnetic field, with the largest size of each that was seen. */
+const everywhere = data.everywhere.map((name) => ({ name, largest: 0 }));
+/** The number of arrows on magnets: the key asks whether there are any. */
+const remanence = { length: data.arrows };
 /** The present, as the simulation told it last. */
-let frame = { time: 0, phase: 0, actuations: springs.map(() => 0), water: "", colours: null };
+let frame = { time: 0, phase: 0, actuations: springs.map(() => 0), water: "", everywhere: [], remanence: "", colours: null };
 let colouring = new Uint8Array(0);
 
 /** Points of the chart at most. */
@@ -87,6 +91,7 @@ function take(next) {
   frame = next;
   places = singles(next.places);
   magnets = next.dipoles;
+  for (const vector of everywhere) vector.largest = Math.max(vector.largest, Math.hypot(...everywhereAt(null, vector)));
   if (next.colours) {
     colouring = bytes(next.colours.values);
     const shown = quantities[next.colours.quantity];
@@ -134,6 +139,16 @@ function actuationAt(_, spring) {
 /** Where a dipole is (m), and its moment (A m^2). */
 function dipoleAt(_, number) {
   return magnets[number];
+}
+
+/** Gravity (m/s^2) or the magnetic field (T). */
+function everywhereAt(_, { name }) {
+  return frame.everywhere[name === "g" ? 0 : 1] ?? [];
+}
+
+/** The middle of each arrow on magnets, and the arrow (m), one after the other. */
+function remanenceAt() {
+  return Array.from(singles(frame.remanence));
 }
 
 /** The ends of the lines along which surfaces of liquids meet walls (m). */

@@ -7,12 +7,13 @@ use serde_json::{Value, json};
 
 use super::colours::{Fields, Quantity};
 use super::geometry::{Geometry, in_view};
-use super::{contacts, dipoles, pack, water};
+use super::{acting, contacts, dipoles, pack, water};
 use crate::base::input::InputError;
 use crate::dynamics::error::Error;
 use crate::dynamics::system::Energy;
 use crate::dynamics::trajectory::{Sample, Trajectory};
 use crate::elements::mesh::Mesh;
+use crate::io::output::acting::Remanence;
 use crate::io::output::role::Role;
 use crate::io::output::svg::{View, displaced, positions};
 use crate::scene::forces::{Joint, Obstacle, Shape, ShapeKind, Spring, corners};
@@ -33,7 +34,9 @@ pub(super) fn gather(trajectory: &Trajectory, name: &str) -> Result<Value, Error
     let points = point_masses(mesh);
     let ends = spring_ends(scene)?;
     let geometry = Geometry::new(body, ends.iter().flatten(), &points);
-    let frames = thinned(trajectory.samples(), bytes_per_frame(trajectory, &geometry));
+    let remanence = Remanence::of(scene)?;
+    let bytes = bytes_per_frame(trajectory, &geometry, &remanence);
+    let frames = thinned(trajectory.samples(), bytes);
     let view = (mesh.dimension() < 3).then(|| View::of(trajectory, &frames).corners());
     Ok(json!({
         "name": name,
@@ -50,6 +53,8 @@ pub(super) fn gather(trajectory: &Trajectory, name: &str) -> Result<Value, Error
         "sensors": sensors(trajectory, &frames),
         "contacts": contacts::resultants(trajectory, &frames)?,
         "dipoles": dipoles::tracks(trajectory, &frames)?,
+        "everywhere": acting::everywhere(trajectory, &frames)?,
+        "remanence": acting::arrows(trajectory, &frames, &remanence),
         "water": water::tracks(trajectory, &frames)?,
         "obstacles": obstacles_in(trajectory, &frames)?,
         "springs": springs(trajectory, &frames, &geometry, &ends)?,
@@ -65,12 +70,12 @@ fn thinned(samples: &[Sample], bytes_per_frame: usize) -> Vec<&Sample> {
     (0..frames).map(|k| &samples[k * last / (frames - 1).max(1)]).collect()
 }
 
-fn bytes_per_frame(trajectory: &Trajectory, geometry: &Geometry) -> usize {
+fn bytes_per_frame(trajectory: &Trajectory, geometry: &Geometry, remanence: &Remanence) -> usize {
     let axes = trajectory.body().dimension().max(2);
     let sensors = trajectory.sensors().len();
-    // a place and a force, or a moment, of each
+    // a place and a force, a moment or an arrow of each
     let scene = trajectory.scene();
-    let contacts = 2 * axes * (scene.obstacles().len() + scene.dipoles().len());
+    let contacts = 2 * axes * (scene.obstacles().len() + scene.dipoles().len() + remanence.count());
     let singles = size_of::<f32>() * (sensors + contacts);
     let quantities = Quantity::of(trajectory.scene()).len();
     2 * axes * geometry.count() + quantities * geometry.cells.len() + singles

@@ -4,11 +4,12 @@ use serde_json::{Value, json};
 
 use super::colours::{Fields, Quantity};
 use super::geometry::Geometry;
-use super::{STYLE, data, dipoles, filled, pack, water};
+use super::{STYLE, acting, data, dipoles, filled, pack, water};
 use crate::dynamics::error::Error;
 use crate::dynamics::simulate::View;
 use crate::dynamics::system::Energy;
 use crate::elements::mesh::Mesh;
+use crate::io::output::acting::Remanence;
 use crate::io::output::svg::drawn;
 use crate::scene::timeline::{ContactReader, Scene};
 
@@ -21,6 +22,8 @@ const DRAWING: &str = concat!(
     include_str!("page/plane.js"),
     include_str!("page/space.js"),
     include_str!("page/dipoles.js"),
+    include_str!("page/arrow.js"),
+    include_str!("page/acting.js"),
     include_str!("page/water.js"),
     include_str!("page/stage.js"),
     include_str!("page/chart.js"),
@@ -33,6 +36,7 @@ pub(crate) struct Picture {
     geometry: Geometry,
     quantities: Vec<&'static Quantity>,
     contact: ContactReader,
+    remanence: Remanence,
 }
 
 impl Picture {
@@ -50,6 +54,7 @@ impl Picture {
         let springs = scene.springs().iter().zip(&ends);
         let springs = springs
             .map(|(spring, ends)| json!({ "name": spring.name(), "ends": geometry.ends(ends), "isCable": spring.is_cable() }));
+        let remanence = Remanence::of(scene)?;
         let fixed = json!({
             "axes": axes(mesh),
             "phases": data::phases(scene, &geometry)?,
@@ -58,11 +63,14 @@ impl Picture {
             "energies": data::ENERGIES,
             "absent": absent(scene),
             "dipoles": dipoles::at(scene, scene.first_phase()?, 0.0),
+            "everywhere": acting::names(scene),
+            "arrows": remanence.count(),
             "obstacles": data::obstacles(scene),
             "springs": springs.collect::<Vec<_>>(),
             "points": geometry.places(&points),
         });
-        Ok((Self { geometry, quantities, contact: ContactReader::new(scene)? }, fixed))
+        let contact = ContactReader::new(scene)?;
+        Ok((Self { geometry, quantities, contact, remanence }, fixed))
     }
 
     /// The page with its own `style`, and with its own scripts before and after those that draw.
@@ -105,6 +113,17 @@ impl Picture {
     /// The positions (m) and the moments (A m^2) of all dipoles.
     pub(crate) fn dipoles(&self, view: &View) -> Value {
         json!(dipoles::drawn(view.dipoles()))
+    }
+
+    /// Gravity (m/s^2) and the magnetic field (T).
+    pub(crate) fn everywhere(view: &View) -> Value {
+        let t = view.time();
+        json!(view.with_states(|scene, phase, _, _| acting::at(scene, phase, t)))
+    }
+
+    /// The middle of each arrow on magnets, and the arrow (m), one after the other.
+    pub(crate) fn remanence(&self, view: &View) -> Value {
+        pack::singles(acting::arrows_at(&self.remanence, view.body().mesh(), view.displacements()))
     }
 
     /// The values of a quantity in each face, and the end of their scale; `None` for a number that no quantity has, and

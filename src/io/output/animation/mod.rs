@@ -1,5 +1,6 @@
 //! The motion as a page for a web browser.
 
+mod acting;
 mod colours;
 mod contacts;
 mod data;
@@ -41,6 +42,7 @@ const SCRIPT: &str = concat!(
     include_str!("page/colour.js"),
     include_str!("page/chart.js"),
     include_str!("page/sensors.js"),
+    include_str!("page/arrow.js"),
     include_str!("page/arrows.js"),
     include_str!("page/vectors.js"),
     include_str!("page/controls.js"),
@@ -57,6 +59,7 @@ const OF_EACH: &str = concat!(
     include_str!("page/stage.js"),
     include_str!("page/contacts.js"),
     include_str!("page/dipoles.js"),
+    include_str!("page/acting.js"),
     include_str!("page/water.js"),
 );
 /// What stands before and after the data of a page.
@@ -65,7 +68,8 @@ const DATA: [&str; 2] = ["<script type=\"application/json\" id=\"data\">", "</sc
 /// Writes the motion as one HTML file that a web browser plays, without a network.
 ///
 /// It shows the body coloured by stress, strain energy density, stretch, contact pressure or what sticks, obstacles, springs (coloured while an
-/// actuator pulls or pushes), point masses, held and moved nodes, dipoles as bars along their moments, forces of obstacles as arrows; below it the
+/// actuator pulls or pushes), point masses, held and moved nodes, dipoles as bars along their moments, gravity, the magnetic field and remanences as arrows, forces of obstacles
+/// likewise; below it the
 /// energies and what sensors have read over time, and how the motion was computed, with the warnings of the
 /// report. The shown frame can be saved as PNG or SVG. `title` is its heading. Obstacles that are given by a
 /// function are not drawn.

@@ -168,6 +168,8 @@ fn clip(polygon: &[Point], level: impl Fn(&Point) -> f64) -> Vec<Point> {
 /// Where everything stands on the page.
 pub(super) struct Layout {
     columns: usize,
+    /// Least width of the page (px).
+    least: f64,
     /// Width of a panel (px).
     width: f64,
     rows: Vec<PanelRow>,
@@ -186,10 +188,16 @@ struct PanelRow {
 }
 
 impl Layout {
-    /// Panels that each have room for a caption of `caption` characters.
-    pub(super) fn new(view: &View, columns: Option<usize>, titled: bool, caption: usize) -> Self {
+    /// Panels that each have room for a caption of so many characters and `beside` it (px).
+    pub(super) fn new(
+        view: &View,
+        columns: Option<usize>,
+        titled: bool,
+        (caption, beside): (usize, f64),
+    ) -> Self {
         let panels = view.tops.len();
-        let narrowest = PANEL_WIDTH[0].max(CHARACTER * caption as f64).min(PANEL_WIDTH[1]);
+        let captioned = CHARACTER * caption as f64 + beside;
+        let narrowest = PANEL_WIDTH[0].max(captioned).min(PANEL_WIDTH[1]);
         let with_columns = |columns: usize| {
             let fitting = (PAGE_WIDTH - 2.0 * MARGIN + GAP) / columns as f64 - GAP;
             let width = fitting.clamp(narrowest, PANEL_WIDTH[1]);
@@ -201,7 +209,8 @@ impl Layout {
                 y = edges[1] + CAPTION + GAP;
                 PanelRow { edges, top }
             });
-            Self { columns, width, rows: rows.collect(), scale, left: view.low[0] }
+            let (least, rows) = (PAGE_LEAST, rows.collect());
+            Self { columns, least, width, rows, scale, left: view.low[0] }
         };
         // prefer a page wider than high, and rows as full as possible
         let penalty = |layout: &Self| {
@@ -230,7 +239,12 @@ impl Layout {
     /// Width and height of the page, whole pixels.
     pub(super) fn size(&self) -> [u32; 2] {
         let width = 2.0 * MARGIN + self.columns as f64 * (self.width + GAP) - GAP;
-        [width.ceil().max(PAGE_LEAST) as u32, (self.key_line() + MARGIN).ceil() as u32]
+        [width.max(self.least).ceil() as u32, (self.key_line() + MARGIN).ceil() as u32]
+    }
+
+    /// Makes the page as wide as `least` (px) at least.
+    pub(super) fn widen(&mut self, least: f64) {
+        self.least = self.least.max(least);
     }
 
     /// Baseline of the key below the panels.
@@ -248,10 +262,10 @@ impl Layout {
         [x, self.row(panel).edges[0]]
     }
 
-    /// Middle and baseline of the caption, from the corner of the panel.
+    /// Right end and baseline of the caption, from the corner of the panel.
     pub(super) fn caption(&self, panel: usize) -> Point {
         let [top, bottom] = self.row(panel).edges;
-        [self.width / 2.0, bottom - top + 19.0]
+        [self.width, bottom - top + 19.0]
     }
 
     /// Upper edge of what a panel shows (m).

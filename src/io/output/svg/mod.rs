@@ -1,5 +1,6 @@
 //! Pictures of the deformed body.
 
+mod acting;
 mod layout;
 mod mark;
 mod obstacle;
@@ -9,6 +10,7 @@ mod projection;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
+use acting::{Acting, sign};
 pub(super) use layout::{BAR_WIDTH, View};
 use layout::{Layout, scale_bar};
 use mark::{Mark, text};
@@ -26,7 +28,8 @@ use crate::elements::mesh::Selection;
 use crate::io::output::role::Role;
 
 /// Snapshots of a motion: one panel per chosen time, all on the same scale, each with the deformed
-/// mesh, the obstacles, and the nodes that the phase holds or moves.
+/// mesh, the obstacles, and the nodes that the phase holds or moves. Arrows beside its caption are gravity and the uniform part of the
+/// magnetic field at that time, as long as they are strong beside the largest of the run; those on magnets are their remanence, in some cells of each.
 ///
 /// A one-dimensional body is drawn upright, its axis upward, with a visible width. A body in space
 /// is seen obliquely, from the front, the right and above, with z upward and without obstacles.
@@ -93,22 +96,26 @@ impl Snapshots {
         let view = View::of(trajectory, &samples);
         let captions = captions(trajectory, &samples);
         let longest = captions.iter().map(|caption| caption.chars().count()).max().unwrap_or(0);
-        let layout = Layout::new(&view, self.columns, !self.title.is_empty(), longest);
+        let acting = Acting::of(trajectory)?;
+        let titled = !self.title.is_empty();
+        let mut layout = Layout::new(&view, self.columns, titled, (longest, acting.room()));
+        let marks = samples.iter().map(|sample| self.marks(trajectory, sample));
+        let marks: Vec<BTreeMap<usize, Mark>> = marks.collect::<Result<_, _>>()?;
+        let kinds: BTreeSet<Mark> = marks.iter().flat_map(BTreeMap::values).copied().collect();
+        let key = key(&view, &mut layout, kinds, &acting.meanings());
 
-        let mut kinds = BTreeSet::new();
         let mut page = page(&layout);
         if !self.title.is_empty() {
             let title = text(&self.title, layout.margin(), 26.0).set("font-size", 17);
             page = page.add(title.set("font-weight", 600).set("fill", INK));
         }
-        for (number, (sample, caption)) in samples.into_iter().zip(&captions).enumerate() {
-            let marks = self.marks(trajectory, sample)?;
-            kinds.extend(marks.values().copied());
-            let (view, layout, marks) = (&view, &layout, &marks);
-            let panel = Panel { number, caption, trajectory, sample, view, layout, marks };
+        let panels = samples.into_iter().zip(&captions).zip(&marks).enumerate();
+        for (number, ((sample, caption), marks)) in panels {
+            let (view, layout, acting) = (&view, &layout, acting.at(trajectory, sample)?);
+            let panel = Panel { number, caption, trajectory, sample, view, layout, marks, acting };
             page = page.add(panel.draw());
         }
-        Ok(page.add(key(&view, &layout, kinds)))
+        Ok(page.add(key))
     }
 
     fn validate(&self) -> Result<(), Error> {
@@ -195,17 +202,33 @@ fn page(layout: &Layout) -> Document {
         .add(Outline::new().set("d", format!("M0 0H{width}V{height}H0z")).set("fill", "white"))
 }
 
-/// Scale bar and what the marks mean, below the panels.
-fn key(view: &View, layout: &Layout, marks: BTreeSet<Mark>) -> Group {
+/// Scale bar and what marks and arrows mean, below the panels; the page becomes wide enough for it.
+fn key(
+    view: &View,
+    layout: &mut Layout,
+    marks: BTreeSet<Mark>,
+    arrows: &[(&'static str, &'static str)],
+) -> Group {
     let (length, label) = scale_bar(view.width());
     let (x, y, width) = (layout.margin(), layout.key_line(), layout.pixels(length));
     let bar = format!("M{x:.2} {:.2}v6m0 -3h{width:.2}m0 -3v6", y - 8.0);
     let bar = Outline::new().set("d", bar).set("fill", "none").set("stroke", INK);
     let mut key = Group::new().set("fill", INK).set("class", "key").add(bar);
     key = key.add(text(&label, x + width + 8.0, y));
+    let wide = |name: &str| 7.8 * name.len() as f64;
+    let of_marks: f64 = marks.iter().map(|mark| wide(mark.name()) + 26.0).sum();
+    let of_arrows: f64 = arrows.iter().map(|(_, name)| wide(name) + 40.0).sum();
+    layout.widen(2.0 * x + width + 8.0 + wide(&label) + of_marks + of_arrows);
     let mut right = layout.size()[0] as f64 - layout.margin();
+    for (colour, name) in arrows.iter().rev() {
+        right -= wide(name);
+        key = key.add(text(name, right, y));
+        right -= 24.0;
+        key = key.add(sign(right, y, colour));
+        right -= 16.0;
+    }
     for mark in marks.into_iter().rev() {
-        right -= 7.8 * mark.name().len() as f64;
+        right -= wide(mark.name());
         key = key.add(text(mark.name(), right, y));
         right -= 10.0;
         key = key.add(mark.draw(right, y - 4.5));

@@ -1,12 +1,12 @@
 //! One panel: the body at one time.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::fmt::Write;
 
 use svg::node::element::{Group, Path};
 
+use super::acting::ActingAt;
 use super::layout::{BAR_WIDTH, Layout, View};
-use super::mark::{Mark, text};
+use super::mark::{Data, Mark, text};
 use super::obstacle::Outline;
 use super::projection::{Point, depths, drawn, positions};
 use crate::dynamics::trajectory::{Sample, Trajectory};
@@ -49,6 +49,7 @@ pub(super) struct Panel<'a> {
     pub(super) view: &'a View,
     pub(super) layout: &'a Layout,
     pub(super) marks: &'a BTreeMap<usize, Mark>,
+    pub(super) acting: ActingAt,
 }
 
 impl Panel<'_> {
@@ -97,8 +98,14 @@ impl Panel<'_> {
         for dipole in &self.view.dipoles[self.number] {
             panel = panel.add(self.dipole(*dipole));
         }
-        let [x, y] = self.layout.caption(self.number);
-        panel.add(text(self.caption, x, y).set("text-anchor", "middle").set("fill", INK))
+        if let Some(arrows) = self.acting.on_body(self.layout, self.number) {
+            panel = panel.add(arrows);
+        }
+        let [right, y] = self.layout.caption(self.number);
+        let caption =
+            text(self.caption, (right - self.acting.room()) / 2.0, y).set("text-anchor", "middle");
+        let panel = panel.add(caption.set("fill", INK));
+        self.acting.beside_caption(right, y).into_iter().fold(panel, Group::add)
     }
 
     /// An obstacle: a half-plane as a hatched band along its surface, others by their outline.
@@ -322,39 +329,4 @@ fn body(class: &str, data: Data, edge: &str, stroke_width: f64) -> Path {
         .set("stroke", edge)
         .set("stroke-width", format!("{stroke_width:.2}"))
         .set("stroke-linejoin", "round")
-}
-
-/// The data of a path, in hundredths of a pixel and relative steps, for short files.
-#[derive(Default)]
-pub(super) struct Data(pub(super) String);
-
-impl Data {
-    pub(super) fn polyline(&mut self, points: &[Point], close: bool) {
-        let mut pen: Option<[i64; 2]> = None;
-        for point in points {
-            let at = point.map(|x| (100.0 * x).round() as i64);
-            match pen {
-                None => self.step('M', at),
-                Some([x, y]) => self.step('l', [at[0] - x, at[1] - y]),
-            }
-            pen = Some(at);
-        }
-        if close {
-            self.0.push('z');
-        }
-    }
-
-    fn step(&mut self, command: char, [x, y]: [i64; 2]) {
-        self.0.push(command);
-        self.hundredths(x);
-        if y >= 0 {
-            self.0.push(' ');
-        }
-        self.hundredths(y);
-    }
-
-    fn hundredths(&mut self, x: i64) {
-        // writing to a string cannot fail
-        let _ = write!(self.0, "{}", x as f64 / 100.0);
-    }
 }

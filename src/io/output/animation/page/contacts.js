@@ -29,6 +29,6 @@ function drawContacts(sheet, moment, forceOfLongest) {
     const { force, at } = resultantAt(moment, contact);
     if (!at) continue;
     const [dx, dy] = direct(force).map((part) => (part * LONGEST) / forceOfLongest);
-    drawArrow(context, place(at), [dx, dy]);
+    drawArrow(context, place(at), [dx, dy], "contact");
   }
 }

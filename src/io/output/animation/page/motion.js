@@ -13,6 +13,12 @@ const energies = data.energies.map(overTime);
 const sensors = data.sensors.map(overTime);
 const contacts = data.contacts.map(({ at, forces }) => ({ at: singles(at), forces: singles(forces) }));
 const dipoles = data.dipoles.map(({ at, along }) => ({ at: singles(at), along: singles(along) }));
+const everywhere = data.everywhere.map(({ name, along: numbers }) => {
+  const along = singles(numbers);
+  const sizes = Array.from(times, (_, k) => Math.hypot(...along.subarray(k * axes, (k + 1) * axes)));
+  return { name, along, largest: Math.max(...sizes) };
+});
+const remanence = singles(data.remanence);
 const water = data.water.map(singles);
 const springs = data.springs.map((spring) => ({ ...spring, forces: singles(spring.forces) }));
 
@@ -50,6 +56,18 @@ function actuationAt({ before, after, share }, { forces }) {
 function dipoleAt({ before, after, share }, { at, along }) {
   return [at, along].map((values) => Array.from({ length: axes }, (_, axis) =>
     between(values, before * axes + axis, after * axes + axis, share)));
+}
+
+/** Gravity (m/s^2) or the magnetic field (T): between two samples from one to the next if both are in the same phase. */
+function everywhereAt({ before, after, share, time }, { along }) {
+  const from = phaseAt(times[before]) === phaseAt(time) ? before : after;
+  return Array.from({ length: axes }, (_, axis) => between(along, from * axes + axis, after * axes + axis, share));
+}
+
+/** The middle of each arrow on magnets, and the arrow (m), one after the other. */
+function remanenceAt({ before, after, share }) {
+  const count = remanence.length / times.length;
+  return Array.from({ length: count }, (_, k) => between(remanence, before * count + k, after * count + k, share));
 }
 
 /** The ends of the lines along which surfaces of liquids meet walls (m), at the sample at hand or, between two, at the next. */

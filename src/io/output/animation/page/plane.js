@@ -58,7 +58,11 @@ function drawPlane(sheet, moment, quantity) {
   drawWater(context, ([x, y]) => [layout.x(x), layout.y(y)], moment);
   drawSprings(context, points, moment);
   drawMarks(context, points, phaseAt(moment.time), () => true);
-  drawDipoles(context, ([x, y]) => [layout.x(x), layout.y(y)], ([x, y]) => [x, -y], moment);
+  const place = ([x, y]) => [layout.x(x), layout.y(y)];
+  const direct = ([x, y]) => [x, -y];
+  drawRemanence(context, place, moment);
+  drawDipoles(context, place, direct, moment);
+  drawEverywhere(context, direct, moment, [MARGIN.left + layout.room[0], MARGIN.top]);
   context.restore();
 }
 

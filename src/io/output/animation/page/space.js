@@ -55,7 +55,10 @@ function drawSpace(sheet, moment, quantity) {
   drawSprings(context, points, moment);
   drawMarks(context, points, phaseAt(moment.time), (node) => seen[node]);
   for (const obstacle of obstacles) if (obstacle.depth < depth) obstacle.draw(context, 0.45);
-  drawDipoles(context, eye.place, (m) => [dot(eye.right, m), -dot(eye.up, m)], moment);
+  const direct = (m) => [dot(eye.right, m), -dot(eye.up, m)];
+  drawRemanence(context, eye.place, moment);
+  drawDipoles(context, eye.place, direct, moment);
+  drawEverywhere(context, direct, moment, [sheet.width - 8, 8]);
   drawTriad(sheet, eye);
 }
 

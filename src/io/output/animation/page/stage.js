@@ -40,6 +40,9 @@ function showKey() {
   const zigzag = (colour) =>
     `<path d="M0 6h4l2-4 3 8 4-8 3 8 2-4h4" fill="none" stroke="var(--${colour})" stroke-width="1.6"/>`;
   const line = (colour) => `<path d="M0 6h22" fill="none" stroke="var(--${colour})" stroke-width="1.6"/>`;
+  const arrow = (colour) =>
+    `<path d="M1 6h13" fill="none" stroke="var(--${colour})" stroke-width="2"/>` +
+    `<path d="M21 6l-8-4v8z" fill="var(--${colour})"/>`;
   const drives = springs.flatMap((spring) => [...spring.forces].map((force) => driven(spring, force)));
   const entries = [
     [phases.some((phase) => phase.held.length), dot("ink", 4), "held"],
@@ -49,6 +52,8 @@ function showKey() {
     [springs.some((spring) => spring.isCable), line("spring"), "cable"],
     [drives.includes("pull"), line("pull"), "actuator pulls"],
     [drives.includes("push"), line("push"), "actuator pushes"],
+    ...everywhere.map(({ name }) => [true, arrow(ACTING[name][0]), ACTING[name][1]]),
+    [remanence.length, arrow("push"), "remanence"],
   ];
   const key = figure.querySelector(".key");
   for (const [, sign, meaning] of entries.filter(([exists]) => exists)) {
