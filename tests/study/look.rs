@@ -58,6 +58,8 @@ fn a_look_at_a_part() {
     assert_eq!(poisson.verdict, Verdict::Doubtful);
     // what it did not come to is not told
     assert!(look.indicators().iter().all(|one| one.name != "distance"), "{look}");
+    // nor what compares with a way that is not yet gone
+    assert!(look.indicators().iter().all(|one| one.name != "tolerance"), "{look}");
     for seconds in [0.0, -1.0, f64::NAN] {
         let result = Look::of(&scene, &Settings::default(), seconds);
         assert!(matches!(&result, Err(Error::Input(_))), "{result:?}");

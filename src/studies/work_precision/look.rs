@@ -37,6 +37,8 @@ pub struct Look {
 /// Relative tolerance of the run, and how many samples are taken.
 const RTOL: f64 = 1e-2;
 const SAMPLES: f64 = 200.0;
+/// Indicators that compare with how far nodes go: it is not known of a run that ends early.
+const OF_THE_WAY: [&str; 3] = ["tolerance", "creep", "path-leap"];
 
 impl Look {
     /// Wall-clock time (s) that is enough for most scenes.
@@ -73,7 +75,10 @@ impl Look {
             }
             Err(error) => return Err(error),
         };
-        let (indicators, until) = (motion.indicators(), motion.last().time);
+        let (mut indicators, until) = (motion.indicators(), motion.last().time);
+        if cause.is_some() {
+            indicators.retain(|indicator| !OF_THE_WAY.contains(&indicator.name));
+        }
         Ok(Self { indicators, until, end: scene.end(), cause })
     }
 
