@@ -7,9 +7,10 @@
 
 use nalgebra::Vector3;
 
+use super::flat_face;
 use crate::base::input::{percent, short};
 use crate::dynamics::report::Indicator;
-use crate::elements::basis::{FacePoint, reference_node};
+use crate::elements::basis::FacePoint;
 use crate::elements::body::Body;
 use crate::elements::mesh::CellKind;
 use crate::scene::forces::natural;
@@ -74,25 +75,15 @@ fn largest(body: &Body) -> Option<(f64, f64)> {
         let shape = mesh.face_kind(&face);
         let ends = shape.corners();
         let places: Vec<[f64; 3]> = face.iter().map(|node| natural(mesh, *node)).collect();
-        let middle = [0, 1].map(|i| {
-            (0..ends).map(|corner| reference_node(shape, corner)[i]).sum::<f64>() / ends as f64
-        });
+        let middle = flat_face::middle(shape, 0..ends);
         let [along, other] =
             FacePoint::new(shape, middle, 1.0).tangents(&places).map(Vector3::from);
-        let (normal, area) = match ends {
-            2 => {
-                let chord = at(face[1]) - at(face[0]);
-                (Vector3::new(-chord.y, chord.x, 0.0), chord.norm())
-            }
-            _ => {
-                let fan = (1..ends - 1).map(|k| {
-                    let [p, q] = [k, k + 1].map(|k| at(face[k]) - at(face[0]));
-                    0.5 * p.cross(&q).norm()
-                });
-                (along.cross(&other), fan.sum())
-            }
+        let corners: Vec<Vector3<f64>> = face[..ends].iter().map(|node| at(*node)).collect();
+        let normal = match &corners[..] {
+            [a, b] => Vector3::new(a.y - b.y, b.x - a.x, 0.0),
+            _ => along.cross(&other),
         };
-        let thickness = heights * volumes[cell] / body.section() / area;
+        let thickness = heights * volumes[cell] / body.section() / flat_face::area(&corners);
         let edges: &[&[usize]] = if ends == 2 { &[&[0, 1, 2]] } else { shape.edges() };
         for edge in edges {
             let &[a, b, mid] = *edge else { continue };

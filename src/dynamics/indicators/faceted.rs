@@ -8,9 +8,10 @@ use std::collections::BTreeMap;
 
 use nalgebra::Vector3;
 
+use super::flat_face;
 use crate::base::input::percent;
 use crate::dynamics::report::Indicator;
-use crate::elements::basis::{FacePoint, reference_node};
+use crate::elements::basis::FacePoint;
 use crate::elements::body::Body;
 use crate::elements::mesh::Mesh;
 use crate::scene::forces::natural;
@@ -123,32 +124,23 @@ fn ridges(mesh: &Mesh, faces: &[Vec<usize>]) -> Vec<Ridge> {
         let kind = mesh.face_kind(face);
         let corners = &face[..kind.corners()];
         let places: Vec<[f64; 3]> = face.iter().map(|node| natural(mesh, *node)).collect();
-        let reference: Vec<[f64; 2]> =
-            (0..corners.len()).map(|corner| reference_node(kind, corner)).collect();
-        let mean = |of: &[[f64; 2]]| {
-            [0, 1].map(|i| of.iter().map(|x| x[i]).sum::<f64>() / of.len() as f64)
-        };
-        let centre = mean(&reference);
+        let centre = flat_face::middle(kind, 0..corners.len());
+        let area = flat_face::area(&corners.iter().map(|node| at(*node)).collect::<Vec<_>>());
         // where the face ends: at a corner of an edge, along an edge of a face
         let ends = (0..corners.len()).map(|k| match corners.len() {
             2 => [k, k],
             count => [k, (k + 1) % count],
         });
         for [a, b] in ends {
-            let end = mean(&[reference[a], reference[b]]);
+            let end = flat_face::middle(kind, [a, b].into_iter());
             let [t1, t2] = FacePoint::new(kind, end, 1.0).tangents(&places).map(Vector3::from);
             let along = at(corners[b]) - at(corners[a]);
             let inward = t1 * (centre[0] - end[0]) + t2 * (centre[1] - end[1]);
             let length = along.norm();
             let (inward, width) = match corners.len() {
-                2 => (inward, (at(corners[1]) - at(corners[0])).norm()),
+                2 => (inward, area),
                 count => {
                     let across = inward - along * (along.dot(&inward) / (length * length));
-                    let fan = (1..count - 1).map(|k| {
-                        let [p, q] = [k, k + 1].map(|k| at(corners[k]) - at(corners[0]));
-                        0.5 * p.cross(&q)
-                    });
-                    let area = fan.sum::<Vector3<f64>>().norm();
                     (across, area / length * if count == 3 { 2.0 } else { 1.0 })
                 }
             };

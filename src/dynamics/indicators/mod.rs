@@ -65,6 +65,7 @@ mod each;
 mod early;
 mod faceted;
 mod felt;
+mod flat_face;
 mod gas;
 mod mesh;
 pub(crate) mod overlap;
