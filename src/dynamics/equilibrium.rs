@@ -6,7 +6,7 @@ use crate::base::input::told;
 use crate::dynamics::trajectory::{Sample, Trajectory};
 use crate::elements::basis::worst_cells;
 
-/// What a small push does to a body in equilibrium.
+/// Stability of an equilibrium under small perturbations.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Stability {
     /// The tangent is positive definite on the motions that the constraints allow: the body swings back.
@@ -40,7 +40,7 @@ impl fmt::Display for Stability {
 #[derive(Debug, Clone)]
 pub struct Equilibrium {
     pub(crate) trajectory: Trajectory,
-    /// What a small push does to it.
+    /// Stability under small perturbations.
     pub stability: Stability,
     /// Rigid motions, in words, that nothing restrains and that were removed from the displacements u.
     ///
@@ -84,8 +84,8 @@ pub struct MeshEstimate {
     pub change: f64,
     /// Estimated value on the richer mesh minus `value`: the error is minus that.
     pub correction: f64,
-    /// What the forces that are unbalanced at the corrected displacements would add to the correction: its
-    /// leading remainder, 0 in linear problems, infinite if forces are undefined there.
+    /// Contribution to the correction by the residual forces at the corrected displacements: the leading remainder, 0
+    /// in linear problems, infinite if forces are undefined there.
     pub remainder: f64,
     /// Contributions of the additional nodes of the richer mesh to the correction, for each cell of this mesh
     /// that they lie in: where they are large, smaller cells help.

@@ -8,7 +8,7 @@ use crate::dynamics::equilibrium::NoEquilibrium;
 use crate::dynamics::trajectory::IntegrationFailure;
 use crate::integrators::common;
 
-/// What went wrong, with which input, and how to correct it.
+/// Failure of an operation: its cause, the input concerned, and the remedy.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
@@ -41,7 +41,7 @@ pub enum Error {
         line: usize,
         /// The key, with those of the tables around it; empty for what is about no single key.
         key: String,
-        /// What is wrong with it and how to correct it.
+        /// Cause and remedy.
         message: String,
     },
 
@@ -54,7 +54,7 @@ pub enum Error {
         rtol: f64,
         /// Why the methods failed.
         failures: String,
-        /// What to do about it.
+        /// Remedy.
         help: String,
     },
 
@@ -85,7 +85,7 @@ pub struct Panicked {
     pub message: String,
 }
 
-/// What a function of the caller returns, or an error if it panics.
+/// Return value of a function of the caller, or an error if it panics.
 pub(crate) fn guarded<T>(call: impl FnOnce() -> T) -> Result<T, Panicked> {
     catch_unwind(AssertUnwindSafe(call)).map_err(|payload| {
         let text = payload.downcast_ref::<&str>().map(|text| (*text).to_owned());

@@ -41,16 +41,15 @@ pub struct Report {
     pub energy_scale: f64,
     /// Wall-clock time of the whole run (s).
     pub wall_seconds: f64,
-    /// What was measured on the scene and on the motion once the run had ended; indicators beyond their
-    /// limits are among the [`warnings`](Self::warnings).
-    /// [`Trajectory::indicators`](crate::Trajectory::indicators) measures more.
+    /// Indicators of the scene and of the motion, measured once the run had ended; those beyond their limits are among
+    /// the [`warnings`](Self::warnings). [`Trajectory::indicators`](crate::Trajectory::indicators) measures more.
     pub indicators: Vec<Indicator>,
-    /// What was chosen where a scene file says `auto`, and why.
+    /// Choices made where a scene file says `auto`, with the reasons.
     pub chosen: Vec<String>,
     /// How accurately the motion is known, if it was
     /// [verified](crate::studies::work_precision::Verification).
     pub achieved: Option<Achieved>,
-    /// What a run by a reduced model tells.
+    /// Error report of a run by a reduced model.
     pub reduced: Option<ReducedReport>,
     /// Phase by phase.
     pub phases: Vec<PhaseReport>,
@@ -60,13 +59,13 @@ pub struct Report {
 /// the first.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Achieved {
-    /// What was compared.
+    /// Compared quantity.
     pub quantity: String,
     /// The largest relative difference that was requested.
     pub asked: f64,
     /// The relative difference that was found.
     pub difference: f64,
-    /// What both are relative to, in `unit`: how much the quantity changes.
+    /// Scale of `asked` and `difference`, in `unit`: the variation of the quantity.
     pub scale: f64,
     /// Unit of the quantity.
     pub unit: String,
@@ -151,8 +150,8 @@ pub struct SlipEvent {
 }
 
 impl Report {
-    /// What all phases cost together. Size and order of the last step are those of the last phase, the notice is
-    /// the first that there is.
+    /// Total statistics of all phases. Size and order of the last step are those of the last phase; the notice is the
+    /// first one.
     pub(crate) fn counts(&self) -> Counts {
         let mut counts = Counts::default();
         self.phases.iter().for_each(|phase| counts.add(phase.counts.clone()));
@@ -204,10 +203,11 @@ impl Report {
         warnings(&self.indicators)
     }
 
-    /// What makes the result doubtful or the run needlessly long.
+    /// Warnings: reasons to doubt the result, or a cause of a needlessly long run.
     ///
-    /// This is what the integrators noticed, an energy balance that is off by more than a hundredth of the
-    /// largest energy and, once the run has ended, indicators beyond their limits: of the scene
+    /// They are the notices of the integrators, an energy balance that is off by more than a hundredth of the largest
+    /// energy, a verified accuracy that is lower than requested and, once the run has ended, indicators beyond their
+    /// limits: of the scene
     /// ([`Scene::warnings`](crate::Scene::warnings)), of the strain of its cells and of its contacts.
     pub fn warnings(&self) -> Vec<String> {
         self.named_warnings().into_iter().map(|(_, warning)| warning).collect()
@@ -342,7 +342,7 @@ fn slips_in_words(slips: &[SlipEvent]) -> Option<String> {
     (!kinds.is_empty()).then(|| kinds.join("; "))
 }
 
-/// What the integration of a phase cost.
+/// Statistics of the integration of a phase.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Counts {
     /// Steps taken.
@@ -372,7 +372,8 @@ pub struct Counts {
     pub last_step: f64,
     /// Order of the last step.
     pub last_order: u32,
-    /// What the integrator noticed: that stability, not accuracy, bounds its steps.
+    /// Notice of the integration, such as: stability, not accuracy, bounds the steps; Newton matrices were not positive
+    /// definite.
     pub notice: Option<String>,
 }
 

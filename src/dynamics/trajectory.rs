@@ -43,7 +43,7 @@ pub struct Sample {
     pub energy: Energy,
     /// Largest |A^T u - b| among the constraints of the phase (m).
     pub constraint_drift: f64,
-    /// What the [sensors](Trajectory::sensors) read.
+    /// Readings of the [sensors](Trajectory::sensors).
     pub sensors: Vec<f64>,
     /// Accelerations (m/s^2), until sensors have read them.
     pub(crate) accelerations: Vec<f64>,
@@ -109,9 +109,9 @@ pub struct Trajectory {
     pub(crate) penetrations: Vec<Penetration>,
     /// Paths that began away from their nodes.
     pub(crate) leaps: Vec<Leap>,
-    /// What reads contact, once that was asked for.
+    /// Reader of contact, created on first use.
     contact: OnceLock<Arc<ContactReader>>,
-    /// What a reduced model lacks, as the run has told; empty unless requested.
+    /// Displacements that a reduced model lacks, as estimated by the run; empty unless requested.
     pub(crate) lacking: Vec<Lacking>,
     /// Angles (turns) that sensors of angles read at the end, by their names.
     pub(crate) angles: Vec<(String, f64)>,
@@ -301,7 +301,7 @@ impl Trajectory {
         &self.samples[self.samples.len() - 1] // there is one at least: see `new`
     }
 
-    /// What the [sensors](crate::Sampling::sensor) have read: names and units, in the order of
+    /// Quantities that the [sensors](crate::Sampling::sensor) have read: names and units, in the order of
     /// [`Sample::sensors`].
     pub fn sensors(&self) -> &[Quantity] {
         &self.sensors

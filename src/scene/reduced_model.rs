@@ -37,10 +37,9 @@ pub struct ReducedModel {
     /// Number of runs that it was learned from; 0 if that is not known.
     #[cfg_attr(feature = "checkpoint", serde(default))]
     pub(crate) runs: usize,
-    /// What it was learned from, in words.
+    /// Description of its training data, in words.
     pub(crate) learned_from: String,
-    /// What the files of the scenes that it was learned from and checked with say happens in them, by their keys; nothing of scenes
-    /// without files.
+    /// Values of the keys of scene files over its training and check scenes; empty for scenes without files.
     #[cfg_attr(feature = "checkpoint", serde(default, skip_serializing_if = "BTreeMap::is_empty"))]
     pub(crate) learned_keys: BTreeMap<String, LearnedKey>,
 }
@@ -154,7 +153,7 @@ impl ReducedModel {
         self.is_estimate
     }
 
-    /// What it was learned from, in words.
+    /// Description of its training data, in words.
     pub fn learned_from(&self) -> &str {
         &self.learned_from
     }

@@ -18,7 +18,7 @@ const MOST_WRONG: f64 = 0.25;
 const GREEN_LAW: f64 = 2.5;
 const CAUCHY_LAW: f64 = 1.0;
 const NEO_HOOKEAN: f64 = 0.25;
-/// What to take in place of such a law.
+/// Remedy for a law that is not one of rubber.
 const OF_RUBBER: &str = "take a law of rubber (law = { kind = \"neo-hookean\" })";
 /// Largest error of the strains with which Cauchy strain is still good enough.
 const MOST_NONLINEAR: f64 = 0.01;

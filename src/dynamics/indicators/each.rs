@@ -1,10 +1,10 @@
-//! What is measured on each of several bodies by itself.
+//! Indicators of several bodies, measured on each separately.
 
 use crate::dynamics::report::Indicator;
 use crate::dynamics::trajectory::{Sample, Trajectory};
 use crate::elements::body::{Body, Part};
 
-/// What is measured on the motion of each body by itself.
+/// Indicators of the motion, measured on each body separately.
 pub(super) fn each_body(
     trajectory: &Trajectory,
     samples: &[&Sample],

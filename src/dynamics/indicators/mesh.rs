@@ -1,4 +1,4 @@
-//! What can be checked on a body before it moves: its cells and its pieces.
+//! Checks of a body before it moves: its cells and its pieces.
 
 use std::collections::BTreeMap;
 
@@ -23,7 +23,8 @@ pub(super) fn locking(body: &Body) -> Option<Indicator> {
     locking_linear(body, most).or_else(|| locking_quadratic(body, most))
 }
 
-/// What is left of it in quadratic cells: with a pressure at each point they are too stiff, with one alone some are too soft.
+/// Residual locking of quadratic cells: with pointwise dilatation they are too stiff, with a cell mean some are too
+/// soft.
 fn locking_quadratic(body: &Body, most: f64) -> Option<Indicator> {
     let mesh = body.mesh();
     let help = match mesh.kind() {

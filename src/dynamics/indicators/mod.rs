@@ -97,11 +97,11 @@ use crate::elements::body::Part;
 use crate::scene::timeline::Scene;
 
 impl Scene {
-    /// What makes any motion of this scene doubtful, as far as it can be known before a run.
+    /// Warnings: reasons to doubt any motion of this scene, as far as known before a run.
     ///
-    /// This may be a body too large, too heavy or too fast to be soft (its mesh may be in millimetres), cells
-    /// that lock, pieces that nothing joins, a mesh that overlaps itself, or obstacles that the body begins
-    /// inside. Each warning names what was measured, its limit, and what to change.
+    /// Examples are a body too large, too heavy or too fast to be soft (its mesh may be in millimetres), cells that
+    /// lock, pieces that nothing joins, a mesh that overlaps itself, and obstacles that the body begins inside. Each
+    /// warning names the measured value, its limit, and the remedy.
     ///
     /// ```
     /// use pliant::{Body, Cells, Material, Mesh, Scene};
@@ -116,10 +116,10 @@ impl Scene {
         warnings(&self.indicators())
     }
 
-    /// What can be measured before a run, with limits.
+    /// Indicators that can be measured before a run, with limits.
     ///
-    /// This is the size, mass and speed of waves of the body, its cells, its pieces and the obstacles that it
-    /// begins inside. Indicators beyond their limits are the [`warnings`](Self::warnings).
+    /// They cover the size, mass and wave speed of the body, its cells, its pieces and the obstacles that it begins
+    /// inside. Indicators beyond their limits are the [`warnings`](Self::warnings).
     pub fn indicators(&self) -> Vec<Indicator> {
         let body = self.body();
         let of_body = |part: Part| {
@@ -224,8 +224,7 @@ pub(crate) fn of_equilibrium(trajectory: &Trajectory, is_found: bool) -> Vec<Ind
         .collect()
 }
 
-/// What in a scene ends its run early, whatever the integrator reports: an obstacle that the body begins
-/// inside.
+/// Defect of a scene that ends its run early, whatever the integrator reports: an obstacle that the body begins inside.
 pub(crate) fn doom(indicators: &[Indicator]) -> Option<&str> {
     let is_doom = |told: &&Indicator| told.name == touch::START_DEPTH && told.is_doubtful();
     indicators.iter().find(is_doom).map(|told| told.text.as_str())

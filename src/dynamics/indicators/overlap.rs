@@ -38,7 +38,7 @@ impl Entry {
     }
 }
 
-/// What is needed to check one shape of a body after the other.
+/// Workspace for checking successive shapes of a body.
 struct Overlaps<'a> {
     body: &'a Body,
     skin: Skin<'a>,
@@ -171,7 +171,7 @@ impl<'a> Overlaps<'a> {
         )
     }
 
-    /// What passes through what.
+    /// Names of the penetrating body or piece and of the penetrated one.
     fn who(&self, entry: &Entry) -> [String; 2] {
         let pieces = self.body.inertia().pattern().pieces();
         let nodes = self.nodes(entry);

@@ -5,21 +5,21 @@ use std::fmt;
 /// A number measured on a scene or on its motion, with its limits and what to change if it is beyond them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Indicator {
-    /// What is measured: one word, or several joined by hyphens.
+    /// Name of the measured quantity: one word, or several joined by hyphens.
     pub name: &'static str,
-    /// What was measured, in [`unit`](Self::unit).
+    /// Measured value, in [`unit`](Self::unit).
     pub value: f64,
     /// Least and largest value that are in order; infinite where there is no limit.
     pub limits: [f64; 2],
     /// Unit of the value and of its limits; empty for counts, `"1"` for ratios.
     pub unit: &'static str,
-    /// What the value means.
+    /// Assessment of the value.
     pub verdict: Verdict,
-    /// What was measured, the limit and, beyond it, what to change.
+    /// Message: the measured value, its limit and, beyond it, the remedy.
     pub text: String,
 }
 
-/// What the value of an [`Indicator`] means.
+/// Assessment of the value of an [`Indicator`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Verdict {
     /// In order.

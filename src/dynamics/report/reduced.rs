@@ -1,4 +1,4 @@
-//! What a run by a reduced model tells about its error.
+//! Error report of a run by a reduced model.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -20,7 +20,7 @@ pub struct ReducedReport {
     /// The error that this run tells, relative to the largest displacement in it or in these runs: what the forces left over would move, times the ratio of the two in the runs that the
     /// model was checked with.
     pub told_error: f64,
-    /// How far the motion was outside of those learned from, in parts of the widest range of a shape.
+    /// Extrapolation: distance outside the training range, relative to the largest modal range.
     pub outside: f64,
     /// The errors of what sensors read that follows from where the nodes are, as this run tells them.
     pub readings: Vec<ToldReading>,

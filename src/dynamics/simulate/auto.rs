@@ -413,8 +413,8 @@ fn explicit_step(spectrum: &Spectrum, decay: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// What follows trials of ARKODE with mean steps `means` (s), the last one first, where explicit steps
-    /// are stable up to 1 s, or up to `central_step` (s) for central differences.
+    /// Method that replaces ARKODE after trials with mean steps `means` (s), the last one first, where explicit steps
+    /// are stable up to 1 s, or up to `central_step` (s) for central differences; `None` if ARKODE continues.
     fn goes_on_with(means: [f64; TRIALS], central_step: f64) -> Option<Method> {
         let asked = Settings { method: Method::Auto, ..Settings::default() };
         let plan = Plan {

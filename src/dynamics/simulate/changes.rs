@@ -21,14 +21,14 @@ use crate::scene::constraint::ConstraintRow;
 use crate::scene::forces::Live;
 use crate::scene::timeline::Phase;
 
-/// What a command changes.
+/// Part of the equations that a command changes.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Change {
     /// Forces that store no energy.
     Loads,
     /// Forces that store energy: which obstacles act, how far cells have grown.
     Stores,
-    /// What is held or moved.
+    /// Prescribed displacements: nodes that are held or moved.
     Constraints,
 }
 

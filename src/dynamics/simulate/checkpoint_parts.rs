@@ -13,7 +13,7 @@ use crate::dynamics::error::Error;
 use crate::scene::settings::{Method, Settings};
 use crate::scene::timeline::Scene;
 
-/// What [`Method::Auto`] has chosen for the phase in force. In files a step without a bound is `null`.
+/// Choice of [`Method::Auto`] for the phase in force. In files an unbounded step is `null`.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Choice {

@@ -18,7 +18,7 @@ pub(super) struct ContactGauge {
     tributary: Tributary,
 }
 
-/// What exerts a contact.
+/// Source of a contact.
 enum Acting {
     Obstacle(Box<ActingObstacle>),
     Touch(Box<TouchForce>),
@@ -107,7 +107,7 @@ impl Acting {
         }
     }
 
-    /// What it does at all nodes; `None` where it is undefined.
+    /// Contact quantities of all nodes; `None` where they are undefined.
     fn nodal(
         &self,
         view: &View,

@@ -9,7 +9,7 @@ use crate::dynamics::state::State;
 use crate::dynamics::system::System;
 use crate::elements::force::Step;
 
-/// What happened in a step.
+/// Result of the check of a step for events.
 pub(super) enum Met {
     Nothing,
     /// The first contact event, at this time (s).
@@ -71,8 +71,8 @@ impl Events {
         slides.extend(system.slides().map(|now| now.map(known)));
     }
 
-    /// What happened in the last step, from the state `before` at time `start` (s) to time `end` (s). Depths
-    /// within obstacles below `tolerance` (m) do not matter. `work` has room for a state.
+    /// Event or passage in the last step, from the state `before` at time `start` (s) to time `end` (s). Depths within
+    /// obstacles below `tolerance` (m) are ignored. `work` is a buffer for a state.
     pub(super) fn met(
         &mut self,
         stepper: &mut dyn Stepper,

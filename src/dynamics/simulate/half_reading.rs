@@ -1,4 +1,4 @@
-//! What a reading of a symmetric scene is in its half.
+//! Readings of a symmetric scene, translated to its half.
 
 use super::reading::{Component, Reading, What};
 use super::spot::{At, Spot};

@@ -1,4 +1,4 @@
-//! What a reading of a scene that is the same all along an axis is in its section.
+//! Readings of a scene that is uniform along an axis, translated to its section.
 
 use super::reading::{By, Component, OfContact, Reading, What};
 use super::spot::{At, Spot};

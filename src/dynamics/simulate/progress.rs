@@ -25,5 +25,5 @@ pub struct Progress<'a> {
     pub trajectory: &'a Trajectory,
 }
 
-/// What watches a run, and may stop it.
+/// Observer of a run, which may stop it.
 pub(super) type Observer<'a> = &'a mut dyn FnMut(&Progress) -> ControlFlow<()>;

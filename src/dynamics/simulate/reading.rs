@@ -1,4 +1,4 @@
-//! What can be read from a motion, by name.
+//! Quantities that can be read from a motion, by name.
 
 use std::f64::consts::TAU;
 use std::iter::repeat_n;
@@ -23,7 +23,7 @@ pub struct Reading {
     pub(super) counts: Option<Box<[usize]>>,
 }
 
-/// What is read.
+/// Quantity of a reading.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum What {
     Position(Spot),
@@ -69,7 +69,7 @@ pub(super) enum What {
     AngularAcceleration(Option<Selection>),
 }
 
-/// What is read of a contact.
+/// Quantity of a contact.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum OfContact {
     Force,
@@ -79,7 +79,7 @@ pub(super) enum OfContact {
     Pressure,
 }
 
-/// What exerts a contact: an obstacle, or bodies that touch.
+/// Source of a contact: an obstacle, or bodies that touch.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum By {
     Obstacle(String),
@@ -325,14 +325,14 @@ impl Reading {
         What::DipolePosition(dipole.into()).into()
     }
 
-    /// Force of a [fluid](crate::Fluid) (N), drag and pressure, on all nodes, on [some](Self::on) or on those of one [body](Self::of_body).
-    /// What added mass does is inertia, and no part of it.
+    /// Force of a [fluid](crate::Fluid) (N), drag and pressure, on all nodes, on [some](Self::on) or on those of one
+    /// [body](Self::of_body). The effect of added mass is inertia and not part of this force.
     pub fn fluid_force(fluid: impl Into<String>) -> Self {
         What::FluidForce(fluid.into(), None).into()
     }
 
-    /// Pressure in a chamber (Pa): of gas and of a liquid what it exceeds that outside by, of a liquid with weight the mean,
-    /// of one with a surface that at the lowest place of the walls.
+    /// Gauge pressure in a chamber (Pa); of a liquid with weight the mean, of one with a surface the value at the
+    /// lowest wall point.
     pub fn pressure(chamber: impl Into<String>) -> Self {
         What::Pressure(chamber.into()).into()
     }

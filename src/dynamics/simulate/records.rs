@@ -1,4 +1,4 @@
-//! What follows from a state (u, v, energies, ...) of the run: energies, samples, projected velocities.
+//! Quantities derived from a state (u, v, energies, ...) of the run: energies, samples, projected velocities.
 
 use std::mem::take;
 use std::sync::Arc;
@@ -15,8 +15,8 @@ use crate::scene::constraint::ConstraintRow;
 use crate::scene::settings::{Method, Settings};
 use crate::scene::timeline::{Phase, Scene};
 
-/// What `state` = (u, v, energies, ...) at `time` says by itself: a sample without forces of constraints, energies that
-/// have to be evaluated, and readings of sensors.
+/// Sample from `state` = (u, v, energies, ...) at `time` alone, without constraint forces, energies that have to be
+/// evaluated, and readings of sensors.
 pub(super) fn of_state(phase: usize, system: &System, time: f64, state: &[f64]) -> Sample {
     let State { u, v, dissipated, supplied, others } = State::of(state, system.dofs());
     let internal = internal(system, others);

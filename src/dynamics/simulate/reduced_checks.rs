@@ -1,5 +1,5 @@
-//! What a run by a reduced model knows of its error: what the model leaves over is kept now and then, and how far that would
-//! move the body is found once somebody asks, as it takes a factorization with all unknowns.
+//! Error checks of a run by a reduced model: snapshots of its residual are stored at some times. The displacements that
+//! balance them are computed on request only, as that takes a factorization with all unknowns.
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
@@ -9,7 +9,7 @@ use crate::dynamics::system::{Lacking, LeftOver, System};
 use crate::scene::reduced_model::ReducedModel;
 use crate::scene::timeline::Scene;
 
-/// What is known, and what is not known yet.
+/// Error report so far, and residual snapshots that are still to be evaluated.
 #[derive(Clone)]
 pub(super) struct ReducedChecks {
     pub(super) report: ReducedReport,

@@ -91,7 +91,7 @@ pub(super) struct Run {
     /// them.
     resolution: Resolution,
     pub(super) looks: f64,
-    /// What is known of the error of a reduced model, if the scene is run by one.
+    /// Error checks of the reduced model, if the scene is run by one.
     pub(super) reduced: Option<Mutex<ReducedChecks>>,
 }
 

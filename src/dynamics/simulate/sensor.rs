@@ -23,7 +23,7 @@ pub(super) struct Sensor {
 /// Reads a user-defined number.
 pub(super) type Own = dyn Fn(&View, &Sample) -> f64 + Send + Sync;
 
-/// What a sensor reads.
+/// Quantity that a sensor reads.
 #[derive(Clone)]
 pub(super) enum SensorKind {
     /// A user-defined number: its unit, and the function that reads it.

@@ -57,7 +57,7 @@ pub(super) trait Stepper: Send {
     /// Ends the integrator and returns the equations.
     fn into_system(self: Box<Self>) -> System;
 
-    /// What the integration has cost so far, and what it noticed.
+    /// Statistics of the integration so far, with its notice.
     fn counts(&self) -> Counts;
 }
 
@@ -120,7 +120,7 @@ fn keep_end<I: Integrator<System: Form>>(integrator: &mut I) {
     *Integrator::system_mut(integrator).system_mut().ends_mut() = ends;
 }
 
-/// What an integrator has cost, with its equations.
+/// Statistics of an integrator and its equations.
 fn counts<I: Integrator<System: Form>>(integrator: &I) -> Counts {
     let (s, system) = (integrator.statistics(), integrator.system().system());
     let [spared, linear_iterations, indefinite] = system.newton_counts();

@@ -106,7 +106,7 @@ impl Run {
         Ok((self.time >= self.phase_run.interval.end()).then_some(Ending::Reached))
     }
 
-    /// What the methods have created if the energy balance is now `balance`, and the scale of it (J).
+    /// Energy created by the methods (J) if the energy balance is now `balance`, and the scale of energies (J).
     pub(super) fn created(&self, balance: f64) -> (f64, f64) {
         let scale = self.trajectory.report.energy_scale.max(self.least_energy);
         (balance - self.balance, scale)

@@ -1,4 +1,4 @@
-//! What can be read from a simulation at one time.
+//! Quantities that can be read from a simulation at one time.
 
 use std::fmt;
 use std::sync::Arc;
@@ -234,7 +234,7 @@ impl<'a> View<'a> {
         Ok(self.with_surface(number)?.level(self.state.u, self.liquid_amount(number)))
     }
 
-    /// What `see` makes of the scene, the phase, the displacements and the last unknowns of the state.
+    /// Calls `see` with the scene, the phase, the displacements and the extra unknowns.
     #[cfg(feature = "play")]
     pub(crate) fn with_states<R>(
         &self,
@@ -285,7 +285,8 @@ impl<'a> View<'a> {
         Ok(self.actuation_with_rate(spring)[0])
     }
 
-    /// What phases and commands [actuate](Phase::actuate) it by: of what is [heated](crate::Lag::heated) a power (W), else as [`actuation`](Self::actuation).
+    /// Command of an actuator by phases and commands (see [`Phase::actuate`]): a power (W) if it is
+    /// [heated](crate::Lag::heated), else as [`actuation`](Self::actuation).
     ///
     /// # Errors
     /// As [`actuation`](Self::actuation).
@@ -382,7 +383,7 @@ impl<'a> View<'a> {
         Ok(sum[..self.body().dimension()].to_vec())
     }
 
-    /// What contact does at each node; `None` where it is undefined.
+    /// Nodal contact quantities; `None` where they are undefined.
     #[cfg(feature = "play")]
     pub(crate) fn nodal_contacts(&self, reader: &ContactReader) -> Option<Vec<NodalContact>> {
         let obstacles = self.scene.contacts(self.phase).ok()?;

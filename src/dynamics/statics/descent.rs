@@ -176,7 +176,7 @@ impl Search<'_> {
             && self.rest.factorize_other(|matrix| body.add_gradients(matrix))
     }
 
-    /// What turns cells along `factor` times x, and the largest turn (rad).
+    /// Right-hand side that turns cells along `factor` times x, and the largest turn (rad).
     fn turns(&self, factor: f64) -> (Vec<f64>, f64) {
         let step: Vec<f64> = self.x.iter().map(|x| factor * x).collect();
         let mut right = vec![0.0; step.len()];

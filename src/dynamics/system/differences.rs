@@ -121,7 +121,7 @@ impl Differences {
     }
 }
 
-/// What is shifted, and how far.
+/// Perturbation for a finite difference: the force, and the size of the change of u or v.
 struct Shift<'a> {
     force: &'a Arc<dyn Force>,
     t: f64,

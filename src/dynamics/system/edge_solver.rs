@@ -26,7 +26,7 @@ use faer::{Mat, MatMut, Par, Spec};
 use super::edges::{Edge, Edges};
 use crate::base::vector::dot;
 
-/// What solves systems with X under the constraints of edges.
+/// Solver of systems with X under the constraints of edges.
 pub(super) struct EdgeSolver {
     dimension: usize,
     /// For each edge the first columns of Z of its nodes, and its degrees of freedom among the free ones.
@@ -41,10 +41,10 @@ pub(super) struct EdgeSolver {
     pieces: Vec<Piece>,
     rows: Vec<[f64; 3]>,
     columns: Vec<[f64; 3]>,
-    /// What R x is to be, and the multipliers that make it so.
+    /// Right-hand side of R x, and the multipliers that enforce it.
     pub(super) demands: Vec<f64>,
     pub(super) multipliers: Vec<f64>,
-    /// What is asked for instead in the first half of a step of central differences.
+    /// Prescribed lengths instead, in the first half of a step of central differences.
     pub(super) arrival: Arrival,
     /// G^T multipliers at the frames.
     pull: Vec<f64>,

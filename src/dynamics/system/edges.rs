@@ -162,7 +162,7 @@ impl Edges {
         }));
     }
 
-    /// What a Newton step is to make of R xv, given the residuals `ru`, `rv` and that of the demands: G rv - gamma
+    /// Right-hand side of R xv in a Newton step, given the residuals `ru`, `rv` and that of the demands: G rv - gamma
     /// (x'' + 2 alpha x' + alpha^2 x) ru + `share` demands.
     pub(super) fn newton_demands(
         &self,
@@ -183,8 +183,8 @@ impl Edges {
         dot(acceleration, s) + 2.0 * alpha * dot(rate, s) + alpha * alpha * dot(x, s)
     }
 
-    /// What a Newton step of the DAE form of index 1 is to make of R xv, given gamma times the residuals of displacements,
-    /// `ru`, and the residuals of the edges.
+    /// Right-hand side of R xv in a Newton step of the DAE form of index 1, given `ru`, the residuals of displacements
+    /// times gamma, and the residuals of the edges.
     pub(super) fn index_one_demands(
         &self,
         [gamma, alpha]: [f64; 2],

@@ -130,7 +130,7 @@ impl System {
         Vibrations { stiffness: self.tangents().0.values.clone(), rigid, lowest }
     }
 
-    /// What each row that moves does from the first of the `times` on, as far as it goes.
+    /// Motion of each moving row: its lift times its largest displacement from the first of the `times` on.
     fn lifted(&self, lifts: &[Vec<f64>], times: [f64; TIMES.len()]) -> Vec<Vec<f64>> {
         let rows = self.rows.iter().filter(|row| row.moves());
         let scaled = |(row, lift): (&ConstraintRow, &Vec<f64>)| {

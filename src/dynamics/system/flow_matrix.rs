@@ -24,7 +24,7 @@ use crate::base::simd::add_multiple;
 use crate::base::vector::dot;
 use crate::elements::force::FlowDerivatives;
 
-/// What amounts of gas and liquids add to the Newton system; matrices row by row.
+/// Contribution of gas, liquids, lag states and pipe flows to the Newton system; matrices row by row.
 pub(super) struct FlowMatrix {
     /// Rooms, and unknowns: the amounts in them, and flows of pipes.
     pub(super) rooms: usize,

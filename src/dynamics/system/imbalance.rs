@@ -1,5 +1,5 @@
-//! What a reduced model leaves out, looked at now and then with all unknowns: the forces that the other nodes and cells
-//! would feel, and the displacements that would balance them.
+//! Residual of a reduced model, evaluated at some times with all unknowns: the forces on the other nodes and cells, and
+//! the displacements that would balance them.
 
 use std::sync::Arc;
 
@@ -43,7 +43,7 @@ impl System {
     /// Has the phase `name` be run by a reduced model.
     ///
     /// # Errors
-    /// What such models do not have, and constraints that this one has not learned.
+    /// Features that such models do not support, and constraints that this one has not learned.
     pub(crate) fn reduce(
         &mut self,
         body: &Body,
@@ -58,7 +58,7 @@ impl System {
     }
 
     /// # Errors
-    /// What reduced models do not have.
+    /// Features that reduced models do not support.
     pub(crate) fn check_reducible(&self) -> Result<(), InputError> {
         if self.matrices.rigid.is_none() {
             return Ok(());
@@ -84,8 +84,8 @@ impl System {
         self.reduction.as_ref().map_or(0, |reduction| reduction.difference_evaluations())
     }
 
-    /// What `state` = (u, v, ...) of a reduced model leaves over at time `t`, if that is due: some times in a phase from
-    /// `start` to `end` (s).
+    /// Residual snapshot of the `state` = (u, v, ...) of a reduced model at time `t`, if a check is due: at some
+    /// fractions of the phase from `start` to `end` (s).
     pub(crate) fn left_over(
         &mut self,
         t: f64,

@@ -105,11 +105,11 @@ pub(crate) struct System {
     /// Stabilization rate alpha (1/s).
     alpha: f64,
     inertia: Reduced,
-    /// What keeps rigid pieces in their shape.
+    /// Edges that keep the shape of rigid pieces.
     edges: Edges,
-    /// All edges, with those that constraints keep already.
+    /// All edges, including those that constraints keep already.
     all_edges: Edges,
-    /// As they were where the tangents are from.
+    /// The edges at the state of the tangents.
     linear_edges: Edges,
     newton: NewtonMatrix,
     at: Evaluation,
@@ -663,7 +663,7 @@ fn parted(forces: Forces) -> (Forces, Option<Arc<dyn Force>>, Forces) {
     (of_rigid, flows.into_iter().next(), others)
 }
 
-/// What flows.
+/// Flow of a force, if it has one.
 fn flow_of(force: &Option<Arc<dyn Force>>) -> Option<&dyn Flow> {
     force.as_ref().and_then(|force| force.flow())
 }

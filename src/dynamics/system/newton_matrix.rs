@@ -40,7 +40,7 @@ pub(super) struct NewtonMatrix {
     /// d of the linear system, and its multipliers mu.
     pub(super) demands: Vec<f64>,
     pub(super) mu: Vec<f64>,
-    /// What amounts of gas add, if there are any.
+    /// Contribution of gas, liquids, lag states and pipe flows, if there are any.
     pub(super) flow: Option<FlowMatrix>,
     /// By how much velocities differ from those of rigid pieces; empty without any. No force acts on it.
     pub(super) stray: Vec<f64>,

@@ -44,7 +44,7 @@ pub(super) struct RatesBound {
 }
 
 struct Bound {
-    /// What may be added to the diagonal, node by node.
+    /// Bounds on sudden growth of the diagonal, node by node.
     reserve: Vec<f64>,
     x: Vec<f64>,
     image: Vec<f64>,

@@ -15,7 +15,7 @@ use crate::base::vector::dot;
 use crate::elements::force::{FlowDerivatives, Force, NodalForces};
 use crate::integrators::ode::Failure;
 
-/// What flows, along the shapes of a reduced model.
+/// Flow states along the shapes of a reduced model: gas, liquids, lag states and pipe flows.
 pub(super) struct ReducedFlow {
     force: Arc<dyn Force>,
     /// The amounts at the last evaluation, their rates, and room for as many numbers.

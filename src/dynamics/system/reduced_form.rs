@@ -122,9 +122,9 @@ fn parts_mut(y: &mut [f64], free: usize) -> [&mut [f64]; 4] {
     [q, p, internal, energies]
 }
 
-/// What holds the equations of a reduced model.
+/// Form that contains the equations of a reduced model.
 pub(crate) trait Lift: Form {
-    /// Those.
+    /// The reduced equations.
     fn reduced(&mut self) -> &mut ReducedForm;
 }
 

@@ -62,7 +62,7 @@ pub(super) struct Reduction {
     pub(super) next_check: Option<f64>,
 }
 
-/// What does not change, along Psi.
+/// Constant terms of the equations, along Psi.
 struct Constant {
     /// M, K and B, each row by row.
     inertia: Vec<f64>,

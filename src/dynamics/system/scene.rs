@@ -56,7 +56,7 @@ impl Scene {
     }
 
     /// # Errors
-    /// What a reduced model of the scene cannot have; bad input.
+    /// Features of the scene that reduced models do not support; bad input.
     pub(crate) fn check_reducible(&self) -> Result<(), InputError> {
         let forces = self.forces()?;
         let (matrices, phase) = (self.matrices(&forces), self.first_phase()?);

@@ -118,7 +118,7 @@ impl System {
         self.matrices.inertia.is_diagonal() && self.matrices.rigid.is_none()
     }
 
-    /// What a row prescribes at time `t`.
+    /// Prescribed motion of a row at time `t`.
     ///
     /// # Errors
     /// A path that gives no finite numbers.

@@ -5,10 +5,10 @@ use super::edges::Edges;
 use crate::base::vector::largest;
 use crate::integrators::ode::Failure;
 
-/// What is round-off in the velocities of a rigid piece, relative to the largest.
+/// Round-off tolerance for the velocities of a rigid piece, relative to the largest.
 const ROUND_OFF: f64 = 1e-12;
 
-/// What is round-off in the rate of an edge, relative to the largest velocity.
+/// Round-off tolerance for the rate of an edge, relative to the largest velocity.
 const TORN: f64 = 1e-9;
 
 impl System {

@@ -1,4 +1,4 @@
-//! What a scene contains, phase by phase.
+//! Summary of a scene, phase by phase.
 
 use super::Spectrum;
 use crate::base::input::InputError;
@@ -6,7 +6,7 @@ use crate::scene::constraint::PhaseStart;
 use crate::scene::forces::Obstacle;
 use crate::scene::timeline::{Phase, Scene};
 
-/// What happens in a phase, and how fast the body can move then.
+/// Summary of a phase, with the spectrum of the body in it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PhaseSummary {
     /// Name of the phase.
@@ -36,7 +36,7 @@ pub struct PhaseSummary {
 }
 
 impl Scene {
-    /// What happens in each phase.
+    /// Summary of each phase.
     ///
     /// # Errors
     /// As [`validate`](Self::validate).

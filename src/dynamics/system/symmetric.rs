@@ -26,7 +26,7 @@ pub(super) struct Symmetric {
     free: Vec<usize>,
     /// Sources of the entries of the lower triangle.
     sources: Vec<EntrySource>,
-    /// What nodes that move with others add to entries, with their shares.
+    /// Contributions of nodes that move with others: entry, source and weight.
     carried: Vec<(usize, EntrySource, f64)>,
     values: Vec<f64>,
     cholesky: Cholesky,

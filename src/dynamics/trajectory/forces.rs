@@ -27,7 +27,7 @@ impl Trajectory {
         self.forces_of(obstacles.iter().map(|contact| contact as _).chain(touches), sample)
     }
 
-    /// What obstacles, and bodies that touch, do at each node: contact pressure, the area in touch, whether it sticks.
+    /// Contact at each node by obstacles and touching bodies: contact pressure, contact area, and whether it sticks.
     ///
     /// ```
     /// # use pliant::{Body, Cells, ContactStatus, Material, Mesh, Obstacle, Phase, Scene, Statics};

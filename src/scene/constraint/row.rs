@@ -48,7 +48,7 @@ impl RowMotion {
         }
     }
 
-    /// What it does, for messages.
+    /// Description of the prescribed motion, for messages.
     pub(super) fn label(&self) -> String {
         match self {
             Self::Linear { velocity: 0.0, .. } => "held".into(),

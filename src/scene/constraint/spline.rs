@@ -20,7 +20,7 @@ pub(crate) struct Spline {
     velocities: Vec<f64>,
 }
 
-/// What a file has of a spline: by name, or one after the other as [`as_pair`] writes it.
+/// Serialized form of a spline: named fields, or a sequence as [`as_pair`] writes it.
 #[cfg(feature = "checkpoint")]
 #[derive(serde::Deserialize)]
 struct Points {

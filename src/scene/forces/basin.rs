@@ -1,14 +1,15 @@
-//! What stands in walls up to a level: its volume, how deep it lies, and the level of a given volume.
+//! Liquid within walls up to a level: its volume, the integral S of its depth, and the level of a given volume.
 //!
-//! A point x lies at the depth d = h + e . x below the level h (m, against gravity from the origin; e is where gravity leads). By the divergence theorem what is
-//! below the level has, over closed walls of outward normal n, and with d = 0 above it,
+//! A point x lies at the depth d = h + e . x below the level h (m, upwards from the origin; e is the direction of
+//! gravity). By the divergence theorem, over closed walls of outward normal n and with d = 0 above the level,
 //!
 //! ```text
 //! S = int d dV = int (1/2) d^2 (e . n) dA,   V = dS/dh = int d (e . n) dA,   A = dV/dh = int_wet (e . n) dA,
 //! ```
 //!
-//! the area A of its surface. Walls are straight pieces, segments or triangles, on which d is linear: with its values d_a at the corners, N the normal times the
-//! area, and M_ab = int_wet N_a N_b dA/area, which is exact, the gradients at a level that stays are
+//! with the volume V and the area A of its surface. Walls are straight pieces, segments or triangles, on which d is linear: with its
+//! values d_a at the corners, N the normal times the area, and the exact M_ab = int_wet N_a N_b dA/area, the gradients
+//! at a constant level are
 //!
 //! ```text
 //! dS/dx_a = N sum_b M_ab d_b,   dV/dx_a = N sum_b M_ab,

@@ -328,7 +328,7 @@ fn orientation(enclosed: f64, body: &Body) -> Option<f64> {
     (enclosed.abs() > least).then(|| enclosed.signum())
 }
 
-/// What a volume below 0 means.
+/// Cause of a negative volume, and its remedy, for messages.
 pub(crate) const TURNED: &str = "its walls have passed through each other, which they do not feel. Let them touch ([[touch]]), \
                                  draw less out of it, or make its walls stiffer";
 
@@ -382,8 +382,8 @@ impl ChamberForce {
     }
 }
 
-/// What encloses a chamber, and the factor by which p times the gradient of its area or volume becomes the
-/// force: +-h in the plane, +-1 in space and in a body of revolution.
+/// Boundary of a chamber, and the factor by which p times the gradient of its area or volume becomes the force: +-h in
+/// the plane, +-1 in space and in a body of revolution.
 enum Geometry {
     Polygon(Polygon, f64),
     Surface(Surface, f64),

@@ -90,7 +90,7 @@ impl Slip {
 }
 
 impl Touch<'_> {
-    /// What multiplies the sliding velocity (N s/m).
+    /// Tangential force per sliding velocity (N s/m): tangential damping plus friction over the sliding speed.
     fn drag(&self) -> f64 {
         let friction = |slip: &Slip| slip.pressing * slip.drag.per_speed;
         self.point.law.tangential_damping + self.slip.as_ref().map_or(0.0, friction)

@@ -1,4 +1,4 @@
-//! What may be closed in a chamber: an amount that has a pressure.
+//! Fluid in a chamber: an amount of gas or liquid, with a pressure.
 
 use super::chamber::ChamberForce;
 use crate::base::sparse::BlockMatrix;

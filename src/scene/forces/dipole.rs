@@ -51,7 +51,7 @@ pub struct Dipole {
     position: VectorSignal,
 }
 
-/// What phases and commands change of a dipole.
+/// Properties of a dipole that phases and commands change.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "checkpoint", serde(rename_all = "snake_case"))]

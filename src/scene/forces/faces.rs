@@ -157,7 +157,7 @@ pub(crate) fn shares(body: &Body, nodes: &[usize]) -> Vec<f64> {
 /// The undeformed area (m^2) of the boundary that each of `nodes` stands for.
 ///
 /// # Errors
-/// What is wrong with them: nodes on no whole face, a body without a surface.
+/// Invalid nodes: nodes on no whole face, a body without a surface.
 pub(crate) fn areas(body: &Body, nodes: &[usize]) -> Result<Vec<f64>, String> {
     let faces = loaded_faces(body, nodes).map_err(|loose| on_no_face(&loose))?;
     let mut sections = BTreeMap::new();

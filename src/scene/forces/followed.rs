@@ -11,7 +11,7 @@ use crate::elements::basis::{FacePoint, MOST_NODES, face_points};
 use crate::elements::body::Body;
 use crate::elements::mesh::{FaceKind, Mesh};
 
-/// What is round-off in the rim of a closed surface, over the sizes of the parts that cancel.
+/// Round-off tolerance for the rim of a closed surface, relative to the magnitudes of the terms that cancel.
 const NO_RIM: f64 = 1e-9;
 
 /// Faces with a normal.

@@ -163,7 +163,7 @@ impl Filled {
         part.max(LEAST) * self.amount
     }
 
-    /// What the gas exceeds the air around by (Pa), at an `absolute` pressure.
+    /// Gauge pressure of the gas (Pa) at an `absolute` pressure (Pa).
     fn above_outside(&self, absolute: f64) -> f64 {
         absolute - self.outside
     }

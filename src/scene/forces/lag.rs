@@ -1,4 +1,4 @@
-//! What actuators lag behind their commands by: heat, activation, motors.
+//! Lags of actuators behind their commands: heat, muscle activation, first-order dynamics of motors.
 
 #[cfg(test)]
 mod tests;
@@ -104,7 +104,7 @@ impl Lag {
         matches!(self.0, Law::Activation { .. })
     }
 
-    /// What drives the actuator at last under a command of 1.
+    /// Steady-state input of the actuator under a command of 1.
     pub(crate) fn gain(&self) -> f64 {
         match self.0 {
             Law::Times { .. } | Law::Activation { .. } => 1.0,
@@ -112,7 +112,7 @@ impl Lag {
         }
     }
 
-    /// What drives the actuator per kelvin, where it is heated.
+    /// Actuation per kelvin of temperature rise, if the actuator is heated.
     pub(crate) fn per_kelvin(&self) -> Option<f64> {
         match self.0 {
             Law::Heat { per_kelvin, .. } => Some(per_kelvin),
@@ -183,7 +183,7 @@ impl Lagging {
         Self { name, lag, hill, size, drives, state: Live::new(&[0.0; 2]), force: None }
     }
 
-    /// What its force is driven by.
+    /// Signal that drives its force: the lag state.
     pub(crate) fn signal(&self) -> Signal {
         Signal::of_state(self.state.clone())
     }

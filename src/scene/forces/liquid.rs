@@ -22,7 +22,7 @@ use held::Held;
 use surface::Pool;
 use whole::Whole;
 
-/// What a liquid with a surface is told that fills its chamber.
+/// Remedy for a liquid with a surface whose initial fill is too large.
 const FULL: &str = "with a surface it must be below 1: fill less, or leave the surface out";
 
 /// Bulk modulus (Pa) and density (kg/m^3) of water.
@@ -182,7 +182,7 @@ impl Liquid {
     }
 }
 
-/// What the weight of a liquid takes, with the strength of gravity (m/s^2).
+/// Geometry for the weight of a liquid, with the strength of gravity (m/s^2).
 pub(crate) enum Weight {
     None,
     /// Of one that fills its chamber whole.

@@ -266,7 +266,7 @@ pub(crate) struct MagnetForce {
     dimension: usize,
     magnets: Magnets,
     field: VectorSignal,
-    /// What the gradient adds at the origin (T).
+    /// Contribution of the gradient at the origin (T).
     at_origin: [f64; 3],
     /// d B_i / d x_j (T/m)
     gradient: [[f64; 3]; 3],

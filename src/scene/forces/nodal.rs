@@ -1,4 +1,4 @@
-//! What contact does at the nodes of a surface, for output.
+//! Nodal contact quantities of a surface, for output.
 
 use std::sync::Arc;
 use std::{iter, mem};
@@ -8,7 +8,7 @@ use crate::base::vector::{cross, difference, dot, norm};
 use crate::elements::body::Body;
 use crate::elements::mesh::FaceKind;
 
-/// What obstacles, and bodies that touch, do at a node.
+/// Contact at a node, by obstacles and by touching bodies.
 ///
 /// Where contact acts at points between the nodes, each node has its shares of these: of their areas, as of their
 /// forces. So the sum of pressure times area over the nodes is the sum of the normal forces.
@@ -37,7 +37,7 @@ pub enum ContactStatus {
     Sliding,
 }
 
-/// What is left of areas that cancel each other, over their sizes, by rounding at most.
+/// Round-off tolerance for areas that cancel, relative to the sum of their magnitudes.
 const ROUNDING: f64 = 1e-9;
 
 impl NodalContact {

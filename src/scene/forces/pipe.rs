@@ -108,7 +108,7 @@ impl Pipe {
     }
 }
 
-/// What is at an end of a pipe.
+/// Boundary at an end of a pipe.
 pub(crate) enum Mouth {
     /// The liquid of that number, among those of the scene.
     Liquid(usize),

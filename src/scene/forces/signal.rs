@@ -15,7 +15,7 @@ use crate::integrators::ode::Failure;
 #[derive(Clone)]
 pub struct Signal(pub(crate) SignalKind);
 
-/// What a [`Signal`] is.
+/// Kind of a [`Signal`], with its data.
 #[derive(Clone)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "checkpoint", serde(rename_all = "snake_case"))]
@@ -121,11 +121,12 @@ impl Signal {
         Self(SignalKind::TimeTable(TimeTable::new(times.into(), values)))
     }
 
-    /// The same table over and over, each time `period` (s) later, up to the time `until` (s). Between its last time and its first one a period later it is
-    /// interpolated linearly, too.
+    /// The same table repeated with the `period` (s), up to the time `until` (s). Between its last time and the first
+    /// one of the next repetition it is interpolated linearly, too.
     ///
     /// # Errors
-    /// What is no table, a table that is longer than the period (as long as it, with different values at its ends), or one repeated more than a million times.
+    /// A signal that is not a table; a table that is invalid, longer than the period, or as long as it with different
+    /// values at its ends; a period that is not above 0; more than a million repetitions.
     pub fn repeated(mut self, period: f64, until: f64) -> Result<Self, InputError> {
         match &mut self.0 {
             SignalKind::TimeTable(table) => table.repeat(period, until)?,
@@ -261,7 +262,7 @@ impl fmt::Debug for Signal {
     }
 }
 
-/// What is no table has a `period` (s).
+/// Error: a `period` (s) given for a signal that is not a table.
 fn not_repeated(period: f64) -> InputError {
     let help = "only a table is repeated: formulas and functions say themselves how they go on";
     InputError::new("period", format!("{period} s"), help)

@@ -268,7 +268,7 @@ impl Spring {
         if self.name.is_empty() { self.named(name) } else { self }
     }
 
-    /// What the spring is joined to, or what a cable runs along, in order.
+    /// Attachments of a spring, or guide points of a cable, in order.
     ///
     /// # Errors
     /// Ends of a spring that are not one node each; less than two places; a point with a wrong number of coordinates.
@@ -393,7 +393,7 @@ impl Spring {
         Ok(Law::Cable(Cable { path, stiffness, damping, is_winch, friction }))
     }
 
-    /// What measures the spring.
+    /// Gauge of the spring: its law without actuation.
     ///
     /// # Errors
     /// As [`joints`](Self::joints); places that follow each other and are the same; numbers out of range.

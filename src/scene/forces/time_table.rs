@@ -131,7 +131,7 @@ impl TimeTable {
 mod tests {
     use super::*;
 
-    /// What is repeated is where it was a period before, up to the end, whether or not the table is as long as its period; and is off by round-off alone.
+    /// Repetition is exact to round-off, also if the table is shorter than its period.
     #[test]
     fn tables_repeat() {
         let once = TimeTable::new(vec![0.1, 0.2, 0.35], vec![vec![0.0], vec![2.0], vec![1.0]]);

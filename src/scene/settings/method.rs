@@ -111,7 +111,7 @@ impl Method {
         }
     }
 
-    /// What it is for.
+    /// Purpose of the method, in words.
     pub fn purpose(self) -> &'static str {
         match self {
             Self::Auto => {

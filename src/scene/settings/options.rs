@@ -9,19 +9,19 @@ use crate::base::input::InputError;
 pub struct SettingsOption {
     /// Its name in the table `[solver]` of scene files, and in [`Settings`].
     pub key: &'static str,
-    /// What it is.
+    /// Meaning of the option, in words.
     pub meaning: &'static str,
     /// Its unit: "1" for numbers without one, empty for values that are not numbers.
     pub unit: &'static str,
     /// Its default: the value as in a scene file, or words.
     pub default: &'static str,
-    /// What stands for its value in the help of the command.
+    /// Placeholder of its value in the help of the command.
     pub value_name: &'static str,
     /// How its value is read and put into [`Settings`].
     pub value: SettingsValue,
 }
 
-/// What kind of value an option has, with the function that puts it into [`Settings`].
+/// Type of the value of an option, with the function that sets it in [`Settings`].
 #[derive(Debug, Clone, Copy)]
 pub enum SettingsValue {
     /// A number.

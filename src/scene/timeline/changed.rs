@@ -1,4 +1,4 @@
-//! What commands, and the search for an equilibrium, make of a phase.
+//! Phases changed by commands and by the search for an equilibrium.
 
 use std::sync::Arc;
 

@@ -1,4 +1,4 @@
-//! What contact does at the nodes of a scene.
+//! Nodal contact quantities of a scene.
 
 use super::Scene;
 use crate::base::input::InputError;
@@ -17,8 +17,8 @@ impl ContactReader {
         Ok(Self { touches, tributary })
     }
 
-    /// What the `contacts` with obstacles, and all touches, do at time `t` (s) at each node with the displacements and
-    /// velocities `[u, v]` (m, m/s).
+    /// Contact quantities of each node at time `t` (s), by the `contacts` with obstacles and by all touches, at the
+    /// displacements and velocities `[u, v]` (m, m/s).
     ///
     /// # Errors
     /// A user's distance function that is undefined; surfaces that lie on each other.

@@ -54,7 +54,7 @@ impl Scene {
         self.dipoles.iter().map(|dipole| DipolePart::ALL.map(|part| at(dipole, part))).collect()
     }
 
-    /// What dipoles act on; nothing without dipoles.
+    /// Magnetized points on which dipoles act; empty without dipoles.
     pub(crate) fn magnetized_points(&self) -> Result<Arc<[Box<dyn MagnetizedPoints>]>, InputError> {
         let mut points: Vec<Box<dyn MagnetizedPoints>> = Vec::new();
         if !self.dipoles.is_empty() {

@@ -14,7 +14,7 @@ use crate::scene::forces::{
     areas, shares,
 };
 
-/// What makes the forces of an actuator of its signals.
+/// Builder of the forces of an actuator from its signals.
 type Build<'a> = &'a dyn Fn(Vec<Signal>) -> Result<Forces, InputError>;
 
 impl Scene {
@@ -203,7 +203,7 @@ impl Scene {
         Ok(lags.into_iter().flatten().collect())
     }
 
-    /// What grows in `phase`, with its strains.
+    /// Growths that are actuated in `phase`, with their strains.
     ///
     /// # Errors
     /// Cells that are part of two growths.
@@ -255,7 +255,8 @@ impl Scene {
         grown.collect()
     }
 
-    /// What actuates each spring, then each muscle, then each growth, in `phase`; of those that lag what drives them at last.
+    /// Actuation signals of all springs, muscles and growths in `phase`, in that order; for lagged actuators, the
+    /// steady-state input.
     fn actuation_signals(&self, phase: &Phase) -> Result<Vec<Vec<Signal>>, InputError> {
         let input = format!("actuation of phase \"{}\"", phase.name);
         let mut actuations: Vec<Vec<Signal>> = vec![Vec::new(); self.actuators().count()];

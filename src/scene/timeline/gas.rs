@@ -11,7 +11,7 @@ use crate::scene::forces::{
     OrificeFlow, Poured, Signal, Supply,
 };
 
-/// What an end of an orifice or a pipe in the open is called.
+/// Name of an open end of an orifice or a pipe.
 pub(super) const OPEN: &str = "atmosphere";
 
 impl Scene {

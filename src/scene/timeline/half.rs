@@ -76,10 +76,10 @@ impl Scene {
     /// ```
     ///
     /// # Errors
-    /// What [`validate`](Self::validate) refuses. A mesh in which a node has no mirror image, or a cell lies across the plane;
-    /// anything else that is not symmetric: materials, what is held and moved, loads, pressures on faces, gravity, the start, obstacles. What a half of is
-    /// not known: several bodies, rigid and fibrous materials, springs and other actuators, chambers, fluids, bodies that touch, forces that
-    /// are not of this crate.
+    /// Scenes that [`validate`](Self::validate) refuses. A mesh in which a node has no mirror image, or a cell lies
+    /// across the plane; anything else that is not symmetric: materials, prescribed displacements, loads, pressures on
+    /// faces, gravity, the start, obstacles. Unsupported features: several bodies, rigid and fibrous materials, springs
+    /// and other actuators, chambers, fluids, bodies that touch, forces that are not of this crate.
     pub fn symmetric_half(&self, axis: Axis) -> Result<Self, InputError> {
         Ok(self.half(axis, false)?.scene)
     }
@@ -162,7 +162,7 @@ impl Scene {
         if own.iter().any(is_beside) { self.kept(nodes, half) } else { Ok(None) }
     }
 
-    /// What is held and moved of the half, and its plane of symmetry.
+    /// Constraints of the half, with those of its plane of symmetry.
     fn half_of_constraints(
         &self,
         phase: &Phase,

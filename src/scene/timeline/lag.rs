@@ -15,7 +15,7 @@ impl Scene {
         self
     }
 
-    /// What lags, and how.
+    /// Names of the actuators that lag, each with its lag.
     pub fn lags(&self) -> impl ExactSizeIterator<Item = (&str, &Lag)> {
         self.lags.iter().map(|(name, lag)| (&**name, lag))
     }
@@ -25,7 +25,7 @@ impl Scene {
         self.lags().find(|(name, _)| *name == actuator).map(|(_, lag)| lag)
     }
 
-    /// What drives a heated actuator per kelvin; `input` is where its name was given.
+    /// Actuation per kelvin of a heated actuator; `input` is where its name was given.
     pub(crate) fn per_kelvin(&self, actuator: &str, input: &str) -> Result<f64, InputError> {
         let heated = self.lags().filter_map(|(name, lag)| Some((name, lag.per_kelvin()?)));
         let heated: Vec<(&str, f64)> = heated.collect();
@@ -53,7 +53,7 @@ impl Scene {
         Ok(())
     }
 
-    /// What drives an actuator at last, where `signals` command it.
+    /// Steady-state input of an actuator under the commands `signals`: command times gain.
     pub(super) fn driven(&self, actuator: &str, signals: Vec<Signal>) -> Vec<Signal> {
         match self.lag_of(actuator) {
             // without a command it comes to rest
@@ -101,7 +101,8 @@ impl Scene {
         }
     }
 
-    /// What drives an actuator at time `t` (s) in `phase`, and its rate; `states` are the last unknowns of a state, or none where they are constants.
+    /// Input of an actuator at time `t` (s) in `phase`, and its rate. `states` are the last unknowns of a state, or none where these
+    /// are constants; then the input is the steady-state one.
     pub(crate) fn drive_at(
         &self,
         actuator: &str,

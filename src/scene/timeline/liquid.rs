@@ -179,7 +179,7 @@ impl Scene {
     }
 }
 
-/// What flows in (m^3) by a `flow` between two times (s), by Simpson's rule.
+/// Inflow (m^3) by a `flow` between two times (s), by Simpson's rule.
 fn added(flow: &Signal, [start, end]: [f64; 2]) -> f64 {
     let middle = start + 0.5 * (end - start);
     (end - start) * (flow.at(start) + 4.0 * flow.at(middle) + flow.at(end)) / 6.0

@@ -1,4 +1,4 @@
-//! What a load is: a force on nodes, or a traction on the faces between them.
+//! Loads: forces on nodes, or tractions on the faces between them.
 
 use crate::base::input::InputError;
 use crate::scene::forces::VectorSignal;
@@ -10,7 +10,7 @@ pub(crate) struct Load {
     pub(crate) value: VectorSignal,
 }
 
-/// What the value of a load refers to.
+/// Reference of the value of a load: each node, all nodes together, or undeformed area.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "checkpoint", serde(rename_all = "snake_case"))]

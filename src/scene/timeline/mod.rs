@@ -101,9 +101,10 @@ pub struct Scene {
     supplies: Vec<Supply>,
     /// Absolute pressure (Pa) around chambers with gas.
     atmosphere: f64,
-    /// Whether amounts of gas and liquids, and what drives actuators that lag, are no unknowns.
+    /// If true, gas and liquid masses are prescribed instead of integrated, and lagged actuators have their steady-state input.
     is_shut: bool,
-    /// Whether that rises along straight lines, in each phase from what exerts nothing at t = 0 to what it is at its end.
+    /// If true, these masses and the inputs of springs and growths rise linearly: from zero load at t = 0 to their values at the
+    /// end of the phase.
     rises: bool,
     ties: Vec<Tie>,
     touches: Vec<Touch>,

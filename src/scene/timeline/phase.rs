@@ -39,7 +39,7 @@ pub struct Phase {
     pub(crate) contact: ContactWith,
     /// Obstacles that move otherwise than in the scene.
     pub(crate) redirected: Vec<Obstacle>,
-    /// What acts on magnets.
+    /// Magnetic field that acts on magnets.
     pub(crate) magnetic_field: Option<MagneticField>,
     /// Names of dipoles, and what is otherwise of them than in the scene.
     pub(crate) dipoles: Vec<(String, DipolePart, VectorSignal)>,

@@ -22,7 +22,7 @@ pub(crate) struct InPlane {
     pub(crate) scene: Scene,
     /// The axis that it is across.
     pub(crate) axis: Axis,
-    /// What is assumed along it.
+    /// Assumption along the axis: plane strain or plane stress.
     pub(crate) plane: Plane,
     pub(crate) prism: Prism,
 }
@@ -70,10 +70,11 @@ impl Scene {
     /// ```
     ///
     /// # Errors
-    /// What [`validate`](Self::validate) refuses. A mesh that is no such prism; anything that changes along the axis or points along it: materials, what is held and
-    /// moved, loads, pressures on faces, gravity, the start, obstacles (half-spaces, capsules along the axis and boxes that go on beyond
-    /// the ends are the same). What a section of is not known: several bodies, rigid and fibrous materials, point masses, springs and other actuators,
-    /// chambers, fluids, bodies that touch, forces that are not of this crate. Laws that there are not in plane stress.
+    /// Scenes that [`validate`](Self::validate) refuses. A mesh that is not such a prism; anything that varies along
+    /// the axis or points along it: materials, prescribed displacements, loads, pressures on faces, gravity, the start,
+    /// obstacles (half-spaces, capsules along the axis and boxes that extend beyond the ends do not vary). Unsupported
+    /// features: several bodies, rigid and fibrous materials, point masses, springs and other actuators, chambers,
+    /// fluids, bodies that touch, forces that are not of this crate. Material laws without a plane-stress form.
     pub fn in_plane(&self, axis: Axis) -> Result<Self, InputError> {
         Ok(self.section(axis)?.scene)
     }
@@ -167,7 +168,7 @@ impl Scene {
 }
 
 impl Uniform<'_> {
-    /// What is held and moved of the section.
+    /// Constraints of the section.
     fn constraints(&self, phase: &Phase) -> Result<Vec<Constraint>, InputError> {
         let input = format!("held and moved nodes of phase \"{}\"", phase.name);
         let mut constraints = Vec::new();
@@ -194,7 +195,7 @@ impl Uniform<'_> {
         Ok(constraints)
     }
 
-    /// What an axis of space is called in the plane; none for that of the prism.
+    /// Axis of the plane for an axis of space; `None` for the axis of the prism.
     fn own_axis(&self, axis: Axis) -> Option<Axis> {
         let place = self.prism.axes().iter().position(|own| *own == axis.index());
         place.map(|place| Axis::all(2)[place])

@@ -60,8 +60,8 @@ impl Scene {
         self.reduced.as_ref()
     }
 
-    /// What a reduced model of this scene depends on, part by part: the name of each, and bytes that are the same for the
-    /// same part. What acts on the body is none of them: it is what reduced models are varied in.
+    /// Properties on which a reduced model of this scene depends: the name of each, and bytes that are equal where the
+    /// property is. Loads are not among them, as a reduced model is learned over a range of these.
     ///
     /// # Errors
     /// Constraints that cannot be used.

@@ -1,4 +1,4 @@
-//! What smaller models of a scene have in common: how they are told, and what none of them has.
+//! Simplified models: their display names, and features that none of them supports.
 
 use std::fmt;
 
@@ -9,7 +9,7 @@ use crate::scene::constraint::Axis;
 
 /// Differences below this part of the largest value are round-off.
 pub(super) const SAME: f64 = 1e-9;
-/// What changes with time is compared at this many times of each phase.
+/// Number of times in each phase at which time-dependent quantities are compared.
 const TIMES: u32 = 17;
 
 /// How a model is smaller than the scene that it is of.
@@ -29,7 +29,7 @@ pub enum Smaller {
     Plane {
         /// The axis.
         axis: Axis,
-        /// What is assumed along it.
+        /// Assumption along the axis: plane strain or plane stress.
         plane: Plane,
     },
 }

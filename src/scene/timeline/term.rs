@@ -34,7 +34,7 @@ impl fmt::Display for Term {
 }
 
 impl Scene {
-    /// What this scene has that it may be modelled without.
+    /// Terms of this scene that a simplified model may omit.
     pub fn terms(&self) -> Vec<Term> {
         let has_gravity = self.phases.iter().filter_map(|phase| self.gravity_in(phase));
         // by gravity a fluid knows where it is deep

@@ -1,4 +1,4 @@
-//! What acts within the material of the bodies: muscles, growth, magnets.
+//! Actuators and magnets within the material of the bodies: muscles, growth, magnets.
 
 use super::{Phase, Scene};
 use crate::base::input::{InputError, find};
@@ -36,7 +36,7 @@ impl Scene {
         self.muscles.iter().find(|muscle| muscle.name() == name)
     }
 
-    /// What grows.
+    /// The growths.
     pub fn growths(&self) -> &[Growth] {
         &self.growths
     }

@@ -52,8 +52,7 @@ fn vibrations_are_those_of_the_matrices() {
     }
 }
 
-/// What bends to one side and what bends to the other do alike, at small loads, is the motion of second order: it is a sum of those that
-/// are expected.
+/// The even part of the response to opposite small loads is of second order, and a sum of expected motions.
 #[test]
 fn motions_of_second_order_are_those_of_equilibria() {
     const FORCE: f64 = 1e-5;

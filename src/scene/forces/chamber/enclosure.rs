@@ -1,4 +1,4 @@
-//! What walls enclose: areas and volumes, their gradients and second derivatives.
+//! Areas and volumes that walls enclose, with their gradients and second derivatives.
 //!
 //! With its nodes at x_a, an edge x = sum N_a x_a contributes (1/2) int x x x' ds to an area, a face
 //! (1/3) int x . (x,1 x x,2) to a volume. Both are sums of determinants of nodal positions, with weights that

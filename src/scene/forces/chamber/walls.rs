@@ -9,7 +9,7 @@ use crate::elements::body::Body;
 use crate::elements::mesh::{CellKind, Face, FaceKind, Mesh, Selection};
 use crate::scene::forces::faces::{between, list, number_of, straight_parts, volume_parts};
 
-/// What walls with mid nodes are taken for.
+/// Geometry assumed for walls with mid nodes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Shape {
     /// Curved, by the shape functions.

@@ -1,4 +1,4 @@
-//! What an obstacle does at the nodes.
+//! Nodal contact quantities of an obstacle.
 
 use super::Contact;
 use crate::base::vector::norm;

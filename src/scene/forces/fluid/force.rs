@@ -104,7 +104,7 @@ impl FluidForce {
     }
 }
 
-/// What a part of the force does to the energy.
+/// Kind of a fluid force, by its effect on the energy.
 #[derive(Debug, Clone, Copy)]
 enum Kind {
     /// Pressure on a closed surface, which has a potential.

@@ -1,4 +1,4 @@
-//! What a fluid does at a point of a face: the traction of its drag, and the pressure by depth.
+//! Fluid action at a point of a face: the traction of drag, and the pressure by depth.
 
 use crate::base::vector::{dot, norm};
 

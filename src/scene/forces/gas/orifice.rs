@@ -124,14 +124,14 @@ impl Orifice {
     }
 }
 
-/// What gas is drawn from at a given absolute pressure (Pa).
+/// Supply of gas at a given absolute pressure (Pa).
 #[derive(Debug, Clone)]
 pub(crate) struct Supply {
     pub(crate) name: String,
     pub(crate) pressure: Signal,
 }
 
-/// What is at an end of an orifice.
+/// Boundary at an end of an orifice.
 pub(crate) enum End {
     /// The gas of that number, among those of the scene.
     Gas(usize),
@@ -276,7 +276,8 @@ fn nozzle_share(d: f64) -> [f64; 2] {
     [value, -slope / (value * choked)]
 }
 
-/// What `root` gives at d, and below d = `least` the odd cubic that meets it there with the same slope.
+/// Value and derivative of `root` at d; below d = `least`, those of the odd cubic that has the value and the slope of
+/// `root` there.
 fn share(d: f64, least: f64, root: fn(f64) -> [f64; 2]) -> [f64; 2] {
     match d {
         d if d >= least => root(d),

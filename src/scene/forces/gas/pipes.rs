@@ -1,7 +1,8 @@
-//! What pipes do to the liquids at their ends.
+//! Coupling of pipes to the liquids at their ends.
 //!
-//! A kilogram has mu = dE/dm in a liquid, its pressure and its height, and p/rho + g z in a supply. The flow q of a pipe, an unknown of its own, is driven by rho (mu_1 - mu_2), so that the
-//! energies of the liquids and of the pipe change by what friction takes and supplies give.
+//! The specific energy is mu = dE/dm (J/kg) in a liquid, with its pressure and its height, and p/rho + g z in a supply.
+//! The flow q of a pipe, an unknown of its own, is driven by rho (mu_1 - mu_2). So it changes the total energy of the
+//! liquids and the pipe only by friction and by the supplies.
 
 use super::AmountFlow;
 use crate::elements::force::{Flow, FlowDerivatives, NodalForces};

@@ -1,4 +1,4 @@
-//! What liquids in chambers have beside the forces of their content.
+//! Specific energy and surface level of liquids in chambers, in addition to the forces of their content.
 
 use crate::integrators::ode::Failure;
 use crate::scene::forces::content::Content;

@@ -8,8 +8,9 @@
 //! p dV/du + b s,   s = dS/du - (S/V) dV/du.
 //! ```
 //!
-//! What flows in brings dE/dm = (p - p^2/(2 K))/rho - g S/V for each kilogram, and g z of the middle of the undeformed
-//! chamber, from which depths count, above the origin, wherever the inlet is: pressure and height make up for each other.
+//! Inflow adds the specific energy dE/dm = (p - p^2/(2 K))/rho - g S/V, and g z of the middle of the undeformed
+//! chamber, from which depths count, above the origin. The position of the inlet does not matter, as pressure and
+//! height compensate each other.
 //!
 //! The pressure acts on dV/du, but with the density m/V the weight changes, too: with q = -dp/dV both are q (dV/du + b/(q V) s) for a change of the volume or the
 //! amount. The tangent has the square of that vector; -(b/V)^2/q s s^T is left out of it, which is b L/K times the tangent of the weight for a chamber L high:
@@ -36,7 +37,7 @@ pub(super) struct Whole {
     lifted: f64,
 }
 
-/// What an amount has in a state.
+/// Pressure and weight terms of an amount in a state.
 struct Full {
     /// p (Pa) and V (m^3).
     pressure: f64,

@@ -1,4 +1,4 @@
-//! What acts within the material: magnets, dipoles beside them, and growth.
+//! Forces within the material: magnets, dipoles beside them, and growth.
 
 use super::{bar, check, nodal_forces, noise};
 use crate::elements::body::{Body, BodyBuilder, Dilatation};

@@ -1,11 +1,11 @@
-//! What acts between two surfaces where they are near each other: pressure, damping, friction.
+//! Contact action between two nearby surfaces: pressure, damping, friction.
 
 use super::law::Law;
 use super::pair::Pair;
 use crate::base::vector::{dot, norm};
 use crate::scene::forces::friction::{Coulomb, Drag};
 
-/// What acts between a point and a feature.
+/// Contact action between a point and a feature.
 pub(super) struct Action {
     /// Weight times area (m^2): the share of the energy per area.
     pub(super) share: f64,
@@ -22,7 +22,7 @@ pub(super) struct Action {
 }
 
 impl Action {
-    /// What acts in a `pair` with this `share`, in which the point has this `velocity` (m/s) relative to the feature.
+    /// Contact action in a `pair` with this `share`, whose point has this `velocity` (m/s) relative to the feature.
     pub(super) fn new(
         pair: &Pair,
         share: f64,

@@ -13,7 +13,8 @@ use crate::scene::forces::passage::Path;
 
 /// Halvings of a step after which the search ends.
 const HALVINGS: u32 = 20;
-/// What is not nearer than this part of the limit is let be: along a way at the limit itself the search would not end.
+/// Fraction of the limit that suffices as a lower bound of the distance: with 1, a path at the limit itself would be halved
+/// to the last level.
 const NEARLY: f64 = 0.9;
 
 /// The ways of a point relative to the nodes of a facet, or of the two ends of an edge relative to those of another one: both

@@ -92,7 +92,7 @@ impl TouchForce {
         0.5 * self.surfaces.points[near.point].on.area * near.weight
     }
 
-    /// What acts in a pair with the velocities `v` (m/s).
+    /// Contact action in a pair at the nodal velocities `v` (m/s).
     pub(super) fn action(&self, pair: &Pair, share: f64, v: &[f64]) -> Action {
         let velocity = pair.velocity(&pair.shares, v, self.surfaces.dimension);
         Action::new(pair, share, velocity, self.law(pair), self.coulomb)

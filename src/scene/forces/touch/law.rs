@@ -56,7 +56,8 @@ impl Law {
         }
     }
 
-    /// What multiplies the rate of the distance in the damping pressure (N s/m^3), over phi''.
+    /// Time constant of damping (s): the coefficient of the distance rate in the damping pressure (N s/m^3), over
+    /// phi''.
     pub(super) fn damping_time(&self) -> f64 {
         self.damping / self.stiffness
     }

@@ -1,4 +1,4 @@
-//! What bodies that touch do at their nodes.
+//! Nodal contact quantities of touching bodies.
 
 use super::force::TouchForce;
 use crate::base::vector::norm;

@@ -45,7 +45,7 @@ pub(super) struct Pair {
     free: usize,
     /// r . r_ab for 11, 22 and 12.
     bending: [f64; 3],
-    /// What two edges share; `None` of a point.
+    /// Window of two edges; `None` for a point.
     pub(super) window: Option<Window>,
 }
 
@@ -58,7 +58,7 @@ pub(super) struct Moving<'a> {
     moves: [[[f64; 3]; 2]; MOST],
 }
 
-/// What changes with one component of one node.
+/// Derivatives with respect to one displacement component of one node.
 pub(super) struct Change {
     /// Of the distance (m).
     pub(super) distance: f64,
@@ -234,7 +234,7 @@ impl Moving<'_> {
         curvature * both * across + slope / self.pair.distance * bent
     }
 
-    /// What changes with component `j` of node `n`.
+    /// Derivatives with respect to component `j` of node `n`.
     pub(super) fn change(&self, [n, j]: [usize; 2]) -> Change {
         let places: [f64; 2] = std::array::from_fn(|a| -self.moves[n][a][j]);
         let distance = self.pair.shares[n] * self.pair.normal[j];

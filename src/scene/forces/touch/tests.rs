@@ -153,7 +153,7 @@ fn assert_derivatives(body: &Body, touch: &Touch, speed: f64) {
     }
 }
 
-/// What one body exerts on the other comes back, whatever rubs; and friction and damping take energy away.
+/// Momentum is conserved, also with friction, and friction and damping dissipate energy.
 #[test]
 fn momentum_is_exchanged_and_energy_lost() {
     for kind in Kind::SOME {

@@ -21,7 +21,7 @@ impl<'a> Symmetry<'a> {
     /// That of `scene`, whose plane is normal to `axis`.
     ///
     /// # Errors
-    /// What is not symmetric, or of which that is not known.
+    /// A scene that is not symmetric; unsupported features; an axis that the body does not have.
     pub(super) fn of(scene: &'a Scene, axis: Axis) -> Result<Self, InputError> {
         check_known(
             scene,
@@ -175,7 +175,7 @@ impl<'a> Symmetry<'a> {
         Ok(())
     }
 
-    /// What is held or moved, node by node.
+    /// Checks that prescribed displacements are symmetric, node by node.
     fn check_constraints(
         &self,
         phase: &Phase,
@@ -215,5 +215,5 @@ impl<'a> Symmetry<'a> {
     }
 }
 
-/// What else can be done.
+/// Alternatives to a half, for messages.
 const HALF: &str = "make it so, or leave the scene whole";

@@ -21,7 +21,7 @@ impl<'a> Uniform<'a> {
     /// The scene whose mesh is this prism.
     ///
     /// # Errors
-    /// What changes along its axis, or points along it, or of which that is not known.
+    /// Quantities that vary along its axis or point along it; unsupported features.
     pub(super) fn of(scene: &'a Scene, prism: Prism) -> Result<Self, InputError> {
         let axis = Axis::all(3)[prism.axis];
         check_known(scene, "a section", SPACE)?;
@@ -122,7 +122,8 @@ impl<'a> Uniform<'a> {
         self.check_constraints(phase, &times, reached)
     }
 
-    /// What is held or moved is so in all nodes of a place alike, and nothing is moved along the axis.
+    /// Checks that all nodes of a column along the axis have the same prescribed displacements, and that none moves
+    /// along the axis. Returns plane strain if all nodes of both ends are held along it, else plane stress.
     fn check_constraints(
         &self,
         phase: &Phase,
@@ -215,6 +216,6 @@ impl<'a> Uniform<'a> {
     }
 }
 
-/// What else can be done.
+/// Alternatives to a section, for messages.
 const MEND: &str = "make it so, or leave the scene in space";
 const SPACE: &str = "leave the scene in space";

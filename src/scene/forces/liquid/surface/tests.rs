@@ -245,7 +245,7 @@ fn a_tilted_box_has_a_level_surface() {
     }
 }
 
-/// What a chamber cannot hold, or does not have, is told.
+/// Errors report a full chamber, walls that have passed through each other, a negative amount, and a fill of 1.
 #[test]
 fn limits_are_told() {
     let body = body(Mesh::rectangle([0.3, 0.2], [2, 2], Cells::Rectangles).unwrap());
