@@ -2,7 +2,7 @@
 //!
 //! A liquid that fills its chamber whole turns an error of the volume of a millionth into 2.2 kPa, and an interpolated state has
 //! errors as large as its tolerances: by itself it says nothing about the pressure. At the ends of steps that is part of a balance of
-//! forces. So it is interpolated in between, along a straight line, and the walls are moved to the volume that has it: by less than
+//! forces. So it is interpolated in between, along a parabola, and the walls are moved to the volume that has it: by less than
 //! the tolerances, and as an impulse of the pressure would move them.
 
 use std::ops::Range;
@@ -14,7 +14,7 @@ use crate::base::vector::dot;
 use crate::dynamics::state::{self, State};
 
 /// Multiples of the tolerance of an amount by which volumes are changed at most, each relative to the whole. Beyond them the pressure
-/// does what a straight line does not.
+/// does what a parabola does not.
 const LARGEST_CHANGE: f64 = 10.0;
 
 /// Rounds over the chambers: walls of one may be those of another.
@@ -34,8 +34,8 @@ impl System {
             let demands = vec![0.0; self.rows.len()];
             self.ends = Ends {
                 tolerances: tolerances.to_vec(),
-                times: [f64::NAN; 2],
-                pressures: [nothing.clone(), nothing],
+                times: [f64::NAN; 4],
+                pressures: std::array::from_fn(|_| nothing.clone()),
                 gradient,
                 motion,
                 multipliers: demands.clone(),
@@ -49,16 +49,16 @@ impl System {
         let Some(flow) = flow_of(&self.flow).filter(|_| !ends.tolerances.is_empty()) else {
             return;
         };
-        if ends.times[1] == t {
+        if ends.times[3] == t {
             return;
         }
-        ends.times = [ends.times[1], t];
-        ends.pressures.swap(0, 1);
+        ends.times.rotate_left(1);
+        ends.pressures.rotate_left(1);
+        ends.times[3] = t;
         let State { u, others, .. } = State::of(state, self.dofs());
-        flow.write_pressures(u, &others[self.amount_range()], &mut ends.pressures[1]);
+        flow.write_pressures(u, &others[self.amount_range()], &mut ends.pressures[3]);
     }
-
-    /// The pressures at the ends of the last step.
+    /// The pressures at the ends of the last steps.
     pub(crate) fn ends_mut(&mut self) -> &mut Ends {
         &mut self.ends
     }
@@ -68,25 +68,16 @@ impl System {
         let (range, dofs) = (self.amount_range(), self.dofs());
         let Self { flow, ends, rows, inertia, .. } = self;
         let Some(flow) = flow_of(flow).filter(|_| !ends.tolerances.is_empty()) else { return };
-        let Ends {
-            tolerances,
-            times: [start, end],
-            pressures: [first, last],
-            gradient,
-            motion,
-            demands,
-            multipliers,
-        } = ends;
-        if !(*start..=*end).contains(&t) {
+        if !(ends.times[2]..=ends.times[3]).contains(&t) {
             return;
         }
         // rigid pieces turn on as they do
         inertia.edges.iter_mut().for_each(|edges| edges.demands.fill(0.0));
-        let part = (t - *start) / (*end - *start);
         let (u, others) = state.split_at_mut(dofs);
         let amounts = &others[state::length(dofs) - dofs..][range];
         for (room, &amount) in (0..ROUNDS).flat_map(|_| amounts.iter().enumerate()) {
-            let pressure = first[room] + part * (last[room] - first[room]);
+            let pressure = ends.pressure(room, t);
+            let Ends { tolerances, gradient, motion, demands, multipliers, .. } = &mut *ends;
             let lacks = flow.missing(room, u, [amount, pressure], gradient);
             let largest = LARGEST_CHANGE * tolerances[room] / amount;
             let Some([lacks, _]) = lacks.filter(|[lacks, volume]| lacks.abs() < largest * volume)
