@@ -90,7 +90,7 @@ impl ReducedModel {
     }
 
     /// # Errors
-    /// What no model has, in words.
+    /// Consistency check; the error describes a property that no valid model has.
     fn check(&self) -> Result<(), String> {
         for phase in &self.phases {
             let [shapes, ranges] = [phase.shapes.len(), phase.range.len()];

@@ -50,7 +50,7 @@ enum Given<T> {
     Itself(T),
 }
 
-/// What may be a function.
+/// Values that may be given by a function.
 trait Changing: Clone {
     /// Where the function is, and its breaks, if it is one.
     fn function(&self) -> Option<(*const (), &[f64])>;

@@ -392,7 +392,7 @@ fn in_unit(table: &Table, angle: Reading) -> Result<Reading, Error> {
     Ok(if in_degrees == Some(true) { angle.in_degrees() } else { angle })
 }
 
-/// What is read of the body of the table, or of all.
+/// Reading of the body named in the table, or of all bodies.
 fn of_body(table: &Table, reading: Reading) -> Result<Reading, Error> {
     table.added(reading, "body", Value::string, Reading::of_body)
 }
