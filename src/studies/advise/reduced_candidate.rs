@@ -1,4 +1,4 @@
-//! What a reduced model of what is enough saves.
+//! Error and speed-up of a reduced model of the recommended model.
 
 use std::fmt;
 

@@ -1,4 +1,4 @@
-//! What runs with all unknowns show of each phase: its constraints, and the shapes that its motion is made of.
+//! Training data of each phase from runs with all unknowns: its constraints, and the shapes of its motion.
 
 use std::sync::Arc;
 

@@ -25,7 +25,7 @@ const INSIDE: usize = 3;
 const INSIDE_PER_KEY: usize = 4;
 /// Tables that say how a scene is run and what is read, not what happens.
 const NOT_OF_SCENES: [&str; 4] = ["solver", "statics", "output", "sensor"];
-/// What is set for scenes with all unknowns.
+/// Override for scenes with all unknowns: no reduced model.
 const UNREDUCED: &str = "solver.reduced=\"\"";
 
 impl VariedKey {
@@ -69,7 +69,7 @@ impl VariedKey {
         Ok(())
     }
 
-    /// What is set for the value at a part of the range, from 0 to 1.
+    /// Override `key=value` for the value at a fraction of the range, from 0 to 1.
     fn set(&self, part: f64) -> String {
         let [least, most] = self.ends;
         let value = format!("{:.11e}", least + part * (most - least)).parse().unwrap_or(least);

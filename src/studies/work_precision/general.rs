@@ -50,7 +50,7 @@ pub struct General {
 
 type Way = dyn Fn(&Goal<'_>) -> Result<EndState, Failed>;
 
-/// What errors are measured against.
+/// Reference for errors.
 enum Truth {
     /// The end state, and the relative error that it may have.
     Known(Vec<f64>, f64),

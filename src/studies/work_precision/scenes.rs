@@ -67,7 +67,7 @@ impl Scenes {
         }
     }
 
-    /// What errors are measured in. Default: the whole motion.
+    /// Quantity in which errors are measured. Default: the whole motion.
     #[must_use]
     pub fn quantity(mut self, quantity: Quantity) -> Self {
         self.quantity = quantity;
