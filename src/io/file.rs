@@ -61,7 +61,7 @@ pub(crate) struct Kind {
     pub(crate) most_bytes: u64,
 }
 
-/// What a file begins with, whatever its format.
+/// Header of a file: its type and format number, readable in every format.
 #[cfg(feature = "checkpoint")]
 #[derive(Deserialize)]
 struct Head {

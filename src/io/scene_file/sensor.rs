@@ -365,7 +365,7 @@ fn of_nodes(table: &Table, mesh: &Mesh, reading: Reading) -> Result<Reading, Err
     table.added(reading, "nodes", |value| selection(value, mesh), Reading::on)
 }
 
-/// What an obstacle, or bodies that touch, do.
+/// Contact reading of an obstacle, or of bodies that touch.
 fn contact(
     table: &Table,
     mesh: &Mesh,

@@ -10,7 +10,7 @@ use crate::dynamics::trajectory::{Sample, Trajectory};
 use crate::io::output::svg::displaced;
 use crate::scene::forces::Obstacle;
 
-/// What is left, over the sizes of all forces, of those that cancel each other.
+/// Relative round-off: size of a resultant of cancelling forces over the sum of their sizes.
 const ROUND_OFF: f64 = 1e-10;
 
 /// Of each obstacle that touches a body in one of `frames`, and of all that touch each of several bodies, sample by
