@@ -205,10 +205,10 @@ fn learned(runs: usize, by: &str) -> String {
     format!("{runs} run{}{by}", if runs == 1 { "" } else { "s" })
 }
 
-/// What models are made with.
+/// Data from which models are built.
 struct Kit<'a> {
     training: &'a Training,
-    /// What is sampled in each phase: the elasticity of cells that do not grow there, and all viscosity, cell by cell, too.
+    /// Sampled forces in each phase: the elasticity of cells that do not grow there, and all viscosity, cell by cell, too.
     sampled: Vec<Option<Arc<(Elastic, ByCell)>>>,
     /// Largest displacement (m) in the checks.
     travel: f64,

@@ -78,7 +78,7 @@ impl VariedKey {
 }
 
 impl Training {
-    /// What a scene file is learned from over ranges of its keys: all combinations of the values of up to three keys, which
+    /// Training data of a scene file over ranges of its keys: all combinations of the values of up to three keys, which
     /// are the ends of their ranges unless they have a [count](VariedKey::count), and three points inside; of more keys four
     /// points inside for each. `held_out` further points are those that models are checked with. Points inside are those of
     /// Sobol's sequence. Without keys it is the scene as it stands, and checked with itself.

@@ -61,7 +61,7 @@ enum Truth {
 /// Relative tolerance of lines that give the reference.
 const REFERENCE: f64 = 1e-12;
 
-/// What a line is to reach.
+/// End time, tolerances and time limit of a run.
 #[derive(Debug, Clone, Copy)]
 pub struct Goal<'a> {
     /// The end; the start is at t = 0.

@@ -284,7 +284,7 @@ impl Quantity {
         matches!(self.part, Part::Largest | Part::Least)
     }
 
-    /// What has the same value in the `half` of a symmetric scene as it has in the `whole`: of the motion that of the half's nodes.
+    /// Equivalent quantity in the `half` of a symmetric scene `whole`; for the whole motion, that of the half's nodes.
     ///
     /// # Errors
     /// A reading that the half does not have.
@@ -293,7 +293,7 @@ impl Quantity {
         Ok(Self { reading: reading.transpose()?, ..self.clone() })
     }
 
-    /// What has the same value in the section, `plane`, of a scene in `space` as it has there: of the motion that in the plane.
+    /// Equivalent quantity in the section, `plane`, of a scene in `space`; for the whole motion, the motion in the plane.
     ///
     /// # Errors
     /// A reading that the section does not have.

@@ -34,7 +34,7 @@ pub struct Scenes {
     reference: Option<Reference>,
 }
 
-/// What is run at a point.
+/// Scene and settings of a run.
 #[derive(Debug)]
 struct SceneRun {
     /// Position among the scenes.
