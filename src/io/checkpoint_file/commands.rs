@@ -11,7 +11,7 @@ use crate::scene::constraint::{Constrained, Constraint, Motion};
 use crate::scene::forces::{DipolePart, MagneticField, Signal, SignalKind, VectorSignal};
 use crate::scene::timeline::{ContactWith, Load, LoadKind, Phase, Scene};
 
-/// Constraints, loads and actuation in force, as overrides of the current phase.
+/// Constraints, loads, signals, flows and obstacles in force.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct InForce {

@@ -269,7 +269,7 @@ impl Search<'_> {
         Some(Choice { strain, without, ..mesh.choice.clone() })
     }
 
-    /// What is enough, if what it leaves out, and its measure of strain, change as little on the finest mesh as on that which was
+    /// Choice `enough`, if its omitted terms and its measure of strain change as little on the finest mesh as on that which was
     /// written; all of the model otherwise.
     fn confirmed(&mut self, enough: Choice, found: &mut Found) -> Result<Choice, Stop> {
         let Some(truth) = found.truth().cloned() else { return Ok(enough) };
