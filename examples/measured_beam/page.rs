@@ -24,10 +24,10 @@ const MODEL: Model = Model {
     dilatation: Dilatation::AtPoints,
     rtol: 1e-4,
 };
-/// What branches do is little beside the rest, and is lost in looser runs.
+/// Tight tolerance: the effect of the Maxwell branches is small, and is lost in looser runs.
 const FINE: Model = Model { rtol: 1e-5, ..MODEL };
 
-/// Model, material and residuals of a row of the table.
+/// Row of the table: model, material, fit, and distances from the measurement.
 struct Row {
     name: &'static str,
     model: Model,

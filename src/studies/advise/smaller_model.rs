@@ -33,7 +33,7 @@ impl SmallerModel {
         Self { kind, change, seconds, full_seconds, unknowns, full_unknowns }
     }
 
-    /// What has to be set for it in the file of the scene, beside what is set for what it is a model of; none for what is rigid, which
+    /// Override in the file of the scene, in addition to those of the full model; none for the rigid model, which
     /// is a candidate as any other.
     pub(super) fn set(&self) -> Option<String> {
         match self.kind {
