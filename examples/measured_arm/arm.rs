@@ -198,7 +198,7 @@ impl Bent {
 /// A node, and where it is along x and z (m).
 type Placed = (usize, [f64; 2]);
 
-/// Observed nodes.
+/// Observed nodes, with their positions.
 struct Points {
     /// Nodes of the tip's face, and where they are (m).
     tip: Vec<Placed>,

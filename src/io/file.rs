@@ -55,7 +55,7 @@ pub(crate) struct Kind {
     pub(crate) oldest: u32,
     /// The input that names such a file, in errors.
     pub(crate) input: &'static str,
-    /// Alternative to such a file, named in errors.
+    /// Hint in errors: the input to name in place of a file of another kind.
     pub(crate) help: &'static str,
     /// The most bytes that a file may have.
     pub(crate) most_bytes: u64,
