@@ -47,7 +47,7 @@ fn direct_computation(bencher: Bencher, nodes: usize) {
     bencher.counter(triangles(nodes)).bench_local(|| polynomial.forces(&u, &mut forces).unwrap());
 }
 
-/// What direct computation costs beforehand.
+/// Setup cost of direct computation.
 #[divan::bench(args = NODES, sample_count = 3)]
 fn coefficient_matrices(bencher: Bencher, nodes: usize) {
     let body = body(nodes);

@@ -1,4 +1,4 @@
-//! What CVODE and IDA cost through pliant, against the same runs in C (`benches/c/overhead.c`).
+//! Cost of CVODE and IDA through pliant, against the same runs in C (`benches/c/overhead.c`).
 //!
 //! `cargo bench --bench overhead`; it needs a C compiler (`CC`, or else `cc`), and valgrind for the instructions. Both
 //! sides are programs of their own and take turns. Times are the least of all runs, from the first object made to
@@ -155,7 +155,7 @@ fn build() -> Outcome<PathBuf> {
     if status.success() { Ok(program) } else { Err(format!("{compiler}: {status}").into()) }
 }
 
-/// What a program prints, all numbers.
+/// Output of a program, all numbers.
 fn output(command: &mut Command) -> Outcome<Vec<f64>> {
     let output = command.output()?;
     if !output.status.success() {

@@ -1,4 +1,4 @@
-//! What a scene pays for, in instructions per step: a bare body, and the same with one thing more each time.
+//! Cost of the features of a scene, in instructions per step: a bare body, and the same with one feature more each time.
 //!
 //! `cargo bench --bench pay`; it needs valgrind. Instructions are counted by callgrind, in a run and in one of twice the length,
 //! and their difference is divided by that of the steps: what happens once is left out. They are counted again at every
@@ -24,7 +24,7 @@ const STEPS: usize = 300;
 /// Rooms of the library whose instructions are listed by themselves.
 const ROOMS: [&str; 2] = ["pliant::scene::forces", "pliant::scene::constraint"];
 
-/// What a scene has more than the bare one.
+/// Feature that is added to the bare scene.
 type More = fn(Soft) -> Soft;
 
 const SCENES: [(&str, More); 10] = [

@@ -1,4 +1,4 @@
-//! What cells and the parts of a step cost, in three tables.
+//! Cost of cells and of the parts of a step, in three tables.
 //!
 //! First forces and tangents of each kind of cell, in nanoseconds per cell, on meshes too small for threads. Then a step of each kind of method
 //! by its parts. Then the same parts on meshes of all sizes, in nanoseconds per state (two states per displacement component), so

@@ -1,4 +1,4 @@
-//! What a tick of a controller costs: a command every millisecond, against the same motion run freely.
+//! Cost of a tick of a controller: a command every millisecond, against the same motion run freely.
 //!
 //! `cargo bench --bench ticks` prints for each body and method median, 99 % and worst wall time of a tick
 //! (the command and the millisecond after it), and the time of all ticks as a multiple of a run under a
@@ -38,7 +38,7 @@ const LEARNED: [fn(f64) -> f64; 3] = [
     |t| 0.6 * (1.0 - (33.0 * t).cos()),
 ];
 
-/// What is driven, and how much at most (Pa, N).
+/// Driven part of the scene, and the largest value of its command (Pa, N).
 #[derive(Clone, Copy)]
 enum Drive {
     Pressure(&'static str, f64),
@@ -136,7 +136,7 @@ fn cases() -> Result<[Case; 4], Box<dyn Error>> {
     ])
 }
 
-/// What the ticks of a scene are like.
+/// Measurements of the ticks of a scene.
 struct Ticks {
     /// Wall time of each, in ascending order, and of a free run.
     each: Vec<Duration>,

@@ -43,7 +43,7 @@ const FILTER: f64 = 5e-3;
 const LOAD: f64 = 0.02;
 const LOADED: [f64; 2] = [0.6, 2.6];
 
-/// What is told apart in the table (s).
+/// Time intervals of the table (s).
 const STRETCHES: [(f64, f64, &str); 7] = [
     (0.1, 0.4, "step to 20 degrees"),
     (0.4, 0.6, "at rest"),

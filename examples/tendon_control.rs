@@ -53,7 +53,7 @@ const END: f64 = 5.0;
 /// The load (N) on the tip, downward, and when it hangs there (s).
 const LOAD: f64 = 0.08;
 const LOADED: [f64; 2] = [2.2, 3.2];
-/// What is told apart in the table (s).
+/// Time intervals of the table (s).
 const STRETCHES: [(f64, f64, &str); 5] = [
     (0.6, 1.4, "step to 30 degrees"),
     (1.4, 2.2, "step to -20 degrees"),
@@ -148,7 +148,7 @@ impl Beam {
         }
     }
 
-    /// What the winches have to draw in (m), for the tip to turn by `angle` (degrees) while the slacker tendon bears
+    /// Lengths (m) that the winches have to draw in, for the tip to turn by `angle` (degrees) while the slacker tendon bears
     /// `tense` (N).
     ///
     /// The difference of the tensions times the lever is the mean moment: that which bends the beam and that of its weight, as if it
@@ -167,21 +167,21 @@ impl Beam {
     }
 }
 
-/// What the controller remembers.
+/// Controller with its gains and states.
 struct Controller {
     beam: Beam,
     tick: f64,
     /// Gains of the angle and the tension; 0 without feedback.
     gains: [f64; 3],
-    /// What the integrals add to the angle (degrees) and to the tension (N).
+    /// Integral terms of the angle (degrees) and of the tension (N).
     turned: f64,
     tightened: f64,
-    /// What the winches have drawn in (m).
+    /// Lengths drawn in by the winches (m).
     drawn: [f64; 2],
 }
 
 impl Controller {
-    /// What the winches are set to (m), at time `t` (s), for the `target` and the `angle` (degrees) of the tip and both `tensions` (N).
+    /// Winch commands (m) at time `t` (s), for the `target` and the `angle` (degrees) of the tip and both `tensions` (N).
     fn act(&mut self, t: f64, [target, angle]: [f64; 2], tensions: [f64; 2]) -> [f64; 2] {
         let [proportional, integral, tension] = self.gains;
         let error = target - angle;
@@ -205,7 +205,7 @@ impl Controller {
     }
 }
 
-/// What is kept of a tick.
+/// Record of a tick.
 struct Row {
     /// The middle of the tick (s): no change of the target falls on it.
     t: f64,

@@ -1,4 +1,4 @@
-//! What the adviser is asked about.
+//! Scenes given to the adviser.
 
 use std::path::Path;
 

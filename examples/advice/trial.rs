@@ -40,7 +40,7 @@ impl Reference {
 
 /// Times at which motions are compared.
 const TIMES: usize = 101;
-/// What the tolerance of the run that all is compared with is of the adviser's tightest.
+/// Tolerance of the reference run over the adviser's tightest one.
 const TIGHTER: f64 = 0.1;
 
 impl Trial {

@@ -1,4 +1,4 @@
-//! What the examples share: arguments, and how they end.
+//! Common code of the examples: arguments, and how they end.
 #![allow(dead_code)] // each example uses its part
 
 use std::path::PathBuf;

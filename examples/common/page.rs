@@ -97,7 +97,7 @@ impl Section {
     }
 }
 
-/// What is said of a problem.
+/// Text on a problem, from the section of this name in `readings`.
 fn reading<'a>(readings: &'a str, name: &str) -> &'a str {
     readings
         .split("\n### ")
@@ -118,7 +118,7 @@ fn filled(text: &str, findings: &Findings) -> String {
     filled
 }
 
-/// What is `asked` for; none if no run has it.
+/// Number that is `asked` for; none if no run has it.
 fn number(asked: &str, findings: &Findings) -> Option<String> {
     let known = |name: &str| findings.lines().iter().find(|line| line.name == name);
     let line = |name: &str| known(name).unwrap_or_else(|| panic!("{{{asked}}}: no line {name}"));

@@ -69,7 +69,7 @@ impl Pressing {
         Ok(body.named(if lower { "lower" } else { "upper" }).build()?)
     }
 
-    /// What happens to both of them in a `phase`, in which the lower one is held.
+    /// Scene of both blocks in a `phase`, in which the lower one is held.
     pub fn scene(&self, touch: Touch, phase: Phase) -> Result<Scene, Error> {
         let body = Body::join([self.block(true)?, self.block(false)?])?;
         Ok(Scene::new(body).touch(touch).phase(phase.hold("lower/bottom")))

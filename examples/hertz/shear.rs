@@ -9,7 +9,7 @@ use super::line::{Hertz, Pressing, Surface, from_left_to_right, off};
 const SLOW: f64 = 0.1;
 const STICKING_SPEED: f64 = 2e-6;
 
-/// What a slow motion gave.
+/// Results of a slow motion.
 pub struct Found {
     /// Tangential force over mu times the normal one.
     pub load: f64,

@@ -12,7 +12,7 @@ const SOFT: Material = Material { density: 1000.0, young: 1e6, poisson: 0.3, vis
 /// E* of one soft side.
 const E_STAR: f64 = SOFT.young / (1.0 - SOFT.poisson * SOFT.poisson);
 
-/// What a pressing gave, beside what Hertz says for the way of the body.
+/// Results of a pressing, beside those of Hertz for the same approach.
 pub struct Found {
     pub nodes: usize,
     /// Radius of the contact (m) by the second moment of the pressure, and that of Hertz for the force found.

@@ -19,7 +19,7 @@ const STAND_OFF: f64 = 0.004;
 /// One mbar, in Pa.
 const MBAR: f64 = 100.0;
 
-/// What keeps the chambers from widening, beside the rubber, and its modulus (Pa).
+/// Reinforcement of the chambers against widening, in addition to the rubber, and its modulus (Pa).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Reinforcement {
     /// Ribs across the chambers, which join their inner and outer walls: the modulus is that of the ribs times the part of the
@@ -40,7 +40,7 @@ pub struct Model {
     pub dilatation: Dilatation,
 }
 
-/// What is fitted.
+/// Fitted material parameters.
 #[derive(Debug, Clone, Copy)]
 pub struct Matter {
     /// Young's modulus of the rubber (Pa).
@@ -68,7 +68,7 @@ pub struct State {
     pub wider: f64,
 }
 
-/// What became of the arm under a rising pressure.
+/// Equilibria of the arm under a rising pressure.
 pub struct Bent {
     pub states: Vec<State>,
     /// The last equilibrium, or why there is none under the whole pressure.
@@ -198,7 +198,7 @@ impl Bent {
 /// A node, and where it is along x and z (m).
 type Placed = (usize, [f64; 2]);
 
-/// What is looked at.
+/// Observed nodes, with their positions.
 struct Points {
     /// Nodes of the tip's face, and where they are (m).
     tip: Vec<Placed>,

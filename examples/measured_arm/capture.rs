@@ -1,4 +1,4 @@
-//! What was measured: how the markers of the tip moved.
+//! Measured data: the motion of the markers of the tip.
 
 use std::fs;
 use std::path::Path;

@@ -146,7 +146,7 @@ fn fitted(trials: &[Trial], rows: &[Row]) -> Outcome<String> {
     Ok(table)
 }
 
-/// What the first model says of all pressures.
+/// Predictions of the first model at all pressures.
 fn between(row: &Row) -> Outcome<String> {
     let mut table = String::from(
         "\n| the first model at (mbar) | lateral (mm) | axial (mm) | turn | chamber higher | duct wider |\n\

@@ -7,7 +7,7 @@ use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_2, FRAC_PI_4};
 
 use pliant::{InputError, Mesh, SolidCells};
 
-/// What the section looks like (m).
+/// Dimensions of the section (m).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Shape {
     pub radius: f64,

@@ -10,7 +10,7 @@ use super::capture::{MARKERS, Place};
 
 /// Length, half of the width, and height (m).
 const SIZE: [f64; 3] = [0.1, 0.015, 0.03];
-/// What hangs from the upper edge of the free end (kg).
+/// Mass that hangs from the upper edge of the free end (kg).
 const HUNG: f64 = 0.052;
 /// Length of the thread (m), where it counts as one.
 const THREAD: f64 = 0.05;
@@ -18,7 +18,7 @@ const GRAVITY: f64 = 9.807;
 /// As the article has it (kg/m^3).
 const DENSITY: f64 = 1070.0;
 
-/// What the model is made of.
+/// Discretization and settings of the model.
 #[derive(Debug, Clone, Copy)]
 pub struct Model {
     pub cells: SolidCells,
@@ -31,7 +31,7 @@ pub struct Model {
     pub rtol: f64,
 }
 
-/// What was fitted of the material.
+/// Fitted material parameters.
 #[derive(Debug, Clone, Copy)]
 pub struct Matter {
     /// Young's modulus (Pa).
@@ -44,7 +44,7 @@ pub struct Matter {
     pub branches: [[f64; 2]; 2],
 }
 
-/// What hangs from the upper edge of the free end.
+/// Load that hangs from the upper edge of the free end.
 #[derive(Debug, Clone, Copy)]
 pub enum Hung {
     Nothing,

@@ -1,4 +1,4 @@
-//! What was measured: the motion of markers, in the axes of the beam.
+//! Measured data: the motion of markers, in the axes of the beam.
 
 use std::fs;
 use std::path::Path;

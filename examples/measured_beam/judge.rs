@@ -25,7 +25,7 @@ const LATE: usize = 60;
 /// Times (s) of two branches of which only the shares are fitted.
 const TIMES: [f64; 2] = [0.3, 2.0];
 
-/// What damps, and what is fitted of it.
+/// Damping model, with its fitted parameters.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Damping {
     Viscosity,

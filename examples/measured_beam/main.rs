@@ -17,7 +17,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Parser;
 
-/// What comes of a part of the work.
+/// Result of a part of the work.
 pub type Outcome<T> = Result<T, Box<dyn Error>>;
 
 /// Fits and judges the measured beam.

@@ -24,10 +24,10 @@ const MODEL: Model = Model {
     dilatation: Dilatation::AtPoints,
     rtol: 1e-4,
 };
-/// What branches do is little beside the rest, and is lost in looser runs.
+/// Tight tolerance: the effect of the Maxwell branches is small, and is lost in looser runs.
 const FINE: Model = Model { rtol: 1e-5, ..MODEL };
 
-/// What a row of the table is judged with.
+/// Row of the table: model, material, fit, and distances from the measurement.
 struct Row {
     name: &'static str,
     model: Model,
@@ -256,7 +256,7 @@ fn table(trials: &Trials, rows: &[Row]) -> Outcome<String> {
     Ok(table)
 }
 
-/// What the fits tell of the material.
+/// Confidence intervals of the fitted material parameters.
 fn intervals(rows: &[Row]) -> Outcome<String> {
     let mut table = String::from(
         "| model | E (kPa) | viscosity (Pa s) | rate (1/s) | share of branches, and time (s) | residuals | count as | runs |\n\

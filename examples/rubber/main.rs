@@ -4,7 +4,7 @@
 //! cargo run --release --example rubber -- cantilever   # or column, nearly-incompressible-column, block
 //! ```
 //!
-//! What it prints is in docs/benchmarks.md.
+//! The output is in docs/benchmarks.md.
 
 use std::error::Error;
 use std::time::Instant;

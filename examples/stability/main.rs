@@ -51,7 +51,7 @@ results of `pliant reduce`.
 | i | short pulses in functions of programs | tables, phases, stop times |
 | [r](#reduced-models) | reduced models of travelling contact, of what was not learned | all unknowns, wider ranges, more shapes |";
 
-/// What does not reduce: measured by the command.
+/// Section on motions that reduced models do not represent: measured by the command.
 const REDUCED: &str = include_str!("reduced.md");
 
 type Section = fn(&mut Page) -> Outcome<()>;

@@ -55,13 +55,13 @@ pub(crate) struct Kind {
     pub(crate) oldest: u32,
     /// The input that names such a file, in errors.
     pub(crate) input: &'static str,
-    /// What to name in its place.
+    /// Hint in errors: the input to name in place of a file of another kind.
     pub(crate) help: &'static str,
     /// The most bytes that a file may have.
     pub(crate) most_bytes: u64,
 }
 
-/// What a file begins with, whatever its format.
+/// Header of a file: its type and format number, readable in every format.
 #[cfg(feature = "checkpoint")]
 #[derive(Deserialize)]
 struct Head {

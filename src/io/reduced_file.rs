@@ -90,7 +90,7 @@ impl ReducedModel {
     }
 
     /// # Errors
-    /// What no model has, in words.
+    /// Inconsistent sizes or invalid numbers of the model, in words.
     fn check(&self) -> Result<(), String> {
         for phase in &self.phases {
             let [shapes, ranges] = [phase.shapes.len(), phase.range.len()];

@@ -1,4 +1,4 @@
-//! What is counted: small meshes, each thing by itself.
+//! Counted cases: small meshes, each operation by itself.
 
 use std::error::Error;
 use std::path::Path;
@@ -106,7 +106,7 @@ fn steps(count: Count) -> Outcome {
     Ok(())
 }
 
-/// What is done once per run, or per sample.
+/// Operations done once per run, or per sample.
 fn scenes(count: Count) -> Outcome {
     let scene = swinging(Method::Arkode)?;
     let settings = Settings { method: Method::Arkode, ..Settings::default() };

@@ -1,4 +1,4 @@
-//! What has become slower, told by numbers of instructions, which no noise touches.
+//! Slowdowns, found by numbers of instructions, which are free of timing noise.
 //!
 //! `cargo bench --bench counts` counts the instructions of small cases by callgrind and compares them with those that
 //! `baseline.txt` keeps: it fails where one grew by more than [`GROWTH`], and where one fell by more than [`FALL`], so that what
@@ -27,7 +27,7 @@ const FALL: f64 = 0.15;
 #[derive(Debug, Clone, PartialEq)]
 struct Counted {
     name: String,
-    /// What they are counted for, such as a cell.
+    /// Unit of the count, such as a cell.
     unit: String,
     instructions: f64,
 }
@@ -185,7 +185,7 @@ fn total(profile: &Path) -> Outcome<f64> {
     Ok(total.ok_or("a profile of callgrind without totals")?.parse()?)
 }
 
-/// What counts depend on besides the code.
+/// Environment that counts depend on besides the code.
 fn surroundings() -> Outcome<String> {
     let answer = |program: &str, argument: &str| -> Outcome<String> {
         let output = Command::new(program).arg(argument).output();

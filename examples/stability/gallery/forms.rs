@@ -32,7 +32,7 @@ impl Form {
     pub const ALL: [Self; 5] =
         [Self::Three, Self::Two, Self::StabilizedTwo, Self::One, Self::StabilizedOne];
 
-    /// What it is called.
+    /// Name of the form.
     pub fn name(self) -> &'static str {
         match self {
             Self::Three => "index 3",
@@ -43,7 +43,7 @@ impl Form {
         }
     }
 
-    /// What the constraint is replaced by, from R, R' and R''.
+    /// Equation in place of the constraint, from R, R' and R''.
     fn equation(self, [r, rate, second]: [f64; 3]) -> f64 {
         match self {
             Self::Three => r,
@@ -154,7 +154,7 @@ impl SquareForm {
         Ok(Self { form, body: Linear::new(&square_body()?, &[]), rows })
     }
 
-    /// What row `row` demands at a time.
+    /// Prescribed motion of row `row` at time `t`.
     pub fn prescribed(&self, row: usize, t: f64) -> Prescribed {
         let is_led = self.rows[row] >= 26 && self.rows[row] % 2 == 1;
         let rest = Prescribed { displacement: 0.0, velocity: 0.0, acceleration: 0.0 };

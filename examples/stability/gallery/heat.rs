@@ -7,7 +7,7 @@ use svg::node::element::{Rectangle, Text};
 pub struct Cell {
     /// A positive number that gives its colour, on a logarithmic scale.
     pub value: f64,
-    /// What stands in it.
+    /// Text of the field, in two lines.
     pub lines: [String; 2],
     /// Whether it gets a red frame.
     pub is_bad: bool,

@@ -10,7 +10,7 @@ use super::Outcome;
 use super::forms::{Form, PRESS, PendulumForm, SquareForm, path, square_body};
 use super::page::{Page, count, few};
 
-/// What IDA made of a form.
+/// Statistics of an IDA run on a form.
 #[derive(Debug, Clone, Default)]
 pub struct Run {
     /// Steps until the end, or until it gave up.
@@ -23,7 +23,7 @@ pub struct Run {
     pub error: f64,
     /// Error of the multiplier, as a part of its size.
     pub multiplier_error: f64,
-    /// What it said, if it gave up.
+    /// Message of IDA, if it gave up.
     pub failure: Option<String>,
 }
 
@@ -128,7 +128,7 @@ pub fn square(form: Form, tested: bool, rtol: f64, exact: &Trajectory) -> Outcom
     Ok(result.counted(&settings.statistics()))
 }
 
-/// What IDA says to a start of a form that it integrates from a consistent one: a pendulum that is
+/// Messages of IDA for an inconsistent start of a form that it integrates from a consistent one: a pendulum that is
 /// thrown off its circle and one that hangs beside it, in the stabilized form of index 2; a wrong tension, in
 /// index 1.
 pub fn refusals() -> Outcome<[String; 3]> {

@@ -15,5 +15,5 @@ pub mod page;
 pub mod pulses;
 pub mod rotation;
 
-/// What experiments return; anything that goes wrong ends the program with its message.
+/// Result of an experiment; an error ends the program with its message.
 pub type Outcome<T> = Result<T, Box<dyn std::error::Error>>;

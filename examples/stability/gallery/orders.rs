@@ -46,7 +46,7 @@ fn settings(method: Method, max_order: Option<u32>, rtol: f64, max_steps: usize)
     Settings { method, max_order, rtol, max_steps, ..Settings::default() }
 }
 
-/// What the others are held against: diagonally implicit Runge-Kutta, a thousandth of their tolerance.
+/// Reference solution: diagonally implicit Runge-Kutta, at a thousandth of the tolerance of the others.
 pub fn reference(scene: &Scene, rtol: f64) -> Result<Trajectory, Error> {
     scene.simulate(&settings(Method::Arkode, None, 1e-3 * rtol, 10_000_000), &Sampling::every(0.05))
 }

@@ -64,7 +64,7 @@ pub fn green_energy(square: &Square, motion: &Trajectory) -> Result<f64, Error> 
     Ok(fields.iter().zip(body.cell_volumes()).map(|(field, v)| field.energy_density * v).sum())
 }
 
-/// What there is to see of a spin, sample by sample.
+/// Observations of a spin, sample by sample.
 pub struct Spin {
     /// Angle by which the body as a whole has turned (rad).
     pub angle: f64,

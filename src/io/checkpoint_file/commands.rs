@@ -11,7 +11,7 @@ use crate::scene::constraint::{Constrained, Constraint, Motion};
 use crate::scene::forces::{DipolePart, MagneticField, Signal, SignalKind, VectorSignal};
 use crate::scene::timeline::{ContactWith, Load, LoadKind, Phase, Scene};
 
-/// What is in force.
+/// Constraints, loads, signals, flows and obstacles in force.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct InForce {
@@ -50,7 +50,7 @@ enum Given<T> {
     Itself(T),
 }
 
-/// What may be a function.
+/// Values that may be given by a function.
 trait Changing: Clone {
     /// Where the function is, and its breaks, if it is one.
     fn function(&self) -> Option<(*const (), &[f64])>;

@@ -1,4 +1,4 @@
-//! What identifies a scene in a file: numbers and names, and hashes of its parts.
+//! Identity of a scene in a file: numbers and names, and hashes of its parts.
 
 use std::fmt::Debug;
 use std::hash::Hasher;
@@ -8,7 +8,7 @@ use siphasher::sip::SipHasher13;
 
 use crate::scene::timeline::{Phase, Scene};
 
-/// What identifies a scene.
+/// Identity of a scene.
 ///
 /// Functions cannot be compared: of those in phases, obstacles and other forces only their presence is
 /// recorded.

@@ -1,4 +1,4 @@
-//! What a file holds.
+//! Contents of a checkpoint file.
 
 use serde::{Deserialize, Serialize};
 
@@ -12,7 +12,7 @@ use crate::scene::timeline::Scene;
 /// Format of the files that this version writes and reads.
 const FORMAT: u32 = 5;
 
-/// What a file says it is.
+/// File type, as written in the file.
 pub(super) const WHAT: &str = "pliant checkpoint";
 
 const VERSION: &str = env!("CARGO_PKG_VERSION");
@@ -20,7 +20,7 @@ const VERSION: &str = env!("CARGO_PKG_VERSION");
 /// Larger counts do not occur in a simulation.
 const MOST: u64 = 1 << 53;
 
-/// What a file begins with, whatever its format.
+/// Header of a file: its type and format number, readable in every format.
 #[derive(Deserialize)]
 pub(super) struct Head {
     what: String,
@@ -116,7 +116,7 @@ impl Record {
         })
     }
 
-    /// What it holds for `scene`.
+    /// Contents of the record, checked against `scene`.
     ///
     /// # Errors
     /// Another scene, numbers out of range, names that the scene does not have.

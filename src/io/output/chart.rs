@@ -76,7 +76,7 @@ impl Chart {
         }
     }
 
-    /// What stands along the horizontal and the vertical axis: quantity and unit.
+    /// Labels of the horizontal and the vertical axis: quantity and unit.
     pub fn axes(mut self, x: impl Into<String>, y: impl Into<String>) -> Self {
         self.axes = [x.into(), y.into()];
         self

@@ -134,7 +134,7 @@ impl ColumnKind {
 pub(super) struct Columns {
     /// Tracked nodes, counted from 0.
     tracked: Vec<usize>,
-    /// What the phases hold or move: a name each, and the nodes.
+    /// Constrained node sets of the phases: name and nodes of each.
     constrained: Vec<(String, Vec<usize>)>,
 }
 

@@ -215,7 +215,7 @@ table! {
 }
 
 table! {
-    /// What runs and equilibria have alike.
+    /// Entries common to the reports of runs and of equilibria.
     OfResult(trajectory: &Trajectory) {
         "sensors" [OfSensor], "", "the sensors, in the order of their columns in `trajectory.csv`"
             => trajectory.sensors().iter();
@@ -365,7 +365,7 @@ pub fn write_report(
     write_json(path.as_ref(), &report(run))
 }
 
-/// What [`write_report`] writes.
+/// Report of a run, as written by [`write_report`].
 pub fn report(run: Result<&Trajectory, &IntegrationFailure>) -> Value {
     let trajectory = run.unwrap_or_else(|end| &end.trajectory);
     OfRun::object((trajectory, run.err()))
@@ -383,7 +383,7 @@ pub fn write_static_report(
     write_json(path.as_ref(), &static_report(found))
 }
 
-/// What [`write_static_report`] writes.
+/// Report of an equilibrium, as written by [`write_static_report`].
 pub fn static_report(found: Result<&Equilibrium, &NoEquilibrium>) -> Value {
     OfStatics::object(found)
 }

@@ -4,7 +4,7 @@ use crate::base::input::InputError;
 use crate::scene::constraint::{Constrained, Constraint, Motion};
 use crate::scene::timeline::{Phase, Scene};
 
-/// What a constraint makes a node do.
+/// Role of a node under a constraint.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub(crate) enum Role {
     Held,

@@ -55,7 +55,7 @@ const ABSENT: [(&[&str], &str); 8] = [
     ),
 ];
 
-/// What to use instead of the table `name` of the file, if it is one that does not exist for a reason.
+/// Replacement for the table `name` of the file, if it is one that does not exist for a reason.
 pub(super) fn stand_in(name: &str) -> Option<&'static str> {
     ABSENT.iter().find(|(names, _)| names.contains(&name)).map(|(_, words)| *words)
 }

@@ -1,4 +1,4 @@
-//! What was chosen where a scene file leaves it to `pliant`, and why.
+//! Choices of `pliant` where a scene file leaves them open, with reasons.
 
 use super::contents::{AutoRequest, SceneFile};
 use crate::base::input::{percent, short};
@@ -23,7 +23,7 @@ impl SceneFile {
     }
 }
 
-/// What was chosen of a body, and why.
+/// Choices for a body, with reasons.
 fn chosen(
     motion: &Trajectory,
     part: &Part,

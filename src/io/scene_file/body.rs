@@ -221,7 +221,7 @@ fn body(
     body.build().map_err(|error| table.blame(error))
 }
 
-/// What the bodies leave to be chosen.
+/// Choices that the bodies leave open, by the word `auto`.
 pub(super) fn auto(value: &Value) -> Result<Vec<AutoRequest>, Error> {
     let of_body = |value: &Value| {
         let table = value.table(&BODY)?;

@@ -1,4 +1,4 @@
-//! What a scene file says.
+//! Contents of a scene file.
 
 use crate::base::input::Fraction;
 #[cfg(feature = "sweep")]
@@ -24,13 +24,13 @@ pub struct SceneFile {
     pub settings: Settings,
     /// How accurate its motion has to be.
     pub accuracy: AccuracyRequest,
-    /// What is left to be chosen of each body.
+    /// Choices left open for each body.
     pub auto: Vec<AutoRequest>,
     /// How its equilibrium is sought.
     pub statics: StaticsRequest,
-    /// What is to be written.
+    /// Requested output.
     pub output: OutputRequest,
-    /// What `pliant check` says about the text: keys that have another name now.
+    /// Notes of `pliant check` about the text: keys that have another name now.
     pub notes: Vec<String>,
 }
 
@@ -43,7 +43,7 @@ pub struct AccuracyRequest {
     pub quantity: Option<String>,
 }
 
-/// What a scene file leaves to be chosen of a body, by the word `auto`.
+/// Choices that a scene file leaves open for a body, by the word `auto`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct AutoRequest {
     /// The measure of strain: Green's.
@@ -91,7 +91,7 @@ impl SceneFile {
     }
 }
 
-/// What a run is to write.
+/// Output requested of a run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct OutputRequest {
     /// Time between samples (s). Without it and `times`, phases are sampled at their ends only.

@@ -1,4 +1,4 @@
-//! What changes over time in a table: one value or formula, or a table of values at times, which may be repeated.
+//! Time functions in a table: one value or formula, or a table of values at times, which may be repeated.
 
 use super::table::Table;
 use super::value::Value;
@@ -19,7 +19,7 @@ pub(super) fn course(table: &Table, until: f64, one: &str, many: &str) -> Result
     repeated(table, signal, |signal, period| signal.repeated(period, until))
 }
 
-/// What `repeat` makes of a `signal`, if the table has a period.
+/// Periodic signal, by `repeat`, if the table has a period; `signal` otherwise.
 fn repeated<S>(
     table: &Table,
     signal: S,

@@ -9,9 +9,9 @@ pub(super) const AUTO: &str = "auto";
 /// A table of a scene file.
 #[derive(Debug)]
 pub(super) struct TableKeys {
-    /// What it is called, as in `[body]` or `hold`.
+    /// Name, as in `[body]` or `hold`.
     pub(super) name: &'static str,
-    /// What it describes, and what the keys mean together: sentences in Markdown.
+    /// Description of the table and the common meaning of its keys: sentences in Markdown.
     pub(super) about: &'static str,
     pub(super) keys: &'static [Key],
     /// The words of the key `kind`, if there is one.
@@ -43,7 +43,7 @@ pub(super) struct Key {
     pub(super) now: Option<&'static str>,
 }
 
-/// What a value means, with its unit.
+/// Meaning of a value, with its unit.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Meaning {
     pub(super) text: &'static str,
@@ -51,7 +51,7 @@ pub(super) struct Meaning {
     pub(super) unit: &'static str,
 }
 
-/// What stands for a key that is left out.
+/// Default of an omitted key.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Default {
     /// It must not be left out.
@@ -60,7 +60,7 @@ pub(super) enum Default {
     Words(&'static str),
 }
 
-/// What kind of value a key has.
+/// Type of the value of a key.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Holds {
     Number,

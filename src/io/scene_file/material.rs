@@ -173,7 +173,7 @@ struct Constants {
     bulk: Option<f64>,
 }
 
-/// What the table `value` describes; keys that are missing are those of `base`, if there is one.
+/// Material in the table `value`; keys that are missing are those of `base`, if there is one.
 pub(super) fn substance(value: &Value, base: Option<&Substance>) -> Result<Substance, Error> {
     let table = value.table(&MATERIAL)?;
     let is_rigid = table.optional("rigid", Value::flag)?;

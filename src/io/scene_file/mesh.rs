@@ -146,7 +146,7 @@ const ROUND: &[Key] = &[
     CELLS,
 ];
 
-/// What `auto` stands for, in the plane and in space: quadratic cells, which are not too stiff in bending.
+/// Cells chosen by `auto`, in the plane and in space: quadratic cells, which are not too stiff in bending.
 #[derive(Clone, Copy)]
 pub(super) struct AutoCells {
     plane: Cells,

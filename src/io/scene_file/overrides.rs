@@ -13,7 +13,7 @@ use crate::dynamics::error::Error;
 /// A scene, given as tables and lists of JSON, as the text of a scene file.
 ///
 /// # Errors
-/// What is no table, and values that TOML does not have, as `null`.
+/// A `scene` that is not a table, or values that TOML does not have, such as `null`.
 pub fn toml_of(scene: &serde_json::Value) -> Result<String, Error> {
     toml::to_string(scene).map_err(|error| not_of_toml("scene", scene, &error))
 }

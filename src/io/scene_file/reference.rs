@@ -134,7 +134,7 @@ fn row(page: &mut String, key: &Key) -> std::fmt::Result {
     writeln!(page, "| `{name}` | {kind} | {unit} | {default} | {meaning} |")
 }
 
-/// What kind of value this is, in words.
+/// Type of a value, in words.
 fn kind_of(holds: &Holds) -> String {
     match holds {
         Holds::Number => "number".into(),

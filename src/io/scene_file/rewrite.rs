@@ -16,7 +16,7 @@ use crate::scene::timeline::{Load, Phase, Scene};
 pub(crate) struct Rewritten {
     /// Its number, from 0.
     pub(crate) number: usize,
-    /// What it is now.
+    /// Current state of the phase.
     pub(crate) phase: Phase,
     /// The keys that differ: `until`, of its lists `pressure`, `open`, `actuate`, `load`, `drive`, and `magnetic_field`.
     pub(crate) keys: BTreeSet<&'static str>,

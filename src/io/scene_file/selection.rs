@@ -74,7 +74,7 @@ pub(super) const BOX: TableKeys = TableKeys::new(
     "hold = [{ nodes = { box = [[0.0, 0.0], [0.1, 0.02]] } }]",
 );
 
-/// What the two corners of a box are.
+/// Description of the two corners of a box.
 pub(super) const CORNERS: &str = "the lower and the upper corner";
 
 /// The two corners of a box.

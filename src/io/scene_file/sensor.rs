@@ -365,7 +365,7 @@ fn of_nodes(table: &Table, mesh: &Mesh, reading: Reading) -> Result<Reading, Err
     table.added(reading, "nodes", |value| selection(value, mesh), Reading::on)
 }
 
-/// What an obstacle, or bodies that touch, do.
+/// Contact reading of an obstacle, or of bodies that touch.
 fn contact(
     table: &Table,
     mesh: &Mesh,
@@ -392,7 +392,7 @@ fn in_unit(table: &Table, angle: Reading) -> Result<Reading, Error> {
     Ok(if in_degrees == Some(true) { angle.in_degrees() } else { angle })
 }
 
-/// What is read of the body of the table, or of all.
+/// Reading of the body named in the table, or of all bodies.
 fn of_body(table: &Table, reading: Reading) -> Result<Reading, Error> {
     table.added(reading, "body", Value::string, Reading::of_body)
 }

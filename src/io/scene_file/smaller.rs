@@ -93,7 +93,7 @@ fn plane(scene: &Scene, output: &OutputRequest, axis: Axis) -> Result<Shrunk, In
     Ok((section.scene, written, kind))
 }
 
-/// What is written of a smaller model of a scene, by what stands there for nodes (from 0) and readings.
+/// Output request for a simplified model of a scene, by its maps of nodes (from 0) and readings.
 fn mapped(
     scene: &Scene,
     output: &OutputRequest,

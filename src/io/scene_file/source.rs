@@ -19,7 +19,7 @@ pub(super) struct SourceText<'a> {
     pub(super) text: &'a str,
     /// Length of the file itself.
     pub(super) own: usize,
-    /// What `pliant check` says about it.
+    /// Notes of `pliant check` about the text.
     pub(super) notes: RefCell<Vec<String>>,
 }
 

@@ -14,7 +14,7 @@ use super::value::Value;
 use crate::base::input::{Fraction, InputError};
 use crate::dynamics::error::Error;
 
-/// What a study file says.
+/// Contents of a study file.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct StudyFile {
     /// Where it was read; empty for a study that a program has made.

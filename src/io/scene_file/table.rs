@@ -132,7 +132,7 @@ impl<'a> Table<'a> {
         Ok(())
     }
 
-    /// What the key `name` means.
+    /// Meaning of the key `name`.
     fn meaning(&self, name: &str) -> Meaning {
         if name == KIND {
             return Meaning { text: "the kind", unit: "" };
@@ -178,7 +178,7 @@ impl<'a> Table<'a> {
             .ok_or_else(|| self.missing(key, format!("expected {}", self.meaning(key))))
     }
 
-    /// What `add` makes of `whole` and the value of `key` as `read` reads it; `whole` alone if that is not there.
+    /// Result of `add` for `whole` and the value of `key` as `read` reads it; `whole` alone if the key is missing.
     pub(super) fn added<W, T>(
         &self,
         whole: W,

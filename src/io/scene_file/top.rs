@@ -74,7 +74,7 @@ pub(super) const TOP: TableKeys = TableKeys::new(
 /// Adds a table to a scene.
 type Add = fn(Scene, &Value) -> Result<Scene, Error>;
 
-/// What the file `top` says.
+/// Contents of the file with the top-level table `top`.
 pub(super) fn scene_file(top: &Table) -> Result<SceneFile, Error> {
     let title = top.optional("title", Value::string)?.unwrap_or_default();
     let (dimension, points) = (top.get("dimension"), top.get("point"));

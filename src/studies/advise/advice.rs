@@ -8,10 +8,10 @@ use crate::dynamics::equilibrium::MeshEstimate;
 use crate::scene::timeline::Term;
 use crate::studies::work_precision::look::Look;
 
-/// What is enough for a scene, and what this was found from.
+/// Recommended model of a scene, and the findings that lead to it.
 #[derive(Debug, Clone)]
 pub struct Advice {
-    /// What has to be right.
+    /// Quantity that has to be accurate.
     pub quantity: String,
     /// The relative accuracy that was asked for, and what it is relative to: how much the quantity changes,
     /// in `unit`.
@@ -25,7 +25,7 @@ pub struct Advice {
     /// The cheapest candidate that is right, if there is one: the sum of its [`parts`](Candidate::parts) is no larger than the
     /// accuracy.
     pub enough: Option<Candidate>,
-    /// What all were compared with, and the relative error that it may have itself (NaN: not known).
+    /// Reference of all candidates, and the relative error that it may have itself (NaN: not known).
     pub truth: Option<Candidate>,
     /// See `truth`.
     pub resolution: f64,
@@ -36,13 +36,13 @@ pub struct Advice {
     pub mesh: Option<f64>,
     /// Values of alpha (1/s), each with the change that ten times as much makes (relative).
     pub alphas: Vec<(f64, f64)>,
-    /// What the other measure of strain changes.
+    /// Change by the other measure of strain.
     pub law: Option<f64>,
-    /// What the other inertia changes.
+    /// Change by the other inertia.
     pub inertia: Option<f64>,
-    /// What is changed by leaving something out.
+    /// Changes by omitted terms.
     pub terms: Vec<(Term, f64)>,
-    /// What all that was found to matter little, the measure of strain included, changes together on the finest mesh.
+    /// Joint change by all simplifications that matter little, the measure of strain included, on the finest mesh.
     pub together: Option<f64>,
     /// All that were run, in their order.
     pub candidates: Vec<Candidate>,
@@ -57,11 +57,11 @@ pub struct Advice {
     pub mesh_estimate: Option<MeshEstimate>,
     /// Smaller models that were run, each of the fastest motion that is right, on its mesh.
     pub smaller: Vec<SmallerModel>,
-    /// What a reduced model of what is enough would save.
+    /// Error and speed-up of a reduced model of the recommended model.
     pub reduced: Option<ReducedCandidate>,
-    /// What a coarse run has shown before all others.
+    /// Findings of a coarse run before all others.
     pub look: Option<Look>,
-    /// What was not tried, and why.
+    /// Alternatives that were not tried, and why.
     pub not_tried: Vec<String>,
     /// Whether the budget was spent, or the observer has ended the search, before all was tried.
     pub is_cut_short: bool,
@@ -86,7 +86,7 @@ impl Advice {
         right.min_by(|a, b| a.seconds.total_cmp(&b.seconds))
     }
 
-    /// What has to be set in the file of the scene, as `--set` takes it, for what is enough, by a
+    /// Overrides in the file of the scene, as `--set` takes them, for the recommended model, by a
     /// [smaller model](Self::smaller_enough) if there is one.
     pub fn set(&self) -> Vec<String> {
         let enough = self.enough.iter().flat_map(|enough| enough.set.iter().cloned());
@@ -99,7 +99,7 @@ impl Advice {
 pub struct Candidate {
     /// The choice.
     pub choice: Choice,
-    /// What has to be set for it in the file of the scene, as `--set` takes it.
+    /// Overrides for the candidate in the file of the scene, as `--set` takes them.
     pub set: Vec<String>,
     /// Its relative distance from the truth; none without a motion, or without anything to compare with.
     pub error: Option<f64>,
@@ -112,7 +112,7 @@ pub struct Candidate {
     pub unknowns: usize,
     /// Why there is no motion.
     pub failure: Option<String>,
-    /// What the run warns of.
+    /// Warnings of the run.
     pub warnings: Vec<String>,
 }
 

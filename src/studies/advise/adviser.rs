@@ -63,7 +63,7 @@ impl<'a> Adviser<'a> {
         self
     }
 
-    /// What has to be right. Default: the whole motion.
+    /// Quantity that has to be accurate. Default: the whole motion.
     #[must_use]
     pub fn quantity(mut self, quantity: Quantity) -> Self {
         self.request.quantity = quantity;

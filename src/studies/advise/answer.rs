@@ -12,7 +12,7 @@ use crate::studies::work_precision::look::Look;
 use crate::studies::work_precision::time_text;
 
 impl Advice {
-    /// What was found, reason by reason.
+    /// Findings, reason by reason.
     pub fn reasons(&self) -> Vec<String> {
         let mut reasons = Vec::new();
         let rich = self.truth.as_ref().map(|truth| &truth.choice);

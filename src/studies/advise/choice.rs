@@ -9,7 +9,7 @@ use crate::elements::mesh::CellKind;
 use crate::scene::settings::{ContactEvents, Settings};
 use crate::scene::timeline::{Scene, Term};
 
-/// What of a scene is modelled, by what measure of strain, on what mesh, and how it is integrated.
+/// Modelling choices for a scene: terms, measure of strain, mesh and integration.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Choice {
     /// Measure of strain.
@@ -24,7 +24,7 @@ pub struct Choice {
     pub inertia: Inertia,
     /// Whether all bodies are rigid: see [`Material::rigid`].
     pub is_rigid: bool,
-    /// What is left out.
+    /// Omitted terms.
     pub without: Vec<Term>,
     /// Whether the equilibrium of the last phase, as `pliant static` finds it, replaces the end of the
     /// motion.
@@ -105,7 +105,7 @@ impl Choice {
             == (other.richer, other.halved, &other.halved_in)
     }
 
-    /// What has to be set in a scene file for it, as `--set` takes it; the file makes the scene `written`
+    /// Overrides in a scene file for this choice, as `--set` takes them; the file makes the scene `written`
     /// with `settings`.
     pub(super) fn overrides(&self, written: &Scene, settings: &Settings) -> Vec<String> {
         let mut sets = Vec::new();
@@ -235,7 +235,7 @@ impl Choice {
     }
 }
 
-/// What cells get: mid nodes ([`Scene::quadratic`]) and, in nearly incompressible bodies, what keeps them from locking.
+/// Enrichment of cells: mid nodes ([`Scene::quadratic`]) and, in nearly incompressible bodies, measures against locking.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct RicherCells {
     /// Whether triangles and tetrahedra get bubbles, too: see [`Scene::with_bubbles`].

@@ -1,4 +1,4 @@
-//! What the search has found so far.
+//! Findings of the search so far.
 
 use super::choice::Choice;
 use super::parts::Parts;
@@ -24,20 +24,20 @@ pub(super) struct Found {
     pub(super) finer: Vec<Solved>,
     /// Values of alpha (1/s), each with the change that ten times as much makes (relative).
     pub(super) alphas: Vec<(f64, f64)>,
-    /// What the other measure of strain changes, and the other inertia.
+    /// Changes by the other measure of strain, and by the other inertia.
     pub(super) law: Option<f64>,
     pub(super) inertia: Option<f64>,
-    /// What was left out, and what that changes.
+    /// Omitted terms, and the change by each.
     pub(super) terms: Vec<(Term, f64)>,
-    /// What all that is left out changes on the finest mesh, with the measure of strain that is enough.
+    /// Joint change by all omitted terms on the finest mesh, with the recommended measure of strain.
     pub(super) together: Option<f64>,
-    /// What is enough, by several methods and tolerances.
+    /// Runs of the recommended model, by several methods and tolerances.
     pub(super) sweep: Vec<Solved>,
     /// By how much an equilibrium is off on the mesh as it was written.
     pub(super) mesh_estimate: Option<MeshEstimate>,
     /// Smaller models of the fastest motion that is right.
     pub(super) smaller: Vec<SmallerModel>,
-    /// What a reduced model of what is enough would save.
+    /// Error and speed-up of a reduced model of the recommended model.
     pub(super) reduced: Option<ReducedCandidate>,
     /// Time (s) until which two tight runs agree, if that is before the end.
     pub(super) known_until: Option<f64>,
@@ -56,7 +56,7 @@ const LOCAL: f64 = 2.0;
 const LEAST_ORDER: f64 = 10.0;
 
 impl Found {
-    /// What all is compared with.
+    /// Reference of all runs: the one on the finest mesh.
     pub(super) fn truth(&self) -> Option<&Solved> {
         self.meshes.last()
     }
@@ -103,7 +103,7 @@ impl Found {
         }
     }
 
-    /// What the error of the finest mesh leaves of an `accuracy`. A mesh that was compared with no other is taken as it is.
+    /// Remainder of an `accuracy` after the error of the finest mesh. That error counts as 0 if no other mesh was compared.
     pub(super) fn left(&self, accuracy: f64) -> f64 {
         let resolution = self.resolution();
         accuracy - if resolution.is_nan() { 0.0 } else { resolution }

@@ -28,10 +28,10 @@ const LOCATING_SHORT: f64 = 0.5;
 /// Cells are halved fewer times than this, and as often at most in some places.
 const FINEST: usize = 6;
 const MOST_LOCAL: usize = 8;
-/// What alpha is multiplied by, and the largest (1/s) that is tried.
+/// Factor between successive values of alpha, and the largest (1/s) that is tried.
 const FIRMER: f64 = 10.0;
 const FIRMEST: f64 = 1e6;
-/// What is said of the meshes of several bodies.
+/// Advice on the meshes of several bodies.
 const OF_SEVERAL: &str = "finer meshes, as there are several bodies: halve the cells of each (`halved` of its mesh, `Scene::halved`) and see \
      what that changes";
 /// Tolerances that are swept.
@@ -269,7 +269,7 @@ impl Search<'_> {
         Some(Choice { strain, without, ..mesh.choice.clone() })
     }
 
-    /// What is enough, if what it leaves out, and its measure of strain, change as little on the finest mesh as on that which was
+    /// Choice `enough`, if its omitted terms and its measure of strain change as little on the finest mesh as on that which was
     /// written; all of the model otherwise.
     fn confirmed(&mut self, enough: Choice, found: &mut Found) -> Result<Choice, Stop> {
         let Some(truth) = found.truth().cloned() else { return Ok(enough) };

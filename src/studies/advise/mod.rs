@@ -1,4 +1,4 @@
-//! What model is enough for a scene: the adviser.
+//! Recommended model of a scene: the adviser.
 
 mod advice;
 mod adviser;

@@ -212,7 +212,7 @@ enum Block {
 }
 
 impl Block {
-    /// What stands before and after its lines.
+    /// HTML tags before and after its lines.
     fn tags(self) -> [&'static str; 2] {
         match self {
             Self::Text => ["", ""],

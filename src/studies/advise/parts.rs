@@ -1,9 +1,9 @@
-//! What an error is made of.
+//! Contributions to an error.
 
 use crate::base::input::percent;
 use std::fmt;
 
-/// What the error of a run is made of (relative): the distances between runs that differ in one thing each.
+/// Contributions to the error of a run (relative): the distances between runs that differ in one choice each.
 /// The largest of them dominates: nothing is gained by making another one smaller. Their sum bounds the error, while the
 /// parts themselves may cancel.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -27,7 +27,7 @@ impl Advice {
         write_file(path.as_ref(), |file| writeln!(file, "{document:#}"))
     }
 
-    /// What [`write_json`](Self::write_json) writes.
+    /// JSON record, as written by [`write_json`](Self::write_json).
     pub fn to_json(&self) -> Value {
         let candidate = |candidate: &Candidate| -> Value {
             let Candidate { choice, set, error, parts, seconds, unknowns, failure, warnings } =

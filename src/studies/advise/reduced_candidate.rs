@@ -1,4 +1,4 @@
-//! What a reduced model of what is enough saves.
+//! Error and speed-up of a reduced model of the recommended model.
 
 use std::fmt;
 
@@ -13,7 +13,7 @@ pub struct ReducedCandidate {
     pub unknowns: usize,
     /// The cells whose forces it computes, and all of them; the first is 0 where it needs none.
     pub cells: [usize; 2],
-    /// What it changes, relative to the same scale as the accuracy.
+    /// Change of the quantity by the reduced model, relative to the same scale as the accuracy.
     pub change: f64,
     /// Time (s) of a run by it, and of one of what is enough.
     pub seconds: f64,

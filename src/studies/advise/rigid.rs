@@ -76,7 +76,7 @@ impl Search<'_> {
         Ok(solved)
     }
 
-    /// What rigid bodies change at least: how far the whole motion is from the nearest one in which each piece moves as a rigid
+    /// Lower bound of the change by rigid bodies: distance of the whole motion from the nearest one in which each piece moves as a rigid
     /// one. Of other quantities nothing is known before a run.
     fn least_rigid_change(&self, best: &Solved) -> f64 {
         if !self.request.quantity.is_motion() {

@@ -18,13 +18,13 @@ use crate::studies::work_precision::quantity::{Quantity, Seen};
 pub(super) struct Outcome {
     /// Which run it is: a hash of the scene, the quantity, the choice and the version of this library.
     pub(super) run: String,
-    /// What was seen; `None` without a motion.
+    /// Observation; `None` without a motion.
     pub(super) seen: Option<Seen>,
     pub(super) seconds: f64,
     pub(super) unknowns: usize,
     /// Why there is no motion.
     pub(super) failure: Option<String>,
-    /// What the run warns of.
+    /// Warnings of the run.
     pub(super) warnings: Vec<String>,
     /// Cells in which most jumps of strain are: what to divide next. None where cells cannot be divided in some places.
     pub(super) worst: Vec<usize>,
@@ -72,7 +72,7 @@ impl Runs {
         Ok(Self { known, file: Some((file, path.into())) })
     }
 
-    /// What identifies a run.
+    /// Identity of a run.
     pub(super) fn name(&self, scene: &Scene, quantity: &Quantity, choice: &Choice) -> String {
         match &self.file {
             Some(_) => {

@@ -16,7 +16,7 @@ use crate::scene::timeline::{Phase, Scene};
 use crate::studies::work_precision::quantity::{Quantity, Seen};
 use crate::studies::work_precision::truth::{Probe, reason};
 
-/// What the adviser is asked.
+/// Request to the adviser.
 #[derive(Debug)]
 pub(super) struct Request {
     pub(super) accuracy: f64,
@@ -47,7 +47,7 @@ pub(super) struct Solved {
     pub(super) seen: Seen,
     pub(super) seconds: f64,
     pub(super) unknowns: usize,
-    /// What the run warns of.
+    /// Warnings of the run.
     pub(super) warnings: Vec<String>,
     /// Cells to divide next.
     pub(super) worst: Vec<usize>,
@@ -187,7 +187,7 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// What comes of a run.
+    /// Outcome of a run.
     fn solve(&mut self, choice: &Choice) -> Result<Outcome, Error> {
         let scene = choice.scene(&self.scene)?;
         let what = format!("{choice}: {} nodes", scene.body().mesh().node_count());
@@ -204,7 +204,7 @@ impl<'a> Search<'a> {
         self.measured(&scene, &choice.settings, &what)
     }
 
-    /// What is seen of a motion, and the time that it takes.
+    /// Observation of a motion, and its run time.
     pub(super) fn measured(
         &mut self,
         scene: &Scene,
@@ -215,7 +215,7 @@ impl<'a> Search<'a> {
         self.observed(scene, (&request.quantity, nodes), settings, what)
     }
 
-    /// What is seen of a `quantity` of a motion, of so many of the first nodes, and the time that it takes: the least of several
+    /// Observation of a `quantity` of a motion, of so many of the first nodes, and its run time: the least of several
     /// runs, if it is short.
     pub(super) fn observed(
         &mut self,

@@ -13,7 +13,7 @@ use crate::studies::work_precision::time_text;
 pub struct SmallerModel {
     /// How it is smaller.
     pub kind: Smaller,
-    /// What it changes, relative to the same scale as the accuracy, by runs whose errors of the integration are small beside that.
+    /// Change of the quantity by the model, relative to the same scale as the accuracy, from runs with small integration errors.
     pub change: f64,
     /// Time (s) of a run by it, and of one of what it is a model of.
     pub seconds: f64,
@@ -33,7 +33,7 @@ impl SmallerModel {
         Self { kind, change, seconds, full_seconds, unknowns, full_unknowns }
     }
 
-    /// What has to be set for it in the file of the scene, beside what is set for what it is a model of; none for what is rigid, which
+    /// Override in the file of the scene, in addition to those of the full model; none for the rigid model, which
     /// is a candidate as any other.
     pub(super) fn set(&self) -> Option<String> {
         match self.kind {

@@ -264,7 +264,7 @@ impl SceneFit {
     }
 }
 
-/// What a sensor reads at the sample nearest to `time` (s).
+/// Reading of a sensor at the sample nearest to `time` (s).
 fn read(motion: &Trajectory, time: f64, sensor: usize) -> f64 {
     let samples = motion.samples();
     let after = samples.partition_point(|sample| sample.time < time).min(samples.len() - 1);
@@ -285,7 +285,7 @@ fn sensors(file: &SceneFile) -> Result<Vec<Quantity>, Error> {
     Ok(sampling.columns(&file.scene)?)
 }
 
-/// What the residuals of each column are divided by.
+/// Scales of the residuals, one for each column.
 fn scales(columns: &Columns) -> Vec<f64> {
     columns.iter().map(|(quantity, _)| scale(columns, &quantity.unit)).collect()
 }

@@ -1,4 +1,4 @@
-//! What is sought, and in which range.
+//! Unknown parameters of a fit, and their ranges.
 
 use crate::base::input::{InputError, finite};
 

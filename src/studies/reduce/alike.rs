@@ -1,4 +1,4 @@
-//! What the scenes of one reduced model share.
+//! Common properties of the scenes of one reduced model.
 
 use crate::base::input::InputError;
 use crate::scene::timeline::Scene;

@@ -1,4 +1,4 @@
-//! What runs with all unknowns show of each phase: its constraints, and the shapes that its motion is made of.
+//! Training data of each phase from runs with all unknowns: its constraints, and the shapes of its motion.
 
 use std::sync::Arc;
 
@@ -331,7 +331,7 @@ fn quarter_turned(x: &[f64]) -> Vec<f64> {
     x.as_chunks::<2>().0.iter().flat_map(|&[x, y]| [-y, x]).collect()
 }
 
-/// What `displacements` are made of beyond some orthonormal shapes; where each `turns`, of those turned by a quarter, too.
+/// Proper orthogonal decomposition of `displacements` outside the span of orthonormal shapes; with `turns`, also of their quarter turns.
 fn beyond(shapes: &[Vec<f64>], mut displacements: Vec<Vec<f64>>, turns: bool, mass: Mass) -> Pod {
     displacements.iter_mut().for_each(|x| remove(shapes, mass, x));
     if turns {

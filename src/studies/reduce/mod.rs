@@ -43,7 +43,7 @@ use crate::scene::reduced_model::LearnedKey;
 use crate::scene::settings::Settings;
 use crate::scene::timeline::Scene;
 
-/// What a reduced model is learned from, and how good it is to be.
+/// Training data of a reduced model, and its required accuracy.
 #[derive(Debug, Clone)]
 pub struct Training {
     /// The scenes that are run with all unknowns: the same body and phases, under other signals and loads.
@@ -65,7 +65,7 @@ pub struct Reduced {
     pub model: ReducedModel,
     /// Whether it is within what was wanted.
     pub is_within: bool,
-    /// What was tried, from the smallest one.
+    /// Models that were tried, from the smallest one.
     pub tried: Vec<Tried>,
     /// Time (s) that a full run takes, the mean of those that were checked with; none where there was none.
     pub full_seconds: Option<f64>,
@@ -200,15 +200,15 @@ fn no_shape(most_unknowns: usize) -> Error {
     InputError::new("most unknowns", most_unknowns, "it allows no shape: give more").into()
 }
 
-/// What a model was learned from, in words.
+/// Training runs of a model, in words.
 fn learned(runs: usize, by: &str) -> String {
     format!("{runs} run{}{by}", if runs == 1 { "" } else { "s" })
 }
 
-/// What models are made with.
+/// Data from which models are built.
 struct Kit<'a> {
     training: &'a Training,
-    /// What is sampled in each phase: the elasticity of cells that do not grow there, and all viscosity, cell by cell, too.
+    /// Sampled forces in each phase: the elasticity of cells that do not grow there, and all viscosity, cell by cell, too.
     sampled: Vec<Option<Arc<(Elastic, ByCell)>>>,
     /// Largest displacement (m) in the checks.
     travel: f64,
@@ -377,7 +377,7 @@ impl Search<'_> {
     }
 }
 
-/// What the runs of a model have shown.
+/// Results of the runs of a model.
 struct Found {
     tried: Tried,
     /// The check with the largest error.

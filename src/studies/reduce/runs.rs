@@ -13,7 +13,7 @@ use crate::scene::timeline::Scene;
 /// Samples of a run that is learned from or checked with.
 pub(super) const SAMPLES: f64 = 200.0;
 
-/// What runs by a model tell together.
+/// Summary of the runs of a reduced model.
 pub(super) struct ByModel {
     /// The largest imbalance (m) and the largest displacement (m) that they tell.
     pub(super) lengths: [f64; 2],

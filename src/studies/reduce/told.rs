@@ -1,4 +1,4 @@
-//! What was tried, in words, numbers and a chart.
+//! Report of the models that were tried: words, numbers and a chart.
 
 use std::fmt;
 #[cfg(feature = "output")]

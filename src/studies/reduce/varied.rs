@@ -25,7 +25,7 @@ const INSIDE: usize = 3;
 const INSIDE_PER_KEY: usize = 4;
 /// Tables that say how a scene is run and what is read, not what happens.
 const NOT_OF_SCENES: [&str; 4] = ["solver", "statics", "output", "sensor"];
-/// What is set for scenes with all unknowns.
+/// Override for scenes with all unknowns: no reduced model.
 const UNREDUCED: &str = "solver.reduced=\"\"";
 
 impl VariedKey {
@@ -69,7 +69,7 @@ impl VariedKey {
         Ok(())
     }
 
-    /// What is set for the value at a part of the range, from 0 to 1.
+    /// Override `key=value` for the value at a fraction of the range, from 0 to 1.
     fn set(&self, part: f64) -> String {
         let [least, most] = self.ends;
         let value = format!("{:.11e}", least + part * (most - least)).parse().unwrap_or(least);
@@ -78,7 +78,7 @@ impl VariedKey {
 }
 
 impl Training {
-    /// What a scene file is learned from over ranges of its keys: all combinations of the values of up to three keys, which
+    /// Training data of a scene file over ranges of its keys: all combinations of the values of up to three keys, which
     /// are the ends of their ranges unless they have a [count](VariedKey::count), and three points inside; of more keys four
     /// points inside for each. `held_out` further points are those that models are checked with. Points inside are those of
     /// Sobol's sequence. Without keys it is the scene as it stands, and checked with itself.

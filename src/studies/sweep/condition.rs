@@ -45,7 +45,7 @@ const SIGNS: [(&str, Sign); 7] = [
     (">", Sign::More),
     ("=", Sign::Is),
 ];
-/// What has words and not numbers.
+/// Names of a condition whose values are words instead of numbers.
 const WORDS: [&str; 2] = ["verdict", "warning"];
 const VERDICTS: [&str; 3] = ["fine", "doubtful", "failed"];
 

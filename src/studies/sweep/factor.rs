@@ -1,4 +1,4 @@
-//! What the points of a study are the product of: lists, ranges, samples of several ranges, rows of a table.
+//! Factors of the product that gives the points of a study: lists, ranges, samples of several ranges, rows of a table.
 
 use std::collections::HashSet;
 use std::iter;
@@ -102,7 +102,7 @@ impl Factor {
     }
 }
 
-/// What a study combines: its table, its sample, its keys.
+/// Factors of a study: its table, its sample, its keys.
 pub(super) fn factors(file: &StudyFile, is_meant: bool) -> Result<Vec<Factor>, Error> {
     let mut factors = Vec::new();
     factors.extend(file.table.is_some().then(|| table(file)).transpose()?);

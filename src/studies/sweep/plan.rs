@@ -110,7 +110,7 @@ impl Plan {
 }
 
 impl Point {
-    /// What has to be set in the scene file, each as `body.material.young=2e5`.
+    /// Overrides in the scene file, each as `body.material.young=2e5`.
     pub fn set(&self) -> Vec<String> {
         let pairs = self.keys.iter().zip(&self.values);
         pairs.map(|(key, value)| format!("{key}={value}")).collect()

@@ -28,7 +28,7 @@ pub struct Row {
     pub reached: Option<f64>,
     /// Steps of the integrator; of an equilibrium Newton's iterations.
     pub steps: usize,
-    /// What it cost: the one part that differs when the same point is run again.
+    /// Cost of the run: the one part that differs when the same point is run again.
     pub cost: Cost,
 }
 
@@ -44,7 +44,7 @@ pub enum RowVerdict {
     Failed,
 }
 
-/// What a run cost.
+/// Cost of a run.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Cost {

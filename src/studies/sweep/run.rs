@@ -75,7 +75,7 @@ impl Sweep {
         Ok(Self { file, plan })
     }
 
-    /// What the file says.
+    /// Contents of the study file.
     pub fn file(&self) -> &StudyFile {
         &self.file
     }
@@ -134,7 +134,7 @@ impl Sweep {
     }
 
     /// # Errors
-    /// What is set, or a key of the first point, that the scene does not take.
+    /// An override, or a key of the first point, that the scene does not take.
     fn check_keys(&self, first: &Point) -> Result<(), Error> {
         let mut set = Vec::new();
         SceneFile::read_with(&self.file.scene, &set)?;

@@ -23,12 +23,12 @@ pub struct Runner<'a> {
     cores: usize,
 }
 
-/// What a program does while points are run, on the threads that run them.
+/// Callbacks of a program while points are run, on the threads that run them.
 pub trait Watch: Sync {
     /// Called when a point was run, before its row is written: to keep its whole output.
     ///
     /// # Errors
-    /// What ends the study.
+    /// An error that ends the study.
     fn ran(&self, run: &PointRun) -> Result<(), Error>;
 
     /// Called when a row is there, whoever has computed it.

@@ -39,7 +39,7 @@ pub struct Claim {
     _lock: Option<File>,
 }
 
-/// What a study is. Values of the keys can be added later, so they do not count.
+/// Identity of a study. Values of the keys can be added later, so they do not count.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Identity {

@@ -41,7 +41,7 @@ struct Chart<'a> {
     frame: Frame,
 }
 
-/// What a line is drawn with.
+/// Style of a line: colour, dashes and marker.
 struct Style {
     colour: &'static str,
     dashes: &'static str,
@@ -100,7 +100,7 @@ impl<'a> Chart<'a> {
         Group::new().add(band)
     }
 
-    /// What the band says, where there is room for it.
+    /// Label of the unresolved band, where there is room for it.
     fn unresolved_label(&self) -> Group {
         let [_, _, right, bottom] = FIELD;
         let [_, level] = self.frame.place(10.0 * self.findings.resolution(), 1.0);

@@ -50,7 +50,7 @@ pub struct General {
 
 type Way = dyn Fn(&Goal<'_>) -> Result<EndState, Failed>;
 
-/// What errors are measured against.
+/// Reference for errors.
 enum Truth {
     /// The end state, and the relative error that it may have.
     Known(Vec<f64>, f64),
@@ -61,7 +61,7 @@ enum Truth {
 /// Relative tolerance of lines that give the reference.
 const REFERENCE: f64 = 1e-12;
 
-/// What a line is to reach.
+/// End time, tolerances and time limit of a run.
 #[derive(Debug, Clone, Copy)]
 pub struct Goal<'a> {
     /// The end; the start is at t = 0.

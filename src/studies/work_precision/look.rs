@@ -14,7 +14,7 @@ use crate::io::output::OfIndicator;
 use crate::scene::settings::{Method, Settings};
 use crate::scene::timeline::Scene;
 
-/// What a coarse run of a scene shows: whether its motion can be trusted, and whether less would do.
+/// Findings of a coarse run of a scene: whether its motion can be trusted, and whether less would do.
 ///
 /// ```
 /// use pliant::study::Look;

@@ -165,7 +165,7 @@ impl MeshEstimate {
     }
 }
 
-/// What the new nodes contribute to z . f, cell by cell of the first mesh: their forces `f` times the part of
+/// Contribution of the new nodes to z . f, cell by cell of the first mesh: their forces `f` times the part of
 /// `z` that the first mesh does not have, in equal parts for the cells around a node.
 fn contributions(richer: &Scene, finer: &Finer, z: &[f64], f: &[f64]) -> Vec<f64> {
     let d = richer.body().dimension();

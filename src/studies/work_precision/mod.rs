@@ -79,7 +79,7 @@ use crate::dynamics::error::Error;
 /// Why a run gave no result.
 pub type Failed = Box<dyn std::error::Error + Send + Sync>;
 
-/// What is solved in several ways.
+/// Problem that is solved in several ways.
 pub trait Problem {
     /// Name, for titles and tables.
     fn title(&self) -> &str;
@@ -131,7 +131,7 @@ pub struct Point {
     pub rtol: f64,
 }
 
-/// What a run found and cost.
+/// Errors and costs of a run.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Measured {
     /// Relative error, root mean square.

@@ -70,7 +70,7 @@ impl Quantity {
         Self::default()
     }
 
-    /// What `reading` reads over time, with a name for messages.
+    /// Time history of `reading`, with a name for messages.
     pub fn reading(name: impl Into<String>, reading: Reading) -> Self {
         Self { name: name.into(), reading: Some(reading), part: Part::OverTime }
     }
@@ -267,7 +267,7 @@ impl Quantity {
         }
     }
 
-    /// What is read for it; nothing for the whole motion.
+    /// Reading of the quantity; `None` for the whole motion.
     #[cfg(feature = "sweep")]
     pub(crate) fn read_for_it(&self) -> Option<&Reading> {
         self.reading.as_ref()
@@ -284,7 +284,7 @@ impl Quantity {
         matches!(self.part, Part::Largest | Part::Least)
     }
 
-    /// What has the same value in the `half` of a symmetric scene as it has in the `whole`: of the motion that of the half's nodes.
+    /// Equivalent quantity in the `half` of a symmetric scene `whole`; for the whole motion, that of the half's nodes.
     ///
     /// # Errors
     /// A reading that the half does not have.
@@ -293,7 +293,7 @@ impl Quantity {
         Ok(Self { reading: reading.transpose()?, ..self.clone() })
     }
 
-    /// What has the same value in the section, `plane`, of a scene in `space` as it has there: of the motion that in the plane.
+    /// Equivalent quantity in the section, `plane`, of a scene in `space`; for the whole motion, the motion in the plane.
     ///
     /// # Errors
     /// A reading that the section does not have.
@@ -392,7 +392,7 @@ pub(crate) struct Seen {
     pub(super) dimension: usize,
     /// Time by time; point by point.
     pub(super) values: Vec<Vec<f64>>,
-    /// What errors are relative to.
+    /// Scale of relative errors.
     pub(crate) scale: f64,
 }
 
@@ -406,7 +406,7 @@ pub(crate) struct Distance {
 }
 
 impl Seen {
-    /// What was seen of some of its points (from 0), with the same scale.
+    /// Observation of some of its points (from 0), with the same scale.
     pub(crate) fn of_points(&self, points: &[usize]) -> Self {
         let d = self.dimension;
         let of_time =
@@ -414,7 +414,7 @@ impl Seen {
         Self { values: self.values.iter().map(of_time).collect(), ..self.clone() }
     }
 
-    /// What was seen in space along two axes, with the same scale; numbers stay.
+    /// Observation in space along two axes, with the same scale; numbers stay.
     pub(crate) fn along(&self, axes: [usize; 2]) -> Self {
         if self.dimension != 3 {
             return self.clone();

@@ -33,7 +33,7 @@ pub struct Stage<'a> {
     pub done: usize,
     /// Runs in all.
     pub all: usize,
-    /// What is done next.
+    /// Next action, for progress messages.
     pub what: &'a str,
 }
 

@@ -34,7 +34,7 @@ pub struct Scenes {
     reference: Option<Reference>,
 }
 
-/// What is run at a point.
+/// Scene and settings of a run.
 #[derive(Debug)]
 struct SceneRun {
     /// Position among the scenes.
@@ -67,7 +67,7 @@ impl Scenes {
         }
     }
 
-    /// What errors are measured in. Default: the whole motion.
+    /// Quantity in which errors are measured. Default: the whole motion.
     #[must_use]
     pub fn quantity(mut self, quantity: Quantity) -> Self {
         self.quantity = quantity;

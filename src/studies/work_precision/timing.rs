@@ -51,7 +51,7 @@ pub(crate) struct Time {
 }
 
 impl Time {
-    /// What `run` returns, and its times; `wall` takes the wall-clock time from that.
+    /// Result of `run`, and its times; `wall` takes the wall-clock time from that.
     pub(crate) fn of<T>(
         run: impl FnOnce() -> Result<T, Failed>,
         wall: impl FnOnce(&T) -> f64,

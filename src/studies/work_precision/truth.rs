@@ -23,7 +23,7 @@ const METHODS: [(Method, Option<u32>); 4] = [
 /// No tolerance is below this: rounding errors dominate there.
 const LEAST_RTOL: f64 = 1e-13;
 
-/// What is observed, and when.
+/// Observed quantity and its sample times.
 #[derive(Debug, Clone)]
 pub(crate) struct Probe {
     quantity: Quantity,
@@ -60,7 +60,7 @@ impl Probe {
         self.quantity.read_by(Sampling::at(self.times.clone()))
     }
 
-    /// What is seen in a run that was sampled so.
+    /// Observation of a run that was sampled at these times.
     pub(crate) fn seen(&self, trajectory: &Trajectory) -> Seen {
         self.quantity.seen(trajectory, &self.nodes, self.samples(trajectory))
     }

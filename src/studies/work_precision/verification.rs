@@ -112,7 +112,7 @@ impl<'a> Verification<'a> {
         self
     }
 
-    /// What has to be accurate. Default: the whole motion.
+    /// Quantity that has to be accurate. Default: the whole motion.
     #[must_use]
     pub fn quantity(mut self, quantity: Quantity) -> Self {
         self.quantity = quantity;

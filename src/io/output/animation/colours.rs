@@ -1,4 +1,4 @@
-//! What colours can stand for.
+//! Quantities that colours can represent.
 
 use serde_json::{Value, json};
 
@@ -129,7 +129,7 @@ impl Quantity {
         (0..geometry.cells.len()).map(move |face| value(face) as f32)
     }
 
-    /// What a page has to know of it in addition to its values.
+    /// Metadata of the quantity for a page: name, unit and whether it is signed.
     pub(super) fn to_json(&self) -> Value {
         json!({ "name": self.name, "unit": self.unit, "signed": self.signed })
     }

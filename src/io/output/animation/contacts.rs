@@ -10,7 +10,7 @@ use crate::dynamics::trajectory::{Sample, Trajectory};
 use crate::io::output::svg::displaced;
 use crate::scene::forces::Obstacle;
 
-/// What is left, over the sizes of all forces, of those that cancel each other.
+/// Resultants below this fraction of the sum of the force sizes count as 0: the round-off of forces that cancel each other.
 const ROUND_OFF: f64 = 1e-10;
 
 /// Of each obstacle that touches a body in one of `frames`, and of all that touch each of several bodies, sample by

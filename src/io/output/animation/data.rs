@@ -195,7 +195,7 @@ fn energies(frames: &[&Sample]) -> Value {
     packed.collect()
 }
 
-/// What the sensors have read; NaN stays NaN.
+/// Sensor readings; NaN stays NaN.
 fn sensors(trajectory: &Trajectory, frames: &[&Sample]) -> Value {
     let sensors = trajectory.sensors().iter().enumerate();
     let packed = sensors.map(|(number, sensor)| {
@@ -301,7 +301,7 @@ fn add_shape(shape: &Shape, courses: &Value, shapes: &mut Vec<Value>) {
     }
 }
 
-/// What each spring joins, or runs along.
+/// Joints of each spring, at its ends or along its path.
 pub(super) fn spring_ends(scene: &Scene) -> Result<Vec<Vec<Joint>>, Error> {
     let mesh = scene.body().mesh();
     scene.springs().iter().map(|spring| Ok(spring.joints(mesh)?)).collect()

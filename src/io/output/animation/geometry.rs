@@ -1,4 +1,4 @@
-//! What of the mesh is drawn: its nodes, its faces, its outline.
+//! Visible parts of the mesh: its nodes, its faces, its outline.
 
 use serde_json::{Value, json};
 
@@ -28,7 +28,7 @@ pub(super) struct Geometry {
 }
 
 impl Geometry {
-    /// What is drawn of `body`: of a solid its surface, of other bodies all cells, and in addition what
+    /// Drawn geometry of `body`: of a solid its surface, of other bodies all cells, and in addition what
     /// springs are joined to and the nodes `points`.
     pub(super) fn new<'j>(
         body: &Body,

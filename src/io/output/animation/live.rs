@@ -31,7 +31,7 @@ const DRAWING: &str = concat!(
     include_str!("page/controls.js"),
 );
 
-/// What is drawn of a scene.
+/// Drawing of a scene.
 pub(crate) struct Picture {
     geometry: Geometry,
     quantities: Vec<&'static Quantity>,
@@ -40,7 +40,7 @@ pub(crate) struct Picture {
 }
 
 impl Picture {
-    /// What is drawn of `scene`, and all data that do not change.
+    /// Drawing of `scene`, and all data that do not change.
     ///
     /// # Errors
     /// Springs, constraints or contact of what does not exist.

@@ -25,7 +25,7 @@ use crate::dynamics::trajectory::Trajectory;
 
 /// The page, its style and its script; `/*...*/` marks the place of the others.
 const PAGE: &str = include_str!("page/page.html");
-/// What plays motions, in place of `<!--motions-->`, if there are any.
+/// HTML of the player, in place of `<!--motions-->`, if there are any motions.
 const MOTIONS: &str = include_str!("page/motions.html");
 /// The body and its colours, in place of `<!--picture-->`: the page of a live motion has the same.
 const PICTURE: &str = include_str!("page/picture.html");
@@ -51,7 +51,7 @@ const SCRIPT: &str = concat!(
     include_str!("page/saving.js"),
     include_str!("page/player.js"),
 );
-/// What each motion has for itself, in place of `/*picture*/` in the script.
+/// Script of each single motion, in place of `/*picture*/` in the script.
 const OF_EACH: &str = concat!(
     include_str!("page/motion.js"),
     include_str!("page/plane.js"),
@@ -62,7 +62,7 @@ const OF_EACH: &str = concat!(
     include_str!("page/acting.js"),
     include_str!("page/water.js"),
 );
-/// What stands before and after the data of a page.
+/// HTML before and after the data of a page.
 const DATA: [&str; 2] = ["<script type=\"application/json\" id=\"data\">", "</script>"];
 
 /// Writes the motion as one HTML file that a web browser plays, without a network.
@@ -174,7 +174,7 @@ fn write_page(motions: Vec<Value>, path: &Path, title: &str) -> Result<(), Error
     write_file(path, |file| file.write_all(page.as_bytes()))
 }
 
-/// What stands on a page above its motions: HTML, in which text of users is [`escaped`], and its style.
+/// Content of a page above its motions: HTML, in which text of users is [`escaped`], and its style.
 #[derive(Debug, Default)]
 pub(crate) struct Above<'a> {
     pub(crate) html: &'a str,

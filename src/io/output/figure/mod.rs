@@ -1,4 +1,4 @@
-//! What all figures are made of: a page, a field with two axes, lines, marks, a legend; written as SVG or PNG.
+//! Elements of all figures: a page, a field with two axes, lines, marks, a legend; written as SVG or PNG.
 
 mod axis;
 mod line;

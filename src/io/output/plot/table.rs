@@ -50,7 +50,7 @@ impl Table {
         Ok(table)
     }
 
-    /// What a run has left in a directory: `trajectory.csv`, with the units of sensors and the ends of phases
+    /// Output of a run in a directory: `trajectory.csv`, with the units of sensors and the ends of phases
     /// from `report.json`, if that is there. A row that was not written to its end is left out.
     ///
     /// # Errors

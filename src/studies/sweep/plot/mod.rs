@@ -33,7 +33,7 @@ const PALE: &str = "#dedede";
 /// Colour of runs that failed.
 const FAILED: &str = "#b9bec4";
 
-/// What a picture of a study shows.
+/// Data of a picture of a study.
 struct Plot<'a> {
     rows: Vec<(usize, &'a Row)>,
     /// Keys that vary.
@@ -105,7 +105,7 @@ impl Plot<'_> {
         })
     }
 
-    /// What is told of a row when the pointer is on its mark.
+    /// Tooltip of a row, when the pointer is on its mark.
     fn told(&self, row: &Row) -> Title {
         let mut lines: Vec<String> =
             row.keys.iter().map(|(key, value)| format!("{key} = {value}")).collect();

@@ -91,7 +91,7 @@ impl Variable {
         }
     }
 
-    /// What stands along its axis.
+    /// Label of an axis.
     pub(super) fn label(&self, axis: &Axis) -> String {
         match if self.is_logarithmic { &self.unit[..] } else { &axis.unit } {
             "" => self.name.clone(),
