@@ -65,7 +65,7 @@ fn ring(liquid: Liquid) -> Scene {
     Scene::new(body).chamber(Chamber::within("bag", "inner")).liquid(liquid)
 }
 
-/// What holds a ring full of water at rest carries the weight of both, of which each load step brings on a part.
+/// The support of a ring full of water at rest carries the weight of both, of which each load step brings on a part.
 #[test]
 fn water_has_its_weight() {
     let water = Liquid::in_chamber("bag").density(1200.0);

@@ -121,8 +121,7 @@ impl Search<'_> {
                 None => (self.work, self.trial) = (u, at),
             }
         }
-        std::mem::swap(&mut self.at, &mut self.trial);
-        std::mem::swap(&mut self.u, &mut self.work);
+        self.step_there();
         Ok(())
     }
 
@@ -141,8 +140,7 @@ impl Search<'_> {
         let slope = -dot(&self.at.total, &self.x);
         let round_off = self.trial.round_off(&self.u) + self.at.round_off(&self.u);
         if rise <= 1e-4 * factor * slope + round_off {
-            std::mem::swap(&mut self.at, &mut self.trial);
-            std::mem::swap(&mut self.u, &mut self.work);
+            self.step_there();
             return Ok(End::Lower);
         }
         Ok(End::Higher(-0.5 * slope * factor / (rise / factor - slope)))
@@ -166,6 +164,12 @@ impl Search<'_> {
             Err(Failure::Recoverable(message)) => Ok(Some(End::Undefined(message))),
             Err(fatal) => Err(self.stuck(reason(fatal))),
         }
+    }
+
+    /// Stays where [`reach`](Self::reach) has led.
+    fn step_there(&mut self) {
+        std::mem::swap(&mut self.at, &mut self.trial);
+        std::mem::swap(&mut self.u, &mut self.work);
     }
 
     /// Whether cells turn along `factor` times x. Then the matrix for that takes the place of K, until that is factorized again.

@@ -106,7 +106,7 @@ fn excess(f: Matrix3<f64>, change: Matrix3<f64>, dimension: usize) -> (Matrix3<f
 mod tests {
     use super::*;
 
-    /// What turns as a whole is turned, what is strained stays as straight steps have it: in cells that fill space, and in
+    /// Rigid turns become rotations, and strains stay as straight steps have them: in cells that fill space, and in
     /// surfaces.
     #[test]
     fn turns_are_rotations() {
