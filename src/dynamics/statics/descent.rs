@@ -108,21 +108,27 @@ impl Search<'_> {
     /// Takes the step x, which meets the constraints, though the energy may rise: straight, or turning where that strains less.
     pub(super) fn meet(&mut self) -> Result<(), Stuck> {
         let straight = self.reach(1.0, Path::Straight)?;
-        let (u, at) = (self.work.clone(), self.trial.clone());
-        let turning = self.can_turn(1.0) && self.reach(1.0, Path::Turning)?.is_none();
-        let is_better = || {
-            let step: Vec<f64> = self.work.iter().zip(&u).map(|(to, u)| to - u).collect();
-            straight.is_some() || self.trial.energy_since(&at, 1.0, &step) < 0.0
-        };
-        if !(turning && is_better()) {
-            match straight {
-                Some(End::Undefined(message)) => return Err(self.stuck(message)),
-                Some(_) => return Err(self.stuck(PASSED.into())),
-                None => (self.work, self.trial) = (u, at),
+        if self.can_turn(1.0) {
+            let (u, at) = (self.work.clone(), self.trial.clone());
+            let turning = self.reach(1.0, Path::Turning)?;
+            let strains_less = || {
+                let step: Vec<f64> = self.work.iter().zip(&u).map(|(to, u)| to - u).collect();
+                self.trial.energy_since(&at, 1.0, &step) < 0.0
+            };
+            if turning.is_none() && (straight.is_some() || strains_less()) {
+                self.step_there();
+                return Ok(());
+            }
+            (self.work, self.trial) = (u, at);
+        }
+        match straight {
+            Some(End::Undefined(message)) => Err(self.stuck(message)),
+            Some(_) => Err(self.stuck(PASSED.into())),
+            None => {
+                self.step_there();
+                Ok(())
             }
         }
-        self.step_there();
-        Ok(())
     }
 
     /// Goes along `factor` times x, and stays there if the energy is lower.

@@ -3,7 +3,7 @@
 //! S is positive definite where X is. X need not be: what is light and held by a tie alone is turned by the forces of that tie, and X without
 //! the tie knows of nothing that turns it back.
 
-use faer::diag::{Diag, DiagRef};
+use faer::diag::Diag;
 use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
 use faer::linalg::cholesky::{lblt, llt};
 use faer::perm::PermRef;
@@ -13,11 +13,23 @@ pub(super) struct Schur {
     /// S, or its factor.
     pub(super) matrix: Mat<f64>,
     diagonal: Vec<f64>,
-    is_definite: bool,
-    /// Of the factor of an indefinite S: beside the diagonal, and the order of its rows with the inverse of that.
+    factor: Factor,
+    pivots: Pivots,
+    memory: MemBuffer,
+}
+
+/// The factorization that `matrix` holds.
+enum Factor {
+    /// L L^T
+    Cholesky,
+    /// P^T L B L^T P, with blocks B of one or two rows.
+    BunchKaufman,
+}
+
+/// Beside the factor L of an indefinite S and the diagonal of B: the rest of B, and the permutation P with its inverse.
+struct Pivots {
     beside: Diag<f64>,
     order: [Vec<usize>; 2],
-    memory: MemBuffer,
 }
 
 impl Schur {
@@ -28,19 +40,19 @@ impl Schur {
             lblt::factor::cholesky_in_place_scratch::<usize, f64>(count, Par::Seq, Spec::default()),
             lblt::solve::solve_in_place_scratch::<usize, f64>(count, 1, Par::Seq),
         ]));
+        let order = [(0..count).collect(), (0..count).collect()];
         Self {
             matrix: Mat::zeros(count, count),
             diagonal: vec![0.0; count],
-            is_definite: true,
-            beside: Diag::zeros(count),
-            order: [(0..count).collect(), (0..count).collect()],
+            factor: Factor::Cholesky,
+            pivots: Pivots { beside: Diag::zeros(count), order },
             memory,
         }
     }
 
     /// Factorizes S, positive definite. Returns a row that follows from those before it, if there is one, or where S is not positive definite.
     pub(super) fn factorize(&mut self) -> Option<usize> {
-        self.is_definite = true;
+        self.factor = Factor::Cholesky;
         (0..self.diagonal.len()).for_each(|i| self.diagonal[i] = self.matrix[(i, i)]);
         let factorized = llt::factor::cholesky_in_place(
             self.matrix.as_mut(),
@@ -60,11 +72,11 @@ impl Schur {
     /// Factorizes S of any sign (J. R. Bunch and L. Kaufman, *Some stable methods for calculating inertia and solving symmetric linear systems*,
     /// Mathematics of Computation 31, 1977).
     pub(super) fn factorize_indefinite(&mut self) {
-        self.is_definite = false;
-        let [order, inverse] = &mut self.order;
+        self.factor = Factor::BunchKaufman;
+        let Pivots { beside, order: [order, inverse] } = &mut self.pivots;
         lblt::factor::cholesky_in_place(
             self.matrix.as_mut(),
-            self.beside.as_mut(),
+            beside.as_mut(),
             order,
             inverse,
             Par::Seq,
@@ -78,20 +90,22 @@ impl Schur {
         let (count, factor) = (right.len(), self.matrix.as_ref());
         let right = MatMut::from_column_major_slice_mut(right, count, 1);
         let stack = MemStack::new(&mut self.memory);
-        if self.is_definite {
-            return llt::solve::solve_in_place(factor, right, Par::Seq, stack);
+        match self.factor {
+            Factor::Cholesky => llt::solve::solve_in_place(factor, right, Par::Seq, stack),
+            Factor::BunchKaufman => {
+                let Pivots { beside, order: [order, inverse] } = &self.pivots;
+                let order = PermRef::new_checked(order, inverse, count);
+                let (diagonal, beside) = (factor.diagonal(), beside.as_ref());
+                lblt::solve::solve_in_place(
+                    factor,
+                    diagonal,
+                    beside,
+                    order,
+                    right,
+                    Par::Seq,
+                    stack,
+                );
+            }
         }
-        let [order, inverse] = &self.order;
-        let order = PermRef::new_checked(order, inverse, count);
-        let diagonal: DiagRef<'_, f64> = factor.diagonal();
-        lblt::solve::solve_in_place(
-            factor,
-            diagonal,
-            self.beside.as_ref(),
-            order,
-            right,
-            Par::Seq,
-            stack,
-        );
     }
 }

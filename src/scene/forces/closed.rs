@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::sync::{Mutex, PoisonError};
 
-use super::content::Content;
+use super::content::{Content, Fill};
 use crate::base::sparse::BlockMatrix;
 use crate::elements::force::{Force, NodalForces, Reservoir, Tangents};
 use crate::integrators::ode::Failure;
@@ -36,10 +36,12 @@ impl<C: Content> Closed<C> {
         Self { rise: Some([from, end]), ..Self::new(content, amount, dofs) }
     }
 
-    /// The amount (kg) at time `t` (s), and the part of its weight that acts.
-    fn at(&self, t: f64) -> (f64, f64) {
-        let risen = |[from, end]: [f64; 2]| (from + t / end * (self.amount - from), t / end);
-        self.rise.map_or((self.amount, 1.0), risen)
+    /// What is in the chamber at time `t` (s).
+    fn at(&self, t: f64) -> Fill {
+        self.rise.map_or(Fill::of(self.amount), |[from, end]| Fill {
+            amount: from + t / end * (self.amount - from),
+            weight: t / end,
+        })
     }
 }
 
@@ -51,12 +53,11 @@ impl<C: Content> Force for Closed<C> {
         _v: &[f64],
         forces: &mut NodalForces,
     ) -> Result<(), Failure> {
-        let (amount, weight) = self.at(t);
-        self.content.press(u, amount, weight, forces)
+        self.content.press(u, self.at(t), forces)
     }
 
     fn check_step(&self, t: f64, _before: &[f64], after: &[f64]) -> Result<(), Failure> {
-        self.content.check(t, after, self.at(t).0)
+        self.content.check(t, after, self.at(t).amount)
     }
 
     fn add_tangents(
@@ -69,8 +70,7 @@ impl<C: Content> Force for Closed<C> {
     ) -> Tangents {
         let mut gradient = self.gradient.lock().unwrap_or_else(PoisonError::into_inner);
         gradient.fill(0.0);
-        let (amount, weight) = self.at(t);
-        let linear = self.content.linearize(u, amount, weight, stiffness, &mut gradient);
+        let linear = self.content.linearize(u, self.at(t), stiffness, &mut gradient);
         // the forces refuse such a state
         let Some([_, factor, _]) = linear else { return Tangents::Added };
         let d = stiffness.dimension();
@@ -88,8 +88,7 @@ impl<C: Content> Force for Closed<C> {
     }
 
     fn potential(&self, t: f64, u: &[f64]) -> f64 {
-        let (amount, weight) = self.at(t);
-        self.content.potential(u, amount, weight)
+        self.content.potential(u, self.at(t))
     }
 
     fn reservoir(&self) -> Reservoir {

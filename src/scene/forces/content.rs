@@ -5,6 +5,22 @@ use crate::base::sparse::BlockMatrix;
 use crate::elements::force::NodalForces;
 use crate::integrators::ode::Failure;
 
+/// The fluid in a chamber at a moment.
+#[derive(Clone, Copy)]
+pub(crate) struct Fill {
+    /// Its amount (kg).
+    pub(crate) amount: f64,
+    /// The part of its weight that acts, where it fills the chamber whole; the weight of others follows from the amount.
+    pub(crate) weight: f64,
+}
+
+impl Fill {
+    /// An `amount` (kg) with all of its weight.
+    pub(crate) fn of(amount: f64) -> Self {
+        Self { amount, weight: 1.0 }
+    }
+}
+
 /// An amount of something within walls, whose energy depends on it and on the displacements of the walls alone.
 pub(crate) trait Content: Send + Sync {
     /// Its walls.
@@ -13,18 +29,11 @@ pub(crate) trait Content: Send + Sync {
     /// The amount (kg) at the start.
     fn amount(&self) -> f64;
 
-    /// Adds the forces of an `amount` (kg) under the displacements `u` (m). In a chamber that it fills whole, the part `weight` of its weight acts;
-    /// otherwise the amount says it.
+    /// Adds the forces of a `fill` under the displacements `u` (m).
     ///
     /// # Errors
     /// A state without meaning: walls that have passed through each other, no amount that is left.
-    fn press(
-        &self,
-        u: &[f64],
-        amount: f64,
-        weight: f64,
-        forces: &mut NodalForces,
-    ) -> Result<(), Failure>;
+    fn press(&self, u: &[f64], fill: Fill, forces: &mut NodalForces) -> Result<(), Failure>;
 
     /// Adds the tangent under a pressure that stays to `stiffness`, and the derivative of what the pressure acts on (dV/du, m^2) to `gradient`. Returns the
     /// pressure (Pa), of gas the absolute one, and its derivatives by the volume, -dp/dV (Pa/m^3), and by the amount, dp/dm (Pa/kg). `None` where
@@ -32,14 +41,13 @@ pub(crate) trait Content: Send + Sync {
     fn linearize(
         &self,
         u: &[f64],
-        amount: f64,
-        weight: f64,
+        fill: Fill,
         stiffness: &mut BlockMatrix,
         gradient: &mut [f64],
     ) -> Option<[f64; 3]>;
 
     /// Potential energy (J), 0 at the start.
-    fn potential(&self, u: &[f64], amount: f64, weight: f64) -> f64;
+    fn potential(&self, u: &[f64], fill: Fill) -> f64;
 
     /// By what the pressure of an `amount` (kg) exceeds that outside (Pa) under the displacements `u` (m).
     ///

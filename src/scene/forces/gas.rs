@@ -16,7 +16,7 @@ pub use orifice::Orifice;
 pub(crate) use orifice::{End, OrificeFlow, Supply};
 
 use super::chamber::{ChamberForce, TURNED};
-use super::content::Content;
+use super::content::{Content, Fill};
 use crate::base::input::{InputError, not_negative, positive};
 use crate::base::sparse::BlockMatrix;
 use crate::elements::force::NodalForces;
@@ -198,21 +198,14 @@ impl Content for Filled {
         self.amount
     }
 
-    fn press(
-        &self,
-        u: &[f64],
-        amount: f64,
-        _weight: f64,
-        forces: &mut NodalForces,
-    ) -> Result<(), Failure> {
-        self.push(u, amount, forces).map(|_| ())
+    fn press(&self, u: &[f64], fill: Fill, forces: &mut NodalForces) -> Result<(), Failure> {
+        self.push(u, fill.amount, forces).map(|_| ())
     }
 
     fn linearize(
         &self,
         u: &[f64],
-        amount: f64,
-        _weight: f64,
+        Fill { amount, .. }: Fill,
         stiffness: &mut BlockMatrix,
         gradient: &mut [f64],
     ) -> Option<[f64; 3]> {
@@ -224,7 +217,7 @@ impl Content for Filled {
     }
 
     /// With that of the air around.
-    fn potential(&self, u: &[f64], amount: f64, _weight: f64) -> f64 {
+    fn potential(&self, u: &[f64], Fill { amount, .. }: Fill) -> f64 {
         let Ok([pressure, volume]) = self.pressure(u, amount) else { return f64::NAN };
         let [work, _] = self.work(pressure);
         let more = amount - self.amount;

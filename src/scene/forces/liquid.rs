@@ -9,7 +9,7 @@ mod whole;
 use std::fmt;
 
 use super::chamber::ChamberForce;
-use super::content::Content;
+use super::content::{Content, Fill};
 use super::gas::LEAST;
 use super::moment::Moment;
 use super::signal::{self, Signal, finite_at};
@@ -260,29 +260,22 @@ impl Content for Poured {
         self.held.amount()
     }
 
-    fn press(
-        &self,
-        u: &[f64],
-        amount: f64,
-        weight: f64,
-        forces: &mut NodalForces,
-    ) -> Result<(), Failure> {
-        self.held.press(u, amount, weight, forces)
+    fn press(&self, u: &[f64], fill: Fill, forces: &mut NodalForces) -> Result<(), Failure> {
+        self.held.press(u, fill, forces)
     }
 
     fn linearize(
         &self,
         u: &[f64],
-        amount: f64,
-        weight: f64,
+        fill: Fill,
         stiffness: &mut BlockMatrix,
         gradient: &mut [f64],
     ) -> Option<[f64; 3]> {
-        self.held.linearize(u, amount, weight, stiffness, gradient)
+        self.held.linearize(u, fill, stiffness, gradient)
     }
 
-    fn potential(&self, u: &[f64], amount: f64, weight: f64) -> f64 {
-        self.held.potential(u, amount, weight)
+    fn potential(&self, u: &[f64], fill: Fill) -> f64 {
+        self.held.potential(u, fill)
     }
 
     fn gauge(&self, u: &[f64], amount: f64) -> Result<f64, Failure> {

@@ -6,7 +6,7 @@ use crate::base::sparse::BlockMatrix;
 use crate::base::vector::distinct;
 use crate::elements::force::{Flow, FlowDerivatives, Force, NodalForces, Tangents};
 use crate::integrators::ode::Failure;
-use crate::scene::forces::content::Content;
+use crate::scene::forces::content::{Content, Fill};
 use crate::scene::forces::lag::Lagging;
 use crate::scene::forces::liquid::Poured;
 use crate::scene::forces::pipe::PipeFlow;
@@ -99,7 +99,7 @@ impl Flow for AmountFlow {
         let [liquids, lagging] = self.parts();
         let each = amounts[liquids..].iter().zip(&mut rates[liquids..]);
         for (liquid, (&amount, rate)) in self.liquids.iter().zip(each) {
-            liquid.press(u, amount, 1.0, forces)?;
+            liquid.press(u, Fill::of(amount), forces)?;
             *rate = liquid.rate(t)?;
             if *rate != 0.0 {
                 power += liquid.brought(u, amount)?[0] * *rate;
@@ -113,7 +113,10 @@ impl Flow for AmountFlow {
     }
 
     fn potential_of(&self, u: &[f64], amounts: &[f64]) -> f64 {
-        self.all().zip(amounts).map(|(content, &amount)| content.potential(u, amount, 1.0)).sum()
+        self.all()
+            .zip(amounts)
+            .map(|(content, &amount)| content.potential(u, Fill::of(amount)))
+            .sum()
     }
 
     fn kinetic_of(&self, unknowns: &[f64]) -> f64 {
@@ -168,7 +171,7 @@ impl Flow for AmountFlow {
         [&mut *by_volumes, by_amounts, stiff, pressing, flows].iter_mut().for_each(|x| x.fill(0.0));
         for (number, (content, &amount)) in self.all().zip(amounts).enumerate() {
             let gradient = &mut gradients[number * u.len()..][..u.len()];
-            let linear = content.linearize(u, amount, 1.0, stiffness, gradient);
+            let linear = content.linearize(u, Fill::of(amount), stiffness, gradient);
             let Some([pressure, by_volume, by_amount]) = linear else { return };
             (pressures[number], stiff[number], pressing[number]) = (pressure, by_volume, by_amount);
         }
@@ -226,7 +229,7 @@ impl Force for AmountFlow {
         forces: &mut NodalForces,
     ) -> Result<(), Failure> {
         let mut all = self.all().zip(&self.start);
-        all.try_for_each(|(content, &amount)| content.press(u, amount, 1.0, forces))
+        all.try_for_each(|(content, &amount)| content.press(u, Fill::of(amount), forces))
     }
 
     fn add_tangents(

@@ -18,7 +18,7 @@ use crate::elements::force::NodalForces;
 use crate::integrators::ode::Failure;
 use crate::scene::forces::basin::{Basin, Level, NoLevel};
 use crate::scene::forces::chamber::{ChamberForce, TURNED};
-use crate::scene::forces::content::Content;
+use crate::scene::forces::content::{Content, Fill};
 
 /// A liquid that stands in its walls up to a level.
 pub(super) struct Pool {
@@ -49,7 +49,7 @@ impl Pool {
         let rest = vec![0.0; dofs];
         let mut pool = Self { walls, basin, density, gravity, amount, first: 0.0, zero: 0.0 };
         pool.first = pool.basin.level(pool.natural(amount), &rest)?.height;
-        pool.zero = pool.potential(&rest, amount, 1.0);
+        pool.zero = pool.potential(&rest, Fill::of(amount));
         Ok(pool)
     }
 
@@ -90,14 +90,8 @@ impl Content for Pool {
         self.amount
     }
 
-    fn press(
-        &self,
-        u: &[f64],
-        amount: f64,
-        _weight: f64,
-        forces: &mut NodalForces,
-    ) -> Result<(), Failure> {
-        let Level { height, .. } = self.level_of(u, amount)?;
+    fn press(&self, u: &[f64], fill: Fill, forces: &mut NodalForces) -> Result<(), Failure> {
+        let Level { height, .. } = self.level_of(u, fill.amount)?;
         let factors = [self.heaviness(), 0.0];
         self.basin.add_gradients(factors, height, u, &mut forces.conservative);
         Ok(())
@@ -107,8 +101,7 @@ impl Content for Pool {
     fn linearize(
         &self,
         u: &[f64],
-        amount: f64,
-        _weight: f64,
+        Fill { amount, .. }: Fill,
         stiffness: &mut BlockMatrix,
         gradient: &mut [f64],
     ) -> Option<[f64; 3]> {
@@ -119,7 +112,7 @@ impl Content for Pool {
         Some([heaviness * (height - self.first), heaviness / area, self.gravity / area])
     }
 
-    fn potential(&self, u: &[f64], amount: f64, _weight: f64) -> f64 {
+    fn potential(&self, u: &[f64], Fill { amount, .. }: Fill) -> f64 {
         let Ok(Level { height, .. }) = self.level_of(u, amount) else { return f64::NAN };
         let weight = (height - self.first) * self.natural(amount) - self.basin.moment(height, u);
         self.heaviness() * weight - self.zero + self.lifted() * (amount - self.amount)

@@ -11,7 +11,7 @@ use crate::elements::material::Material;
 use crate::elements::mesh::{CellKind, Cells, Mesh, Selection, SolidCells};
 use crate::scene::forces::Chamber;
 use crate::scene::forces::closed::Closed;
-use crate::scene::forces::content::Content;
+use crate::scene::forces::content::{Content, Fill};
 
 /// Strong gravity, and a liquid that is light to compress, so that nothing is round-off.
 const GRAVITY: f64 = 400.0;
@@ -56,7 +56,7 @@ const DOWN: [[f64; 3]; 2] = [[0.6, -0.8, 0.0], [0.48, 0.36, -0.8]];
 
 fn forces(liquid: &Poured, u: &[f64], amount: f64) -> Vec<f64> {
     let mut forces = NodalForces::zeros(u.len());
-    liquid.press(u, amount, 1.0, &mut forces).unwrap();
+    liquid.press(u, Fill::of(amount), &mut forces).unwrap();
     forces.conservative.to_vec()
 }
 
@@ -76,12 +76,13 @@ fn forces_and_tangents_belong_to_the_energy() {
         let largest = found.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
         let apart = 1e-5;
         for (k, force) in found.iter().enumerate() {
-            let [ahead, behind] = [apart, -apart].map(|x| liquid.potential(&by(k, x), amount, 1.0));
+            let [ahead, behind] =
+                [apart, -apart].map(|x| liquid.potential(&by(k, x), Fill::of(amount)));
             let difference = (behind - ahead) / (2.0 * apart);
             assert!((force - difference).abs() < 1e-7 * largest, "{k}: {} {difference}", force);
         }
         let more = 1e-5 * amount;
-        let [ahead, behind] = [more, -more].map(|x| liquid.potential(&u, amount + x, 1.0));
+        let [ahead, behind] = [more, -more].map(|x| liquid.potential(&u, Fill::of(amount + x)));
         let [brought, slope] = liquid.brought(&u, amount).unwrap();
         let difference = (ahead - behind) / (2.0 * more);
         assert!((brought / difference - 1.0).abs() < 1e-8, "{brought} {difference}");
@@ -134,7 +135,8 @@ fn forces_are_the_weight_in_the_middle() {
         let up = 0.5;
         let far: Vec<f64> =
             u.iter().enumerate().map(|(k, u)| u - up * down[k % dimension]).collect();
-        let lifted = liquid.potential(&far, amount, 1.0) - liquid.potential(&u, amount, 1.0);
+        let lifted =
+            liquid.potential(&far, Fill::of(amount)) - liquid.potential(&u, Fill::of(amount));
         assert!((lifted / (amount * GRAVITY * up) - 1.0).abs() < 1e-11, "{lifted}");
         let there = forces(&liquid, &far, amount);
         let size = dot(&found, &found).sqrt();

@@ -21,7 +21,7 @@ use crate::base::sparse::BlockMatrix;
 use crate::elements::force::NodalForces;
 use crate::integrators::ode::Failure;
 use crate::scene::forces::chamber::{ChamberForce, TURNED};
-use crate::scene::forces::content::Content;
+use crate::scene::forces::content::{Content, Fill};
 use crate::scene::forces::moment::Moment;
 
 /// A liquid that fills its walls.
@@ -85,8 +85,7 @@ impl Whole {
         0.5 * self.bulk * (natural - volume).powi(2) / natural
     }
 
-    /// With a part `weight` of its weight.
-    fn full(&self, u: &[f64], amount: f64, weight: f64) -> Result<Full, Failure> {
+    fn full(&self, u: &[f64], Fill { amount, weight }: Fill) -> Result<Full, Failure> {
         let (volume, name) = (self.walls.volume(u), self.walls.name());
         let refused = |words: String| {
             Err(Failure::Recoverable(format!("chamber \"{name}\" with a liquid {words}")))
@@ -115,14 +114,8 @@ impl Content for Whole {
         self.amount
     }
 
-    fn press(
-        &self,
-        u: &[f64],
-        amount: f64,
-        weight: f64,
-        forces: &mut NodalForces,
-    ) -> Result<(), Failure> {
-        let Full { pressure, heaviness, middle, .. } = self.full(u, amount, weight)?;
+    fn press(&self, u: &[f64], fill: Fill, forces: &mut NodalForces) -> Result<(), Failure> {
+        let Full { pressure, heaviness, middle, .. } = self.full(u, fill)?;
         let forces = &mut forces.conservative;
         self.walls.add_gradient(pressure - heaviness * middle, u, forces);
         if let Some((moment, _)) = &self.weight {
@@ -134,13 +127,12 @@ impl Content for Whole {
     fn linearize(
         &self,
         u: &[f64],
-        amount: f64,
-        weight: f64,
+        fill: Fill,
         stiffness: &mut BlockMatrix,
         gradient: &mut [f64],
     ) -> Option<[f64; 3]> {
-        let Full { pressure, volume, heaviness, middle } = self.full(u, amount, weight).ok()?;
-        let stiff = self.bulk / self.natural(amount);
+        let Full { pressure, volume, heaviness, middle } = self.full(u, fill).ok()?;
+        let stiff = self.bulk / self.natural(fill.amount);
         let part = heaviness / (stiff * volume);
         self.walls.add_hessian(heaviness * middle - pressure, u, stiffness);
         self.walls.add_gradient(1.0 - part * middle, u, gradient);
@@ -148,19 +140,19 @@ impl Content for Whole {
             moment.add_hessian(-heaviness, u, stiffness);
             moment.add_gradient(part, u, gradient);
         }
-        Some([pressure, stiff, self.pressing(volume, amount)])
+        Some([pressure, stiff, self.pressing(volume, fill.amount)])
     }
 
-    fn potential(&self, u: &[f64], amount: f64, weight: f64) -> f64 {
-        let Ok(Full { volume, heaviness, middle, .. }) = self.full(u, amount, weight) else {
+    fn potential(&self, u: &[f64], fill: Fill) -> f64 {
+        let Ok(Full { volume, heaviness, middle, .. }) = self.full(u, fill) else {
             return f64::NAN;
         };
-        let weight = weight * self.lifted * (amount - self.amount) - heaviness * volume * middle;
-        self.strain_energy(volume, amount) - self.zero + weight
+        let lifted = fill.weight * self.lifted * (fill.amount - self.amount);
+        self.strain_energy(volume, fill.amount) - self.zero + (lifted - heaviness * volume * middle)
     }
 
     fn gauge(&self, u: &[f64], amount: f64) -> Result<f64, Failure> {
-        Ok(self.full(u, amount, 1.0)?.pressure)
+        Ok(self.full(u, Fill::of(amount))?.pressure)
     }
 
     fn volume_under(&self, amount: f64, gauge: f64) -> Option<f64> {
@@ -170,7 +162,7 @@ impl Content for Whole {
 
 impl Held for Whole {
     fn brought(&self, u: &[f64], amount: f64) -> Result<[f64; 2], Failure> {
-        let Full { pressure, volume, middle, .. } = self.full(u, amount, 1.0)?;
+        let Full { pressure, volume, middle, .. } = self.full(u, Fill::of(amount))?;
         let part = pressure / self.bulk;
         let compressed = pressure * (1.0 - 0.5 * part) / self.density;
         let gravity = self.weight.as_ref().map_or(0.0, |(_, gravity)| *gravity);

@@ -6,7 +6,7 @@ use crate::elements::body::{Body, Strain};
 use crate::elements::force::{Force, NodalForces};
 use crate::elements::mesh::{Cells, Mesh, Selection, SolidCells};
 use crate::scene::forces::closed::Closed;
-use crate::scene::forces::content::Content;
+use crate::scene::forces::content::{Content, Fill};
 use crate::scene::forces::liquid::{Poured, Weight};
 use crate::scene::forces::tests::{check, nodal_forces, noise};
 use crate::scene::forces::{Chamber, Liquid};
@@ -42,7 +42,7 @@ fn poured(body: &Body, chamber: &Chamber, fill: f64, down: [f64; 3]) -> Poured {
 
 fn forces(liquid: &Poured, u: &[f64], amount: f64) -> Vec<f64> {
     let mut forces = NodalForces::zeros(u.len());
-    liquid.press(u, amount, 1.0, &mut forces).unwrap();
+    liquid.press(u, Fill::of(amount), &mut forces).unwrap();
     forces.conservative.to_vec()
 }
 
@@ -103,7 +103,7 @@ fn forces_and_tangents_belong_to_the_energy() {
             let liquid = poured(body, chamber, fill, DOWN[d - 2]);
             let amount = liquid.amount();
             let more = 1e-5 * amount;
-            let [ahead, behind] = [more, -more].map(|x| liquid.potential(&u, amount + x, 1.0));
+            let [ahead, behind] = [more, -more].map(|x| liquid.potential(&u, Fill::of(amount + x)));
             let [brought, slope] = liquid.brought(&u, amount).unwrap();
             // of what lifting it by the height of the room takes
             let difference = (ahead - behind) / (2.0 * more);
@@ -135,7 +135,7 @@ fn forces_are_its_weight() {
             assert!(off < 1e-12, "{number}, {axis}: {off:e}");
         }
         let far: Vec<f64> = u.iter().enumerate().map(|(k, u)| u - 0.5 * down[k % d]).collect();
-        let lifted = [&far, &u].map(|u| liquid.potential(u, liquid.amount(), 1.0));
+        let lifted = [&far, &u].map(|u| liquid.potential(u, Fill::of(liquid.amount())));
         assert!(((lifted[0] - lifted[1]) / (0.5 * weight) - 1.0).abs() < 1e-12);
         let there = forces(&liquid, &far, liquid.amount());
         let apart: Vec<f64> = found.iter().zip(&there).map(|(a, b)| a - b).collect();
@@ -188,7 +188,7 @@ fn walls_feel_the_pressure_of_the_depth() {
     let mut stiffness = BlockMatrix::zeros(body.inertia().pattern(), 2);
     let mut gradient = vec![0.0; rest.len()];
     let [_, stiff, _] =
-        liquid.linearize(&rest, amount, 1.0, &mut stiffness, &mut gradient).unwrap();
+        liquid.linearize(&rest, Fill::of(amount), &mut stiffness, &mut gradient).unwrap();
     assert!((stiff / (DENSITY * GRAVITY / (0.3 * THICKNESS)) - 1.0).abs() < 1e-13);
     // a wedge of 45 degrees: the area w h^2/2 below the level
     let mesh = Mesh::rectangle([0.2, 0.2], [2, 2], Cells::Triangles).unwrap();
@@ -228,7 +228,7 @@ fn a_tilted_box_has_a_level_surface() {
         let x = b / 2.0 - b * b * tan / (12.0 * h);
         let y = h / 2.0 + b * b * tan * tan / (24.0 * h);
         let centre = angle.sin() * x + angle.cos() * y;
-        let energy = liquid.potential(&u, liquid.amount(), 1.0);
+        let energy = liquid.potential(&u, Fill::of(liquid.amount()));
         let expected = weight * (centre - h / 2.0);
         assert!((energy - expected).abs() < 1e-12 * weight * b, "{energy} {expected}");
         let found = forces(&liquid, &u, liquid.amount());
@@ -260,7 +260,8 @@ fn limits_are_told() {
         (turned, amount, "have passed through each other"),
         ([0.0; 8], -1.0, "let less flow out"),
     ] {
-        let told = liquid.press(&u, amount, 1.0, &mut nodal).unwrap_err().into_error().to_string();
+        let told =
+            liquid.press(&u, Fill::of(amount), &mut nodal).unwrap_err().into_error().to_string();
         assert!(told.contains(words), "{told}");
     }
     let walls = chamber.force(&body, Vec::new()).unwrap();
