@@ -29,7 +29,7 @@ pub(super) fn of(present: &Present, colours: Option<usize>, since: Option<f64>) 
     // while it plays nothing waits for what a reduced model tells of its error
     let report = if playing { simulation.settled_report() } else { simulation.report() };
     let (body, u) = (view.body(), view.displacements());
-    let values = sliders.iter().map(|slider| slider.value(simulation).unwrap_or(f64::NAN));
+    let values = sliders.iter().map(|slider| slider.value(simulation));
     // the forces of all springs are shown, also of those without a slider
     let actuations = simulation.scene().springs().iter();
     let actuations =

@@ -124,8 +124,8 @@ fn selection(scene: &Scene, node: usize) -> Result<Selection, InputError> {
     let mesh = scene.body().mesh();
     let at = mesh.position(node).to_vec();
     let place = Selection::Box { min: at.clone(), max: at };
-    let mut loads = scene.phases().iter().flat_map(|phase| &phase.loads);
-    let is_taken = loads.any(|(nodes, _)| *nodes == place);
+    let mut loads = scene.phases().iter().flat_map(|phase| phase.loads());
+    let is_taken = loads.any(|(nodes, ..)| *nodes == place);
     Ok(match mesh.select(&place)?.len() {
         1 if !is_taken => place,
         _ => Selection::Numbers(vec![node + 1]),

@@ -4,12 +4,9 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use super::slider::{Target, ascending};
-use crate::dynamics::error::Error;
-use crate::dynamics::simulate::Simulation;
-use crate::elements::mesh::Selection;
 use crate::io::scene_file::{Rewritten, SceneFile, rewritten};
-use crate::scene::forces::{DipolePart, Signal, TimeTable, VectorSignal};
-use crate::scene::timeline::{Load, Phase, Scene};
+use crate::scene::forces::{Signal, TimeTable, VectorSignal};
+use crate::scene::timeline::{Input, Scene};
 
 /// Part of the scene's duration over which a slider changes its value: a body should not get a jump.
 const RAMP: f64 = 0.005;
@@ -51,66 +48,6 @@ struct Track {
     values: Vec<f64>,
 }
 
-/// What replaces the scene's own signal, load or field: on a chamber, its liquid, an orifice, a spring, some nodes, magnets, or a dipole.
-pub(super) enum Replacement {
-    Pressure(String, Signal),
-    Opening(String, Signal),
-    Flow(String, Signal),
-    Actuation(String, Signal),
-    Load(Selection, Load),
-    Field(VectorSignal),
-    Dipole(String, DipolePart, VectorSignal),
-}
-
-impl Replacement {
-    /// Applies it to the simulation.
-    pub(super) fn command(self, simulation: &mut Simulation) -> Result<(), Error> {
-        match self {
-            Self::Pressure(chamber, signal) => simulation.pressure(&chamber, signal),
-            Self::Opening(orifice, signal) => simulation.open(&orifice, signal),
-            Self::Flow(chamber, signal) => simulation.flow(&chamber, signal),
-            Self::Actuation(spring, signal) => simulation.actuate(&spring, signal),
-            Self::Load(nodes, load) => simulation.set_load(nodes, load),
-            Self::Field(field) => simulation.set_field(field),
-            Self::Dipole(name, part, value) => simulation.set_dipole(&name, part, value),
-        }
-    }
-
-    /// Puts it into the phase of a file. Returns the key of the list in which it stands there.
-    fn write(self, phase: &mut Phase) -> &'static str {
-        match self {
-            Self::Pressure(chamber, signal) => {
-                phase.set_pressure(&chamber, signal);
-                "pressure"
-            }
-            Self::Opening(orifice, signal) => {
-                phase.set_opening(&orifice, signal);
-                "open"
-            }
-            Self::Flow(chamber, signal) => {
-                phase.set_flow(&chamber, signal);
-                "flow"
-            }
-            Self::Actuation(spring, signal) => {
-                phase.set_actuation(&spring, signal);
-                "actuate"
-            }
-            Self::Load(nodes, load) => {
-                phase.set_load(nodes, load);
-                "load"
-            }
-            Self::Field(field) => {
-                phase.set_field(field);
-                "magnetic_field"
-            }
-            Self::Dipole(name, part, value) => {
-                phase.set_dipole(&name, part, value);
-                "drive"
-            }
-        }
-    }
-}
-
 impl Record {
     /// The scene file `original` of `scene` with these moves.
     ///
@@ -128,8 +65,9 @@ impl Record {
             let mut change = Rewritten { number, phase: phase.clone(), keys: BTreeSet::new() };
             for track in self.tracks.iter().filter(|track| track.phase == number) {
                 // a file has no functions of time, which would be evaluated at this one time
-                let key = self.course(scene, track, 0.0).write(&mut change.phase);
-                change.keys.insert(key);
+                let input = self.input(scene, track, 0.0);
+                change.keys.insert(input.quantity.row().keys[0]);
+                change.phase.set(input);
             }
             // it was played for longer than in the file
             if written.scene.phases().get(number).is_some_and(|own| own.end() < phase.end()) {
@@ -149,13 +87,7 @@ impl Record {
 
     /// Moves `target` to `value` at time `t` (s). Returns what acts from then on, including all earlier
     /// moves.
-    pub(super) fn moved(
-        &mut self,
-        scene: &Scene,
-        target: &Target,
-        t: f64,
-        value: f64,
-    ) -> Replacement {
+    pub(super) fn moved(&mut self, scene: &Scene, target: &Target, t: f64, value: f64) -> Input {
         let phases = scene.phases();
         let last = phases.len().saturating_sub(1);
         let number = phases.iter().position(|phase| t < phase.end()).unwrap_or(last);
@@ -165,43 +97,19 @@ impl Record {
             self.tracks.len() - 1
         });
         self.tracks[at].go(t, (RAMP * scene.end()).min(LONGEST_RAMP), value);
-        self.course(scene, &self.tracks[at], t)
+        self.input(scene, &self.tracks[at], t)
     }
 
-    /// What acts because of a track from time `t` (s) on; for a component of a load or a field, with the
-    /// other components.
-    fn course(&self, scene: &Scene, track: &Track, t: f64) -> Replacement {
-        match &track.target {
-            Target::Pressure(chamber) => Replacement::Pressure(chamber.clone(), track.signal()),
-            Target::Actuation(spring) => Replacement::Actuation(spring.clone(), track.signal()),
-            Target::Load(nodes, kind, _) => {
-                let of = |axis| Target::Load(nodes.clone(), *kind, axis);
-                let value = self.vector(scene, track.phase, t, of);
-                Replacement::Load(nodes.clone(), Load { kind: *kind, value })
-            }
-            Target::Dipole(name, part, _) => {
-                let of = |axis| Target::Dipole(name.clone(), *part, axis);
-                let value = self.vector(scene, track.phase, t, of);
-                Replacement::Dipole(name.clone(), *part, value)
-            }
-            Target::Opening(orifice) => Replacement::Opening(orifice.clone(), track.signal()),
-            Target::Flow(chamber) => Replacement::Flow(chamber.clone(), track.signal()),
-            Target::Field(_) => {
-                Replacement::Field(self.vector(scene, track.phase, t, Target::Field))
-            }
+    /// What acts because of a track from time `t` (s) on; for a component of a vector, with the other components as far as they were
+    /// moved.
+    fn input(&self, scene: &Scene, track: &Track, t: f64) -> Input {
+        let Target { quantity, of, axis } = &track.target;
+        if axis.is_none() {
+            return Input::new(*quantity, of.clone(), track.signal());
         }
-    }
-
-    /// The vector whose components are the targets `of` them in a phase, as far as they were moved, from time `t` (s) on.
-    fn vector(
-        &self,
-        scene: &Scene,
-        phase: usize,
-        t: f64,
-        of: impl Fn(usize) -> Target,
-    ) -> VectorSignal {
+        let phase = track.phase;
         let component = |axis| {
-            let target = of(axis);
+            let target = track.target.along(axis);
             let known = |other: &&Track| (other.phase, &other.target) == (phase, &target);
             match self.tracks.iter().find(known) {
                 Some(moved) => moved.signal(),
@@ -212,7 +120,8 @@ impl Record {
         let times = ascending(components.iter().flat_map(Signal::breaks));
         let force = |t: &f64| components.iter().map(|signal| signal.at(*t)).collect();
         let forces = times.iter().map(force).collect();
-        VectorSignal::TimeTable(TimeTable::new(times, forces))
+        let vector = VectorSignal::TimeTable(TimeTable::new(times, forces));
+        Input::new(*quantity, of.clone(), vector)
     }
 }
 
@@ -247,11 +156,12 @@ impl Track {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::timeline::Quantity;
 
     #[test]
     fn moves_begin_where_the_slider_is() {
         let (times, values) = (vec![0.0, 1.0], vec![0.0, 10.0]);
-        let target = Target::Pressure("air".into());
+        let target = Target::of(Quantity::Pressure, "air");
         let mut track = Track { phase: 0, target, times, values };
         track.go(0.5, 0.1, 7.0);
         assert_eq!((&track.times, &track.values), (&vec![0.0, 0.5, 0.6], &vec![0.0, 5.0, 7.0]));

@@ -189,8 +189,8 @@ impl Session {
         })?;
         self.simulation.check_goes_on()?;
         let (scene, t) = (self.simulation.scene(), self.simulation.time());
-        let course = self.record.moved(scene, &slider.target, t, value);
-        course.command(&mut self.simulation)
+        let input = self.record.moved(scene, &slider.target, t, value);
+        self.simulation.set(input)
     }
 
     fn pull(&mut self, place: usize, to: Vec<f64>, strength: f64) -> Result<Value, String> {

@@ -2,31 +2,19 @@
 
 use serde_json::{Value, json};
 
-use crate::dynamics::error::Error;
 use crate::dynamics::simulate::Simulation;
 use crate::elements::body::{Body, Part};
 use crate::elements::mesh::Selection;
-use crate::scene::forces::{Chamber, Dipole, DipolePart, Signal, VectorSignal};
-use crate::scene::timeline::{Load, LoadKind, Phase, Scene};
+use crate::scene::forces::{Chamber, Dipole, DipolePart};
+use crate::scene::timeline::{self, LoadKind, Phase, Quantity, Scene};
 
-/// What a slider sets.
+/// The input that a slider sets, or a component of it.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) enum Target {
-    /// The pressure of a chamber (Pa).
-    Pressure(String),
-    /// How far an orifice is open.
-    Opening(String),
-    /// The flow of liquid into a chamber (m^3/s).
-    Flow(String),
-    /// The force of the actuator of a spring, or the tension of a cable (N), the length that a winch has drawn in (m), the
-    /// stress of a muscle (Pa), or the strain of a growth (1).
-    Actuation(String),
-    /// A component, counted from 0, of the magnetic field (T).
-    Field(usize),
-    /// A component, counted from 0, of the position (m) or the moment (A m^2) of a dipole.
-    Dipole(String, DipolePart, usize),
-    /// A component, counted from 0, of the load of a kind on some nodes (N or N/m^2).
-    Load(Selection, LoadKind, usize),
+pub(super) struct Target {
+    pub(super) quantity: Quantity,
+    pub(super) of: timeline::Target,
+    /// Number of the component, from 0; none of an input that has one.
+    pub(super) axis: Option<usize>,
 }
 
 /// A slider.
@@ -64,12 +52,12 @@ impl Slider {
             scene.gas_in(name).is_none() && scene.liquid_in(name).is_none()
         };
         let chambers = scene.chambers().iter().filter(is_empty).map(|chamber| {
-            let target = Target::Pressure(chamber.name().to_owned());
+            let target = Target::of(Quantity::Pressure, chamber.name());
             let range = [target.largest_in(scene), pressure];
             Self::new(target, "pressure".into(), range, "Pa")
         });
         let orifices = scene.orifices().iter().map(|orifice| Self {
-            target: Target::Opening(orifice.name().to_owned()),
+            target: Target::of(Quantity::Opening, orifice.name()),
             least: 0.0,
             most: 1.0,
             what: "opening".into(),
@@ -78,21 +66,21 @@ impl Slider {
         // a usual part of the volume of the bodies in a second
         let pumped = USUAL * scene.body().volume();
         let flows = scene.liquids().iter().map(|liquid| {
-            let target = Target::Flow(liquid.chamber().to_owned());
+            let target = Target::of(Quantity::Flow, liquid.chamber());
             let range = [target.largest_in(scene), pumped];
             Self::new(target, "flow".into(), range, "m^3/s")
         });
         let heated = |name: &str| scene.lag_of(name)?.loss();
         let heaters = scene.actuators().filter_map(|name| Some((name, heated(name)?)));
         let heaters = heaters.map(|(name, loss)| {
-            let target = Target::Actuation(name.to_owned());
+            let target = Target::of(Quantity::Actuation, name);
             let most = round_up(2.0 * target.largest_in(scene).max(loss * USUAL_WARMTH));
             Self { target, least: 0.0, most, what: "power".into(), unit: "W" }
         });
         let is_cold = |name: &str| heated(name).is_none();
         let springs = scene.springs().iter().filter(|spring| is_cold(spring.name()));
         let springs = springs.map(|spring| {
-            let target = Target::Actuation(spring.name().to_owned());
+            let target = Target::of(Quantity::Actuation, spring.name());
             let (what, usual, unit) = match (spring.is_winch(), spring.is_cable()) {
                 (true, _) => ("drawn in", USUAL * scene.body().size(), "m"),
                 (_, true) => ("tension", force, "N"),
@@ -103,7 +91,7 @@ impl Slider {
         });
         let muscles = scene.muscles().iter().filter(|muscle| is_cold(muscle.name()));
         let muscles = muscles.map(|muscle| {
-            let target = Target::Actuation(muscle.name().to_owned());
+            let target = Target::of(Quantity::Actuation, muscle.name());
             let what = "stress".into();
             if let Some(hill) = muscle.law() {
                 return Self { target, least: 0.0, most: hill.largest, what, unit: "Pa" };
@@ -112,7 +100,7 @@ impl Slider {
             Self::new(target, what, range, "Pa")
         });
         let mut loaded: Vec<&Selection> = Vec::new();
-        for (nodes, _) in scene.phases().iter().flat_map(|phase| &phase.loads) {
+        for (nodes, ..) in scene.phases().iter().flat_map(Phase::loads) {
             if !loaded.contains(&nodes) {
                 loaded.push(nodes);
             }
@@ -121,16 +109,16 @@ impl Slider {
             loaded.into_iter().flat_map(|nodes| Self::of_load(scene, nodes, [force, pressure]));
         let growths = scene.growths().iter().filter(|growth| is_cold(growth.name()));
         let growths = growths.map(|growth| {
-            let target = Target::Actuation(growth.name().to_owned());
+            let target = Target::of(Quantity::Actuation, growth.name());
             let range = [target.largest_in(scene), USUAL];
             Self::new(target, "growth".into(), range, "1")
         });
         let axes = if scene.magnets().is_empty() { 0 } else { scene.body().dimension() };
         // all components have one range: a field in another direction may be as strong
-        let largest = (0..axes).map(|axis| Target::Field(axis).largest_in(scene));
+        let largest = (0..axes).map(|axis| Target::field(axis).largest_in(scene));
         let largest = largest.fold(0.0, f64::max);
         let fields = (0..axes).zip(["x", "y", "z"]).map(|(axis, name)| {
-            Self::new(Target::Field(axis), name.into(), [largest, USUAL_FIELD], "T")
+            Self::new(Target::field(axis), name.into(), [largest, USUAL_FIELD], "T")
         });
         chambers
             .chain(orifices)
@@ -153,8 +141,8 @@ impl Slider {
             DipolePart::Moment => USUAL_MOMENT,
         };
         let sliders = DipolePart::ALL.into_iter().flat_map(|part| {
-            let targets =
-                axes.clone().map(move |axis| Target::Dipole(dipole.name().into(), part, axis));
+            let whole = Target::of(Quantity::Dipole(part), dipole.name());
+            let targets = axes.clone().map(move |axis| whole.along(axis));
             let largest =
                 targets.clone().map(|target| target.largest_in(scene)).fold(0.0, f64::max);
             targets.zip(["x", "y", "z"]).map(move |(target, axis)| {
@@ -170,8 +158,8 @@ impl Slider {
     fn of_load(scene: &Scene, nodes: &Selection, [force, traction]: [f64; 2]) -> Vec<Self> {
         // a scene has no loads on an empty selection
         let count = scene.body().mesh().select(nodes).map_or(1, |nodes| nodes.len());
-        let loads = || scene.phases().iter().flat_map(|phase| loads_in(phase, nodes));
-        let always = |kind: &LoadKind| loads().all(|load| load.kind == *kind);
+        let loads = || scene.phases().iter().flat_map(Phase::loads).filter(|(on, ..)| *on == nodes);
+        let always = |kind: &LoadKind| loads().all(|(_, own, _)| own == *kind);
         let kind = LoadKind::ALL.into_iter().find(always).unwrap_or(LoadKind::Each);
         let (name, of_what, usual) = match kind {
             LoadKind::Traction => ("traction", "", traction),
@@ -181,12 +169,13 @@ impl Slider {
         };
         // all components have one range: a load in another direction may be as strong
         let axes = 0..scene.body().dimension();
-        let targets = axes.map(|axis| Target::Load(nodes.clone(), kind, axis));
+        let of = timeline::Target::Nodes(nodes.clone());
+        let whole = Target { quantity: Quantity::Load(kind), of, axis: None };
+        let targets = axes.map(|axis| whole.along(axis));
         let largest = targets.clone().map(|target| target.largest_in(scene)).fold(0.0, f64::max);
         let slider = |(target, axis)| {
             let what = format!("{name} {axis}{of_what}");
-            let unit = if kind == LoadKind::Traction { "Pa" } else { "N" };
-            Self::new(target, what, [largest, usual], unit)
+            Self::new(target, what, [largest, usual], Quantity::Load(kind).row().unit)
         };
         targets.zip(["x", "y", "z"]).map(slider).collect()
     }
@@ -198,32 +187,16 @@ impl Slider {
     }
 
     /// The value in force, as it is shown.
-    pub(super) fn value(&self, simulation: &Simulation) -> Result<f64, Error> {
-        Ok(match &self.target {
-            Target::Pressure(chamber) => simulation.view().pressure(chamber)?,
-            Target::Opening(orifice) => simulation.view().opening(orifice)?,
-            Target::Flow(chamber) => simulation.view().liquid_flow(chamber)?,
-            Target::Actuation(spring) => simulation.view().command(spring)?,
-            Target::Field(axis) => simulation.view().magnetic_field()[*axis],
-            Target::Dipole(name, DipolePart::Position, axis) => {
-                simulation.view().dipole_position(name)?[*axis]
-            }
-            Target::Dipole(name, DipolePart::Moment, axis) => {
-                simulation.view().dipole_moment(name)?[*axis]
-            }
-            Target::Load(nodes, kind, axis) => simulation.view().load_of(nodes, *kind)?[*axis],
-        })
+    pub(super) fn value(&self, simulation: &Simulation) -> f64 {
+        let t = simulation.time();
+        simulation.view().with_states(|scene, phase, _, _| self.target.value_in(scene, phase, t))
     }
 
     pub(super) fn to_json(&self) -> Value {
-        let name = match &self.target {
-            Target::Pressure(name)
-            | Target::Opening(name)
-            | Target::Flow(name)
-            | Target::Actuation(name)
-            | Target::Dipole(name, ..) => name.clone(),
-            Target::Field(_) => "magnetic field".into(),
-            Target::Load(nodes, ..) => name_of(nodes),
+        let name = match &self.target.of {
+            timeline::Target::Named(names) => names.join(", "),
+            timeline::Target::Everything => self.target.quantity.row().name.into(),
+            timeline::Target::Nodes(nodes) => name_of(nodes),
         };
         json!({
             "name": name, "what": self.what, "unit": self.unit, "least": self.least, "most": self.most
@@ -232,52 +205,29 @@ impl Slider {
 }
 
 impl Target {
-    /// Its own value in `phase` of `scene` at time `t` (s).
+    /// A quantity of a component.
+    pub(super) fn of(quantity: Quantity, name: &str) -> Self {
+        Self { quantity, of: timeline::Target::one(name), axis: None }
+    }
+
+    /// A component of the magnetic field.
+    fn field(axis: usize) -> Self {
+        Self { quantity: Quantity::Field, of: timeline::Target::Everything, axis: Some(axis) }
+    }
+
+    /// A component of it.
+    pub(super) fn along(&self, axis: usize) -> Self {
+        Self { axis: Some(axis), ..self.clone() }
+    }
+
+    /// Its value in `phase` of `scene` at time `t` (s).
     pub(super) fn value_in(&self, scene: &Scene, phase: &Phase, t: f64) -> f64 {
-        match self {
-            Self::Load(nodes, kind, axis) => {
-                scene.load_on(phase, nodes, *kind, t).map_or(0.0, |load| load[*axis])
-            }
-            // an orifice of which nothing is said is open
-            Self::Opening(_) if self.signals_in(phase).next().is_none() => 1.0,
-            Self::Field(axis) => field_in(phase)
-                .map_or(0.0, |field| field.components(t, scene.body().dimension())[*axis]),
-            Self::Dipole(name, part, axis) => part_of_dipole(scene, phase, name, *part)
-                .map_or(0.0, |value| value.components(t, scene.body().dimension())[*axis]),
-            _ => self.signals_in(phase).map(|signal| signal.at(t)).sum(),
-        }
+        scene.input_at(phase, self.quantity, &self.of, t)[self.axis.unwrap_or(0)]
     }
 
-    /// Times (s) at which its signals or loads in `phase` have breaks, ascending.
+    /// Times (s) at which its signals in `phase` have breaks, ascending.
     pub(super) fn breaks_in(&self, scene: &Scene, phase: &Phase) -> Vec<f64> {
-        match self {
-            Self::Load(nodes, ..) => ascending(loads_in(phase, nodes).flat_map(breaks)),
-            Self::Field(_) => field_in(phase).map_or_else(Vec::new, |field| field.breaks().into()),
-            Self::Dipole(name, part, _) => part_of_dipole(scene, phase, name, *part)
-                .map_or_else(Vec::new, |value| value.breaks().into()),
-            _ => ascending(self.signals_in(phase).flat_map(Signal::breaks)),
-        }
-    }
-
-    /// The signals of a chamber, an orifice, a spring or a muscle in `phase`; the sum of them acts.
-    fn signals_in<'a>(&'a self, phase: &'a Phase) -> Box<dyn Iterator<Item = &'a Signal> + 'a> {
-        match self {
-            Self::Pressure(name) => Box::new(
-                phase.pressures.iter().filter(move |(other, _)| other == name).map(|(_, s)| s),
-            ),
-            Self::Opening(name) => Box::new(
-                phase.openings.iter().filter(move |(other, _)| other == name).map(|(_, s)| s),
-            ),
-            Self::Flow(name) => {
-                Box::new(phase.flows.iter().filter(move |(other, _)| other == name).map(|(_, s)| s))
-            }
-            Self::Actuation(name) => {
-                Box::new(phase.actuations.iter().flat_map(move |(springs, signal)| {
-                    springs.iter().filter(move |other| *other == name).map(move |_| signal)
-                }))
-            }
-            Self::Load(..) | Self::Field(_) | Self::Dipole(..) => Box::new(std::iter::empty()),
-        }
+        scene.input_breaks(phase, self.quantity, &self.of)
     }
 
     /// The largest value that the scene itself has for it.
@@ -303,31 +253,6 @@ fn usual(body: &Body) -> [f64; 2] {
     };
     let least = |[a, b]: [f64; 2], [c, d]: [f64; 2]| [a.min(c), b.min(d)];
     body.parts().map(of_part).fold([f64::INFINITY; 2], least)
-}
-
-/// The loads that `phase` has for a selection; the sum of them acts.
-fn loads_in<'a>(phase: &'a Phase, nodes: &'a Selection) -> impl Iterator<Item = &'a Load> {
-    phase.loads.iter().filter(move |(other, _)| other == nodes).map(|(_, load)| load)
-}
-
-/// The magnetic field that `phase` has everywhere.
-fn field_in(phase: &Phase) -> Option<&VectorSignal> {
-    phase.magnetic_field.as_ref().map(|field| &field.field)
-}
-
-/// The position or the moment of the dipole with a `name` in `phase`.
-fn part_of_dipole<'a>(
-    scene: &'a Scene,
-    phase: &'a Phase,
-    name: &str,
-    part: DipolePart,
-) -> Option<&'a VectorSignal> {
-    let dipole = scene.dipoles().iter().find(|dipole| dipole.name() == name)?;
-    Some(phase.part_of(dipole, part))
-}
-
-fn breaks(load: &Load) -> &[f64] {
-    load.value.breaks()
 }
 
 /// Times (s) in ascending order, without duplicates.

@@ -48,9 +48,10 @@ pub(super) fn of_scene(scene: &Scene) -> Vec<Indicator> {
         let times = (0..=LOOKS).map(part).chain(vector.breaks().iter().copied());
         times.map(|t| norm(&vector.components(t, scene.body().dimension()))).fold(0.0, f64::max)
     };
-    let field = largest(&mut phases.clone().filter_map(|(phase, start)| {
-        phase.magnetic_field.as_ref().map(|field| most(phase, start, &field.field))
-    }));
+    let field =
+        largest(&mut phases.clone().filter_map(|(phase, start)| {
+            phase.uniform_field().map(|field| most(phase, start, field))
+        }));
     let moment = largest(&mut phases.flat_map(|(phase, start)| {
         scene.dipoles().iter().map(move |dipole| {
             most(phase, start, phase.with_dipole(dipole).part(DipolePart::Moment))

@@ -7,7 +7,7 @@ use crate::dynamics::error::Error;
 use crate::elements::mesh::Selection;
 use crate::scene::constraint::{Axes, Axis, Constrained, Constraint, Motion};
 use crate::scene::forces::{Live, Signal, TimeTable, VectorSignal};
-use crate::scene::timeline::{Load, Phase, Scene};
+use crate::scene::timeline::{Input, LoadKind, Phase, Quantity, Scene, Target};
 
 /// Commands. Each takes effect at the present time and stays in force until another one replaces it or the
 /// phase ends: the next phase begins as the scene defines it. At the end of the scene, where nothing is left
@@ -24,16 +24,8 @@ impl Simulation {
     /// # Errors
     /// A name that no chamber has; numbers that are not finite.
     pub fn pressure(&mut self, chamber: &str, pressure: impl Into<Signal>) -> Result<(), Error> {
-        let (pressure, input) = (pressure.into(), "pressure of chamber");
-        self.scene().chamber_number(chamber, input)?;
-        let live = |phase: &Phase| phase.live_pressure(chamber).cloned();
-        if self.set_live(live, input, pressure.value().as_slice())? {
-            return Ok(());
-        }
-        self.command(Change::Loads, |phase, _| {
-            phase.set_pressure(chamber, pressure.thawed());
-            Ok(())
-        })
+        self.scene().chamber_number(chamber, "pressure of chamber")?;
+        self.set(Input::new(Quantity::Pressure, Target::one(chamber), pressure.into()))
     }
 
     /// Sets how far an orifice is open, from 0 (shut) to 1, in place of the present opening.
@@ -46,14 +38,7 @@ impl Simulation {
         if let Some(value) = opening.value().filter(|value| !(0.0..=1.0).contains(value)) {
             return Err(InputError::new(input, value, "it must be from 0 (shut) to 1").into());
         }
-        let live = |phase: &Phase| phase.live_opening(orifice).cloned();
-        if self.set_live(live, input, opening.value().as_slice())? {
-            return Ok(());
-        }
-        self.command(Change::Loads, |phase, _| {
-            phase.set_opening(orifice, opening.thawed());
-            Ok(())
-        })
+        self.set(Input::new(Quantity::Opening, Target::one(orifice), opening))
     }
 
     /// Sets the flow (m^3/s) of liquid into a chamber, in place of the present one; below 0 it flows out.
@@ -62,16 +47,8 @@ impl Simulation {
     /// A name that no chamber with a liquid has; numbers that are not finite; a method without unknowns for amounts (`ida-klu`,
     /// `central-difference`).
     pub fn flow(&mut self, chamber: &str, flow: impl Into<Signal>) -> Result<(), Error> {
-        let (flow, input) = (flow.into(), "flow into chamber");
-        self.scene().liquid_number(chamber, input)?;
-        let live = |phase: &Phase| phase.live_flow(chamber).cloned();
-        if self.set_live(live, input, flow.value().as_slice())? {
-            return Ok(());
-        }
-        self.command(Change::Loads, |phase, _| {
-            phase.set_flow(chamber, flow.thawed());
-            Ok(())
-        })
+        self.scene().liquid_number(chamber, "flow into chamber")?;
+        self.set(Input::new(Quantity::Flow, Target::one(chamber), flow.into()))
     }
 
     /// Sets the force (N) of the actuator of a spring, in place of the present one; a positive one extends
@@ -82,26 +59,13 @@ impl Simulation {
     /// A name that no spring, no muscle and no growth has; numbers that are not finite; a stress that [Hill's law](crate::Hill) of a muscle does not
     /// have.
     pub fn actuate(&mut self, spring: &str, force: impl Into<Signal>) -> Result<(), Error> {
-        let (force, input) = (force.into(), "actuation");
-        self.scene().actuator_number(spring, input)?;
-        if self.scene().growths().iter().any(|growth| growth.name() == spring) {
-            return self.command(Change::Stores, |phase, _| {
-                phase.set_actuation(spring, force);
-                Ok(())
-            });
-        }
+        let force = force.into();
+        self.scene().actuator_number(spring, "actuation")?;
         let muscle = self.scene().muscles().iter().find(|muscle| muscle.name() == spring);
         if let (Some(muscle), Some(stress)) = (muscle, force.value()) {
             muscle.check_stress(stress)?;
         }
-        let live = |phase: &Phase| phase.live_actuation(spring).cloned();
-        if self.set_live(live, input, force.value().as_slice())? {
-            return Ok(());
-        }
-        self.command(Change::Loads, |phase, _| {
-            phase.set_actuation(spring, force.thawed());
-            Ok(())
-        })
+        self.set(Input::new(Quantity::Actuation, Target::one(spring), force))
     }
 
     /// Sets a force (N) on each of the nodes, one component per dimension, in place of the load given for the
@@ -114,12 +78,7 @@ impl Simulation {
         nodes: impl Into<Selection>,
         force: impl Into<Vec<f64>>,
     ) -> Result<(), Error> {
-        let (nodes, force) = (nodes.into(), force.into());
-        let live = |phase: &Phase| phase.live_load(&nodes).cloned();
-        if force.len() == self.scene().body().dimension() && self.set_live(live, "load", &force)? {
-            return Ok(());
-        }
-        self.set_load(nodes, Load::each(VectorSignal::Live(Live::new(&force))))
+        self.set_load(nodes.into(), VectorSignal::Constant(force.into()))
     }
 
     /// As [`load`](Self::load), with a force (N) that changes with time (s).
@@ -131,7 +90,7 @@ impl Simulation {
         nodes: impl Into<Selection>,
         force: impl Fn(f64) -> [f64; D] + Send + Sync + 'static,
     ) -> Result<(), Error> {
-        self.set_load(nodes.into(), Load::each(VectorSignal::function(force)))
+        self.set_load(nodes.into(), VectorSignal::function(force))
     }
 
     /// As [`load`](Self::load), with a force (N) that has the values `forces`, one component per dimension, at the
@@ -146,7 +105,7 @@ impl Simulation {
         forces: impl IntoIterator<Item: Into<Vec<f64>>>,
     ) -> Result<(), Error> {
         let table = TimeTable::new(times.into(), forces.into_iter().map(Into::into).collect());
-        self.set_load(nodes.into(), Load::each(VectorSignal::TimeTable(table)))
+        self.set_load(nodes.into(), VectorSignal::TimeTable(table))
     }
 
     /// Sets the magnetic field (T) that acts on magnets, one component per dimension, in place of the present one; a gradient of it stays.
@@ -154,13 +113,8 @@ impl Simulation {
     /// # Errors
     /// A scene without magnets, a wrong number of components, numbers that are not finite.
     pub fn magnetic_field(&mut self, field: impl Into<Vec<f64>>) -> Result<(), Error> {
-        let (field, input) = (field.into(), "magnetic field");
-        let is_whole = field.len() == self.scene().body().dimension();
-        let live = |phase: &Phase| phase.live_field().cloned();
-        if is_whole && self.set_live(live, input, &field)? {
-            return Ok(());
-        }
-        self.set_field(VectorSignal::Live(Live::new(&field)))
+        let field = VectorSignal::Constant(field.into());
+        self.set(Input::new(Quantity::Field, Target::Everything, field))
     }
 
     /// Holds nodes, in all components, where they are.
@@ -243,36 +197,50 @@ impl Simulation {
         })
     }
 
-    /// As [`magnetic_field`](Self::magnetic_field), with a field of any kind.
-    pub(crate) fn set_field(&mut self, field: VectorSignal) -> Result<(), Error> {
+    /// Sets an input, in place of the present ones of its quantity on its target.
+    pub(crate) fn set(&mut self, input: Input) -> Result<(), Error> {
+        let Input { quantity, target, signal } = input;
+        // the strain of a growth is a part of the energy of its cells
+        let grows = |target: &Target| {
+            let mut growths = self.scene().growths().iter();
+            growths.any(|growth| *target == Target::one(growth.name()))
+        };
+        if quantity == Quantity::Actuation && grows(&target) {
+            return self.command(Change::Stores, |phase, _| {
+                phase.set(Input { quantity, target, signal });
+                Ok(())
+            });
+        }
+        if let Some(values) = signal.constant()
+            && self.set_live(|phase| phase.live(quantity, &target).cloned(), quantity, values)?
+        {
+            return Ok(());
+        }
         self.command(Change::Loads, |phase, _| {
-            phase.set_field(field);
+            phase.set(Input { quantity, target, signal: signal.thawed() });
             Ok(())
         })
     }
 
-    /// As [`load`](Self::load), with a load of any kind.
-    pub(crate) fn set_load(&mut self, nodes: Selection, load: Load) -> Result<(), Error> {
-        self.command(Change::Loads, |phase, _| {
-            phase.set_load(nodes, load);
-            Ok(())
-        })
+    fn set_load(&mut self, nodes: Selection, force: VectorSignal) -> Result<(), Error> {
+        self.set(Input::load(nodes, LoadKind::Each, force))
     }
 
     /// Sets the numbers that `find` finds in the phase in force; `false` if there are none that a command can
     /// set. (The forces read them: nothing is rebuilt.)
-    pub(super) fn set_live(
+    fn set_live(
         &mut self,
         find: impl Fn(&Phase) -> Option<Live>,
-        input: &str,
+        quantity: Quantity,
         values: &[f64],
     ) -> Result<bool, Error> {
-        if values.is_empty() || self.run.is_past_phase(self.time) {
+        if self.run.is_past_phase(self.time) {
             return Ok(false);
         }
-        let Some(live) = find(&self.run.phase) else { return Ok(false) };
+        let live = find(&self.run.phase).filter(|live| live.len() == values.len());
+        let Some(live) = live else { return Ok(false) };
         self.check_goes_on()?;
-        finite(input, values)?;
+        finite(quantity.row().name, values)?;
         if self.run.time > self.time {
             self.run.set_state(self.time, &self.now)?;
         }
@@ -292,7 +260,7 @@ impl Simulation {
     }
 
     /// Gives a command: an `edit` of the phase in force.
-    pub(super) fn command(
+    fn command(
         &mut self,
         change: Change,
         edit: impl FnOnce(&mut Phase, &Scene) -> Result<(), InputError>,

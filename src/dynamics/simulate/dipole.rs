@@ -1,12 +1,11 @@
 //! Dipoles of a simulation: where they are, what they do, and commands that move them.
 
-use super::changes::Change;
 use super::simulation::Simulation;
 use super::view::View;
 use crate::base::input::InputError;
 use crate::dynamics::error::Error;
 use crate::scene::forces::{DipolePart, Signals, VectorSignal, point_dipole};
-use crate::scene::timeline::Phase;
+use crate::scene::timeline::{Input, Quantity, Target};
 
 /// Dipoles.
 impl View<'_> {
@@ -76,27 +75,13 @@ impl Simulation {
         self.set_dipole(dipole, DipolePart::Moment, moment.into().0)
     }
 
-    /// Sets the position or the moment of a dipole.
-    pub(crate) fn set_dipole(
+    fn set_dipole(
         &mut self,
         dipole: &str,
         part: DipolePart,
         value: VectorSignal,
     ) -> Result<(), Error> {
-        let input = format!("{part} of dipole \"{dipole}\"");
-        self.scene().dipole_number(dipole, &input)?;
-        let dimension = self.scene().body().dimension();
-        if let VectorSignal::Constant(values) = &value
-            && values.len() == dimension
-        {
-            let live = |phase: &Phase| phase.live_dipole(dipole, part).cloned();
-            if self.set_live(live, &input, values)? {
-                return Ok(());
-            }
-        }
-        self.command(Change::Loads, |phase, _| {
-            phase.set_dipole(dipole, part, value.thawed());
-            Ok(())
-        })
+        self.scene().dipole_number(dipole, &format!("{part} of dipole \"{dipole}\""))?;
+        self.set(Input::new(Quantity::Dipole(part), Target::one(dipole), value))
     }
 }

@@ -9,7 +9,7 @@ use crate::elements::body::{Body, CellField, Contraction, Grown, MagnetizedPoint
 use crate::elements::force::{Force, Forces, NodalForces};
 use crate::elements::mesh::Selection;
 use crate::scene::forces::{ChamberForce, Contact, Content, Filled, Poured, SpringGauge};
-use crate::scene::timeline::{LoadKind, Phase, Scene};
+use crate::scene::timeline::{LoadKind, Phase, Quantity, Scene, Target};
 #[cfg(feature = "play")]
 use crate::scene::{forces::NodalContact, timeline::ContactReader};
 
@@ -157,8 +157,7 @@ impl<'a> View<'a> {
             };
             return Ok(pressure.unwrap_or(f64::NAN));
         }
-        let pressures = self.phase.pressures.iter().filter(|(name, _)| name == chamber);
-        Ok(pressures.map(|(_, pressure)| pressure.at(self.time)).sum())
+        Ok(self.input(Quantity::Pressure, chamber))
     }
 
     /// Absolute pressure (Pa) of the gas in a chamber.
@@ -199,11 +198,7 @@ impl<'a> View<'a> {
     /// A name that no orifice has.
     pub fn opening(&self, orifice: &str) -> Result<f64, InputError> {
         self.scene.orifice_number(orifice, "orifice")?;
-        let mut own = self.phase.openings.iter().filter(|(name, _)| name == orifice).peekable();
-        if own.peek().is_none() {
-            return Ok(1.0);
-        }
-        Ok(own.map(|(_, opening)| opening.at(self.time)).sum())
+        Ok(self.input(Quantity::Opening, orifice))
     }
 
     /// Natural volume (m^3) of the liquid in a chamber.
@@ -221,8 +216,12 @@ impl<'a> View<'a> {
     /// As [`liquid_volume`](Self::liquid_volume).
     pub fn liquid_flow(&self, chamber: &str) -> Result<f64, InputError> {
         self.scene.liquid_number(chamber, "chamber")?;
-        let own = self.phase.flows.iter().filter(|(name, _)| name == chamber);
-        Ok(own.map(|(_, flow)| flow.at(self.time)).sum())
+        Ok(self.input(Quantity::Flow, chamber))
+    }
+
+    /// An input of one component, of a component of the scene.
+    fn input(&self, quantity: Quantity, name: &str) -> f64 {
+        self.scene.input_at(self.phase, quantity, &Target::one(name), self.time)[0]
     }
 
     /// Height (m) above the origin, against gravity, of the surface of the liquid in a chamber; NaN where the chamber has no room for the liquid.

@@ -4,7 +4,7 @@ use super::Spectrum;
 use crate::base::input::InputError;
 use crate::scene::constraint::PhaseStart;
 use crate::scene::forces::Obstacle;
-use crate::scene::timeline::{Phase, Scene};
+use crate::scene::timeline::{Phase, Quantity, Scene};
 
 /// Summary of a phase, with the spectrum of the body in it.
 #[derive(Debug, Clone, PartialEq)]
@@ -57,12 +57,11 @@ impl Scene {
         let rows =
             self.rows(phase, &PhaseStart { time: start, u: self.initial_displacements() })?;
         let mut loaded_nodes = 0;
-        let loads = phase.loads.iter().map(|(selection, _)| selection);
-        for selection in loads.chain(phase.face_pressures.iter().map(|(selection, _)| selection)) {
+        let loads = phase.loads().map(|(selection, ..)| selection);
+        for selection in loads.chain(phase.face_pressures().map(|(selection, _)| selection)) {
             loaded_nodes += self.body().mesh().select(selection)?.len();
         }
-        let actuated = phase.actuations.iter().flat_map(|(springs, _)| springs);
-        let pressurized = phase.pressures.iter().map(|(chamber, _)| chamber);
+        let names = |quantity| phase.signals(quantity).map(|(name, _)| name.to_owned()).collect();
         let obstacles = phase.contacts(self.obstacles())?.into_iter().map(Obstacle::name);
         let gravity = phase.gravity.as_deref().filter(|own| Some(*own) != self.acceleration());
         Ok(PhaseSummary {
@@ -73,9 +72,9 @@ impl Scene {
             gravity: gravity.map(Into::into),
             constraints: rows.len(),
             loaded_nodes,
-            has_magnetic_field: phase.magnetic_field.is_some(),
-            actuated: actuated.cloned().collect(),
-            pressurized: pressurized.cloned().collect(),
+            has_magnetic_field: phase.uniform_field().is_some(),
+            actuated: names(Quantity::Actuation),
+            pressurized: names(Quantity::Pressure),
             obstacles: obstacles.map(str::to_owned).collect(),
             spectrum,
         })

@@ -1,6 +1,7 @@
 //! The phase in force, as commands have changed it: numbers and names as they are, and functions by their
 //! place in the scene.
 
+use std::mem::take;
 use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
@@ -8,39 +9,41 @@ use serde::{Deserialize, Serialize};
 use crate::base::input::InputError;
 use crate::elements::mesh::Selection;
 use crate::scene::constraint::{Constrained, Constraint, Motion};
-use crate::scene::forces::{DipolePart, MagneticField, Signal, SignalKind, VectorSignal};
-use crate::scene::timeline::{ContactWith, Load, LoadKind, Phase, Scene};
+use crate::scene::forces::{DipolePart, Signal, SignalKind, VectorSignal};
+use crate::scene::timeline::{
+    ContactWith, Input, InputSignal, LoadKind, Phase, Quantity, Scene, Target,
+};
 
-/// Constraints, loads, signals, flows and obstacles in force.
+/// Constraints, inputs and obstacles in force.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct InForce {
     constraints: Vec<(Constrained, Given<Motion>)>,
-    loads: Vec<(Selection, LoadKind, Given<VectorSignal>)>,
-    /// Names of springs or muscles, force or stress.
-    actuations: Vec<(Vec<String>, Given<SignalKind>)>,
-    /// Name of a chamber, pressure.
-    pressures: Vec<(String, Given<SignalKind>)>,
-    /// Name of an orifice, opening.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    openings: Vec<(String, Given<SignalKind>)>,
-    /// Name of a chamber, flow of its liquid.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    flows: Vec<(String, Given<SignalKind>)>,
+    /// None in files in which they stand by their quantities.
+    inputs: Option<Vec<(Quantity, Target, GivenSignal)>>,
     /// Names of the obstacles that act; without: all.
     contact: ContactWith,
     /// Obstacles that commands have set in motion: name, offset from where its velocity or path would have
     /// brought it, and velocity; without one: its path in the scene.
     moving: Vec<(String, [f64; 3], Option<[f64; 3]>)>,
-    /// The uniform part of the magnetic field.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    // inputs of files that were written when each quantity had a list
+    #[serde(default, skip_serializing)]
+    loads: Vec<(Selection, LoadKind, Given<VectorSignal>)>,
+    #[serde(default, skip_serializing)]
+    actuations: Vec<(Vec<String>, Given<SignalKind>)>,
+    #[serde(default, skip_serializing)]
+    pressures: Vec<(String, Given<SignalKind>)>,
+    #[serde(default, skip_serializing)]
+    openings: Vec<(String, Given<SignalKind>)>,
+    #[serde(default, skip_serializing)]
+    flows: Vec<(String, Given<SignalKind>)>,
+    #[serde(default, skip_serializing)]
     magnetic_field: Option<Given<VectorSignal>>,
-    /// Name of a dipole, and what is otherwise of it than in the scene.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[serde(default, skip_serializing)]
     dipoles: Vec<(String, DipolePart, Given<VectorSignal>)>,
 }
 
-/// A motion, load, force or pressure.
+/// A motion or a signal.
 #[derive(Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 enum Given<T> {
@@ -120,32 +123,54 @@ fn motions(phase: &Phase) -> impl Iterator<Item = &Motion> {
     phase.constraints.iter().map(|constraint| &constraint.how)
 }
 
-fn values(phase: &Phase) -> impl Iterator<Item = &VectorSignal> {
-    phase.loads.iter().map(|(_, load)| &load.value)
+/// Signals of one component of the inputs of some quantities.
+fn numbers(phase: &Phase, of: impl Fn(Quantity) -> bool) -> impl Iterator<Item = &SignalKind> {
+    let all = phase.inputs.iter().filter(move |input| of(input.quantity));
+    all.filter_map(|input| match &input.signal {
+        InputSignal::Number(Signal(signal)) => Some(signal),
+        InputSignal::Vector(_) => None,
+    })
 }
 
-fn fields(phase: &Phase) -> impl Iterator<Item = &VectorSignal> {
-    phase.magnetic_field.iter().map(|field| &field.field)
+/// Signals of one component per dimension, likewise.
+fn vectors(phase: &Phase, of: impl Fn(Quantity) -> bool) -> impl Iterator<Item = &VectorSignal> {
+    let all = phase.inputs.iter().filter(move |input| of(input.quantity));
+    all.filter_map(|input| match &input.signal {
+        InputSignal::Vector(vector) => Some(vector),
+        InputSignal::Number(_) => None,
+    })
 }
 
-fn of_dipoles(phase: &Phase) -> impl Iterator<Item = &VectorSignal> {
-    phase.dipoles.iter().map(|(.., value)| value)
+/// The signal of an input.
+#[derive(Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+enum GivenSignal {
+    Number(Given<SignalKind>),
+    Vector(Given<VectorSignal>),
 }
 
-fn forces(phase: &Phase) -> impl Iterator<Item = &SignalKind> {
-    phase.actuations.iter().map(|(_, force)| &force.0)
-}
+impl GivenSignal {
+    fn of(
+        signal: &InputSignal,
+        own: &Phase,
+        name: impl FnOnce() -> String,
+    ) -> Result<Self, InputError> {
+        match signal {
+            InputSignal::Number(Signal(signal)) => {
+                Given::of(signal, numbers(own, |_| true), name).map(Self::Number)
+            }
+            InputSignal::Vector(signal) => {
+                Given::of(signal, vectors(own, |_| true), name).map(Self::Vector)
+            }
+        }
+    }
 
-fn pressures(phase: &Phase) -> impl Iterator<Item = &SignalKind> {
-    phase.pressures.iter().map(|(_, pressure)| &pressure.0)
-}
-
-fn openings(phase: &Phase) -> impl Iterator<Item = &SignalKind> {
-    phase.openings.iter().map(|(_, opening)| &opening.0)
-}
-
-fn flows(phase: &Phase) -> impl Iterator<Item = &SignalKind> {
-    phase.flows.iter().map(|(_, flow)| &flow.0)
+    fn read(self, own: &Phase) -> Result<InputSignal, String> {
+        Ok(match self {
+            Self::Number(signal) => Signal(signal.read("signal", numbers(own, |_| true))?).into(),
+            Self::Vector(signal) => signal.read("signal", vectors(own, |_| true))?.into(),
+        })
+    }
 }
 
 impl InForce {
@@ -158,47 +183,25 @@ impl InForce {
             let how = Given::of(how, motions(own), || format!("path of {what:?}"))?;
             Ok((what.clone(), how))
         });
-        let loads = phase.loads.iter().map(|(nodes, load)| {
-            let value = Given::of(&load.value, values(own), || format!("load on {nodes}"))?;
-            Ok((nodes.clone(), load.kind, value))
-        });
-        let actuations = phase.actuations.iter().map(|(springs, force)| {
-            let name = || format!("actuation of spring \"{}\"", springs.join("\", \""));
-            Ok((springs.clone(), Given::of(&force.0, forces(own), name)?))
-        });
-        let pressures = phase.pressures.iter().map(|(chamber, pressure)| {
-            let name = || format!("pressure of chamber \"{chamber}\"");
-            Ok((chamber.clone(), Given::of(&pressure.0, pressures(own), name)?))
-        });
-        let openings = phase.openings.iter().map(|(orifice, opening)| {
-            let name = || format!("opening of orifice \"{orifice}\"");
-            Ok((orifice.clone(), Given::of(&opening.0, openings(own), name)?))
-        });
-        let flows_given = phase.flows.iter().map(|(chamber, flow)| {
-            let name = || format!("flow into chamber \"{chamber}\"");
-            Ok((chamber.clone(), Given::of(&flow.0, flows(own), name)?))
-        });
-        let mut fields_given = fields(phase)
-            .map(|field| Given::of(field, fields(own), || "magnetic field".to_owned()));
-        let magnetic_field = fields_given.next().transpose()?;
-        let dipoles = phase.dipoles.iter().map(|(name, part, value)| {
-            let what = || format!("{part} of dipole \"{name}\"");
-            Ok((name.clone(), *part, Given::of(value, of_dipoles(own), what)?))
+        let inputs = phase.inputs.iter().map(|Input { quantity, target, signal }| {
+            let signal = GivenSignal::of(signal, own, || quantity.of(target))?;
+            Ok((*quantity, target.clone(), signal))
         });
         let moving = phase.redirected.iter().map(|obstacle| {
             (obstacle.name().into(), obstacle.offset(), obstacle.constant_velocity())
         });
         Ok(Self {
             constraints: constraints.collect::<Result<_, InputError>>()?,
-            loads: loads.collect::<Result<_, InputError>>()?,
-            actuations: actuations.collect::<Result<_, InputError>>()?,
-            pressures: pressures.collect::<Result<_, InputError>>()?,
-            openings: openings.collect::<Result<_, InputError>>()?,
-            flows: flows_given.collect::<Result<_, InputError>>()?,
+            inputs: Some(inputs.collect::<Result<_, InputError>>()?),
             contact: phase.contact.clone(),
             moving: moving.collect(),
-            magnetic_field,
-            dipoles: dipoles.collect::<Result<_, InputError>>()?,
+            loads: Vec::new(),
+            actuations: Vec::new(),
+            pressures: Vec::new(),
+            openings: Vec::new(),
+            flows: Vec::new(),
+            magnetic_field: None,
+            dipoles: Vec::new(),
         })
     }
 
@@ -206,32 +209,20 @@ impl InForce {
     ///
     /// # Errors
     /// Functions that do not exist. All else is [checked](Phase) by the scene.
-    pub(super) fn read(self, own: &Phase, scene: &Scene) -> Result<Phase, String> {
+    pub(super) fn read(mut self, own: &Phase, scene: &Scene) -> Result<Phase, String> {
+        let inputs = match self.inputs.take() {
+            Some(inputs) => {
+                let read = |(quantity, target, signal): (_, _, GivenSignal)| {
+                    Ok(Input { quantity, target, signal: signal.read(own)? })
+                };
+                inputs.into_iter().map(read).collect::<Result<_, String>>()?
+            }
+            None => self.inputs_by_quantity(own)?,
+        };
         let constraints = self
             .constraints
             .into_iter()
             .map(|(what, how)| Ok(Constraint { what, how: how.read("constraint", motions(own))? }));
-        let loads = self.loads.into_iter().map(|(nodes, kind, value)| {
-            Ok((nodes, Load { kind, value: value.read("load", values(own))? }))
-        });
-        let actuations = self
-            .actuations
-            .into_iter()
-            .map(|(springs, force)| Ok((springs, Signal(force.read("actuation", forces(own))?))));
-        let pressures = self.pressures.into_iter().map(|(chamber, pressure)| {
-            Ok((chamber, Signal(pressure.read("pressure", pressures(own))?)))
-        });
-        let openings = self.openings.into_iter().map(|(orifice, opening)| {
-            Ok((orifice, Signal(opening.read("opening", openings(own))?)))
-        });
-        let flows_given = self
-            .flows
-            .into_iter()
-            .map(|(chamber, flow)| Ok((chamber, Signal(flow.read("flow", flows(own))?))));
-        let dipoles = self
-            .dipoles
-            .into_iter()
-            .map(|(name, part, value)| Ok((name, part, value.read("dipole", of_dipoles(own))?)));
         let moving = self.moving.into_iter().map(|(name, offset, velocity)| {
             let obstacle = scene.obstacles().iter().find(|obstacle| obstacle.name() == name);
             let obstacle =
@@ -242,26 +233,56 @@ impl InForce {
                 None => obstacle,
             })
         });
-        let mut magnetic_field = own.magnetic_field.clone();
-        if let Some(field) = self.magnetic_field {
-            let field = field.read("magnetic field", fields(own))?;
-            match &mut magnetic_field {
-                Some(own) => own.field = field,
-                none => *none = Some(MagneticField::of(field)),
-            }
-        }
         Ok(Phase {
-            magnetic_field,
-            dipoles: dipoles.collect::<Result<_, String>>()?,
+            inputs,
             constraints: constraints.collect::<Result<_, String>>()?,
-            loads: loads.collect::<Result<_, String>>()?,
-            actuations: actuations.collect::<Result<_, String>>()?,
-            pressures: pressures.collect::<Result<_, String>>()?,
-            openings: openings.collect::<Result<_, String>>()?,
-            flows: flows_given.collect::<Result<_, String>>()?,
             contact: self.contact,
             redirected: moving.collect::<Result<_, String>>()?,
             ..own.clone()
         })
+    }
+
+    /// Inputs of a file in which each quantity has a list; a function has a number among those of its list.
+    fn inputs_by_quantity(&mut self, own: &Phase) -> Result<Vec<Input>, String> {
+        let mut inputs = Vec::new();
+        let mut add = |quantity, target, signal: InputSignal| {
+            inputs.push(Input { quantity, target, signal });
+        };
+        let named = |list: &mut Vec<(String, Given<SignalKind>)>| {
+            let list = take(list).into_iter();
+            list.map(|(name, signal)| (vec![name], signal)).collect::<Vec<_>>()
+        };
+        let [pressures, openings, flows] =
+            [&mut self.pressures, &mut self.openings, &mut self.flows].map(named);
+        for (quantity, list) in [
+            (Quantity::Actuation, take(&mut self.actuations)),
+            (Quantity::Pressure, pressures),
+            (Quantity::Opening, openings),
+            (Quantity::Flow, flows),
+        ] {
+            for (names, signal) in list {
+                let own = numbers(own, |other| other == quantity);
+                let signal = Signal(signal.read(quantity.row().name, own)?);
+                add(quantity, Target::Named(names), signal.into());
+            }
+        }
+        for (nodes, kind, value) in take(&mut self.loads) {
+            let own = vectors(own, |other| matches!(other, Quantity::Load(_)));
+            add(Quantity::Load(kind), Target::Nodes(nodes), value.read("load", own)?.into());
+        }
+        for (name, part, value) in take(&mut self.dipoles) {
+            let own = vectors(own, |other| matches!(other, Quantity::Dipole(_)));
+            add(Quantity::Dipole(part), Target::one(name), value.read("dipole", own)?.into());
+        }
+        let fields = || vectors(own, |other| other == Quantity::Field);
+        let field = self.magnetic_field.take();
+        let field = field.map(|field| field.read("magnetic field", fields())).transpose()?;
+        if let Some(field) = field.or_else(|| fields().next().cloned()) {
+            add(Quantity::Field, Target::Everything, field.into());
+        }
+        // no command sets them, and no such file has them
+        let on_faces = own.inputs.iter().filter(|i| i.quantity == Quantity::FacePressure);
+        inputs.extend(on_faces.cloned());
+        Ok(inputs)
     }
 }

@@ -1,12 +1,13 @@
 //! Identity of a scene in a file: numbers and names, and hashes of its parts.
 
-use std::fmt::Debug;
+use std::fmt::{self, Debug};
 use std::hash::Hasher;
 
 use serde::{Deserialize, Serialize};
 use siphasher::sip::SipHasher13;
 
-use crate::scene::timeline::{Phase, Scene};
+use crate::scene::forces::VectorSignal;
+use crate::scene::timeline::{LoadKind, Phase, Quantity, Scene};
 
 /// Identity of a scene.
 ///
@@ -147,18 +148,72 @@ impl Identity {
 
 impl PhaseIdentity {
     fn of(phase: &Phase) -> Self {
-        // without a magnetic field, dipoles or an end by a sensor as in files that were written before there were any
-        let said = format!("{phase:?}");
-        let said = said.replace(", dipoles: []", "").replace(", magnetic_field: None", "");
-        let said = said.replace(", ends: None", "");
         let mut hasher = SipHasher13::new();
-        hasher.write(said.as_bytes());
+        hasher.write(format!("{:?}", Text(phase)).as_bytes());
         let hash = hasher.finish();
         Self { name: phase.name.clone(), until: phase.until, hash: text(hash) }
     }
 
     fn label(&self) -> String {
         format!("\"{}\" until {} s", self.name, self.until)
+    }
+}
+
+/// The text of a phase that its hash is of. Inputs stand by their quantities, and what is absent is left out where it was added later, so
+/// that files of earlier versions can be read.
+struct Text<'a>(&'a Phase);
+
+impl fmt::Debug for Text<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self(phase) = self;
+        let named = |quantity| {
+            let own = phase.inputs.iter().filter(move |input| input.quantity == quantity);
+            own.filter_map(|input| Some((input.target.names().first()?, &input.signal)))
+                .collect::<Vec<_>>()
+        };
+        let actuations = phase.inputs.iter().filter(|i| i.quantity == Quantity::Actuation);
+        let actuations = actuations.map(|input| (input.target.names(), &input.signal));
+        let loads = phase.loads().map(|(nodes, kind, value)| (nodes, LoadText { kind, value }));
+        let mut text = f.debug_struct("Phase");
+        text.field("name", &phase.name).field("until", &phase.until);
+        if phase.ends.is_some() {
+            text.field("ends", &phase.ends);
+        }
+        text.field("gravity", &phase.gravity)
+            .field("constraints", &phase.constraints)
+            .field("loads", &loads.collect::<Vec<_>>())
+            .field("actuations", &actuations.collect::<Vec<_>>())
+            .field("pressures", &named(Quantity::Pressure))
+            .field("openings", &named(Quantity::Opening))
+            .field("flows", &named(Quantity::Flow))
+            .field("face_pressures", &phase.face_pressures().collect::<Vec<_>>())
+            .field("projects_velocity", &phase.projects_velocity)
+            .field("contact", &phase.contact)
+            .field("redirected", &phase.redirected);
+        if let Some(field) = phase.field() {
+            text.field("magnetic_field", &Some(field));
+        }
+        let dipoles = phase.inputs.iter().filter_map(|input| match input.quantity {
+            Quantity::Dipole(part) => Some((input.target.names().first()?, part, &input.signal)),
+            _ => None,
+        });
+        let dipoles: Vec<_> = dipoles.collect();
+        if !dipoles.is_empty() {
+            text.field("dipoles", &dipoles);
+        }
+        text.finish()
+    }
+}
+
+/// A load in that text.
+struct LoadText<'a> {
+    kind: LoadKind,
+    value: &'a VectorSignal,
+}
+
+impl fmt::Debug for LoadText<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Load").field("kind", &self.kind).field("value", self.value).finish()
     }
 }
 

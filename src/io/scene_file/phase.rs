@@ -18,7 +18,7 @@ use crate::dynamics::error::Error;
 use crate::elements::mesh::Selection;
 use crate::scene::constraint::Axis;
 use crate::scene::forces::{Dipole, DipolePart};
-use crate::scene::timeline::{LoadKind, Phase, Scene};
+use crate::scene::timeline::{LoadKind, Phase, Quantity, Scene};
 
 /// Adds a table inside of a phase.
 type Add = fn(Phase, &Table, &Scene) -> Result<Phase, Error>;
@@ -193,7 +193,12 @@ fn hold_combination(phase: Phase, table: &Table, scene: &Scene) -> Result<Phase,
 fn load(phase: Phase, table: &Table, scene: &Scene) -> Result<Phase, Error> {
     let nodes = nodes(table, scene)?;
     for kind in LoadKind::ALL {
-        let value = vectors_until(table, phase.end(), kind.word(), scene.body().dimension())?;
+        let value = vectors_until(
+            table,
+            phase.end(),
+            Quantity::Load(kind).row().word,
+            scene.body().dimension(),
+        )?;
         if let Some(value) = value {
             return Ok(phase.loaded(nodes, kind, value));
         }

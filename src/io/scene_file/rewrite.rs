@@ -9,8 +9,8 @@ use toml::de::{DeTable, DeValue};
 use super::set_value::quoted;
 use super::written::insertion;
 use crate::elements::mesh::Selection;
-use crate::scene::forces::{DipolePart, Lag, MagneticField, Signal, SignalKind, VectorSignal};
-use crate::scene::timeline::{Load, Phase, Scene};
+use crate::scene::forces::{Lag, Signal, SignalKind, VectorSignal};
+use crate::scene::timeline::{Input, InputSignal, Phase, Quantity, Row, Scene, Target};
 
 /// A phase whose signals differ from those in the file.
 pub(crate) struct Rewritten {
@@ -53,15 +53,7 @@ pub(crate) fn rewritten(
                 edits.push((until, format!("{:?}", phase.until)));
                 continue;
             }
-            let list = match key {
-                "pressure" => pressures(phase),
-                "open" => openings(phase),
-                "flow" => flows(phase),
-                "actuate" => actuations(phase, scene),
-                "drive" => dipoles(phase, scene.body().dimension()),
-                "magnetic_field" => field(phase, scene.body().dimension()),
-                _ => loads(phase, scene.body().dimension()),
-            };
+            let list = inputs(phase, key, scene);
             let edit = match table.get(key) {
                 Some(value) if text.get(value.span()).is_some_and(is_list) => (value.span(), list),
                 Some(_) => return Err(ELSEWHERE.into()),
@@ -92,84 +84,61 @@ fn is_list(text: &str) -> bool {
     begins && text.ends_with([']', '}'])
 }
 
-fn pressures(phase: &Phase) -> String {
-    let entry = |(chamber, pressure): &(String, Signal)| {
-        let chamber = quoted(chamber);
-        format!("{{ chamber = {chamber}, {} }}", course(pressure, ["value", "values"]))
-    };
-    list(phase.pressures.iter().map(entry))
-}
-
-fn openings(phase: &Phase) -> String {
-    let entry = |(orifice, opening): &(String, Signal)| {
-        let orifice = quoted(orifice);
-        format!("{{ orifice = {orifice}, {} }}", course(opening, ["opening", "openings"]))
-    };
-    list(phase.openings.iter().map(entry))
-}
-
-fn flows(phase: &Phase) -> String {
-    let entry = |(chamber, flow): &(String, Signal)| {
-        format!("{{ chamber = {}, {} }}", quoted(chamber), course(flow, ["rate", "rates"]))
-    };
-    list(phase.flows.iter().map(entry))
-}
-
-fn actuations(phase: &Phase, scene: &Scene) -> String {
-    let entry = |(springs, force): &(Vec<String>, Signal)| {
-        let is_winch = scene
-            .springs()
-            .iter()
-            .any(|spring| spring.is_winch() && springs.iter().any(|name| name == spring.name()));
-        let are = |name: &str| springs.iter().any(|other| other == name);
-        let is_heated = |(name, lag): (&str, &Lag)| lag.per_kelvin().is_some() && are(name);
-        let (key, keys) = if scene.lags().any(is_heated) {
-            ("heated", ["power", "powers"])
-        } else if scene.muscles().iter().any(|muscle| are(muscle.name())) {
-            ("muscles", ["stress", "stresses"])
-        } else if scene.growths().iter().any(|growth| are(growth.name())) {
-            ("growths", ["strain", "strains"])
-        } else if is_winch {
-            ("springs", ["length", "lengths"])
-        } else {
-            ("springs", ["force", "forces"])
+/// The value of a key of `phase`: the list of its inputs, or the table of its magnetic field.
+fn inputs(phase: &Phase, key: &str, scene: &Scene) -> String {
+    let dimension = scene.body().dimension();
+    let own = phase.inputs.iter().filter(|input| input.quantity.row().keys[0] == key);
+    let entries = own.map(|Input { quantity, target, signal }| {
+        let Row { keys: [_, of], word, .. } = quantity.row();
+        let (of, word) = match target {
+            Target::Named(names) if *quantity == Quantity::Actuation => actuator(names, scene),
+            _ => (of, word),
         };
-        let springs: Vec<String> = springs.iter().map(|spring| quoted(spring)).collect();
-        let springs = springs.join(", ");
-        format!("{{ {key} = [{springs}], {} }}", course(force, keys))
-    };
-    list(phase.actuations.iter().map(entry))
-}
-
-fn loads(phase: &Phase, dimension: usize) -> String {
-    let entry = |(nodes, load): &(Selection, Load)| {
-        let nodes = match nodes {
-            Selection::Set(name) => quoted(name),
-            Selection::Numbers(numbers) => format!("{numbers:?}"),
-            Selection::Box { min, max } => format!("{{ box = [{min:?}, {max:?}] }}"),
+        let target = match target {
+            Target::Named(names) if *quantity == Quantity::Actuation => {
+                let names: Vec<String> = names.iter().map(|name| quoted(name)).collect();
+                format!("{of} = [{}], ", names.join(", "))
+            }
+            Target::Named(names) => format!("{of} = {}, ", quoted(&names.join(", "))),
+            Target::Nodes(Selection::Set(name)) => format!("{of} = {}, ", quoted(name)),
+            Target::Nodes(Selection::Numbers(numbers)) => format!("{of} = {numbers:?}, "),
+            Target::Nodes(Selection::Box { min, max }) => {
+                format!("{of} = {{ box = [{min:?}, {max:?}] }}, ")
+            }
+            Target::Everything => String::new(),
         };
-        format!("{{ nodes = {nodes}, {} }}", vectors(&load.value, load.kind.word(), dimension))
-    };
-    list(phase.loads.iter().map(entry))
-}
-
-fn dipoles(phase: &Phase, dimension: usize) -> String {
-    let entry = |(name, part, value): &(String, DipolePart, VectorSignal)| {
-        let value = vectors(value, part.word(), dimension);
-        format!("{{ dipole = {}, {value} }}", quoted(name))
-    };
-    list(phase.dipoles.iter().map(entry))
-}
-
-fn field(phase: &Phase, dimension: usize) -> String {
-    let field = phase.magnetic_field.as_ref();
-    let entry = |field: &MagneticField| {
-        let gradient = field.gradient_rows().map_or_else(String::new, |(rows, centre)| {
+        let value = match signal {
+            InputSignal::Number(signal) => course(signal, word),
+            InputSignal::Vector(vector) => vectors(vector, word, dimension),
+        };
+        format!("{target}{value}")
+    });
+    if key == Quantity::Field.row().keys[0] {
+        let gradient = phase.gradient.as_ref().map_or_else(String::new, |gradient| {
+            let (rows, centre) = gradient.rows();
             format!(", gradient = {rows:?}, centre = {centre:?}")
         });
-        format!("{{ {}{gradient} }}", vectors(&field.field, "field", dimension))
-    };
-    field.map_or_else(String::new, entry)
+        return entries.map(|field| format!("{{ {field}{gradient} }}")).collect();
+    }
+    let lines: String = entries.map(|entry| format!("    {{ {entry} }},\n")).collect();
+    format!("[\n{lines}]")
+}
+
+/// The key of actuators with these names, and of the value for them.
+fn actuator(names: &[String], scene: &Scene) -> (&'static str, &'static str) {
+    let are = |name: &str| names.iter().any(|other| other == name);
+    let is_heated = |(name, lag): (&str, &Lag)| lag.per_kelvin().is_some() && are(name);
+    if scene.lags().any(is_heated) {
+        ("heated", "power")
+    } else if scene.muscles().iter().any(|muscle| are(muscle.name())) {
+        ("muscles", "stress")
+    } else if scene.growths().iter().any(|growth| are(growth.name())) {
+        ("growths", "strain")
+    } else if scene.springs().iter().any(|spring| spring.is_winch() && are(spring.name())) {
+        ("springs", "length")
+    } else {
+        ("springs", "force")
+    }
 }
 
 /// A vector that may change with time, under the key `word`.
@@ -189,21 +158,25 @@ fn vectors(value: &VectorSignal, word: &str, dimension: usize) -> String {
     }
 }
 
-fn list(entries: impl Iterator<Item = String>) -> String {
-    let lines: String = entries.map(|entry| format!("    {entry},\n")).collect();
-    format!("[\n{lines}]")
-}
-
-fn course(signal: &Signal, [one, many]: [&str; 2]) -> String {
+/// A number that may change with time, under the key `word`.
+fn course(signal: &Signal, word: &str) -> String {
     if let SignalKind::Formula(formula) = &signal.0 {
-        return format!("{one} = {}", quoted(formula.text()));
+        return format!("{word} = {}", quoted(formula.text()));
     }
     let times = signal.breaks();
     if times.is_empty() {
-        return format!("{one} = {:?}", signal.at(0.0));
+        return format!("{word} = {:?}", signal.at(0.0));
     }
     let values: Vec<f64> = times.iter().map(|t| signal.at(*t)).collect();
-    format!("times = {times:?}, {many} = {values:?}")
+    format!("times = {times:?}, {} = {values:?}", plural(word))
+}
+
+/// The key of the values at times, of that of one value.
+fn plural(word: &str) -> String {
+    match word {
+        "stress" => "stresses".into(),
+        word => format!("{word}s"),
+    }
 }
 
 #[cfg(test)]
@@ -212,7 +185,7 @@ mod tests {
     use crate::elements::body::Body;
     use crate::elements::material::Plane;
     use crate::elements::mesh::{Cells, Mesh};
-    use crate::scene::forces::{Growth, Magnet, Muscle, Signals};
+    use crate::scene::forces::{Growth, Magnet, MagneticField, Muscle, Signals};
     use crate::studies::samples::{SQUARE_MATERIAL, square_jump};
 
     #[test]

@@ -119,16 +119,29 @@ fn blamed(number: usize, error: InputError) -> InputError {
 #[derive(Debug, Clone)]
 pub struct MagneticField {
     pub(crate) field: VectorSignal,
-    gradient: Option<Gradient>,
+    pub(crate) gradient: Option<Gradient>,
 }
 
-/// How a field changes in space.
+/// The change of a field in space.
 #[derive(Debug, Clone)]
-struct Gradient {
+pub(crate) struct Gradient {
     /// d B_i / d x_j (T/m), row by row.
     rows: Vec<Vec<f64>>,
     /// Where it adds nothing (m).
     centre: Vec<f64>,
+}
+
+impl Gradient {
+    /// The rows (T/m), and the point at which it adds nothing (m).
+    #[cfg(feature = "play")]
+    pub(crate) fn rows(&self) -> (&[Vec<f64>], &[f64]) {
+        (&self.rows, &self.centre)
+    }
+
+    pub(crate) fn times(&self, factor: f64) -> Self {
+        let rows = self.rows.iter().map(|row| row.iter().map(|x| factor * x).collect()).collect();
+        Self { rows, centre: self.centre.clone() }
+    }
 }
 
 impl MagneticField {
@@ -164,23 +177,6 @@ impl MagneticField {
     ) -> Self {
         let rows = rows.into_iter().map(Into::into).collect();
         Self { gradient: Some(Gradient { rows, centre: centre.into() }), ..self }
-    }
-
-    /// The rows of its gradient (T/m), and where that adds nothing (m).
-    #[cfg(feature = "play")]
-    pub(crate) fn gradient_rows(&self) -> Option<(&[Vec<f64>], &[f64])> {
-        self.gradient.as_ref().map(|gradient| (&gradient.rows[..], &gradient.centre[..]))
-    }
-
-    /// This `fraction` of the field at time `t` (s).
-    pub(crate) fn at_rest(&self, fraction: f64, t: f64, dimension: usize) -> Self {
-        let field = self.field.components(t, dimension);
-        let part = |x: &f64| fraction * x;
-        let gradient = self.gradient.as_ref().map(|Gradient { rows, centre }| Gradient {
-            rows: rows.iter().map(|row| row.iter().map(part).collect()).collect(),
-            centre: centre.clone(),
-        });
-        Self { field: VectorSignal::Constant(field.iter().map(part).collect()), gradient }
     }
 
     fn validate(&self, input: &str, dimension: usize) -> Result<(), InputError> {

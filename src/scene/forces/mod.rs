@@ -56,6 +56,7 @@ pub(crate) use lag::Lagging;
 pub use liquid::Liquid;
 pub(crate) use liquid::{Poured, Weight};
 pub(crate) use load::{Load, VaryingLoad};
+pub(crate) use magnet::Gradient;
 pub use magnet::{Magnet, MagneticField};
 pub use muscle::Muscle;
 pub(crate) use nodal::Tributary;

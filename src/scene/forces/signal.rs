@@ -53,6 +53,11 @@ impl Live {
             .for_each(|(x, value)| x.store(value.to_bits(), Ordering::Relaxed));
     }
 
+    /// Their number.
+    pub(crate) fn len(&self) -> usize {
+        self.0.len()
+    }
+
     pub(crate) fn get(&self) -> Vec<f64> {
         (0..self.0.len()).map(|number| self.at(number)).collect()
     }

@@ -2,14 +2,11 @@
 
 use std::sync::Arc;
 
-use super::load::Load;
 use super::phase::{ContactWith, Phase};
 use crate::base::input::InputError;
 use crate::elements::mesh::{Mesh, Selection};
 use crate::scene::constraint::{Constrained, Constraint};
-use crate::scene::forces::{
-    Dipole, DipolePart, Live, MagneticField, Obstacle, Signal, VectorSignal,
-};
+use crate::scene::forces::{Dipole, DipolePart, Obstacle, VectorSignal};
 
 impl Phase {
     /// Lets an obstacle of the scene move on with `velocity` (m/s) from where it is at time `t` (s).
@@ -33,53 +30,13 @@ impl Phase {
         self
     }
 
-    /// The pressure in a chamber, if that is one number that a command can set.
-    pub(crate) fn live_pressure(&self, chamber: &str) -> Option<&Live> {
-        let mut all = self.pressures.iter().filter(|(name, _)| name == chamber);
-        all.next().filter(|_| all.next().is_none())?.1.live()
-    }
-
-    /// The actuation force in a spring, likewise.
-    pub(crate) fn live_actuation(&self, spring: &str) -> Option<&Live> {
-        let acts = |(names, _): &&(Vec<String>, Signal)| names.iter().any(|name| name == spring);
-        let mut all = self.actuations.iter().filter(acts);
-        let (names, force) = all.next().filter(|_| all.next().is_none())?;
-        force.live().filter(|_| names.len() == 1)
-    }
-
-    /// The load on a selection, likewise.
-    pub(crate) fn live_load(&self, nodes: &Selection) -> Option<&Live> {
-        let mut all = self.loads.iter().filter(|(other, _)| other == nodes);
-        all.next().filter(|_| all.next().is_none())?.1.value.live()
-    }
-
-    /// The uniform part of the magnetic field, likewise.
-    pub(crate) fn live_field(&self) -> Option<&Live> {
-        self.magnetic_field.as_ref()?.field.live()
-    }
-
     /// The phase with constants in place of numbers that commands can set: later commands do not change it.
     pub(crate) fn frozen(self: &Arc<Self>) -> Arc<Self> {
         if !self.is_live() {
             return self.clone();
         }
         let mut frozen = Self::clone(self);
-        for (_, load) in &mut frozen.loads {
-            load.value = load.value.frozen();
-        }
-        if let Some(field) = &mut frozen.magnetic_field {
-            field.field = field.field.frozen();
-        }
-        for (.., value) in &mut frozen.dipoles {
-            *value = value.frozen();
-        }
-        let actuations = frozen.actuations.iter_mut().map(|(_, force)| force);
-        let openings = frozen.openings.iter_mut().map(|(_, opening)| opening);
-        let pressures = frozen.pressures.iter_mut().map(|(_, pressure)| pressure);
-        let flows = frozen.flows.iter_mut().map(|(_, flow)| flow);
-        for signal in actuations.chain(pressures).chain(openings).chain(flows) {
-            *signal = signal.frozen();
-        }
+        frozen.freeze();
         Arc::new(frozen)
     }
 
@@ -93,19 +50,8 @@ impl Phase {
         dimension: usize,
     ) -> Self {
         let (mut rest, end) = (self.clone(), self.until);
-        for (_, load) in &mut rest.loads {
-            let force = load.value.components(end, dimension);
-            let part = force.iter().map(|force| fraction * force).collect();
-            load.value = VectorSignal::Constant(part);
-        }
-        let actuations = rest.actuations.iter_mut().map(|(_, force)| force);
-        let pressures = rest.pressures.iter_mut().map(|(_, pressure)| pressure);
-        let on_faces = rest.face_pressures.iter_mut().map(|(_, pressure)| pressure);
-        for signal in actuations.chain(pressures).chain(on_faces) {
-            *signal = Signal::constant(fraction * signal.at(end));
-        }
-        let field = self.magnetic_field.as_ref();
-        rest.magnetic_field = field.map(|field| field.at_rest(fraction, end, dimension));
+        rest.scale_inputs(fraction, dimension);
+        rest.gradient = self.gradient.as_ref().map(|gradient| gradient.times(fraction));
         for dipole in dipoles.iter().map(|dipole| self.with_dipole(dipole)) {
             for (part, factor) in [(DipolePart::Position, 1.0), (DipolePart::Moment, fraction)] {
                 let vector = dipole.part(part).components(end, dimension);
@@ -120,46 +66,6 @@ impl Phase {
             }
         }
         rest
-    }
-
-    /// Whether there are numbers that commands can set.
-    fn is_live(&self) -> bool {
-        self.loads.iter().any(|(_, load)| load.value.live().is_some())
-            || self.actuations.iter().any(|(_, force)| force.live().is_some())
-            || self.pressures.iter().any(|(_, pressure)| pressure.live().is_some())
-            || self.openings.iter().any(|(_, opening)| opening.live().is_some())
-            || self.flows.iter().any(|(_, flow)| flow.live().is_some())
-            || self.live_field().is_some()
-            || self.dipoles.iter().any(|(.., value)| value.live().is_some())
-    }
-
-    /// Replaces the pressure in a chamber.
-    pub(crate) fn set_pressure(&mut self, chamber: &str, pressure: Signal) {
-        self.pressures.retain(|(name, _)| name != chamber);
-        self.pressures.push((chamber.to_owned(), pressure));
-    }
-
-    /// Replaces the actuation force in a spring.
-    pub(crate) fn set_actuation(&mut self, spring: &str, force: Signal) {
-        for (names, _) in &mut self.actuations {
-            names.retain(|name| name != spring);
-        }
-        self.actuations.retain(|(names, _)| !names.is_empty());
-        self.actuations.push((vec![spring.to_owned()], force));
-    }
-
-    /// Replaces the uniform part of the magnetic field; its gradient stays.
-    pub(crate) fn set_field(&mut self, field: VectorSignal) {
-        match &mut self.magnetic_field {
-            Some(own) => own.field = field,
-            none => *none = Some(MagneticField::of(field)),
-        }
-    }
-
-    /// Replaces the loads that were given for the same selection.
-    pub(crate) fn set_load(&mut self, nodes: Selection, load: Load) {
-        self.loads.retain(|(other, _)| *other != nodes);
-        self.loads.push((nodes, load));
     }
 
     /// Frees the `nodes` (counted from 0) that are held or moved one by one. Returns whether there were any.

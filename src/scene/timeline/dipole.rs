@@ -2,11 +2,12 @@
 
 use std::sync::Arc;
 
+use super::input::{Input, Quantity, Target};
 use super::{Phase, Scene, unique};
 use crate::base::input::{InputError, find};
 use crate::elements::body::MagnetizedPoints;
 use crate::elements::force::Forces;
-use crate::scene::forces::{Dipole, DipoleForce, DipolePart, Live, Signals, VectorSignal};
+use crate::scene::forces::{Dipole, DipoleForce, DipolePart, Signals, VectorSignal};
 
 impl Scene {
     /// Adds a dipole, which acts on the [magnets](Self::magnet) in all phases.
@@ -31,7 +32,8 @@ impl Scene {
     /// # Errors
     /// Names that are taken or that no dipole has, a scene without magnets, vectors of another dimension, numbers out of range.
     pub(crate) fn dipole_forces(&self, phase: &Phase) -> Result<Vec<DipoleForce>, InputError> {
-        for (name, ..) in &phase.dipoles {
+        let driven = phase.inputs.iter().filter(|i| matches!(i.quantity, Quantity::Dipole(_)));
+        for name in driven.flat_map(|input| input.target.names()) {
             self.dipole_number(name, &format!("dipole of phase \"{}\"", phase.name))?;
         }
         if self.dipoles.is_empty() {
@@ -104,18 +106,11 @@ impl Phase {
 
     /// The moment or the position of a dipole, if the phase has one of its own.
     fn own_part(&self, dipole: &str, part: DipolePart) -> Option<&VectorSignal> {
-        let is_it = |(name, other, _): &&(String, DipolePart, _)| name == dipole && *other == part;
-        self.dipoles.iter().find(is_it).map(|(.., value)| value)
+        self.vector(Quantity::Dipole(part), &Target::one(dipole))
     }
 
     /// Replaces the moment or the position of a dipole.
     pub(crate) fn set_dipole(&mut self, dipole: &str, part: DipolePart, value: VectorSignal) {
-        self.dipoles.retain(|(name, other, _)| name != dipole || *other != part);
-        self.dipoles.push((dipole.to_owned(), part, value));
-    }
-
-    /// The moment or the position of a dipole, if that is numbers that a command can set.
-    pub(crate) fn live_dipole(&self, dipole: &str, part: DipolePart) -> Option<&Live> {
-        self.own_part(dipole, part)?.live()
+        self.set(Input::new(Quantity::Dipole(part), Target::one(dipole), value));
     }
 }

@@ -1,7 +1,6 @@
 //! Tables that end before their phase begins, and act as a step there.
 
-use super::{Phase, Scene};
-use crate::scene::forces::{Signal, VectorSignal};
+use super::Scene;
 
 /// A table whose last value acts from the start of its phase on, where something else acted before.
 pub(crate) struct EarlyTable {
@@ -17,21 +16,6 @@ pub(crate) struct EarlyTable {
 
 /// A jump counts from this part of its values on.
 const JUMP: f64 = 1e-6;
-
-/// Quantities that a phase lists by names, and that are 0 where it does not: in words, with names and signals.
-fn named(phase: &Phase) -> [(&'static str, Vec<(&str, &Signal)>); 3] {
-    fn one(list: &[(String, Signal)]) -> Vec<(&str, &Signal)> {
-        list.iter().map(|(name, signal)| (name.as_str(), signal)).collect()
-    }
-    let all = phase.actuations.iter();
-    let actuations =
-        all.flat_map(|(names, signal)| names.iter().map(move |name| (name.as_str(), signal)));
-    [
-        ("the actuation of", actuations.collect()),
-        ("the pressure in", one(&phase.pressures)),
-        ("the flow into", one(&phase.flows)),
-    ]
-}
 
 /// Whether all times of a table, its `breaks`, are before the `start` of its phase (s).
 fn ends_before(breaks: &[f64], start: f64) -> Option<f64> {
@@ -53,28 +37,13 @@ impl Scene {
                     early.push(EarlyTable { phase: phase.name.clone(), of, start, last, values });
                 }
             };
-            for ((what, now), (_, then)) in named(phase).into_iter().zip(named(before)) {
-                for (name, signal) in &now {
-                    let Some(last) = ends_before(signal.breaks(), start) else { continue };
-                    let sum = |all: &[(&str, &Signal)]| -> f64 {
-                        let own = all.iter().filter(|(own, _)| own == name);
-                        own.map(|(_, signal)| signal.at(start)).sum()
-                    };
-                    add(format!("{what} \"{name}\""), last, [sum(&then), sum(&now)]);
-                }
-            }
-            for (nodes, load) in &phase.loads {
-                let VectorSignal::TimeTable(table) = &load.value else { continue };
-                let Some(last) = ends_before(&table.times, start) else { continue };
-                let mut loads = before.loads.iter();
-                let known = loads.find(|(own, other)| own == nodes && other.kind == load.kind);
-                let mut then = vec![0.0; table.values[0].len()];
-                if let Some((_, known)) = known {
-                    known.value.at(start, &mut then);
-                }
-                for (component, then) in then.into_iter().enumerate() {
-                    let now = table.at(start, component);
-                    add(format!("the load on {nodes}"), last, [then, now]);
+            for input in &phase.inputs {
+                let Some(last) = ends_before(input.signal.breaks(), start) else { continue };
+                for target in input.target.each() {
+                    let at = |phase| self.input_at(phase, input.quantity, &target, start);
+                    for (then, now) in at(before).into_iter().zip(at(phase)) {
+                        add(format!("the {}", input.quantity.of(&target)), last, [then, now]);
+                    }
                 }
             }
         }

@@ -3,7 +3,7 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use super::load::LoadKind;
+use super::input::{LoadKind, Quantity, Target};
 use super::{Phase, Scene};
 use crate::base::input::{InputError, check_memory};
 use crate::elements::basis::Finer;
@@ -253,16 +253,13 @@ impl Change<'_> {
                 }
             }
         }
-        for (nodes, load) in &mut phase.loads {
+        for input in &mut phase.inputs {
+            let Target::Nodes(nodes) = &mut input.target else { continue };
             let is_point = self.body.mesh().select(nodes)?.len() == 1;
-            *nodes = match load.kind {
-                _ if is_point => self.extended(nodes)?,
-                LoadKind::Each => self.same(nodes)?,
-                LoadKind::Total | LoadKind::Traction => self.extended(nodes)?,
+            *nodes = match input.quantity {
+                Quantity::Load(LoadKind::Each) if !is_point => self.same(nodes)?,
+                _ => self.extended(nodes)?,
             };
-        }
-        for (nodes, _) in &mut phase.face_pressures {
-            *nodes = self.extended(nodes)?;
         }
         Ok(())
     }

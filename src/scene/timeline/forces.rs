@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use super::input::Quantity;
 use super::phase::check_vector;
 use super::{LoadKind, Phase, Scene};
 use crate::base::input::{InputError, finite};
@@ -39,7 +40,7 @@ impl Scene {
         }
         self.add_loads(phase, &mut forces)?;
         let lagging = self.add_actuators(phase, &mut forces)?;
-        if let Some(field) = &phase.magnetic_field {
+        if let Some(field) = phase.field() {
             let input = format!("magnetic field of phase \"{}\"", phase.name);
             let Some(magnets) = self.magnetization()? else {
                 let help = "the scene has no magnet that feels it: add one";
@@ -50,7 +51,7 @@ impl Scene {
         self.add_dipoles(phase, &mut forces)?;
         self.add_chambers(phase, &mut forces)?;
         self.add_amounts(phase, lagging, &mut forces)?;
-        for (nodes, pressure) in &phase.face_pressures {
+        for (nodes, pressure) in phase.face_pressures() {
             forces.push(Arc::new(FacePressure::new(&self.body, nodes, pressure.clone())?));
         }
         self.add_fluids(phase, &mut forces)?;
@@ -78,12 +79,12 @@ impl Scene {
     fn add_loads(&self, phase: &Phase, forces: &mut Forces) -> Result<(), InputError> {
         let dimension = self.body.dimension();
         let mut constant = Vec::new();
-        for (selection, load) in &phase.loads {
+        for (selection, kind, value) in phase.loads() {
             let nodes = self.body.mesh().select(selection)?;
-            load.validate(dimension)?;
-            let parts = self.parts(load.kind, selection, &nodes)?;
+            check_load(kind, value, dimension)?;
+            let parts = self.parts(kind, selection, &nodes)?;
             let nodes = nodes.into_iter().zip(parts);
-            match &load.value {
+            match value {
                 VectorSignal::Constant(force) => {
                     for (node, part) in nodes {
                         let along = |i| (node * dimension + i, part * force[i]);
@@ -109,10 +110,10 @@ impl Scene {
         t: f64,
     ) -> Result<Vec<(usize, Vec<f64>)>, InputError> {
         let mut forces = Vec::new();
-        for (selection, load) in &phase.loads {
+        for (selection, kind, value) in phase.loads() {
             let nodes = self.body.mesh().select(selection)?;
-            let parts = self.parts(load.kind, selection, &nodes)?;
-            let value = load.value.components(t, self.body.dimension());
+            let parts = self.parts(kind, selection, &nodes)?;
+            let value = value.components(t, self.body.dimension());
             let on = |part: f64| value.iter().map(|value| part * value).collect();
             forces.extend(nodes.into_iter().zip(parts.into_iter().map(on)));
         }
@@ -155,11 +156,11 @@ impl Scene {
             }
         };
         let mut sum = vec![0.0; self.body.dimension()];
-        for (_, load) in phase.loads.iter().filter(|(other, _)| other == selection) {
-            let value = load.value.components(t, sum.len());
-            let [own, wanted] = match load.kind == kind {
+        for (_, own, value) in phase.loads().filter(|(other, ..)| *other == selection) {
+            let value = value.components(t, sum.len());
+            let [own, wanted] = match own == kind {
                 true => [1.0; 2],
-                false => [times(load.kind)?, times(kind)?],
+                false => [times(own)?, times(kind)?],
             };
             sum.iter_mut().zip(value).for_each(|(sum, value)| *sum += value / own * wanted);
         }
@@ -260,11 +261,9 @@ impl Scene {
     fn actuation_signals(&self, phase: &Phase) -> Result<Vec<Vec<Signal>>, InputError> {
         let input = format!("actuation of phase \"{}\"", phase.name);
         let mut actuations: Vec<Vec<Signal>> = vec![Vec::new(); self.actuators().count()];
-        for (names, force) in &phase.actuations {
+        for (name, force) in phase.signals(Quantity::Actuation) {
             force.validate(&input)?;
-            for name in names {
-                actuations[self.actuator_number(name, &input)?].push(force.clone());
-            }
+            actuations[self.actuator_number(name, &input)?].push(force.clone());
         }
         let named = self.actuators().zip(actuations);
         let mut driven: Vec<Vec<Signal>> =
@@ -281,7 +280,7 @@ impl Scene {
     fn add_chambers(&self, phase: &Phase, forces: &mut Forces) -> Result<(), InputError> {
         let input = format!("pressure of phase \"{}\"", phase.name);
         let mut pressures: Vec<Vec<Signal>> = vec![Vec::new(); self.chambers.len()];
-        for (name, pressure) in &phase.pressures {
+        for (name, pressure) in phase.signals(Quantity::Pressure) {
             pressure.validate(&input)?;
             let number = self.chamber_number(name, &input)?;
             if self.gas_in(name).is_some() {
@@ -301,4 +300,14 @@ impl Scene {
         }
         Ok(())
     }
+}
+
+/// Checks what can be known of a load beforehand.
+fn check_load(kind: LoadKind, value: &VectorSignal, dimension: usize) -> Result<(), InputError> {
+    let (one, varying, unit) = match kind {
+        LoadKind::Each | LoadKind::Total => ("load", "a load", "N"),
+        LoadKind::Traction => ("traction", "a traction", "N/m^2"),
+    };
+    let is_constant = matches!(value, VectorSignal::Constant(_));
+    value.validate(if is_constant { one } else { varying }, dimension, unit)
 }

@@ -3,11 +3,12 @@
 use std::borrow::Cow;
 use std::sync::Arc;
 
+use super::input::{Input, Quantity, Target};
 use super::{Phase, Scene, unique};
 use crate::base::input::{InputError, find, not_negative, unknown_among};
 use crate::elements::force::{Force, Forces};
 use crate::scene::forces::{
-    AmountFlow, Chamber, Closed, Content, DipolePart, End, Filled, Gas, Lagging, Live, Orifice,
+    AmountFlow, Chamber, Closed, Content, DipolePart, End, Filled, Gas, Lagging, Orifice,
     OrificeFlow, Poured, Signal, Supply,
 };
 
@@ -120,10 +121,8 @@ impl Scene {
         let mut shut = Self { is_shut: true, ..self.clone() };
         shut.orifices.clear();
         shut.pipes.clear();
-        shut.phases.iter_mut().for_each(|phase| {
-            phase.openings.clear();
-            phase.flows.clear();
-        });
+        let flows = |quantity| matches!(quantity, Quantity::Opening | Quantity::Flow);
+        shut.phases.iter_mut().for_each(|phase| phase.without_inputs(flows));
         Cow::Owned(shut)
     }
 
@@ -227,8 +226,8 @@ impl Scene {
             let help = "it must lead from or to a chamber with gas, and from one place to another";
             return Err(InputError::new(input, format!("from \"{from}\" to \"{to}\""), help));
         }
-        let own = phase.openings.iter().filter(|(name, _)| *name == orifice.name);
-        orifice.flow(ends, own.map(|(_, opening)| opening.clone()).collect())
+        let own = phase.signals_of(Quantity::Opening, &orifice.name);
+        orifice.flow(ends, own.cloned().collect())
     }
 
     /// The names of all that may be at an end of an orifice, and of chambers without gas.
@@ -245,7 +244,7 @@ impl Scene {
         forces: &mut Forces,
     ) -> Result<(), InputError> {
         let input = format!("open of phase \"{}\"", phase.name);
-        for (name, opening) in &phase.openings {
+        for (name, opening) in phase.signals(Quantity::Opening) {
             self.orifice_number(name, &input)?;
             opening.validate(&input)?;
             if let Some(value) = opening.value().filter(|value| !(0.0..=1.0).contains(value)) {
@@ -317,20 +316,7 @@ impl Scene {
 
 impl Phase {
     /// How far an orifice is open, from 0 (shut) to 1 (the default), a number or any other [`Signal`].
-    pub fn open(mut self, orifice: impl Into<String>, opening: impl Into<Signal>) -> Self {
-        self.openings.push((orifice.into(), opening.into()));
-        self
-    }
-
-    /// The opening of an orifice, if that is one number that a command can set.
-    pub(crate) fn live_opening(&self, orifice: &str) -> Option<&Live> {
-        let mut all = self.openings.iter().filter(|(name, _)| name == orifice);
-        all.next().filter(|_| all.next().is_none())?.1.live()
-    }
-
-    /// Replaces the opening of an orifice.
-    pub(crate) fn set_opening(&mut self, orifice: &str, opening: Signal) {
-        self.openings.retain(|(name, _)| name != orifice);
-        self.openings.push((orifice.to_owned(), opening));
+    pub fn open(self, orifice: impl Into<String>, opening: impl Into<Signal>) -> Self {
+        self.with(Input::new(Quantity::Opening, Target::one(orifice), opening.into()))
     }
 }

@@ -4,7 +4,7 @@ mod symmetry;
 
 use std::sync::Arc;
 
-use super::{Load, LoadKind, Phase, Scene};
+use super::{Input, LoadKind, Phase, Quantity, Scene};
 use crate::base::input::InputError;
 use crate::elements::mesh::{Mirror, Selection};
 use crate::scene::constraint::{
@@ -123,11 +123,12 @@ impl Scene {
             let mut own = phase.clone();
             let rows = self.rows(phase, &PhaseStart { time, u: &u })?;
             own.constraints = self.half_of_constraints(phase, &rows, &half, mirror)?;
-            own.loads = self.half_of_loads(phase, &half, mirror)?;
-            own.face_pressures = Vec::new();
-            for (selection, pressure) in &phase.face_pressures {
-                let kept = self.kept_faces(selection, &half, mirror)?;
-                own.face_pressures.extend(kept.map(|nodes| (nodes, pressure.clone())));
+            own.without_inputs(Quantity::is_on_nodes);
+            own.inputs.extend(self.half_of_loads(phase, &half, mirror)?);
+            for (selection, pressure) in phase.face_pressures() {
+                if let Some(nodes) = self.kept_faces(selection, &half, mirror)? {
+                    own = own.pressure_on(nodes, pressure.clone());
+                }
             }
             own.redirected = phase.redirected.iter().map(as_here).collect();
             prescribe(&rows, phase.until, &mut u);
@@ -205,16 +206,16 @@ impl Scene {
         phase: &Phase,
         half: &Half,
         mirror: &Mirror,
-    ) -> Result<Vec<(Selection, Load)>, InputError> {
+    ) -> Result<Vec<Input>, InputError> {
         let mut loads = Vec::new();
-        for (selection, load) in &phase.loads {
-            if load.kind == LoadKind::Traction {
+        for (selection, kind, value) in phase.loads() {
+            if kind == LoadKind::Traction {
                 let kept = self.kept_faces(selection, half, mirror)?;
-                loads.extend(kept.map(|nodes| (nodes, load.clone())));
+                loads.extend(kept.map(|nodes| Input::load(nodes, kind, value.clone())));
                 continue;
             }
             let nodes = self.body.mesh().select(selection)?;
-            let parts = self.parts(load.kind, selection, &nodes)?;
+            let parts = self.parts(kind, selection, &nodes)?;
             // nodes with the same part, to round-off, have one load
             let mut groups: Vec<(f64, Vec<usize>)> = Vec::new();
             for (node, part) in nodes.iter().zip(parts) {
@@ -228,7 +229,7 @@ impl Scene {
                 }
             }
             let each = |(part, numbers): (f64, Vec<usize>)| {
-                (numbers.into(), Load::each(load.value.times(part)))
+                Input::load(numbers.into(), LoadKind::Each, value.times(part))
             };
             loads.extend(groups.into_iter().map(each));
         }

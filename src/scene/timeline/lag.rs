@@ -1,5 +1,6 @@
 //! Lags of the actuators of a scene.
 
+use super::input::Quantity;
 use super::{Phase, Scene, unique};
 use crate::base::input::{InputError, find};
 use crate::scene::forces::{Lag, Lagging, Signal, Spring};
@@ -127,10 +128,8 @@ impl Scene {
 impl Phase {
     /// The command of an actuator at time `t` (s), and its rate.
     pub(crate) fn command(&self, actuator: &str, t: f64) -> [f64; 2] {
-        let named = |(names, _): &&(Vec<String>, Signal)| names.iter().any(|name| name == actuator);
-        let signals = self.actuations.iter().filter(named);
-        signals.fold([0.0; 2], |[value, rate], (_, signal)| {
-            [value + signal.at(t), rate + signal.rate(t)]
-        })
+        let signals = self.signals_of(Quantity::Actuation, actuator);
+        signals
+            .fold([0.0; 2], |[value, rate], signal| [value + signal.at(t), rate + signal.rate(t)])
     }
 }

@@ -1,9 +1,10 @@
 //! Liquids in the chambers of a scene, and what flows in and out of them.
 
+use super::input::{Input, Quantity, Target};
 use super::{Phase, Scene, unique};
 use crate::base::input::InputError;
 use crate::base::vector::norm;
-use crate::scene::forces::{Liquid, Live, Poured, Signal, Weight};
+use crate::scene::forces::{Liquid, Poured, Signal, Weight};
 
 /// Parts of the time between two breaks of a flow in which it is added up.
 const PARTS: usize = 50;
@@ -22,7 +23,8 @@ impl Scene {
 
     /// Whether any phase, or a pipe, changes the amount of a liquid.
     pub(crate) fn pours(&self) -> bool {
-        !self.pipes.is_empty() || self.phases.iter().any(|phase| !phase.flows.is_empty())
+        !self.pipes.is_empty()
+            || self.phases.iter().any(|phase| phase.signals(Quantity::Flow).next().is_some())
     }
 
     /// Number (from 0) of the liquid in a chamber, if there is any.
@@ -56,7 +58,7 @@ impl Scene {
     /// # Errors
     /// A chamber that does not exist, or has two contents; numbers out of range; a flow where amounts are constants; a surface without gravity.
     pub(crate) fn poured(&self, phase: Option<&Phase>) -> Result<Vec<Poured>, InputError> {
-        for (chamber, flow) in phase.into_iter().flat_map(|phase| &phase.flows) {
+        for (chamber, flow) in phase.into_iter().flat_map(|phase| phase.signals(Quantity::Flow)) {
             let input = format!("flow of phase \"{}\"", phase.map_or("", Phase::name));
             self.liquid_number(chamber, &input)?;
             flow.validate(&input)?;
@@ -112,9 +114,8 @@ impl Scene {
             }
             (None, _) => Weight::None,
         };
-        let flows = phase.into_iter().flat_map(|phase| &phase.flows);
-        let flows =
-            flows.filter(|(other, _)| other == name).map(|(_, flow)| flow.clone()).collect();
+        let flows = phase.into_iter().flat_map(|phase| phase.signals_of(Quantity::Flow, name));
+        let flows = flows.cloned().collect();
         liquid.pour(walls, self.body.dofs(), weight, flows)
     }
 
@@ -153,13 +154,13 @@ impl Scene {
             let whole = full.natural(self.starting_liquid(liquid, &full));
             let (mut start, mut volume) = (0.0, whole);
             for phase in &self.phases {
-                let flows = phase.flows.iter().filter(|(name, _)| name == liquid.chamber());
+                let flows = phase.signals_of(Quantity::Flow, liquid.chamber());
                 for end in self.breaks_in(phase).into_iter().chain([phase.until]) {
                     // `start` is off by round-off
                     let part = (end.min(phase.until) - start).max(0.0) / PARTS as f64;
                     for _ in 0..PARTS {
                         let end = start + part;
-                        let flows = flows.clone().map(|(_, flow)| added(flow, [start, end]));
+                        let flows = flows.clone().map(|flow| added(flow, [start, end]));
                         volume += flows.sum::<f64>();
                         start = end;
                         // what is not finite is told as it goes
@@ -188,20 +189,7 @@ fn added(flow: &Signal, [start, end]: [f64; 2]) -> f64 {
 impl Phase {
     /// The flow (m^3/s, of natural volume) of liquid into a chamber, a number or any other [`Signal`]; below 0 it flows out. What flows in has the
     /// pressure that is there, and its energy counts as supplied. Flows into the same chamber add up. Default: none.
-    pub fn flow(mut self, chamber: impl Into<String>, flow: impl Into<Signal>) -> Self {
-        self.flows.push((chamber.into(), flow.into()));
-        self
-    }
-
-    /// The flow into a chamber, if that is one number that a command can set.
-    pub(crate) fn live_flow(&self, chamber: &str) -> Option<&Live> {
-        let mut all = self.flows.iter().filter(|(name, _)| name == chamber);
-        all.next().filter(|_| all.next().is_none())?.1.live()
-    }
-
-    /// Replaces the flow into a chamber.
-    pub(crate) fn set_flow(&mut self, chamber: &str, flow: Signal) {
-        self.flows.retain(|(name, _)| name != chamber);
-        self.flows.push((chamber.to_owned(), flow));
+    pub fn flow(self, chamber: impl Into<String>, flow: impl Into<Signal>) -> Self {
+        self.with(Input::new(Quantity::Flow, Target::one(chamber), flow.into()))
     }
 }

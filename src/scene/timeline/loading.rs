@@ -1,6 +1,6 @@
 //! Loads of a phase: forces on nodes, tractions on faces.
 
-use super::load::{Load, LoadKind};
+use super::input::{Input, LoadKind};
 use super::phase::Phase;
 use crate::elements::mesh::Selection;
 use crate::scene::forces::{TimeTable, VectorSignal};
@@ -87,13 +87,12 @@ impl Phase {
     }
 
     pub(crate) fn loaded(
-        mut self,
+        self,
         nodes: impl Into<Selection>,
         kind: LoadKind,
         value: VectorSignal,
     ) -> Self {
-        self.loads.push((nodes.into(), Load { kind, value }));
-        self
+        self.with(Input::load(nodes.into(), kind, value))
     }
 }
 

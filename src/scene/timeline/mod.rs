@@ -11,9 +11,10 @@ mod forces;
 mod gas;
 mod half;
 mod initial;
+mod input;
+mod inputs;
 mod lag;
 mod liquid;
-mod load;
 mod loading;
 mod phase;
 mod phase_end;
@@ -36,7 +37,9 @@ use std::sync::Arc;
 pub(crate) use contacts::ContactReader;
 #[cfg(any(feature = "scene-file", feature = "study"))]
 pub(crate) use half::Half;
-pub(crate) use load::{Load, LoadKind};
+#[cfg(feature = "play")]
+pub(crate) use input::Row;
+pub(crate) use input::{Input, InputSignal, LoadKind, Quantity, Target};
 #[cfg(feature = "checkpoint")]
 pub(crate) use phase::ContactWith;
 pub use phase::Phase;

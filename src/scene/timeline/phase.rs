@@ -3,7 +3,7 @@
 use std::fmt;
 use std::sync::Arc;
 
-use super::load::Load;
+use super::input::{Input, Quantity, Target};
 #[cfg(feature = "scene-file")]
 use crate::base::formula::Formula;
 use crate::base::input::{InputError, find};
@@ -11,7 +11,7 @@ use crate::elements::mesh::Selection;
 use crate::scene::constraint::{
     Axes, Axis, Constrained, Constraint, Motion, Prescribed, Spline, Turn,
 };
-use crate::scene::forces::{DipolePart, MagneticField, Obstacle, Signal, VectorSignal};
+use crate::scene::forces::{Gradient, MagneticField, Obstacle, Signal};
 
 /// A stretch of time with its own constraints, loads and contacts. Displacements and velocities
 /// carry over from phase to phase.
@@ -24,25 +24,13 @@ pub struct Phase {
     /// Acceleration of gravity (m/s^2), if it is another one than the scene's.
     pub(crate) gravity: Option<Vec<f64>>,
     pub(crate) constraints: Vec<Constraint>,
-    pub(crate) loads: Vec<(Selection, Load)>,
-    /// Names of springs, force (N), of muscles, stress (Pa), or of growths, strain (1).
-    pub(crate) actuations: Vec<(Vec<String>, Signal)>,
-    /// Name of a chamber, pressure (Pa).
-    pub(crate) pressures: Vec<(String, Signal)>,
-    /// Name of an orifice, opening (0 to 1).
-    pub(crate) openings: Vec<(String, Signal)>,
-    /// Name of a chamber, flow of its liquid (m^3/s).
-    pub(crate) flows: Vec<(String, Signal)>,
-    /// Nodes, pressure (Pa) on the faces between them.
-    pub(crate) face_pressures: Vec<(Selection, Signal)>,
+    pub(crate) inputs: Vec<Input>,
     pub(crate) projects_velocity: bool,
     pub(crate) contact: ContactWith,
     /// Obstacles that move otherwise than in the scene.
     pub(crate) redirected: Vec<Obstacle>,
-    /// Magnetic field that acts on magnets.
-    pub(crate) magnetic_field: Option<MagneticField>,
-    /// Names of dipoles, and what is otherwise of them than in the scene.
-    pub(crate) dipoles: Vec<(String, DipolePart, VectorSignal)>,
+    /// Change of the magnetic field in space, beside its uniform part.
+    pub(crate) gradient: Option<Gradient>,
 }
 
 /// The level of a sensor that ends a phase before its time.
@@ -81,17 +69,11 @@ impl Phase {
             ends: None,
             gravity: None,
             constraints: Vec::new(),
-            loads: Vec::new(),
-            actuations: Vec::new(),
-            pressures: Vec::new(),
-            openings: Vec::new(),
-            flows: Vec::new(),
-            face_pressures: Vec::new(),
+            inputs: Vec::new(),
             projects_velocity: false,
             contact: ContactWith::All,
             redirected: Vec::new(),
-            magnetic_field: None,
-            dipoles: Vec::new(),
+            gradient: None,
         }
     }
 
@@ -300,15 +282,18 @@ impl Phase {
     /// same faces add up.
     ///
     /// Cells of a membrane in space are pressed on the side from which their nodes run counter-clockwise.
-    pub fn pressure_on(mut self, nodes: impl Into<Selection>, pressure: impl Into<Signal>) -> Self {
-        self.face_pressures.push((nodes.into(), pressure.into()));
-        self
+    pub fn pressure_on(self, nodes: impl Into<Selection>, pressure: impl Into<Signal>) -> Self {
+        let target = Target::Nodes(nodes.into());
+        self.with(Input::new(Quantity::FacePressure, target, pressure.into()))
     }
 
     /// The magnetic field (T) that acts on the [magnets](crate::Magnet) of the scene, one component per dimension: a vector, or any other
     /// [`MagneticField`]. Default: none.
     pub fn magnetic_field(self, field: impl Into<MagneticField>) -> Self {
-        Self { magnetic_field: Some(field.into()), ..self }
+        let MagneticField { field, gradient } = field.into();
+        let mut phase = Self { gradient, ..self };
+        phase.set(Input::new(Quantity::Field, Target::Everything, field));
+        phase
     }
 
     /// No obstacle acts in this phase.
@@ -344,17 +329,10 @@ impl Phase {
     /// within it. `obstacles` are those of the scene.
     pub(crate) fn breaks(&self, obstacles: &[Obstacle]) -> Vec<f64> {
         let paths = self.constraints.iter().map(|constraint| constraint.how.breaks());
-        let loads = self.loads.iter().map(|(_, load)| load.value.breaks());
-        let actuations = self.actuations.iter().map(|(_, force)| force.breaks());
-        let pressures = self.pressures.iter().map(|(_, pressure)| pressure.breaks());
-        let on_faces = self.face_pressures.iter().map(|(_, pressure)| pressure.breaks());
-        let openings = self.openings.iter().map(|(_, opening)| opening.breaks());
-        let flows = self.flows.iter().map(|(_, flow)| flow.breaks());
-        let field = self.magnetic_field.iter().map(|field| field.field.breaks());
+        let inputs = self.inputs.iter().map(|input| input.signal.breaks());
         let acting = self.contacts(obstacles).unwrap_or_default();
         let obstacles = acting.into_iter().map(Obstacle::breaks);
-        let all = paths.chain(loads).chain(actuations).chain(pressures).chain(on_faces);
-        let all = all.chain(openings).chain(flows).chain(obstacles).chain(field);
+        let all = paths.chain(inputs).chain(obstacles);
         let mut breaks = all.flatten().copied().collect::<Vec<f64>>();
         breaks.sort_by(f64::total_cmp);
         breaks.dedup();
@@ -393,17 +371,16 @@ impl Phase {
     }
 
     fn actuated<N: Into<String>>(
-        mut self,
+        self,
         springs: impl IntoIterator<Item = N>,
         force: Signal,
     ) -> Self {
-        self.actuations.push((springs.into_iter().map(Into::into).collect(), force));
-        self
+        let springs = Target::Named(springs.into_iter().map(Into::into).collect());
+        self.with(Input::new(Quantity::Actuation, springs, force))
     }
 
-    fn pressurized(mut self, chamber: impl Into<String>, pressure: Signal) -> Self {
-        self.pressures.push((chamber.into(), pressure));
-        self
+    fn pressurized(self, chamber: impl Into<String>, pressure: Signal) -> Self {
+        self.with(Input::new(Quantity::Pressure, Target::one(chamber), pressure))
     }
 
     fn constrain(mut self, nodes: impl Into<Selection>, axes: Axes, how: Motion) -> Self {

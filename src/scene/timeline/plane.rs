@@ -7,12 +7,12 @@ use std::sync::Arc;
 #[cfg(any(feature = "scene-file", feature = "study"))]
 use super::Smaller;
 use super::smaller::SAME;
-use super::{Load, Phase, Scene};
+use super::{Input, LoadKind, Phase, Quantity, Scene};
 use crate::base::input::InputError;
 use crate::elements::material::Plane;
 use crate::elements::mesh::{Prism, Selection};
 use crate::scene::constraint::{Axes, Axis, Constrained, Constraint, Motion, Turn};
-use crate::scene::forces::Obstacle;
+use crate::scene::forces::{Obstacle, VectorSignal};
 use uniform::Uniform;
 
 /// The section of a scene, and which nodes it has of that.
@@ -108,14 +108,12 @@ impl Scene {
             let mut own = phase.clone();
             own.gravity = phase.gravity.as_ref().map(chosen);
             own.constraints = uniform.constraints(phase)?;
-            own.loads = Vec::new();
-            for (selection, load) in &phase.loads {
-                own.loads.extend(scene.section_of_load(self, &uniform, phase, selection, load)?);
+            own.without_inputs(Quantity::is_on_nodes);
+            for load in phase.loads() {
+                own.inputs.extend(scene.section_of_load(self, &uniform, phase, load)?);
             }
-            own.face_pressures = Vec::new();
-            for (selection, pressure) in &phase.face_pressures {
-                let nodes = uniform.pressed(selection, phase)?;
-                own.face_pressures.push((nodes, pressure.clone()));
+            for (selection, pressure) in phase.face_pressures() {
+                own = own.pressure_on(uniform.pressed(selection, phase)?, pressure.clone());
             }
             own.redirected = sections(&phase.redirected, phase, time)?;
             scene.obstacles = sections(&self.obstacles, phase, time)?;
@@ -134,22 +132,21 @@ impl Scene {
         space: &Scene,
         uniform: &Uniform,
         phase: &Phase,
-        selection: &Selection,
-        load: &Load,
-    ) -> Result<Vec<(Selection, Load)>, InputError> {
+        (selection, kind, value): (&Selection, LoadKind, &VectorSignal),
+    ) -> Result<Vec<Input>, InputError> {
         let prism = &uniform.prism;
         let columns = uniform.whole(selection, &format!("load of phase \"{}\"", phase.name))?;
         let nodes = space.body.mesh().select(selection)?;
         let mut sums = vec![0.0; prism.nodes.len()];
-        for (&node, part) in nodes.iter().zip(space.parts(load.kind, selection, &nodes)?) {
+        for (&node, part) in nodes.iter().zip(space.parts(kind, selection, &nodes)?) {
             sums[prism.columns[node]] += part;
         }
-        let (own, value) = (Selection::of_nodes(columns.clone()), load.value.part(prism.axes()));
-        if let Ok(parts) = self.parts(load.kind, &own, &columns) {
+        let (own, value) = (Selection::of_nodes(columns.clone()), value.part(prism.axes()));
+        if let Ok(parts) = self.parts(kind, &own, &columns) {
             let most = parts.iter().fold(0.0_f64, |most, part| most.max(part.abs()));
             let is_same = |(&k, part): (&usize, &f64)| (sums[k] - part).abs() <= SAME * most;
             if columns.iter().zip(&parts).all(is_same) {
-                return Ok(vec![(own, Load { kind: load.kind, value })]);
+                return Ok(vec![Input::load(own, kind, value)]);
             }
         }
         let mut groups: Vec<(f64, Vec<usize>)> = Vec::new();
@@ -161,7 +158,7 @@ impl Scene {
             }
         }
         let each = |(part, nodes): (f64, Vec<usize>)| {
-            (Selection::of_nodes(nodes), Load::each(value.times(part)))
+            Input::load(Selection::of_nodes(nodes), LoadKind::Each, value.times(part))
         };
         Ok(groups.into_iter().map(each).collect())
     }

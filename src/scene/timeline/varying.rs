@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::input::{InputSignal, Quantity};
 use super::{Phase, Scene};
 use crate::base::formula::{Bounds, Formula};
 use crate::scene::constraint::Motion;
@@ -96,12 +97,12 @@ impl Scene {
     pub(crate) fn varying_in(&self, phase: &Phase) -> Vec<Varying> {
         let mut list = List::default();
         phase.constraints.iter().for_each(|constraint| list.motion(&constraint.how));
-        phase.loads.iter().for_each(|(_, load)| list.vector(&load.value));
-        phase.actuations.iter().for_each(|(_, force)| list.signal(force));
-        let by_name = phase.pressures.iter().chain(&phase.openings).chain(&phase.flows);
-        by_name.for_each(|(_, signal)| list.signal(signal));
-        phase.face_pressures.iter().for_each(|(_, pressure)| list.signal(pressure));
-        phase.magnetic_field.iter().for_each(|field| list.vector(&field.field));
+        // a dipole's own signal takes the place of the scene's below
+        let own = phase.inputs.iter().filter(|i| !matches!(i.quantity, Quantity::Dipole(_)));
+        own.for_each(|input| match &input.signal {
+            InputSignal::Number(signal) => list.signal(signal),
+            InputSignal::Vector(vector) => list.vector(vector),
+        });
         let acting = phase.contacts(&self.obstacles).unwrap_or_default();
         acting.into_iter().flat_map(Obstacle::formulas).for_each(|formula| list.formula(formula));
         self.supplies.iter().for_each(|supply| list.signal(&supply.pressure));

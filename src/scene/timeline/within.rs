@@ -1,9 +1,10 @@
 //! Actuators and magnets within the material of the bodies: muscles, growth, magnets.
 
+use super::input::{Quantity, Target};
 use super::{Phase, Scene};
 use crate::base::input::{InputError, find};
 use crate::elements::body::Magnets;
-use crate::scene::forces::{Growth, Magnet, Muscle, Spring};
+use crate::scene::forces::{Growth, Magnet, MagneticField, Muscle, Spring, VectorSignal};
 
 impl Scene {
     /// Adds a muscle in the body, to be contracted by the stress that phases give it.
@@ -90,7 +91,18 @@ impl Scene {
 impl Phase {
     /// The uniform part of its magnetic field (T) at time `t` (s), one component per `dimension`; 0 without a field.
     pub(crate) fn magnetic_field_at(&self, t: f64, dimension: usize) -> Vec<f64> {
-        let field = self.magnetic_field.as_ref();
-        field.map_or_else(|| vec![0.0; dimension], |field| field.field.components(t, dimension))
+        let field = self.uniform_field();
+        field.map_or_else(|| vec![0.0; dimension], |field| field.components(t, dimension))
+    }
+
+    /// The uniform part of its magnetic field.
+    pub(crate) fn uniform_field(&self) -> Option<&VectorSignal> {
+        self.vector(Quantity::Field, &Target::Everything)
+    }
+
+    /// Its magnetic field.
+    pub(crate) fn field(&self) -> Option<MagneticField> {
+        let field = self.uniform_field()?.clone();
+        Some(MagneticField { field, gradient: self.gradient.clone() })
     }
 }

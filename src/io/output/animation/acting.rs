@@ -35,7 +35,7 @@ pub(super) fn names(scene: &Scene) -> Vec<&'static str> {
     let phases = || scene.phases().iter();
     let has = [
         phases().any(|phase| scene.gravity_in(phase).is_some()),
-        phases().any(|phase| phase.magnetic_field.is_some()),
+        phases().any(|phase| phase.uniform_field().is_some()),
     ];
     EVERYWHERE.into_iter().zip(has).filter(|(_, has)| *has).map(|(name, _)| name).collect()
 }

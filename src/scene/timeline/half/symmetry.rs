@@ -158,16 +158,15 @@ impl<'a> Symmetry<'a> {
     fn check_pressures(&self, phase: &Phase, times: &[f64]) -> Result<(), InputError> {
         let mesh = self.scene.body.mesh();
         let sets = phase
-            .face_pressures
-            .iter()
+            .face_pressures()
             .map(|(nodes, _)| Ok(mesh.select(nodes)?.into_iter().collect::<BTreeSet<usize>>()));
         let sets = sets.collect::<Result<Vec<_>, InputError>>()?;
-        for ((nodes, pressure), own) in phase.face_pressures.iter().zip(&sets) {
+        for ((nodes, pressure), own) in phase.face_pressures().zip(&sets) {
             let image: BTreeSet<usize> = own.iter().map(|&node| self.mirror.images[node]).collect();
-            let is_image = |(other, set): (&(_, Signal), &BTreeSet<usize>)| {
-                *set == image && times.iter().all(|&t| other.1.at(t) == pressure.at(t))
+            let is_image = |((_, other), set): ((_, &Signal), &BTreeSet<usize>)| {
+                *set == image && times.iter().all(|&t| other.at(t) == pressure.at(t))
             };
-            if !phase.face_pressures.iter().zip(&sets).any(is_image) {
+            if !phase.face_pressures().zip(&sets).any(is_image) {
                 let input = format!("pressure on faces of phase \"{}\"", phase.name);
                 return Err(self.refused(input, nodes.to_string()));
             }

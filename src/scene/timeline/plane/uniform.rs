@@ -113,8 +113,8 @@ impl<'a> Uniform<'a> {
             return Err(self.refused(&named("gravity"), format!("{gravity:?}")));
         }
         let times = times_of(phase, time);
-        for (selection, load) in &phase.loads {
-            let values = times.iter().map(|&t| load.value.components(t, 3));
+        for (selection, _, value) in phase.loads() {
+            let values = times.iter().map(|&t| value.components(t, 3));
             if let Some(value) = values.into_iter().find(|x| x[along].abs() > SAME * largest(x)) {
                 return Err(self.refused(&named("load"), format!("{value:?} on {selection}")));
             }

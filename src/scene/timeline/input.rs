@@ -1,0 +1,291 @@
+//! Inputs: the quantities of components that phases prescribe, and that commands and sliders set.
+//!
+//! All inputs of a phase stand in one list, and each quantity is one row of [`Quantity::row`]: its keys in scene files, its unit, its
+//! change with the load factor. Times at which signals change their laws, commands, checkpoints, saved scenes and sliders go by that
+//! list. A force reads the signals of its quantity; a new quantity is a variant with its row.
+
+use std::fmt;
+
+use crate::elements::mesh::Selection;
+use crate::scene::forces::{DipolePart, Live, Signal, SignalKind, VectorSignal};
+
+/// A quantity that phases prescribe.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "checkpoint", serde(rename_all = "snake_case"))]
+pub(crate) enum Quantity {
+    /// The force of a spring, tension of a cable, length of a winch, stress of a muscle, strain of a growth, or heating power.
+    Actuation,
+    /// Of a chamber.
+    Pressure,
+    /// Of an orifice.
+    Opening,
+    /// Of liquid into a chamber.
+    Flow,
+    /// On the faces between nodes.
+    FacePressure,
+    /// On nodes.
+    Load(LoadKind),
+    /// The uniform part of the magnetic field.
+    Field,
+    /// Of a dipole, in place of the scene's.
+    Dipole(DipolePart),
+}
+
+/// Reference of the value of a load: each node, all nodes together, or undeformed area.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "checkpoint", serde(rename_all = "snake_case"))]
+pub(crate) enum LoadKind {
+    /// A force (N) on each node.
+    #[cfg_attr(feature = "checkpoint", serde(rename = "force"))]
+    Each,
+    /// A force (N) on all nodes together.
+    Total,
+    /// A force per undeformed area (N/m^2) of the faces between the nodes.
+    Traction,
+}
+
+impl LoadKind {
+    #[cfg(feature = "scene-file")]
+    pub(crate) const ALL: [Self; 3] = [Self::Each, Self::Total, Self::Traction];
+}
+
+/// Facts about a quantity.
+pub(crate) struct Row {
+    /// Noun phrase that stands before its target.
+    pub(crate) name: &'static str,
+    /// Key of its list in a phase of a scene file, and of the target in it.
+    #[cfg_attr(not(feature = "play"), allow(dead_code))]
+    pub(crate) keys: [&'static str; 2],
+    /// Key of its value; with an "s" that of values at times.
+    #[cfg_attr(not(feature = "scene-file"), allow(dead_code))]
+    pub(crate) word: &'static str,
+    #[cfg_attr(not(feature = "play"), allow(dead_code))]
+    pub(crate) unit: &'static str,
+    /// Value where a phase has none.
+    pub(crate) absent: f64,
+    /// Whether statics scale it by the load factor; otherwise the signal stays as it is.
+    pub(super) scales: bool,
+}
+
+impl Quantity {
+    pub(crate) const fn row(self) -> Row {
+        const fn row(
+            name: &'static str,
+            keys: [&'static str; 2],
+            word: &'static str,
+            unit: &'static str,
+        ) -> Row {
+            Row { name, keys, word, unit, absent: 0.0, scales: true }
+        }
+        match self {
+            Self::Actuation => row("actuation of", ["actuate", "springs"], "force", "N"),
+            Self::Pressure => row("pressure in", ["pressure", "chamber"], "value", "Pa"),
+            Self::Opening => Row {
+                absent: 1.0,
+                scales: false,
+                ..row("opening of", ["open", "orifice"], "opening", "")
+            },
+            Self::Flow => {
+                Row { scales: false, ..row("flow into", ["flow", "chamber"], "rate", "m^3/s") }
+            }
+            Self::FacePressure => row("pressure on", ["pressure_on", "nodes"], "value", "Pa"),
+            Self::Load(kind) => {
+                let (word, unit) = match kind {
+                    LoadKind::Each => ("force", "N"),
+                    LoadKind::Total => ("total", "N"),
+                    LoadKind::Traction => ("traction", "Pa"),
+                };
+                row("load on", ["load", "nodes"], word, unit)
+            }
+            Self::Field => row("magnetic field", ["magnetic_field", ""], "field", "T"),
+            Self::Dipole(DipolePart::Position) => {
+                Row { scales: false, ..row("position of", ["drive", "dipole"], "position", "m") }
+            }
+            Self::Dipole(DipolePart::Moment) => {
+                row("moment of", ["drive", "dipole"], "moment", "A m^2")
+            }
+        }
+    }
+
+    /// The quantity and a target in words.
+    pub(crate) fn of(self, target: &Target) -> String {
+        let name = self.row().name;
+        match target {
+            Target::Named(names) => format!("{name} \"{}\"", names.join("\", \"")),
+            Target::Nodes(nodes) => format!("{name} {nodes}"),
+            Target::Everything => name.into(),
+        }
+    }
+
+    /// Whether it has one component per dimension.
+    pub(super) fn is_vector(self) -> bool {
+        matches!(self, Self::Load(_) | Self::Field | Self::Dipole(_))
+    }
+
+    /// Whether it acts on nodes of the mesh.
+    pub(super) fn is_on_nodes(self) -> bool {
+        matches!(self, Self::FacePressure | Self::Load(_))
+    }
+
+    /// Whether a command for it replaces `other` on the same target: a load replaces loads of all kinds.
+    pub(super) fn replaces(self, other: Self) -> bool {
+        self == other || matches!((self, other), (Self::Load(_), Self::Load(_)))
+    }
+}
+
+/// The target of an input.
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "checkpoint", serde(rename_all = "snake_case"))]
+pub(crate) enum Target {
+    /// Components, by their names; each has the whole value.
+    Named(Vec<String>),
+    Nodes(Selection),
+    Everything,
+}
+
+impl Target {
+    /// The component with a name.
+    pub(crate) fn one(name: impl Into<String>) -> Self {
+        Self::Named(vec![name.into()])
+    }
+
+    /// Its components, each by itself.
+    pub(super) fn each(&self) -> Vec<Self> {
+        match self {
+            Self::Named(names) => names.iter().map(Self::one).collect(),
+            Self::Nodes(_) | Self::Everything => vec![self.clone()],
+        }
+    }
+
+    pub(super) fn overlaps(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::Named(own), Self::Named(other)) => own.iter().any(|name| other.contains(name)),
+            _ => self == other,
+        }
+    }
+
+    pub(crate) fn names(&self) -> &[String] {
+        match self {
+            Self::Named(names) => names,
+            Self::Nodes(_) | Self::Everything => &[],
+        }
+    }
+
+    pub(super) fn nodes(&self) -> Option<&Selection> {
+        match self {
+            Self::Nodes(nodes) => Some(nodes),
+            Self::Named(_) | Self::Everything => None,
+        }
+    }
+}
+
+/// The signal of an input, of one component or of one per dimension.
+#[derive(Clone)]
+pub(crate) enum InputSignal {
+    Number(Signal),
+    Vector(VectorSignal),
+}
+
+impl InputSignal {
+    /// Times (s) at which it changes its law.
+    pub(crate) fn breaks(&self) -> &[f64] {
+        match self {
+            Self::Number(signal) => signal.breaks(),
+            Self::Vector(signal) => signal.breaks(),
+        }
+    }
+
+    /// Its components at time `t` (s), in space of a `dimension`.
+    pub(crate) fn components(&self, t: f64, dimension: usize) -> Vec<f64> {
+        match self {
+            Self::Number(signal) => vec![signal.at(t)],
+            Self::Vector(signal) => signal.components(t, dimension),
+        }
+    }
+
+    /// The values of a constant.
+    pub(crate) fn constant(&self) -> Option<&[f64]> {
+        match self {
+            Self::Number(Signal(SignalKind::Constant(value))) => Some(std::slice::from_ref(value)),
+            Self::Vector(VectorSignal::Constant(values)) => Some(values),
+            Self::Number(_) | Self::Vector(_) => None,
+        }
+    }
+
+    pub(super) fn live(&self) -> Option<&Live> {
+        match self {
+            Self::Number(signal) => signal.live(),
+            Self::Vector(signal) => signal.live(),
+        }
+    }
+
+    /// The same signal; a constant becomes numbers that a command can set.
+    pub(crate) fn thawed(self) -> Self {
+        match self {
+            Self::Number(signal) => Self::Number(signal.thawed()),
+            Self::Vector(signal) => Self::Vector(signal.thawed()),
+        }
+    }
+
+    pub(super) fn frozen(&self) -> Self {
+        match self {
+            Self::Number(signal) => Self::Number(signal.frozen()),
+            Self::Vector(signal) => Self::Vector(signal.frozen()),
+        }
+    }
+
+    /// A constant: a `fraction` of its value at time `t` (s).
+    pub(super) fn at_rest(&self, fraction: f64, t: f64, dimension: usize) -> Self {
+        match self {
+            Self::Number(signal) => Self::Number(Signal::constant(fraction * signal.at(t))),
+            Self::Vector(signal) => {
+                let value = signal.components(t, dimension);
+                let part = value.iter().map(|x| fraction * x).collect();
+                Self::Vector(VectorSignal::Constant(part))
+            }
+        }
+    }
+}
+
+impl fmt::Debug for InputSignal {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Number(signal) => signal.fmt(f),
+            Self::Vector(signal) => signal.fmt(f),
+        }
+    }
+}
+
+impl From<Signal> for InputSignal {
+    fn from(signal: Signal) -> Self {
+        Self::Number(signal)
+    }
+}
+
+impl From<VectorSignal> for InputSignal {
+    fn from(signal: VectorSignal) -> Self {
+        Self::Vector(signal)
+    }
+}
+
+/// A quantity that a phase prescribes, with its target. Signals on the same target add up.
+#[derive(Debug, Clone)]
+pub(crate) struct Input {
+    pub(crate) quantity: Quantity,
+    pub(crate) target: Target,
+    pub(crate) signal: InputSignal,
+}
+
+impl Input {
+    pub(crate) fn new(quantity: Quantity, target: Target, signal: impl Into<InputSignal>) -> Self {
+        Self { quantity, target, signal: signal.into() }
+    }
+
+    /// A load on nodes.
+    pub(crate) fn load(nodes: Selection, kind: LoadKind, value: VectorSignal) -> Self {
+        Self::new(Quantity::Load(kind), Target::Nodes(nodes), value)
+    }
+}
