@@ -3219,191 +3219,6 @@ def sensor_gap(
     )
 
 
-def sensor_spring_pull(
-    *,
-    name: str,
-    spring: str,
-    component: Literal["x", "y", "z", "norm", "xx", "yy", "zz", "xy", "yz", "xz", "von-mises"] | None = None,
-) -> dict:
-    r"""Sensor of the kind "spring-pull": the force with which a spring and its actuator pull its ends together, or the
-    tension of a cable at its first place (N).
-
-    Parameters
-    ----------
-    name
-        the name of the sensor. Required.
-    spring
-        the name of the spring or cable. Required.
-    component
-        one component alone. Default: all, each a column. Vectors have `x`, `y`, `z` and their length `norm`; tensors
-        `xx` and so on; stress has `von-mises` besides.
-    """
-    return _table(
-        kind="spring-pull",
-        name=name,
-        spring=spring,
-        component=component,
-    )
-
-
-def sensor_tension_at_end(
-    *,
-    name: str,
-    cable: str,
-    component: Literal["x", "y", "z", "norm", "xx", "yy", "zz", "xy", "yz", "xz", "von-mises"] | None = None,
-) -> dict:
-    r"""Sensor of the kind "tension-at-end": the tension of a cable at its last place, from which friction along its path
-    takes its part (N).
-
-    Parameters
-    ----------
-    name
-        the name of the sensor. Required.
-    cable
-        the name of the cable. Required.
-    component
-        one component alone. Default: all, each a column. Vectors have `x`, `y`, `z` and their length `norm`; tensors
-        `xx` and so on; stress has `von-mises` besides.
-    """
-    return _table(
-        kind="tension-at-end",
-        name=name,
-        cable=cable,
-        component=component,
-    )
-
-
-def sensor_spring_length(
-    *,
-    name: str,
-    spring: str,
-    component: Literal["x", "y", "z", "norm", "xx", "yy", "zz", "xy", "yz", "xz", "von-mises"] | None = None,
-) -> dict:
-    r"""Sensor of the kind "spring-length": the length of a spring, or of the path of a cable (m).
-
-    Parameters
-    ----------
-    name
-        the name of the sensor. Required.
-    spring
-        the name of the spring or cable. Required.
-    component
-        one component alone. Default: all, each a column. Vectors have `x`, `y`, `z` and their length `norm`; tensors
-        `xx` and so on; stress has `von-mises` besides.
-    """
-    return _table(
-        kind="spring-length",
-        name=name,
-        spring=spring,
-        component=component,
-    )
-
-
-def sensor_muscle_stress(
-    *,
-    name: str,
-    muscle: str,
-    component: Literal["x", "y", "z", "norm", "xx", "yy", "zz", "xy", "yz", "xz", "von-mises"] | None = None,
-) -> dict:
-    r"""Sensor of the kind "muscle-stress": the stress by which a muscle pulls (Pa).
-
-    Parameters
-    ----------
-    name
-        the name of the sensor. Required.
-    muscle
-        the name of the muscle. Required.
-    component
-        one component alone. Default: all, each a column. Vectors have `x`, `y`, `z` and their length `norm`; tensors
-        `xx` and so on; stress has `von-mises` besides.
-    """
-    return _table(
-        kind="muscle-stress",
-        name=name,
-        muscle=muscle,
-        component=component,
-    )
-
-
-def sensor_muscle_stretch(
-    *,
-    name: str,
-    muscle: str,
-    component: Literal["x", "y", "z", "norm", "xx", "yy", "zz", "xy", "yz", "xz", "von-mises"] | None = None,
-) -> dict:
-    r"""Sensor of the kind "muscle-stretch": the length of the fibres of a muscle by that in the undeformed shape, the
-    mean over their volume (no unit).
-
-    Parameters
-    ----------
-    name
-        the name of the sensor. Required.
-    muscle
-        the name of the muscle. Required.
-    component
-        one component alone. Default: all, each a column. Vectors have `x`, `y`, `z` and their length `norm`; tensors
-        `xx` and so on; stress has `von-mises` besides.
-    """
-    return _table(
-        kind="muscle-stretch",
-        name=name,
-        muscle=muscle,
-        component=component,
-    )
-
-
-def sensor_activation(
-    *,
-    name: str,
-    muscle: str,
-    component: Literal["x", "y", "z", "norm", "xx", "yy", "zz", "xy", "yz", "xz", "von-mises"] | None = None,
-) -> dict:
-    r"""Sensor of the kind "activation": the activation of a muscle with Hill's law, from 0 to 1.
-
-    Parameters
-    ----------
-    name
-        the name of the sensor. Required.
-    muscle
-        the name of the muscle. Required.
-    component
-        one component alone. Default: all, each a column. Vectors have `x`, `y`, `z` and their length `norm`; tensors
-        `xx` and so on; stress has `von-mises` besides.
-    """
-    return _table(
-        kind="activation",
-        name=name,
-        muscle=muscle,
-        component=component,
-    )
-
-
-def sensor_temperature(
-    *,
-    name: str,
-    actuator: str,
-    component: Literal["x", "y", "z", "norm", "xx", "yy", "zz", "xy", "yz", "xz", "von-mises"] | None = None,
-) -> dict:
-    r"""Sensor of the kind "temperature": by how much a heated actuator is warmer than what is around it (K).
-
-    Parameters
-    ----------
-    name
-        the name of the sensor. Required.
-    actuator
-        the name of the actuator. Required.
-    component
-        one component alone. Default: all, each a column. Vectors have `x`, `y`, `z` and their length `norm`; tensors
-        `xx` and so on; stress has `von-mises` besides.
-    """
-    return _table(
-        kind="temperature",
-        name=name,
-        actuator=actuator,
-        component=component,
-    )
-
-
 def sensor_magnetic_moment(
     *,
     name: str,
@@ -3422,58 +3237,6 @@ def sensor_magnetic_moment(
     return _table(
         kind="magnetic-moment",
         name=name,
-        component=component,
-    )
-
-
-def sensor_dipole_force(
-    *,
-    name: str,
-    dipole: str,
-    component: Literal["x", "y", "z", "norm", "xx", "yy", "zz", "xy", "yz", "xz", "von-mises"] | None = None,
-) -> dict:
-    r"""Sensor of the kind "dipole-force": the force of a dipole on all magnets; that on the dipole is minus this (N).
-
-    Parameters
-    ----------
-    name
-        the name of the sensor. Required.
-    dipole
-        the name of the dipole. Required.
-    component
-        one component alone. Default: all, each a column. Vectors have `x`, `y`, `z` and their length `norm`; tensors
-        `xx` and so on; stress has `von-mises` besides.
-    """
-    return _table(
-        kind="dipole-force",
-        name=name,
-        dipole=dipole,
-        component=component,
-    )
-
-
-def sensor_dipole_position(
-    *,
-    name: str,
-    dipole: str,
-    component: Literal["x", "y", "z", "norm", "xx", "yy", "zz", "xy", "yz", "xz", "von-mises"] | None = None,
-) -> dict:
-    r"""Sensor of the kind "dipole-position": where a dipole is (m).
-
-    Parameters
-    ----------
-    name
-        the name of the sensor. Required.
-    dipole
-        the name of the dipole. Required.
-    component
-        one component alone. Default: all, each a column. Vectors have `x`, `y`, `z` and their length `norm`; tensors
-        `xx` and so on; stress has `von-mises` besides.
-    """
-    return _table(
-        kind="dipole-position",
-        name=name,
-        dipole=dipole,
         component=component,
     )
 
@@ -3510,242 +3273,6 @@ def sensor_fluid_force(
         component=component,
         nodes=nodes,
         body=body,
-    )
-
-
-def sensor_pressure(
-    *,
-    name: str,
-    chamber: str,
-    component: Literal["x", "y", "z", "norm", "xx", "yy", "zz", "xy", "yz", "xz", "von-mises"] | None = None,
-) -> dict:
-    r"""Sensor of the kind "pressure": the pressure in a chamber, of gas and of a liquid what it exceeds that outside by,
-    of a liquid with weight the mean, of one with a surface that at the lowest place of the walls (Pa).
-
-    Parameters
-    ----------
-    name
-        the name of the sensor. Required.
-    chamber
-        the name of the chamber. Required.
-    component
-        one component alone. Default: all, each a column. Vectors have `x`, `y`, `z` and their length `norm`; tensors
-        `xx` and so on; stress has `von-mises` besides.
-    """
-    return _table(
-        kind="pressure",
-        name=name,
-        chamber=chamber,
-        component=component,
-    )
-
-
-def sensor_absolute_pressure(
-    *,
-    name: str,
-    chamber: str,
-    component: Literal["x", "y", "z", "norm", "xx", "yy", "zz", "xy", "yz", "xz", "von-mises"] | None = None,
-) -> dict:
-    r"""Sensor of the kind "absolute-pressure": the absolute pressure of the gas in a chamber (Pa).
-
-    Parameters
-    ----------
-    name
-        the name of the sensor. Required.
-    chamber
-        the name of the chamber. Required.
-    component
-        one component alone. Default: all, each a column. Vectors have `x`, `y`, `z` and their length `norm`; tensors
-        `xx` and so on; stress has `von-mises` besides.
-    """
-    return _table(
-        kind="absolute-pressure",
-        name=name,
-        chamber=chamber,
-        component=component,
-    )
-
-
-def sensor_gas_amount(
-    *,
-    name: str,
-    chamber: str,
-    component: Literal["x", "y", "z", "norm", "xx", "yy", "zz", "xy", "yz", "xz", "von-mises"] | None = None,
-) -> dict:
-    r"""Sensor of the kind "gas-amount": the amount of gas in a chamber (kg).
-
-    Parameters
-    ----------
-    name
-        the name of the sensor. Required.
-    chamber
-        the name of the chamber. Required.
-    component
-        one component alone. Default: all, each a column. Vectors have `x`, `y`, `z` and their length `norm`; tensors
-        `xx` and so on; stress has `von-mises` besides.
-    """
-    return _table(
-        kind="gas-amount",
-        name=name,
-        chamber=chamber,
-        component=component,
-    )
-
-
-def sensor_gas_flow(
-    *,
-    name: str,
-    orifice: str,
-    component: Literal["x", "y", "z", "norm", "xx", "yy", "zz", "xy", "yz", "xz", "von-mises"] | None = None,
-) -> dict:
-    r"""Sensor of the kind "gas-flow": the flow of gas through an orifice, from its first end to its second (kg/s).
-
-    Parameters
-    ----------
-    name
-        the name of the sensor. Required.
-    orifice
-        the name of the orifice. Required.
-    component
-        one component alone. Default: all, each a column. Vectors have `x`, `y`, `z` and their length `norm`; tensors
-        `xx` and so on; stress has `von-mises` besides.
-    """
-    return _table(
-        kind="gas-flow",
-        name=name,
-        orifice=orifice,
-        component=component,
-    )
-
-
-def sensor_liquid_volume(
-    *,
-    name: str,
-    chamber: str,
-    component: Literal["x", "y", "z", "norm", "xx", "yy", "zz", "xy", "yz", "xz", "von-mises"] | None = None,
-) -> dict:
-    r"""Sensor of the kind "liquid-volume": the volume of the liquid in a chamber, as it is without pressure (m^3).
-
-    Parameters
-    ----------
-    name
-        the name of the sensor. Required.
-    chamber
-        the name of the chamber. Required.
-    component
-        one component alone. Default: all, each a column. Vectors have `x`, `y`, `z` and their length `norm`; tensors
-        `xx` and so on; stress has `von-mises` besides.
-    """
-    return _table(
-        kind="liquid-volume",
-        name=name,
-        chamber=chamber,
-        component=component,
-    )
-
-
-def sensor_liquid_flow(
-    *,
-    name: str,
-    chamber: str,
-    component: Literal["x", "y", "z", "norm", "xx", "yy", "zz", "xy", "yz", "xz", "von-mises"] | None = None,
-) -> dict:
-    r"""Sensor of the kind "liquid-flow": the flow of liquid into a chamber (m^3/s).
-
-    Parameters
-    ----------
-    name
-        the name of the sensor. Required.
-    chamber
-        the name of the chamber. Required.
-    component
-        one component alone. Default: all, each a column. Vectors have `x`, `y`, `z` and their length `norm`; tensors
-        `xx` and so on; stress has `von-mises` besides.
-    """
-    return _table(
-        kind="liquid-flow",
-        name=name,
-        chamber=chamber,
-        component=component,
-    )
-
-
-def sensor_liquid_level(
-    *,
-    name: str,
-    chamber: str,
-    component: Literal["x", "y", "z", "norm", "xx", "yy", "zz", "xy", "yz", "xz", "von-mises"] | None = None,
-) -> dict:
-    r"""Sensor of the kind "liquid-level": the height of the surface of the liquid in a chamber above the origin, against
-    gravity (m).
-
-    Parameters
-    ----------
-    name
-        the name of the sensor. Required.
-    chamber
-        the name of the chamber. Required.
-    component
-        one component alone. Default: all, each a column. Vectors have `x`, `y`, `z` and their length `norm`; tensors
-        `xx` and so on; stress has `von-mises` besides.
-    """
-    return _table(
-        kind="liquid-level",
-        name=name,
-        chamber=chamber,
-        component=component,
-    )
-
-
-def sensor_pipe_flow(
-    *,
-    name: str,
-    pipe: str,
-    component: Literal["x", "y", "z", "norm", "xx", "yy", "zz", "xy", "yz", "xz", "von-mises"] | None = None,
-) -> dict:
-    r"""Sensor of the kind "pipe-flow": the flow of liquid through a pipe, from its first end to its second (m^3/s).
-
-    Parameters
-    ----------
-    name
-        the name of the sensor. Required.
-    pipe
-        the name of the pipe. Required.
-    component
-        one component alone. Default: all, each a column. Vectors have `x`, `y`, `z` and their length `norm`; tensors
-        `xx` and so on; stress has `von-mises` besides.
-    """
-    return _table(
-        kind="pipe-flow",
-        name=name,
-        pipe=pipe,
-        component=component,
-    )
-
-
-def sensor_volume(
-    *,
-    name: str,
-    chamber: str,
-    component: Literal["x", "y", "z", "norm", "xx", "yy", "zz", "xy", "yz", "xz", "von-mises"] | None = None,
-) -> dict:
-    r"""Sensor of the kind "volume": the volume that the walls of a chamber enclose (m^3).
-
-    Parameters
-    ----------
-    name
-        the name of the sensor. Required.
-    chamber
-        the name of the chamber. Required.
-    component
-        one component alone. Default: all, each a column. Vectors have `x`, `y`, `z` and their length `norm`; tensors
-        `xx` and so on; stress has `von-mises` besides.
-    """
-    return _table(
-        kind="volume",
-        name=name,
-        chamber=chamber,
-        component=component,
     )
 
 
@@ -4021,6 +3548,479 @@ def sensor_angular_acceleration(
         component=component,
         nodes=nodes,
         body=body,
+    )
+
+
+def sensor_spring_pull(
+    *,
+    name: str,
+    spring: str,
+    component: Literal["x", "y", "z", "norm", "xx", "yy", "zz", "xy", "yz", "xz", "von-mises"] | None = None,
+) -> dict:
+    r"""Sensor of the kind "spring-pull": the force with which a spring and its actuator pull its ends together, or the
+    tension of a cable at its first place (N).
+
+    Parameters
+    ----------
+    name
+        the name of the sensor. Required.
+    spring
+        the name of the spring or cable. Required.
+    component
+        one component alone. Default: all, each a column. Vectors have `x`, `y`, `z` and their length `norm`; tensors
+        `xx` and so on; stress has `von-mises` besides.
+    """
+    return _table(
+        kind="spring-pull",
+        name=name,
+        spring=spring,
+        component=component,
+    )
+
+
+def sensor_tension_at_end(
+    *,
+    name: str,
+    cable: str,
+    component: Literal["x", "y", "z", "norm", "xx", "yy", "zz", "xy", "yz", "xz", "von-mises"] | None = None,
+) -> dict:
+    r"""Sensor of the kind "tension-at-end": the tension of a cable at its last place, from which friction along its path
+    takes its part (N).
+
+    Parameters
+    ----------
+    name
+        the name of the sensor. Required.
+    cable
+        the name of the cable. Required.
+    component
+        one component alone. Default: all, each a column. Vectors have `x`, `y`, `z` and their length `norm`; tensors
+        `xx` and so on; stress has `von-mises` besides.
+    """
+    return _table(
+        kind="tension-at-end",
+        name=name,
+        cable=cable,
+        component=component,
+    )
+
+
+def sensor_spring_length(
+    *,
+    name: str,
+    spring: str,
+    component: Literal["x", "y", "z", "norm", "xx", "yy", "zz", "xy", "yz", "xz", "von-mises"] | None = None,
+) -> dict:
+    r"""Sensor of the kind "spring-length": the length of a spring, or of the path of a cable (m).
+
+    Parameters
+    ----------
+    name
+        the name of the sensor. Required.
+    spring
+        the name of the spring or cable. Required.
+    component
+        one component alone. Default: all, each a column. Vectors have `x`, `y`, `z` and their length `norm`; tensors
+        `xx` and so on; stress has `von-mises` besides.
+    """
+    return _table(
+        kind="spring-length",
+        name=name,
+        spring=spring,
+        component=component,
+    )
+
+
+def sensor_muscle_stress(
+    *,
+    name: str,
+    muscle: str,
+    component: Literal["x", "y", "z", "norm", "xx", "yy", "zz", "xy", "yz", "xz", "von-mises"] | None = None,
+) -> dict:
+    r"""Sensor of the kind "muscle-stress": the stress by which a muscle pulls (Pa).
+
+    Parameters
+    ----------
+    name
+        the name of the sensor. Required.
+    muscle
+        the name of the muscle. Required.
+    component
+        one component alone. Default: all, each a column. Vectors have `x`, `y`, `z` and their length `norm`; tensors
+        `xx` and so on; stress has `von-mises` besides.
+    """
+    return _table(
+        kind="muscle-stress",
+        name=name,
+        muscle=muscle,
+        component=component,
+    )
+
+
+def sensor_muscle_stretch(
+    *,
+    name: str,
+    muscle: str,
+    component: Literal["x", "y", "z", "norm", "xx", "yy", "zz", "xy", "yz", "xz", "von-mises"] | None = None,
+) -> dict:
+    r"""Sensor of the kind "muscle-stretch": the length of the fibres of a muscle by that in the undeformed shape, the
+    mean over their volume (no unit).
+
+    Parameters
+    ----------
+    name
+        the name of the sensor. Required.
+    muscle
+        the name of the muscle. Required.
+    component
+        one component alone. Default: all, each a column. Vectors have `x`, `y`, `z` and their length `norm`; tensors
+        `xx` and so on; stress has `von-mises` besides.
+    """
+    return _table(
+        kind="muscle-stretch",
+        name=name,
+        muscle=muscle,
+        component=component,
+    )
+
+
+def sensor_activation(
+    *,
+    name: str,
+    muscle: str,
+    component: Literal["x", "y", "z", "norm", "xx", "yy", "zz", "xy", "yz", "xz", "von-mises"] | None = None,
+) -> dict:
+    r"""Sensor of the kind "activation": the activation of a muscle with Hill's law, from 0 to 1.
+
+    Parameters
+    ----------
+    name
+        the name of the sensor. Required.
+    muscle
+        the name of the muscle. Required.
+    component
+        one component alone. Default: all, each a column. Vectors have `x`, `y`, `z` and their length `norm`; tensors
+        `xx` and so on; stress has `von-mises` besides.
+    """
+    return _table(
+        kind="activation",
+        name=name,
+        muscle=muscle,
+        component=component,
+    )
+
+
+def sensor_temperature(
+    *,
+    name: str,
+    actuator: str,
+    component: Literal["x", "y", "z", "norm", "xx", "yy", "zz", "xy", "yz", "xz", "von-mises"] | None = None,
+) -> dict:
+    r"""Sensor of the kind "temperature": by how much a heated actuator is warmer than what is around it (K).
+
+    Parameters
+    ----------
+    name
+        the name of the sensor. Required.
+    actuator
+        the name of the actuator. Required.
+    component
+        one component alone. Default: all, each a column. Vectors have `x`, `y`, `z` and their length `norm`; tensors
+        `xx` and so on; stress has `von-mises` besides.
+    """
+    return _table(
+        kind="temperature",
+        name=name,
+        actuator=actuator,
+        component=component,
+    )
+
+
+def sensor_dipole_force(
+    *,
+    name: str,
+    dipole: str,
+    component: Literal["x", "y", "z", "norm", "xx", "yy", "zz", "xy", "yz", "xz", "von-mises"] | None = None,
+) -> dict:
+    r"""Sensor of the kind "dipole-force": the force of a dipole on all magnets; that on the dipole is minus this (N).
+
+    Parameters
+    ----------
+    name
+        the name of the sensor. Required.
+    dipole
+        the name of the dipole. Required.
+    component
+        one component alone. Default: all, each a column. Vectors have `x`, `y`, `z` and their length `norm`; tensors
+        `xx` and so on; stress has `von-mises` besides.
+    """
+    return _table(
+        kind="dipole-force",
+        name=name,
+        dipole=dipole,
+        component=component,
+    )
+
+
+def sensor_dipole_position(
+    *,
+    name: str,
+    dipole: str,
+    component: Literal["x", "y", "z", "norm", "xx", "yy", "zz", "xy", "yz", "xz", "von-mises"] | None = None,
+) -> dict:
+    r"""Sensor of the kind "dipole-position": where a dipole is (m).
+
+    Parameters
+    ----------
+    name
+        the name of the sensor. Required.
+    dipole
+        the name of the dipole. Required.
+    component
+        one component alone. Default: all, each a column. Vectors have `x`, `y`, `z` and their length `norm`; tensors
+        `xx` and so on; stress has `von-mises` besides.
+    """
+    return _table(
+        kind="dipole-position",
+        name=name,
+        dipole=dipole,
+        component=component,
+    )
+
+
+def sensor_pressure(
+    *,
+    name: str,
+    chamber: str,
+    component: Literal["x", "y", "z", "norm", "xx", "yy", "zz", "xy", "yz", "xz", "von-mises"] | None = None,
+) -> dict:
+    r"""Sensor of the kind "pressure": the gauge pressure in a chamber; of a liquid with weight the mean, of one with a
+    surface that at the lowest point of the walls (Pa).
+
+    Parameters
+    ----------
+    name
+        the name of the sensor. Required.
+    chamber
+        the name of the chamber. Required.
+    component
+        one component alone. Default: all, each a column. Vectors have `x`, `y`, `z` and their length `norm`; tensors
+        `xx` and so on; stress has `von-mises` besides.
+    """
+    return _table(
+        kind="pressure",
+        name=name,
+        chamber=chamber,
+        component=component,
+    )
+
+
+def sensor_absolute_pressure(
+    *,
+    name: str,
+    chamber: str,
+    component: Literal["x", "y", "z", "norm", "xx", "yy", "zz", "xy", "yz", "xz", "von-mises"] | None = None,
+) -> dict:
+    r"""Sensor of the kind "absolute-pressure": the absolute pressure of the gas in a chamber (Pa).
+
+    Parameters
+    ----------
+    name
+        the name of the sensor. Required.
+    chamber
+        the name of the chamber. Required.
+    component
+        one component alone. Default: all, each a column. Vectors have `x`, `y`, `z` and their length `norm`; tensors
+        `xx` and so on; stress has `von-mises` besides.
+    """
+    return _table(
+        kind="absolute-pressure",
+        name=name,
+        chamber=chamber,
+        component=component,
+    )
+
+
+def sensor_gas_amount(
+    *,
+    name: str,
+    chamber: str,
+    component: Literal["x", "y", "z", "norm", "xx", "yy", "zz", "xy", "yz", "xz", "von-mises"] | None = None,
+) -> dict:
+    r"""Sensor of the kind "gas-amount": the amount of gas in a chamber (kg).
+
+    Parameters
+    ----------
+    name
+        the name of the sensor. Required.
+    chamber
+        the name of the chamber. Required.
+    component
+        one component alone. Default: all, each a column. Vectors have `x`, `y`, `z` and their length `norm`; tensors
+        `xx` and so on; stress has `von-mises` besides.
+    """
+    return _table(
+        kind="gas-amount",
+        name=name,
+        chamber=chamber,
+        component=component,
+    )
+
+
+def sensor_gas_flow(
+    *,
+    name: str,
+    orifice: str,
+    component: Literal["x", "y", "z", "norm", "xx", "yy", "zz", "xy", "yz", "xz", "von-mises"] | None = None,
+) -> dict:
+    r"""Sensor of the kind "gas-flow": the flow of gas through an orifice, from its first end to its second (kg/s).
+
+    Parameters
+    ----------
+    name
+        the name of the sensor. Required.
+    orifice
+        the name of the orifice. Required.
+    component
+        one component alone. Default: all, each a column. Vectors have `x`, `y`, `z` and their length `norm`; tensors
+        `xx` and so on; stress has `von-mises` besides.
+    """
+    return _table(
+        kind="gas-flow",
+        name=name,
+        orifice=orifice,
+        component=component,
+    )
+
+
+def sensor_liquid_volume(
+    *,
+    name: str,
+    chamber: str,
+    component: Literal["x", "y", "z", "norm", "xx", "yy", "zz", "xy", "yz", "xz", "von-mises"] | None = None,
+) -> dict:
+    r"""Sensor of the kind "liquid-volume": the volume of the liquid in a chamber, as it is without pressure (m^3).
+
+    Parameters
+    ----------
+    name
+        the name of the sensor. Required.
+    chamber
+        the name of the chamber. Required.
+    component
+        one component alone. Default: all, each a column. Vectors have `x`, `y`, `z` and their length `norm`; tensors
+        `xx` and so on; stress has `von-mises` besides.
+    """
+    return _table(
+        kind="liquid-volume",
+        name=name,
+        chamber=chamber,
+        component=component,
+    )
+
+
+def sensor_liquid_flow(
+    *,
+    name: str,
+    chamber: str,
+    component: Literal["x", "y", "z", "norm", "xx", "yy", "zz", "xy", "yz", "xz", "von-mises"] | None = None,
+) -> dict:
+    r"""Sensor of the kind "liquid-flow": the flow of liquid into a chamber (m^3/s).
+
+    Parameters
+    ----------
+    name
+        the name of the sensor. Required.
+    chamber
+        the name of the chamber. Required.
+    component
+        one component alone. Default: all, each a column. Vectors have `x`, `y`, `z` and their length `norm`; tensors
+        `xx` and so on; stress has `von-mises` besides.
+    """
+    return _table(
+        kind="liquid-flow",
+        name=name,
+        chamber=chamber,
+        component=component,
+    )
+
+
+def sensor_liquid_level(
+    *,
+    name: str,
+    chamber: str,
+    component: Literal["x", "y", "z", "norm", "xx", "yy", "zz", "xy", "yz", "xz", "von-mises"] | None = None,
+) -> dict:
+    r"""Sensor of the kind "liquid-level": the height of the surface of the liquid in a chamber above the origin, against
+    gravity (m).
+
+    Parameters
+    ----------
+    name
+        the name of the sensor. Required.
+    chamber
+        the name of the chamber. Required.
+    component
+        one component alone. Default: all, each a column. Vectors have `x`, `y`, `z` and their length `norm`; tensors
+        `xx` and so on; stress has `von-mises` besides.
+    """
+    return _table(
+        kind="liquid-level",
+        name=name,
+        chamber=chamber,
+        component=component,
+    )
+
+
+def sensor_pipe_flow(
+    *,
+    name: str,
+    pipe: str,
+    component: Literal["x", "y", "z", "norm", "xx", "yy", "zz", "xy", "yz", "xz", "von-mises"] | None = None,
+) -> dict:
+    r"""Sensor of the kind "pipe-flow": the flow of liquid through a pipe, from its first end to its second (m^3/s).
+
+    Parameters
+    ----------
+    name
+        the name of the sensor. Required.
+    pipe
+        the name of the pipe. Required.
+    component
+        one component alone. Default: all, each a column. Vectors have `x`, `y`, `z` and their length `norm`; tensors
+        `xx` and so on; stress has `von-mises` besides.
+    """
+    return _table(
+        kind="pipe-flow",
+        name=name,
+        pipe=pipe,
+        component=component,
+    )
+
+
+def sensor_volume(
+    *,
+    name: str,
+    chamber: str,
+    component: Literal["x", "y", "z", "norm", "xx", "yy", "zz", "xy", "yz", "xz", "von-mises"] | None = None,
+) -> dict:
+    r"""Sensor of the kind "volume": the volume that the walls of a chamber enclose (m^3).
+
+    Parameters
+    ----------
+    name
+        the name of the sensor. Required.
+    chamber
+        the name of the chamber. Required.
+    component
+        one component alone. Default: all, each a column. Vectors have `x`, `y`, `z` and their length `norm`; tensors
+        `xx` and so on; stress has `von-mises` besides.
+    """
+    return _table(
+        kind="volume",
+        name=name,
+        chamber=chamber,
+        component=component,
     )
 
 

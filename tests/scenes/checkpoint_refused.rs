@@ -33,7 +33,7 @@ fn functions_that_commands_gave_are_named() {
     says(beam.checkpoint().write(&path), &["pressure of chamber \"inside\"", help]);
     beam.pressure("inside", 1.0).unwrap();
     beam.actuate("tendon", Signal::function(|t| t)).unwrap();
-    says(beam.checkpoint().write(&path), &["actuation of spring \"tendon\"", help]);
+    says(beam.checkpoint().write(&path), &["actuation of \"tendon\"", help]);
     beam.actuate("tendon", Signal::table([0.0, 1.0], [0.0, 1.0])).unwrap();
     beam.load_with("right", |t| [t, 0.0]).unwrap();
     says(beam.checkpoint().write(&path), &["load on \"right\"", help]);

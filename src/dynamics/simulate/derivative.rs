@@ -2,8 +2,10 @@
 
 use std::f64::consts::TAU;
 
-use super::gauge::Value;
-use super::reading::{Component, Reading, What};
+use super::component::Component;
+use super::output::Value;
+use super::outputs::VOLUME;
+use super::reading::{Reading, What};
 use super::spot::{At, Spot};
 use super::view::{Gauges, View, mean};
 use crate::base::input::InputError;
@@ -68,23 +70,10 @@ impl Reading {
     pub(crate) fn has_derivative(&self) -> bool {
         match &self.what {
             What::Position(spot) | What::Displacement(spot) => !matches!(spot.0, At::Marker(..)),
-            What::CentreOfMass => true,
-            What::Distance(_) | What::Angle(_) | What::ChamberVolume(_) => true,
+            What::CentreOfMass | What::Distance(_) | What::Angle(_) => true,
             What::ConstraintForce(_) => true,
-            What::ConstraintMoment(..) => false,
-            What::Velocity(_) | What::Acceleration(_) | What::Momentum => false,
-            What::AngularVelocity(_) | What::AngularAcceleration(_) => false,
-            What::Contact(..) | What::Gap(_) | What::TensionAtEnd(_) => false,
-            What::Rotation(_) | What::Pressure(_) | What::AbsolutePressure(_) => false,
-            What::GasAmount(_) | What::GasFlow(_) => false,
-            What::LiquidVolume(_) | What::LiquidFlow(_) | What::LiquidLevel(_) => false,
-            What::PipeFlow(_) => false,
-            What::MuscleStress(_) | What::MuscleStretch(_) | What::MagneticMoment => false,
-            What::Activation(_) | What::Temperature(_) => false,
-            What::FluidForce(..) | What::DipoleForce(_) | What::DipolePosition(_) => false,
-            What::SpringPull(_) | What::SpringLength(_) | What::Stress(_) | What::Strain(_) => {
-                false
-            }
+            What::Of(output, _) => **output == VOLUME,
+            _ => false,
         }
     }
 
@@ -170,7 +159,7 @@ impl Reading {
                     dofs.iter_mut().zip(along).for_each(|(dof, along)| *dof = along * nodal / mass);
                 }
             }
-            What::ChamberVolume(name) => {
+            What::Of(output, name) if **output == VOLUME => {
                 let chamber = &moved.scene.chambers()[scene.chamber_number(name, "chamber")?];
                 let chamber = chamber.force(body, Vec::new())?;
                 linearized.value = chamber.volume(moved.u);

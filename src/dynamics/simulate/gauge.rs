@@ -6,70 +6,25 @@ use std::sync::Arc;
 use nalgebra::Vector3;
 
 use super::contact_gauge::ContactGauge;
-use super::reading::{Component, Lever, OfContact, Place, Reading, What};
+use super::output::Value;
+use super::reading::{Lever, OfContact, Place, Reading, What};
 use super::rigid_fit::{RigidFit, Turning};
 use super::spot::Motion;
 use super::view::{View, mean};
 use crate::base::input::{InputError, finite};
 use crate::base::vector::{cross, dot, norm};
 use crate::dynamics::trajectory::Sample;
-use crate::elements::body::{Body, Branches, NodalField, Part, von_mises};
+use crate::elements::body::{Body, Branches, NodalField, Part};
 use crate::elements::mesh::Selection;
 use crate::scene::constraint::{ConstraintRow, PhaseStart};
 use crate::scene::forces::FluidForce;
 use crate::scene::timeline::Scene;
-
-/// The value of a quantity at one time; components beyond the dimension are 0.
-pub(super) enum Value {
-    Number(f64),
-    Vector([f64; 3]),
-    Tensor([[f64; 3]; 3]),
-}
 
 /// Reads a quantity, or NaN where it is undefined.
 pub(super) type Gauge = Box<dyn Fn(&View, &Sample) -> Value + Send + Sync>;
 
 /// Reads an angle; in the plane without whole turns.
 pub(super) type AngleGauge = Arc<dyn Fn(&View) -> f64 + Send + Sync>;
-
-impl Value {
-    /// A vector with as many components as there are dimensions.
-    fn of_vector(vector: &[f64]) -> Self {
-        Self::Vector(std::array::from_fn(|i| vector.get(i).copied().unwrap_or(0.0)))
-    }
-
-    /// A component, which the quantity has.
-    pub(super) fn part(&self, component: Component) -> f64 {
-        match (self, component) {
-            (Self::Number(number), _) => *number,
-            (Self::Vector(x), Component::X) => x[0],
-            (Self::Vector(x), Component::Y) => x[1],
-            (Self::Vector(x), Component::Z) => x[2],
-            (Self::Vector(x), _) => norm(x),
-            (Self::Tensor(a), Component::XX) => a[0][0],
-            (Self::Tensor(a), Component::YY) => a[1][1],
-            (Self::Tensor(a), Component::ZZ) => a[2][2],
-            (Self::Tensor(a), Component::XY) => a[0][1],
-            (Self::Tensor(a), Component::YZ) => a[1][2],
-            (Self::Tensor(a), Component::XZ) => a[0][2],
-            (Self::Tensor(a), _) => von_mises(a),
-        }
-    }
-}
-
-/// The function that reads a vector of the dipole with a `name`.
-fn of_dipole(
-    scene: &Scene,
-    name: &str,
-    read: fn(&View<'_>, &str) -> Result<Vec<f64>, InputError>,
-) -> Result<Gauge, InputError> {
-    scene.dipole_number(name, "dipole")?;
-    let name = name.to_owned();
-    // the name is known
-    Ok(Box::new(move |view, _| {
-        read(view, &name).map_or(Value::Vector([f64::NAN; 3]), |vector| Value::of_vector(&vector))
-    }))
-}
 
 impl Reading {
     /// The function that reads it in `scene`.
@@ -114,69 +69,12 @@ impl Reading {
                 let touch = scene.touch_force(touch, "touch")?;
                 Box::new(move |view, _| Value::Number(touch.gap(view.displacements())))
             }
-            What::SpringPull(spring) => {
-                scene.spring_number(spring, "spring")?;
-                number(spring, |view, spring| view.spring_pull(spring))
-            }
-            What::TensionAtEnd(cable) => {
-                scene.spring_number(cable, "cable")?;
-                number(cable, |view, cable| Ok(view.spring_pulls(cable)?[1]))
-            }
-            What::SpringLength(spring) => {
-                scene.spring_number(spring, "spring")?;
-                number(spring, |view, spring| view.spring_length(spring))
-            }
-            What::AbsolutePressure(chamber) => {
-                scene.gas_number(chamber, "chamber")?;
-                number(chamber, |view, chamber| view.absolute_pressure(chamber))
-            }
-            What::GasAmount(chamber) => {
-                scene.gas_number(chamber, "chamber")?;
-                number(chamber, |view, chamber| view.gas_amount(chamber))
-            }
-            What::GasFlow(orifice) => {
-                scene.orifice_number(orifice, "orifice")?;
-                number(orifice, |view, orifice| view.gas_flow(orifice))
-            }
-            What::LiquidVolume(chamber) => {
-                scene.liquid_number(chamber, "chamber")?;
-                number(chamber, |view, chamber| view.liquid_volume(chamber))
-            }
-            What::LiquidFlow(chamber) => {
-                scene.liquid_number(chamber, "chamber")?;
-                number(chamber, |view, chamber| view.liquid_flow(chamber))
-            }
-            What::PipeFlow(pipe) => {
-                scene.pipe_number(pipe, "pipe")?;
-                number(pipe, |view, pipe| view.pipe_flow(pipe))
-            }
-            What::LiquidLevel(chamber) => {
-                scene.surface_number(chamber, "chamber")?;
-                number(chamber, |view, chamber| view.liquid_level(chamber))
-            }
-            What::MuscleStress(muscle) => {
-                scene.muscle_number(muscle, "muscle")?;
-                number(muscle, |view, muscle| view.muscle_stress(muscle))
-            }
-            What::MuscleStretch(muscle) => {
-                scene.muscle_number(muscle, "muscle")?;
-                number(muscle, |view, muscle| view.muscle_stretch(muscle))
-            }
-            What::Activation(muscle) => {
-                scene.largest_stress(muscle, "muscle")?;
-                number(muscle, |view, muscle| view.activation(muscle))
-            }
-            What::Temperature(actuator) => {
-                scene.per_kelvin(actuator, "actuator")?;
-                number(actuator, |view, actuator| view.temperature(actuator))
-            }
-            What::Pressure(chamber) => {
-                scene.chamber_number(chamber, "chamber")?;
-                number(chamber, |view, chamber| view.pressure(chamber))
-            }
-            What::ChamberVolume(chamber) => {
-                scene.chamber_number(chamber, "chamber")?;
-                number(chamber, |view, chamber| view.chamber_volume(chamber))
+            What::Of(output, name) => {
+                let (output, number) = (*output, output.find(scene, name)?);
+                // the component is there
+                Box::new(move |view, _| {
+                    (output.read)(view, number).unwrap_or(Value::Number(f64::NAN))
+                })
             }
             What::MagneticMoment => {
                 if scene.magnets().is_empty() {
@@ -184,12 +82,6 @@ impl Reading {
                     return Err(InputError::new("sensor", "magnetic moment", help));
                 }
                 Box::new(|view, _| Value::of_vector(&view.magnetic_moment()))
-            }
-            What::DipoleForce(dipole) => {
-                of_dipole(scene, dipole, |view, name| view.dipole_force(name))?
-            }
-            What::DipolePosition(dipole) => {
-                of_dipole(scene, dipole, |view, name| view.dipole_position(name))?
             }
             What::FluidForce(fluid, nodes) => self.of_fluid(scene, fluid, nodes.as_ref())?,
             What::Stress(place) => {
@@ -320,12 +212,6 @@ fn turning(fit: RigidFit, dimension: usize, rate: fn(&Turning) -> Vector3<f64>) 
 /// The body with this first node, or all together.
 fn part(body: &Body, first_node: Option<usize>) -> Part<'_> {
     first_node.map_or_else(|| body.whole(), |node| body.part_of(node))
-}
-
-/// The gauge of a number of the spring, muscle or chamber `name`.
-fn number(name: &str, read: fn(&View, &str) -> Result<f64, InputError>) -> Gauge {
-    let name = name.to_owned();
-    Box::new(move |view, _| Value::Number(read(view, &name).unwrap_or(f64::NAN)))
 }
 
 fn position(view: &View, nodes: &[usize]) -> [f64; 3] {

@@ -1,6 +1,7 @@
 //! Readings of a symmetric scene, translated to its half.
 
-use super::reading::{Component, Reading, What};
+use super::component::Component;
+use super::reading::{Reading, What};
 use super::spot::{At, Spot};
 use crate::base::input::InputError;
 use crate::elements::mesh::Selection;

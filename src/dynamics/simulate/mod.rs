@@ -8,6 +8,7 @@ mod checkpoint;
 #[cfg(feature = "checkpoint")]
 mod checkpoint_parts;
 mod commands;
+mod component;
 mod contact_gauge;
 #[cfg(feature = "study")]
 mod derivative;
@@ -18,6 +19,8 @@ mod gauge;
 #[cfg(any(feature = "scene-file", feature = "study"))]
 mod half_reading;
 mod interval;
+mod output;
+mod outputs;
 mod phase_end;
 mod phase_run;
 #[cfg(any(feature = "scene-file", feature = "study"))]
@@ -51,10 +54,15 @@ pub use checkpoint::Checkpoint;
 pub(crate) use checkpoint::Kept;
 #[cfg(feature = "checkpoint")]
 pub(crate) use checkpoint_parts::Choice;
+pub use component::Component;
 #[cfg(feature = "study")]
 pub(crate) use derivative::{Linearized, Moved};
+#[cfg(feature = "scene-file")]
+pub(crate) use output::Output;
+#[cfg(feature = "scene-file")]
+pub(crate) use outputs::OUTPUTS;
 pub use progress::Progress;
-pub use reading::{Component, Reading};
+pub use reading::Reading;
 use run::Run;
 pub use sampling::Sampling;
 pub use simulation::Simulation;

@@ -1,6 +1,7 @@
 //! Readings of a scene that is uniform along an axis, translated to its section.
 
-use super::reading::{By, Component, OfContact, Reading, What};
+use super::component::Component;
+use super::reading::{By, OfContact, Reading, What};
 use super::spot::{At, Spot};
 use crate::base::input::InputError;
 use crate::elements::mesh::Selection;

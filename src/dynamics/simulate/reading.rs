@@ -3,8 +3,10 @@
 use std::f64::consts::TAU;
 use std::iter::repeat_n;
 
+use super::component::Component;
+use super::output::Output;
 use super::spot::Spot;
-use crate::base::input::{InputError, unknown_among};
+use crate::base::input::InputError;
 use crate::dynamics::trajectory::DEGREES;
 use crate::elements::mesh::Selection;
 
@@ -36,27 +38,11 @@ pub(super) enum What {
     Contact(OfContact, By, Option<Selection>),
     /// Of a touch.
     Gap(String),
-    SpringPull(String),
-    SpringLength(String),
-    MuscleStress(String),
-    MuscleStretch(String),
-    Activation(String),
-    Temperature(String),
+    /// Of the component with a name.
+    Of(&'static Output, String),
     MagneticMoment,
-    DipoleForce(String),
-    DipolePosition(String),
     /// Of all nodes, or of these.
     FluidForce(String, Option<Selection>),
-    TensionAtEnd(String),
-    Pressure(String),
-    ChamberVolume(String),
-    AbsolutePressure(String),
-    GasAmount(String),
-    GasFlow(String),
-    LiquidVolume(String),
-    LiquidFlow(String),
-    LiquidLevel(String),
-    PipeFlow(String),
     Stress(Place),
     Strain(Place),
     Distance([Selection; 2]),
@@ -100,67 +86,6 @@ pub(super) struct Lever {
 pub(super) enum Place {
     Nodes(Selection),
     Point(Vec<f64>),
-}
-
-/// A part of a vector or tensor.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Component {
-    /// Along the first axis.
-    X,
-    /// Along the second axis.
-    Y,
-    /// Along the third axis.
-    Z,
-    /// The length of a vector.
-    Norm,
-    /// First diagonal entry of a tensor.
-    XX,
-    /// Second diagonal entry.
-    YY,
-    /// Third diagonal entry: across the plane, of a body in two dimensions.
-    ZZ,
-    /// Entry of the first and second axis; for strain that of the tensor, half the change of the right angle.
-    XY,
-    /// Entry of the second and third axis.
-    YZ,
-    /// Entry of the first and third axis.
-    XZ,
-    /// The von Mises stress.
-    VonMises,
-}
-
-impl Component {
-    /// All of them with their words.
-    pub(crate) const WORDS: [(&'static str, Self); 11] = [
-        ("x", Self::X),
-        ("y", Self::Y),
-        ("z", Self::Z),
-        ("norm", Self::Norm),
-        ("xx", Self::XX),
-        ("yy", Self::YY),
-        ("zz", Self::ZZ),
-        ("xy", Self::XY),
-        ("yz", Self::YZ),
-        ("xz", Self::XZ),
-        ("von-mises", Self::VonMises),
-    ];
-
-    /// Its word: `x`, `norm`, `xy`, `von-mises`, ...
-    pub fn word(self) -> &'static str {
-        let of_this = Self::WORDS.iter().find(|(_, component)| *component == self);
-        of_this.map_or("", |(word, _)| word)
-    }
-
-    /// # Errors
-    /// If it is none of the `known` ones, which are all that a quantity has.
-    fn check(self, known: &[Self]) -> Result<(), InputError> {
-        if known.contains(&self) {
-            return Ok(());
-        }
-        let known: Vec<&str> = known.iter().map(|component| component.word()).collect();
-        let help = unknown_among(self.word(), &known, "quantity", "components");
-        Err(InputError::new("component", format!("\"{}\"", self.word()), help))
-    }
 }
 
 impl Reading {
@@ -273,108 +198,15 @@ impl Reading {
         self
     }
 
-    /// Force with which a spring pulls its ends together (N): see [`View::spring_pull`](crate::View::spring_pull).
-    pub fn spring_pull(spring: impl Into<String>) -> Self {
-        What::SpringPull(spring.into()).into()
-    }
-
-    /// Tension of a cable at its last place (N), which friction along its path makes another one than its
-    /// [pull](Self::spring_pull) at the drive.
-    pub fn tension_at_end(cable: impl Into<String>) -> Self {
-        What::TensionAtEnd(cable.into()).into()
-    }
-
-    /// Length of a spring (m), or of the path of a cable.
-    pub fn spring_length(spring: impl Into<String>) -> Self {
-        What::SpringLength(spring.into()).into()
-    }
-
-    /// Stress by which a muscle pulls (Pa): see [`View::muscle_stress`](crate::View::muscle_stress).
-    pub fn muscle_stress(muscle: impl Into<String>) -> Self {
-        What::MuscleStress(muscle.into()).into()
-    }
-
-    /// How much longer the fibres of a muscle are than in the undeformed shape: see
-    /// [`View::muscle_stretch`](crate::View::muscle_stretch).
-    pub fn muscle_stretch(muscle: impl Into<String>) -> Self {
-        What::MuscleStretch(muscle.into()).into()
-    }
-
-    /// Activation of a muscle with [Hill's law](crate::Hill), from 0 to 1: see [`View::activation`](crate::View::activation).
-    pub fn activation(muscle: impl Into<String>) -> Self {
-        What::Activation(muscle.into()).into()
-    }
-
-    /// By how much a [heated](crate::Lag::heated) actuator is warmer than what is around it (K).
-    pub fn temperature(actuator: impl Into<String>) -> Self {
-        What::Temperature(actuator.into()).into()
-    }
-
     /// Magnetic moment of all magnets (A m^2).
     pub fn magnetic_moment() -> Self {
         What::MagneticMoment.into()
-    }
-
-    /// Force of a [dipole](crate::Dipole) on all magnets (N): see [`View::dipole_force`](crate::View::dipole_force).
-    pub fn dipole_force(dipole: impl Into<String>) -> Self {
-        What::DipoleForce(dipole.into()).into()
-    }
-
-    /// Where a [dipole](crate::Dipole) is (m).
-    pub fn dipole_position(dipole: impl Into<String>) -> Self {
-        What::DipolePosition(dipole.into()).into()
     }
 
     /// Force of a [fluid](crate::Fluid) (N), drag and pressure, on all nodes, on [some](Self::on) or on those of one
     /// [body](Self::of_body). The effect of added mass is inertia and not part of this force.
     pub fn fluid_force(fluid: impl Into<String>) -> Self {
         What::FluidForce(fluid.into(), None).into()
-    }
-
-    /// Gauge pressure in a chamber (Pa); of a liquid with weight the mean, of one with a surface the value at the
-    /// lowest wall point.
-    pub fn pressure(chamber: impl Into<String>) -> Self {
-        What::Pressure(chamber.into()).into()
-    }
-
-    /// Absolute pressure (Pa) of the gas in a chamber.
-    pub fn absolute_pressure(chamber: impl Into<String>) -> Self {
-        What::AbsolutePressure(chamber.into()).into()
-    }
-
-    /// Amount of gas (kg) in a chamber.
-    pub fn gas_amount(chamber: impl Into<String>) -> Self {
-        What::GasAmount(chamber.into()).into()
-    }
-
-    /// Flow of gas (kg/s) through an orifice, from its first end to its second.
-    pub fn gas_flow(orifice: impl Into<String>) -> Self {
-        What::GasFlow(orifice.into()).into()
-    }
-
-    /// Natural volume of the liquid in a chamber (m^3).
-    pub fn liquid_volume(chamber: impl Into<String>) -> Self {
-        What::LiquidVolume(chamber.into()).into()
-    }
-
-    /// Flow of liquid into a chamber (m^3/s).
-    pub fn liquid_flow(chamber: impl Into<String>) -> Self {
-        What::LiquidFlow(chamber.into()).into()
-    }
-
-    /// Height (m) of the surface of the liquid in a chamber above the origin, against gravity: see [`Liquid::surface`](crate::Liquid::surface).
-    pub fn liquid_level(chamber: impl Into<String>) -> Self {
-        What::LiquidLevel(chamber.into()).into()
-    }
-
-    /// Flow of liquid (m^3/s) through a [pipe](crate::Pipe), from its first end to its second.
-    pub fn pipe_flow(pipe: impl Into<String>) -> Self {
-        What::PipeFlow(pipe.into()).into()
-    }
-
-    /// Volume that the walls of a chamber enclose (m^3).
-    pub fn chamber_volume(chamber: impl Into<String>) -> Self {
-        What::ChamberVolume(chamber.into()).into()
     }
 
     /// Stress at nodes (Pa), of the elastic law and of Maxwell branches, without viscosity: see
@@ -470,11 +302,18 @@ impl Reading {
         self
     }
 
+    /// An output of the component with a `name`.
+    #[cfg(feature = "scene-file")]
+    pub(crate) fn of(output: &'static Output, name: impl Into<String>) -> Self {
+        What::Of(output, name.into()).into()
+    }
+
     /// Unit of the numbers.
     pub(crate) fn unit(&self) -> &'static str {
         match self.what {
             What::Position(_) | What::Displacement(_) | What::CentreOfMass => "m",
-            What::SpringLength(_) | What::Distance(_) => "m",
+            What::Distance(_) => "m",
+            What::Of(output, _) => output.unit,
             What::Velocity(_) => "m/s",
             What::Acceleration(_) => "m/s^2",
             What::AngularVelocity(_) => "rad/s",
@@ -482,22 +321,13 @@ impl Reading {
             What::Momentum => "kg m/s",
             What::MagneticMoment => "A m^2",
             What::ConstraintForce(_) | What::Contact(OfContact::Force, ..) => "N",
-            What::FluidForce(..) | What::DipoleForce(_) => "N",
-            What::DipolePosition(_) => "m",
-            What::SpringPull(_) | What::TensionAtEnd(_) => "N",
+            What::FluidForce(..) => "N",
             What::Contact(OfContact::Area, ..) => "m^2",
             What::Contact(OfContact::Pressure, ..) => "Pa",
             What::Gap(_) => "m",
             What::ConstraintMoment(..) => "N m",
-            What::Pressure(_) | What::AbsolutePressure(_) | What::Stress(_) => "Pa",
-            What::MuscleStress(_) => "Pa",
-            What::GasAmount(_) => "kg",
-            What::GasFlow(_) => "kg/s",
-            What::ChamberVolume(_) | What::LiquidVolume(_) => "m^3",
-            What::LiquidFlow(_) | What::PipeFlow(_) => "m^3/s",
-            What::LiquidLevel(_) => "m",
-            What::Temperature(_) => "K",
-            What::Strain(_) | What::MuscleStretch(_) | What::Activation(_) => "1",
+            What::Stress(_) => "Pa",
+            What::Strain(_) => "1",
             What::Angle(_) | What::Rotation(_) if self.in_degrees => DEGREES,
             What::Angle(_) | What::Rotation(_) => "rad",
         }
@@ -528,19 +358,12 @@ impl Reading {
     /// Whether it follows from the places of nodes alone.
     pub(super) fn is_of_places(&self) -> bool {
         use What::*;
-        matches!(
-            self.what,
-            Position(_)
-                | Displacement(_)
-                | Distance(_)
-                | Angle(_)
-                | CentreOfMass
-                | Rotation(_)
-                | Strain(_)
-                | SpringLength(_)
-                | MuscleStretch(_)
-                | ChamberVolume(_)
-        )
+        match &self.what {
+            Of(output, _) => output.is_of_positions,
+            Position(_) | Displacement(_) | Distance(_) | Angle(_) => true,
+            CentreOfMass | Rotation(_) | Strain(_) => true,
+            _ => false,
+        }
     }
 
     /// Whether it is continuous over whole turns, for a body in `dimension` dimensions.
@@ -588,7 +411,7 @@ impl Reading {
             | (What::Velocity(_) | What::Acceleration(_), _)
             | (What::ConstraintForce(_) | What::Contact(OfContact::Force, ..), _)
             | (What::CentreOfMass | What::Momentum | What::MagneticMoment, _)
-            | (What::FluidForce(..) | What::DipoleForce(_) | What::DipolePosition(_), _) => {
+            | (What::FluidForce(..) | What::Of(Output { is_vector: true, .. }, _), _) => {
                 (&[X, Y, Z][..dimension], Some(Norm))
             }
             (What::ConstraintMoment(_, Lever { axis: None, .. }), 3)

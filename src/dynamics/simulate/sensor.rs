@@ -5,8 +5,10 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use super::angles::Angles;
-use super::gauge::{AngleGauge, Value};
-use super::reading::{Component, Reading};
+use super::component::Component;
+use super::gauge::AngleGauge;
+use super::output::Value;
+use super::reading::Reading;
 use super::view::View;
 use crate::base::input::InputError;
 use crate::dynamics::report::ToldReading;

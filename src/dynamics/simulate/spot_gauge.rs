@@ -2,7 +2,8 @@
 
 use nalgebra::Vector3;
 
-use super::gauge::{Gauge, Value};
+use super::gauge::Gauge;
+use super::output::Value;
 use super::reading::Reading;
 use super::rigid_fit::RigidFit;
 use super::spot::{At, Motion, Spot};

@@ -5,10 +5,10 @@ use std::sync::Arc;
 
 use crate::base::input::InputError;
 use crate::dynamics::state::State;
-use crate::elements::body::{Body, CellField, Contraction, Grown, MagnetizedPoints, Strands};
+use crate::elements::body::{Body, CellField, Grown, MagnetizedPoints, Strands};
 use crate::elements::force::{Force, Forces, NodalForces};
 use crate::elements::mesh::Selection;
-use crate::scene::forces::{ChamberForce, Contact, Content, Filled, Poured, SpringGauge};
+use crate::scene::forces::{ChamberForce, Contact, Filled, Poured, SpringGauge};
 use crate::scene::timeline::{LoadKind, Phase, Quantity, Scene, Target};
 #[cfg(feature = "play")]
 use crate::scene::{forces::NodalContact, timeline::ContactReader};
@@ -26,13 +26,13 @@ pub struct View<'a> {
 
 /// The forces by which chambers, springs and muscles are measured, in the order of the scene.
 pub(super) struct Gauges {
-    chambers: Vec<Arc<ChamberForce>>,
-    springs: Vec<SpringGauge>,
-    gases: Vec<Filled>,
-    liquids: Vec<Poured>,
+    pub(super) chambers: Vec<Arc<ChamberForce>>,
+    pub(super) springs: Vec<SpringGauge>,
+    pub(super) gases: Vec<Filled>,
+    pub(super) liquids: Vec<Poured>,
     /// Their masses at the start (kg), of gases and then of liquids.
     masses: Vec<f64>,
-    muscles: Vec<Strands>,
+    pub(super) muscles: Vec<Strands>,
     /// By which the positions of nodes make the magnetic moment (A m); empty without magnets.
     poles: Vec<f64>,
     /// On which dipoles act; empty without dipoles.
@@ -129,69 +129,6 @@ impl<'a> View<'a> {
         self.body().mass_average(self.state.v)
     }
 
-    /// Volume that the walls of a chamber enclose (m^3).
-    ///
-    /// # Errors
-    /// A name that no chamber has.
-    pub fn chamber_volume(&self, chamber: &str) -> Result<f64, InputError> {
-        let number = self.scene.chamber_number(chamber, "chamber")?;
-        Ok(self.gauges.chambers[number].volume(self.state.u))
-    }
-
-    /// Pressure in a chamber (Pa): of gas and of a liquid what it exceeds that outside by, NaN where it has none; of a liquid with weight the mean,
-    /// of one with a surface that at the lowest place of the walls.
-    ///
-    /// # Errors
-    /// A name that no chamber has.
-    pub fn pressure(&self, chamber: &str) -> Result<f64, InputError> {
-        self.scene.chamber_number(chamber, "chamber")?;
-        if let Some(number) = self.scene.gas_in(chamber) {
-            let gas = &self.gauges.gases[number];
-            return Ok(gas.gauge(self.state.u, self.amount(number)).unwrap_or(f64::NAN));
-        }
-        if let Some(number) = self.scene.liquid_in(chamber) {
-            let amount = self.liquid_amount(number);
-            let pressure = match self.scene.liquids()[number].has_surface() {
-                true => self.with_surface(number)?.gauge(self.state.u, amount),
-                false => self.gauges.liquids[number].gauge(self.state.u, amount),
-            };
-            return Ok(pressure.unwrap_or(f64::NAN));
-        }
-        Ok(self.input(Quantity::Pressure, chamber))
-    }
-
-    /// Absolute pressure (Pa) of the gas in a chamber.
-    ///
-    /// # Errors
-    /// A name that no chamber has, or one without gas.
-    pub fn absolute_pressure(&self, chamber: &str) -> Result<f64, InputError> {
-        Ok(self.gas_pressure(self.scene.gas_number(chamber, "chamber")?))
-    }
-
-    /// Amount of gas (kg) in a chamber.
-    ///
-    /// # Errors
-    /// As [`absolute_pressure`](Self::absolute_pressure).
-    pub fn gas_amount(&self, chamber: &str) -> Result<f64, InputError> {
-        Ok(self.amount(self.scene.gas_number(chamber, "chamber")?))
-    }
-
-    /// Flow (kg/s) through an orifice, from its first end to its second.
-    ///
-    /// # Errors
-    /// A name that no orifice has; a supply or an opening out of range.
-    pub fn gas_flow(&self, orifice: &str) -> Result<f64, InputError> {
-        let number = self.scene.orifice_number(orifice, "orifice")?;
-        let flow = self.scene.orifice_flow(number, self.phase)?;
-        let gases = &self.gauges.gases;
-        let pressures: Vec<f64> = (0..gases.len()).map(|gas| self.gas_pressure(gas)).collect();
-        let rate = flow.rate(self.time, gases, &pressures);
-        let [rate, ..] = rate.map_err(|failure| {
-            InputError::new("orifice", format!("\"{orifice}\""), failure.into_error().to_string())
-        })?;
-        Ok(rate)
-    }
-
     /// How far an orifice is open.
     ///
     /// # Errors
@@ -201,36 +138,9 @@ impl<'a> View<'a> {
         Ok(self.input(Quantity::Opening, orifice))
     }
 
-    /// Natural volume (m^3) of the liquid in a chamber.
-    ///
-    /// # Errors
-    /// A name that no chamber has, or one without liquid.
-    pub fn liquid_volume(&self, chamber: &str) -> Result<f64, InputError> {
-        let number = self.scene.liquid_number(chamber, "chamber")?;
-        Ok(self.gauges.liquids[number].natural(self.liquid_amount(number)))
-    }
-
-    /// Flow (m^3/s, of natural volume) of liquid into a chamber.
-    ///
-    /// # Errors
-    /// As [`liquid_volume`](Self::liquid_volume).
-    pub fn liquid_flow(&self, chamber: &str) -> Result<f64, InputError> {
-        self.scene.liquid_number(chamber, "chamber")?;
-        Ok(self.input(Quantity::Flow, chamber))
-    }
-
     /// An input of one component, of a component of the scene.
-    fn input(&self, quantity: Quantity, name: &str) -> f64 {
+    pub(super) fn input(&self, quantity: Quantity, name: &str) -> f64 {
         self.scene.input_at(self.phase, quantity, &Target::one(name), self.time)[0]
-    }
-
-    /// Height (m) above the origin, against gravity, of the surface of the liquid in a chamber; NaN where the chamber has no room for the liquid.
-    ///
-    /// # Errors
-    /// A name that no chamber has, one without liquid, a liquid without a [surface](crate::Liquid::surface).
-    pub fn liquid_level(&self, chamber: &str) -> Result<f64, InputError> {
-        let number = self.scene.surface_number(chamber, "chamber")?;
-        Ok(self.with_surface(number)?.level(self.state.u, self.liquid_amount(number)))
     }
 
     /// Calls `see` with the scene, the phase, the displacements and the extra unknowns.
@@ -243,34 +153,19 @@ impl<'a> View<'a> {
     }
 
     /// The liquid of that number, which has a surface, under the gravity of the phase.
-    fn with_surface(&self, number: usize) -> Result<Poured, InputError> {
+    pub(super) fn with_surface(&self, number: usize) -> Result<Poured, InputError> {
         self.scene.poured_in(Some(self.phase), &self.scene.liquids()[number])
     }
 
-    /// Flow (m^3/s) through a pipe, from its first end to its second.
-    ///
-    /// # Errors
-    /// A name that no pipe has.
-    pub fn pipe_flow(&self, pipe: &str) -> Result<f64, InputError> {
-        let number = self.scene.pipe_number(pipe, "pipe")?;
-        let flowing = self.scene.flowing(self.state.others);
-        Ok(flowing.map_or(0.0, |all| all[all.len() - self.scene.pipes().len() + number]))
-    }
-
     /// The amount (kg) of that number, of gases and then of liquids.
-    fn amount(&self, number: usize) -> f64 {
+    pub(super) fn amount(&self, number: usize) -> f64 {
         // where they are no unknowns, amounts stay what they are
         self.scene.flowing(self.state.others).unwrap_or(&self.gauges.masses)[number]
     }
 
     /// That of the liquid of that number.
-    fn liquid_amount(&self, number: usize) -> f64 {
+    pub(super) fn liquid_amount(&self, number: usize) -> f64 {
         self.amount(self.gauges.gases.len() + number)
-    }
-
-    fn gas_pressure(&self, number: usize) -> f64 {
-        let pressure = self.gauges.gases[number].pressure(self.state.u, self.amount(number));
-        pressure.map_or(f64::NAN, |[pressure, _]| pressure)
     }
 
     /// Force of the actuator of a spring (N), above 0 where it extends the spring; of a cable its tension, of a winch the
@@ -294,16 +189,7 @@ impl<'a> View<'a> {
         Ok(self.phase.command(actuator, self.time)[0])
     }
 
-    /// By how much a [heated](crate::Lag::heated) actuator is warmer than what is around it (K).
-    ///
-    /// # Errors
-    /// A name that no heated actuator has.
-    pub fn temperature(&self, actuator: &str) -> Result<f64, InputError> {
-        let per_kelvin = self.scene.per_kelvin(actuator, "actuator")?;
-        Ok(self.actuation_with_rate(actuator)[0] / per_kelvin)
-    }
-
-    fn actuation_with_rate(&self, spring: &str) -> [f64; 2] {
+    pub(super) fn actuation_with_rate(&self, spring: &str) -> [f64; 2] {
         self.scene.drive_at(spring, self.phase, self.time, self.state.others)
     }
 
@@ -324,25 +210,6 @@ impl<'a> View<'a> {
         kind: LoadKind,
     ) -> Result<Vec<f64>, InputError> {
         self.scene.load_on(self.phase, selection, kind, self.time)
-    }
-
-    /// Force (N) with which a spring pulls its ends together: that of its stiffness and damping minus that of
-    /// its actuator.
-    ///
-    /// # Errors
-    /// A name that no spring has.
-    pub fn spring_pull(&self, spring: &str) -> Result<f64, InputError> {
-        Ok(self.spring_pulls(spring)?[0])
-    }
-
-    /// Tension (N) of a cable at its first place, where it is driven, and at its last; they differ by friction.
-    ///
-    /// # Errors
-    /// A name that no spring has.
-    pub fn spring_pulls(&self, spring: &str) -> Result<[f64; 2], InputError> {
-        let number = self.scene.spring_number(spring, "spring")?;
-        let State { u, v, .. } = self.state;
-        Ok(self.gauges.springs[number].pulls(u, v, self.actuation_with_rate(spring)))
     }
 
     /// Force (N) of an obstacle on the body, one component per dimension; 0 where it does not act.
@@ -416,46 +283,6 @@ impl<'a> View<'a> {
     /// [`Reading::rotation`](crate::dynamics::simulate::Reading::rotation) is continuous over whole turns.
     pub fn rotation(&self) -> Option<f64> {
         self.body().rotation(self.state.u)
-    }
-
-    /// Length of a spring (m).
-    ///
-    /// # Errors
-    /// A name that no spring has.
-    pub fn spring_length(&self, spring: &str) -> Result<f64, InputError> {
-        let number = self.scene.spring_number(spring, "spring")?;
-        Ok(self.gauges.springs[number].length(self.state.u))
-    }
-
-    /// Stress (Pa) by which a muscle pulls: what actuates it, or by [Hill's law](crate::Hill) the mean over its volume of what becomes of that.
-    ///
-    /// # Errors
-    /// A name that no muscle has.
-    pub fn muscle_stress(&self, muscle: &str) -> Result<f64, InputError> {
-        let number = self.scene.muscle_number(muscle, "muscle")?;
-        let [stress, _] = self.actuation_with_rate(muscle);
-        let Some(law) = self.scene.muscles()[number].law() else { return Ok(stress) };
-        let contraction = Contraction { law, stress };
-        Ok(self.gauges.muscles[number].mean_pull(contraction, self.state.u, self.state.v))
-    }
-
-    /// Activation of a muscle with [Hill's law](crate::Hill), from 0 to 1: what actuates it by the largest stress.
-    ///
-    /// # Errors
-    /// A name that no muscle has, or one without that law.
-    pub fn activation(&self, muscle: &str) -> Result<f64, InputError> {
-        let largest = self.scene.largest_stress(muscle, "muscle")?;
-        Ok((self.actuation_with_rate(muscle)[0] / largest).clamp(0.0, 1.0))
-    }
-
-    /// How much longer the fibres of a muscle are than in the undeformed shape, as a factor (1): the mean over their
-    /// volume.
-    ///
-    /// # Errors
-    /// A name that no muscle has.
-    pub fn muscle_stretch(&self, muscle: &str) -> Result<f64, InputError> {
-        let number = self.scene.muscle_number(muscle, "muscle")?;
-        Ok(self.gauges.muscles[number].mean_stretch(self.state.u))
     }
 
     /// Magnetic moment (A m^2) of all magnets, one component per dimension.

@@ -23,7 +23,7 @@ pub(super) struct TableKeys {
 }
 
 /// A word of the key `kind`, with the keys that come with it.
-#[derive(Debug)]
+#[derive(Debug, Clone, Copy)]
 pub(super) struct Kind {
     pub(super) word: &'static str,
     pub(super) about: &'static str,

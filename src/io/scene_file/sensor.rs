@@ -5,7 +5,7 @@ use super::selection::selection;
 use super::table::Table;
 use super::value::{Value, number_of};
 use crate::dynamics::error::Error;
-use crate::dynamics::simulate::{Component, Reading, Sampling, Spot};
+use crate::dynamics::simulate::{Component, OUTPUTS, Output, Reading, Sampling, Spot};
 use crate::elements::mesh::{Mesh, Selection};
 use crate::scene::timeline::Scene;
 
@@ -22,8 +22,15 @@ pub(super) const SENSOR: TableKeys = TableKeys::new(
     ],
     "[[sensor]]\nname = \"bottom\"\nkind = \"constraint-force\"\nnodes = \"all\"\ncomponent = \"y\"",
 )
-.kinds(&[
-    Kind { word: "position", about: "where nodes, a point of a body or a marker are (m)", keys: &SPOT },
+.kinds(&KINDS);
+
+/// Quantities of places, contacts, fields and bodies.
+const OWN: [Kind; 21] = [
+    Kind {
+        word: "position",
+        about: "where nodes, a point of a body or a marker are (m)",
+        keys: &SPOT,
+    },
     Kind {
         word: "displacement",
         about: "how far nodes, a point of a body or a marker are from where they are in the undeformed shape (m)",
@@ -50,8 +57,12 @@ pub(super) const SENSOR: TableKeys = TableKeys::new(
         keys: &[
             NODES,
             Key::new("about", Holds::Vector, "the point").in_unit("m").required(),
-            Key::new("axis", Holds::Vector, "the direction along which it is read, of a body in space")
-                .default("all components, each a column"),
+            Key::new(
+                "axis",
+                Holds::Vector,
+                "the direction along which it is read, of a body in space",
+            )
+            .default("all components, each a column"),
         ],
     },
     Kind {
@@ -75,51 +86,10 @@ pub(super) const SENSOR: TableKeys = TableKeys::new(
         keys: &[Key::new("touch", Holds::Text, "the name of the contact").required()],
     },
     Kind {
-        word: "spring-pull",
-        about: "the force with which a spring and its actuator pull its ends together, or the tension of a cable at its first place (N)",
-        keys: &[SPRING],
-    },
-    Kind {
-        word: "tension-at-end",
-        about: "the tension of a cable at its last place, from which friction along its path takes its part (N)",
-        keys: &[Key::new("cable", Holds::Text, "the name of the cable").required()],
-    },
-    Kind {
-        word: "spring-length",
-        about: "the length of a spring, or of the path of a cable (m)",
-        keys: &[SPRING],
-    },
-    Kind {
-        word: "muscle-stress",
-        about: "the stress by which a muscle pulls (Pa)",
-        keys: &[MUSCLE],
-    },
-    Kind {
-        word: "muscle-stretch",
-        about: "the length of the fibres of a muscle by that in the undeformed shape, the mean over their volume (no unit)",
-        keys: &[MUSCLE],
-    },
-    Kind {
-        word: "activation",
-        about: "the activation of a muscle with Hill's law, from 0 to 1",
-        keys: &[MUSCLE],
-    },
-    Kind {
-        word: "temperature",
-        about: "by how much a heated actuator is warmer than what is around it (K)",
-        keys: &[Key::new("actuator", Holds::Text, "the name of the actuator").required()],
-    },
-    Kind {
         word: "magnetic-moment",
         about: "the magnetic moment of all magnets (A m^2)",
         keys: &[],
     },
-    Kind {
-        word: "dipole-force",
-        about: "the force of a dipole on all magnets; that on the dipole is minus this (N)",
-        keys: &[DIPOLE],
-    },
-    Kind { word: "dipole-position", about: "where a dipole is (m)", keys: &[DIPOLE] },
     Kind {
         word: "fluid-force",
         about: "the force of a fluid, its drag and pressure, on all nodes, on some of them or on those of one body (N)",
@@ -128,39 +98,6 @@ pub(super) const SENSOR: TableKeys = TableKeys::new(
             Key::new("nodes", Holds::Nodes, "the nodes on which it acts").default("all"),
             BODY,
         ],
-    },
-    Kind { word: "pressure", about: "the pressure in a chamber, of gas and of a liquid what it exceeds that outside by, of a liquid with weight the mean, of one with a surface that at the lowest place of the walls (Pa)", keys: &[CHAMBER] },
-    Kind {
-        word: "absolute-pressure",
-        about: "the absolute pressure of the gas in a chamber (Pa)",
-        keys: &[CHAMBER],
-    },
-    Kind { word: "gas-amount", about: "the amount of gas in a chamber (kg)", keys: &[CHAMBER] },
-    Kind {
-        word: "gas-flow",
-        about: "the flow of gas through an orifice, from its first end to its second (kg/s)",
-        keys: &[Key::new("orifice", Holds::Text, "the name of the orifice").required()],
-    },
-    Kind {
-        word: "liquid-volume",
-        about: "the volume of the liquid in a chamber, as it is without pressure (m^3)",
-        keys: &[CHAMBER],
-    },
-    Kind { word: "liquid-flow", about: "the flow of liquid into a chamber (m^3/s)", keys: &[CHAMBER] },
-    Kind {
-        word: "liquid-level",
-        about: "the height of the surface of the liquid in a chamber above the origin, against gravity (m)",
-        keys: &[CHAMBER],
-    },
-    Kind {
-        word: "pipe-flow",
-        about: "the flow of liquid through a pipe, from its first end to its second (m^3/s)",
-        keys: &[Key::new("pipe", Holds::Text, "the name of the pipe").required()],
-    },
-    Kind {
-        word: "volume",
-        about: "the volume that the walls of a chamber enclose (m^3)",
-        keys: &[CHAMBER],
     },
     Kind {
         word: "stress",
@@ -208,7 +145,36 @@ pub(super) const SENSOR: TableKeys = TableKeys::new(
         about: "the rate of that angular velocity (rad/s^2)",
         keys: &[TURNED, BODY],
     },
-]);
+];
+
+/// The key of the component of each output.
+const COMPONENTS: [[Key; 1]; OUTPUTS.len()] = {
+    let mut keys = [[NODES]; OUTPUTS.len()];
+    let mut k = 0;
+    while k < keys.len() {
+        let of = OUTPUTS[k].of;
+        keys[k] = [Key::new(of.key, Holds::Text, of.about).required()];
+        k += 1;
+    }
+    keys
+};
+
+/// These, and the outputs of components.
+const KINDS: [Kind; OWN.len() + OUTPUTS.len()] = {
+    let mut kinds = [const { Kind { word: "", about: "", keys: &[] } }; OWN.len() + OUTPUTS.len()];
+    let mut k = 0;
+    while k < kinds.len() {
+        kinds[k] = match k.checked_sub(OWN.len()) {
+            None => OWN[k],
+            Some(number) => {
+                let (Output { word, about, .. }, keys) = (OUTPUTS[number], &COMPONENTS[number]);
+                Kind { word, about, keys }
+            }
+        };
+        k += 1;
+    }
+    kinds
+};
 
 const MARKER: TableKeys = TableKeys::new(
     "marker",
@@ -255,10 +221,6 @@ const POINT: Key =
     Key::new("point", Holds::Vector, "the undeformed position of a point of the body")
         .in_unit("m")
         .default("`nodes`");
-const SPRING: Key = Key::new("spring", Holds::Text, "the name of the spring or cable").required();
-const MUSCLE: Key = Key::new("muscle", Holds::Text, "the name of the muscle").required();
-const CHAMBER: Key = Key::new("chamber", Holds::Text, "the name of the chamber").required();
-const DIPOLE: Key = Key::new("dipole", Holds::Text, "the name of the dipole").required();
 const UNIT: Key = Key::new("unit", Holds::Word(|| vec!["rad", "deg"]), "the unit").default("rad");
 const BODY: Key =
     Key::new("body", Holds::Text, "the name of one of several bodies").default("all together");
@@ -292,28 +254,10 @@ pub(super) fn sensor(value: &Value, scene: &Scene) -> Result<(String, Reading), 
             contact(&table, mesh, Reading::contact_pressure, Reading::touch_pressure)?
         }
         "gap" => Reading::gap(named("touch")?),
-        "spring-pull" => Reading::spring_pull(named("spring")?),
-        "tension-at-end" => Reading::tension_at_end(named("cable")?),
-        "spring-length" => Reading::spring_length(named("spring")?),
-        "muscle-stress" => Reading::muscle_stress(named("muscle")?),
-        "muscle-stretch" => Reading::muscle_stretch(named("muscle")?),
-        "activation" => Reading::activation(named("muscle")?),
-        "temperature" => Reading::temperature(named("actuator")?),
         "magnetic-moment" => Reading::magnetic_moment(),
-        "dipole-force" => Reading::dipole_force(named("dipole")?),
-        "dipole-position" => Reading::dipole_position(named("dipole")?),
         "fluid-force" => {
             of_nodes(&table, mesh, of_body(&table, Reading::fluid_force(named("fluid")?))?)?
         }
-        "pressure" => Reading::pressure(named("chamber")?),
-        "absolute-pressure" => Reading::absolute_pressure(named("chamber")?),
-        "gas-amount" => Reading::gas_amount(named("chamber")?),
-        "gas-flow" => Reading::gas_flow(named("orifice")?),
-        "liquid-volume" => Reading::liquid_volume(named("chamber")?),
-        "liquid-flow" => Reading::liquid_flow(named("chamber")?),
-        "liquid-level" => Reading::liquid_level(named("chamber")?),
-        "pipe-flow" => Reading::pipe_flow(named("pipe")?),
-        "volume" => Reading::chamber_volume(named("chamber")?),
         "stress" => field(&table, mesh, Reading::stress, Reading::stress_at)?,
         "strain" => field(&table, mesh, Reading::strain, Reading::strain_at)?,
         "distance" => {
@@ -325,7 +269,11 @@ pub(super) fn sensor(value: &Value, scene: &Scene) -> Result<(String, Reading), 
         "momentum" => of_body(&table, Reading::momentum())?,
         "angular-velocity" => turning(&table, mesh, Reading::angular_velocity())?,
         "angular-acceleration" => turning(&table, mesh, Reading::angular_acceleration())?,
-        _ => turning(&table, mesh, in_unit(&table, Reading::rotation())?)?,
+        "rotation" => turning(&table, mesh, in_unit(&table, Reading::rotation())?)?,
+        word => match OUTPUTS.iter().find(|output| output.word == word) {
+            Some(output) => Reading::of(output, named(output.of.key)?),
+            None => return Err(table.error("a kind that is not read")),
+        },
     };
     let component = table.optional("component", |value| value.word(&Component::WORDS))?;
     let reading = match component {

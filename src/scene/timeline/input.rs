@@ -81,15 +81,16 @@ impl Quantity {
         }
         match self {
             Self::Actuation => row("actuation of", ["actuate", "springs"], "force", "N"),
-            Self::Pressure => row("pressure in", ["pressure", "chamber"], "value", "Pa"),
+            Self::Pressure => row("pressure of chamber", ["pressure", "chamber"], "value", "Pa"),
             Self::Opening => Row {
                 absent: 1.0,
                 scales: false,
-                ..row("opening of", ["open", "orifice"], "opening", "")
+                ..row("opening of orifice", ["open", "orifice"], "opening", "")
             },
-            Self::Flow => {
-                Row { scales: false, ..row("flow into", ["flow", "chamber"], "rate", "m^3/s") }
-            }
+            Self::Flow => Row {
+                scales: false,
+                ..row("flow into chamber", ["flow", "chamber"], "rate", "m^3/s")
+            },
             Self::FacePressure => row("pressure on", ["pressure_on", "nodes"], "value", "Pa"),
             Self::Load(kind) => {
                 let (word, unit) = match kind {
@@ -100,11 +101,12 @@ impl Quantity {
                 row("load on", ["load", "nodes"], word, unit)
             }
             Self::Field => row("magnetic field", ["magnetic_field", ""], "field", "T"),
-            Self::Dipole(DipolePart::Position) => {
-                Row { scales: false, ..row("position of", ["drive", "dipole"], "position", "m") }
-            }
+            Self::Dipole(DipolePart::Position) => Row {
+                scales: false,
+                ..row("position of dipole", ["drive", "dipole"], "position", "m")
+            },
             Self::Dipole(DipolePart::Moment) => {
-                row("moment of", ["drive", "dipole"], "moment", "A m^2")
+                row("moment of dipole", ["drive", "dipole"], "moment", "A m^2")
             }
         }
     }

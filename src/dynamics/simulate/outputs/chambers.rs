@@ -1,0 +1,81 @@
+//! Outputs of chambers.
+
+use super::super::output::{Kind, Output, Value};
+use super::super::reading::{Reading, What};
+use super::super::view::View;
+use crate::base::input::InputError;
+use crate::scene::forces::Content;
+use crate::scene::timeline::Quantity;
+
+const CHAMBER: Kind = Kind {
+    key: "chamber",
+    about: "the name of the chamber",
+    find: |scene, name, input| scene.chamber_number(name, input),
+};
+
+pub(super) static PRESSURE: Output = Output {
+    word: "pressure",
+    about: "the gauge pressure in a chamber; of a liquid with weight the mean, of one with a surface that at the lowest point of the walls (Pa)",
+    unit: "Pa",
+    of: CHAMBER,
+    is_vector: false,
+    is_of_positions: false,
+    read: |view, number| {
+        let (scene, u) = (view.scene, view.state.u);
+        let chamber = scene.chambers()[number].name();
+        let pressure = if let Some(number) = scene.gas_in(chamber) {
+            view.gauges.gases[number].gauge(u, view.amount(number))
+        } else if let Some(number) = scene.liquid_in(chamber) {
+            let amount = view.liquid_amount(number);
+            match scene.liquids()[number].has_surface() {
+                true => view.with_surface(number)?.gauge(u, amount),
+                false => view.gauges.liquids[number].gauge(u, amount),
+            }
+        } else {
+            Ok(view.input(Quantity::Pressure, chamber))
+        };
+        Ok(Value::Number(pressure.unwrap_or(f64::NAN)))
+    },
+};
+
+pub(in crate::dynamics::simulate) static VOLUME: Output = Output {
+    word: "volume",
+    about: "the volume that the walls of a chamber enclose (m^3)",
+    unit: "m^3",
+    of: CHAMBER,
+    is_vector: false,
+    is_of_positions: true,
+    read: |view, number| Ok(Value::Number(view.gauges.chambers[number].volume(view.state.u))),
+};
+
+impl View<'_> {
+    /// Volume that the walls of a chamber enclose (m^3).
+    ///
+    /// # Errors
+    /// A name that no chamber has.
+    pub fn chamber_volume(&self, chamber: &str) -> Result<f64, InputError> {
+        VOLUME.number(self, chamber)
+    }
+
+    /// Pressure in a chamber (Pa): of gas and of a liquid what it exceeds that outside by, NaN where it has none; of a liquid with weight the mean,
+    /// of one with a surface that at the lowest place of the walls.
+    ///
+    /// # Errors
+    /// A name that no chamber has.
+    pub fn pressure(&self, chamber: &str) -> Result<f64, InputError> {
+        PRESSURE.number(self, chamber)
+    }
+}
+
+impl Reading {
+    /// Gauge pressure in a chamber (Pa); of a liquid with weight the mean, of one with a surface the value at the
+    /// lowest wall point.
+    pub fn pressure(chamber: impl Into<String>) -> Self {
+        What::Of(&PRESSURE, chamber.into()).into()
+    }
+
+    /// Volume that the walls of a chamber enclose (m^3).
+    pub fn chamber_volume(chamber: impl Into<String>) -> Self {
+        What::Of(&VOLUME, chamber.into()).into()
+    }
+}

@@ -1,0 +1,106 @@
+//! Outputs of gas in chambers, and of what it flows through.
+
+use super::super::output::{Kind, Output, Value};
+use super::super::reading::{Reading, What};
+use super::super::view::View;
+use crate::base::input::InputError;
+
+const FILLED: Kind = Kind {
+    key: "chamber",
+    about: "the name of the chamber",
+    find: |scene, name, input| scene.gas_number(name, input),
+};
+
+const ORIFICE: Kind = Kind {
+    key: "orifice",
+    about: "the name of the orifice",
+    find: |scene, name, input| scene.orifice_number(name, input),
+};
+
+pub(super) static ABSOLUTE_PRESSURE: Output = Output {
+    word: "absolute-pressure",
+    about: "the absolute pressure of the gas in a chamber (Pa)",
+    unit: "Pa",
+    of: FILLED,
+    is_vector: false,
+    is_of_positions: false,
+    read: |view, number| Ok(Value::Number(view.gas_pressure(number))),
+};
+
+pub(super) static AMOUNT: Output = Output {
+    word: "gas-amount",
+    about: "the amount of gas in a chamber (kg)",
+    unit: "kg",
+    of: FILLED,
+    is_vector: false,
+    is_of_positions: false,
+    read: |view, number| Ok(Value::Number(view.amount(number))),
+};
+
+pub(super) static FLOW: Output = Output {
+    word: "gas-flow",
+    about: "the flow of gas through an orifice, from its first end to its second (kg/s)",
+    unit: "kg/s",
+    of: ORIFICE,
+    is_vector: false,
+    is_of_positions: false,
+    read: |view, number| {
+        let flow = view.scene.orifice_flow(number, view.phase)?;
+        let gases = &view.gauges.gases;
+        let pressures: Vec<f64> = (0..gases.len()).map(|gas| view.gas_pressure(gas)).collect();
+        let rate = flow.rate(view.time, gases, &pressures);
+        let [rate, ..] = rate.map_err(|failure| {
+            let name = format!("\"{}\"", view.scene.orifices()[number].name());
+            InputError::new("orifice", name, failure.into_error().to_string())
+        })?;
+        Ok(Value::Number(rate))
+    },
+};
+
+impl View<'_> {
+    /// Absolute pressure (Pa) of the gas in a chamber.
+    ///
+    /// # Errors
+    /// A name that no chamber has, or one without gas.
+    pub fn absolute_pressure(&self, chamber: &str) -> Result<f64, InputError> {
+        ABSOLUTE_PRESSURE.number(self, chamber)
+    }
+
+    /// Amount of gas (kg) in a chamber.
+    ///
+    /// # Errors
+    /// As [`absolute_pressure`](Self::absolute_pressure).
+    pub fn gas_amount(&self, chamber: &str) -> Result<f64, InputError> {
+        AMOUNT.number(self, chamber)
+    }
+
+    /// Flow (kg/s) through an orifice, from its first end to its second.
+    ///
+    /// # Errors
+    /// A name that no orifice has; a supply or an opening out of range.
+    pub fn gas_flow(&self, orifice: &str) -> Result<f64, InputError> {
+        FLOW.number(self, orifice)
+    }
+
+    fn gas_pressure(&self, number: usize) -> f64 {
+        let pressure = self.gauges.gases[number].pressure(self.state.u, self.amount(number));
+        pressure.map_or(f64::NAN, |[pressure, _]| pressure)
+    }
+}
+
+impl Reading {
+    /// Absolute pressure (Pa) of the gas in a chamber.
+    pub fn absolute_pressure(chamber: impl Into<String>) -> Self {
+        What::Of(&ABSOLUTE_PRESSURE, chamber.into()).into()
+    }
+
+    /// Amount of gas (kg) in a chamber.
+    pub fn gas_amount(chamber: impl Into<String>) -> Self {
+        What::Of(&AMOUNT, chamber.into()).into()
+    }
+
+    /// Flow of gas (kg/s) through an orifice, from its first end to its second.
+    pub fn gas_flow(orifice: impl Into<String>) -> Self {
+        What::Of(&FLOW, orifice.into()).into()
+    }
+}

@@ -1,0 +1,35 @@
+//! All outputs: a quantity is a row in the file of its components, and stands in this list.
+
+mod chambers;
+mod dipoles;
+mod gas;
+mod liquids;
+mod muscles;
+mod springs;
+
+#[cfg(feature = "study")]
+pub(super) use chambers::VOLUME;
+
+use super::output::Output;
+
+/// Quantities of components that sensors read, in the order of the reference.
+pub(crate) const OUTPUTS: [&Output; 18] = [
+    &springs::PULL,
+    &springs::TENSION_AT_END,
+    &springs::LENGTH,
+    &muscles::STRESS,
+    &muscles::STRETCH,
+    &muscles::ACTIVATION,
+    &muscles::TEMPERATURE,
+    &dipoles::FORCE,
+    &dipoles::POSITION,
+    &chambers::PRESSURE,
+    &gas::ABSOLUTE_PRESSURE,
+    &gas::AMOUNT,
+    &gas::FLOW,
+    &liquids::VOLUME,
+    &liquids::FLOW,
+    &liquids::LEVEL,
+    &liquids::PIPE_FLOW,
+    &chambers::VOLUME,
+];

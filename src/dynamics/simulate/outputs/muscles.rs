@@ -1,0 +1,144 @@
+//! Outputs of muscles, and of actuators that are heated.
+
+use super::super::output::{Kind, Output, Value};
+use super::super::reading::{Reading, What};
+use super::super::view::View;
+use crate::base::input::InputError;
+use crate::elements::body::Contraction;
+
+const MUSCLE: Kind = Kind {
+    key: "muscle",
+    about: "the name of the muscle",
+    find: |scene, name, input| scene.muscle_number(name, input),
+};
+
+/// Muscles with Hill's law.
+const ACTIVATED: Kind = Kind {
+    find: |scene, name, input| {
+        scene.largest_stress(name, input)?;
+        scene.muscle_number(name, input)
+    },
+    ..MUSCLE
+};
+
+const HEATED: Kind = Kind {
+    key: "actuator",
+    about: "the name of the actuator",
+    find: |scene, name, input| {
+        scene.per_kelvin(name, input)?;
+        scene.actuator_number(name, input)
+    },
+};
+
+pub(super) static STRESS: Output = Output {
+    word: "muscle-stress",
+    about: "the stress by which a muscle pulls (Pa)",
+    unit: "Pa",
+    of: MUSCLE,
+    is_vector: false,
+    is_of_positions: false,
+    read: |view, number| {
+        let muscle = &view.scene.muscles()[number];
+        let [stress, _] = view.actuation_with_rate(muscle.name());
+        let Some(law) = muscle.law() else { return Ok(Value::Number(stress)) };
+        let contraction = Contraction { law, stress };
+        let strands = &view.gauges.muscles[number];
+        Ok(Value::Number(strands.mean_pull(contraction, view.state.u, view.state.v)))
+    },
+};
+
+pub(super) static STRETCH: Output = Output {
+    word: "muscle-stretch",
+    about: "the length of the fibres of a muscle by that in the undeformed shape, the mean over their volume (no unit)",
+    unit: "1",
+    of: MUSCLE,
+    is_vector: false,
+    is_of_positions: true,
+    read: |view, number| Ok(Value::Number(view.gauges.muscles[number].mean_stretch(view.state.u))),
+};
+
+pub(super) static ACTIVATION: Output = Output {
+    word: "activation",
+    about: "the activation of a muscle with Hill's law, from 0 to 1",
+    unit: "1",
+    of: ACTIVATED,
+    is_vector: false,
+    is_of_positions: false,
+    read: |view, number| {
+        let name = view.scene.muscles()[number].name();
+        let largest = view.scene.largest_stress(name, "muscle")?;
+        Ok(Value::Number((view.actuation_with_rate(name)[0] / largest).clamp(0.0, 1.0)))
+    },
+};
+
+pub(super) static TEMPERATURE: Output = Output {
+    word: "temperature",
+    about: "by how much a heated actuator is warmer than what is around it (K)",
+    unit: "K",
+    of: HEATED,
+    is_vector: false,
+    is_of_positions: false,
+    read: |view, number| {
+        let name = view.scene.actuators().nth(number).unwrap_or_default();
+        let per_kelvin = view.scene.per_kelvin(name, "actuator")?;
+        Ok(Value::Number(view.actuation_with_rate(name)[0] / per_kelvin))
+    },
+};
+
+impl View<'_> {
+    /// Stress (Pa) by which a muscle pulls: what actuates it, or by [Hill's law](crate::Hill) the mean over its volume of what becomes of that.
+    ///
+    /// # Errors
+    /// A name that no muscle has.
+    pub fn muscle_stress(&self, muscle: &str) -> Result<f64, InputError> {
+        STRESS.number(self, muscle)
+    }
+
+    /// How much longer the fibres of a muscle are than in the undeformed shape, as a factor (1): the mean over their
+    /// volume.
+    ///
+    /// # Errors
+    /// A name that no muscle has.
+    pub fn muscle_stretch(&self, muscle: &str) -> Result<f64, InputError> {
+        STRETCH.number(self, muscle)
+    }
+
+    /// Activation of a muscle with [Hill's law](crate::Hill), from 0 to 1: what actuates it by the largest stress.
+    ///
+    /// # Errors
+    /// A name that no muscle has, or one without that law.
+    pub fn activation(&self, muscle: &str) -> Result<f64, InputError> {
+        ACTIVATION.number(self, muscle)
+    }
+
+    /// By how much a [heated](crate::Lag::heated) actuator is warmer than what is around it (K).
+    ///
+    /// # Errors
+    /// A name that no heated actuator has.
+    pub fn temperature(&self, actuator: &str) -> Result<f64, InputError> {
+        TEMPERATURE.number(self, actuator)
+    }
+}
+
+impl Reading {
+    /// Stress by which a muscle pulls (Pa): see [`View::muscle_stress`](crate::View::muscle_stress).
+    pub fn muscle_stress(muscle: impl Into<String>) -> Self {
+        What::Of(&STRESS, muscle.into()).into()
+    }
+
+    /// How much longer the fibres of a muscle are than in the undeformed shape: see
+    /// [`View::muscle_stretch`](crate::View::muscle_stretch).
+    pub fn muscle_stretch(muscle: impl Into<String>) -> Self {
+        What::Of(&STRETCH, muscle.into()).into()
+    }
+
+    /// Activation of a muscle with [Hill's law](crate::Hill), from 0 to 1: see [`View::activation`](crate::View::activation).
+    pub fn activation(muscle: impl Into<String>) -> Self {
+        What::Of(&ACTIVATION, muscle.into()).into()
+    }
+
+    /// By how much a [heated](crate::Lag::heated) actuator is warmer than what is around it (K).
+    pub fn temperature(actuator: impl Into<String>) -> Self {
+        What::Of(&TEMPERATURE, actuator.into()).into()
+    }
+}
