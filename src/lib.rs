@@ -23,8 +23,8 @@
 //! below it, [`rk`] an explicit Runge-Kutta method, [`rosenbrock`] implicit ones without an iteration, [`central_difference`] one for systems of second order; all take the
 //! systems of [`ode`]. Without the feature `bodies` they are all there is.
 //!
-//! Modules lie in rooms, from the lowest to the highest: [`integrators`], [`elements`], [`scene`](mod@scene), [`dynamics`], [`io`], [`studies`]
-//! and `apps`; each knows those before it alone. What programs use most has a short path at the root, too.
+//! Modules lie in layers, from the lowest to the highest: [`integrators`], [`elements`], [`scene`](mod@scene), [`dynamics`], [`io`], [`studies`]
+//! and `apps`; each depends on those before it alone. The most used items have a short path at the root, too.
 //!
 //! SI units throughout. Formulas follow S. Hirai, *Computing Dynamic Deformation*; numbers in
 //! brackets are its equations.

@@ -1,8 +1,7 @@
 //! The Python module of pliant.
 //!
-//! What a scene is and how it is written stands in the library: scenes come here as the text of scene files and values of
-//! JSON, which its reader reads, and arrays leave as those of NumPy. `pliant/*.py` turns them into what a program of
-//! Python expects.
+//! Scenes are defined and parsed by the library: they arrive here as text of scene files and values of JSON, and arrays leave as
+//! those of NumPy. `pliant/*.py` wraps both for Python programs.
 
 mod arrays;
 mod errors;
@@ -17,7 +16,7 @@ mod watched;
 
 use pyo3::prelude::*;
 
-/// What `pliant` is made of; programs import `pliant`.
+/// Native part of `pliant`; programs import `pliant`.
 #[pymodule]
 mod _pliant {
     #[pymodule_export]

@@ -215,7 +215,7 @@ impl Scene {
         Ok((self.motion(found.trajectory().clone(), None), report))
     }
 
-    /// What is enough for the scene: the answer in words, and the values that it gives keys of the scene.
+    /// Recommended settings for the scene: the advice as text and as JSON.
     #[pyo3(signature = (within, quantity = None, budget = None, progress = None))]
     fn advise(
         &self,
@@ -363,7 +363,7 @@ fn of_json(text: &str) -> PyResult<serde_json::Value> {
     })
 }
 
-/// The text of a scene file with what `json` says.
+/// The text of a scene file with the values of `json`.
 #[pyfunction]
 pub fn toml_of(json: &str) -> PyResult<String> {
     toml_of_scene(&of_json(json)?).map_err(raised)

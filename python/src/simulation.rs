@@ -192,7 +192,7 @@ impl Simulation {
         self.lock()?.view().muscle_stress(muscle).map_err(raised)
     }
 
-    /// How much longer the fibres of a muscle are than in the undeformed shape.
+    /// Stretch of the fibres of a muscle relative to the undeformed shape: their mean.
     fn muscle_stretch(&self, muscle: &str) -> PyResult<f64> {
         self.lock()?.view().muscle_stretch(muscle).map_err(raised)
     }
@@ -202,12 +202,12 @@ impl Simulation {
         self.lock()?.view().activation(muscle).map_err(raised)
     }
 
-    /// What drives an actuator, behind its lag if it has one.
+    /// Actuation of an actuator, after its lag if it has one.
     fn actuation(&self, actuator: &str) -> PyResult<f64> {
         self.lock()?.view().actuation(actuator).map_err(raised)
     }
 
-    /// By how much a heated actuator is warmer than what is around it (K).
+    /// Temperature rise (K) of a heated actuator above its surroundings.
     fn temperature(&self, actuator: &str) -> PyResult<f64> {
         self.lock()?.view().temperature(actuator).map_err(raised)
     }
@@ -217,7 +217,7 @@ impl Simulation {
         Ok(PyArray1::from_vec(py, self.lock()?.view().magnetic_moment()))
     }
 
-    /// Where a dipole is (m).
+    /// Position of a dipole (m).
     fn dipole_position<'py>(
         &self,
         py: Python<'py>,

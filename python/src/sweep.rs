@@ -68,7 +68,7 @@ impl Sweep {
         self.sweep.plan().len()
     }
 
-    /// A point: its id, and what is set, as `body.material.young=2e5`.
+    /// A point: its id and its overrides, as `body.material.young=2e5`.
     fn point(&self, number: usize) -> (String, Vec<String>) {
         let point = self.sweep.plan().point(number);
         let set = point.set();

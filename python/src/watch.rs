@@ -1,4 +1,4 @@
-//! What happens beside a run that has let go of Python: progress is shown, Ctrl-C is heard.
+//! Progress display and Ctrl-C during a run that is detached from Python.
 
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
@@ -6,10 +6,10 @@ use std::time::{Duration, Instant};
 use pyo3::exceptions::PyKeyboardInterrupt;
 use pyo3::prelude::*;
 
-/// Time between two looks.
+/// Time between two checks.
 const PERIOD: Duration = Duration::from_millis(100);
 
-/// Looks up from a run now and then.
+/// Periodic check of a run for progress and signals.
 pub struct Watch {
     last: Instant,
     /// Called with the time reached (s).
@@ -44,7 +44,7 @@ impl Watch {
         }
     }
 
-    /// What has been raised, but for Ctrl-C, after which what was computed is kept.
+    /// Raises the stored exception, except for Ctrl-C, after which the results so far are kept.
     pub fn check(self, py: Python<'_>) -> PyResult<()> {
         match self.raised {
             Some(raised) if !raised.is_instance_of::<PyKeyboardInterrupt>(py) => Err(raised),

@@ -14,7 +14,7 @@ use pyo3::prelude::*;
 use crate::arrays::vectors;
 use crate::errors::raised;
 
-/// A simulation, or what stands in for it while it meets events: it is back for each of their actions.
+/// A simulation, or a stand-in while it advances with events: during each of their actions the simulation is back.
 pub struct Slot {
     simulation: pliant::Simulation,
     is_away: bool,
@@ -48,8 +48,8 @@ pub struct Watched {
     functions: Arc<Mutex<Functions>>,
 }
 
-/// Locks what may be in use for a moment. A state that a panic has left is a state, and the simulation says what became of
-/// it.
+/// Locks a mutex that may be in use for a moment. A state after a panic is accepted: the simulation reports its own
+/// failures.
 fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
 }
@@ -73,7 +73,7 @@ impl Watched {
         })
     }
 
-    /// What `f` does to the simulation, without Python meanwhile.
+    /// Result of `f` on the simulation, with Python detached meanwhile.
     pub fn detached<T: Send>(
         &self,
         py: Python<'_>,
@@ -84,7 +84,7 @@ impl Watched {
         py.detach(|| f(simulation)).map_err(raised)
     }
 
-    /// What `f` does to the simulation, which may meet events meanwhile.
+    /// Result of `f` on the simulation, which may meet events with Python functions meanwhile.
     pub fn advancing<T: Send>(
         &self,
         py: Python<'_>,
@@ -160,13 +160,13 @@ impl Watched {
         Ok(())
     }
 
-    /// Shows Python what is kept alive. What is locked is in use.
+    /// Visits the kept Python functions for the garbage collector. Locked ones are in use.
     pub fn traverse(&self, visit: &PyVisit<'_>) -> Result<(), PyTraverseError> {
         let Ok(functions) = self.functions.try_lock() else { return Ok(()) };
         functions.pairs.iter().flatten().try_for_each(|function| visit.call(function))
     }
 
-    /// Lets go of it.
+    /// Releases the kept Python functions.
     pub fn clear(&self) {
         let pairs = std::mem::take(&mut locked(&self.functions).pairs);
         drop(pairs);

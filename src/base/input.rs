@@ -22,7 +22,7 @@ pub(crate) use nearest::list;
 pub(crate) use nearest::{unknown, unknown_among};
 pub(crate) use words::{digits, percent, short, told};
 
-/// An input that cannot be used: which one, its value, and what is allowed.
+/// An invalid input: its name, its value, and the allowed values.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{input} = {value} cannot be used: {help}")]
 pub struct InputError {
@@ -30,7 +30,7 @@ pub struct InputError {
     pub input: String,
     /// Its value, as given.
     pub value: String,
-    /// What is allowed, and why.
+    /// Allowed values, and the reason.
     pub help: String,
 }
 

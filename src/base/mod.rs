@@ -1,5 +1,6 @@
-//! What all rooms use and what knows nothing of mechanics: vectors, small tensors, SIMD registers, matrices
-//! over pairs of nodes, points sorted by place, few shapes of many states, weights that are not negative, formulas of time, roots of functions, the nearest rotation, the error of an input.
+//! Shared tools without mechanics: vectors, small tensors, SIMD registers, sparse matrices over pairs of nodes, spatial grids,
+//! proper orthogonal decomposition, non-negative least squares, formulas of time, roots of functions, the nearest rotation, input
+//! errors.
 
 #[cfg(feature = "bodies")]
 pub(crate) mod formula;

@@ -139,7 +139,7 @@ impl<'a> Free<'a> {
         }
     }
 
-    /// The free unknowns with the least residual, whatever their signs; corrected once by what round-off leaves of the
+    /// The free unknowns with the least residual, whatever their signs; with one step of iterative refinement by the
     /// gradient.
     fn least(&self) -> Vec<f64> {
         let mut best = self.solve(self.b);
@@ -196,8 +196,8 @@ mod tests {
         (0..b.len()).map(|i| b[i] - (0..w.len()).map(|j| g[(i, j)] * w[j]).sum::<f64>()).collect()
     }
 
-    /// What holds at the minimum and nowhere else (Kuhn and Tucker): no slope along what is free, none downhill along what
-    /// is bound. The right-hand side is not in the cone of the columns.
+    /// KKT conditions, which hold at the minimum alone: zero gradient for free variables, non-negative gradient for bound
+    /// ones. The right-hand side is not in the cone of the columns.
     #[test]
     fn no_way_leads_downhill_at_the_minimum() {
         for columns in [1, 10, 60] {
@@ -230,7 +230,7 @@ mod tests {
         assert!(largest(&off) < 3e-14, "{:e}", largest(&off));
     }
 
-    /// A search that ends early frees fewer, and its residual is what was asked for.
+    /// A search that ends early frees fewer variables, and its residual is within the requested tolerance.
     #[test]
     fn it_ends_where_the_residual_is_small_enough() {
         let numbers = matrix(400);

@@ -1,4 +1,4 @@
-//! Proper orthogonal decomposition: few shapes of which many states are made.
+//! Proper orthogonal decomposition: few shapes that span many states.
 //!
 //! By the method of snapshots (L. Sirovich, *Quarterly of Applied Mathematics* 45 (1987) 561-571): with the states as columns
 //! of S, the eigenvectors v of S^T M S, of eigenvalues sigma^2, give the shapes S v / sigma.
@@ -11,7 +11,7 @@ use crate::base::vector::dot;
 /// Sizes relative to the largest one below which shapes are round-off, as eigenvalues of 1e-16 are.
 const ROUND_OFF: f64 = 1e-7;
 
-/// What is left of a column without those before it, relative to its length, where it depends on them.
+/// Relative norm of the remainder of a column after orthogonalization below which it depends linearly on those before it.
 const DEPENDENT: f64 = 1e-10;
 
 /// Adds M x to its second argument, or writes it there, for a symmetric and positive definite M.
@@ -54,8 +54,8 @@ pub(crate) fn pod(snapshots: &[Vec<f64>], mass: Mass) -> Pod {
     Pod { sizes: sizes[..shapes.len()].to_vec(), shapes }
 }
 
-/// Columns with Q^T M Q = I that span the same as `columns`, of which those that depend on the ones before are left out
-/// (Gram and Schmidt, twice).
+/// Columns with Q^T M Q = I that span the same space as `columns`, by the Gram-Schmidt process with reorthogonalization. Columns
+/// that depend linearly on those before them are omitted.
 pub(crate) fn orthonormal(columns: &[Vec<f64>], mass: Mass) -> Vec<Vec<f64>> {
     let mut all: Vec<Vec<f64>> = Vec::with_capacity(columns.len());
     for column in columns {

@@ -1,4 +1,4 @@
-//! Nodal forces, and the trait of what exerts them.
+//! Nodal forces, and the trait [`Force`] of their sources.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -10,7 +10,7 @@ use crate::base::sparse::{BlockMatrix, NodePattern};
 use crate::base::vector::dot;
 use crate::integrators::ode::Failure;
 
-/// Nodal forces (N), kept apart by what they do to the energy of the system.
+/// Nodal forces (N), divided by their effect on the energy of the system.
 #[derive(Debug, Clone)]
 pub struct NodalForces {
     /// Forces with a potential: -dU/du.
@@ -275,7 +275,7 @@ pub trait Force: Send + Sync {
     /// of them act by their values again.
     fn hold_switches(&self, _on: Option<&[bool]>) {}
 
-    /// The name of what the body rubs against, and whether the points that press there slide, by the held
+    /// The name of the body or obstacle in frictional contact, and whether the points that press there slide, by the held
     /// switches: all (`Some(true)`), none (`Some(false)`) or some (`None`).
     ///
     /// `None` without held switches, contact or friction.
@@ -297,8 +297,8 @@ pub trait Force: Send + Sync {
         self.switches() > 0
     }
 
-    /// What flows, where this force depends on amounts that are unknowns beside u and v. The other functions then
-    /// are those of the amounts at the start.
+    /// Extra unknowns beside u and v on which this force depends, if any. The other functions then use their initial
+    /// values.
     #[doc(hidden)]
     fn flow(&self) -> Option<&dyn Flow> {
         None
@@ -403,25 +403,26 @@ pub trait GeneralizedForce: Send {
     fn add_tangents(&mut self, t: f64, z: [&[f64]; 2], stiffness: &mut [f64], damping: &mut [f64]);
 }
 
-/// Amounts m (kg) of what flows between rooms of the volumes V(u) (m^3), and what it does to the nodes: forces p(m, V)
-/// dV/du and rates q(t, m, V). Among the amounts, one for each room, are the states a of actuators that lag, with forces f(u, v, a); behind them there may be more unknowns that flow has: those of pipes (m^3/s). They have rates,
-/// too, and no forces.
+/// Extra unknowns of a force: masses of gas and liquid per chamber, actuator lag states, pipe flow rates.
+///
+/// Layout: masses m (kg) of chambers of volumes V(u) (m^3), with forces p(m, V) dV/du and rates q(t, m, V); then lag states a of
+/// actuators, with forces f(u, v, a); then flow rates of pipes (m^3/s), without forces. All of them have rates.
 #[doc(hidden)]
 pub trait Flow: Send + Sync {
-    /// Number of rooms.
+    /// Number of chambers and lag states: of all unknowns but pipe flow rates.
     fn rooms(&self) -> usize;
 
-    /// Absolute tolerances of the unknowns, where those of strains (1) and velocities (m/s) are these.
+    /// Absolute tolerances of the unknowns, from those of strains (1) and velocities (m/s).
     fn tolerances(&self, strain: f64, velocity: f64) -> Vec<f64>;
 
-    /// The amounts at the start, and behind them the other unknowns.
+    /// Initial values of the unknowns.
     fn start(&self) -> &[f64];
 
-    /// Brings forces of actuators that lag to the `amounts` at time `t`, before they are evaluated.
+    /// Sets the lag states of actuators to those among the `amounts` at time `t`, before their forces are evaluated.
     fn set(&self, t: f64, amounts: &[f64]);
 
-    /// Adds the forces `at` (u, m) and time `t`, and writes the rates of the unknowns (kg/s those of amounts); the second vector has room for
-    /// as many numbers. Returns the power (W) that is supplied with what flows.
+    /// Adds the forces `at` (u, m) and time `t`, and writes the rates of the unknowns (kg/s for masses); the second vector is a
+    /// workspace of the same length. Returns the power (W) supplied by inflow.
     ///
     /// # Errors
     /// As [`Force::add_forces`].
@@ -436,23 +437,23 @@ pub trait Flow: Send + Sync {
     /// Potential energy (J) of the amounts.
     fn potential_of(&self, u: &[f64], amounts: &[f64]) -> f64;
 
-    /// Kinetic energy (J) of what flows.
+    /// Kinetic energy (J) of the fluid in pipes.
     fn kinetic_of(&self, unknowns: &[f64]) -> f64;
 
-    /// Checks a step after it was taken, to time `t`, with what it has led to.
+    /// Checks the state at the end `t` of a step.
     ///
     /// # Errors
     /// A state at which the run ends.
     fn check(&self, t: f64, u: &[f64], amounts: &[f64]) -> Result<(), Failure>;
 
-    /// Whether liquids fill rooms whole, so that errors of their volumes within tolerances are errors of their pressures.
+    /// Whether a liquid fills its chamber, so that small errors of its volume are large errors of its pressure.
     fn is_stiff(&self) -> bool;
 
-    /// Writes the pressures (Pa) above that outside of what fills rooms whole, NaN of all others.
+    /// Writes the gauge pressures (Pa) of chambers that a liquid fills, and NaN for all others.
     fn write_pressures(&self, u: &[f64], amounts: &[f64], pressures: &mut [f64]);
 
-    /// The difference (m^3) from the volume of a room to that in which an amount (kg) has a pressure (Pa above that outside), and the latter;
-    /// writes dV/du (m^2). `None` of what does not fill a room whole.
+    /// The difference (m^3) from the volume of a chamber to the volume of its `content`, a mass (kg) at a gauge pressure (Pa), and the
+    /// latter volume; writes dV/du (m^2). `None` unless a liquid fills the chamber.
     fn missing(
         &self,
         room: usize,
@@ -475,9 +476,9 @@ pub trait Flow: Send + Sync {
 #[doc(hidden)]
 #[derive(Debug, Clone)]
 pub struct FlowDerivatives {
-    /// dV/du (m^2), of one room after the other; df/da of actuators that lag.
+    /// dV/du (m^2), of one chamber after the other; df/da for lag states.
     pub gradients: Vec<f64>,
-    /// -dp/dV (Pa/m^3) and dp/dm (Pa/kg) of each room; 0 and 1 of actuators that lag.
+    /// -dp/dV (Pa/m^3) and dp/dm (Pa/kg) of each chamber; 0 and 1 for lag states.
     pub pressures: [Vec<f64>; 2],
     /// dq/dV (kg/s/m^3) and dq/dm (1/s), a row for each unknown.
     pub rates: [Vec<f64>; 2],
@@ -485,14 +486,14 @@ pub struct FlowDerivatives {
     pub power: [Vec<f64>; 2],
     /// Derivatives of the power that becomes heat, by m (W/kg).
     pub heat: Vec<f64>,
-    /// Rates of the amounts (kg/s), and room for as many numbers.
+    /// Rates of the masses (kg/s), and a workspace of the same length.
     pub work: [Vec<f64>; 2],
-    /// Room for two evaluations of a force.
+    /// Workspaces for two evaluations of a force.
     pub trial: [NodalForces; 2],
 }
 
 impl FlowDerivatives {
-    /// Zeros for so many rooms and unknowns; walls are among `dofs` displacement components.
+    /// Zeros for these numbers of `rooms` (chambers and lag states) and unknowns; walls are among `dofs` displacement components.
     pub(crate) fn zeros([rooms, unknowns]: [usize; 2], dofs: usize) -> Self {
         let pair = |first: usize, second: usize| [vec![0.0; first], vec![0.0; second]];
         Self {

@@ -56,7 +56,7 @@ pub enum MassValues {
     Function(Py<PyAny>),
 }
 
-/// Where the first exception of a function of Python is kept.
+/// Storage for the first exception of a Python function.
 pub type Raised = RefCell<Option<PyErr>>;
 
 /// y' = f(t, y) or M y' = f(t, y), or F(t, y, y') = 0. Functions of Python take the parameters as their last argument if
@@ -69,7 +69,7 @@ pub struct Equations<'a> {
     pub raised: &'a Raised,
 }
 
-/// What `call` returns; an exception is kept, and ends the run.
+/// Result of `call`; an exception is kept, and ends the run.
 pub fn guarded<T>(
     raised: &Raised,
     call: impl FnOnce(Python<'_>) -> PyResult<T>,
@@ -98,7 +98,7 @@ pub fn arguments<'py>(
     PyTuple::new(py, all)
 }
 
-/// Writes what a function has returned into `out`.
+/// Writes the value `returned` by a function into `out`.
 fn write(returned: &Bound<'_, PyAny>, out: &mut [f64], what: &str) -> PyResult<()> {
     if let Ok(array) = returned.extract::<PyReadonlyArray1<'_, f64>>() {
         return copy(array.as_array().iter().copied(), out, what);
@@ -124,7 +124,7 @@ fn copy(numbers: impl ExactSizeIterator<Item = f64>, out: &mut [f64], what: &str
 }
 
 impl Equations<'_> {
-    /// Writes what a function of `t`, `arrays` and a factor returns into `out`.
+    /// Writes the value of a function of `t`, `arrays` and a factor into `out`.
     fn call(
         &self,
         function: &Py<PyAny>,

@@ -20,7 +20,7 @@ use self::equations::{Equations, Function, Jacobian, Mass, MassValues, Raised, S
 pub use self::run::Run;
 use crate::errors::{made, raised};
 
-/// What is to be solved, and how: the dict that `pliant/equations.py` makes.
+/// Problem, method and options: the dict from `pliant/equations.py`.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub struct Asked {

@@ -1,4 +1,4 @@
-//! What a run has computed, as arrays.
+//! Results of a run as arrays.
 
 use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods};
 use pliant::solve::{End, Solution};
@@ -6,7 +6,7 @@ use pyo3::prelude::*;
 
 use crate::errors::raised;
 
-/// What a run has computed.
+/// Results of a run.
 #[pyclass(frozen, module = "pliant._pliant")]
 pub struct Run {
     pub solution: Solution,

@@ -1,4 +1,4 @@
-//! Flags that say how accurate a motion has to be, and in what.
+//! Flags for the required accuracy of a motion, and for the quantity to which it applies.
 
 use clap::Args;
 use pliant::Fraction;

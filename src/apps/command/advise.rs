@@ -22,7 +22,7 @@ use crate::scene::SceneArguments;
 use crate::settings::{SettingsArguments, ended};
 use crate::shell::quoted;
 
-/// Longest command (bytes) that is told: one with lists of cells is not.
+/// Longest command (bytes) that is printed: one with lists of cells is not.
 const LONGEST: usize = 2000;
 /// Samples of each motion on the page.
 const FRAMES: f64 = 400.0;
@@ -130,8 +130,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
 }
 
-/// What has to be set for what is enough, by a smaller model if there is one by which the scene of the file can be run: with all its
-/// sensors, and beside the smaller models that it names.
+/// Overrides for the recommended model, as a simplified one if the scene of the file can be run by it: with all sensors of the
+/// file, and together with the simplified models that it names.
 fn set_for(
     scene: &SceneArguments,
     file: &SceneFile,
@@ -151,7 +151,7 @@ fn set_for(
     Ok(enough.set.clone())
 }
 
-/// The command that runs what is enough, as a shell takes it.
+/// The shell command that runs the recommended model.
 fn command_of(scene: &SceneArguments, enough: &Candidate, set: &[String]) -> String {
     let command = if enough.choice.is_static { "static" } else { "run" };
     let path = quoted(&scene.path.to_string_lossy());
@@ -160,7 +160,7 @@ fn command_of(scene: &SceneArguments, enough: &Candidate, set: &[String]) -> Str
     sets.fold(format!("  pliant {command} {path}"), |line, set| line + &set)
 }
 
-/// Writes the scene file with what is enough; the reasons stand above it as comments.
+/// Writes the scene file with the recommended settings, below the reasons as comments.
 fn write_scene(
     scene: &SceneArguments,
     advice: &Advice,
@@ -183,7 +183,7 @@ fn write_scene(
     print(format_args!("written: {}", path.display()))
 }
 
-/// Shows what is being run, and ends the search after Ctrl-C.
+/// Shows the present run, and ends the search after Ctrl-C.
 fn watch(bar: &ProgressBar, interrupted: &AtomicBool, what: &str) -> ControlFlow<()> {
     bar.set_message(what.to_owned());
     match interrupted.load(Ordering::Relaxed) {

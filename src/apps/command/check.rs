@@ -235,7 +235,7 @@ fn timeline(phases: &[PhaseSummary]) -> Result<(), Failure> {
     })
 }
 
-/// What acts in a phase, in words.
+/// Text with the end, gravity, loads, actuators, pressures and contacts of a phase.
 fn acting(phase: &PhaseSummary) -> String {
     let mut words: Vec<String> = phase.ends.iter().cloned().collect();
     if let Some(gravity) = &phase.gravity {

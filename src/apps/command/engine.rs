@@ -73,7 +73,7 @@ impl TaskArray<'_> {
         }
     }
 
-    /// Writes the script of an array job for Slurm, and says what to do with it. `memory` is what a run needs (bytes).
+    /// Writes the script of an array job for Slurm, and prints how to submit it. `memory` is that of a run (bytes).
     pub fn write_script(&self, memory: f64) -> Result<(), Failure> {
         let directory = absolute(self.directory)?;
         let [logs, path] = ["tasks", "slurm.sh"].map(|name| directory.join(name));

@@ -1,4 +1,4 @@
-//! What `run` and `static` write, and where.
+//! Output files of `run` and `static`, and their directory.
 
 use std::fs::{self, File, TryLockError};
 use std::path::{Path, PathBuf};
@@ -88,7 +88,7 @@ pub fn without_older(
 /// A directory for results.
 pub struct Directory {
     path: PathBuf,
-    /// Names of what was written.
+    /// Names of the files written.
     written: Vec<&'static str>,
     /// The directory itself, locked, once it is claimed.
     lock: Option<File>,
@@ -119,7 +119,7 @@ const RESULTS: [&str; 10] = [
     "plot.png",
 ];
 
-/// Whether a file of this name is what `run` or `static` writes.
+/// Whether `run` or `static` writes files of this name.
 fn is_result(name: &str) -> bool {
     let frame = name.strip_prefix("body_").and_then(|rest| rest.strip_suffix(".vtu"));
     frame.is_some_and(|number| number.bytes().all(|digit| digit.is_ascii_digit()))
@@ -273,7 +273,7 @@ impl Directory {
         Ok(())
     }
 
-    /// Prints what was written.
+    /// Prints the names of the files written.
     pub fn tell(&self) -> Result<(), Failure> {
         print(format_args!("written to {}: {}", self.path.display(), self.written.join(", ")))
     }

@@ -86,7 +86,7 @@ impl RunProgress {
     }
 }
 
-/// Shows what is being tried, on a terminal only.
+/// A spinner with the present trial, on a terminal only.
 pub fn spinner(quiet: bool) -> ProgressBar {
     let target = match quiet {
         true => ProgressDrawTarget::hidden(),

@@ -49,7 +49,7 @@ pub struct Arguments {
     output: OutputArguments,
 }
 
-/// Keeps what a run has computed, while it runs.
+/// Saves the results of a run while it is running.
 struct Keeper<'a> {
     directory: &'a mut Directory,
     table: GrowingTable,
@@ -60,9 +60,9 @@ struct Keeper<'a> {
     refused: Option<Failure>,
 }
 
-/// Time between two checks for new rows: a kill loses what was sampled since the last one.
+/// Time between two checks for new rows: a kill loses the samples since the last one.
 const GROWTH: Duration = Duration::from_secs(1);
-/// Time between two checkpoints: a kill loses what was computed since the last one.
+/// Time between two checkpoints: a kill loses the steps since the last one.
 const KEEPING: Duration = Duration::from_secs(10);
 
 impl<'a> Keeper<'a> {
@@ -194,7 +194,7 @@ pub fn keep(
     directory.write_state(outcome.unwrap_or_else(|failure| &failure.trajectory))
 }
 
-/// Prints how a motion was computed, and what was written.
+/// Prints how a motion was computed, and the names of the files written.
 fn tell(
     title: &str,
     trajectory: &Trajectory,

@@ -9,7 +9,7 @@ use pliant::{Error, ReducedModel, SceneFile};
 use crate::failure::Failure;
 use crate::shell::absolute;
 
-/// What has to be set for a scene with all its unknowns.
+/// Override for a scene without its reduced model.
 pub const UNREDUCED: &str = "solver.reduced=\"\"";
 
 /// The scene file, and values that replace its own.
@@ -74,8 +74,8 @@ impl SceneArguments {
         SceneFile::text_with(&self.path, &[&self.set[..], others].concat())
     }
 
-    /// What has to be set in a copy of the file at `copy` so that it finds the mesh which the file names relative to itself; none
-    /// if it names no file, or both are in one directory.
+    /// Override of the mesh path for a copy of the file at `copy`, as the path is relative to the file; none if the file names no
+    /// mesh file, or both are in one directory.
     pub fn mesh_for(&self, copy: &Path) -> Result<Option<String>, Failure> {
         let scene: Option<toml::Table> = toml::from_str(&self.text(&[])?).ok();
         let mesh = scene.as_ref().and_then(|scene| scene.get("body")?.get("mesh")?.get("file"));

@@ -62,8 +62,8 @@ impl Arguments {
         Ok(quantity.transpose()?)
     }
 
-    /// The scene on a mesh of so many nodes, divided where the estimate says that it helps: what has to be set for it, the file
-    /// with that, and the equilibrium.
+    /// The scene on a mesh of so many nodes, refined where the error estimate is large: the overrides for it, the file
+    /// with them, and the equilibrium.
     fn refined(&self, nodes: usize) -> Result<(Vec<String>, SceneFile, Equilibrium), Failure> {
         let (mut places, mut set) = (self.scene.halved_in()?, Vec::new());
         let mut before = None;
@@ -155,7 +155,7 @@ fn run_in(arguments: &Arguments, place: &Path) -> Result<(), Failure> {
     result.map(|_| ()).map_err(Failure::from)
 }
 
-/// Writes what was found, or how far the search came; of a load curve all equilibria.
+/// Writes the equilibrium, or the last state of a failed search; all equilibria of a load curve.
 pub fn keep(
     outcome: Result<&Equilibrium, &NoEquilibrium>,
     is_curve: bool,

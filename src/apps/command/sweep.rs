@@ -78,7 +78,7 @@ pub struct Arguments {
     quiet: bool,
 }
 
-/// Most tasks of an array, if nothing else is asked for: what Slurm takes.
+/// Default for the largest number of tasks of an array: the usual limit of Slurm.
 const MOST_TASKS: usize = 1000;
 
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
@@ -129,7 +129,7 @@ fn begin(arguments: &Arguments) -> Result<(Sweep, usize, Vec<&'static str>), Fai
     Ok((sweep, batch, units))
 }
 
-/// The study, with what flags have in place of the file.
+/// The study, with flags in place of values of the file.
 fn read(arguments: &Arguments) -> Result<Sweep, Failure> {
     let mut file = StudyFile::read(&arguments.study)?;
     let flags = arguments.set.iter();
@@ -169,7 +169,7 @@ struct Study<'a> {
 }
 
 impl Study<'_> {
-    /// Computes what is not there yet. Returns whether that is left to a job that is yet to be started.
+    /// Computes the missing rows. Returns whether that is left to a job that has still to be started.
     fn all(&self, batch: usize) -> Result<bool, Failure> {
         let Arguments { limit, engine, .. } = self.arguments;
         let plan = self.sweep.plan();

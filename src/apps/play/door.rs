@@ -18,7 +18,7 @@ pub(super) struct Door {
     token: String,
 }
 
-/// What a request is for.
+/// Resource that a request asks for.
 pub(super) enum Wanted {
     /// The page.
     Page,
@@ -27,7 +27,7 @@ pub(super) enum Wanted {
 }
 
 impl Door {
-    /// A door with a new secret.
+    /// An access check with a new secret token.
     ///
     /// # Errors
     /// An operating system without random numbers.
@@ -50,10 +50,10 @@ impl Door {
         format!("http://127.0.0.1:{}/{}/", self.port, self.token)
     }
 
-    /// What a request is for, if it is admitted.
+    /// The resource that a request asks for, if it is admitted.
     ///
     /// # Errors
-    /// Why it is not admitted.
+    /// A refusal with its reason.
     pub(super) fn admit(&self, head: &Head) -> Result<Wanted, Refusal> {
         let forbidden = |reason: &str| Refusal::new("403 Forbidden", reason);
         // other host names that resolve to this machine are refused

@@ -1,4 +1,4 @@
-//! What the page shows at one moment.
+//! Frames: data that the page shows at one time.
 
 use serde_json::{Value, json};
 
@@ -10,7 +10,7 @@ use crate::dynamics::simulate::Simulation;
 use crate::io::output::Picture;
 use crate::scene::timeline::Scene;
 
-/// What a frame is made from.
+/// Inputs of a frame.
 pub(super) struct Present<'a> {
     pub(super) simulation: &'a Simulation,
     pub(super) picture: &'a Picture,
@@ -67,7 +67,7 @@ pub(super) fn of(present: &Present, colours: Option<usize>, since: Option<f64>) 
     })
 }
 
-/// What the mesh consists of.
+/// Numbers of nodes and cells, and the cell type.
 pub(super) fn mesh(scene: &Scene) -> Value {
     let mesh = scene.body().mesh();
     json!({

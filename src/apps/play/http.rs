@@ -16,7 +16,7 @@ pub(super) struct Head {
     pub(super) path: String,
     /// Names in lower case.
     headers: Vec<(String, String)>,
-    /// What was read after it.
+    /// Bytes read after the head.
     pub(super) rest: Vec<u8>,
 }
 

@@ -25,7 +25,7 @@ pub(super) enum Message {
         strength: f64,
     },
     LetGo,
-    /// The scene with what was done by hand.
+    /// The scene with the recorded slider moves.
     Save,
 }
 
@@ -37,7 +37,7 @@ impl Message {
     /// Reads a message.
     ///
     /// # Errors
-    /// What is wrong with it.
+    /// The mistake in an invalid message.
     pub(super) fn parse(text: &str) -> Result<Self, String> {
         let value: Value =
             serde_json::from_str(text).map_err(|error| format!("this is not JSON: {error}"))?;

@@ -8,13 +8,13 @@ use crate::io::output::Picture;
 /// Most moments; beyond this number every other one is dropped.
 const MOST: usize = 3000;
 
-/// The energies, and what the sensors read, since the start.
+/// The energies and sensor readings since the start.
 #[derive(Default)]
 pub(super) struct Past {
     moments: Vec<Moment>,
 }
 
-/// A time (s), the energies (J), and what the sensors read.
+/// A time (s), the energies (J), and the sensor readings.
 type Moment = (f64, [f64; 8], Vec<f64>);
 
 impl Past {

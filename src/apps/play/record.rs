@@ -1,4 +1,4 @@
-//! What the sliders did, phase by phase.
+//! Record of slider moves, phase by phase.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -39,7 +39,7 @@ fn file_name(path: &Path) -> String {
     name.chars().map(|c| if c.is_control() { '?' } else { c }).collect()
 }
 
-/// What a slider did in one phase: values at times (s), with straight lines in between.
+/// Moves of a slider in one phase: values at times (s), interpolated linearly.
 struct Track {
     /// Number of the phase, from 0.
     phase: usize,

@@ -36,7 +36,7 @@ const MOST: usize = 32;
 const LONGEST: usize = 64 * 1024;
 /// How long a browser may take to accept an answer.
 const PATIENCE: Duration = Duration::from_secs(20);
-/// What [`Player::quiet`] is unless set.
+/// Default of [`Player::quiet`].
 const QUIET: Duration = Duration::from_secs(10);
 /// Pause after a connection that could not be accepted.
 const RECOVERY: Duration = Duration::from_millis(50);
@@ -58,13 +58,13 @@ const RECOVERY: Duration = Duration::from_millis(50);
 pub struct Player {
     listener: TcpListener,
     door: Door,
-    /// What the page shows from the start.
+    /// Initial data of the page.
     data: Value,
     session: Session,
     quiet: Duration,
 }
 
-/// What the connections share.
+/// Shared state of the connections.
 struct House {
     door: Door,
     page: String,
@@ -75,10 +75,10 @@ struct House {
     pages: Arc<AtomicUsize>,
 }
 
-/// One of a counted number of guests; it counts until it is dropped, also by a panic.
+/// A counted connection; it counts until it is dropped, also by a panic.
 struct Guest {
     count: Arc<AtomicUsize>,
-    /// How many there are, including this one.
+    /// Number of connections, including this one.
     number: usize,
 }
 
@@ -125,17 +125,17 @@ impl Player {
         Ok(Self { listener, door: Door::new(port)?, data, session, quiet: QUIET })
     }
 
-    /// Shows what the sensors of `sampling` read over time, below the energies. They are read as often as the
+    /// Shows the readings of the sensors of `sampling` over time, below the energies. They are read as often as the
     /// energies, so [`Sampling::phase_ends`] is enough for its times.
     ///
     /// # Errors
-    /// Sensors for what the scene does not have; times that cannot be used.
+    /// Sensors of items that the scene does not have; invalid times.
     pub fn sensors(mut self, sampling: &Sampling) -> Result<Self, Error> {
         self.data["sensors"] = self.session.read(sampling)?;
         Ok(self)
     }
 
-    /// Allows what the sliders did to be saved as a scene file.
+    /// Allows slider moves to be saved as a scene file.
     ///
     /// This is the file at `path` with the text `text`, from which the scene was read, with tables of
     /// pressures, forces and loads in place of its own.

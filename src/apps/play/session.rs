@@ -22,9 +22,9 @@ use crate::scene::timeline::Scene;
 const FINE: f64 = 1e-3;
 const LONGEST: f64 = 5e-3;
 
-/// What is sent to the simulation.
+/// A request to the simulation.
 pub(super) enum Request {
-    /// A message, and where its answer goes.
+    /// A message, and the channel for its answer.
     Message(Message, Sender<Value>),
     /// A browser is gone; whether it was the last one.
     Gone { was_last: bool },

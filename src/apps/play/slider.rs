@@ -1,4 +1,5 @@
-//! What sliders set: pressures of chambers, flows of liquids, openings of orifices, forces of actuators, cables, stresses of muscles, loads, magnetic fields, places and moments of dipoles.
+//! Sliders for pressures of chambers, flows of liquids, openings of orifices, actuation of springs, cables, muscles and growths,
+//! loads, magnetic fields, positions and moments of dipoles.
 
 use serde_json::{Value, json};
 
@@ -20,15 +21,15 @@ pub(super) struct Target {
 /// A slider.
 pub(super) struct Slider {
     pub(super) target: Target,
-    /// It goes from `least` to `most`.
+    /// Its range is `least` to `most`.
     least: f64,
     most: f64,
-    /// What it is, for the page.
+    /// Name of the quantity on the page.
     what: String,
     unit: &'static str,
 }
 
-/// The end of sliders of powers that phases do not give: one that warms by this much at last (K).
+/// Steady-state temperature rise (K) of a usual heating power, where the phases give less; sliders go to twice that power.
 const USUAL_WARMTH: f64 = 50.0;
 
 /// Pressure (in Young's moduli) and strain that give a useful range of a slider where the scene has no
@@ -293,7 +294,7 @@ mod tests {
     use crate::elements::material::Material;
     use crate::elements::mesh::{Cells, Mesh};
 
-    /// What the softest of several bodies stands, whichever comes first.
+    /// Usual values follow the softest of several bodies, in any order.
     #[test]
     fn usual_values_are_those_of_the_softest_body() {
         let body = |young: f64, name: &str| {

@@ -51,7 +51,7 @@ impl Formula {
         kinks
     }
 
-    /// The terms of which it is a sum; factors that do not depend on time are taken into them. Terms without time are left out.
+    /// The terms of which it is a sum; factors that do not depend on time are multiplied into them. Terms without time are omitted.
     pub(crate) fn terms(&self) -> Vec<Self> {
         let mut terms = Vec::new();
         let mut left: Vec<Range<usize>> = std::iter::once(0..self.steps.len()).collect();

@@ -1,11 +1,11 @@
-//! Reading formulas: the grammar, and what is wrong with a text.
+//! Parser of formulas: the grammar, and syntax errors.
 
 use super::{Choice, DEEPEST, FUNCTIONS, Formula, Operator, Step};
 use crate::base::input::unknown;
 
 impl Formula {
     /// # Errors
-    /// What is wrong with the text, and where.
+    /// The syntax error in the text, and its position.
     pub(crate) fn parse(text: &str) -> Result<Self, String> {
         let mut parser = Parser { text, at: 0, depth: 0, steps: Vec::new() };
         parser.sum()?;

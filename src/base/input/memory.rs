@@ -4,7 +4,7 @@ use std::fs;
 
 use super::InputError;
 
-/// Checks that at least so many `bytes` of memory are free; `help` says what takes less.
+/// Checks that at least so many `bytes` of memory are free; `help` names a remedy.
 pub(crate) fn check_memory(
     input: &str,
     value: String,

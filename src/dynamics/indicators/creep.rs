@@ -1,8 +1,9 @@
-//! How far surfaces creep that friction holds.
+//! Creep of surfaces in sticking friction.
 //!
-//! Friction is smooth in the sliding speed: what sticks slides, so slowly that friction balances what pulls, by the law of
-//! `scene/forces/friction.rs` at 2 T/(3 mu N) of the sticking speed under a small pull T. Between two samples a point creeps by what it
-//! moves along what it lies on; farther than at the sticking speed it has come loose in between. What it creeps back is taken off.
+//! Friction is smooth in the sliding speed: a sticking point slides slowly enough that friction balances the tangential load, by the
+//! law of `scene/forces/friction.rs` at 2 T/(3 mu N) of the sticking speed under a small load T. Creep between two samples is the
+//! relative tangential displacement; if that is more than at the sticking speed, the point has come loose in between. Creep is a
+//! vector: backward creep reduces it.
 
 use std::collections::BTreeMap;
 use std::ptr;
@@ -30,14 +31,14 @@ struct Creep {
 
 #[derive(Default)]
 struct Crept {
-    /// How far (m) and which way.
+    /// Creep vector (m).
     by: [f64; 3],
-    /// The impulse (N s) of what pressed it on meanwhile.
+    /// Impulse (N s) of the normal force meanwhile.
     impulse: f64,
 }
 
 impl Creep {
-    /// Adds what the points that are `stuck` do in a time of `dt` (s), in which they slide as `slide` returns (m).
+    /// Adds the creep of `stuck` points in a time of `dt` (s), in which they slide by `slide` (m).
     fn add(&mut self, stuck: &[Stuck], dt: f64, slide: impl Fn(&Stuck) -> [f64; 3]) {
         // a point may lie on several faces: it creeps by the mean
         let mut means = BTreeMap::<Vec<_>, ([f64; 3], f64)>::new();
@@ -59,7 +60,7 @@ impl Creep {
         }
     }
 
-    /// How far (m) it crept: the mean over its points, by the impulses that press them on.
+    /// Creep distance (m): the mean over its points, weighted by their normal impulses.
     fn mean(&self) -> Option<f64> {
         let all: f64 = self.points.values().map(|crept| crept.impulse).sum();
         let sum: f64 = self.points.values().map(|crept| crept.impulse * norm(&crept.by)).sum();
@@ -67,7 +68,7 @@ impl Creep {
     }
 }
 
-/// How far surfaces creep that stick to an obstacle or to another body, contact by contact.
+/// Creep of surfaces that stick to an obstacle or to another body, contact by contact.
 pub(super) fn creep(trajectory: &Trajectory, samples: &[&Sample]) -> Vec<Indicator> {
     let scene = trajectory.scene();
     let rubs = scene.obstacles().iter().any(|obstacle| obstacle.has_friction())

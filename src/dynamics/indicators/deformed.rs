@@ -10,7 +10,7 @@ use crate::dynamics::trajectory::Sample;
 use crate::elements::body::{Body, Strain};
 use crate::elements::material::Law;
 
-/// How far the stress of a law may be from that of rubber (incompressible and neo-Hookean, uniaxial).
+/// Largest relative difference of the stress of a law from that of rubber (incompressible and neo-Hookean, uniaxial).
 const MOST_WRONG: f64 = 0.25;
 /// Relative difference of the stress from that of rubber, in multiples of the strain: of the laws of St.
 /// Venant and Kirchhoff and of Hooke, and of laws of rubber. The last follow rubber up to about twice the

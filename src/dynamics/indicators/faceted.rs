@@ -1,8 +1,8 @@
 //! Meshes of files whose straight edges and flat faces stand for curved ones.
 //!
 //! Facets, of faces that lie in one plane, that turn by the angle theta from one to the next stand for an arc of the radius h/theta,
-//! h their width. What lies between arc and facet is theta^2/6 of the sector, as sin(theta)/theta of a polygon. Halving such cells leaves
-//! the polygon what it is, so that no finer mesh shows this error.
+//! h their width. The area between arc and facet is theta^2/6 of the sector, from sin(theta)/theta of a polygon. Halving such cells keeps
+//! the polygon, so that no finer mesh shows this error.
 
 use std::collections::BTreeMap;
 
@@ -35,7 +35,7 @@ struct Ridge {
     widths: [f64; 2],
 }
 
-/// How much of the space that curved surfaces enclose their facets leave out.
+/// Fraction of the volume within curved surfaces that their facets miss.
 pub(super) fn faceted(body: &Body) -> Option<Indicator> {
     let mesh = body.mesh();
     if !mesh.is_from_file() || mesh.is_surface() || mesh.dimension() < 2 {

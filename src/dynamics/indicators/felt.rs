@@ -1,4 +1,4 @@
-//! How much contact and friction affect a motion.
+//! Effects of contact and friction on a motion.
 
 use super::rigid::travel;
 use super::touch::Meeting;

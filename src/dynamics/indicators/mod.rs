@@ -237,7 +237,7 @@ pub(crate) fn largest_turn(trajectory: &Trajectory, part: &Part) -> f64 {
     strain::largest_turn(part.body, samples.map(|sample| &sample.u[part.dofs()]))
 }
 
-/// How far surfaces have crept that friction holds.
+/// Creep of surfaces in sticking friction.
 fn crept(trajectory: &Trajectory) -> Vec<Indicator> {
     creep::creep(
         trajectory,

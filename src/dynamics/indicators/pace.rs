@@ -86,7 +86,7 @@ pub(super) fn vibrations(scene: &Scene) -> Vec<Indicator> {
     ]
 }
 
-/// How far constraints are from what they should be.
+/// Drift of constraints: their largest violation, relative to the travel of nodes.
 pub(super) fn drift(trajectory: &Trajectory, samples: &[&Sample]) -> Option<Indicator> {
     let (drift, way) = (trajectory.report().constraint_drift, travel(trajectory.body(), samples));
     if samples.iter().all(|sample| sample.multipliers.is_empty()) || way == 0.0 {
@@ -103,8 +103,8 @@ pub(super) fn drift(trajectory: &Trajectory, samples: &[&Sample]) -> Option<Indi
     Some(Indicator::trusted("drift", (part, "1"), [0.0, MOST_DRIFT], || said.clone(), beyond))
 }
 
-/// How far constraints are from what they should be once jumps of prescribed velocities at the starts of phases have
-/// decayed, which is all that [`drift`] shows of most motions.
+/// Drift of constraints after the decay of jumps of prescribed velocities at the starts of phases; in most motions
+/// [`drift`] shows these jumps alone.
 pub(super) fn lasting_drift(trajectory: &Trajectory, samples: &[&Sample]) -> Option<Indicator> {
     let way = travel(trajectory.body(), samples);
     if samples.iter().all(|sample| sample.multipliers.is_empty()) || way == 0.0 {

@@ -51,7 +51,7 @@ pub(crate) struct Follower {
     points: Arc<[Followed]>,
     mass: f64,
     contacts: Vec<Contact>,
-    /// How far each point may still move before it can be inside each obstacle (m).
+    /// Lower bounds of the distance (m) that each point can move before it is inside each obstacle.
     clearances: Vec<f64>,
 }
 

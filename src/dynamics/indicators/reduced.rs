@@ -1,4 +1,4 @@
-//! How far a run by a reduced model can be trusted.
+//! Reliability of a run by a reduced model.
 
 use crate::base::input::percent;
 use crate::dynamics::report::{Indicator, ReducedReport};

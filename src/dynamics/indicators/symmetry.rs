@@ -9,7 +9,7 @@ use crate::dynamics::trajectory::Sample;
 use crate::elements::body::Body;
 use crate::elements::mesh::Mesh;
 
-/// How far a motion may be from one in a plane, and from its mirror image, for the simpler body to do.
+/// Largest deviation of a motion from a plane one, and from its mirror image, for which the simpler body suffices.
 const PLANE: f64 = 0.01;
 const MIRRORED: f64 = 1e-3;
 /// Nodes this near to each other, over the size of the mesh, are in the same place.
@@ -19,7 +19,7 @@ const SEEN: f64 = 1e-9;
 
 const AXES: [&str; 3] = ["x", "y", "z"];
 
-/// How far the motion of a body in space is from the nearest motion in a plane: displacements normal to the
+/// Deviation of the motion of a body in space from the nearest motion in a plane: displacements normal to the
 /// plane, and the change of those along it in the normal direction, relative to the deformation and rotation
 /// of the body.
 pub(super) fn plane(body: &Body, samples: &[&Sample]) -> Option<Indicator> {
@@ -39,7 +39,7 @@ pub(super) fn plane(body: &Body, samples: &[&Sample]) -> Option<Indicator> {
     Some(Indicator::needed("plane", (part, "1"), PLANE, || said.clone(), enough))
 }
 
-/// How far the motion is from its mirror images about those middle planes of the body that are planes of
+/// Deviation of the motion from its mirror images about those middle planes of the body that are planes of
 /// symmetry of its mesh.
 pub(super) fn mirrors(body: &Body, samples: &[&Sample]) -> Vec<Indicator> {
     let d = body.dimension();

@@ -198,7 +198,7 @@ fn thickness(body: &Body) -> Option<Indicator> {
     Some(Indicator::trusted("thickness", (part, "1"), [0.0, THICKEST], || said.clone(), beyond))
 }
 
-/// How far a column of the softest material, as high as the body, is compressed by its own weight: rho g H /
+/// Compressive strain of a column of the softest material, as high as the body, under its own weight: rho g H /
 /// E.
 fn weight(scene: &Scene, body: &Body) -> Option<Indicator> {
     let gravities = scene.phases().iter().filter_map(|phase| scene.gravity_in(phase));

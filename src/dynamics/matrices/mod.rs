@@ -11,7 +11,7 @@ use crate::elements::body::{Body, Branches, LinearByCells, RigidPieces};
 use crate::elements::force::Force;
 use crate::elements::material::Substance;
 
-/// Inertia and the constant parts of the tangents. What is `None` is not needed.
+/// Inertia and the constant parts of the tangents. `None` stands for those that are not needed.
 pub(crate) struct Matrices {
     pub(crate) dimension: usize,
     /// Undeformed positions of the nodes (m), and the size of the body (m).

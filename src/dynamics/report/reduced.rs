@@ -92,8 +92,8 @@ impl ReducedReport {
         }
     }
 
-    /// By how much the error that this run tells differs from that of the one run, with all unknowns, that the model was learned
-    /// from, as a part of what was wanted; none if it was learned from several, and as long as nothing is told.
+    /// Difference of the error of this run from that of the single full-order run that the model was learned from, relative to the
+    /// required accuracy; none if it was learned from several runs, and without an error of this run.
     pub(crate) fn apart_from_one_run(&self) -> Option<f64> {
         let is_told = self.is_of_one_run && !self.is_estimate && self.told_error > 0.0;
         is_told.then(|| (self.told_error - self.checked_error).abs() / self.within)

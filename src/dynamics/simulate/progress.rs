@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 
 use crate::dynamics::trajectory::Trajectory;
 
-/// How far a run has come, as reported to the observer after each step: see
+/// Progress of a run, as reported to the observer after each step: see
 /// [`Scene::simulate_with`](crate::Scene::simulate_with).
 #[derive(Debug, Clone, Copy)]
 pub struct Progress<'a> {

@@ -447,7 +447,7 @@ impl Run {
         report
     }
 
-    /// By how much what sensors read of the places of nodes changes where a state is moved by displacements (m).
+    /// Changes of the readings of nodal positions under additional displacements (m) of a state.
     fn changes_by(&self, at: &LeftOver, displacements: &[f64]) -> Vec<ToldReading> {
         if !self.sensors.read_places() {
             return Vec::new();

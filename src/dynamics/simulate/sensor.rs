@@ -148,7 +148,7 @@ impl Sensors {
         !self.of_places.is_empty()
     }
 
-    /// By how much what follows from the places of nodes differs in two states.
+    /// Differences between two states of the readings that depend on nodal positions.
     pub(super) fn changes(&self, states: [(&View, &Sample); 2]) -> Vec<ToldReading> {
         let mut changes = Vec::new();
         for (number, columns) in &self.of_places {

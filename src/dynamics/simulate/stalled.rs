@@ -1,7 +1,7 @@
 //! Methods that take far more steps than expected: another one is tried in their place, and kept if it leads farther for
 //! the same cost.
 //!
-//! It does not matter what keeps the steps short. What is known is how long BDF dwells on vibrations that nothing damps: they
+//! The cause of the short steps does not matter. A known one of BDF are undamped vibrations: they
 //! lie outside of the stability regions of its orders above 2 (E. Hairer, G. Wanner, *Solving Ordinary Differential Equations
 //! II*, section V.2), which bounds its steps by the fastest of them, however small they are.
 

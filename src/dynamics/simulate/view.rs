@@ -170,7 +170,7 @@ impl<'a> View<'a> {
 
     /// Force of the actuator of a spring (N), above 0 where it extends the spring; of a cable its tension, of a winch the
     /// length (m) that it has drawn in, of a muscle its stress (Pa), of a
-    /// growth its strain (1). What [lags](crate::Lag) is behind its [command](Self::command).
+    /// growth its strain (1). With a [lag](crate::Lag) it is behind its [command](Self::command).
     ///
     /// # Errors
     /// A name that no spring, no muscle and no growth has.

@@ -38,7 +38,7 @@ const HALVES: u32 = 20;
 /// Part of the time between two checks within which events count as simultaneous.
 const AT_ONE_TIME: f64 = 1e-10;
 
-/// How far nodes are moved, relative to the size of the body, to see in which direction an event changes.
+/// Displacement of nodes, relative to the size of the body, in the difference that gives the direction of an event.
 const AHEAD: f64 = 1e-6;
 
 impl Simulation {

@@ -21,7 +21,7 @@ use crate::base::vector::{dot, largest};
 /// Newton iterations of one step.
 const MOST_ITERATIONS: usize = 12;
 
-/// How much longer than along the tangent a step may become when it returns to the path: 25 degrees off the
+/// Largest ratio of the length of a step after its return to the path to that along the tangent: 25 degrees off the
 /// tangent.
 const LONGER: f64 = 1.1;
 
@@ -132,7 +132,7 @@ impl Search<'_> {
         Ok((Some(next), longer))
     }
 
-    /// How far the body has moved `from` other displacements, in the norm of M.
+    /// Distance of the body `from` other displacements, in the norm of M.
     fn way(&mut self, from: &[f64]) -> f64 {
         self.x.iter_mut().zip(&self.u).zip(from).for_each(|((x, u), from)| *x = u - from);
         self.rest.weigh(&self.x, &mut self.work);

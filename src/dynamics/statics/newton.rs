@@ -31,7 +31,7 @@ impl Point {
     }
 }
 
-/// How much freedom to move as a whole the constraints leave to the body.
+/// Rigid-body freedom that the constraints leave to the body.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Hold {
     /// None, by constraints on single nodes alone.

@@ -5,7 +5,7 @@
 //! [ -A^T 0 ] [ mu ] = [ -d ]
 //! ```
 //!
-//! with K = -df/du. What acts from outside is applied gradually. From the undeformed shape, gravity, loads, pressure and the
+//! with K = -df/du. External actions are applied gradually. From the undeformed shape, gravity, loads, pressure and the
 //! forces of actuators act by a fraction of their strength; obstacles in motion are at that fraction of their paths; tensions of
 //! cables, what winches draw in, strains of growth and amounts of gas and liquids have risen by it
 //! ([`Scene::loaded`](crate::Scene)). The body and its springs do not change.

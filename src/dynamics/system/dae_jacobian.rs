@@ -8,8 +8,8 @@ use super::dae::DaeForm;
 use crate::dynamics::state;
 
 impl DaeForm {
-    /// The pattern of the Jacobian: where its columns begin, and the rows of their entries, ascending. What
-    /// [`visit_jacobian`](Self::visit_jacobian) visits has its slots from now on.
+    /// The pattern of the Jacobian: where its columns begin, and the rows of their entries, ascending. It
+    /// also sets the slots of the entries that [`visit_jacobian`](Self::visit_jacobian) visits.
     pub(crate) fn sparse_pattern(&mut self) -> (Vec<usize>, Vec<usize>) {
         let mut visited = Vec::new();
         self.visit_jacobian(1.0, |row, column, _| visited.push((column, row)));

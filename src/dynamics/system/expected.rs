@@ -44,9 +44,9 @@ pub(crate) struct Vibrations {
 }
 
 impl System {
-    /// Displacements (m) that are expected from `start` to `end` (s), about as large as they will be, where the phase begins with
-    /// `velocities` (m/s): no larger than `most` (m), if that is known. What the rows that move do by their `lifts` is not among them, but how that bends the body is. Vibrations that
-    /// are `known` are not looked for where the tangents are the same.
+    /// Expected displacements (m) from `start` to `end` (s), of realistic size, in a phase that begins with `velocities` (m/s): no
+    /// larger than `most` (m), if that is known. Motions of moving constraints by their `lifts` are excluded, but the second-order
+    /// response to them is included. `known` vibrations are reused where the tangents are the same.
     pub(crate) fn expected_motions(
         &mut self,
         [start, end]: [f64; 2],

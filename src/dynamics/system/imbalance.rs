@@ -25,11 +25,11 @@ pub(crate) struct LeftOver {
     internal: Vec<f64>,
     /// The nodal forces (N) of all but the cells and their branches.
     forces: Vec<f64>,
-    /// How far the state is outside of those learned from, in parts of the widest range of a shape.
+    /// Extrapolation: distance of the state outside the training range, relative to the largest modal range.
     pub(crate) outside: f64,
 }
 
-/// Displacements (m) of all nodes that a reduced model lacks, as a state in a phase tells.
+/// Displacements (m) of all nodes that a reduced model lacks, as determined from a state in a phase.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Lacking {
     pub(crate) phase: usize,

@@ -42,7 +42,7 @@ pub(super) struct NewtonMatrix {
     pub(super) mu: Vec<f64>,
     /// Contribution of gas, liquids, lag states and pipe flows, if there are any.
     pub(super) flow: Option<FlowMatrix>,
-    /// By how much velocities differ from those of rigid pieces; empty without any. No force acts on it.
+    /// Deviation of velocities from those of rigid pieces; empty without any. No force acts on it.
     pub(super) stray: Vec<f64>,
 }
 

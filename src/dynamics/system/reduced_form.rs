@@ -19,7 +19,8 @@ pub(crate) struct ReducedForm {
 
 impl ReducedForm {
     /// The equations of a `system` that has a reduced model, from its `state` = (u, v, energies, internal unknowns) at time t
-    /// on; with the unknowns of that state. What velocities lose that the model does not have is energy supplied.
+    /// on; with the unknowns of that state. Kinetic energy lost by projecting the velocities onto the model counts as supplied,
+    /// below 0.
     ///
     /// # Errors
     /// The system, if it has no reduced model.

@@ -1,5 +1,5 @@
-//! A phase by a reduced model (`scene/reduced_model.rs`): what lifts its unknowns to displacements of all nodes, what the
-//! forces do along its shapes, and the small matrices of Newton's method.
+//! A phase by a reduced model (`scene/reduced_model.rs`): lifting of its unknowns to displacements of all nodes, projection of
+//! forces onto its shapes, and the small matrices of Newton's method.
 //!
 //! With Psi = [Phi E], z = (q, b - b_0) and the forces f, the equations are
 //!
@@ -7,7 +7,7 @@
 //! q'' = Phi^T f(t, u_0 + Psi z, Psi z') - Phi^T M E b''
 //! ```
 //!
-//! Forces of constant matrices and steady ones are projected once, and some others are [`GeneralizedForce`]s of z. What is
+//! Forces of constant matrices and steady ones are projected once, and some others are [`GeneralizedForce`]s of z. Each force
 //! left sees and acts on some nodes only, the active ones: displacements of no others are computed for it.
 
 use std::collections::BTreeSet;
@@ -640,8 +640,8 @@ impl Reduction {
         [dissipated, supplied]
     }
 
-    /// By how much the displacements `u` (m) are beyond those that the model was learned from, in parts of the widest range
-    /// of a shape.
+    /// Extrapolation: distance of the displacements `u` (m) outside the training range, relative to the largest modal
+    /// range.
     pub(super) fn outside(&self, u: &[f64]) -> f64 {
         let range = &self.model.phases[self.phase].range;
         let all = self.model.phases.iter().flat_map(|phase| &phase.range);

@@ -44,7 +44,7 @@ impl Leap {
         })
     }
 
-    /// How far (m) the path is away.
+    /// Distance (m) to the path.
     pub(crate) fn by(&self) -> f64 {
         (self.to - self.from).abs()
     }

@@ -26,7 +26,7 @@ macro_rules! with_face {
     };
 }
 
-/// A point of a reference face; what a face does not have is 0.
+/// A point of a reference face; entries beyond the nodes and coordinates of the face are 0.
 #[derive(Debug, Clone)]
 pub(crate) struct FacePoint {
     /// The shape functions N_a.
@@ -99,7 +99,7 @@ pub(crate) fn reach(kind: FaceKind) -> f64 {
 }
 
 /// Points (Bezier's control points) in whose convex hull a face of a kind lies, with its nodes `at` these positions, and
-/// their number: its corners, what its mid nodes make of its edges, and one more inside.
+/// their number: its corners, those of its edges from the mid-side nodes, and one more inside.
 pub(crate) fn control_points(kind: FaceKind, at: &[[f64; 3]]) -> ([[f64; 3]; MOST_NODES], usize) {
     let mut points = [[0.0; 3]; MOST_NODES];
     points[..at.len()].copy_from_slice(at);

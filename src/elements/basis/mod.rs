@@ -63,8 +63,8 @@ pub(crate) use triangle7::Triangle7;
 use crate::base::tensor::{Matrix, determinant};
 
 /// Calls a function that is generic over the reference cell, its number of nodes, its dimension, the
-/// dimension of space and the number of strain points, with those of a kind of cell. What has to fill space has no other
-/// dimension.
+/// dimension of space and the number of strain points, with those of a kind of cell. Cells that must fill space occur in their
+/// own dimension only.
 macro_rules! with_element {
     ($kind:expr, $space:expr, $function:ident ( $($argument:expr),* )) => {{
         use $crate::elements::basis::*;

@@ -280,7 +280,7 @@ fn step_along(bound: &Bound, slope: [f64; 2], [aa, ab, bb]: [f64; 3]) -> [f64; 2
     [part * p, part * q]
 }
 
-/// How much of a step stays within the bounds, 1 at most.
+/// Fraction of a step within the bounds, 1 at most.
 fn reach_of(step: [f64; 2], bounds: &[Bound], xi: [f64; 2]) -> f64 {
     let ahead = bounds.iter().filter(|bound| bound.rate(step) < 0.0);
     ahead.fold(1.0, |part, bound| part.min(bound.room(xi).max(0.0) / -bound.rate(step)))

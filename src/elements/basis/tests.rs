@@ -3,7 +3,7 @@
 use super::*;
 use crate::elements::mesh::CellKind;
 
-/// What the rules of a cell integrate exactly.
+/// Polynomials that a quadrature rule of a cell integrates exactly.
 #[derive(Clone, Copy)]
 enum Exact {
     /// Polynomials of this degree over the simplex.

@@ -1,4 +1,4 @@
-//! An assembled body: its constant matrices, and what is computed from displacements.
+//! An assembled body: its constant matrices, and results computed from displacements.
 
 use std::fmt;
 use std::ops::Range;
@@ -37,10 +37,10 @@ use crate::integrators::ode::Failure;
 /// ```
 ///
 /// Several bodies of one scene are [joined](Self::join) into one, whose nodes and cells are those of one body
-/// after those of the other. What holds of a body then holds of all of them together. What each is made of, and
-/// by what measure of strain and so on, has to be asked of each of its [`parts`](Self::parts): [`material`](Self::material),
-/// [`strain`](Self::strain), [`viscosity`](Self::viscosity), [`dilatation`](Self::dilatation) and
-/// [`inertia_kind`](Self::inertia_kind) of several bodies are those of the first.
+/// after those of the other. Properties of a body such as its mass are then sums over all of them. Material, strain measure
+/// and the like are read from each of its [`parts`](Self::parts): [`material`](Self::material), [`strain`](Self::strain),
+/// [`viscosity`](Self::viscosity), [`dilatation`](Self::dilatation) and [`inertia_kind`](Self::inertia_kind) of several
+/// bodies are those of the first.
 #[derive(Clone)]
 pub struct Body {
     pub(super) mesh: Mesh,
@@ -100,12 +100,12 @@ impl Body {
         &self.continua[0].recipe
     }
 
-    /// What it is made of.
+    /// Its material; that of the first body, where several are joined.
     pub fn material(&self) -> &Material {
         &self.continua[0].material
     }
 
-    /// What it and its regions are made of.
+    /// Its material and those of its regions, body by body.
     pub(crate) fn materials(&self) -> impl Iterator<Item = &Material> {
         self.continua.iter().flat_map(|continuum| &continuum.regions.materials)
     }
@@ -159,7 +159,7 @@ impl Body {
         !Dilatation::is_free(self.mesh.kind(), self.dimension(), self.continua[0].plane)
     }
 
-    /// What it is made of, then what each of its regions is made of; body by body.
+    /// Its substance, then those of its regions; body by body.
     pub fn substances(&self) -> impl Iterator<Item = &Substance> {
         self.continua.iter().flat_map(|continuum| {
             let regions = continuum.recipe.regions.iter().map(|(_, substance)| substance);
@@ -167,7 +167,7 @@ impl Body {
         })
     }
 
-    /// The number of what each cell of a single body is made of among its [`substances`](Self::substances).
+    /// The index of each cell's substance among the [`substances`](Self::substances) of a single body.
     pub(crate) fn substance_numbers(&self) -> Vec<usize> {
         let count = self.mesh.cell_count();
         let mut numbers = vec![0; count];
@@ -360,7 +360,7 @@ impl Body {
         elements.each_node(regions, u, cell - cells.start, see);
     }
 
-    /// What each cell has, body by body.
+    /// Values of all cells, body by body.
     pub(super) fn by_cell<T>(&self, of_body: impl Fn(&Continuum) -> Vec<T>) -> Vec<T> {
         match &self.continua[..] {
             [single] => of_body(single),

@@ -1,4 +1,4 @@
-//! Bodies of revolution: what holds of them as a whole.
+//! Bodies of revolution: checks of their meshes and materials, nodes on the axis, sections around it.
 
 use std::f64::consts::TAU;
 
@@ -23,7 +23,7 @@ impl Recipe {
     /// Prepares the `mesh` of a body of revolution: edges on the axis are inside of it.
     ///
     /// # Errors
-    /// Nodes beyond the axis; materials whose forces are not known around it.
+    /// Nodes beyond the axis; materials that axisymmetric bodies do not support.
     pub(super) fn turn(&self, mesh: &mut Mesh) -> Result<(), InputError> {
         let near = ON_AXIS * mesh.size();
         let is_beyond = |node: &usize| mesh.position(*node)[0] < -near;
@@ -67,7 +67,7 @@ pub(super) fn mean_section(section: Section, elements: &dyn Elements) -> f64 {
     volumes.iter().sum::<f64>() / areas.sum::<f64>()
 }
 
-/// The error for what is not known around the axis.
+/// The error for features that axisymmetric bodies do not support.
 fn not_around(input: &str, value: String) -> InputError {
     let help = "an axisymmetric body does not have it: leave it out, or mesh the body in space";
     InputError::new(input, value, help)

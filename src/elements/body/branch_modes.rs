@@ -5,7 +5,7 @@
 //! E = E_0 + sum_a w_a(z) b_a,   G = E_0 + sum_a g_a b_a,   g_a' = (w_a - g_a)/tau
 //! ```
 //!
-//! What branches were strained by at the start, E_0 - G_0, is one more mode, with w = 0 and g = -1 then. All branches of one
+//! The initial elastic strain of the branches, E_0 - G_0, is one more mode, with w = 0 and, at the start, g = -1. All branches of one
 //! relaxation time tau have the same amplitudes; C is that of each. With H_ab = int b_a : C b_b dV and P = 1/(1 + gamma/tau)
 //!
 //! ```text
@@ -63,7 +63,7 @@ pub(crate) struct BranchModes {
     shapes: usize,
     modes: usize,
     groups: Vec<Group>,
-    /// w, and room for vectors like it and like z.
+    /// w, and workspaces of the sizes of w and z.
     w: Vec<f64>,
     room: [Vec<f64>; 2],
     moved: Vec<f64>,
@@ -86,7 +86,7 @@ struct Group {
     stress: Vec<f64>,
     /// W^T H W where the tangents are from, row by row.
     material: Vec<f64>,
-    /// The components of internal strains by their numbers, E_0, and there the modes one after the other; room for as many numbers.
+    /// Numbers of the components of internal strains, E_0 there, and the modes there, one after the other; a workspace of that size.
     numbers: Vec<usize>,
     start: Vec<f64>,
     columns: Vec<f64>,
@@ -315,8 +315,8 @@ impl BranchModes {
         }
     }
 
-    /// Adds gamma times the forces along the shapes of what the `residuals` of the amplitudes pass to the springs in a step of
-    /// that parameter.
+    /// Adds gamma times the generalized spring forces due to the `residuals` of the amplitudes in a step of that
+    /// parameter.
     pub(crate) fn add_residuals(&mut self, gamma: f64, residuals: &[f64], right: &mut [f64]) {
         let Self { modes, groups, room: [stress, _], at: [_, z], .. } = self;
         for (Group { time, product, .. }, own) in groups.iter().zip(residuals.chunks_exact(*modes))

@@ -104,8 +104,8 @@ impl BodyBuilder {
         &self.bodies[0].0
     }
 
-    /// The same bodies on finer meshes, which `make` makes of each mesh and the numbers of its cells among those of all; also the
-    /// mesh of all before, without point masses, and how that becomes finer. What is rigid keeps its mesh beside others.
+    /// The same bodies on finer meshes; `make` refines each mesh, given the numbers of its cells among those of all. Also returns the
+    /// joined coarse mesh, without point masses, and its refinement. Rigid bodies among several keep their mesh.
     ///
     /// # Errors
     /// Regions of cells that the mesh does not have; several bodies with point masses; as `make`.

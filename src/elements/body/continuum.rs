@@ -1,4 +1,4 @@
-//! The cells of one body with what they are made of, on the nodes of all bodies that it is joined with.
+//! The cells of one body with their materials, on the nodes of all bodies that it is joined with.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -27,7 +27,7 @@ pub(super) struct Continuum {
     pub(super) elements: Arc<dyn Elements>,
     pub(super) regions: Arc<Regions>,
     pub(super) fibres: Arc<Families>,
-    /// What it was made from.
+    /// The input that it was built from.
     pub(super) recipe: Arc<Recipe>,
 }
 

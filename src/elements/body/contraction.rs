@@ -22,7 +22,7 @@ pub(crate) struct Contraction<'l> {
     pub(crate) stress: f64,
 }
 
-/// What a point of a fibre has.
+/// Kinematics and active stress at a point of a fibre.
 struct AtPoint<T, const D: usize> {
     /// l
     stretch: T,

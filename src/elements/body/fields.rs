@@ -224,7 +224,7 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<
     }
 }
 
-/// What a projected dilatation gives at a point of its cell.
+/// Volumetric response of a projected dilatation at a point of its cell.
 #[derive(Clone, Copy, Default)]
 struct OfVolume {
     /// U', projected, and U (J/m^3).
@@ -288,7 +288,7 @@ impl Tensors {
         self.stress += other.stress * share;
     }
 
-    /// The same with the strain of what has grown to `stretch` times its size before.
+    /// The same with the total strain after growth by the factor `stretch`.
     pub(super) fn after_growth(&self, stretch: f64) -> Self {
         Self { strain: after_growth(self.strain, stretch), ..*self }
     }
@@ -300,7 +300,7 @@ impl Tensors {
     }
 }
 
-/// Green's strain of what has grown to `stretch` times its size and is then strained by `left`: (g^2 (2 E_e + I) - I) / 2.
+/// Total Green strain (g^2 (2 E_e + I) - I) / 2 after growth by the factor g = `stretch` and then the elastic strain E_e = `left`.
 pub(super) fn after_growth(left: Matrix3<f64>, stretch: f64) -> Matrix3<f64> {
     let more = (stretch - 1.0) * (stretch + 1.0);
     left * (stretch * stretch) + Matrix3::identity() * (0.5 * more)

@@ -2,8 +2,8 @@
 //!
 //! It is compiled for each instruction set (`pulp`), and computes as many cells at once as a register holds
 //! numbers. The forces of these cells are added to each node in the order of the cells: cell by cell, or for
-//! cells in a row (`contiguous`) node by node. So results are the same to the last bit on all machines. What
-//! the loop calls has to be inlined: a separate function would be compiled for the oldest instruction set.
+//! cells in a row (`contiguous`) node by node. So results are the same to the last bit on all machines. Functions
+//! called in the loop have to be inlined: a separate function would be compiled for the oldest instruction set.
 //!
 //! The shape functions of a cell add up to 1 and their gradients to 0. So displacements are taken relative to
 //! the first node, whose force balances those on the others: this is less work, and forces stay as precise
@@ -361,7 +361,7 @@ fn balance<T: Real, const N: usize, const D: usize>(pulls: &mut [[T; D]; N]) {
 }
 
 /// Subtracts the forces of the cell in one lane from those on a share of the nodes, which begins with node
-/// `first`; the first node of the cell gets what balances the others.
+/// `first`; the first node of the cell gets the negative sum of the others.
 #[inline(always)]
 fn subtract<const N: usize, const D: usize>(
     nodes: &[usize; N],

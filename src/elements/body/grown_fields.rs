@@ -52,7 +52,7 @@ impl Body {
         })
     }
 
-    /// What `probe` reads under the displacements `u` (m), likewise.
+    /// Nodal values of the field that `probe` reads under the displacements `u` (m), likewise.
     pub(crate) fn probed(&self, probe: &Probe, u: &[f64], grown: &[Grown]) -> NodalField {
         let left = self.left(u, grown);
         probe.read(|cell, see| self.each_node_of(u, &left, cell, see))

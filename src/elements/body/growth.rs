@@ -108,7 +108,7 @@ impl Growing {
         added
     }
 
-    /// Those of what grows alike in all directions.
+    /// Those of isotropic growth.
     fn add_forces_in(
         &self,
         Scratch { u: own, forces: inner, .. }: &mut Scratch,

@@ -210,7 +210,7 @@ impl Body {
         self.joined.is_empty()
     }
 
-    /// Refuses several bodies, which `what` cannot be had of.
+    /// Rejects several bodies, for which `what` is not available.
     pub(crate) fn single(&self, what: &str) -> Result<(), InputError> {
         if self.is_single() {
             return Ok(());

@@ -1,6 +1,6 @@
-//! What a remanence in cells makes of the field of a dipole, at the strain points of the cells.
+//! Nodal forces of cells with a remanence in the field of a dipole, evaluated at the strain points of the cells.
 //!
-//! With the deformed place x = sum N_a x_a of a point and its moment m = w F b / mu_0 = sum p_a x_a, p_a = w (g_a . b) / mu_0, the energy is
+//! With the deformed position x = sum N_a x_a of a point and its moment m = w F b / mu_0 = sum p_a x_a, p_a = w (g_a . b) / mu_0, the energy is
 //! -sum m . B(x), with the gradient G = dB/dx (symmetric) and the second gradient H, so that
 //!
 //! ```text

@@ -1,4 +1,4 @@
-//! What a remanence in cells makes of a magnetic field: forces and moments at nodes.
+//! Nodal forces and the magnetic moment of cells with a remanence, in a magnetic field that is linear in x.
 //!
 //! With the deformed position x = sum N_a x_a and F = sum x_a g_a^T, the moment per natural volume is F b / mu_0. In a field
 //! B(x) = B_0 + G x, G symmetric, cells have the energy -sum w (F b) . B(x) / mu_0, so that the force on a node is
@@ -34,7 +34,7 @@ pub(super) fn direction<const N: usize, const M: usize, const D: usize>(
 
 /// Elements that can be magnetized.
 pub(super) trait Magnetized {
-    /// Adds what `remanence` (T) in some `cells` makes.
+    /// Adds the contributions of a `remanence` (T) in some `cells`.
     fn add_magnets(
         &self,
         cells: &[usize],

@@ -26,7 +26,7 @@ pub(super) trait Orientable {
     ) -> Result<Box<dyn Oriented>, InputError>;
 }
 
-/// What cells are made of, how far they have grown, and whether they are pressed across their plane.
+/// Laws of cells, their growth stretches, and whether plane strain prevents growth across them.
 #[derive(Clone, Copy)]
 pub(super) struct Grown<'r> {
     pub(super) regions: &'r Regions,
@@ -40,7 +40,7 @@ impl Grown<'_> {
     }
 }
 
-/// Cells with directions, whatever they are. None has a law of small strain.
+/// Cells of any type with directions. None has a law of small strain.
 pub(super) trait Oriented: Send + Sync {
     /// Adds their forces (N).
     fn add_forces(&self, grown: Grown, u: &[f64], forces: &mut [f64]) -> Result<(), Failure>;

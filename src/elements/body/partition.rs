@@ -1,7 +1,7 @@
 //! Dividing the work on cells among threads.
 //!
-//! Each share is a range of nodes, and computes what all cells that touch it do to these nodes. Cells on
-//! the border between shares are computed by each of them. So no two shares write to the same place,
+//! Each share is a range of nodes, and computes the contributions of all cells that touch it to these nodes. Cells on
+//! the border between shares are computed by each of them. So no two shares write to the same entry,
 //! nothing has to be added up afterwards, and the sum at a node is the same to the last bit however many
 //! threads there are.
 
@@ -23,7 +23,7 @@ const TWICE: f64 = 0.25;
 pub(super) type AddForces<'f> =
     dyn Fn(&Range<usize>, usize, &mut [f64]) -> Result<(), Failure> + Sync + 'f;
 
-/// Adds the tangents of a share, told by its number, to the rows of a stiffness and of a damping.
+/// Adds the tangents of a share, given its number, to the rows of a stiffness and of a damping.
 pub(super) type AddTangents<'f, const D: usize> =
     dyn Fn(usize, Rows<'_, D>, Rows<'_, D>) + Sync + 'f;
 

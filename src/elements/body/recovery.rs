@@ -1,4 +1,4 @@
-//! How far strains jump from cell to cell: an estimate, from the result, of the error that the mesh causes.
+//! A-posteriori estimate of the discretization error, from jumps of the strains between cells.
 //!
 //! Zienkiewicz and Zhu's estimate (Int. J. Numer. Meth. Eng. 24, 1987): the error of the strains of linear
 //! cells is about their difference from a continuous field, which at each node is the mean of the cells

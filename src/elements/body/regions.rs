@@ -117,20 +117,20 @@ impl CellSelection {
     }
 }
 
-/// What the elements of a region need: density (kg/m^3), rate of mass damping (1/s), laws and branches.
+/// Material data of a region for its elements: density (kg/m^3), rate of mass damping (1/s), laws and branches.
 #[derive(Debug, Clone)]
 pub(super) struct Laws {
     pub(super) density: f64,
     pub(super) mass_damping: f64,
     pub(super) elastic: Elastic,
-    /// What the elastic law is at small strains.
+    /// The elastic law linearized at zero strain.
     pub(super) hooke: Hooke,
     /// Hooke's law with viscous moduli: the damping matrix B.
     pub(super) viscous: Hooke,
     /// Law of objective viscosity.
     pub(super) objective: ObjectiveViscosity,
     pub(super) branches: Vec<Relaxing>,
-    /// What keeps a rigid piece in its shape where its edges do not; all of the above have no stiffness then.
+    /// Elastic law of a rigid piece where constraints on its edges do not keep its shape; the laws above have no stiffness then.
     pub(super) of_rigid: Option<Elastic>,
 }
 
@@ -144,7 +144,7 @@ impl Laws {
 /// Which substance each cell is made of.
 #[derive(Debug, Clone)]
 pub(super) struct Regions {
-    /// What the cells are made of.
+    /// The material of the body, then those of its regions.
     pub(super) materials: Vec<Material>,
     laws: Vec<Laws>,
     /// Index of each cell's substance; empty if all cells have the first.
@@ -227,7 +227,7 @@ impl Regions {
         Ok(all)
     }
 
-    /// Gives what everything is made of, without regions, this density (kg/m^3).
+    /// Sets this density (kg/m^3) for all laws and materials, of a body without regions.
     pub(super) fn set_density(&mut self, density: f64) {
         self.laws.iter_mut().for_each(|laws| laws.density = density);
         self.materials.iter_mut().for_each(|material| material.density = density);

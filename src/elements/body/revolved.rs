@@ -74,7 +74,7 @@ impl Revolved {
         self.modes.get(point)
     }
 
-    /// The gradient of a `field` at a point of a cell, column by column. What is the same at all nodes along z has none, to the last bit.
+    /// The gradient of a `field` at a point of a cell, column by column. It is exactly 0 for a uniform displacement along z.
     pub(super) fn gradient(&self, cell: usize, point: usize, field: &[f64]) -> Matrix<f64, 3, 3> {
         let (nodes, shapes) = (self.nodes_of(cell), self.shapes_at(point));
         let first = field[2 * nodes[0] + 1];
@@ -94,7 +94,7 @@ impl Revolved {
         Deformation::new(UNIT, self.gradient(cell, point, u))
     }
 
-    /// The projection onto functions of a cell of what has these values at its points.
+    /// The projection of a field with these values at the points of a cell onto functions of that cell.
     pub(super) fn projected(
         &self,
         cell: usize,

@@ -7,8 +7,8 @@
 //! u_i = sum_a w_ia u_a,   sum_a w_ia = 1,   sum_a w_ia x_a = x_i
 //! ```
 //!
-//! M is constant with them (natural coordinates). What is left beside rigid motion is one strain, the same
-//! everywhere. The edges of the frame keep it at 0, as constraints of the motion
+//! M is constant with them (natural coordinates). The only motion besides the rigid one is a uniform
+//! strain. The edges of the frame keep it at 0, as constraints of the motion
 //! (`dynamics/system/edges.rs`), and in equilibria the elasticity of the piece keeps it small.
 
 use std::collections::BTreeSet;
@@ -23,7 +23,7 @@ use crate::elements::mesh::Mesh;
 /// Shares below this are round-off.
 const NO_SHARE: f64 = 1e-13;
 
-/// What is round-off in the shape of a rigid piece, over the size of the bodies.
+/// Largest distortion of rigid pieces that counts as round-off, relative to a typical size of the displacements or velocities.
 const MOST_DISTORTED: f64 = 1e-9;
 
 /// The nodes of all rigid pieces.
@@ -161,7 +161,7 @@ impl RigidPieces {
         self.dependent.iter().map(|Dependent { node, shares }| (*node, &shares[..]))
     }
 
-    /// How far `x`, displacements or velocities, are from those of rigid pieces that move as their frames do: the
+    /// Deviation of `x`, displacements or velocities, from those of rigid pieces that move as their frames do: the
     /// largest component.
     pub(crate) fn distortion(&self, x: &[f64]) -> f64 {
         let mut stray = vec![0.0; x.len()];
@@ -214,8 +214,8 @@ impl RigidPieces {
     }
 }
 
-/// d + 1 of the nodes that span a large simplex, so that no node has large shares: each is the farthest from what those
-/// before it span.
+/// d + 1 of the nodes that span a large simplex, so that no node has large shares: each is the farthest from the span of those
+/// before it.
 fn frame(mesh: &Mesh, nodes: &[usize]) -> Vec<usize> {
     let d = mesh.dimension();
     let mut centre = vec![0.0; d];

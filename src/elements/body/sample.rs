@@ -165,7 +165,7 @@ type Cell = (usize, Vec<usize>);
 
 /// The elastic and viscous forces of each cell by itself.
 pub(crate) struct ByCell {
-    /// Cells that share no node, with their nodes and the force of all of them: what it is at a node is that of one cell.
+    /// Cells that share no node, with their nodes and the force of all of them: each node has the force of one cell.
     colours: Vec<(Elastic, Vec<Cell>)>,
     cell_count: usize,
     dimension: usize,

@@ -24,7 +24,7 @@ use crate::elements::force::{GeneralizedForce, NodalForces};
 use crate::elements::material::{Deformation, Elastic, Lame, ObjectiveViscosity};
 use crate::integrators::ode::Failure;
 
-/// G and G_v of elements: the modes of their strains, and what these store and dissipate.
+/// G and G_v of elements: the modes of their strains, with their stored and dissipated energies.
 pub(super) trait StrainProducts {
     /// Whether the strain energy is a quadratic form of Green's strain.
     fn has_strain_modes(&self, regions: &Regions, terms: Terms) -> bool;

@@ -2,8 +2,8 @@
 //!
 //! Displacements are straight, turns are not: a cell that turns by the angle theta along its velocities is stretched by about theta^2/2. In
 //! a slender body, which resists bending far less than stretching, the energy of that is all that Newton's method sees of a long step.
-//! So a step of displacement gradients dH at the gradient F is taken as one of rates, dH = L F: what turns (W, the skew part of L)
-//! is turned, and what strains (D, the symmetric part) is strained:
+//! So a step of displacement gradients dH at the gradient F is applied as one of rates, dH = L F: as a rotation by the skew part W of L
+//! and a strain by its symmetric part D:
 //!
 //! ```text
 //! F -> exp(W) (I + D) F
@@ -87,8 +87,8 @@ fn padded<const M: usize, const D: usize>(matrix: &Matrix<f64, D, M>) -> Matrix3
     Matrix3::from_fn(|i, j| if i < D && j < M { matrix[j][i] } else { 0.0 })
 }
 
-/// By how much the gradient that turns differs from F + dH in a cell of `dimension`, and the angle (rad) by which it turns; nothing where
-/// the cell has no extent.
+/// Difference of the rotating gradient from F + dH in a cell of `dimension`, and the rotation angle (rad); zeros where the cell has no
+/// extent.
 fn excess(f: Matrix3<f64>, change: Matrix3<f64>, dimension: usize) -> (Matrix3<f64>, f64) {
     let mut square = f.tr_mul(&f);
     (dimension..3).for_each(|j| square[(j, j)] = 1.0);

@@ -22,7 +22,7 @@ use crate::elements::mesh::{Enclosed, Mesh};
 /// The volume of a frame over that of a cube of its size below which it is flat.
 const FLAT: f64 = 1e-9;
 
-/// Where the inertia of a rigid body as a whole is.
+/// Frame nodes that carry the inertia of a rigid body.
 pub(super) struct Whole {
     /// The nodes of its frame.
     pub(super) frame: Vec<usize>,
@@ -31,7 +31,7 @@ pub(super) struct Whole {
     inverse: DMatrix<f64>,
 }
 
-/// What the motion of a rigid body depends on.
+/// Mass moments of a rigid body: mass, centre of mass and second moments about it.
 pub(super) struct MassMoments {
     mass: f64,
     centre: DVector<f64>,
@@ -144,7 +144,7 @@ impl MassMoments {
         Self { mass, centre, second }
     }
 
-    /// The same with what is given by numbers in its place.
+    /// The same with the prescribed values in place of its own.
     pub(super) fn replaced_by(self, given: Option<&RigidMass>) -> Result<Self, InputError> {
         let Some(given) = given else { return Ok(self) };
         let d = self.centre.len();

@@ -109,7 +109,7 @@ impl Relaxing {
         Self { hooke, time, strain, dimension, flowing, rubber }
     }
 
-    /// The name of its internal variable, which says what its components are.
+    /// The name of its internal variable, which identifies the components.
     pub(crate) fn variable(&self) -> &'static str {
         match self.strain {
             Strain::Cauchy => "cauchy strain",

@@ -50,7 +50,7 @@ pub(crate) trait CellLaw {
     /// U (J/m^3), U' and U'' of a projected dilatation.
     fn of_projected<T: Real>(&self, dilatation: T) -> [T; 3];
 
-    /// Says of a cell whose number of [`Self::piola`] is not above 0 what happened to it.
+    /// A description of the failure of a cell whose number of [`Self::piola`] is not above 0.
     fn outside_at(&self, domain: f64) -> String;
 }
 

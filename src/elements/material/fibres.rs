@@ -85,7 +85,7 @@ impl Fibres {
 }
 
 impl FibreDirection {
-    /// Checks what can be known without a body.
+    /// Checks that need no body.
     pub(crate) fn validate(&self) -> Result<(), InputError> {
         match self {
             Self::Along(direction) => has_length("fibres.along", direction),

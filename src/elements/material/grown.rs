@@ -4,8 +4,8 @@
 //! With C_e = G^-1 C G^-1 everything follows in the coordinates of the cell: S = det(G) G^-1 S_e G^-1 and dS/dE likewise. So F and the gradients of
 //! the shape functions stay those of the cell, and the formulas of all laws as they are.
 //!
-//! Where there is no strain across a cell of two dimensions, what grows is pressed there to 1/g_t: then the law is that of a solid, which has
-//! the same formulas, and what is across the cell is left out of its stress.
+//! Where there is no strain across a cell of two dimensions, growth is compressed there to the stretch 1/g_t: then the law is that of a
+//! solid, which has the same formulas, and components across the cell are omitted from its stress.
 
 #![allow(clippy::needless_range_loop, reason = "closures would not be compiled in place")]
 
@@ -16,7 +16,7 @@ use super::laws::ByPoint;
 use super::response::{Response, Tangent, axes};
 use crate::base::tensor::{Matrix, Real, product, symmetric};
 
-/// How many times as long what is free gets along the direction of growth, g_a, and across it, g_t.
+/// Growth stretches of stress-free material along the direction of growth, g_a, and across it, g_t.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Stretches {
     pub(crate) along: f64,
@@ -110,7 +110,8 @@ pub(crate) struct GrownLaw<'l> {
     pub(crate) is_pressed: bool,
 }
 
-/// Evaluates a formula of the law at 2 E_e, or, for a cell that is pressed, `of_solid` makes of its value what it is along the cell.
+/// Evaluates a formula of the law at 2 E_e; for a cell in plane strain, `of_solid` reduces the value of the solid to its part along the
+/// cell.
 macro_rules! at_left {
     ($own:ident, $left:ident => $formula:expr, $value:ident => $of_solid:expr) => {
         if const { M == 2 } && $own.is_pressed {
@@ -134,7 +135,7 @@ impl GrownLaw<'_> {
         [self.stretches.inverse(&a), self.stretches.left(&a, &at.twice_green())]
     }
 
-    /// The factor by which G stretches what the law takes for the cell.
+    /// The factor by which G changes the measure of the cell (length, area or volume) in the law.
     #[inline(always)]
     fn natural_stretch<const M: usize>(&self) -> f64 {
         let Stretches { along, across } = self.stretches;

@@ -49,7 +49,7 @@ impl Plane {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Hooke {
     pub(crate) lame: Lame,
-    /// What is assumed across the cell, if it does not fill space.
+    /// Assumption across the cell, if it has less than three dimensions.
     pub(super) across: Plane,
 }
 

@@ -1,5 +1,5 @@
-//! What a material law is: the one formula for energy, stress and tangent that forces, tangents of forces and
-//! fields use.
+//! Interface of material laws: one formula for energy, stress and tangent, shared by forces, tangents of forces
+//! and fields.
 //!
 //! Laws see one point of a cell of dimension `M`, by its strain in the coordinates of the cell. They are
 //! generic over a number `T` that may be a lane of several points, so no branch may depend on a value: where

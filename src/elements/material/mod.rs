@@ -1,4 +1,4 @@
-//! Isotropic viscoelastic material, what a body is made of, and the laws of its stress.
+//! Isotropic viscoelastic materials, substances of bodies, and stress laws.
 
 mod branch;
 mod cell_law;

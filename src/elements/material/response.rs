@@ -5,7 +5,7 @@
 use super::law::{Block, Blocks};
 use crate::base::tensor::{Matrix, Real, dot, product, times};
 
-/// Components of a symmetric tensor of a cell, at most: the diagonal, and what is above it.
+/// Largest number of components of a symmetric tensor of a cell: the diagonal and the upper triangle.
 const PAIRS: usize = 6;
 
 /// The axes of each component; cells of `M` dimensions have the first M (M + 1) / 2 of them.

@@ -17,8 +17,8 @@ pub enum Moments {
     Matrix([[f64; 3]; 3]),
 }
 
-/// Mass and, where they are not those of a uniform density, centre and moments of inertia of a rigid body: what a data
-/// sheet or a drawing program says of a part that is no uniform solid.
+/// Mass and, where they are not those of a uniform density, centre and moments of inertia of a rigid body: the values in
+/// a data sheet or from CAD for a part that is not a uniform solid.
 ///
 /// ```
 /// use pliant::{Body, Material, Mesh, Moments, RigidMass, SolidCells};

@@ -1,5 +1,4 @@
-//! What a body, or a region of it, is made of: a material, its law at large strains, its damping, branches
-//! and fibres.
+//! Substance of a body, or of a region of it: a material, its law at large strains, damping, branches and fibres.
 
 use std::fmt;
 
@@ -32,7 +31,7 @@ pub struct Substance {
     pub branches: Vec<MaxwellBranch>,
     /// Families of fibres in it.
     pub fibres: Vec<Fibres>,
-    /// Whether what is made of it is [rigid](Material::rigid).
+    /// Whether cells of it are [rigid](Material::rigid).
     pub is_rigid: bool,
     /// Mass, centre and moments of inertia of a rigid body, where they do not follow from a density: see
     /// [`Material::rigid_of`].
@@ -40,7 +39,8 @@ pub struct Substance {
 }
 
 impl fmt::Debug for Substance {
-    /// What is not rigid is written as before there were rigid pieces: this is a part of what identifies a scene.
+    /// Fields of rigid substances are written only where they are set: the text identifies a scene, and that of others must not
+    /// change.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { material, law, mass_damping, branches, fibres, is_rigid, mass } = self;
         let mut fields = f.debug_struct("Substance");
@@ -105,7 +105,7 @@ impl Material {
         Substance::from(self).yielding(share, time, yield_stress)
     }
 
-    /// What rigid bodies, and rigid regions of soft ones, are made of, with the `density` (kg/m^3).
+    /// A rigid substance with the `density` (kg/m^3), for rigid bodies and for rigid regions of soft ones.
     ///
     /// The cells of a connected rigid piece give its shape and its inertia. Its nodes move as those of a triangle (in
     /// space a tetrahedron) do, whose edges keep their lengths, so that it has 3 (6) degrees of freedom. Nothing
@@ -128,7 +128,7 @@ impl Material {
         Substance { is_rigid: true, ..substance }
     }
 
-    /// What a rigid body is made of whose mass, and where they are given centre and moments of inertia, are these numbers.
+    /// A rigid substance of a body with prescribed mass and, if given, centre of mass and moments of inertia.
     ///
     /// They are those of a whole body, which is one piece without regions, in place of a density; the density is their
     /// mean over the volume of the mesh. The mesh still gives the shape. All else is as with [`rigid`](Self::rigid).
@@ -173,7 +173,7 @@ impl Substance {
 
     /// The same, with the force -a M v at the rate a = `rate` (1/s, 0 or above).
     ///
-    /// M is the inertia of what is made of this, consistent or lumped as that of the body; it does not act on
+    /// M is the inertia of the cells of this material, consistent or lumped as that of the body; it does not act on
     /// point masses. The force brakes all motion relative to the ground, rigid motion too, which decays as
     /// exp(-a t), and damps a vibration of the angular frequency omega with the ratio a / (2 omega).
     ///
@@ -237,9 +237,9 @@ impl Substance {
     /// The same, with one more [branch](MaxwellBranch) that flows only above its `yield_stress` (Pa, 0 or
     /// above).
     ///
-    /// Below it the branch is a spring, and what has flowed remains. Like dough, the body keeps part of a
-    /// deformation: the branch pulls with at most Y against the elasticity E of the material, so that what
-    /// exceeds a strain of about Y/E springs back.
+    /// Below it the branch is a spring, and its flow remains as a permanent strain. Like dough, the body keeps part of a
+    /// deformation: the branch pulls with at most Y against the elasticity E of the material, so that strain
+    /// above about Y/E springs back.
     ///
     /// The stress is the von Mises stress of the second Piola stress, which is taken in the axes of the
     /// undeformed body; its deviator relaxes. In a body that is sheared and held, it is Y + (q - Y)

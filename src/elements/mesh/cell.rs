@@ -3,7 +3,7 @@
 // some columns of the table are used only by readers of files and by pictures
 #![cfg_attr(not(all(feature = "gmsh", feature = "output")), allow(dead_code))]
 
-/// What the kinds of cells differ by. Local numbers of nodes count from 0.
+/// Properties of a cell type. Local numbers of nodes count from 0.
 struct Shape {
     /// The word for them in files.
     word: &'static str,
@@ -13,7 +13,7 @@ struct Shape {
     nodes: usize,
     /// Whether edges have mid nodes.
     quadratic: bool,
-    /// Whether it has to fill its space: other cells make up strings and membranes, too.
+    /// Whether its dimension must be that of space; cells of other types also form strings and membranes.
     fills_space: bool,
     faces: &'static [&'static [usize]],
     /// Empty in two dimensions, where edges and faces are the same.
@@ -414,7 +414,7 @@ impl CellKind {
         self.shape().faces
     }
 
-    /// Whether it has to fill its space: other cells make up strings and membranes, too.
+    /// Whether its dimension must be that of space; cells of other types also form strings and membranes.
     pub(crate) fn fills_space(self) -> bool {
         self.shape().fills_space
     }

@@ -193,7 +193,7 @@ fn cell_kind(kind: ElementType) -> Option<CellKind> {
         .find(|cell| cell.gmsh().is_some_and(|(number, _)| number == kind.number))
 }
 
-/// Dimension of the space of a body of `kind`: the one that is `wanted`, or the one that it needs. Notes tell what is left out for that.
+/// Dimension of the space of a body of `kind`: the one that is `wanted`, or the one that it needs. Notes report an omitted z.
 fn space(
     kind: CellKind,
     positions: &[[f64; 3]],

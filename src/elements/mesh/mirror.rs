@@ -50,7 +50,7 @@ impl Mesh {
     }
 
     /// Those of its `cells` (from 0), with the nodes that `keeps` has, in their order. Faces between nodes of a plane of symmetry,
-    /// which `is_on_plane` has, are none of its boundary. Sets and groups lose what is left out.
+    /// which `is_on_plane` has, are none of its boundary. Omitted nodes and cells are removed from sets and groups.
     pub(crate) fn part(
         &self,
         cells: &[usize],

@@ -277,7 +277,7 @@ impl Mesh {
     /// The same mesh with the node at x (m) moved to `map(x)` (m).
     ///
     /// This bends a grid into another shape, or places it in a space of higher dimension. Cells and node sets
-    /// stay what they are; the set `boundary` is found anew if the dimension changes.
+    /// stay; the set `boundary` is recomputed if the dimension changes.
     ///
     /// ```
     /// # use pliant::{Cells, Mesh};
@@ -334,7 +334,7 @@ impl Mesh {
         &self.positions[node * self.dimension..][..self.dimension]
     }
 
-    /// What the cells are; those of the first body, in a mesh of several.
+    /// Type of the cells; of those of the first body, in a mesh of several.
     pub fn kind(&self) -> CellKind {
         self.blocks[0].kind
     }
@@ -396,7 +396,7 @@ impl Mesh {
         joined
     }
 
-    /// Notes on what was changed as it was read from a file, for people: triangles without an area that were left out, for one.
+    /// Notes in words on changes made while it was read from a file: omitted triangles without an area, for example.
     pub fn notes(&self) -> &[String] {
         &self.notes
     }

@@ -278,7 +278,7 @@ fn count_columns(columns: &[usize], nodes: &[usize]) -> usize {
     own.len()
 }
 
-/// What the shape functions of eight nodes make of their vectors in the middle: minus a quarter of the corners, and half of the others.
+/// Centre of an eight-node serendipity cell: shape functions there are -1/4 for corners and 1/2 for mid-side nodes.
 fn serendipity_middle(around: &[usize], x: &[f64]) -> [f64; 2] {
     [0, 1].map(|i| {
         let part = |k: usize| if k < 4 { -0.25 } else { 0.5 };
@@ -297,7 +297,7 @@ fn along(axis: usize) -> String {
     format!("mesh along {}", ["x", "y", "z"][axis.min(2)])
 }
 
-/// What else can be done.
+/// Remedy in error messages.
 const WHOLE: &str = "take a prism, or leave the scene in space";
 
 #[cfg(test)]

@@ -109,7 +109,7 @@ impl Mesh {
         }
     }
 
-    /// The error for cells, by their numbers, that are inside out somewhere or have no volume: what they are, how many, and where.
+    /// The error for cells, by their numbers, that are inverted somewhere or have no volume: their flaws, count and positions.
     pub(crate) fn flawed_cells(&self, numbers: &[usize]) -> InputError {
         let cell = |number: usize| self.cells().nth(number).unwrap_or_default();
         let mut flaws: Vec<(Flaw, usize)> = self

@@ -23,10 +23,10 @@ pub(crate) struct Enclosed {
 }
 
 impl Mesh {
-    /// The triangles of a mesh in space as the surface of a solid: what a [rigid](crate::Material::rigid) body may be made of in
-    /// place of cells that fill it.
+    /// The triangles of a mesh in space as the surface of a solid: a [rigid](crate::Material::rigid) body may have such a mesh instead
+    /// of cells that fill it.
     ///
-    /// The solid moves, touches and is drawn by its triangles; its mass and its moments of inertia are those of what they enclose.
+    /// The solid moves, touches and is drawn by its triangles; its mass and its moments of inertia are those of the enclosed volume.
     /// Triangles are turned over until all of them run counter-clockwise as seen from outside.
     ///
     /// ```
@@ -86,8 +86,8 @@ impl Mesh {
         self.blocks.iter().all(has)
     }
 
-    /// What a closed surface encloses, by the divergence theorem: the sum of tetrahedra between its triangles and a point,
-    /// those that are turned inside out below 0.
+    /// Volume and moments inside a closed surface, by the divergence theorem: the sum over tetrahedra between its triangles and a
+    /// point, with negative volume for inverted ones.
     pub(crate) fn enclosed(&self) -> Enclosed {
         let count = self.node_count() as f64;
         let nodes = self.positions.as_chunks::<3>().0.iter();

@@ -44,7 +44,7 @@ pub struct CentralDifference<S> {
     /// Time derivatives of the integrals at t, without those of constraints.
     pub(super) powers: Vec<f64>,
     pub(super) trial_powers: Vec<f64>,
-    /// What the constraints add to the integrals in a step.
+    /// Work of the constraint forces in a step, for each integral.
     pub(super) work: Vec<f64>,
     /// Accelerations at the beginning of the step before the last, at the beginning of the last, and at its
     /// end.

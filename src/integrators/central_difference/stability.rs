@@ -3,7 +3,7 @@
 use crate::base::vector::dot;
 use crate::integrators::ode::{EnergyBalance, Rates, SecondOrder};
 
-/// Part of the longest stable step that is used: rates may grow until they are bounded anew.
+/// Used fraction of the longest stable step: rates may grow until the next bound on them.
 const SAFETY: f64 = 0.98;
 /// Number of steps from one bound on the rates to the next: at first, and at most.
 const FIRST_INTERVAL: usize = 64;

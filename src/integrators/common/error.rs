@@ -1,4 +1,4 @@
-//! What can go wrong, with time, step size, order, likely cause and what to try.
+//! Errors of integrators, with time, step size, order, likely cause and remedies.
 
 use std::{error, fmt};
 
@@ -118,7 +118,7 @@ pub enum Cause {
     Fatal(Callback),
     /// The user's system kept rejecting the trial points, whatever the step size.
     Rejected {
-        /// What rejected.
+        /// Callback that rejected the point.
         callback: Callback,
         /// Time of the last rejected point.
         t: f64,
@@ -127,7 +127,7 @@ pub enum Cause {
     },
     /// The user's system kept returning NaN or infinity, whatever the step size.
     NotFinite {
-        /// What returned it.
+        /// Callback that returned it.
         callback: Callback,
         /// Time of the call.
         t: f64,
@@ -142,7 +142,7 @@ pub enum Cause {
         steps: u64,
         /// Target time.
         target: f64,
-        /// What the integrator noticed about its steps
+        /// A warning of the integrator about its steps
         /// ([`Integrator::notice`](super::Integrator::notice)).
         notice: Option<String>,
     },
@@ -165,9 +165,9 @@ pub enum Cause {
         row: usize,
         /// The unknown for which the derivative is most wrong; `None` if there are too many to search.
         column: Option<usize>,
-        /// What was supplied: this entry, or the product of the row with a direction.
+        /// The supplied value of this entry, or of the product of the row with a direction.
         supplied: f64,
-        /// The same by differences of the equations.
+        /// The same by difference quotients of the equations.
         difference: f64,
     },
     /// The Newton matrix could not be factorized.

@@ -1,4 +1,4 @@
-//! What every integrator can do.
+//! Interface of all integrators.
 
 use super::{error::Error, statistics::Statistics};
 
@@ -7,7 +7,7 @@ use super::{error::Error, statistics::Statistics};
 /// Steps are as long as the tolerances allow. The state between the ends of the last step is known,
 /// too, by interpolation, so output times never change the steps.
 pub trait Integrator {
-    /// What is integrated.
+    /// The system of equations.
     type System;
 
     /// Time of the state [`y`](Self::y).
@@ -104,10 +104,10 @@ pub trait Integrator {
     /// a root at the present time: +1 rising, -1 falling.
     fn roots_found(&self) -> &[i32];
 
-    /// What the integration has cost so far, and where it is.
+    /// Cost counters of the integration so far, and its present time, step size and order.
     fn statistics(&self) -> Statistics;
 
-    /// What the integrator noticed about its steps: that stability, not accuracy, bounds them.
+    /// A warning about the steps: that stability, not accuracy, limits their size.
     fn notice(&self) -> Option<String> {
         None
     }

@@ -29,14 +29,14 @@ pub(crate) struct JacobianCheck {
     rows: Vec<RowState>,
 }
 
-/// What is known of a row of the product.
+/// Verdict on a row of the product.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum RowState {
-    /// Nothing yet.
+    /// Undecided.
     Open,
-    /// It is right, as far as differences can show.
+    /// Correct, within the accuracy of differences.
     Right,
-    /// The quotient of the last shift says that it is wrong.
+    /// Wrong according to the difference quotient of the last shift.
     Suspicious(f64),
 }
 
@@ -49,7 +49,7 @@ pub(crate) struct Point<'a> {
     pub(crate) cj: f64,
 }
 
-/// What a check asks for.
+/// Quantity that a check evaluates.
 pub(crate) enum Wanted<'a> {
     /// The product of the Jacobian with a vector.
     Product(&'a [f64]),
@@ -98,7 +98,7 @@ impl JacobianCheck {
         is_due
     }
 
-    /// What is wrong with the Jacobian that `method` supplied at the point.
+    /// The error in the Jacobian that `method` supplied at the point.
     ///
     /// The result is `None` where differences cannot show an error: next to a jump or a kink, or where they do
     /// not converge.

@@ -78,15 +78,15 @@ pub(crate) fn not_finite(t: f64, slope: &[f64]) -> Option<Cause> {
     Some(Cause::NotFinite { callback: Callback::Rhs, t, component, value: slope[component] })
 }
 
-/// What a one-step method does in a step.
+/// Formulas of a one-step method for a single step.
 ///
-/// Steps know nothing of each other but their size. Starts, stops, roots and all that leads from step to step
-/// are done by [`OneStep`](super::OneStep).
+/// Steps share nothing but their size. Starts, stops, roots and the loop over steps are done by
+/// [`OneStep`](super::OneStep).
 pub trait StepMethod: fmt::Debug {
-    /// Begins anew.
+    /// Restarts the method.
     fn restart(&mut self);
 
-    /// Forgets what it knows of the system.
+    /// Discards cached data of the system, such as its Jacobian.
     fn forget(&mut self);
 
     /// The norm of the local error.
@@ -121,7 +121,7 @@ pub trait StepMethod: fmt::Debug {
     /// Degree in time of the state within a step.
     fn interpolant_degree(&self) -> u32;
 
-    /// What it noticed about its steps.
+    /// A warning about the steps, as [`Integrator::notice`](super::Integrator::notice).
     fn notice(&self) -> Option<String> {
         None
     }

@@ -1,9 +1,9 @@
-//! What all integrators have in common: what they can do ([`Integrator`]), how accurate they are to be
-//! ([`Tolerances`]), what they cost ([`Statistics`]) and how they fail ([`Error`]).
+//! Shared parts of all integrators: their interface ([`Integrator`]), [`Tolerances`], [`Statistics`] and errors
+//! ([`Error`]).
 //!
 //! The integrators are those of [`sundials`](crate::integrators::sundials), [`rk`](crate::integrators::rk),
 //! [`rosenbrock`](crate::integrators::rosenbrock) and
-//! [`central_difference`](crate::integrators::central_difference); what they integrate is in
+//! [`central_difference`](crate::integrators::central_difference); the systems of equations are in
 //! [`ode`](crate::integrators::ode).
 
 mod error;

@@ -346,7 +346,7 @@ impl<S: Ode, M: StepMethod> Integrator for OneStep<S, M> {
         &self.march.system
     }
 
-    /// The next step evaluates the system anew.
+    /// Discards cached derivatives, so that the next step evaluates the system again.
     fn system_mut(&mut self) -> &mut S {
         self.march.slope_known = false;
         self.method.forget();

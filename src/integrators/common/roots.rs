@@ -21,13 +21,13 @@ pub(crate) struct Roots {
     /// g at the end of the interval that holds a sign change.
     at_high: Vec<f64>,
     pub(crate) trial: Vec<f64>,
-    /// Whether a function is followed: those that are 0 and stay so are left out until they leave 0.
+    /// Whether a function is followed: one that stays at 0 is omitted until it leaves 0.
     active: Vec<bool>,
     /// For each function 0, or the sign of its change at the root last found.
     pub(crate) found: Vec<i32>,
 }
 
-/// What happens to the functions from one time to a later one.
+/// Event of the root functions between two times.
 enum Change {
     None,
     /// One or more become 0 at the later time.
@@ -48,7 +48,7 @@ impl Roots {
         }
     }
 
-    /// Begins anew.
+    /// Restarts the search.
     pub(crate) fn restart(&mut self) {
         (self.started, self.rests) = (false, false);
         self.active.fill(true);
@@ -102,7 +102,7 @@ impl Roots {
         Ok(self.rests.then_some(high))
     }
 
-    /// What happens between `low` and the time at which the functions are `values`.
+    /// The event between `low` and the time at which the functions are `values`.
     fn change(&self, values: &[f64]) -> Change {
         let (mut change, mut largest) = (Change::None, 0.0);
         for (i, (&before, &after)) in self.at_low.iter().zip(values).enumerate() {

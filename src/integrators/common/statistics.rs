@@ -1,7 +1,7 @@
-//! What an integration cost.
+//! Statistics of an integration.
 
-/// Counters and state of an integrator since it was made or re-initialised. What does not apply to a
-/// method is 0.
+/// Counters and state of an integrator since its creation or last re-initialisation. Entries that do not
+/// apply to a method are 0.
 ///
 /// In a Newton iteration every iteration solves one linear system, so `nonlinear_iterations` is
 /// also the number of linear solves.

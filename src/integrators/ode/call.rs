@@ -1,6 +1,6 @@
 //! How integrators call a system: its outputs are zero on entry.
 //!
-//! Outputs are memory of C, or hold what the last call has left. All calls of equations go through these
+//! Outputs are memory of C, or hold results of the last call. All calls of equations go through these
 //! functions, so that a system may add to its output (`tests/house.rs` looks for calls that bypass them).
 
 use super::dae::Dae;

@@ -37,7 +37,7 @@ use super::{
 };
 use crate::base::input::InputError;
 
-/// What a check found.
+/// Error of a check of supplied derivatives.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum CheckError {
@@ -51,11 +51,11 @@ pub enum CheckError {
         method: &'static str,
         /// Row and column: equation or result, unknown or parameter.
         entry: (usize, usize),
-        /// What was supplied.
+        /// The supplied value.
         supplied: f64,
-        /// What differences give.
+        /// The value by central differences.
         difference: f64,
-        /// By how much both may differ.
+        /// Largest difference allowed between both.
         tolerance: f64,
     },
     /// The equations have no value here.

@@ -7,8 +7,8 @@ use super::failure::{Failure, missing};
 
 /// F(t, y, y') = 0.
 ///
-/// Only [`residual`](Self::residual) is required, as in [`Ode`](super::Ode). What a method writes into is
-/// zero on entry, as there.
+/// Only [`residual`](Self::residual) is required, as in [`Ode`](super::Ode). Output arguments of a
+/// method are zero on entry, as there.
 pub trait Dae {
     /// Writes F(t, y, y') into `residual` (same length as `y`, zero on entry).
     fn residual(

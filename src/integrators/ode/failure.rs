@@ -72,7 +72,7 @@ impl<E: Error + Send + Sync + 'static> From<E> for Failure {
     }
 }
 
-/// The failure of a method that a system leaves out.
+/// The failure of a call of a method that a system does not implement.
 pub(super) fn missing(method: &'static str) -> Failure {
     Failure::Fatal(
         format!("the integrator was configured to call `{method}`, which this system lacks").into(),

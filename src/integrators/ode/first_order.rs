@@ -11,8 +11,8 @@ use super::mass::MassKind;
 /// Only [`rhs`](Self::rhs) is required. The other methods are called when the integrator was
 /// configured to use them; their defaults fail with [`Failure::Fatal`].
 ///
-/// What a method writes into is zero on entry, whichever integrator calls it: it may add to it, and need not
-/// write zeros. (The arguments that [`newton_solve`](Self::newton_solve) and [`project`](Self::project)
+/// Output arguments of a method are zero on entry, whichever integrator calls it: a method may add to them, and
+/// need not write zeros. (The arguments that [`newton_solve`](Self::newton_solve) and [`project`](Self::project)
 /// change in place are not such outputs.)
 pub trait Ode {
     /// Writes f(t, y) into `ydot` (same length as `y`, zero on entry).

@@ -1,5 +1,5 @@
-//! What an integrator is given: systems of ordinary differential equations (ODE), of
-//! differential-algebraic equations (DAE), and of [second order](SecondOrder).
+//! Systems of equations for integrators: ordinary differential equations (ODE), differential-algebraic
+//! equations (DAE), and equations of [second order](SecondOrder).
 //!
 //! The same traits serve [`crate::integrators::sundials`] and the internal methods `rk` and `rosenbrock`. Any
 //! closure `FnMut(t, y, ydot) -> Result<(), Failure>` is an [`Ode`]; [`with_jacobian`] and

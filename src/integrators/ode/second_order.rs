@@ -82,7 +82,7 @@ pub trait SecondOrder {
     }
 
     /// Sets known components of the velocities `after` a kick, which are v + duration a, to the target rates.
-    /// Adds to `work` what the constraint forces contribute to the integrals.
+    /// Adds the contributions of constraint forces to the integrals to `work`.
     fn lead(&mut self, _kick: &Kick<'_>, _after: &mut [f64], _work: &mut [f64]) {}
 }
 

@@ -1,4 +1,4 @@
-//! The method: what it keeps in addition to the state, and the solution within the last step.
+//! The method: its data in addition to the state, and the solution within the last step.
 
 use super::control::{Controller, StabilityLimit, StabilityMonitor};
 use super::tableau::{

@@ -1,4 +1,4 @@
-//! The method: what it keeps in addition to the state, and the solution within the last step.
+//! The method: its data in addition to the state, and the solution within the last step.
 
 use super::control::Controller;
 use super::matrix::Matrix;
@@ -32,11 +32,11 @@ pub struct LinearlyImplicit {
     pub(super) stages: [Vec<f64>; MOST_STAGES],
     /// p and q of the dense output.
     pub(super) bends: [Vec<f64>; 2],
-    /// What is known at (t, y).
+    /// Derivatives that are up to date at (t, y).
     pub(super) known: Known,
     /// gamma h of the present factorization.
     pub(super) factored: Option<f64>,
-    /// How long that serves.
+    /// Age of the factorization, and its limit.
     pub(super) service: Service,
     controller: Controller,
 }
@@ -55,7 +55,7 @@ pub(super) struct Service {
     pub(super) is_resumed: bool,
 }
 
-/// What has been evaluated at (t, y), in addition to f.
+/// Derivatives of f that have been evaluated at (t, y).
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Known {
     pub(super) time_slope: bool,

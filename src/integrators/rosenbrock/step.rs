@@ -98,7 +98,7 @@ impl LinearlyImplicit {
         self.service.is_resumed && (1..most).contains(&steps)
     }
 
-    /// What is wrong with the Jacobian that the system has just supplied, if its check is due.
+    /// The error in the Jacobian that the system has just supplied, if its check is due.
     fn wrong_jacobian<S: Ode>(&mut self, march: &mut March<S>) -> Option<Cause> {
         let (matrix, (method, check)) = (self.matrix.as_ref()?, self.check.as_mut()?);
         if !check.is_due() {

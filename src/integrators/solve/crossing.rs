@@ -1,4 +1,4 @@
-//! What happens along a run: events, breaks, and the jumps at both.
+//! Discontinuities of a run: events, breaks, and the jumps at both.
 
 use std::mem;
 
@@ -21,7 +21,7 @@ struct State {
     yp: Vec<f64>,
 }
 
-/// What a step has met.
+/// Events within a step.
 pub(super) enum Found {
     /// Events that stop it, all at one time; or none.
     Jumps(Vec<(usize, Root)>),

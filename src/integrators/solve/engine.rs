@@ -1,4 +1,4 @@
-//! What a run needs from an integrator in addition to [`Integrator`].
+//! Interface of a run to its integrator, in addition to [`Integrator`].
 
 use faer::{MatMut, MatRef};
 
@@ -40,7 +40,7 @@ pub(super) trait Engine {
     fn make_consistent(&mut self, _towards: f64) -> Result<(), Error> {
         Ok(())
     }
-    /// Whether there is nothing to correct, or it is known what may be corrected.
+    /// Whether nothing needs correction, or the correctable unknowns are known.
     fn can_be_consistent(&self) -> bool {
         true
     }

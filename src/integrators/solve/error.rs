@@ -1,4 +1,4 @@
-//! Why a run did not come to its end, and what it computed until then.
+//! Runs that ended early: the reason, and the solution until then.
 
 use std::{error, fmt, time::Duration};
 
@@ -16,12 +16,12 @@ pub enum Error {
     #[error(transparent)]
     Input(#[from] InputError),
 
-    /// The run stopped before the end of the span; what it computed is there.
+    /// The run stopped before the end of the span; the solution until then is included.
     #[error(transparent)]
     Stopped(Box<Stopped>),
 }
 
-/// A run that stopped: why, and what it computed until then.
+/// A run that stopped: the reason, and the solution until then.
 #[derive(Debug)]
 pub struct Stopped {
     /// Why.
@@ -137,7 +137,7 @@ impl error::Error for Stopped {
 }
 
 impl Error {
-    /// What was computed before the run stopped.
+    /// The solution up to the time at which the run stopped; none for invalid input.
     #[must_use]
     pub fn solution(&self) -> Option<&Solution> {
         match self {

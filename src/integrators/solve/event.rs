@@ -1,4 +1,4 @@
-//! Events: what is looked for along a solution, and what is done where it is found.
+//! Events: roots of functions along a solution, and actions at them.
 
 use std::fmt;
 
@@ -10,10 +10,10 @@ use crate::integrators::common::check_finite;
 /// g(t, y, p), whose roots are the events.
 pub(super) type Function<'a> = Box<dyn FnMut(f64, &[f64], &[f64]) -> f64 + 'a>;
 
-/// What an action does.
+/// An action at an event or a break: it changes the jump.
 pub(super) type Action<'a> = Box<dyn FnMut(&mut Jump<'_>) + 'a>;
 
-/// Something to look for along the solution: a root of a function g(t, y), and what to do there.
+/// An event along the solution: a root of a function g(t, y), and the action there.
 ///
 /// Without an action an event is only recorded in the [`Solution`](super::Solution), and the integration
 /// continues with the same steps. It is located on the interpolant of the step, to rounding.
@@ -94,9 +94,9 @@ impl<'a> Event<'a> {
         self
     }
 
-    /// What to do at the event: change the state or the parameters, or end the run.
+    /// Action at the event: it changes the state or the parameters, or ends the run.
     ///
-    /// The integration starts anew from there.
+    /// The integration restarts from there.
     ///
     /// In a DAE whose differential unknowns are known, the algebraic ones and the derivatives are made
     /// consistent again.
@@ -106,10 +106,10 @@ impl<'a> Event<'a> {
         self
     }
 
-    /// What to do where this event accumulates.
+    /// Action where this event accumulates.
     ///
     /// An event accumulates where its action turns the solution back ever faster, like a ball that bounces
-    /// and loses a part of its speed each time, until what lies between two events is less than the errors of
+    /// and loses a part of its speed each time, until the change between two events is less than the errors of
     /// the solution. The action given here brings the solution to rest and keeps it there, by a parameter of
     /// the equations, say, or [ends](Jump::end) the run. It is called at the time of the last event, in the
     /// state after the jump.
@@ -206,11 +206,11 @@ impl Event<'_> {
 pub struct Jump<'j> {
     /// Time.
     pub t: f64,
-    /// State; the solution continues from what is written here.
+    /// State; the solution continues from the values written here.
     pub y: &'j mut [f64],
     /// Its time derivative for a DAE; empty otherwise.
     pub yp: &'j mut [f64],
-    /// Parameters of the equations; what is written here applies from now on.
+    /// Parameters of the equations; values written here apply from now on.
     pub p: &'j mut [f64],
     pub(super) ends: bool,
 }

@@ -35,8 +35,8 @@ use crate::integrators::{
 ///
 /// (W. A. Rozenvasser, Automation and Remote Control 28 (1967) 1043-1049, transposed), and likewise for the
 /// parameters, which actions may change. These derivatives are central differences: event functions and
-/// actions are called at states nearby, two times for each unknown and each parameter. What an action of a
-/// DAE writes to `yp` does not count, as `yp` is corrected afterwards.
+/// actions are called at states nearby, two times for each unknown and each parameter. Values that an
+/// action of a DAE writes to `yp` do not count, as `yp` is corrected afterwards.
 ///
 /// Limits of evaluations and time, and the observer, apply to the first forward run.
 ///
@@ -109,7 +109,7 @@ pub fn gradient(
     outcome
 }
 
-/// What the backward run needs.
+/// Problem and options of the backward run.
 struct BackwardRun<'a, 'o, F> {
     problem: Problem<'a>,
     functional: F,
@@ -119,7 +119,7 @@ struct BackwardRun<'a, 'o, F> {
     back: &'o AdjointOptions,
 }
 
-/// The functional of one piece: the same integral, and at the end the adjoint of what follows.
+/// The functional of one piece: the same integral, and at the end the adjoint of the later pieces.
 struct Piece<'f, F> {
     functional: &'f mut F,
     lambda: &'f [f64],
@@ -228,8 +228,8 @@ impl<F: Functional> BackwardRun<'_, '_, F> {
         Ok(())
     }
 
-    /// What the functional gains for each unit of time that the jump comes later, except through the state
-    /// and parameters that the jump leads to.
+    /// Derivative of the functional with respect to the time of the jump, at fixed state and parameters after
+    /// the jump.
     fn gain_of_time(&mut self, passage: &Passage, gradient: &Gradient) -> Result<f64, Reason> {
         let Passage { before, after, ends, .. } = passage;
         let mut running = |at: &Place| {

@@ -1,8 +1,8 @@
 //! Initial value problems solved by one call: any method, events, breaks, limits, interpolation.
 //!
 //! A [`Problem`] is the equations and where they start, with the [`Event`]s to look for. [`solve`] integrates
-//! it over a span by a [`Method`] and returns a [`Solution`]: times, states, what lies between them, events,
-//! and what it cost.
+//! it over a span by a [`Method`] and returns a [`Solution`]: times, states, interpolants between them, events,
+//! and statistics.
 //!
 //! ```
 //! use pliant::solve::{Event, Method, Options, Problem, solve};
@@ -25,7 +25,7 @@
 //! ```
 //!
 //! [`Run`] does the same step by step, under the caller's control, and [`ensemble`] solves many problems on
-//! all cores. What a method cannot do is an error before the first step, never replaced by something else.
+//! all cores. Features that a method lacks are errors before the first step, and are never replaced by others.
 
 mod crossing;
 mod edge;

@@ -8,7 +8,7 @@ use crate::integrators::{
     sundials::{LinearSolver, Sensitivities, Sign},
 };
 
-/// What a [`Solution`](super::Solution) keeps.
+/// Output that a [`Solution`](super::Solution) keeps.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Output {
@@ -22,7 +22,7 @@ pub enum Output {
     End,
 }
 
-/// Tolerances, limits and what is kept, for any [`Method`](super::Method). An option that a method does not
+/// Tolerances, limits and output, for any [`Method`](super::Method). An option that a method does not
 /// have is an error.
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -115,7 +115,7 @@ impl Options {
         self
     }
 
-    /// What is kept. Default: [`Output::Steps`].
+    /// Output that the solution keeps. Default: [`Output::Steps`].
     pub fn output(mut self, output: Output) -> Self {
         self.output = output;
         self
@@ -156,7 +156,7 @@ impl Options {
         self
     }
 
-    /// Checks what no integrator checks, for a run over `span`.
+    /// Checks options that no integrator checks, for a run over `span`.
     pub(super) fn check(&self, span: (f64, f64)) -> Result<(), InputError> {
         if self.max_steps == 0 {
             return Err(InputError::new("max_steps", 0, "it is at least 1"));

@@ -1,4 +1,4 @@
-//! What is to be solved: equations, where they start, and what happens along the way.
+//! Initial value problems: equations, initial values, events and breaks.
 
 use std::{
     fmt,
@@ -52,13 +52,13 @@ impl Equations<'_> {
     }
 }
 
-/// A time at which the equations change, and what is done then.
+/// A time at which the equations change, and the action then.
 pub(super) struct Break<'a> {
     pub(super) t: f64,
     pub(super) action: Option<Action<'a>>,
 }
 
-/// How far a run has come, for [`Problem::observed_by`].
+/// Progress of a run, for [`Problem::observed_by`].
 #[derive(Clone, Copy, Debug)]
 pub struct Progress<'p> {
     /// Time reached.
@@ -74,10 +74,10 @@ pub struct Progress<'p> {
 /// Called after each step; may end the run.
 pub(super) type Observer<'a> = Box<dyn FnMut(Progress<'_>) -> ControlFlow<()> + 'a>;
 
-/// Equations, the state they start from, and what happens along the way.
+/// Equations, initial values, events and breaks.
 ///
 /// Equations are a closure or a struct, see [`crate::integrators::ode`]. They may borrow: the problem lives
-/// no longer than what they use.
+/// no longer than the data that they use.
 #[must_use]
 pub struct Problem<'a> {
     pub(super) equations: Equations<'a>,
@@ -145,8 +145,8 @@ impl<'a> Problem<'a> {
 
     /// Times at which the right-hand side has a jump or a kink.
     ///
-    /// A step ends just before each, at the last floating-point number before it, and the integration starts
-    /// anew there. Equations that test `t < break` see the side that they are on.
+    /// A step ends just before each, at the last floating-point number before it, and the integration
+    /// restarts there. Equations that test `t < break` see the side that they are on.
     pub fn breaks(mut self, times: impl IntoIterator<Item = f64>) -> Self {
         self.breaks.extend(times.into_iter().map(|t| Break { t, action: None }));
         self

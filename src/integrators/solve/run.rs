@@ -64,7 +64,7 @@ pub struct Run<'a> {
     pub(super) parameters: Vec<f64>,
     /// State before the jump at `t`, if there was one.
     pub(super) before: Option<Vec<f64>>,
-    /// Whether the integrator has to start anew at `t`.
+    /// Whether the integrator has to restart at `t`.
     pub(super) stale: bool,
     pub(super) carried: Option<Carried>,
     /// Integrals since the start of the span, and up to the last start of the integrator.
@@ -373,7 +373,7 @@ impl<'a> Run<'a> {
         self.engine.interpolant_degree().max(1)
     }
 
-    /// What the run has cost so far.
+    /// Cost counters of the run so far.
     #[must_use]
     pub fn statistics(&self) -> Statistics {
         self.past.followed_by(&self.engine.statistics())

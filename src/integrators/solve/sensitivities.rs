@@ -132,7 +132,7 @@ impl Carried {
         self.hand_over(engine)
     }
 
-    /// Hands them to the integrator, which starts anew.
+    /// Passes them to the integrator after its restart.
     pub(super) fn hand_over(&self, engine: &mut dyn Engine) -> Result<(), Reason> {
         let columns = self.parameters.len();
         let s = MatRef::from_column_major_slice(&self.s, self.s.len() / columns, columns);

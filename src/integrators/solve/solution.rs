@@ -1,4 +1,4 @@
-//! What a run computed.
+//! Solution of a run.
 
 use std::fmt;
 
@@ -48,7 +48,7 @@ pub struct Solution {
     n: usize,
     t: Vec<f64>,
     states: Vec<f64>,
-    /// For each time but the first, where the inner nodes of its step begin, if what lies between is kept.
+    /// For each time but the first, the index of the first inner node of its step, if interpolants are kept.
     inner: Option<Vec<usize>>,
     /// Inner nodes: states at the [`nodes`] of each step.
     nodes: Vec<f64>,
@@ -74,7 +74,7 @@ impl fmt::Debug for Solution {
     }
 }
 
-/// What is kept of one time: state, sensitivities (one column after the other) and integrals.
+/// Saved values at one time: state, sensitivities (one column after the other) and integrals.
 #[derive(Clone, Copy)]
 pub(super) struct SavedPoint<'r> {
     pub(super) y: &'r [f64],
@@ -109,7 +109,7 @@ impl Solution {
         }
     }
 
-    /// Adds the state at `t`; `at` writes the state at a time since the last one, if what lies between is
+    /// Adds the state at `t`; `at` writes the state at a time since the last one, if interpolants are
     /// kept.
     pub(super) fn push<E>(
         &mut self,
@@ -293,7 +293,7 @@ impl Solution {
         self.end
     }
 
-    /// What the run has cost.
+    /// Cost counters of the run.
     #[must_use]
     pub fn statistics(&self) -> &Statistics {
         &self.statistics

@@ -47,7 +47,7 @@ pub fn solve(
     }
 }
 
-/// Takes `run` to its end and keeps what `output` requires.
+/// Integrates `run` to its end and stores the requested `output`.
 fn integrate(run: &mut Run<'_>, solution: &mut Solution, output: &Output) -> Result<(), Reason> {
     let mut times = match output {
         Output::Times(times) => times.as_slice(),

@@ -20,7 +20,7 @@ impl Run<'_> {
     /// ends the run.
     ///
     /// # Errors
-    /// Why the run cannot go on. What was reached stays: [`t`](Self::t), [`y`](Self::y).
+    /// The reason why the run cannot continue. The state that was reached remains: [`t`](Self::t), [`y`](Self::y).
     pub fn advance(&mut self) -> Result<Option<Step<'_>>, Reason> {
         if self.end.is_some() {
             return Ok(None);
@@ -95,7 +95,7 @@ impl Run<'_> {
         }
     }
 
-    /// Starts the integrator anew where something has changed.
+    /// Restarts the integrator after a change.
     fn start_anew(&mut self) -> Result<(), Reason> {
         if !self.stale {
             return Ok(());

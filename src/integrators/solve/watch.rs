@@ -32,7 +32,7 @@ pub(super) struct EventTracker {
     g: f64,
 }
 
-/// What is expected behind an action at a root.
+/// Expected sign of an event function after an action at its root.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Turn {
     /// The sign of the function before the root.
@@ -43,7 +43,7 @@ pub(super) struct Turn {
     pub(super) at_rest: bool,
 }
 
-/// What an event tracker has found.
+/// Result of an event tracker.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Sight {
     Nothing,

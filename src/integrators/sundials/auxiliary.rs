@@ -1,4 +1,4 @@
-//! What CVODES and IDAS integrate in addition to the state.
+//! Integrals and sensitivities, which CVODES and IDAS integrate in addition to the state.
 
 use std::ptr;
 
@@ -67,8 +67,8 @@ impl Vectors {
     }
 }
 
-/// The backward problem of an adjoint gradient, which C frees together with the forward one, and what it
-/// uses.
+/// The backward problem of an adjoint gradient, which C frees together with the forward one, and its
+/// data.
 pub(super) struct Backward {
     /// C's number of the problem.
     pub(super) which: i32,

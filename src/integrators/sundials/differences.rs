@@ -26,7 +26,7 @@ pub(crate) struct Differences {
     pub(crate) evaluations: u64,
 }
 
-/// Writes the function at a state. (`dyn`: what calls it is compiled once, not for each type of system.)
+/// Writes the function at a state. (`dyn`: callers are compiled once, not for each type of system.)
 type Evaluate<'a, E> = dyn FnMut(&[f64], &mut [f64]) -> Result<(), E> + 'a;
 
 /// An error of a function, which may mean that it is not defined there.
@@ -55,12 +55,12 @@ fn is_undefined<E: Refused>(outcome: &Result<(), E>, value: &[f64]) -> bool {
     }
 }
 
-/// How far the unknowns of an ODE are shifted.
+/// Increments of the unknowns of an ODE for difference quotients.
 struct Increments {
     tolerances: Tolerances,
     /// The increment of each unknown, as a fraction of its size.
     parts: Vec<f64>,
-    /// What the last shift of each unknown changed.
+    /// Change of the function by the last shift of each unknown.
     changes: Vec<Change>,
 }
 
@@ -279,7 +279,7 @@ fn difference(
     change(column.len(), rows, [ahead, base])
 }
 
-/// What has changed in the rows of a column.
+/// The largest change in the rows of a column.
 fn change(count: usize, rows: impl Fn(usize) -> usize, [ahead, base]: [&[f64]; 2]) -> Change {
     let mut most = Change::default();
     for i in (0..count).map(rows) {

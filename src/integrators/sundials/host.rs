@@ -1,4 +1,4 @@
-//! What every C callback gets as its user data: the user's system, and a record of its failures.
+//! User data of every C callback: the user's system, and a record of its failures.
 //!
 //! A callback must not unwind into C. [`Host::guard`] runs the user's code and stores whatever went wrong,
 //! and its return value stops SUNDIALS; the integrator reports the error after C has returned.
@@ -47,7 +47,7 @@ pub(super) struct CustomSolve<S> {
     pub(super) memory: *mut c_void,
 }
 
-/// The user's system and what happened in its callbacks.
+/// The user's system and the record of its callbacks.
 pub(super) struct Host<S> {
     pub(super) system: S,
     /// Number of unknowns: the length of every vector.
@@ -60,7 +60,7 @@ pub(super) struct Host<S> {
     pub(super) custom_solve: Option<CustomSolve<S>>,
     /// For sparse Jacobians that the system does not supply.
     pub(super) differences: Option<Differences>,
-    /// What the differences of a DAE need to know.
+    /// Step size and error weights for the difference quotients of a DAE.
     pub(super) scales: Option<Scales>,
     /// Checks the Jacobian that the system supplies, with its shape if it is a matrix.
     pub(super) check: Option<(JacobianCheck, Option<Shape>)>,
@@ -76,16 +76,16 @@ pub(super) struct Host<S> {
     pub(super) troubles: Troubles,
 }
 
-/// What callbacks and the SUNDIALS error handler reported since the last call of the integrator.
+/// Reports of callbacks and the SUNDIALS error handler since the last call of the integrator.
 #[derive(Default)]
 pub(super) struct Troubles {
     panic: Option<Box<dyn Any + Send>>,
     fatal: Option<(Callback, Box<dyn error::Error + Send + Sync>)>,
-    /// That a supplied Jacobian is wrong.
+    /// Error in a supplied Jacobian.
     wrong: Option<Cause>,
     /// Time and reason of the last request for a smaller step.
     retry: Option<(f64, Cause)>,
-    /// How many such requests came in a row for the same time, within rounding.
+    /// Number of consecutive such requests for the same time, within rounding.
     stuck: u32,
     /// The unknown that was last found beyond its bound.
     violation: Option<Violation>,
@@ -124,7 +124,7 @@ impl Troubles {
         self.begin(0.0);
     }
 
-    /// Forgets what earlier calls reported, before one that continues from time `t`, except requests for a
+    /// Clears the reports of earlier calls before one that continues from time `t`, except requests for a
     /// smaller step close to `t`, a time that they could not pass.
     pub(super) fn begin(&mut self, t: f64) {
         let near = |at: f64| (at - t).abs() <= 1e3 * f64::EPSILON * t.abs();

@@ -2,7 +2,7 @@
 
 use crate::integrators::ode::{Dae, Failure, call};
 
-/// What the derivatives E = dF/dy' and A = dF/dy at one point say about the index.
+/// Differentiation index from the derivatives E = dF/dy' and A = dF/dy at one point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Index {
     /// An ODE, or a DAE of index 1.

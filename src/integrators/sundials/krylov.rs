@@ -63,7 +63,7 @@ pub enum Side {
     Right,
 }
 
-/// The preconditioner: what a Krylov method solves as an approximation of its systems.
+/// The preconditioner of a Krylov method: an approximation of its linear systems that is solved directly.
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Preconditioner {

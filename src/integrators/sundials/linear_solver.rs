@@ -40,7 +40,7 @@ pub enum LinearSolver {
 }
 
 impl LinearSolver {
-    /// Refuses what C would crash on.
+    /// Rejects options on which C would crash.
     pub(crate) fn check(&self, n: usize) -> Result<(), InputError> {
         match self {
             Self::Dense(_) if !is_addressable(n, n) => Err(InputError::new(

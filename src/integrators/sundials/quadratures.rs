@@ -7,7 +7,7 @@ use super::{
 use crate::base::input::InputError;
 use crate::integrators::common::{Error, Integrator, Tolerances, check_time};
 
-/// What also computes integrals, as described at [`Solver`](super::Solver).
+/// An integrator that also computes integrals, as described at [`Solver`](super::Solver).
 pub trait CarriesIntegrals: Integrator {
     fn quadratures(&self) -> &[f64];
     fn interpolate_quadratures(

@@ -45,7 +45,7 @@ pub(super) struct Session<K, S> {
     /// The time derivative of `y`, for a DAE only.
     pub(super) yp: Option<Vector>,
     pub(super) scratch: Vector,
-    /// For `yp` what `scratch` is for `y`.
+    /// Scratch vector for `yp`, as `scratch` for `y`.
     pub(super) slope_scratch: Option<Vector>,
     pub(super) quadratures: Option<Quadratures>,
     pub(super) sensitivities: Option<Sensitivity>,

@@ -88,16 +88,16 @@ impl Violation {
     }
 }
 
-/// The content of a vector of signs: that of a serial vector, and where [`mask`] notes what it last found. C
-/// gives it no other place for that.
+/// The content of a vector of signs: that of a serial vector, and a pointer to the last result of [`mask`]. C
+/// offers no other storage for it.
 #[repr(C)]
 struct Content {
     serial: ffi::_N_VectorContent_Serial,
     found: *mut Option<Violation>,
 }
 
-/// Makes `vector` and all its later clones vectors of signs, for which [`mask`] notes in `found` what it
-/// finds.
+/// Makes `vector` and all its later clones vectors of signs, for which [`mask`] stores its result in
+/// `found`.
 ///
 /// # Safety
 /// `vector` is a live serial vector; `found` may be written to whenever [`mask`] gets `vector` or a clone.
@@ -136,7 +136,7 @@ unsafe extern "C" fn clone(signs: ffi::N_Vector) -> ffi::N_Vector {
     }
 }
 
-/// `N_VConstrMask` of serial vectors, which remembers what it found: writes 1 to `mask` where `y` does not
+/// `N_VConstrMask` of serial vectors, which stores its result, too: writes 1 to `mask` where `y` does not
 /// have the sign that `signs` requires, else 0. Returns whether all have it.
 pub(super) unsafe extern "C" fn mask(
     signs: ffi::N_Vector,
@@ -168,7 +168,7 @@ pub(super) unsafe extern "C" fn mask(
 /// `N_VMinQuotient` of serial vectors, for the fraction of a step at whose end the unknowns are at their
 /// bounds.
 ///
-/// CVODE takes quotients of what it predicted, which may be beyond the bound itself: where that gives no
+/// CVODE forms quotients of predicted values, which may be beyond the bound itself: where that gives no
 /// fraction of a step, but no quotient at all or more than one step, C would let the step grow, to infinity.
 /// Half a step is taken then.
 pub(super) unsafe extern "C" fn least_part(dividend: ffi::N_Vector, divisor: ffi::N_Vector) -> f64 {

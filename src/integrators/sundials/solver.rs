@@ -16,8 +16,8 @@ pub trait Kind {
     #[doc(hidden)]
     type System: ?Sized + 'static;
 
-    /// What it does. Sessions use systems through a pointer, so that they are compiled once and not for each
-    /// type of system.
+    /// Its session type. Sessions use systems through a pointer, so that they are compiled once and not for
+    /// each type of system.
     #[doc(hidden)]
     type Session: Integrator<System = Borrowed<'static, Self::System>> + ?Sized;
 
@@ -29,7 +29,7 @@ pub trait Kind {
 pub trait WithSensitivities: Kind<Session: CarriesSensitivities> {}
 
 /// An integrator of SUNDIALS: [`Cvode`](super::Cvode), [`Arkode`](super::Arkode) or [`Ida`](super::Ida), by
-/// the parameter `K`. What all of them can do is described at [`Integrator`].
+/// the parameter `K`. Their common interface is [`Integrator`].
 ///
 /// It owns the system `S`; [`Borrowed`] lends it one. It can be sent to another
 /// thread if the system can.

@@ -2,7 +2,7 @@
 
 use std::mem;
 
-/// The stop time, and whether C still has to be given it.
+/// The stop time, and whether it still has to be passed to C.
 ///
 /// SUNDIALS 6.4.1 cannot forget a stop time; one at the largest finite time has the same effect, if it lies
 /// in the direction of time, which a new start may reverse.
@@ -29,7 +29,7 @@ impl StopTime {
         self.time
     }
 
-    /// What to hand to C before it integrates from `t` towards `target`, if anything.
+    /// The stop time to pass to C before it integrates from `t` towards `target`, if it has changed.
     pub(super) fn take_update(&mut self, t: f64, target: f64) -> Option<f64> {
         self.in_c |= self.stale;
         mem::take(&mut self.stale).then(|| self.time.unwrap_or(f64::MAX.copysign(target - t)))

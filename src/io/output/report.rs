@@ -371,8 +371,8 @@ pub fn report(run: Result<&Trajectory, &IntegrationFailure>) -> Value {
     OfRun::object((trajectory, run.err()))
 }
 
-/// Writes how an equilibrium was found, or how far the search for it came, as JSON, with the keys of
-/// [`reference`](super::reference). What a search that gave up does not know is `null`.
+/// Writes the report of an equilibrium, or of a failed search for one, as JSON, with the keys of
+/// [`reference`](super::reference). Entries unknown after a failed search are `null`.
 ///
 /// # Errors
 /// [`Error::Output`] if the file cannot be written.

@@ -10,11 +10,11 @@ use crate::elements::body::{Dilatation, Part, Strain};
 const FEW_DEGREES: f64 = 0.8;
 
 impl SceneFile {
-    /// Puts the title, and what was chosen, and why, where the file says `auto`, into the report of a motion
+    /// Adds the title, and the choices with their reasons where the file says `auto`, to the report of a motion
     /// of its scene.
     ///
-    /// See [`Report::chosen`](crate::Report::chosen). What `accuracy` and `method = "auto"` have chosen is in
-    /// the report already.
+    /// See [`Report::chosen`](crate::Report::chosen). Choices of `accuracy` and `method = "auto"` are in the
+    /// report already.
     pub fn explain(&self, motion: &mut Trajectory) {
         let parts = motion.body().parts().zip(&self.auto);
         let chosen = parts.flat_map(|(part, auto)| chosen(motion, &part, *auto)).collect();

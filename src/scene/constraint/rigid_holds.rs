@@ -102,7 +102,7 @@ impl<'a> Piece<'a> {
         self.arms.iter().map(|arm| rotation * arm - arm + shift).collect()
     }
 
-    /// By how much each row changes (m) in a rigid motion.
+    /// Change of each row (m) in a rigid motion.
     fn changes(&self, motion: &DVector<f64>) -> Vec<f64> {
         let moved = self.moved(motion);
         let change = |(_, terms): &(&ConstraintRow, Terms)| {

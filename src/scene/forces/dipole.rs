@@ -11,16 +11,16 @@ use crate::elements::body::{MagnetizedPoints, PointDipole, TooNear};
 use crate::elements::force::{Force, NodalForces, Tangents};
 use crate::integrators::ode::Failure;
 
-/// A magnet outside of the bodies, or a small coil, which moves as it is told: a point dipole of the moment m (A m^2) at the position p (m). It acts on the
+/// An external magnet, or a small coil, with prescribed motion: a point dipole of the moment m (A m^2) at the position p (m). It acts on the
 /// [magnets](crate::Magnet) of a scene by its field
 ///
 /// ```text
 /// B(x) = mu_0/(4 pi) (3 (m . r) r/|r|^5 - m/|r|^3),   r = x - p
 /// ```
 ///
-/// at the deformed place x of each strain point of their cells, which have the energy -(F b) . B(x) / mu_0 per natural volume. So it turns, bends
-/// and pulls them. Its work counts as supplied, as that of other magnetic fields does. What they do to it is left out (it moves as it is told), but
-/// for the force, which is minus [that on them](crate::View::dipole_force).
+/// at the deformed position x of each strain point of their cells, which have the energy -(F b) . B(x) / mu_0 per natural volume. So it turns, bends
+/// and pulls them. Its work counts as supplied, as that of other magnetic fields does. Their action on its motion is neglected, as that
+/// is prescribed; the force on it is minus [that on them](crate::View::dipole_force).
 ///
 /// A body in the plane lies in the plane z = 0 of space, and m and p lie in it, too, so that the field does: it is that of a dipole in space, not of a line of
 /// them. The thickness of the body should be small beside the distance.

@@ -164,7 +164,7 @@ impl Bristles {
         Err(InputError::new(key, coefficient, help))
     }
 
-    /// How much larger the `friction` is that way.
+    /// Law of the larger `friction` in that direction.
     pub(super) fn law(&self, friction: &Friction) -> Option<Backward> {
         let [at_rest, _] = friction.coefficients.filter(|[at_rest, _]| *at_rest > 0.0)?;
         let length = norm(&self.direction);
@@ -174,7 +174,7 @@ impl Bristles {
     }
 }
 
-/// How much more a surface holds what slides one way.
+/// Additional friction of a surface against sliding in one direction.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Backward {
     /// e, a unit vector; 0 beyond the dimension.

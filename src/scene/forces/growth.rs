@@ -17,7 +17,7 @@ use crate::integrators::ode::Failure;
 ///
 /// The deformation gradient is F = F_e G with G = g a a^T + g_t (I - a a^T), and det(G) W(F_e) the energy
 /// per natural volume, W being that of the material's law (E. K. Rodriguez, A. Hoger, A. D. McCulloch, Journal of Biomechanics 27 (1994)
-/// 455-467; of muscles "active strain": D. Ambrosi, S. Pezzuto, Journal of Elasticity 107 (2012) 199-212). What growth adds to the energy counts
+/// 455-467; of muscles "active strain": D. Ambrosi, S. Pezzuto, Journal of Elasticity 107 (2012) 199-212). Energy added by growth counts
 /// as supplied. Mass stays, and so do fibres and viscosity.
 ///
 /// For Green's strain with any law; not with Maxwell branches. In plane strain what grows across the plane is pressed there; in plane stress, membranes and

@@ -14,8 +14,8 @@ use crate::integrators::ode::Failure;
 /// A state of its own that an actuator has: it follows what phases [actuate](crate::Phase::actuate) it by, and drives the actuator in place of that.
 ///
 /// With the command s (a force, a tension, a length of a winch, a stress, a strain) the state a obeys a' = (s - a)/T, from 0 at the start of the scene. T is
-/// constant ([`first_order`](Self::first_order)), one of two ([`rise_and_fall`](Self::rise_and_fall)), or that of muscles ([`activation`](Self::activation)). What
-/// is [heated](Self::heated) is commanded by a power.
+/// constant ([`first_order`](Self::first_order)), one of two ([`rise_and_fall`](Self::rise_and_fall)), or that of muscles ([`activation`](Self::activation)). A
+/// [heated](Self::heated) actuator is commanded by a power.
 ///
 /// It is an unknown under error control, for all methods but `ida-klu` and `central-difference`; equilibria have it where it comes to rest.
 ///

@@ -13,8 +13,8 @@ use crate::integrators::ode::Failure;
 /// In a magnetic field B ([`Phase::magnetic_field`](crate::Phase::magnetic_field)) it has the energy
 /// -(F b) . B / mu_0 per natural volume, F being the deformation gradient: the ideal hard-magnetic material of R. Zhao, Y. Kim,
 /// S. A. Chester, P. Sharma, X. Zhao, Journal of the Mechanics and Physics of Solids 124 (2019) 244-263. A uniform field turns it, one with a gradient
-/// pulls, too. What its own field does to it, to other magnets and to the field is left out, as in a material of the permeability of
-/// vacuum that is magnetized weakly. Work of the field counts as supplied.
+/// pulls, too. Effects of its own field on itself, on other magnets and on the applied field are neglected, as for a weakly magnetized
+/// material of the permeability of vacuum. Work of the field counts as supplied.
 ///
 /// ```
 /// use pliant::{Body, Cells, Magnet, Material, Mesh, Phase, Plane, Scene, Statics};

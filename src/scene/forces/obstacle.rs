@@ -62,7 +62,7 @@ pub struct Obstacle {
     bristles: Option<Bristles>,
     adhesion: bool,
     travel: Travel,
-    /// How far it is from where its travel alone would have brought it (m).
+    /// Offset (m) from the position that results from its travel alone.
     offset: [f64; 3],
 }
 
@@ -218,7 +218,7 @@ impl Obstacle {
     /// length above 0: bristles, scales or claws that hold what slides backward (default: the same friction all ways).
     ///
     /// It is not below the static one of the [friction coefficients](Self::friction_coefficients), with r its ratio to
-    /// that; mu_k is r times as large, too. What slides at the angle a to the direction has
+    /// that; mu_k is r times as large, too. Sliding at the angle a to the direction has
     /// 1 + (r - 1) (3 q^2 - 2 q^3) times their friction, with q = cos(a) where that is above 0; backward speeds far
     /// below v0 have less, which leaves the force smooth. (Snakes: D. L. Hu, J. Nirody, T. Scott, M. J. Shelley, *The
     /// mechanics of slithering locomotion*, PNAS 106, 2009, take different coefficients forward and backward.) The
@@ -231,7 +231,7 @@ impl Obstacle {
     /// The sliding speed v0 (m/s) below which friction sticks, above 0; with
     /// [friction coefficients](Self::friction_coefficients) only.
     ///
-    /// Default: a thousandth of the size of the body per second. What sticks may creep nearly that fast, so
+    /// Default: a thousandth of the size of the body per second. Sticking points may creep nearly that fast, so
     /// it should be small against the motions of interest.
     pub fn sticking_speed(mut self, speed: f64) -> Self {
         self.friction.sticking_speed = Some(speed);
@@ -364,13 +364,13 @@ impl Obstacle {
         }
     }
 
-    /// How far its velocity or path alone have brought it by time `t` (m).
+    /// Displacement (m) by its velocity or path alone until time `t`.
     #[cfg(feature = "output")]
     pub(crate) fn travelled(&self, t: f64) -> [f64; 3] {
         self.travel.displacement(t)
     }
 
-    /// How far it is from where its velocity or path alone would have brought it (m).
+    /// Offset (m) from the position that results from its velocity or path alone.
     #[cfg(any(feature = "checkpoint", feature = "output"))]
     pub(crate) fn offset(&self) -> [f64; 3] {
         self.offset
@@ -493,7 +493,7 @@ impl Obstacle {
         self.friction.coulomb(size)
     }
 
-    /// How much larger its friction is one way.
+    /// Law of its larger friction in one direction.
     pub(super) fn backward(&self) -> Option<Backward> {
         self.bristles.as_ref()?.law(&self.friction)
     }

@@ -185,7 +185,7 @@ impl Spring {
     ///
     /// max(0, k (l - L + w) + c (l' + w'))
     ///
-    /// and 0 where the cable is slack. It needs a stiffness. What its cable stores counts as supplied by the winch.
+    /// and 0 where the cable is slack. It needs a stiffness. The elastic energy of its cable counts as supplied by the winch.
     pub fn winch(mut self) -> Self {
         if let Kind::Cable { is_winch, .. } = &mut self.kind {
             *is_winch = true;

@@ -21,7 +21,7 @@ pub(crate) struct Stuck {
 }
 
 impl Stuck {
-    /// How far (m) the point slides along what it lies on as the nodes move by `moved`, `dimension` components (m) each, and the
+    /// Slip vector (m) of the point along its contact surface as the nodes move by `moved`, `dimension` components (m) each, and the
     /// obstacle that it may lie on by `carried`.
     pub(crate) fn slide(&self, moved: &[f64], carried: [f64; 3], dimension: usize) -> [f64; 3] {
         let of = |shares: &[(usize, f64)]| weighted(shares.iter().copied(), moved, dimension);

@@ -45,7 +45,7 @@ impl Scene {
     /// The same scene with each cell of the mesh divided at the middles of its edges: see [`Mesh::halved`].
     ///
     /// Node sets, and lists of nodes that are held or moved together, are extended by the new nodes between
-    /// them. What acts on single nodes stays there: forces on each node, springs, sensors. Stiffness and
+    /// them. Forces on each node, springs and sensors stay at their nodes. Stiffness and
     /// damping of obstacles per node are divided by the factor by which the number of nodes on the boundary
     /// grows. A [reduced model](Self::reduced) is left behind. Of several bodies each gets a finer mesh, but those that are rigid;
     /// numbers of nodes become those that the same nodes have then.

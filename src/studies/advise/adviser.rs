@@ -77,7 +77,7 @@ impl<'a> Adviser<'a> {
         self
     }
 
-    /// A file that keeps all runs. What it holds already is not run again, so that a search that was cut
+    /// A file that keeps all runs. Runs that it holds are not repeated, so that a search that was cut
     /// short can continue, within a new budget; runs of other scenes stay in it. Runs of other versions of
     /// this library are not used; after changes of the code within a version, or on another machine, begin a
     /// new file.

@@ -33,7 +33,7 @@ pub(super) struct Found {
     pub(super) together: Option<f64>,
     /// Runs of the recommended model, by several methods and tolerances.
     pub(super) sweep: Vec<Solved>,
-    /// By how much an equilibrium is off on the mesh as it was written.
+    /// Estimated error of an equilibrium due to the mesh of the file.
     pub(super) mesh_estimate: Option<MeshEstimate>,
     /// Smaller models of the fastest motion that is right.
     pub(super) smaller: Vec<SmallerModel>,
@@ -128,7 +128,7 @@ impl Found {
         }
     }
 
-    /// By how much the finest mesh differs from the mesh as it was written, if the latter is taken.
+    /// Change of the result from the mesh of the file to the finest one, if the former is recommended.
     pub(super) fn mesh(&self) -> Option<f64> {
         Some(self.finer.last()?.error(self.truth()?))
     }

@@ -1,4 +1,4 @@
-//! A rung of the ladder: a section in a plane of what is the same all along an axis.
+//! A rung of the ladder: a plane section of a scene that is uniform along an axis.
 
 use super::found::Found;
 use super::search::{Search, Solved, Stop};
@@ -8,8 +8,8 @@ use crate::elements::mesh::Prism;
 use crate::scene::timeline::Scene;
 
 impl Search<'_> {
-    /// Runs the fastest motion that is right in a plane, if it is the same all along an axis. How far the body is from plane strain or
-    /// plane stress, the change tells.
+    /// Runs the fastest accurate candidate as a plane section, if the scene is uniform along an axis. The change of the quantity is the
+    /// error of plane strain or plane stress.
     pub(super) fn plane(&mut self, found: &mut Found) -> Result<(), Stop> {
         self.run_across("in a plane across", found, |search, scene, axis, exact| {
             // of a mesh that is no prism there is nothing to tell

@@ -24,7 +24,7 @@ pub(super) struct Shrunk {
 }
 
 impl Shrunk {
-    /// How far what was seen of it is from what it is a model of.
+    /// Difference of the observed motion or quantity from that of the full model.
     fn change(&self, seen: &Seen) -> f64 {
         match self.points.as_ref().filter(|_| self.quantity.is_motion()) {
             Some(points) => self.full.error(&seen.of_points(points)).mean,

@@ -212,7 +212,7 @@ impl Sweep {
     }
 
     /// Runs a point, or finds its equilibrium if the study says so. `observer` is called after each step of a run, and stops it by
-    /// [`ControlFlow::Break`]: then there is no result. What fails, or cannot begin, is a row.
+    /// [`ControlFlow::Break`]: then there is no result. A failed run, or one that cannot begin, is a row, too.
     pub fn run(
         &self,
         point: &Point,

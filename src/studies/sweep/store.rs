@@ -117,7 +117,7 @@ impl Store {
         self.run_directory(id).join("animation.html").exists()
     }
 
-    /// A row, if it is there. What is no row counts as none.
+    /// A row, if its file is there and valid.
     pub fn row(&self, id: &str) -> Option<Row> {
         let text = fs::read_to_string(self.row_path(id)).ok()?;
         serde_json::from_str(&text).ok().filter(|row: &Row| row.id == id)
@@ -164,8 +164,8 @@ impl Store {
         }
     }
 
-    /// Takes away what killed processes have left: claims that nobody has, and half-written rows from an hour ago or
-    /// earlier. What cannot be taken away does no harm.
+    /// Removes files left by killed processes: claims without an owner, and partial rows from an hour ago or earlier.
+    /// Failures to remove them are harmless.
     pub fn tidy(&self) {
         let files = |name: &str| fs::read_dir(self.path.join(name)).into_iter().flatten().flatten();
         for claim in files("claims") {

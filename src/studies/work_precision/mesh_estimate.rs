@@ -36,7 +36,7 @@ impl MeshEstimate {
     ///
     /// In all, z . f is the change of J by the first step of Newton's method on the richer mesh, by one
     /// factorization: in a linear problem this is the whole change, under Green's strain it takes the place
-    /// of some 15 factorizations. What is missing is the error of the richer mesh: for clamped beams of
+    /// of some 15 factorizations. The error of the richer mesh is not included: for clamped beams of
     /// linear triangles and tetrahedra the correction was 0.92 to 1 times the true error, for halved
     /// quadratic triangles 0.7 (the clamped corners are singular), for hexahedra 0.89 to 0.97. Displacements
     /// under forces on single nodes have no limit on finer meshes: the position of such a node is not a

@@ -1,11 +1,11 @@
-//! How far a motion is from that of rigid bodies.
+//! Deviation of a motion from that of rigid bodies.
 
 use nalgebra::Vector3;
 
 use super::quantity::Seen;
 use crate::base::rotation::nearest_rotation;
 
-/// How far the displacements of nodes that were `seen`, which have these undeformed `positions` (m), are from the nearest ones
+/// Deviation of the displacements of nodes that were `seen`, with undeformed `positions` (m), from the nearest ones
 /// that keep the shape of each piece: root mean square over nodes and times, relative to the scale. `pieces` has the number of
 /// the piece of each node.
 ///

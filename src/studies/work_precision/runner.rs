@@ -26,7 +26,7 @@ const LONGEST_LIMIT: f64 = 1e9;
 /// Relative error from which on a run counts as wrong: no other times are compared with its time.
 const WRONG: f64 = 1.0;
 
-/// How far a study has come.
+/// Progress of a study.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stage<'a> {
     /// Runs done.
@@ -77,7 +77,7 @@ impl<'a> Study<'a> {
         self
     }
 
-    /// A CSV file that keeps all rows. What it holds already is not run again, so that a study that was
+    /// A CSV file that keeps all rows. Runs that it holds are not repeated, so that a study that was
     /// stopped can be resumed; rows of other problems stay in it. Rows of scenes that another version of this
     /// library has run are not used; after changes of the code within a version, or on another machine, begin
     /// a new file.

@@ -125,7 +125,7 @@ impl<'a> Verification<'a> {
     /// `observer` is called after each step, and stops the run by [`ControlFlow::Break`].
     ///
     /// # Errors
-    /// Bad input; [`Error::Integration`] if the run ends early. What earlier runs have found stays.
+    /// Bad input; [`Error::Integration`] if the run ends early. Results of earlier runs are kept.
     pub fn refine(
         &mut self,
         observer: impl FnMut(&Simulation) -> ControlFlow<()>,

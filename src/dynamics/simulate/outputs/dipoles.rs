@@ -31,7 +31,7 @@ pub(super) static FORCE: Output = Output {
 
 pub(super) static POSITION: Output = Output {
     word: "dipole-position",
-    about: "where a dipole is (m)",
+    about: "the position of a dipole (m)",
     unit: "m",
     of: DIPOLE,
     is_vector: true,
@@ -40,7 +40,7 @@ pub(super) static POSITION: Output = Output {
 };
 
 impl View<'_> {
-    /// Where a dipole is (m).
+    /// Position (m) of a dipole.
     ///
     /// # Errors
     /// A name that no dipole has.
@@ -88,7 +88,7 @@ impl Reading {
         What::Of(&FORCE, dipole.into()).into()
     }
 
-    /// Where a [dipole](crate::Dipole) is (m).
+    /// Position (m) of a [dipole](crate::Dipole).
     pub fn dipole_position(dipole: impl Into<String>) -> Self {
         What::Of(&POSITION, dipole.into()).into()
     }

@@ -73,7 +73,7 @@ pub(super) static ACTIVATION: Output = Output {
 
 pub(super) static TEMPERATURE: Output = Output {
     word: "temperature",
-    about: "by how much a heated actuator is warmer than what is around it (K)",
+    about: "the temperature rise of a heated actuator above its surroundings (K)",
     unit: "K",
     of: HEATED,
     is_vector: false,
@@ -86,7 +86,7 @@ pub(super) static TEMPERATURE: Output = Output {
 };
 
 impl View<'_> {
-    /// Stress (Pa) by which a muscle pulls: what actuates it, or by [Hill's law](crate::Hill) the mean over its volume of what becomes of that.
+    /// Stress (Pa) by which a muscle pulls: its actuation, or with [Hill's law](crate::Hill) the mean stress of that law over its volume.
     ///
     /// # Errors
     /// A name that no muscle has.
@@ -94,8 +94,7 @@ impl View<'_> {
         STRESS.number(self, muscle)
     }
 
-    /// How much longer the fibres of a muscle are than in the undeformed shape, as a factor (1): the mean over their
-    /// volume.
+    /// Stretch (1) of the fibres of a muscle relative to the undeformed shape: the mean over their volume.
     ///
     /// # Errors
     /// A name that no muscle has.
@@ -103,7 +102,7 @@ impl View<'_> {
         STRETCH.number(self, muscle)
     }
 
-    /// Activation of a muscle with [Hill's law](crate::Hill), from 0 to 1: what actuates it by the largest stress.
+    /// Activation of a muscle with [Hill's law](crate::Hill), from 0 to 1: its actuation divided by the largest stress.
     ///
     /// # Errors
     /// A name that no muscle has, or one without that law.
@@ -111,7 +110,7 @@ impl View<'_> {
         ACTIVATION.number(self, muscle)
     }
 
-    /// By how much a [heated](crate::Lag::heated) actuator is warmer than what is around it (K).
+    /// Temperature rise (K) of a [heated](crate::Lag::heated) actuator above its surroundings.
     ///
     /// # Errors
     /// A name that no heated actuator has.
@@ -126,7 +125,7 @@ impl Reading {
         What::Of(&STRESS, muscle.into()).into()
     }
 
-    /// How much longer the fibres of a muscle are than in the undeformed shape: see
+    /// Stretch of the fibres of a muscle relative to the undeformed shape: see
     /// [`View::muscle_stretch`](crate::View::muscle_stretch).
     pub fn muscle_stretch(muscle: impl Into<String>) -> Self {
         What::Of(&STRETCH, muscle.into()).into()
@@ -137,7 +136,7 @@ impl Reading {
         What::Of(&ACTIVATION, muscle.into()).into()
     }
 
-    /// By how much a [heated](crate::Lag::heated) actuator is warmer than what is around it (K).
+    /// Temperature rise (K) of a [heated](crate::Lag::heated) actuator above its surroundings.
     pub fn temperature(actuator: impl Into<String>) -> Self {
         What::Of(&TEMPERATURE, actuator.into()).into()
     }

@@ -11,7 +11,7 @@ use crate::elements::material::with_law;
 /// Elements whose branches have stresses.
 pub(in crate::elements::body) trait BranchFields {
     /// Calls `see` with the number of a cell, that of one of its nodes among them, and a stress (Pa), for the cells that are `asked`
-    /// for, at the displacements and internal strains `at`: what a node gets in all is its stress, as extrapolated from the strain points.
+    /// for, at the displacements and internal strains `at`: the sum at a node is its stress, extrapolated from the strain points.
     fn each_branch_stress(
         &self,
         regions: &Regions,

@@ -1,4 +1,4 @@
-//! What is left of the deformation where cells have grown by direction, F_e = F G^-1, and the fields and the power that follow from it.
+//! Elastic deformation F_e = F G^-1 of cells that have grown by direction, with the fields and the power that follow from it.
 
 use nalgebra::{Matrix3, SMatrix};
 
@@ -117,8 +117,8 @@ impl<const M: usize> Left<M> {
         }
     }
 
-    /// What growth adds to the energy (W/m^3) while the point does not move: the rate of det(G) W(F G^-1), where the stretches along
-    /// the direction and across it change by these `rates` (1/s), each by that of itself.
+    /// Power density (W/m^3) supplied by growth at fixed F: the rate of det(G) W(F G^-1) for these rates (1/s) of the stretches along
+    /// and across the direction, each relative to the stretch itself.
     pub(in crate::elements::body) fn power(
         &self,
         stretches: Stretches,

@@ -33,8 +33,8 @@ impl NodalField {
     }
 }
 
-/// The fields at all of `count` nodes, of cells with these `volumes`, of which `each_node` passes on what they
-/// have at each of their nodes.
+/// The fields at all of `count` nodes, of cells with these `volumes`; `each_node` reports the values of a cell at
+/// each of its nodes.
 pub(in crate::elements::body) fn nodal_fields(
     count: usize,
     volumes: &[f64],
@@ -82,7 +82,7 @@ impl Probe {
         Self { cells: shares.collect() }
     }
 
-    /// The weights of what a cell has at its nodes, if it is read.
+    /// The weights of the nodal values of a cell, if it is read.
     pub(in crate::elements::body) fn shares(&self, cell: usize) -> Option<&[f64]> {
         let number = self.cells.binary_search_by_key(&cell, |(cell, _)| *cell).ok()?;
         Some(&self.cells[number].1)

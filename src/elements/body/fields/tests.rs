@@ -1,5 +1,5 @@
-//! Closed forms of uniform strain, and what fields of any kind have to agree with: nodal forces,
-//! energies and rigid motions.
+//! Closed forms of uniform strain, and consistency of arbitrary fields with nodal forces, energies and rigid
+//! motions.
 
 use nalgebra::{Matrix3, Vector3};
 

@@ -1,5 +1,4 @@
-//! What causes stress at the points of cells: elastic laws and viscosity, at points or with a projected
-//! dilatation.
+//! Stress terms at the points of cells: elastic laws and viscosity, pointwise or with a projected dilatation.
 
 use crate::base::tensor::{Matrix, Real};
 use crate::elements::material::{CellLaw, Deformation, ViscousLaw};

@@ -81,8 +81,8 @@ fn by_mass(body: &Body) -> Vec<f64> {
     matrix.values
 }
 
-/// What several bodies have together is what each has by itself, to the last bit (energies: to the round-off of
-/// a sum): forces, tangents, masses, fields.
+/// Checks that forces, tangents, masses and fields of joined bodies are those of each single body, to the last bit
+/// (energies: to the round-off of a sum).
 fn are_those_of_each(bodies: &[Body]) {
     let joined = Body::join(bodies.to_vec()).unwrap();
     let (u, v) = (noise(joined.dofs(), 1e-3, 1.0), noise(joined.dofs(), 0.1, 2.0));

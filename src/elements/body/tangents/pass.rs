@@ -98,7 +98,7 @@ impl<
     }
 }
 
-/// The `pull` of a projected dilatation, and what changes of its coefficients add to the tangents of several cells.
+/// The `pull` of a projected dilatation, and the tangent terms of its coefficients for several cells.
 #[inline(always)]
 #[allow(clippy::type_complexity)]
 fn of_projected<

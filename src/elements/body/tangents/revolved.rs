@@ -144,7 +144,7 @@ impl Revolved {
         }
     }
 
-    /// Adds what a point makes of dP/dF.
+    /// Adds the contribution of dP/dF at a point.
     fn add_at(
         &self,
         point: usize,
@@ -167,7 +167,7 @@ impl Revolved {
         }
     }
 
-    /// The `pull` of a projected dilatation of a cell; adds what changes of its coefficients make.
+    /// The `pull` of a projected dilatation of a cell; adds the tangent terms of its coefficients.
     fn add_changes_of_volume<const K: usize>(
         &self,
         cell: usize,

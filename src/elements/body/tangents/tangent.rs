@@ -38,8 +38,8 @@ pub(in crate::elements::body) trait TangentTerm<const K: usize> {
     fn of_volume<T: Real>(&self, dilatation: T) -> [T; 2];
 }
 
-/// What a change of a coefficient of the dilatation adds: `share` times the product of the derivatives of the forces by
-/// the coefficient of the `pull`, and of the dilatation by the motion of the nodes.
+/// Tangent term of one coefficient of the projected dilatation: `share` times the outer product of two derivatives, of the nodal
+/// forces with respect to the coefficient of the `pull`, and of the dilatation with respect to nodal positions.
 #[derive(Clone, Copy)]
 pub(super) struct OfVolume<T, const N: usize, const D: usize> {
     pub(super) force: [[T; D]; N],

@@ -1,6 +1,6 @@
 //! Laws that the loops over cells call at each point: strain in, stress and elasticity out.
 //!
-//! What a law computes from a strain depends on the dimension of the cell alone, and not on its nodes and
+//! The response of a law to a strain depends on the dimension of the cell alone, and not on its nodes and
 //! points. So these formulas are compiled for each dimension and kind of register, and loops for each kind of
 //! cell, but not for each pair of law and cell. (Hooke's laws are so short that a call would cost more than
 //! they do; loops are compiled for each of them, and call one only in cells that grow by direction.)

@@ -69,7 +69,7 @@ pub(crate) struct Step {
     solved: Matrix6<f64>,
 }
 
-/// A symmetric matrix by its components, and what is `across`.
+/// A symmetric matrix from its components along the cell and the diagonal ones `across` it.
 fn matrix<const M: usize>(of: &Components, factor: f64, across: [f64; 2]) -> Matrix3<f64> {
     let mut matrix = Matrix3::from_diagonal(&[0.0, across[0], across[1]].into());
     for (v, component) in of[..components(M)].iter().enumerate() {

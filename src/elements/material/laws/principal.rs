@@ -32,7 +32,7 @@ impl<T: Real, const M: usize> Principal<T, M> {
         Self { twice: values, directions }
     }
 
-    /// What `of` returns for the principal values and for `pull`, if there is one.
+    /// The values of `of`, applied lane by lane to the principal values and to `pull`, if there is one.
     #[inline(always)]
     pub(super) fn each_with<const O: usize>(
         &self,

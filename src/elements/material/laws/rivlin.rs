@@ -24,7 +24,7 @@ pub(crate) struct Rivlin {
     pub(super) second: f64,
     /// kappa (Pa)
     pub(super) bulk: f64,
-    /// What is assumed across a cell that does not fill space.
+    /// Assumption across a cell of less than three dimensions.
     pub(super) across: Plane,
 }
 

@@ -13,7 +13,7 @@ use crate::elements::material::response::{Response, Tangent};
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct ByStretches {
     pub(super) kind: Kind,
-    /// What is assumed across a cell that does not fill space.
+    /// Assumption across a cell of less than three dimensions.
     pub(super) across: Plane,
 }
 
@@ -167,7 +167,7 @@ impl Kind {
     }
 }
 
-/// What `of` returns for each number. (The `map` of arrays is a function that is not inlined.)
+/// The values of `of` for three numbers. (The `map` of arrays is a function that is not inlined.)
 #[inline(always)]
 fn each([x, y, z]: [f64; 3], of: impl Fn(f64) -> f64) -> [f64; 3] {
     [of(x), of(y), of(z)]

@@ -1,5 +1,5 @@
-//! What every law has to satisfy, checked for all laws by the same functions at random deformations of cells
-//! of every dimension in every space.
+//! Properties of every law, checked by the same functions at random deformations of cells of every dimension in
+//! every space.
 
 use nalgebra::{Rotation3, Vector3};
 use pulp::{Arch, Scalar, Simd, WithSimd};
@@ -13,7 +13,7 @@ use crate::elements::material::{Blocks, Deformation, ElasticLaw, Lame, Material,
 
 /// Moduli of a soft material, Pa.
 const LAME: Lame = Lame { lambda: 2.0, mu: 1.0 };
-/// All laws, with what is assumed across a plane.
+/// All laws, with the assumption across a plane.
 const LAWS: [(Strain, Option<Law>, Plane); 13] = [
     (Strain::Cauchy, None, Plane::Strain),
     (Strain::Cauchy, None, Plane::Stress),

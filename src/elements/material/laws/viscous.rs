@@ -9,7 +9,7 @@ use crate::elements::material::law::Blocks;
 ///
 /// A `pull` takes the place of lambda times the rate of dilatation, if that is projected onto few functions of the cell.
 pub(crate) trait ViscousLaw {
-    /// The viscous moduli (Pa s), and what is assumed across the cell.
+    /// The viscous moduli (Pa s), and the assumption across the cell.
     fn hooke(&self) -> &Hooke;
 
     /// Rate of dilatation (1/s): the trace of the rate of strain of the law.
@@ -39,7 +39,7 @@ pub(crate) trait ViscousLaw {
         weight: T,
     ) -> impl Blocks<T, D> + use<'a, Self, T, N, M, D>;
 
-    /// dP/dF', likewise, and symmetric; `is_projected` leaves out the part of a projected dilatation.
+    /// dP/dF', likewise, and symmetric; `is_projected` omits the part of a projected dilatation.
     fn rate_tangent<'a, T: Real, const N: usize, const M: usize, const D: usize>(
         &self,
         at: &Deformation<T, M, D>,
@@ -64,7 +64,7 @@ pub(crate) trait ViscousLaw {
         [pull, stiff]
     }
 
-    /// The moduli of what acts at the points of a cell.
+    /// The moduli of the pointwise stress: without the bulk part if that is projected.
     #[inline(always)]
     fn moduli_at_points(&self, is_projected: bool) -> Lame {
         match is_projected {

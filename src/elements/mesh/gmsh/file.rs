@@ -9,7 +9,7 @@ use super::types::ElementType;
 /// Physical groups and entities are identified by dimension and tag.
 type Key = (usize, i32);
 
-/// What a mesh is made from.
+/// Nodes and elements of a Gmsh file.
 pub(super) struct Contents {
     /// Coordinates of the nodes, in the order of the file.
     pub(super) nodes: Vec<[f64; 3]>,
@@ -53,7 +53,7 @@ struct Sections {
 }
 
 impl Contents {
-    /// Reads a file, or says what is wrong with it.
+    /// Reads a file; the error describes the mistake in it.
     pub(super) fn read(file: &[u8]) -> Result<Self, String> {
         let mut reader = Reader::new(file);
         let is_old = read_format(&mut reader)?;

@@ -1,11 +1,11 @@
 //! Types of elements in files of Gmsh.
 
-/// One type: its number in the files, and what it is.
+/// One type: its number in the files, and its properties.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct ElementType {
     pub(super) number: u8,
     pub(super) dimension: usize,
-    /// How many nodes it has.
+    /// Number of nodes.
     pub(super) nodes: usize,
     shape: &'static str,
 }

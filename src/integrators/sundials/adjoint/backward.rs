@@ -13,7 +13,7 @@ use crate::integrators::{
 /// Time, state and its time derivative, which is empty for an ODE.
 pub(super) type Point<'a> = (f64, &'a [f64], &'a [f64]);
 
-/// A system with a functional, and what differs between the backward runs of an ODE and of a DAE.
+/// A system with a functional, and the differences between the backward runs of an ODE and of a DAE.
 ///
 /// # Safety
 /// The functions are those of the integrator of this kind, and the callbacks that they register fit a host

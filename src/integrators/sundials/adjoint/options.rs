@@ -79,7 +79,7 @@ impl AdjointOptions {
         Ok(())
     }
 
-    /// Refuses what only an ODE can supply.
+    /// Rejects options that only an ODE can supply.
     pub(super) fn check_for_dae(&self) -> Result<(), InputError> {
         let supplied = [
             ("supplied_rhs", self.supplied_rhs),

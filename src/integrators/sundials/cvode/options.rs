@@ -90,7 +90,7 @@ impl CvodeOptions {
     step_options!();
     builder_methods!(limits);
 
-    /// What an adjoint problem needs to know: the linear solver and the tolerances.
+    /// Options of an adjoint problem: the linear solver and the tolerances.
     pub(in crate::integrators::sundials) fn for_adjoint(
         &self,
         y0: &[f64],

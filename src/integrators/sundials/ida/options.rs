@@ -71,8 +71,7 @@ impl IdaOptions {
     step_options!();
     builder_methods!(limits);
 
-    /// What an adjoint problem needs to know: the linear solver, the tolerances, and which unknowns are
-    /// differential.
+    /// Options of an adjoint problem: the linear solver, the tolerances, and which unknowns are differential.
     pub(in crate::integrators::sundials) fn for_adjoint(
         &self,
         y0: &[f64],

@@ -44,7 +44,7 @@ const RETRIES: usize = 6;
 /// method with so many Jacobians, each for one iteration.
 const JACOBIANS: i32 = 30;
 
-/// What a session of IDA can do, as described at [`Ida`](super::Ida).
+/// Starts of a session of IDA, as described at [`Ida`](super::Ida): consistent initial values, index check, reinitialization.
 pub trait StartsDae: CarriesSensitivities {
     fn consistent_start(
         &mut self,

@@ -112,7 +112,7 @@ impl Sensitivities {
         &self.parameters
     }
 
-    /// Refuses what IDAS does not have.
+    /// Rejects methods that IDAS does not have.
     pub(in crate::integrators::sundials) fn check_for_dae(&self) -> Result<(), InputError> {
         if self.method == SensitivityMethod::StaggeredOneByOne {
             let help = "IDA has Simultaneous and Staggered";

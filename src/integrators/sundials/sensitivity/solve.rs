@@ -19,7 +19,7 @@ use crate::integrators::{
     },
 };
 
-/// What also computes sensitivities, as described at [`Solver`](crate::integrators::sundials::Solver).
+/// An integrator that also computes sensitivities, as described at [`Solver`](crate::integrators::sundials::Solver).
 pub trait CarriesSensitivities: CarriesIntegrals {
     fn sensitivities(&self) -> MatRef<'_, f64>;
     fn interpolate_sensitivities(

@@ -24,7 +24,7 @@ use crate::scene::timeline::{Phase, Scene};
 const MOST_FRAMES: usize = 800;
 const MOST_BYTES: usize = 1_400_000;
 const FEW_FRAMES: usize = 60;
-/// How far the drawn path of an obstacle may be from its formula, in sizes of the body.
+/// Largest deviation of the drawn path of an obstacle from its formula, relative to the size of the body.
 const FOLLOWED: f64 = 1e-3;
 
 /// Everything that the page shows of a motion.

@@ -18,7 +18,7 @@ pub(in crate::io::output) fn positions(trajectory: &Trajectory, sample: &Sample)
     displaced(trajectory, sample).chunks_exact(dimension).map(drawn).collect()
 }
 
-/// How far away from the viewer each node of a body in space is (m, from an arbitrary plane) under the
+/// Depth of each node of a body in space from the viewer (m, from an arbitrary plane) under the
 /// displacements `u` (m).
 pub(super) fn depths(body: &Body, u: &[f64]) -> Vec<f64> {
     let moved: Vec<f64> = body.mesh().positions().iter().zip(u).map(|(x, u)| x + u).collect();

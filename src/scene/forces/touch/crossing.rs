@@ -25,7 +25,7 @@ pub(super) struct Ways<'a> {
     facet: Option<&'a Feature>,
     paths: [Path; MOST_NODES],
     count: usize,
-    /// How much farther than nodes surfaces move.
+    /// Ratio of the largest displacement of surfaces to that of nodes.
     reach: f64,
 }
 

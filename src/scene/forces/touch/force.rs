@@ -21,9 +21,9 @@ pub(crate) struct TouchForce {
     pub(super) edges: Edges,
     pub(super) law: Law,
     pub(super) coulomb: Option<Coulomb>,
-    /// How much farther (m) than they act pairs are looked for, so that they need not be at each evaluation.
+    /// Search distance for pairs beyond the contact range (m), so that not each evaluation needs a search.
     margin: f64,
-    /// The pairs last found: they change what a state costs, not what it gives.
+    /// The pairs last found: they change the cost of an evaluation, not its result.
     near: Mutex<Arc<Near>>,
 }
 

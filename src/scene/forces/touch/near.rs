@@ -65,7 +65,7 @@ impl Near {
         Self { u: u.to_vec(), within, pairs, edges }
     }
 
-    /// How much nearer (m) any of them may have come since: twice the way of the place that has moved most.
+    /// Upper bound of the approach (m) of any pair since then: twice the largest displacement on the surfaces.
     pub(super) fn moved(&self, surfaces: &Surfaces, u: &[f64]) -> f64 {
         let d = surfaces.dimension;
         2.0 * surfaces.farthest(|node| {

@@ -10,8 +10,8 @@
 //! d2E/dz_m dz_n = c_m c_n I - E_am G^-1_ab E_bn^T
 //! ```
 //!
-//! Two edges are the same with a coordinate on each, r = (1 - xi_0) a_0 + xi_0 a_1 - (1 - xi_1) b_0 - xi_1 b_1. What they
-//! share depends on xi and on c = det G = |a x b|^2 by a [`Window`], whose derivatives need those of second order, too: with
+//! Two edges are the same with a coordinate on each, r = (1 - xi_0) a_0 + xi_0 a_1 - (1 - xi_1) b_0 - xi_1 b_1. Their
+//! common area depends on xi and on c = det G = |a x b|^2 by a [`Window`], whose derivatives need those of second order, too: with
 //! S_ab = dG_ab = dr_a . r_b + r_a . dr_b, and d' for another direction,
 //!
 //! ```text

@@ -235,7 +235,7 @@ impl Surfaces {
 }
 
 impl Surfaces {
-    /// How far (m) any place of the surfaces moves if nodes move by what `way` tells (m); infinite if that is no number.
+    /// Largest displacement (m) on the surfaces for nodal displacements `way` (m); infinite if one is not a number.
     pub(super) fn farthest(&self, way: impl Fn(usize) -> [f64; 3]) -> f64 {
         // what is no number has moved farther than anything
         let known = |way: f64| if way.is_finite() { way } else { f64::INFINITY };

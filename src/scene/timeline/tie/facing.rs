@@ -9,7 +9,7 @@ use crate::elements::body::Body;
 use crate::elements::mesh::{Face, Mesh};
 use crate::scene::forces::{natural, pieces};
 
-/// How far a node may be beside a surface, over the length of the edges there.
+/// Largest tangential distance of a node beside a surface, relative to the length of the edges there.
 const MOST_BESIDE: f64 = 0.02;
 /// The largest cosine between the outer normals of surfaces that face each other.
 const FACING: f64 = -0.5;

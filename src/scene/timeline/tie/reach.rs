@@ -2,7 +2,7 @@
 
 use crate::base::vector::norm;
 
-/// How far a node may be from the body that it is glued to, over the length of the edges there: the straight edges of
+/// Largest distance of a node from the body that it is glued to, relative to the length of the edges there: the straight edges of
 /// cells leave gaps along a curve.
 pub(super) const MOST_APART: f64 = 0.2;
 

@@ -76,8 +76,8 @@ pub struct DaeAdjoint<S, F> {
     runs: Runs,
 }
 
-/// What is done with a system and its functional. They come as trait objects: what integrates them is compiled once, and
-/// not for each type.
+/// Forward and backward runs of a system and its functional. These come as trait objects, so that the integration is
+/// compiled once, and not for each type.
 struct Runs {
     /// Time, state and its time derivative.
     start: (f64, Vec<f64>, Vec<f64>),

@@ -1,4 +1,4 @@
-//! A system with a functional: what the forward run integrates, and the equations of the backward run.
+//! A system with a functional: equations of the forward run and of the backward run.
 
 use faer::MatMut;
 

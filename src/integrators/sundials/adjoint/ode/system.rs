@@ -1,4 +1,4 @@
-//! A system with a functional: what the forward run integrates, and the right-hand sides of the backward run.
+//! A system with a functional: right-hand sides of the forward run and of the backward run.
 
 use faer::MatMut;
 
