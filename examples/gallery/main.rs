@@ -5,6 +5,9 @@
 //! all of them. What to look for: a chart of each, and a page that says which method is the
 //! fastest for which accuracy. No method is the fastest everywhere.
 //!
+//! It is a list of problems, a page that puts findings into tables, and prose in `readings.md`, whose numbers are
+//! filled in from the run: a number without a run is a failure of the test.
+//!
 //! Runs are kept and not run again. After changes of the code begin with an empty directory.
 
 #[path = "../common/mod.rs"]

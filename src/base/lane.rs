@@ -2,6 +2,9 @@
 //!
 //! Arithmetic on a lane acts on each of its numbers, in the same order and without fused operations, so that
 //! results are the same to the last bit as those of one cell after the other, on any machine.
+//!
+//! A number of a lane is a number of the register and not an array of eight: from arrays the compiler makes
+//! loops over cells again, in the wrong direction.
 
 use std::ops::{Add, AddAssign, Div, Mul, Sub};
 

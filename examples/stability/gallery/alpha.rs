@@ -184,7 +184,7 @@ fn costs(page: &mut Page) -> Outcome<()> {
     page.say(
         "**A large alpha costs Runge-Kutta steps of 3.3/alpha, other methods nothing.** alpha is a \
          double eigenvalue -alpha of the equations. In the Newton matrix it stands beside the eliminated \
-         rows only (`docs/architecture.md`), so that neither its size nor its condition changes. Central differences follow the known \
+         rows only (`docs/decisions/0001-half-size-newton-matrix.md`), so that neither its size nor its condition changes. Central differences follow the known \
          solution of R'' + 2 alpha R' + alpha^2 R = 0 instead of integrating it.",
     );
     let [rk, bdf, ida, arkode, central] = METHODS.map(Method::name);

@@ -1,4 +1,7 @@
 //! `pliant run`
+//!
+//! A run is a `Simulation` that goes to its end, keeps a checkpoint and the rows of the table on the way, and
+//! can be restored.
 
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};

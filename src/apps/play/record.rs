@@ -100,8 +100,7 @@ impl Record {
         self.input(scene, &self.tracks[at], t)
     }
 
-    /// What acts because of a track from time `t` (s) on; for a component of a vector, with the other components as far as they were
-    /// moved.
+    /// The input that follows from a track, from time `t` (s) on; a component of a vector has the other components beside it.
     fn input(&self, scene: &Scene, track: &Track, t: f64) -> Input {
         let Target { quantity, of, axis } = &track.target;
         if axis.is_none() {

@@ -1,4 +1,7 @@
 //! The scene as it is played: time, and what a hand does.
+//!
+//! A frame is sent when the page has drawn the one before, so that a slow browser or a slow scene delays
+//! nobody else and no queue builds up.
 
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender};
 

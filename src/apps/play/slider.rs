@@ -1,5 +1,9 @@
 //! Sliders for pressures of chambers, flows of liquids, openings of orifices, actuation of springs, cables, muscles and growths,
 //! loads, magnetic fields, positions and moments of dipoles.
+//!
+//! A slider changes its value along a straight line and not by a jump, so that the table in the saved file is
+//! exactly the signal that acted (`io/scene_file/rewrite.rs`). A load has a slider for each component, each
+//! with lines of its own, and the table of all of them acts.
 
 use serde_json::{Value, json};
 

@@ -1,4 +1,8 @@
 //! Whether the cells are fine enough for the strains that they show.
+//!
+//! Zienkiewicz and Zhu's estimate compares strains with their means at the nodes; the fraction p of the
+//! strain energy in the difference makes the body 1/(1 - p) times too stiff (0.8 to 1 of the true factor on
+//! cantilevers, less where cells lock: `docs/notes/elements.md`).
 
 use super::bending::stiffness;
 use super::mesh::quadratic_cells;

@@ -53,6 +53,12 @@
 //! | [`pace`]: damping of the lowest vibration, and how much faster the fastest motion of the mesh is | |
 //! | [`symmetry`]: how far the motion is from one in a plane (+) | 1 % |
 //! | [`symmetry`]: how far the motion is from its mirror images (+) | 0.1 % |
+//!
+//! Samples are looked at, 200 at most and fewer on large meshes, so that the measurement has no influence on
+//! steps and results. An obstacle counts as never touched only if the body was farther from it at all samples
+//! than it can have come nearer in between, by its largest speed and gravity. Rotations and wavelengths are
+//! relative to the motion of the body as a whole: the rotation by Kabsch, the spin by the angular momentum.
+//! The texts of indicators in doubt are the warnings.
 
 mod arched;
 mod bending;

@@ -1,4 +1,9 @@
 //! Whether a body passes through itself, or pieces of it through each other.
+//!
+//! A point within a cell that has no node in common with its own has a second position in the undeformed
+//! body. Points are sorted into a grid (`base/grid.rs`), and the map of the cells is inverted for those in
+//! their boxes. The depth of that position below the boundary is sought from cell to cell (`skin.rs`), so
+//! that the boundary of another part does not count, however near it is.
 
 use super::size::cell_sizes;
 use super::skin::{Skin, points};

@@ -1,4 +1,7 @@
 //! How slender a body is, and how many cells lie across its thickness.
+//!
+//! The slenderness is that of the box with the volume and the surface of the body, exact for boxes and nearly
+//! so for rings.
 
 use nalgebra::{Matrix3, Vector3};
 

@@ -1,5 +1,7 @@
 //! Nested dissection by coordinates: an order of elimination that leaves less fill than minimum degree
 //! on large solids.
+//!
+//! It is used where it leaves less fill than approximate minimum degree: on solids, and not in the plane.
 
 use crate::base::sparse::NodePattern;
 

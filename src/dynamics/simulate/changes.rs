@@ -1,4 +1,14 @@
 //! Changes of a run between two steps: other forces or constraints, another state, or an earlier one.
+//!
+//! A command edits a copy of the phase in force: new forces go into the existing equations, new constraints
+//! make new equations, and the run goes on from the state at that time. A number that a command has set once
+//! is shared by forces and phase (`Live`): the next command sets it and builds nothing, so that ticks of a
+//! controller allocate nothing under methods without a new start. Checkpoints, forks and samples hold a
+//! frozen copy; each sample refers to the phase in force at its time.
+//!
+//! One-step methods keep their step size (`Integrator::resume`), multistep methods start anew: a history that
+//! is kept does not see a jump below the tolerance at the start of a step, and errors grow
+//! (`docs/notes/commands.md`).
 
 use std::mem::{replace, take};
 use std::sync::Arc;

@@ -1,4 +1,20 @@
 //! Contact events: where a node touches an obstacle or leaves it, slips or sticks.
+//!
+//! The switches of a contact are the distances of its points and, without adhesion, the normal forces K_p d +
+//! B_p d' of those that touch, where the damper is cut off. After a step the first change of sign is found on
+//! dense output by the search of root functions, with the forces of which a switch has changed alone.
+//! Switches that were not held would make steps over the kink fail before an event could be found. They are
+//! atomics in the contact, as forces are shared; each phase has forces of its own.
+//!
+//! Under friction the third kind of switch is the sliding speed less v0 of points that press. The law is
+//! smooth there, so nothing is held; the benefit is the new start. As a spring draws a block that sticks,
+//! mu(w) rises to its maximum at v0 and falls beyond, and speeds grow e-fold within 4 v0 m/(3 (mu_s - mu_k)
+//! N): a longer step does not see it, and implicit methods even stay on the unstable branch. An absolute
+//! tolerance of velocities of v0/400, the upper limit of its default, does as much for implicit methods, and
+//! not for `rk` (`docs/notes/contact.md`). A step that begins and ends in sliding in opposite directions
+//! shows no event although the point has stuck in between; that is not searched for, as the reversal of
+//! friction makes such a step fail the error test unless friction is too weak to matter. The report lists
+//! when all points that press have come to slide and to stick; changes of some of them count as events.
 
 use std::ops::Range;
 

@@ -1,4 +1,9 @@
 //! Intervals: the parts of a phase that are integrated without a new start, and what may end them.
+//!
+//! They end at the end of the phase, at kinks of prescribed signals (so that no pulse is skipped), at located
+//! contact events, at points of the path of an obstacle (so that in its frame the motion within a step is one
+//! cubic), and where `Method::Auto` changes the method. Each has an integrator of its own, started from the
+//! state; the equations are handed on.
 
 use super::angles::Angles;
 use super::auto::Plan;

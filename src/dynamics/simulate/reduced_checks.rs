@@ -1,5 +1,9 @@
 //! Error checks of a run by a reduced model: snapshots of its residual are stored at some times. The displacements that
 //! balance them are computed on request only, as that takes a factorization with all unknowns.
+//!
+//! They are requested by the report or the end of a phase: a controller that reads sensors alone never waits
+//! for them. Reactions of constraints are M u'' - f at the held nodes, with the forces of all cells and the
+//! accelerations of the model.
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 

@@ -1,4 +1,10 @@
 //! The run of a scene: phases one after the other, and their intervals.
+//!
+//! The loop is a state machine: each call takes a step of the current interval, or begins the next interval
+//! or phase. `Scene::simulate` calls it to the end, a `Simulation` until the time that its user asks for.
+//! Readings lie within the last step and are interpolated, so that reading changes no digit. Phases end at a
+//! stop time, as equations change there; samples never shorten a step. An integrator that gives up leaves
+//! reason, time and step size, with the trajectory until then.
 
 use std::mem::take;
 use std::sync::{Arc, Mutex};

@@ -1,4 +1,11 @@
 //! The steps of an interval: how far they go, what makes them doubtful, and the samples within them.
+//!
+//! A rise of the energy balance of more than a hundredth of the largest energy is a warning in every run.
+//! `Method::Auto` then goes back to the last state whose balance was off by less than a tenth of that, and
+//! goes on with another method: after BDF first BDF at a tenth of its tolerances, which costs a damped body
+//! less than ARKODE and is more precise, then ARKODE; after ARKODE BDF of order 2. The rise counts from the
+//! start, and after a phase that ended out of order from there, so that later phases are judged by their own
+//! errors. (Counted from each checkpoint, small rises could add up unnoticed.)
 
 use super::auto::{LONG, PATIENCE, TRIAL};
 use super::events::Met;

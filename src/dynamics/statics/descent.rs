@@ -2,6 +2,14 @@
 //!
 //! Nodes go straight, cells turn: along a straight step a slender body is stretched, and of a long one hardly anything is left. So
 //! where a straight step does not lead down, its cells are turned by the same angles instead (`elements/body/turning.rs`).
+//!
+//! A straight step that turns a cell by theta stretches it by theta^2/2; of a step of a radian the line
+//! search leaves some hundredths. The energy has to fall along the turned step as along the straight one. A
+//! load step begins with the tangent of the last one at its load, if the energy falls along the whole of that
+//! step, as the tangent of the new load has stress there that nothing resists yet. Mixed methods (stress as
+//! an unknown; D. Magisano, L. Leonetti, G. Garcea, Int. J. Numer. Methods Eng. 109, 2017) do as well for St.
+//! Venant-Kirchhoff under dead loads; with rubber and tendons, which are stretched in between as far as nodes
+//! go straight, they fail with Hooke's moduli. Iterations are in `docs/notes/statics.md`.
 
 use super::newton::{PASSED, Search, Stuck, reason};
 use crate::base::simd::add_multiple;

@@ -5,6 +5,11 @@
 //! Straight steps would strain it as it turns, so it is turned rigidly, along circles: by Newton's method on
 //! the angles, with falling energy. And in equilibrium, motions that no force resists are removed from the
 //! displacements.
+//!
+//! A linear free body needs loads in balance: K plus 1e-10 of the highest eigenvalue times M then has the
+//! same solution but for an error that iteration removes, and rigid motions are projected out by M. A net
+//! force that nothing can take up is refused beforehand; moments that no rotation balances are reported when
+//! the search ends.
 
 use nalgebra::{DMatrix, DVector};
 

@@ -1,4 +1,13 @@
 //! The search for an equilibrium: Newton's method with falling energy, load step by load step.
+//!
+//! The tolerance, 1e-10 of the largest force, may be out of reach: in nearly incompressible bodies forces are
+//! small differences of much larger terms. An iteration that no longer reduces the residual ends the search
+//! if the residual is within the last digits of the terms of K u. Moving obstacles are taken at their
+//! positions; that their velocity drags nothing and friction does not act is a warning.
+//!
+//! The lowest eigenvalue of K x = omega^2 M x, by inverse iteration with the factor at hand, distinguishes
+//! stable equilibria (with their lowest frequency), neutral and unstable ones; a Rayleigh quotient below 0
+//! proves instability.
 
 use super::options::Statics;
 use crate::base::vector::largest;

@@ -13,6 +13,10 @@
 //! From a given start u_0, all these act whole, and what they leave unbalanced there is released instead: with the fraction s the
 //! forces are f(u) - (1 - s) f(u_0). Where u_0 was in equilibrium under other dead loads, that is the straight way from these loads
 //! to the present ones.
+//!
+//! The shift of K + shift M is 0 unless K is indefinite; M is the natural measure of displacements, and the
+//! sum is the matrix of a time step. The Newton step is shortened until the energy falls; of forces without a
+//! potential the work of their mean over the step counts, which is exact for dead loads.
 
 #[cfg(feature = "study")]
 mod dual;

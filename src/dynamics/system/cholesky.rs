@@ -1,4 +1,7 @@
 //! Sparse factorization of symmetric matrices.
+//!
+//! Matrices are indefinite under strong compression, with strain measures that soften; the report has the
+//! number of factorizations by LU (`docs/decisions/0009-indefinite-systems.md`).
 
 use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
 use faer::linalg::cholesky::llt::factor::LltRegularization;

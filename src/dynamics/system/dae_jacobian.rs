@@ -1,4 +1,7 @@
 //! The sparse Jacobian of the differential-algebraic form of index 1, for linear solvers that take the whole of it.
+//!
+//! It is a sum of parts, since a force on a dependent node is in the rows of a whole frame. KLU keeps a
+//! Jacobian while pieces turn, and takes up to three times as many steps with rigid pieces.
 
 #[cfg(test)]
 mod tests;

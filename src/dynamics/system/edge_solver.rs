@@ -16,6 +16,17 @@
 //!
 //! Central differences ask for lengths at the end of a step instead, x.x = 2 halves with x = start + weight (x'' of
 //! the step), which Newton's method finds piece by piece.
+//!
+//! Rows G turn with the piece and are no part of the factorized matrix. Z takes 6 solves per piece for each
+//! factor, 12 in space; the small matrix, 3 x 3 or 6 x 6 for each piece or for several that feel each other
+//! through X, is set up anew as pieces turn. CVODE and ARKODE, which evaluate residuals again, take the edges
+//! in R at the trial point: a matrix is kept for many steps, and iterations then converge as if the piece had
+//! not turned. Rosenbrock methods, whose order rests on the Jacobian at the start of a step, take them there.
+//! Forces of the multipliers turn with the edges; their derivative is part of Kt.
+//!
+//! A dependent node may have strayed from its frame by round-off, on which no force acts, so that (I - gamma
+//! J) x = r says x = r: a Newton step gives it its own residual (`stray`). Without that BDF, which
+//! extrapolates, would let the round-off grow without bound.
 
 use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
 use faer::linalg::lu::partial_pivoting::factor::{lu_in_place, lu_in_place_scratch};

@@ -10,6 +10,12 @@
 //! ```
 //!
 //! with a multiplier that presses with x at both nodes. `edge_solver.rs` finds the multipliers.
+//!
+//! Constraints on nodes of rigid pieces are general rows, written for the independent displacements, even
+//! where they hold one component; those that follow from others because nodes move together are left out
+//! (`scene/constraint/resolve.rs`), and nodes that would have to leave each other are an error. Edges that
+//! follow from what is held and from other edges have no pivot at the start of a phase, and are left out; if
+//! nodes can then be moved apart, the phase is refused (`tears_apart`).
 
 use crate::base::sparse::BlockMatrix;
 use crate::base::vector::{dot, norm};

@@ -19,6 +19,11 @@
 //! rank of the number of chambers. It stays out of the pattern. With H = G^T N^-1 G, N^-1 being the solve that meets the
 //! constraints (Woodbury's identity), the pressures s = gamma^2 C (I + gamma^2 H C)^-1 G^T N^-1 r resist, and
 //! N xv - A mu = r - G s.
+//!
+//! That takes one solve for each chamber with a new factor, and one more in each iteration. (The latter could
+//! be a sum over columns of N^-1 G; then multipliers and edges of rigid pieces would have to be corrected,
+//! too.) It is never slower than the full pattern (`docs/notes/costs.md`). The states of actuators have C =
+//! 0, so that S alone eliminates them.
 
 use crate::base::simd::add_multiple;
 use crate::base::vector::dot;

@@ -19,6 +19,20 @@
 //! Two more unknowns are integrated: the energy dissipated and the energy supplied since t = 0. They cost two
 //! dot products, nothing depends on them, and the error control leaves them out; they make the energy balance
 //! as accurate as the integration itself.
+//!
+//! The state is y = (u, v, E_d, E_s, G, m): displacements, velocities, energies dissipated and supplied,
+//! strains of Maxwell branches, amounts of gas and liquid with the states of actuators. DAE forms have
+//! multipliers in the place of G and refuse branches, as central differences and Rosenbrock methods do.
+//! Forces add up in three vectors (conservative, dissipative, applied), so that both powers are one dot
+//! product each and no force has an account of its own. Quadrature after the run would cost more evaluations
+//! of forces than the integration. Tolerances of the energies are loose (energies at strains of order 1) and
+//! not infinite: unknowns that Newton's iteration does not control grow without bound, as BDF extrapolates
+//! their errors. To Rosenbrock methods they are integrals, which have to be the last unknowns, and so not
+//! where branches or amounts follow.
+//!
+//! A row of the constraints that goes on into the next phase starts where the phase before prescribed it, so
+//! that the error of the stabilization is not passed on. Multipliers follow from the constrained rows of M
+//! a - f; in the ODE form they are output.
 
 mod at_rest;
 mod cholesky;

@@ -18,6 +18,13 @@
 //!
 //! Of r = c + gamma (v, M^-1 (f + A lambda)) the integrators are given only c + gamma (v, 0): then
 //! M rv is M cv + gamma f, and no iteration solves a system with M.
+//!
+//! CVODE reaches this solve as a user-supplied linear solver (`Ode::newton_setup`, `newton_solve`), IDA's
+//! form of index 1 with gamma = 1/cj; the form of index 2 decouples into a system with M and one with N
+//! (`dae.rs`). KLU on the sparse Jacobian of the whole system exists to check it. Symbolic analysis is done
+//! once a phase. A phase without forces that depend on u or v shares the constant K and B. The product Kt ru
+//! is skipped where ru is round-off: from the second round of an iteration on, as u' = v is linear.
+//! `docs/decisions/0001-half-size-newton-matrix.md` has the reasons.
 
 use std::sync::Arc;
 

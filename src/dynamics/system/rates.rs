@@ -19,6 +19,9 @@
 //! and tetrahedra. Constraints only lower the eigenvalues of symmetric K. Where nodes of rigid pieces move with those of a
 //! frame, u = W q, W^T M W takes the place of M and |W|^T |K| |W| that of |K|; the factor is that of the frames alone
 //! where M is diagonal.
+//!
+//! The bound comes from the tangents and is renewed as the body stiffens; contacts that do not touch yet
+//! count as if they did, and of a rigid body all surfaces that may touch.
 
 use super::System;
 use crate::base::sparse::{BlockMatrix, NodeMatrix};

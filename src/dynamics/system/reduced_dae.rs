@@ -1,4 +1,6 @@
 //! The equations of a reduced model as IDA takes them, y' - f(t, y) = 0.
+//!
+//! No constraints are left for a form of index 2, and no pattern for KLU.
 
 use super::System;
 use super::form::Form;

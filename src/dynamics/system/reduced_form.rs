@@ -1,5 +1,12 @@
 //! The equations of a phase by a reduced model, as an ODE: y = (q, q', internal unknowns, energy dissipated, energy supplied).
 //! Energies come last, where integrals have to be.
+//!
+//! A phase by a reduced model is a form of the same `System`, as the differential-algebraic forms are. The
+//! run sees states of all nodes (`dynamics/simulate/stepper/lifted.rs`), so that samples, sensors, events,
+//! commands, checkpoints and forks know nothing of q. u_0 is the state at the start of the phase or after a
+//! command: where a new phase has other shapes nothing is lost but the part of the velocities beyond them,
+//! which is booked as energy supplied. Constraints are part of the shapes (A^T Phi = 0, and E for those that
+//! move), hold exactly and need no multipliers.
 
 #[cfg(test)]
 mod tests;

@@ -1,4 +1,8 @@
 //! How a phase keeps its rigid pieces in shape: by their [edges](super::edges), or in equilibria by their elasticity.
+//!
+//! In equilibria nothing turns fast and the search needs an energy, so edges are released and the elasticity
+//! of the pieces acts. With rigid pieces Newton matrices are always factorized, as conjugate gradients would
+//! need W^T X W.
 
 use super::System;
 use super::edges::Edges;

@@ -1,4 +1,9 @@
 //! Finer meshes: cells divided at the middles of their edges, or given mid nodes.
+//!
+//! A new node is identified by the corners around it and their weights in sixty-fourths, so that all cells
+//! find the same one; position and initial state follow from the shape functions of the coarse cell. Old
+//! nodes keep their numbers, so that node selections of a scene stay valid; forces on single nodes stay on
+//! these nodes.
 
 use std::collections::BTreeMap;
 use std::ops::Range;

@@ -1,5 +1,11 @@
 //! Twenty-node serendipity hexahedron on the unit cube: corners as in the eight-node one, then the middles of
 //! the edges in the order of VTK.
+//!
+//! The quadrature is that of 14 points and degree 5 (B. M. Irons, Int. J. Numer. Meth. Engng. 3 (1971)
+//! 293-294). Gauss's rule with 8 points leaves a single cell 6 zero-energy modes, and a clamped row of cells,
+//! one cell thick, one mode for each cell: it does not suit meshes that are not known beforehand. With 14
+//! points no cell, row or block has such a mode; only terms of the highest degree and curved edges are not
+//! integrated exactly, as in tetrahedra of 10 nodes.
 
 use super::ReferenceCell;
 use super::quadrilateral8::{serendipity, serendipity_derivatives};

@@ -5,6 +5,9 @@
 //!
 //! A cell of dimension M may live in a space of higher dimension D (a string, a membrane). It is
 //! then described in coordinates of its own, along an orthonormal frame in its tangent space.
+//!
+//! The kinds of cells differ by one table (`mesh/cell.rs`: nodes, faces, edges, names, type of Gmsh) and by
+//! their file here, which `with_element` names. `elements/body` has no case for any kind.
 
 mod bisection;
 mod closest;

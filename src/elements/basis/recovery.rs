@@ -1,4 +1,7 @@
 //! Extrapolation from strain points to nodes.
+//!
+//! The polynomial through the strain points is evaluated at the node; in cells of 14 points the value is that
+//! of the nearest point.
 
 use nalgebra::DMatrix;
 

@@ -1,5 +1,9 @@
 //! Cells in a row: the numbers of their nodes grow by 1 from cell to cell, as in meshes of rectangles and
 //! cuboids, so that the vectors of several cells are contiguous in memory.
+//!
+//! Eight such cells need no index look-ups: the a-th nodes of all of them lie side by side in memory and are
+//! read and written as registers, those with the greater numbers first, so that a node still gets the forces
+//! of its cells in their order. Permuted registers for nodes in any order gained nothing.
 
 #![allow(clippy::needless_range_loop, reason = "indices that several arrays share read best")]
 

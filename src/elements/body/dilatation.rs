@@ -1,4 +1,14 @@
 //! Where a body resists a change of its volume.
+//!
+//! With a mean dilatation, G_a = sum w dg/dF g_a and the cell volume V, forces and tangents are
+//!
+//! ```text
+//! f_a = -sum w (P_rest + U'(mean g) dg/dF) g_a,    K_ab = ... + (U''/V) G_a G_b^T
+//! ```
+//!
+//! Viscosity of Hooke's form does the same with the rate of tr E, as it would lock, too; fluids with tr(d).
+//! The stress of fields has the projected dilatation. Reasons for these projections and the alternatives are
+//! in `docs/decisions/0011-projected-dilatation.md`, errors and inf-sup values in `docs/notes/elements.md`.
 
 use crate::base::input::InputError;
 use crate::elements::material::Plane;

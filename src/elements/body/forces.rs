@@ -8,6 +8,9 @@
 //! The shape functions of a cell add up to 1 and their gradients to 0. So displacements are taken relative to
 //! the first node, whose force balances those on the others: this is less work, and forces stay as precise
 //! when the body has moved far.
+//!
+//! `map` of arrays and `as_flattened` of `core` are inlined only where a build is optimized across its units
+//! a second time, as a release is and tests are not: loops avoid them, and closures.
 
 #![allow(clippy::needless_range_loop, reason = "indices that several arrays share read best")]
 

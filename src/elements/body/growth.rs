@@ -5,6 +5,15 @@
 //!
 //! Where they grow by direction, or are pressed across their plane as they grow, they have a [law](crate::elements::material::GrownLaw) of
 //! that.
+//!
+//! All loops, laws and projected dilatations so serve growth as they are. For growth by direction one law is
+//! compiled that calls the material's (`elements/material/grown.rs`), and not one for each; its direction is
+//! that of the frames of the strain points (`oriented.rs`). Its power is summed point by point
+//! (`fields/grown.rs`) while a strain changes:
+//!
+//! ```text
+//! det(G) ((g'/g + 2 g_t'/g_t) W - g'/g a . M a - g_t'/g_t (tr M - a . M a)),   M = C_e S_e
+//! ```
 
 use std::sync::{Arc, Mutex, PoisonError};
 

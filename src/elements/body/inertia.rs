@@ -1,4 +1,8 @@
 //! The inertia of elements, consistent or lumped.
+//!
+//! Lumped inertia is row sums, or Hinton's scaled diagonal for quadratic cells. It is another model and not
+//! another solver: it lowers frequencies where the consistent one raises them. M acts alike on all axes and
+//! is one number per coupled pair of nodes; its factor is that of the nodal matrix, once for each axis.
 
 use super::elements::{ElementsOf, pairs};
 use super::regions::{Laws, Regions};

@@ -6,6 +6,13 @@
 //! ```text
 //! f_a = sum p_a B + N_a G m,    df_a/dx_b = sum (p_a N_b + N_a p_b) G + N_a N_b H m
 //! ```
+//!
+//! Tangents are exact and symmetric; a scene without dipoles has no such points. As the p_a of a cell add up
+//! to 0, the N_a to 1, and the energy depends on distances and angles alone, forces and moment on the nodes
+//! balance those of their field on the dipole to round-off. On n points along a cell of the length h (n the
+//! M-th root of their number in M dimensions) a dipole nearer than 2 h/n to a point is an error;
+//! `docs/notes/elements.md` has the errors of the rule there. Work counts as supplied: a dipole at rest
+//! supplies what the energy of the magnets falls by, one that moves and comes back what was dissipated.
 
 use std::f64::consts::PI;
 

@@ -6,6 +6,10 @@
 //! ```text
 //! f_a = q_a B_0 + sum_b S_ab G x_b,    q_a = sum w (g_a . b) / mu_0,    S_ab = sum w ((g_a . b) N_b + N_a (g_b . b)) / mu_0
 //! ```
+//!
+//! q and S, one number per node and per coupled pair, are set up once: a uniform field costs one
+//! multiplication per node and has no tangents. The moment is sum q_a x_a. Work counts as supplied, as a
+//! field may change with time.
 
 use super::elements::ElementsOf;
 use crate::base::input::InputError;

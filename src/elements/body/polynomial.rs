@@ -11,6 +11,9 @@
 //! The matrices are built once. Collective vectors hold only products that some triangle has: of
 //! n_p nodes, n_e edges and n_t triangles n_p, n_p + 2 n_e and n_p + 6 n_e + 6 n_t. A_1, A_2, B_1
 //! and B_2 are K; C_1 and C_2 of the text are the same matrix C.
+//!
+//! It is kept as a second way to the same forces; the sum over cells is 5 to 7 times as fast
+//! (`docs/notes/costs.md`).
 
 use std::sync::Arc;
 

@@ -4,6 +4,10 @@
 //! of additions that is the same on all machines. Those of a cell are summed up over its points, and added to
 //! the matrix once. The gradients of a cell add up to 0, and so do the rows and columns of its tangent: the
 //! blocks of its first node balance the others. Of a symmetric tangent half of the blocks are computed.
+//!
+//! Each cell stores the positions of its pairs of nodes in the body's pattern, 4 N^2 bytes, and a pattern
+//! that springs have widened maps them to new ones. K and B are assembled point by point, all blocks, as they
+//! are the forces of linear bodies.
 
 use std::ops::Range;
 

@@ -9,6 +9,10 @@
 //! ```
 //!
 //! So all mass is that of the nodes of the frame; the others are carried along.
+//!
+//! S is tr(I)/2 - I in space, with the moments of inertia I (`elements/material/rigid_mass.rs`). Everything
+//! that reads M (gravity, energies, momenta, the centre) finds that matrix in the place of the one of the
+//! cells. Its row sums may be below 0, as those of quadratic cells may be.
 
 use nalgebra::{DMatrix, DVector};
 

@@ -1,4 +1,11 @@
 //! Maxwell branches: springs that relax, parallel to the elasticity of a substance.
+//!
+//! Beside Hooke's law the strain is split additively, and not F = F_e F_i: G is linear in its own equation,
+//! objective with Green's strain, and the heat S : G' is a square. In rubber, whose tr E grows with the
+//! stretch at constant volume, that would be wrong, hence the metric C_v there. A motion starts with G = E,
+//! and branches leave equilibria unchanged: where no internal strains are given, forces and energies are
+//! those of relaxed branches. With a yield stress equilibria and starts have E = G, as if the body had been
+//! made in that shape.
 
 use super::deformation::Deformation;
 use super::flow::{Components, Flowing, Step, components, trace};

@@ -1,4 +1,7 @@
 //! Fibres in a material, and which way they run.
+//!
+//! Fibres take tension alone. The constant K contains them as if they were in tension, which is the stiffer
+//! case.
 
 use crate::base::input::{InputError, finite, not_negative, positive};
 use crate::base::vector::norm;

@@ -15,6 +15,9 @@
 //! n is 3 where the cell fills space, and in plane strain, where G has a component across the plane. Where
 //! there is no stress across a cell, n is the cell's dimension: Pi S is the part along the cell of Pi S in
 //! three dimensions, and the strain across follows.
+//!
+//! P is evaluated at the state of the last matrix, as K is. The rate has a kink where flow begins and nowhere
+//! else, which step size control passes.
 
 use super::hooke::{Hooke, Plane};
 

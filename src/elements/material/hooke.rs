@@ -1,4 +1,7 @@
 //! Hooke's law: the isotropic linear formula between strain and stress that several laws share.
+//!
+//! A cell of lower dimension has the Lamé pair of a cell without stress across it, so that lambda + 2 mu of a
+//! segment is Young's modulus.
 
 #![allow(clippy::needless_range_loop, reason = "closures would not be compiled in place")]
 

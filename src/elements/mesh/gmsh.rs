@@ -1,4 +1,9 @@
 //! Meshes from Gmsh.
+//!
+//! Cells that run the wrong way round are turned over, and copies of an element for each of its physical
+//! groups (version 2) become one cell of several groups; both are noted. Sections that are not needed are
+//! skipped. Nothing is allocated by a count that a file states: lists grow as their numbers are read, so that
+//! a wrong count ends at the end of the file.
 
 mod file;
 mod reader;

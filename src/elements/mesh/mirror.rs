@@ -1,4 +1,8 @@
 //! Mirror images of nodes, and the part of a mesh on one side of a plane.
+//!
+//! Cells on both sides of the plane need not be images of each other where all are of one material; no cell
+//! lies across it. Faces between nodes of the plane are no boundary of the half, so that nothing touches the
+//! cut.
 
 use super::Mesh;
 use crate::base::grid::Grid;

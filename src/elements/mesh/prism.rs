@@ -1,4 +1,10 @@
 //! Prisms: meshes that are the same all along an axis, and their sections.
+//!
+//! Nodes at one place of the plane, to round-off, are a column, and a column is a node of the section. A mesh
+//! is a prism where every face of its boundary is at an end or covers two columns alone, and every cell
+//! covers the columns of one of its own faces: layers need not be flat, and tetrahedra not layered alike. The
+//! middle of a section's quadrilateral of 9 nodes has no column in hexahedra of 20: it starts where their
+//! shape functions have it, and is held where all around it is.
 
 use std::collections::BTreeMap;
 

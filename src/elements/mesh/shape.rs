@@ -1,4 +1,8 @@
 //! Which way cells run, and what is wrong with those that have no volume.
+//!
+//! The lengths, areas or volumes that the edges span at the corners tell the cause: all below 0, the nodes
+//! run the wrong way round; of both signs, the cell is a bow-tie (as many of each, in a quadrilateral),
+//! concave or twisted; all above 0 in a quadratic cell, its sides are curved too far.
 
 use nalgebra::{Matrix3, Vector3};
 

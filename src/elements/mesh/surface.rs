@@ -1,4 +1,10 @@
 //! Closed surfaces of triangles, which a rigid solid lies within.
+//!
+//! A closed surface is a mesh of triangles in space, as a membrane is, with the mark that it has an inside
+//! (`Mesh::has_inside`), which distinguishes bodies from membranes where that matters: pressure on one side,
+//! shadows, pictures. Moments are sums over tetrahedra between the triangles and a point (divergence
+//! theorem). Its thickness is V/A, so that the volumes of the cells add up to V; a membrane of it keeps the
+//! shape in equilibria, as a strain that changes no length in three different planes is none.
 
 mod file;
 mod mend;

@@ -1,4 +1,6 @@
 //! The longest stable step, followed along the motion.
+//!
+//! With consistent inertia each step needs a solve with M, and steps are half as long.
 
 use crate::base::vector::dot;
 use crate::integrators::ode::{EnergyBalance, Rates, SecondOrder};

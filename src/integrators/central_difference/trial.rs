@@ -1,4 +1,8 @@
 //! The inside of a step: the scheme and its local error.
+//!
+//! Apart from the forces and the product with M^-1, a step is two passes over the vectors, each a formula of
+//! `base/simd`: from the state to where forces are evaluated, and from accelerations to the new velocities
+//! and the sums of the error norm.
 
 use super::CentralDifference;
 use crate::base::simd::{Formula, each};

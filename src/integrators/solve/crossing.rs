@@ -1,4 +1,8 @@
 //! Discontinuities of a run: events, breaks, and the jumps at both.
+//!
+//! Where an action changes something, the step ends there and the integrator starts anew. A break ends a step
+//! at the last floating-point number before it, so that equations which test `t < break` are on the left side
+//! up to there, and on the right side from the new start on.
 
 use std::mem;
 

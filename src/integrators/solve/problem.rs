@@ -1,4 +1,7 @@
 //! Initial value problems: equations, initial values, events and breaks.
+//!
+//! The equations are behind a pointer, so that a [`Problem`] is one type: a virtual call costs some
+//! nanoseconds, while a type parameter would stand in every signature of a user.
 
 use std::{
     fmt,

@@ -1,4 +1,8 @@
 //! Solution of a run.
+//!
+//! A step is kept by its states at Chebyshev's points, as many as the degree of the interpolant requires, and
+//! evaluated by the barycentric formula: the polynomial of the integrator to round-off, in whatever form the
+//! integrator has it.
 
 use std::fmt;
 

@@ -1,4 +1,9 @@
 //! An event function followed along the steps.
+//!
+//! Events are not the root functions of SUNDIALS, which are looked for at the ends of steps only, stop every
+//! call, and are particular to each integrator. An event function is evaluated on the interpolant of the
+//! step, which all integrators have: at samples, at minima of |g| between them, then between two points.
+//! Events that are only recorded do not change the steps.
 
 use super::{event::Event, minimum::minimum};
 use crate::base::root::{Direction, Point, bracket, crosses};

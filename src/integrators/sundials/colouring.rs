@@ -1,4 +1,6 @@
 //! Columns of a sparse matrix whose difference quotients can share one evaluation of the function.
+//!
+//! The colouring is greedy, columns with most neighbours first.
 
 use super::pattern::Pattern;
 

@@ -1,4 +1,7 @@
 //! Jacobians by difference quotients: columns that share no row are shifted at once.
+//!
+//! Increments and signs are those of the dense difference quotients of SUNDIALS. A tridiagonal matrix takes
+//! three evaluations, whatever its size.
 
 use std::ffi::c_void;
 

@@ -1,4 +1,7 @@
 //! Incomplete LU factorization without fill, as a preconditioner.
+//!
+//! It uses the pattern and values of the sparse Jacobian. On a full band it is the LU factorization without
+//! pivoting.
 
 use super::pattern::Pattern;
 

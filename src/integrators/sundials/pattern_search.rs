@@ -1,4 +1,6 @@
 //! Sparsity patterns that are found by evaluating the equations.
+//!
+//! A pattern is given, or found on request by propagating NaN or by sampling; it is never guessed silently.
 
 use super::pattern::Pattern;
 use crate::base::input::InputError;

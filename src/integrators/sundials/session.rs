@@ -1,4 +1,8 @@
 //! A session of an integrator of SUNDIALS and everything it uses: how it is put together.
+//!
+//! CVODE, ARKODE and IDA are one struct over a table of C functions. A solver as users see it owns the system
+//! and lends it to the session as `dyn Ode` or `dyn Dae`: all code that touches C is compiled once, in the
+//! library, and not for each type of system in each program.
 
 use std::{ffi::c_void, ptr};
 

@@ -16,6 +16,12 @@
 //! ```
 //!
 //! the first of which is the force of the pressure d.
+//!
+//! Exact overlaps keep V as smooth as it is in nature, where quadrature points that come under the level one
+//! by one would let A jump. The level of a volume is found by Newton's method within bounds, to round-off, in
+//! some six passes over the walls, anew in each evaluation: forces are functions of the state alone.
+//! Quadrilaterals are cut by both diagonals with half the weight, and lids are means of fans from each node
+//! of their rim: means of closed surfaces, for which the divergence theorem holds one by one.
 
 use super::followed::{add_block, cross_with};
 use crate::base::sparse::BlockMatrix;

@@ -1,4 +1,8 @@
 //! Chambers: pressure within walls of nodes, a closed polygon or a closed surface.
+//!
+//! The force is p dV/du with the symmetric Hessian of V; its work is supplied energy, as p may change with
+//! time. V is a sum over the walls, so a chamber may have several parts. Walls that are part of the boundary
+//! need no order and no sign, as faces of the body know their outer side.
 
 mod circles;
 mod depth;

@@ -1,4 +1,11 @@
 //! Penalty contact (Hirai (4.3.5), (4.4.2)): obstacles push boundary nodes out of themselves.
+//!
+//! Contact is at boundary nodes, or with a stiffness per area at Gauss points of boundary faces. It couples
+//! nodes that share a cell, so that the pattern never changes. An obstacle is a signed distance with gradient
+//! and Hessian, exact but at the ridges of boxes and unions, where it jumps, and left out for functions of
+//! users. Moving obstacles add their power f . w as two numbers beside the nodal forces, so that heat counts
+//! relative velocities only. The force has a kink at d = 0 (a jump, with damping), over which methods step
+//! with a loss of order that step size control mostly repairs.
 
 mod nodal;
 mod switches;

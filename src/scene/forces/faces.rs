@@ -1,4 +1,6 @@
 //! Faces of the boundary between some nodes, over which loads are distributed by the shape functions.
+//!
+//! Tractions and totals on whole faces are integrated with the shape functions in the undeformed shape.
 
 use std::collections::{BTreeMap, BTreeSet};
 

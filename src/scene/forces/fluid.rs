@@ -1,4 +1,16 @@
 //! A fluid around bodies, crudely: its drag and added mass on faces, its pressure by depth.
+//!
+//! It acts at quadrature points of faces in the deformed shape (`followed.rs`). Drag is a traction of n J and
+//! the relative velocity alone; the derivative of n J by a node is a cross product, so that tangents are
+//! exact, and those by velocities symmetric and not negative. Pressure by depth on a closed surface is the
+//! gradient of a sum, with a symmetric tangent: statics finds how a body floats by falling energy. Tractions
+//! p n at points would have no potential where the surface of the fluid crosses a face, and a part across
+//! gravity that pushes a floating body on for ever. Surfaces with a rim, recognized by the derivatives of the
+//! vector area, have no such potential and get p n.
+//!
+//! Added mass is integrated over the undeformed faces once and added to M = m (x) I (`Force::carried`,
+//! `Matrices::carry`). It acts in all directions alike, because along normals alone it would turn with the
+//! faces, and M would not be constant. The body's own mass (weight, momentum, mass damping) is not changed.
 
 mod force;
 #[cfg(test)]

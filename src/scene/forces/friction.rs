@@ -21,6 +21,17 @@
 //! ```
 //!
 //! Backward, q is h: the force grows up to v0 and is smooth there, too.
+//!
+//! Points that stick creep at speeds below v0. Without creep a spring would tie a sticking point to the place
+//! where it began to stick; such an anchor is a memory, and samples, pictures, sensors, forks and
+//! checkpoints, which evaluate forces anew, would all have to carry it
+//! (`docs/decisions/0007-contact-by-an-energy.md`). Tangents are exact and not symmetric: in sliding,
+//! friction follows the normal force with the coupling mu K_p. The Newton matrix has their symmetric part,
+//! positive definite with the inertia (measured in `docs/notes/contact.md`). Friction that falls with the
+//! speed is negative damping, so that a matrix is factorized by LU now and then. Where the normal force stops
+//! pressing there is a switch, like the cut-off of damping without adhesion. Explicit steps are bounded as if
+//! all sliding points stuck (`Force::add_reserves`): a sticking point is a damper of the rate 3 mu_s N/(2 v0
+//! m).
 
 use crate::base::input::{InputError, not_negative, positive};
 use crate::base::vector::{dot, norm};

@@ -4,6 +4,17 @@
 //! belongs to it as p does: U = R T m L - R T (m - m_0) with L = (r^(n-1) - 1)/(n - 1), or ln r with n = 1, so that
 //! -dU/dV = p; and what flows in brings mu = dU/dm = n R T L for each kilogram. From both mu of the standard atmosphere is
 //! taken, for each kilogram, so that all gas counts from there.
+//!
+//! For n = 1 U is the free energy and mu the chemical potential, else mu is the enthalpy, those in the
+//! chamber: losses in an orifice are never supplied. With the air around it, p_a (V - V_0), U belongs to the
+//! reservoir of springs, and sum mu q of the flows q is supplied, so that the energy balance closes with and
+//! without flow.
+//!
+//! As a constant, m makes the gas a force with a potential: statics, spectra, central differences and the
+//! Jacobian of `ida-klu` need no code of their own (`Scene::shut`, `closed.rs`, `content.rs`). Its
+//! tangent -(p - p_a) V'' + (n p/V) V' V'^T is full over the nodes of the walls, and so is the pattern. As unknowns,
+//! for all other methods, amounts stand behind the strains of Maxwell branches, y = (u, v, E_d, E_s, G, m),
+//! in a `Flow` (`elements/force.rs`) that `dynamics/system/flow_matrix.rs` eliminates.
 
 mod flow;
 mod orifice;

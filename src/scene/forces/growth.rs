@@ -1,4 +1,10 @@
 //! Growth: cells that swell, or expand by heat.
+//!
+//! Elasticity of the body is then that of the other cells (regions whose law has no stiffness in these, as
+//! with rigid pieces), and each growth one more loop over its cells. Power by the rate of g, 3 g^2 U + g
+//! f(u') . x when alike in all directions, counts as supplied, as a jump between phases or by a command does.
+//! Forks share their forces, so an evaluation takes buffers for u' and f from a list and returns them: no
+//! lock is held while it runs.
 
 use super::signal::{self, Signal, finite_at};
 use crate::base::input::{InputError, finite};

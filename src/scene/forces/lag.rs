@@ -1,4 +1,10 @@
 //! Lags of actuators behind their commands: heat, muscle activation, first-order dynamics of motors.
+//!
+//! Their states stand behind the amounts in the same `Flow`. The forces stay where they are and read state
+//! and rate as a signal, which `Flow::set` brings to the unknowns before each evaluation. In the Newton
+//! system such a state is a reservoir whose walls resist nothing: its gradient is df/da, a difference
+//! quotient, and no solve is spent on it. Absolute tolerances scale with full activation, Young's modulus for
+//! other stresses, that modulus times volume over length for forces, and the length of winches.
 
 #[cfg(test)]
 mod tests;

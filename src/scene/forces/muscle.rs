@@ -1,4 +1,12 @@
 //! Muscles: fibres in a body that pull by a stress of their own.
+//!
+//! They are fibres like those of a material under another law, W = s (l - 1), S = s / l, dS/dE = -s / l^3,
+//! with the exact symmetric tangents of fibres; a force of the scene and not of the material, as phases and
+//! commands drive it. With a signal s(t) the energy is no function of the shape alone, and all work counts as
+//! supplied. By Hill's law the stress depends on the rate, too, which no elastic law does: it has terms of
+//! its own in the loops (`elements/body/contraction.rs`), exact, and not symmetric by displacements where
+//! fibres turn as they lengthen. Power of a muscle that lengthens stays in the same account. The activation
+//! is a signal and no state.
 
 use super::signal::{self, Signal, finite_at};
 use crate::base::input::InputError;

@@ -1,4 +1,11 @@
 //! Nodal contact quantities of a surface, for output.
+//!
+//! They are gathered on request, from obstacles and touches alike: normal forces, the areas of the points
+//! where they act, and the fraction of the forces under which the surface slides. A point passes them to its
+//! nodes by its weights, so that pressure times area adds up to the force, and both surfaces of a touch have
+//! the same area. At an edge the area of a point is that seen along the normal, as the side of a block does
+//! not lie on its floor. An even pressure loads the nodes of quadratic faces unevenly (corners of triangles
+//! not at all), so mid nodes hand theirs to their corners first.
 
 use std::sync::Arc;
 use std::{iter, mem};

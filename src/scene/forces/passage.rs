@@ -6,6 +6,16 @@
 //! control points, and lies within their convex hull. As a distance d changes by no more than the length
 //! travelled, it stays above (d_0 + d_1 - L)/2 on a piece of length L with d_0 and d_1 at its ends; that of a
 //! convex shape is a convex function, and so also stays above its tangent plane at either end.
+//!
+//! Both ends alone rule out nearly all paths, and none is examined before the body has moved as far as its
+//! distance was. Where a penetration is found the step is not taken: the integration goes on from its start
+//! and stops within the obstacle at the deepest place, where events that are located are located as usual. A
+//! path by formulas has no points at which intervals end: the step is searched in equal parts, halved until
+//! the formula is within half the tolerance of the cubic of each part (at seven places in between, and by the
+//! accelerations at both ends, so that an oscillation is seen even where all ends have the same phase). A
+//! pulse that all these places miss is missed. Depths below the absolute tolerance of displacements, or below
+//! twice those at the ends, do not count. Contact is at nodes or Gauss points: an obstacle smaller than their
+//! distance may still pass between two of them.
 
 use super::shape::{Kind, Shape};
 use crate::base::vector::{difference, dot, norm};

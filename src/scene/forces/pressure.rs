@@ -1,4 +1,7 @@
 //! Pressure on faces of the boundary: a force along the normal of the deformed face.
+//!
+//! It is integrated with the shape functions of the faces, so that quadratic faces under it have a uniform
+//! stress. The tangent is exact, and symmetric only over closed surfaces and those with held rims.
 
 use super::faces::{loaded_faces, on_no_face};
 use super::followed::{FollowedFaces, add_block, cross_with};

@@ -15,6 +15,17 @@
 //! contact*, arXiv 2307.15908 (2023)). Forces are continuous, and have an energy and exact tangents ([`pair`]).
 //!
 //! Edges that cross edges between these points have an energy of their own ([`edge_pairs`]).
+//!
+//! Half of the energy is from the points of each surface, so that no decision on sides or facets is needed.
+//! Facets are as curved as their shape functions make them (`elements/basis/nearest.rs`: Newton's method for
+//! the nearest place within the face, else that of its edges and corners), so that points and the places
+//! opposite them load nodes alike. Damping and friction act pair by pair, with exact derivatives. Distances
+//! have no sign: a thin sheet is felt from both sides, and what has got through would be pushed on, hence the
+//! barrier k (D - d)^3/(3 d), which grows as 1/d. Its curvature begins with 0, so that no event has to be
+//! located. Quadrature points are the nodes and points between them (Simpson's rule on both halves of an
+//! edge; a rule of degree 3 on triangles, with the middles of sides and faces): Gauss points leave corners
+//! that stick out between them. In the plane no surfaces cross without a node that crosses a facet; in space
+//! edges can. Reasons and alternatives are in `docs/decisions/0007-contact-by-an-energy.md`.
 
 mod action;
 mod crossing;

@@ -1,4 +1,8 @@
 //! The record of all settings, and the tolerances that follow from it.
+//!
+//! The error norm is the root mean square over all unknowns, the same in all methods. A tolerance of more
+//! than a hundredth of the motion is a warning. A method that is asked for by name controls the error of each
+//! step by `rtol`; `Method::Auto` aims at that error of the whole motion (`docs/notes/automatic-choices.md`).
 
 use super::method::{ContactEvents, Method};
 use crate::base::input::{InputError, positive};

@@ -1,4 +1,9 @@
 //! One half of a symmetric scene.
+//!
+//! The scene is compared node by node (`half/symmetry.rs`), and not by the words in which it was written:
+//! initial state, point masses, and at 17 times of each phase prescribed motion and the sum of the loads.
+//! Shapes of obstacles are known to be symmetric or are refused, as is everything of which no half is known.
+//! A load becomes one for all nodes with the same part.
 
 mod symmetry;
 

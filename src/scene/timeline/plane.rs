@@ -1,4 +1,9 @@
 //! The section of a scene that is the same all along an axis, in a plane.
+//!
+//! A load keeps its kind where the section shares it out as the sums over the columns are, so that finer
+//! meshes of the section have it right, and is a force on each node otherwise. In a mean over nodes each
+//! column counts as often as the mean in space has nodes in it (`Reading::counted`). Hexahedra between held
+//! ends are the quadrilaterals of the section, to round-off.
 
 mod uniform;
 

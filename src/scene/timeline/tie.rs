@@ -1,4 +1,11 @@
 //! Ties: nodes of one body glued to another body.
+//!
+//! A tie is one general row per node and axis, u = sum s_k u_k with the shape functions s of the point at
+//! which the node is. Rows with the same nodes are the same whichever was named, so that surfaces may be tied
+//! both ways. Where the named nodes make up faces, the side with more nodes follows, and a deformable body a
+//! rigid one; `facing.rs` finds the nodes of the other side by outer normals that oppose each other. General
+//! rows cost a Schur complement of their number: glued surfaces of some hundred nodes are cheap, those of
+//! thousands are not.
 
 mod facing;
 mod reach;

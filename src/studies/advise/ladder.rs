@@ -1,4 +1,15 @@
 //! The stages of the search, one after the other: tolerance, alpha, law, mesh, what may be left out, method.
+//!
+//! Each stage is one question, answered by runs with hardly any error of the integration: tolerance; alpha,
+//! ten times as much until that changes nothing; measure of strain; inertia, where it was written lumped;
+//! meshes (halved; quadratic; quadratic and halved), until three of one kind show that they are fine enough
+//! or the budget is spent; omitted terms; inertia. Where halving all cells would take too long, triangles and
+//! tetrahedra are divided where most (0.8) of the jumps of their strains are, by Zienkiewicz and Zhu's
+//! estimate over the motion. Terms that seem to matter little on the mesh as written are left out together on
+//! the finest one and count only if they matter little there, too, as a coarse mesh may hide them. The model
+//! that is enough is swept by methods and tolerances, the fastest of those by the treatment of contact
+//! events; a run that takes twice as long as the fastest right one is cut short. For a number at the end of
+//! the motion the equilibrium is a candidate, too.
 
 use std::iter;
 

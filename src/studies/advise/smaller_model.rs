@@ -1,4 +1,13 @@
 //! Smaller models of a motion that is right.
+//!
+//! A rigid model is a candidate as any other, and the answer where it is right, having the fewest unknowns;
+//! no run is spent on it where the distance of the whole motion from the nearest rigid one
+//! (`studies/work_precision/rigid_motion.rs`, Kabsch's rotation of each piece at each time, which no rigid
+//! motion can undercut) is above the accuracy. Half and section are compared with the whole by runs with
+//! hardly any error of the integration (`smaller_run.rs`), so that the change is the symmetry that the motion
+//! breaks; one that saves time within the accuracy is written with the answer (`Advice::set`). The last rung
+//! is a reduced model, learned within half of the accuracy. Half, section and reduced model are no
+//! candidates: their errors are of the model that was found, on its mesh.
 
 use std::fmt;
 

@@ -1,4 +1,7 @@
 //! Equilibria that were measured: what is set for each of them, and what sensors have read there.
+//!
+//! The equilibria of one set of unknowns are found on all cores, each by itself. The scene tells which column
+//! of a table is a sensor and which a key, so that a table is what was measured and nothing else.
 
 use std::path::Path;
 

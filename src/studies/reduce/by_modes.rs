@@ -1,5 +1,13 @@
 //! Reduced models without a run of all unknowns: the first shapes are what the loads, free vibrations and their derivatives let
 //! expect, the others what runs by the model go through and leave over. Their error is the one that these runs tell.
+//!
+//! First shapes (`dynamics/system/expected.rs`) are equilibria as the loads grow, displacements of each load
+//! by the tangents at rest, the lowest vibrations, as large as the loads make them, and modal derivatives of
+//! the ten largest, from second differences of the forces of cells; POD orders them by size. A run by the
+//! model keeps the displacements that would balance its residual (`Trajectory::lacking`), the largest of
+//! which are the next shapes. Two models in a row whose runs are near to each other end that, as a small
+//! error of a frequency grows with time, which no single state shows. Runs by the last one then stand for
+//! full ones.
 
 use std::ops::ControlFlow;
 use std::time::Instant;

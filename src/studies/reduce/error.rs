@@ -1,4 +1,6 @@
 //! How far the motion of a reduced model is from that of all unknowns.
+//!
+//! A model is checked with all runs, those that it was learned from included.
 
 use crate::dynamics::trajectory::{Sample, Trajectory};
 

@@ -1,4 +1,9 @@
 //! The points of a study: which values the keys have in each run.
+//!
+//! A plan is a product of factors from which any point is computed by its number: a million points take no
+//! memory. An id is a hash of sorted keys and values in one form, independent of the order of keys, of how
+//! numbers are written, and of the rest of the study; numbers of ranges and samples have twelve digits, so
+//! that a list of the same numbers has the same ids.
 
 use std::collections::HashMap;
 use std::hash::Hasher;

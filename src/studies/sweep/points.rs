@@ -1,4 +1,7 @@
 //! Points that fill the unit cube evenly: Latin hypercubes and Sobol's sequence.
+//!
+//! Points of Sobol's sequence are computed by their number and in double precision; crates for it iterate,
+//! draw statistics libraries in, or have single precision, and the sequence is forty lines.
 
 use std::hash::Hasher;
 

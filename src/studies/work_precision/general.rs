@@ -1,4 +1,7 @@
 //! Systems of equations as problems of a study, solved by the general integrators.
+//!
+//! Such a problem is an end state, and lines that are closures from tolerances to an end state: integrators
+//! of other libraries are lines like those of this crate (`peers/`).
 
 use std::time::{Duration, Instant};
 

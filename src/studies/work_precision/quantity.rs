@@ -1,4 +1,7 @@
 //! Quantities of interest of a motion, and what their errors are relative to.
+//!
+//! A quantity is the whole motion, or a reading of a sensor over time, or a number that follows from it.
+//! Charts, verified runs and the adviser measure by the same definitions.
 
 use std::fmt;
 

@@ -1,4 +1,8 @@
 //! The reference motion of a scene, and distances from it.
+//!
+//! Of four methods of different families the two fastest give the reference, so that it suits stiff and
+//! undamped scenes alike. Limits of runs count processor time, so that other users of the machine do not turn
+//! slow runs into failed ones.
 
 use std::ops::ControlFlow;
 use std::time::Duration;

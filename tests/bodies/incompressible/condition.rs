@@ -55,7 +55,7 @@ fn condition(body: &Body) -> f64 {
     found[found.len() - 1] / found[0]
 }
 
-/// The table of docs/architecture.md: conditions grow as 1 / (1 - 2 nu), and steps know nothing of it; here in a quarter of
+/// The table of docs/notes/elements.md: conditions grow as 1 / (1 - 2 nu), and steps know nothing of it; here in a quarter of
 /// its span.
 #[test]
 fn conditions_and_steps() {

@@ -1,6 +1,9 @@
 //! Fields at nodes: what the cells around a node give there, each extrapolated from its strain points, in the
 //! mean weighted by the volumes of the cells (Hinton and Campbell 1974; Hughes, *The Finite Element Method*,
 //! section 4.10).
+//!
+//! In quadratic cells that is exact for fields that are linear in space. A sensor looks up its cells and
+//! weights once and visits no others.
 
 use super::{Tensors, von_mises};
 use crate::elements::mesh::Mesh;

@@ -1,5 +1,17 @@
 //! Hooke's law for a strain of the cell: linear elasticity for Cauchy's, St. Venant-Kirchhoff material for
 //! Green's.
+//!
+//! Linear elasticity is P = F_0 S of Cauchy's strain sym(F_0^T H), St. Venant-Kirchhoff material P = F S of
+//! Green's strain sym(F_0^T H) + H^T H / 2, with one formula S = lambda tr(E) I + 2 mu E (`hooke.rs`). The
+//! tangent of the second one is
+//!
+//! ```text
+//! K_ab = sum w (lambda f_a f_b^T + mu ((g_a.g_b) F F^T + f_b f_a^T) + (g_a.S g_b) I),   f_a = F g_a
+//! ```
+//!
+//! and that of the first the same with F_0 for F and without S; Hirai's matrices a, b, H_lambda, H_mu,
+//! J_lambda, J_mu of the triangle are this formula written out. E is written by H and not by F, so that small
+//! strains keep their digits.
 
 #![allow(clippy::needless_range_loop, reason = "closures would not be compiled in place")]
 

@@ -13,6 +13,9 @@
 //! q is the von Mises stress of the Kirchhoff stress. With a yield stress Y, f = max(0, 1 - Y/q), and a change of volume does not
 //! flow. At small strains this is Hooke's law for E - G, and G' = (E - G)/tau. Where there is no stress across a cell, X across
 //! follows from that.
+//!
+//! A point's system of a step has 6 x 6 matrices in place of the factor P of the linear branch. Their part
+//! that is not symmetric, of the size of the flow, is left to Newton's iterations.
 
 use nalgebra::{Matrix3, Matrix6, Vector6};
 

@@ -1,5 +1,14 @@
 //! Rubber: a polynomial in the invariants of the deformation without its change of volume, and an energy of
 //! that change.
+//!
+//! Neo-Hookean, Mooney-Rivlin and Yeoh material are one law with other constants, so that one loop per kind
+//! of cell is compiled for all. Differences such as I1 - 3, of second order in the strain, have their
+//! first-order terms divided out by hand. Forces take one cube root a point, by Newton's method from a third
+//! of the exponent, with the same bits on all machines, and no logarithm; energies take one. The tangent of a
+//! cell with a free thickness needs no iteration. A [`Law`](super::Law) has ratios only: Young's modulus and
+//! Poisson's ratio are those at small strains, so that time scales, constant matrices and checks go by one
+//! pair of moduli. The loop over forces keeps these formulas inside, as a call would cost more
+//! (`docs/notes/elements.md`).
 
 #![allow(clippy::needless_range_loop, reason = "closures would not be compiled in place")]
 

@@ -1,4 +1,10 @@
 //! Laws that are written by the principal stretches: Ogden's rubber, and Hooke's law of the stretches.
+//!
+//! The corotated frame rotates at each point and not with the cell as a whole, so that energy is conserved
+//! and tangents are symmetric. Both laws are one for the loops: eigenvalues, eigenvectors and functions of
+//! the stretches are computed cell by cell, tensors of them for all cells of a register. Formulas use
+//! logarithms x of the stretches, and (S_i - S_j)/(E_i - E_j), 0/0 where two stretches meet, is written by
+//! (exp(a d) - 1)/(exp(2 d) - 1), d = x_i - x_j, to all digits.
 
 #![allow(clippy::needless_range_loop, reason = "closures would not be compiled in place")]
 

@@ -1,4 +1,10 @@
 //! Building an ARKODE solver.
+//!
+//! After a failure ARKODE returns the time of a stage with the state at the start of the step. The time that
+//! belongs to that state is therefore recorded by the function of `ARKStepSetStabilityFn`, which is called
+//! once a step. A function after each step (`ARKStepSetPostprocessStepFn`) would tell it, too, but makes
+//! ARKODE evaluate the right-hand side at the ends of steps, which costs accuracy in stiff systems; it serves
+//! fixed steps alone.
 
 use std::{ffi::c_void, ptr};
 

@@ -1,4 +1,22 @@
 //! The motion as a page for a web browser.
+//!
+//! All computing is done in Rust: `data.rs` has the motion as JSON, and the page is one HTML file with style
+//! and script; the script decodes, interpolates and draws. It is plain JavaScript in one module scope, its
+//! files concatenated. Code of one motion is within a function (`picture`), called for each: its data
+//! (`motion`), drawing in the plane and in space (`plane`, `space`, chosen by `stage`), forces of obstacles
+//! (`contacts`), and gravity, fields and remanences (`acting`). Shared by all motions are numbers and colours
+//! (`decode`, `moment`, `format`, `paint`, `colour`), the visible part of space (`view`), charts (`chart`,
+//! `sensors`), `arrow`, `arrows`, frames as files (`saving`; `vectors` stands for a canvas and keeps the
+//! drawing as SVG), and time (`controls`, `player`). `motions` combines several: those with the same number
+//! of axes in the box around all of them, a metre with as many pixels in each picture as in the one with the
+//! least room, and colour scales to the largest end. Data of a motion are thus independent of others, and
+//! existing pages can be joined.
+//!
+//! A policy in the page forbids it any request. Text of users reaches the page as JSON with `<` escaped and
+//! is set as text, never as HTML. HTML above the motions (`Above`), as that of the advice, is written by Rust
+//! with text of users escaped and inserted last, so that no text can be mistaken for a placeholder.
+//! `tests/animation/` drives pages in a headless Chromium over the pipes of its DevTools protocol by a small
+//! module of its own: crates for it bring the whole protocol, generated, or need a WebDriver server.
 
 mod acting;
 mod colours;

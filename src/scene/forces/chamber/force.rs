@@ -1,4 +1,7 @@
 //! The force of a chamber under a given pressure, and what bursts.
+//!
+//! A chamber that bursts is checked after each step, as springs that turn are (`Force::check_step`,
+//! `Flow::check`): the run ends with what it has computed, and the step is not searched for the moment.
 
 use super::{ChamberForce, Geometry, TURNED};
 use crate::base::sparse::BlockMatrix;

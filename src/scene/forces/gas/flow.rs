@@ -1,4 +1,6 @@
 //! The gases and liquids of a scene whose amounts are unknowns, the actuators that lag, and the pipes between liquids.
+//!
+//! Absolute tolerances of amounts are to the first amount as those of strains are to 1.
 
 use super::Filled;
 use super::orifice::{End, OrificeFlow};

@@ -3,6 +3,10 @@
 //! The specific energy is mu = dE/dm (J/kg) in a liquid, with its pressure and its height, and p/rho + g z in a supply.
 //! The flow q of a pipe, an unknown of its own, is driven by rho (mu_1 - mu_2). So it changes the total energy of the
 //! liquids and the pipe only by friction and by the supplies.
+//!
+//! In the elimination of amounts S, Qm and Qv have rows for the flows, C has none, as a flow exerts no force.
+//! Heights count from the origin of the scene. Absolute tolerances of flows are those of velocities times the
+//! area A; the kinetic energy of a pipe is (1/2) (rho l/A) q^2.
 
 use super::AmountFlow;
 use crate::elements::force::{Flow, FlowDerivatives, NodalForces};

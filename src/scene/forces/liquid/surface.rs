@@ -8,6 +8,8 @@
 //!
 //! so that the forces -dU/du = rho g dS/du are those of the pressure rho g (h - z) at a level that stays, and dU/dm = g h. The level follows the walls,
 //! dh/du = -(dV/du)/A with the area A of the surface: the tangent is that of a level that stays plus rho g/A dV/du dV/du^T.
+//!
+//! To the Newton system this is a reservoir like others, with -dp/dV = rho g/A and dp/dm = g/A.
 
 #[cfg(test)]
 mod tests;

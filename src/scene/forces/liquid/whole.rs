@@ -15,6 +15,14 @@
 //! The pressure acts on dV/du, but with the density m/V the weight changes, too: with q = -dp/dV both are q (dV/du + b/(q V) s) for a change of the volume or the
 //! amount. The tangent has the square of that vector; -(b/V)^2/q s s^T is left out of it, which is b L/K times the tangent of the weight for a chamber L high:
 //! 4e-7 for 0.1 m of water.
+//!
+//! It is stiff and costs no more for that, as its part of the Newton matrix stays out of the pattern. Volumes
+//! count from a node of the walls (`Enclosure::anchor`): round-off of a volume times K/V would be a pressure
+//! that grows with the cube of the distance from the origin. Its weight has the second derivative of pressure
+//! by depth (`Followed::bending`), so that forces have an energy to round-off and add up to m g for any mesh
+//! and shape. With the mass m instead of rho V in it, p is the mean and nothing depends on the origin. Lids
+//! have no faces, hence no weight on them: they are refused with gravity. Inertia of the liquid is left out,
+//! as M would be full over the walls and change with the shape.
 
 use super::held::Held;
 use crate::base::sparse::BlockMatrix;

@@ -16,6 +16,13 @@
 //! The drive pulls at the first place. Where the cable turns by the angle theta around a place and slides towards the drive
 //! with the speed s, the tension behind it is smaller by the factor exp(-mu(s) theta) (Euler and Eytelwein), with the
 //! friction law of obstacles, which is odd in s. Its stretch is that of the tension at the drive.
+//!
+//! The force is -T dl/du and its tangent T d2l/du2 + dT/dl (dl/du)(dl/du)^T, which couples all places of the
+//! path where it is elastic; a spring with two ends is a path of one line (`path.rs`). The sliding speed at a
+//! place is the rate at which the lines behind it shorten, so that one sum over the path is enough, and its
+//! heat is never below 0. With friction the exact tangents are not symmetric; the Newton matrix has their
+//! symmetric part. Energy in the cable of a winch belongs to no reservoir, as it changes with time: all of
+//! its work counts as supplied.
 
 use super::path::Path;
 use crate::base::sparse::BlockMatrix;

@@ -4,6 +4,9 @@
 //! relative to each node of the facet. The distance of the two changes by no more than the longest way of the point
 //! relative to a node, times how much farther than its nodes a curved facet moves; that of two edges by no more than the
 //! longest way of an end of one relative to an end of the other.
+//!
+//! The bound for a curved facet is Lebesgue's constant of the face. A passage is treated as that of an
+//! obstacle: the step is taken again up to there.
 
 use super::pair::Pair;
 use super::surfaces::Feature;

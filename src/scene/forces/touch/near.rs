@@ -1,4 +1,14 @@
 //! Which points and features, and which edges, are near each other.
+//!
+//! A list has the pairs nearer than D and a margin (`base/grid.rs`), and serves as long as no node has moved
+//! by half of the margin. It changes the cost of an evaluation and not its result: forces stay functions of
+//! (t, u, v). Curved faces in space count from boxes around them (`hull.rs`), and the nearest place is sought
+//! only within these. A body's own points leave out the facets around them and everything nearer than 2 D in
+//! the undeformed shape; weights of edges and corners are those of the rest.
+//!
+//! The pattern of the Newton matrix follows (`System::make_room`, `Force::couplings_near`): before tangents
+//! are evaluated, the force reports whether a pair that acts lacks entries, and then all near pairs get some.
+//! Earlier ones keep theirs, unless they are many more.
 
 use super::edge_pairs::{Edges, NearEdges};
 use super::surfaces::Surfaces;
