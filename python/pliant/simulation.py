@@ -16,6 +16,10 @@ Nodes = str | int | Sequence[int]
 Array = NDArray[np.float64]
 
 
+def _vector(value: float | Sequence[float]) -> list[float]:
+    return [float(part) for part in np.atleast_1d(value)]
+
+
 class Simulation:
     """A scene in motion under the control of a program: it advances, is commanded, goes back, and is forked.
 
@@ -241,19 +245,31 @@ class Simulation:
 
     def load(self, nodes: Nodes, force: Sequence[float]) -> None:
         """Sets a force (N) on each of the nodes, in place of the load that these nodes have."""
-        self._simulation.load(nodes, [float(part) for part in force])
+        self._simulation.load(nodes, _vector(force))
+
+    def moment(self, nodes: Nodes, moment: float | Sequence[float]) -> None:
+        """Sets a moment (N m) on nodes together, in the plane a number, in place of the one that these nodes have."""
+        self._simulation.moment(nodes, _vector(moment))
+
+    def follower_force(self, nodes: Nodes, force: Sequence[float]) -> None:
+        """Sets a force (N) on nodes together that turns with them, given for the undeformed shape, in place of the one that these nodes have."""
+        self._simulation.follower_force(nodes, _vector(force))
+
+    def follower_moment(self, nodes: Nodes, moment: float | Sequence[float]) -> None:
+        """Sets a moment (N m) on nodes together that turns with them, in place of the one that these nodes have."""
+        self._simulation.follower_moment(nodes, _vector(moment))
 
     def set_magnetic_field(self, field: Sequence[float]) -> None:
         """Sets the magnetic field (T) that acts on magnets, one component per dimension; a gradient of it stays."""
-        self._simulation.set_magnetic_field([float(part) for part in field])
+        self._simulation.set_magnetic_field(_vector(field))
 
     def set_dipole_position(self, dipole: str, position: Sequence[float]) -> None:
         """Sets the position (m) of a dipole, one component per dimension."""
-        self._simulation.set_dipole_position(dipole, [float(part) for part in position])
+        self._simulation.set_dipole_position(dipole, _vector(position))
 
     def set_dipole_moment(self, dipole: str, moment: Sequence[float]) -> None:
         """Sets the moment (A m^2) of a dipole, one component per dimension."""
-        self._simulation.set_dipole_moment(dipole, [float(part) for part in moment])
+        self._simulation.set_dipole_moment(dipole, _vector(moment))
 
     def hold(self, nodes: Nodes) -> None:
         """Holds nodes where they are."""

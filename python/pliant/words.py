@@ -2241,6 +2241,8 @@ def phase(
     symmetry: dict | Sequence[dict] | None = None,
     hold_combination: dict | Sequence[dict] | None = None,
     load: dict | Sequence[dict] | None = None,
+    moment: dict | Sequence[dict] | None = None,
+    follower: dict | Sequence[dict] | None = None,
     pressure: dict | Sequence[dict] | None = None,
     pressure_on: dict | Sequence[dict] | None = None,
     open: dict | Sequence[dict] | None = None,
@@ -2278,6 +2280,10 @@ def phase(
         sums of displacements that stay as they are. Default: none.
     load
         forces on nodes, tractions on faces. Default: none.
+    moment
+        moments on nodes. Default: none.
+    follower
+        forces and moments that turn with nodes. Default: none.
     pressure
         pressures in chambers. Default: none.
     pressure_on
@@ -2310,6 +2316,8 @@ def phase(
         symmetry=symmetry,
         hold_combination=hold_combination,
         load=load,
+        moment=moment,
+        follower=follower,
         pressure=pressure,
         pressure_on=pressure_on,
         open=open,
@@ -2573,6 +2581,82 @@ def load(
         forces=forces,
         totals=totals,
         tractions=tractions,
+    )
+
+
+def moment(
+    *,
+    nodes: Nodes,
+    moment: Sequence[Formula] | None = None,
+    times: Sequence[float] | None = None,
+    period: float | None = None,
+    moments: Sequence[Vector] | None = None,
+) -> dict:
+    r"""Moments on nodes together, whose direction stays: couples of forces on the nodes, which stay free to deform. The
+    nodes may be those of a rigid body. Moments of a table are interpolated linearly, and constant before and after.
+
+    Parameters
+    ----------
+    nodes
+        nodes. Required.
+    moment
+        the moment (N m). Default: none. In the plane a number, counter-clockwise; in space a vector.
+    times
+        times in ascending order (s). Default: none.
+    period
+        the time after which the table is repeated, up to the end of the phase (s). Default: once. From its last time
+        a line leads to the first value, a period after the first time.
+    moments
+        moments at these times (N m). Default: none.
+    """
+    return _table(
+        nodes=nodes,
+        moment=moment,
+        times=times,
+        period=period,
+        moments=moments,
+    )
+
+
+def follower(
+    *,
+    nodes: Nodes,
+    force: Sequence[Formula] | None = None,
+    moment: Sequence[Formula] | None = None,
+    times: Sequence[float] | None = None,
+    period: float | None = None,
+    forces: Sequence[Vector] | None = None,
+    moments: Sequence[Vector] | None = None,
+) -> dict:
+    r"""Forces and moments on nodes together that turn with them, as the thrust of a jet at a tip: they are given for the
+    undeformed shape. Those of a table are interpolated linearly, and constant before and after.
+
+    Parameters
+    ----------
+    nodes
+        nodes. Required.
+    force
+        the force on all nodes together (N). Default: none.
+    moment
+        the moment, in the plane a number (N m). Default: none.
+    times
+        times in ascending order (s). Default: none.
+    period
+        the time after which the table is repeated, up to the end of the phase (s). Default: once. From its last time
+        a line leads to the first value, a period after the first time.
+    forces
+        forces at these times (N). Default: none.
+    moments
+        moments at these times (N m). Default: none.
+    """
+    return _table(
+        nodes=nodes,
+        force=force,
+        moment=moment,
+        times=times,
+        period=period,
+        forces=forces,
+        moments=moments,
     )
 
 
@@ -3716,7 +3800,7 @@ def sensor_temperature(
     actuator: str,
     component: Literal["x", "y", "z", "norm", "xx", "yy", "zz", "xy", "yz", "xz", "von-mises"] | None = None,
 ) -> dict:
-    r"""Sensor of the kind "temperature": by how much a heated actuator is warmer than what is around it (K).
+    r"""Sensor of the kind "temperature": the temperature rise of a heated actuator above its surroundings (K).
 
     Parameters
     ----------
@@ -3768,7 +3852,7 @@ def sensor_dipole_position(
     dipole: str,
     component: Literal["x", "y", "z", "norm", "xx", "yy", "zz", "xy", "yz", "xz", "von-mises"] | None = None,
 ) -> dict:
-    r"""Sensor of the kind "dipole-position": where a dipole is (m).
+    r"""Sensor of the kind "dipole-position": the position of a dipole (m).
 
     Parameters
     ----------
@@ -4232,6 +4316,7 @@ __all__ = [
     "fibres",
     "flow",
     "fluid",
+    "follower",
     "friction_coefficient",
     "gas",
     "groups",
@@ -4264,6 +4349,7 @@ __all__ = [
     "mesh_rectangle",
     "mesh_ring",
     "mesh_surface",
+    "moment",
     "move",
     "muscle",
     "obstacle_box",

@@ -358,6 +358,21 @@ impl Simulation {
         self.lock()?.load(nodes, force).map_err(raised)
     }
 
+    /// Sets a moment (N m) on nodes together.
+    fn moment(&self, nodes: Nodes, moment: Vec<f64>) -> PyResult<()> {
+        self.lock()?.moment(nodes, moment).map_err(raised)
+    }
+
+    /// Sets a force (N) on nodes together that turns with them.
+    fn follower_force(&self, nodes: Nodes, force: Vec<f64>) -> PyResult<()> {
+        self.lock()?.follower_force(nodes, force).map_err(raised)
+    }
+
+    /// Sets a moment (N m) on nodes together that turns with them.
+    fn follower_moment(&self, nodes: Nodes, moment: Vec<f64>) -> PyResult<()> {
+        self.lock()?.follower_moment(nodes, moment).map_err(raised)
+    }
+
     /// Sets the magnetic field (T) that acts on magnets.
     fn set_magnetic_field(&self, field: Vec<f64>) -> PyResult<()> {
         self.lock()?.magnetic_field(field).map_err(raised)

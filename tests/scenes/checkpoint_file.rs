@@ -8,6 +8,7 @@ use pliant::{
     Axis, Body, Cells, Chamber, Energy, Material, Mesh, Method, Obstacle, Phase, Prescribed,
     Sampling, Scene, Selection, Settings, Signal, Simulation, Spring, Strain,
 };
+use serde_json::{Value, json};
 use tempfile::TempDir;
 
 pub fn settings(method: Method, rtol: f64) -> Settings {
@@ -224,4 +225,37 @@ fn samples_after_a_checkpoint_are_forgotten() {
     assert_eq!(names(&square), ["push", "hold", "free"].map(String::from)[..names(&square).len()]);
     assert_eq!(names(&other).last(), names(&square).last());
     assert_eq!(names(&other).len(), 1);
+}
+
+/// A file of the format before, in which inputs of the phase stand by their quantities, is the same checkpoint.
+#[test]
+fn files_of_the_format_before_are_read() {
+    let (_folder, path) = folder();
+    let settings = settings(Method::Arkode, 1e-5);
+    let mut beam = driven().start(&settings).unwrap();
+    command(&mut beam);
+    beam.checkpoint().write(&path).unwrap();
+    let mut file: Value = serde_json::from_slice(&fs::read(&path).unwrap()).unwrap();
+    let in_force = file["in_force"].as_object_mut().unwrap();
+    let mut lists = [vec![], vec![], vec![]];
+    for input in in_force.remove("inputs").unwrap().as_array().unwrap() {
+        let [quantity, target, signal] = [0, 1, 2].map(|k| &input[k]);
+        match quantity.as_str() {
+            Some("actuation") => lists[0].push(json!([target["named"], signal["number"]])),
+            Some("pressure") => lists[1].push(json!([target["named"][0], signal["number"]])),
+            _ => lists[2].push(json!([target["nodes"], quantity["load"], signal["vector"]])),
+        }
+    }
+    assert!(lists.iter().all(|list| !list.is_empty()));
+    for (name, list) in ["actuations", "pressures", "loads"].into_iter().zip(lists) {
+        in_force.insert(name.into(), list.into());
+    }
+    file["format"] = json!(5);
+    fs::write(&path, serde_json::to_vec(&file).unwrap()).unwrap();
+    let mut other = driven().start(&settings).unwrap();
+    let checkpoint = other.read_checkpoint(&path).unwrap();
+    other.restore(&checkpoint).unwrap();
+    let kept = beam.checkpoint();
+    beam.restore(&kept).unwrap();
+    assert_eq!(go_on(&mut beam), go_on(&mut other));
 }

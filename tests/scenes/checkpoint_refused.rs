@@ -119,6 +119,13 @@ fn forged(path: &Path, edit: impl FnOnce(&mut Value)) {
     fs::write(path, serde_json::to_vec(&file).unwrap()).unwrap();
 }
 
+/// The first input of a quantity in force: that, its target and its signal.
+fn input<'a>(file: &'a mut Value, quantity: &str) -> &'a mut Value {
+    let inputs = file["in_force"]["inputs"].as_array_mut().unwrap();
+    let is_it = |input: &&mut Value| input[0] == *quantity || input[0].get(quantity).is_some();
+    inputs.iter_mut().find(is_it).unwrap()
+}
+
 #[test]
 fn files_that_are_not_what_they_should_be_are_refused() {
     let (_folder, path) = folder();
@@ -133,8 +140,8 @@ fn files_that_are_not_what_they_should_be_are_refused() {
         (&|file| file["what"] = json!("poem"), &["does not say \"pliant checkpoint\""]),
         (&|file| *file = json!([1, 2]), &["does not say \"pliant checkpoint\""]),
         (
-            &|file| (file["format"], file["version"]) = (json!(6), json!("0.3.0")),
-            &["format 6 of pliant 0.3.0: this version", "reads format 5"],
+            &|file| (file["format"], file["version"]) = (json!(7), json!("0.3.0")),
+            &["format 7 of pliant 0.3.0: this version", "reads formats 5 to 6"],
         ),
         (&|file| file["more"] = json!(1), &["damaged", "more"]),
         (&|file| _ = file.as_object_mut().unwrap().remove("steps"), &["damaged", "steps"]),
@@ -158,14 +165,20 @@ fn files_that_are_not_what_they_should_be_are_refused() {
             &["origins = 1", "rows"],
         ),
         (&|file| file["in_force"]["contact"] = json!(["wall"]), &["\"wall\"", "floor"]),
-        (&|file| file["in_force"]["pressures"][0][0] = json!("tank"), &["\"tank\"", "inside"]),
         (
-            &|file| file["in_force"]["loads"][0][2] = json!({ "of_scene": 9 }),
-            &["load 9", "none of the phase"],
+            &|file| input(file, "pressure")[1] = json!({ "named": ["tank"] }),
+            &["\"tank\"", "inside"],
         ),
-        (&|file| file["in_force"]["loads"][0][0] = json!({ "set": "tip" }), &["\"tip\"", "right"]),
         (
-            &|file| file["in_force"]["loads"][0][0] = json!({ "numbers": [34] }),
+            &|file| input(file, "load")[2] = json!({ "vector": { "of_scene": 9 } }),
+            &["signal 9", "none of the phase"],
+        ),
+        (
+            &|file| input(file, "load")[1] = json!({ "nodes": { "set": "tip" } }),
+            &["\"tip\"", "right"],
+        ),
+        (
+            &|file| input(file, "load")[1] = json!({ "nodes": { "numbers": [34] } }),
             &["node = 34", "1 to 33"],
         ),
     ];

@@ -85,4 +85,5 @@ mod varying;
 mod warnings;
 mod watches;
 mod whole_turns;
+mod wrenches;
 mod yielding;

@@ -115,7 +115,8 @@ impl Record {
                 None => Track::of(scene, phase, target, t).signal(),
             }
         };
-        let components: Vec<Signal> = (0..scene.body().dimension()).map(component).collect();
+        let components: Vec<Signal> =
+            (0..quantity.rank(scene.body().dimension())).map(component).collect();
         let times = ascending(components.iter().flat_map(Signal::breaks));
         let force = |t: &f64| components.iter().map(|signal| signal.at(*t)).collect();
         let forces = times.iter().map(force).collect();

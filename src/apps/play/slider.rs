@@ -11,7 +11,7 @@ use crate::dynamics::simulate::Simulation;
 use crate::elements::body::{Body, Part};
 use crate::elements::mesh::Selection;
 use crate::scene::forces::{Chamber, Dipole, DipolePart};
-use crate::scene::timeline::{self, LoadKind, Phase, Quantity, Scene};
+use crate::scene::timeline::{self, LoadKind, Phase, Quantity, Row, Scene};
 
 /// The input that a slider sets, or a component of it.
 #[derive(Debug, Clone, PartialEq)]
@@ -135,7 +135,33 @@ impl Slider {
             .chain(fields)
             .chain(scene.dipoles().iter().flat_map(|dipole| Self::of_dipole(scene, dipole)))
             .chain(loads)
+            .chain(Self::on_nodes(scene, force))
             .collect()
+    }
+
+    /// One slider per component of the forces and moments on nodes together; the last argument is a usual force.
+    fn on_nodes(scene: &Scene, force: f64) -> Vec<Self> {
+        let mut targets: Vec<Target> = Vec::new();
+        for input in scene.phases().iter().flat_map(|phase| &phase.inputs) {
+            let (quantity, of) = (input.quantity, input.target.clone());
+            let whole = Target { quantity, of, axis: None };
+            if quantity.is_force_on_nodes() && !targets.contains(&whole) {
+                targets.push(whole);
+            }
+        }
+        let sliders = targets.into_iter().flat_map(|whole| {
+            let Row { word, unit, .. } = whole.quantity.row();
+            let usual = if unit == "N" { force } else { force * scene.body().size() };
+            let axes = match whole.quantity.rank(scene.body().dimension()) {
+                1 => vec![word.to_owned()],
+                _ => ["x", "y", "z"].map(|axis| format!("{word} {axis}")).into(),
+            };
+            let parts: Vec<Target> = (0..axes.len()).map(|axis| whole.along(axis)).collect();
+            let largest = parts.iter().map(|part| part.largest_in(scene)).fold(0.0, f64::max);
+            let slider = move |(part, what)| Self::new(part, what, [largest, usual], unit);
+            parts.into_iter().zip(axes).map(slider).collect::<Vec<_>>()
+        });
+        sliders.collect()
     }
 
     /// One slider per component of the position and of the moment of a dipole.

@@ -6,7 +6,7 @@ use crate::base::input::{InputError, finite};
 use crate::dynamics::error::Error;
 use crate::elements::mesh::Selection;
 use crate::scene::constraint::{Axes, Axis, Constrained, Constraint, Motion};
-use crate::scene::forces::{Live, Signal, TimeTable, VectorSignal};
+use crate::scene::forces::{Live, Signal, Signals, TimeTable, VectorSignal, WrenchKind};
 use crate::scene::timeline::{Input, LoadKind, Phase, Quantity, Scene, Target};
 
 /// Commands. Each takes effect at the present time and stays in force until another one replaces it or the
@@ -115,6 +115,51 @@ impl Simulation {
     pub fn magnetic_field(&mut self, field: impl Into<Vec<f64>>) -> Result<(), Error> {
         let field = VectorSignal::Constant(field.into());
         self.set(Input::new(Quantity::Field, Target::Everything, field))
+    }
+
+    /// Sets a [moment](Phase::moment) (N m) on nodes, in place of the one given for the same selection.
+    ///
+    /// # Errors
+    /// Nodes that do not exist or do not turn, a wrong number of components, numbers that are not finite.
+    pub fn moment(
+        &mut self,
+        nodes: impl Into<Selection>,
+        moment: impl Into<Signals>,
+    ) -> Result<(), Error> {
+        self.set_wrench(nodes.into(), WrenchKind::Moment, moment.into())
+    }
+
+    /// Sets a [force that follows nodes](Phase::follower_force) (N), likewise.
+    ///
+    /// # Errors
+    /// As [`moment`](Self::moment).
+    pub fn follower_force(
+        &mut self,
+        nodes: impl Into<Selection>,
+        force: impl Into<Signals>,
+    ) -> Result<(), Error> {
+        self.set_wrench(nodes.into(), WrenchKind::FollowerForce, force.into())
+    }
+
+    /// Sets a [moment that follows nodes](Phase::follower_moment) (N m), likewise.
+    ///
+    /// # Errors
+    /// As [`moment`](Self::moment).
+    pub fn follower_moment(
+        &mut self,
+        nodes: impl Into<Selection>,
+        moment: impl Into<Signals>,
+    ) -> Result<(), Error> {
+        self.set_wrench(nodes.into(), WrenchKind::FollowerMoment, moment.into())
+    }
+
+    fn set_wrench(
+        &mut self,
+        nodes: Selection,
+        kind: WrenchKind,
+        value: Signals,
+    ) -> Result<(), Error> {
+        self.set(Input::new(Quantity::Wrench(kind), Target::Nodes(nodes), value.0))
     }
 
     /// Holds nodes, in all components, where they are.

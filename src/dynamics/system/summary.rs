@@ -57,7 +57,7 @@ impl Scene {
         let rows =
             self.rows(phase, &PhaseStart { time: start, u: self.initial_displacements() })?;
         let mut loaded_nodes = 0;
-        let loads = phase.loads().map(|(selection, ..)| selection);
+        let loads = phase.vectors_on_nodes().map(|(_, selection, _)| selection);
         for selection in loads.chain(phase.face_pressures().map(|(selection, _)| selection)) {
             loaded_nodes += self.body().mesh().select(selection)?.len();
         }

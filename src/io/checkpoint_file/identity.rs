@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use siphasher::sip::SipHasher13;
 
 use crate::scene::forces::VectorSignal;
-use crate::scene::timeline::{LoadKind, Phase, Quantity, Scene};
+use crate::scene::timeline::{Input, LoadKind, Phase, Quantity, Scene};
 
 /// Identity of a scene.
 ///
@@ -200,6 +200,17 @@ impl fmt::Debug for Text<'_> {
         let dipoles: Vec<_> = dipoles.collect();
         if !dipoles.is_empty() {
             text.field("dipoles", &dipoles);
+        }
+        use Quantity::*;
+        let is_later = |input: &&Input| {
+            !matches!(
+                input.quantity,
+                Actuation | Pressure | Opening | Flow | FacePressure | Load(_) | Field | Dipole(_)
+            )
+        };
+        let later: Vec<_> = phase.inputs.iter().filter(is_later).collect();
+        if !later.is_empty() {
+            text.field("inputs", &later);
         }
         text.finish()
     }

@@ -9,8 +9,9 @@ use crate::dynamics::simulate::{Angles, Checkpoint, Choice, Kept};
 use crate::dynamics::state::State;
 use crate::scene::timeline::Scene;
 
-/// Format of the files that this version writes and reads.
-const FORMAT: u32 = 5;
+/// Format of the files that this version writes, and the least that it reads. In format 5, inputs of phases stand by their quantities.
+const FORMAT: u32 = 6;
+const LEAST_FORMAT: u32 = 5;
 
 /// File type, as written in the file.
 pub(super) const WHAT: &str = "pliant checkpoint";
@@ -75,8 +76,8 @@ impl Head {
         if what != WHAT {
             return Err(format!("it does not say \"{WHAT}\": name a file of `Checkpoint::write`"));
         }
-        if *format != FORMAT {
-            let help = format!("this version, {VERSION}, reads format {FORMAT}");
+        if !(LEAST_FORMAT..=FORMAT).contains(format) {
+            let help = format!("this version, {VERSION}, reads formats {LEAST_FORMAT} to {FORMAT}");
             return Err(format!("it has format {format} of pliant {version}: {help}"));
         }
         Ok(())

@@ -6,8 +6,8 @@ use super::course::{course, vectors_until};
 use super::keys::TableKeys;
 use super::magnet::magnetic_field;
 use super::phase_keys::{
-    ACTUATE, DRIVE, END, FLOW, HOLD, HOLD_COMBINATION, LOAD, MOVE, OPEN, PATH, PHASE, PRESSURE,
-    PRESSURE_ON, ROTATE, SYMMETRY, TERMS,
+    ACTUATE, DRIVE, END, FLOW, FOLLOWER, HOLD, HOLD_COMBINATION, LOAD, MOMENT, MOVE, OPEN, PATH,
+    PHASE, PRESSURE, PRESSURE_ON, ROTATE, SYMMETRY, TERMS,
 };
 use super::selection::selection;
 use super::table::Table;
@@ -18,20 +18,22 @@ use crate::dynamics::error::Error;
 use crate::elements::mesh::Selection;
 use crate::scene::constraint::Axis;
 use crate::scene::forces::{Dipole, DipolePart};
-use crate::scene::timeline::{LoadKind, Phase, Quantity, Scene};
+use crate::scene::timeline::{Input, Phase, Quantity, Row, Scene, Target};
 
 /// Adds a table inside of a phase.
 type Add = fn(Phase, &Table, &Scene) -> Result<Phase, Error>;
 
 /// The tables inside of a phase: what they add.
-const PARTS: [(&TableKeys, Add); 13] = [
+const PARTS: [(&TableKeys, Add); 15] = [
     (&HOLD, hold),
     (&MOVE, moving),
     (&PATH, path),
     (&ROTATE, rotate),
     (&SYMMETRY, symmetry),
     (&HOLD_COMBINATION, hold_combination),
-    (&LOAD, load),
+    (&LOAD, on_nodes),
+    (&MOMENT, on_nodes),
+    (&FOLLOWER, on_nodes),
     (&PRESSURE, pressure),
     (&PRESSURE_ON, pressure_on),
     (&OPEN, open),
@@ -190,17 +192,16 @@ fn hold_combination(phase: Phase, table: &Table, scene: &Scene) -> Result<Phase,
     Ok(phase.hold_combination(terms.iter().map(term).collect::<Result<Vec<_>, Error>>()?))
 }
 
-fn load(phase: Phase, table: &Table, scene: &Scene) -> Result<Phase, Error> {
-    let nodes = nodes(table, scene)?;
-    for kind in LoadKind::ALL {
-        let value = vectors_until(
-            table,
-            phase.end(),
-            Quantity::Load(kind).row().word,
-            scene.body().dimension(),
-        )?;
-        if let Some(value) = value {
-            return Ok(phase.loaded(nodes, kind, value));
+/// A vector on nodes, of the quantities of the table.
+fn on_nodes(phase: Phase, table: &Table, scene: &Scene) -> Result<Phase, Error> {
+    let (nodes, dimension) = (nodes(table, scene)?, scene.body().dimension());
+    for quantity in Quantity::ON_NODES {
+        let (Row { keys: [list, _], word, .. }, rank) = (quantity.row(), quantity.rank(dimension));
+        if list != table.name() {
+            continue;
+        }
+        if let Some(value) = vectors_until(table, phase.end(), word, rank)? {
+            return Ok(phase.with(Input::new(quantity, Target::Nodes(nodes), value)));
         }
     }
     Ok(phase) // one of them is there: the table's groups say so

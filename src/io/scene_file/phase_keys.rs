@@ -21,6 +21,8 @@ pub(super) const PHASE: TableKeys = TableKeys::new(
         part(&SYMMETRY, "nodes on planes of symmetry"),
         part(&HOLD_COMBINATION, "sums of displacements that stay as they are"),
         part(&LOAD, "forces on nodes, tractions on faces"),
+        part(&MOMENT, "moments on nodes"),
+        part(&FOLLOWER, "forces and moments that turn with nodes"),
         part(&PRESSURE, "pressures in chambers"),
         part(&PRESSURE_ON, "pressures on faces"),
         part(&OPEN, "openings of orifices"),
@@ -210,6 +212,41 @@ pub(super) const LOAD: TableKeys = TableKeys::new(
     &["times", "totals"],
     &["times", "tractions"],
 ]);
+
+pub(super) const MOMENT: TableKeys = TableKeys::new(
+    "moment",
+    "Moments on nodes together, whose direction stays: couples of forces on the nodes, which stay free to deform. The nodes may be those \
+     of a rigid body. Moments of a table are interpolated linearly, and constant before and after.",
+    &[
+        NODES,
+        Key::new("moment", Holds::ChangingVector, "the moment")
+            .in_unit("N m")
+            .law("In the plane a number, counter-clockwise; in space a vector."),
+        TIMES,
+        PERIOD,
+        Key::new("moments", Holds::List(&Holds::Vector), "moments at these times").in_unit("N m"),
+    ],
+    "moment = [{ nodes = \"right\", times = [0.0, 0.1], moments = [[0.0], [0.001]] }]",
+)
+.one_of(&[&["moment"], &["times", "moments"]]);
+
+pub(super) const FOLLOWER: TableKeys = TableKeys::new(
+    "follower",
+    "Forces and moments on nodes together that turn with them, as the thrust of a jet at a tip: they are given for the undeformed \
+     shape. Those of a table are interpolated linearly, and constant before and after.",
+    &[
+        NODES,
+        Key::new("force", Holds::ChangingVector, "the force on all nodes together").in_unit("N"),
+        Key::new("moment", Holds::ChangingVector, "the moment, in the plane a number")
+            .in_unit("N m"),
+        TIMES,
+        PERIOD,
+        Key::new("forces", Holds::List(&Holds::Vector), "forces at these times").in_unit("N"),
+        Key::new("moments", Holds::List(&Holds::Vector), "moments at these times").in_unit("N m"),
+    ],
+    "follower = [{ nodes = \"right\", force = [\"-0.01*min(t/0.1, 1)\", 0.0] }]",
+)
+.one_of(&[&["force"], &["moment"], &["times", "forces"], &["times", "moments"]]);
 
 pub(super) const PRESSURE: TableKeys = TableKeys::new(
     "pressure",

@@ -71,6 +71,11 @@ impl<'a> Table<'a> {
     }
 
     /// The word that stands for the key `kind`.
+    /// Its name, as `hold`.
+    pub(super) fn name(&self) -> &'static str {
+        self.keys.name
+    }
+
     pub(super) fn kind(&self) -> &'static str {
         self.kind.map_or("", |kind| kind.word)
     }

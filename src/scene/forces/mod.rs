@@ -36,6 +36,7 @@ mod time_table;
 mod touch;
 mod travel;
 mod turned;
+mod wrench;
 
 pub use chamber::Chamber;
 pub(crate) use chamber::{ChamberForce, TURNED};
@@ -84,3 +85,4 @@ pub(crate) use touch::TouchForce;
 pub use touch::{Touch, TouchDistance};
 #[cfg(feature = "output")]
 pub(crate) use turned::corners;
+pub(crate) use wrench::{WrenchForce, WrenchKind};

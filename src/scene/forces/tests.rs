@@ -1,6 +1,7 @@
 //! One check for all forces: force = -dU/du, tangents = -df/du and -df/dv by central differences.
 
 mod within;
+mod wrenches;
 
 use std::sync::Arc;
 

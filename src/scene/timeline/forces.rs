@@ -54,6 +54,11 @@ impl Scene {
         for (nodes, pressure) in phase.face_pressures() {
             forces.push(Arc::new(FacePressure::new(&self.body, nodes, pressure.clone())?));
         }
+        for (quantity, nodes, value) in phase.vectors_on_nodes() {
+            if let Some(build) = quantity.row().on_nodes {
+                forces.push(build(&self.body, nodes, value)?);
+            }
+        }
         self.add_fluids(phase, &mut forces)?;
         for contact in self.contacts(phase)? {
             forces.push(Arc::new(contact));

@@ -128,7 +128,7 @@ impl Scene {
             let mut own = phase.clone();
             let rows = self.rows(phase, &PhaseStart { time, u: &u })?;
             own.constraints = self.half_of_constraints(phase, &rows, &half, mirror)?;
-            own.without_inputs(Quantity::is_on_nodes);
+            own.without_inputs(Quantity::is_known_of_parts);
             own.inputs.extend(self.half_of_loads(phase, &half, mirror)?);
             for (selection, pressure) in phase.face_pressures() {
                 if let Some(nodes) = self.kept_faces(selection, &half, mirror)? {

@@ -5,9 +5,15 @@
 //! list. A force reads the signals of its quantity; a new quantity is a variant with its row.
 
 use std::fmt;
+use std::sync::Arc;
 
+use crate::base::input::InputError;
+use crate::elements::body::Body;
+use crate::elements::force::Force;
 use crate::elements::mesh::Selection;
-use crate::scene::forces::{DipolePart, Live, Signal, SignalKind, VectorSignal};
+use crate::scene::forces::{
+    DipolePart, Live, Signal, SignalKind, VectorSignal, WrenchForce, WrenchKind,
+};
 
 /// A quantity that phases prescribe.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -26,6 +32,8 @@ pub(crate) enum Quantity {
     FacePressure,
     /// On nodes.
     Load(LoadKind),
+    /// On nodes together.
+    Wrench(WrenchKind),
     /// The uniform part of the magnetic field.
     Field,
     /// Of a dipole, in place of the scene's.
@@ -47,7 +55,7 @@ pub(crate) enum LoadKind {
 }
 
 impl LoadKind {
-    #[cfg(feature = "scene-file")]
+    #[cfg(feature = "play")]
     pub(crate) const ALL: [Self; 3] = [Self::Each, Self::Total, Self::Traction];
 }
 
@@ -67,9 +75,24 @@ pub(crate) struct Row {
     pub(crate) absent: f64,
     /// Whether statics scale it by the load factor; otherwise the signal stays as it is.
     pub(super) scales: bool,
+    /// The force of a vector on nodes that needs no more than these; others are built with their like.
+    pub(super) on_nodes: Option<BuildOnNodes>,
 }
 
+type BuildOnNodes = fn(&Body, &Selection, &VectorSignal) -> Result<Arc<dyn Force>, InputError>;
+
 impl Quantity {
+    /// Vectors on nodes, in the order in which a scene file reads them.
+    #[cfg(feature = "scene-file")]
+    pub(crate) const ON_NODES: [Self; 6] = [
+        Self::Load(LoadKind::Each),
+        Self::Load(LoadKind::Total),
+        Self::Load(LoadKind::Traction),
+        Self::Wrench(WrenchKind::Moment),
+        Self::Wrench(WrenchKind::FollowerForce),
+        Self::Wrench(WrenchKind::FollowerMoment),
+    ];
+
     pub(crate) const fn row(self) -> Row {
         const fn row(
             name: &'static str,
@@ -77,7 +100,7 @@ impl Quantity {
             word: &'static str,
             unit: &'static str,
         ) -> Row {
-            Row { name, keys, word, unit, absent: 0.0, scales: true }
+            Row { name, keys, word, unit, absent: 0.0, scales: true, on_nodes: None }
         }
         match self {
             Self::Actuation => row("actuation of", ["actuate", "springs"], "force", "N"),
@@ -100,6 +123,18 @@ impl Quantity {
                 };
                 row("load on", ["load", "nodes"], word, unit)
             }
+            Self::Wrench(WrenchKind::Moment) => Row {
+                on_nodes: Some(WrenchForce::moment),
+                ..row("moment on", ["moment", "nodes"], "moment", "N m")
+            },
+            Self::Wrench(WrenchKind::FollowerForce) => Row {
+                on_nodes: Some(WrenchForce::follower_force),
+                ..row("follower force on", ["follower", "nodes"], "force", "N")
+            },
+            Self::Wrench(WrenchKind::FollowerMoment) => Row {
+                on_nodes: Some(WrenchForce::follower_moment),
+                ..row("follower moment on", ["follower", "nodes"], "moment", "N m")
+            },
             Self::Field => row("magnetic field", ["magnetic_field", ""], "field", "T"),
             Self::Dipole(DipolePart::Position) => Row {
                 scales: false,
@@ -121,13 +156,24 @@ impl Quantity {
         }
     }
 
-    /// Whether it has one component per dimension.
-    pub(super) fn is_vector(self) -> bool {
-        matches!(self, Self::Load(_) | Self::Field | Self::Dipole(_))
+    /// Number of components of its value in space of a `dimension`.
+    pub(crate) fn rank(self, dimension: usize) -> usize {
+        match self {
+            Self::Load(_) | Self::Field | Self::Dipole(_) => dimension,
+            Self::Wrench(kind) => kind.rank(dimension),
+            Self::Actuation | Self::Pressure | Self::Opening | Self::Flow => 1,
+            Self::FacePressure => 1,
+        }
     }
 
-    /// Whether it acts on nodes of the mesh.
-    pub(super) fn is_on_nodes(self) -> bool {
+    /// Whether it is the force of a vector on nodes together.
+    #[cfg(feature = "play")]
+    pub(crate) fn is_force_on_nodes(self) -> bool {
+        self.row().on_nodes.is_some()
+    }
+
+    /// Whether halves and sections of a body know it.
+    pub(super) fn is_known_of_parts(self) -> bool {
         matches!(self, Self::FacePressure | Self::Load(_))
     }
 
@@ -200,11 +246,11 @@ impl InputSignal {
         }
     }
 
-    /// Its components at time `t` (s), in space of a `dimension`.
-    pub(crate) fn components(&self, t: f64, dimension: usize) -> Vec<f64> {
+    /// Its components at time `t` (s), as many as the `rank` of its quantity.
+    pub(crate) fn components(&self, t: f64, rank: usize) -> Vec<f64> {
         match self {
             Self::Number(signal) => vec![signal.at(t)],
-            Self::Vector(signal) => signal.components(t, dimension),
+            Self::Vector(signal) => signal.components(t, rank),
         }
     }
 
@@ -240,11 +286,11 @@ impl InputSignal {
     }
 
     /// A constant: a `fraction` of its value at time `t` (s).
-    pub(super) fn at_rest(&self, fraction: f64, t: f64, dimension: usize) -> Self {
+    pub(super) fn at_rest(&self, fraction: f64, t: f64, rank: usize) -> Self {
         match self {
             Self::Number(signal) => Self::Number(Signal::constant(fraction * signal.at(t))),
             Self::Vector(signal) => {
-                let value = signal.components(t, dimension);
+                let value = signal.components(t, rank);
                 let part = value.iter().map(|x| fraction * x).collect();
                 Self::Vector(VectorSignal::Constant(part))
             }

@@ -6,7 +6,7 @@ use crate::elements::mesh::Selection;
 use crate::scene::forces::{Dipole, Live, Signal, VectorSignal};
 
 impl Phase {
-    pub(super) fn with(mut self, input: Input) -> Self {
+    pub(crate) fn with(mut self, input: Input) -> Self {
         self.inputs.push(input);
         self
     }
@@ -67,12 +67,20 @@ impl Phase {
         all.filter(move |(other, _)| *other == name).map(|(_, signal)| signal)
     }
 
+    /// Vectors on nodes.
+    pub(crate) fn vectors_on_nodes(
+        &self,
+    ) -> impl Iterator<Item = (Quantity, &Selection, &VectorSignal)> {
+        self.inputs.iter().filter_map(|input| match &input.signal {
+            InputSignal::Vector(value) => Some((input.quantity, input.target.nodes()?, value)),
+            InputSignal::Number(_) => None,
+        })
+    }
+
     /// Loads on nodes.
     pub(crate) fn loads(&self) -> impl Iterator<Item = (&Selection, LoadKind, &VectorSignal)> {
-        self.inputs.iter().filter_map(|input| match (input.quantity, &input.signal) {
-            (Quantity::Load(kind), InputSignal::Vector(value)) => {
-                Some((input.target.nodes()?, kind, value))
-            }
+        self.vectors_on_nodes().filter_map(|(quantity, nodes, value)| match quantity {
+            Quantity::Load(kind) => Some((nodes, kind, value)),
             _ => None,
         })
     }
@@ -114,7 +122,8 @@ impl Phase {
     pub(super) fn scale_inputs(&mut self, fraction: f64, dimension: usize) {
         let end = self.until;
         for input in self.inputs.iter_mut().filter(|input| input.quantity.row().scales) {
-            input.signal = input.signal.at_rest(fraction, end, dimension);
+            let rank = input.quantity.rank(dimension);
+            input.signal = input.signal.at_rest(fraction, end, rank);
         }
     }
 }
@@ -129,7 +138,7 @@ impl Scene {
         t: f64,
     ) -> Vec<f64> {
         let dimension = self.body.dimension();
-        let rank = if quantity.is_vector() { dimension } else { 1 };
+        let rank = quantity.rank(dimension);
         let absent = || vec![quantity.row().absent; rank];
         match (quantity, target) {
             (Quantity::Load(kind), Target::Nodes(nodes)) => {
@@ -142,7 +151,7 @@ impl Scene {
             }
             _ => {
                 let all = phase.inputs_on(quantity, target);
-                let all = all.map(|input| input.signal.components(t, dimension));
+                let all = all.map(|input| input.signal.components(t, rank));
                 let sum = |sum: Vec<f64>, more: Vec<f64>| {
                     sum.into_iter().zip(more).map(|(sum, more)| sum + more).collect()
                 };

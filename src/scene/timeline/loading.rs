@@ -1,9 +1,9 @@
 //! Loads of a phase: forces on nodes, tractions on faces.
 
-use super::input::{Input, LoadKind};
+use super::input::{Input, LoadKind, Quantity, Target};
 use super::phase::Phase;
 use crate::elements::mesh::Selection;
-use crate::scene::forces::{TimeTable, VectorSignal};
+use crate::scene::forces::{Signals, TimeTable, VectorSignal, WrenchKind};
 
 impl Phase {
     /// A constant force (N) on each of the nodes.
@@ -84,6 +84,37 @@ impl Phase {
         tractions: impl IntoIterator<Item: Into<Vec<f64>>>,
     ) -> Self {
         self.loaded(nodes, LoadKind::Traction, table(times, tractions))
+    }
+
+    /// A moment (N m) on nodes together, constant or changing with time, whose direction stays: in the plane one component,
+    /// counter-clockwise, in space three.
+    ///
+    /// It is a couple of forces on the nodes, in proportion to their distances from their centre and to the shares that they have of a
+    /// [total load](Self::load_total): the nodes stay free to deform, and the moment times their mean angular velocity is its power. They
+    /// may be those of a rigid body.
+    pub fn moment(self, nodes: impl Into<Selection>, moment: impl Into<Signals>) -> Self {
+        self.wrench(nodes, WrenchKind::Moment, moment)
+    }
+
+    /// A force (N) on nodes together, one component per dimension, that turns with them, as the thrust of a jet: it is given for the
+    /// undeformed shape.
+    pub fn follower_force(self, nodes: impl Into<Selection>, force: impl Into<Signals>) -> Self {
+        self.wrench(nodes, WrenchKind::FollowerForce, force)
+    }
+
+    /// A [moment](Self::moment) (N m) that turns with the nodes; in the plane it is the same.
+    pub fn follower_moment(self, nodes: impl Into<Selection>, moment: impl Into<Signals>) -> Self {
+        self.wrench(nodes, WrenchKind::FollowerMoment, moment)
+    }
+
+    fn wrench(
+        self,
+        nodes: impl Into<Selection>,
+        kind: WrenchKind,
+        value: impl Into<Signals>,
+    ) -> Self {
+        let target = Target::Nodes(nodes.into());
+        self.with(Input::new(Quantity::Wrench(kind), target, value.into().0))
     }
 
     pub(crate) fn loaded(

@@ -37,7 +37,7 @@ use std::sync::Arc;
 pub(crate) use contacts::ContactReader;
 #[cfg(any(feature = "scene-file", feature = "study"))]
 pub(crate) use half::Half;
-#[cfg(feature = "play")]
+#[cfg(feature = "scene-file")]
 pub(crate) use input::Row;
 pub(crate) use input::{Input, InputSignal, LoadKind, Quantity, Target};
 #[cfg(feature = "checkpoint")]

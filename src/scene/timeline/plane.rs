@@ -113,7 +113,7 @@ impl Scene {
             let mut own = phase.clone();
             own.gravity = phase.gravity.as_ref().map(chosen);
             own.constraints = uniform.constraints(phase)?;
-            own.without_inputs(Quantity::is_on_nodes);
+            own.without_inputs(Quantity::is_known_of_parts);
             for load in phase.loads() {
                 own.inputs.extend(scene.section_of_load(self, &uniform, phase, load)?);
             }

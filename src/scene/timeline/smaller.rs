@@ -58,6 +58,8 @@ pub(super) fn times_of(phase: &Phase, start: f64) -> Vec<f64> {
 pub(super) fn check_known(scene: &Scene, model: &str, instead: &str) -> Result<(), InputError> {
     let body = &scene.body;
     body.single(model)?;
+    let inputs = scene.phases.iter().flat_map(|phase| &phase.inputs);
+    let unknown_inputs = inputs.map(|input| usize::from(!input.quantity.is_known_of_parts()));
     let unknown = [
         ("springs", scene.springs.len()),
         ("muscles", scene.muscles.len()),
@@ -66,6 +68,7 @@ pub(super) fn check_known(scene: &Scene, model: &str, instead: &str) -> Result<(
         ("fluids", scene.fluids.len()),
         ("chambers", scene.chambers.len()),
         ("touches", scene.touches.len()),
+        ("moments, followers and other inputs of phases", unknown_inputs.sum()),
         ("ties", scene.ties.len()),
         ("forces that are not of this crate", scene.forces.len()),
         ("rigid materials", body.substances().filter(|made_of| made_of.is_rigid).count()),
