@@ -20,7 +20,7 @@ pub(crate) use memory::free_memory;
 #[cfg(feature = "scene-file")]
 pub(crate) use nearest::list;
 pub(crate) use nearest::{unknown, unknown_among};
-pub(crate) use words::{digits, percent, short, told};
+pub(crate) use words::{digits, four_digits, percent, short};
 
 /// An invalid input: its name, its value, and the allowed values.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]

@@ -40,7 +40,7 @@ impl Scene {
     /// As [`validate`](Self::validate); a phase that the scene does not have; displacements of
     /// the wrong number; constraints that tie several components together; Maxwell branches; rigid pieces.
     pub fn equations(&self, phase: usize, u: &[f64]) -> Result<Equations, InputError> {
-        let forces = self.shut().forces()?;
+        let forces = self.with_fixed_amounts().forces()?;
         let matrices = self.matrices(&forces);
         let (Some(own), Some(forces)) = (self.phases().get(phase), forces.into_iter().nth(phase))
         else {

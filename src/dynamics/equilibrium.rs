@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use crate::base::input::told;
+use crate::base::input::four_digits;
 use crate::dynamics::trajectory::{Sample, Trajectory};
 use crate::elements::basis::worst_cells;
 
@@ -125,7 +125,7 @@ impl MeshEstimate {
 impl fmt::Display for MeshEstimate {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { quantity, unit, value, correction, unknowns, .. } = self;
-        let [shown, off, better] = [*value, correction.abs(), self.corrected()].map(told);
+        let [shown, off, better] = [*value, correction.abs(), self.corrected()].map(four_digits);
         write!(f, "{quantity} is {shown} {unit}")?;
         if !self.is_reliable() {
             return f.write_str(
@@ -136,7 +136,7 @@ impl fmt::Display for MeshEstimate {
         }
         write!(f, ", off by about {off} {unit}")?;
         if self.change != 0.0 {
-            let part = told(100.0 * self.relative());
+            let part = four_digits(100.0 * self.relative());
             write!(f, " ({part} % of its change) because of the mesh")?;
         }
         write!(f, ": {better} {unit}, by dual-weighted residuals with {unknowns} unknowns")?;

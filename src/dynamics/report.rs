@@ -9,7 +9,7 @@ pub(crate) use indicator::warnings;
 pub use indicator::{Indicator, Verdict};
 pub use reduced::{ReducedReport, ToldReading};
 
-use crate::base::input::told;
+use crate::base::input::four_digits;
 use crate::scene::settings::Method;
 
 /// How a trajectory was computed.
@@ -93,10 +93,10 @@ impl Achieved {
              later on energies and means alone",
             self.rtol[0],
             self.rtol[1],
-            told(100.0 * self.difference),
+            four_digits(100.0 * self.difference),
             self.quantity,
-            told(100.0 * self.asked),
-            told(self.known_until),
+            four_digits(100.0 * self.asked),
+            four_digits(self.known_until),
         )
     }
 }
@@ -105,7 +105,8 @@ impl fmt::Display for Achieved {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { quantity, asked, difference, scale, unit, runs, rtol, .. } = self;
         let [coarse, fine] = rtol;
-        let (found, asked, scale) = (told(100.0 * difference), told(100.0 * asked), told(*scale));
+        let (found, asked, scale) =
+            (four_digits(100.0 * difference), four_digits(100.0 * asked), four_digits(*scale));
         write!(
             f,
             "{quantity} is known to {found} % of {scale} {unit} (asked: {asked} %): the difference of the last two of \

@@ -12,9 +12,9 @@ use std::sync::{Arc, OnceLock};
 pub(crate) use leap::Leap;
 pub(crate) use penetration::{Deepest, DepthLimit, Penetration};
 
-use crate::base::input::{InputError, told};
+use crate::base::input::{InputError, four_digits};
 use crate::dynamics::report::Report;
-use crate::dynamics::system::{Energy, Lacking};
+use crate::dynamics::system::{Energy, MissingDisplacement};
 use crate::elements::body::Body;
 use crate::scene::settings::Method;
 use crate::scene::timeline::{ContactReader, Phase, Scene};
@@ -112,7 +112,7 @@ pub struct Trajectory {
     /// Reader of contact, created on first use.
     contact: OnceLock<Arc<ContactReader>>,
     /// Displacements that a reduced model lacks, as estimated by the run; empty unless requested.
-    pub(crate) lacking: Vec<Lacking>,
+    pub(crate) lacking: Vec<MissingDisplacement>,
     /// Angles (turns) that sensors of angles read at the end, by their names.
     pub(crate) angles: Vec<(String, f64)>,
 }
@@ -417,7 +417,7 @@ impl fmt::Display for IntegrationFailure {
         write!(
             f,
             "phase \"{phase}\" ({method}) stopped at t = {} s, step {step:.1e} s: {cause}",
-            told(*time)
+            four_digits(*time)
         )
     }
 }

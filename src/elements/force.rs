@@ -410,7 +410,7 @@ pub trait GeneralizedForce: Send {
 #[doc(hidden)]
 pub trait Flow: Send + Sync {
     /// Number of chambers and lag states: of all unknowns but pipe flow rates.
-    fn rooms(&self) -> usize;
+    fn reservoirs(&self) -> usize;
 
     /// Absolute tolerances of the unknowns, from those of strains (1) and velocities (m/s).
     fn tolerances(&self, strain: f64, velocity: f64) -> Vec<f64>;

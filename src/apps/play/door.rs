@@ -17,20 +17,20 @@ const PORT_OF_HTTP: u16 = 80;
 
 /// The address of the page, whose path is a secret.
 #[derive(Clone)]
-pub(super) struct Door {
+pub(super) struct AccessToken {
     port: u16,
     token: String,
 }
 
 /// Resource that a request asks for.
-pub(super) enum Wanted {
+pub(super) enum Route {
     /// The page.
     Page,
     /// A WebSocket with this key.
     Socket(String),
 }
 
-impl Door {
+impl AccessToken {
     /// An access check with a new secret token.
     ///
     /// # Errors
@@ -58,7 +58,7 @@ impl Door {
     ///
     /// # Errors
     /// A refusal with its reason.
-    pub(super) fn admit(&self, head: &Head) -> Result<Wanted, Refusal> {
+    pub(super) fn admit(&self, head: &Head) -> Result<Route, Refusal> {
         let forbidden = |reason: &str| Refusal::new("403 Forbidden", reason);
         // other host names that resolve to this machine are refused
         let mut hosts: Vec<String> =
@@ -80,8 +80,8 @@ impl Door {
             return Err(Refusal::new("405 Method Not Allowed", "only GET is known here"));
         }
         match parts.next() {
-            Some("") => Ok(Wanted::Page),
-            Some("socket") => self.socket(head, &hosts).map(Wanted::Socket),
+            Some("") => Ok(Route::Page),
+            Some("socket") => self.socket(head, &hosts).map(Route::Socket),
             _ => Err(Refusal::new("404 Not Found", "there is nothing here")),
         }
     }
@@ -131,7 +131,7 @@ mod tests {
             (8080, "127.0.0.1", false),
             (8080, "127.0.0.1:8080", true),
         ] {
-            let door = Door { port, token: "secret".into() };
+            let door = AccessToken { port, token: "secret".into() };
             let socket = format!(
                 "GET /secret/socket HTTP/1.1\r\nHost: {host}\r\nOrigin: http://{host}\r\nUpgrade: websocket\r\n\
                  Connection: Upgrade\r\nSec-WebSocket-Version: 13\r\nSec-WebSocket-Key: k\r\n\r\n"

@@ -14,7 +14,7 @@ use tungstenite::handshake::derive_accept_key;
 use tungstenite::protocol::{Role, WebSocketConfig};
 use tungstenite::{Message as Parcel, WebSocket};
 
-use super::door::{Door, Wanted};
+use super::door::{AccessToken, Route};
 use super::http::{Head, Refusal, answer};
 use super::message::Message;
 use super::record::Original;
@@ -57,7 +57,7 @@ const RECOVERY: Duration = Duration::from_millis(50);
 /// ```
 pub struct Player {
     listener: TcpListener,
-    door: Door,
+    door: AccessToken,
     /// Initial data of the page.
     data: Value,
     session: Session,
@@ -65,8 +65,8 @@ pub struct Player {
 }
 
 /// Shared state of the connections.
-struct House {
-    door: Door,
+struct ServerState {
+    door: AccessToken,
     page: String,
     quiet: Duration,
     requests: Sender<Request>,
@@ -76,20 +76,20 @@ struct House {
 }
 
 /// A counted connection; it counts until it is dropped, also by a panic.
-struct Guest {
+struct ConnectionCount {
     count: Arc<AtomicUsize>,
     /// Number of connections, including this one.
     number: usize,
 }
 
-impl Guest {
+impl ConnectionCount {
     fn among(count: &Arc<AtomicUsize>) -> Self {
         let number = count.fetch_add(1, Ordering::SeqCst) + 1;
         Self { count: count.clone(), number }
     }
 }
 
-impl Drop for Guest {
+impl Drop for ConnectionCount {
     fn drop(&mut self) {
         self.count.fetch_sub(1, Ordering::SeqCst);
     }
@@ -97,8 +97,8 @@ impl Drop for Guest {
 
 /// An open page; when it is dropped, the simulation is notified.
 struct Page<'a> {
-    house: &'a House,
-    guest: Option<Guest>,
+    house: &'a ServerState,
+    guest: Option<ConnectionCount>,
 }
 
 impl Drop for Page<'_> {
@@ -122,7 +122,7 @@ impl Player {
         let listener = listener.map_err(|error| no_port(port, &error))?;
         let port = listener.local_addr().map_err(|error| no_port(port, &error))?.port();
         data["title"] = title.into();
-        Ok(Self { listener, door: Door::new(port)?, data, session, quiet: QUIET })
+        Ok(Self { listener, door: AccessToken::new(port)?, data, session, quiet: QUIET })
     }
 
     /// Shows the readings of the sensors of `sampling` over time, below the energies. They are read as often as the
@@ -170,7 +170,7 @@ impl Player {
         simulation.spawn(move || session.run(&inbox)).map_err(|error| {
             InputError::new("threads", error, "the simulation needs one of its own")
         })?;
-        let house = Arc::new(House {
+        let house = Arc::new(ServerState {
             door,
             page,
             quiet,
@@ -183,7 +183,7 @@ impl Player {
                 thread::sleep(RECOVERY);
                 continue;
             };
-            let guest = Guest::among(&house.connections);
+            let guest = ConnectionCount::among(&house.connections);
             if guest.number > MOST {
                 continue;
             }
@@ -204,7 +204,7 @@ fn no_port(port: u16, error: &io::Error) -> InputError {
     InputError::new("port", port, help)
 }
 
-impl House {
+impl ServerState {
     /// Answers a connection. One that is closed without a request gets no answer.
     fn receive(&self, mut stream: TcpStream) {
         if stream.set_write_timeout(Some(PATIENCE)).is_err() {
@@ -215,10 +215,10 @@ impl House {
             Err(refusal) => return refuse(&mut stream, refusal),
         };
         match self.door.admit(&head) {
-            Ok(Wanted::Page) => {
+            Ok(Route::Page) => {
                 let _ = answer(&mut stream, "200 OK", "text/html", &self.page);
             }
-            Ok(Wanted::Socket(key)) => self.converse(stream, &key, head.rest),
+            Ok(Route::Socket(key)) => self.converse(stream, &key, head.rest),
             Err(refusal) => refuse(&mut stream, Some(refusal)),
         }
     }
@@ -242,7 +242,7 @@ impl House {
             .max_message_size(Some(LONGEST))
             .max_frame_size(Some(LONGEST));
         let mut socket = WebSocket::from_partially_read(stream, rest, Role::Server, Some(config));
-        let _page = Page { house: self, guest: Some(Guest::among(&self.pages)) };
+        let _page = Page { house: self, guest: Some(ConnectionCount::among(&self.pages)) };
         let mut was_asked = false;
         loop {
             let answer = match socket.read() {
@@ -305,9 +305,9 @@ mod tests {
     #[test]
     fn guests_who_panic_are_gone() {
         let count = Arc::default();
-        let first = Guest::among(&count);
+        let first = ConnectionCount::among(&count);
         let visit = AssertUnwindSafe(|| {
-            let guest = Guest::among(&count);
+            let guest = ConnectionCount::among(&count);
             assert_eq!(guest.number, 1, "this one is the second");
         });
         assert!(catch_unwind(visit).is_err());

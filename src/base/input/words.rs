@@ -1,7 +1,7 @@
 //! Numbers as messages show them.
 
 /// A number with four significant digits, as messages show times.
-pub(crate) fn told(value: f64) -> String {
+pub(crate) fn four_digits(value: f64) -> String {
     digits(value, 4)
 }
 
@@ -15,7 +15,7 @@ pub(crate) fn digits(value: f64, count: usize) -> String {
 pub(crate) fn short(value: f64) -> String {
     match value.abs() {
         1e5.. => format!("{value:.1e}"),
-        _ => told(format!("{value:.1e}").parse().unwrap_or(value)),
+        _ => four_digits(format!("{value:.1e}").parse().unwrap_or(value)),
     }
 }
 

@@ -1,6 +1,6 @@
 //! Chambers whose walls have passed through each other.
 
-use crate::base::input::told;
+use crate::base::input::four_digits;
 use crate::dynamics::report::Indicator;
 use crate::dynamics::trajectory::Sample;
 use crate::scene::forces::TURNED;
@@ -18,8 +18,8 @@ pub(super) fn volumes(scene: &Scene, samples: &[Sample]) -> Vec<Indicator> {
         let found = format!(
             "chamber \"{}\" encloses {} m^3 at least, at t = {} s (limit: 0)",
             chamber.name(),
-            told(least),
-            told(time)
+            four_digits(least),
+            four_digits(time)
         );
         indicators.push(Indicator::trusted(
             "chamber-volume",

@@ -6,7 +6,7 @@
 
 use super::bending::stiffness;
 use super::mesh::quadratic_cells;
-use crate::base::input::told;
+use crate::base::input::four_digits;
 use crate::dynamics::report::Indicator;
 use crate::dynamics::trajectory::Sample;
 use crate::elements::body::Body;
@@ -53,7 +53,7 @@ pub(super) fn coarse(body: &Body, energy_scale: f64, samples: &[&Sample]) -> Opt
             "cells are too coarse for their strains: at t = {} s {:.0} % of the strain energy is in jumps between \
              cells, so the body is some {stiff:.2} times too stiff or more (limit: {most} times); take {help}, or a \
              mesh {:.1} times as fine where it bends",
-            told(time),
+            four_digits(time),
             100.0 * jumps,
             finer.max(1.1)
         )

@@ -7,7 +7,7 @@ use nalgebra::Matrix3;
 
 use super::rigid::without_turn;
 use super::shape::Extent;
-use crate::base::input::{percent, told};
+use crate::base::input::{four_digits, percent};
 use crate::dynamics::report::Indicator;
 use crate::dynamics::trajectory::Sample;
 use crate::elements::body::{Body, Strain};
@@ -111,7 +111,7 @@ impl Deformed {
         let limit = MOST_WRONG / factor;
         let said = format!(
             "cells are strained by up to {} % (limit: {})",
-            told(100.0 * strain),
+            four_digits(100.0 * strain),
             percent(limit)
         );
         let beyond = || {
@@ -119,7 +119,7 @@ impl Deformed {
                 "{said}, cell {} at t = {} s: {off} in its stress, compared with that of rubber; forces there are \
                  doubtful, shapes less so. Deform it less, or {help}",
                 cell + 1,
-                told(time)
+                four_digits(time)
             )
         };
         Indicator::trusted("strain", (strain, "1"), [0.0, limit], || said.clone(), beyond)

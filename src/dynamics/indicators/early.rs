@@ -1,6 +1,6 @@
 //! Tables that end before their phase begins.
 
-use crate::base::input::told;
+use crate::base::input::four_digits;
 use crate::dynamics::report::Indicator;
 use crate::scene::timeline::Scene;
 
@@ -9,14 +9,14 @@ pub(super) fn tables(scene: &Scene) -> Option<Indicator> {
     let early = scene.early_tables();
     let first = early.first()?;
     let beyond = || {
-        let [before, behind] = first.values.map(told);
+        let [before, behind] = first.values.map(four_digits);
         format!(
             "{} in phase \"{}\" is a step from {before} to {behind} where the phase begins, at t = {} s: its table ends before, at {} s \
              ({} such table(s), limit: 0); times count from the start of the run, not from that of the phase",
             first.of,
             first.phase,
-            told(first.start),
-            told(first.last),
+            four_digits(first.start),
+            four_digits(first.last),
             early.len()
         )
     };

@@ -1,7 +1,7 @@
 //! Whether the numbers of gas are absolute pressures, and conductances of orifices in their unit.
 
 use super::units::as_meant;
-use crate::base::input::told;
+use crate::base::input::four_digits;
 use crate::dynamics::report::Indicator;
 use crate::scene::forces::{End, Signal};
 use crate::scene::timeline::{Phase, Scene};
@@ -33,7 +33,7 @@ fn pressure(scene: &Scene) -> Option<Indicator> {
         .map(|(name, pressure)| (format!("supply \"{name}\" has"), least(scene, pressure)));
     let all = gases.chain(supplies).chain([("the atmosphere has".to_owned(), air)]);
     let (what, least) = all.min_by(|(_, a), (_, b)| a.total_cmp(b))?;
-    let said = format!("{what} {} Pa, absolute (limit: {LEAST} Pa)", told(least));
+    let said = format!("{what} {} Pa, absolute (limit: {LEAST} Pa)", four_digits(least));
     let beyond = || format!("{said}: if that is a gauge pressure, write {} Pa", least + air);
     let range = [LEAST, f64::INFINITY];
     Some(Indicator::trusted("absolute-pressure", (least, "Pa"), range, || said.clone(), beyond))
@@ -68,8 +68,8 @@ fn area(scene: &Scene) -> Option<Indicator> {
     let (part, area, name) = widest?;
     let said = format!(
         "orifice \"{name}\" lets pass what a hole of {} m^2 does, {} times a face of a cube as large as the chamber (limit: {WIDEST})",
-        told(area),
-        told(part)
+        four_digits(area),
+        four_digits(part)
     );
     let beyond = || {
         format!(

@@ -8,7 +8,7 @@
 use super::size::cell_sizes;
 use super::skin::{Skin, points};
 use crate::base::grid::Grid;
-use crate::base::input::{InputError, told};
+use crate::base::input::{InputError, four_digits};
 use crate::base::vector::{difference, norm};
 use crate::dynamics::report::Indicator;
 use crate::dynamics::trajectory::Sample;
@@ -168,10 +168,10 @@ impl<'a> Overlaps<'a> {
     /// The depth of a point, the cell that it is in, counted from 1, and the limit.
     fn names(&self, entry: &Entry) -> String {
         let cell: Vec<usize> = self.cells[entry.cell].1.iter().map(|node| node + 1).collect();
-        let limit = told(entry.limit);
+        let limit = four_digits(entry.limit);
         format!(
             "{} m within cell {} (nodes {cell:?}; limit: {limit} m, a twentieth of the cell)",
-            told(entry.depth),
+            four_digits(entry.depth),
             entry.cell + 1
         )
     }
@@ -229,8 +229,8 @@ pub(super) fn drawn(body: &Body) -> Option<Indicator> {
     let within = || {
         format!(
             "the mesh does not overlap itself (deepest: {} m; limit: {} m)",
-            told(depth),
-            told(limit)
+            four_digits(depth),
+            four_digits(limit)
         )
     };
     let beyond = || {
@@ -308,15 +308,15 @@ pub(super) fn overlap(scene: &Scene, samples: &[&Sample]) -> Option<Indicator> {
     let within = || {
         format!(
             "the body does not pass through itself (deepest: {} m; limit: {} m)",
-            told(depth),
-            told(limit)
+            four_digits(depth),
+            four_digits(limit)
         )
     };
     let beyond = || {
         let (Some((deepest, sample, entries)), Some(first)) = (&most, first) else {
             return within();
         };
-        let (node, at) = (overlaps.node(deepest), told(sample.time));
+        let (node, at) = (overlaps.node(deepest), four_digits(sample.time));
         let [one, other] = overlaps.who(deepest);
         let names = overlaps.bodies(deepest).map(|part| part.name);
         let between = scene.touches().iter().filter(|touch| touch.is_between(names));
@@ -336,7 +336,7 @@ pub(super) fn overlap(scene: &Scene, samples: &[&Sample]) -> Option<Indicator> {
         let since = if first == sample.time {
             String::new()
         } else {
-            format!(" from t = {} s on", told(first))
+            format!(" from t = {} s on", four_digits(first))
         };
         format!(
             "{one} passes through {other}{since}: at t = {at} s {}, the deepest of them node {} with {}. {help}",

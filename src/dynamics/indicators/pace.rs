@@ -2,7 +2,7 @@
 //! method, and whether tolerances are fine enough for it.
 
 use super::rigid::travel;
-use crate::base::input::{percent, short, told};
+use crate::base::input::{four_digits, percent, short};
 use crate::dynamics::report::Indicator;
 use crate::dynamics::trajectory::{Leap, Sample, Trajectory};
 use crate::scene::timeline::{Phase, Scene};
@@ -70,7 +70,7 @@ pub(super) fn vibrations(scene: &Scene) -> Vec<Indicator> {
     };
     let lowest = format!(
         "phase \"{name}\": the lowest vibration has a period of {} s and a damping ratio of {}: {then}",
-        told(period),
+        four_digits(period),
         short(damping)
     );
     let fastest = spectrum.stiffest_rate();
@@ -78,7 +78,7 @@ pub(super) fn vibrations(scene: &Scene) -> Vec<Indicator> {
     let stiff = format!(
         "phase \"{name}\": the fastest motion of the mesh is {} times as fast as that: explicit methods need steps below {} s",
         short(ratio),
-        told(2.0 / fastest)
+        four_digits(2.0 / fastest)
     );
     vec![
         Indicator::told("damping", damping, "1", lowest),
@@ -154,7 +154,7 @@ pub(super) fn leaps(trajectory: &Trajectory, samples: &[&Sample]) -> Vec<Indicat
              the way that nodes go (limit: {})",
             short(*to),
             short(*from),
-            told(*time),
+            four_digits(*time),
             short(leap.by()),
             percent(part),
             percent(MOST_LEAP)

@@ -1,7 +1,7 @@
 //! Bodies that begin nearer to each other than where their touch sets in.
 
 use super::units::as_meant;
-use crate::base::input::told;
+use crate::base::input::four_digits;
 use crate::base::vector::{dot, largest, norm};
 use crate::dynamics::report::Indicator;
 use crate::elements::force::Force;
@@ -41,7 +41,7 @@ fn of_touch(scene: &Scene, force: &TouchForce) -> Option<Indicator> {
         "touch \"{}\" begins with {energy:.1e} J, {} times what bodies that lie on each other have (limit: {MOST} times): node {} of \"{}\" and \
          node {} of \"{}\" are {gap:.1e} m apart, within its distance of {distance:.2e} m",
         force.name,
-        told(part),
+        four_digits(part),
         nodes[0] + 1,
         names[0],
         nodes[1] + 1,

@@ -1,6 +1,6 @@
 //! Whether the strain measure of the body fits its motion.
 
-use crate::base::input::told;
+use crate::base::input::four_digits;
 use crate::dynamics::report::Indicator;
 use crate::dynamics::trajectory::Sample;
 use crate::elements::body::{Body, Strain};
@@ -51,7 +51,7 @@ pub(super) fn inversion(body: &Body, samples: &[&Sample]) -> Option<Indicator> {
             "{} cell(s) are turned inside out at t = {} s, the first of them cell {} (nodes {nodes:?}) (limit: none): Cauchy \
              strain resists no such thing; use strain = \"green\", push less, or take finer cells there",
             cells.len(),
-            told(time),
+            four_digits(time),
             cells.first().map_or(0, |cell| cell + 1),
         )
     };

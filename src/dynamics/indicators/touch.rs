@@ -3,7 +3,7 @@
 use std::ptr;
 
 use super::penetration::depth_limits;
-use crate::base::input::told;
+use crate::base::input::four_digits;
 use crate::base::vector::norm;
 use crate::dynamics::report::Indicator;
 use crate::dynamics::trajectory::{Deepest, DepthLimit, Sample, Trajectory};
@@ -106,7 +106,7 @@ fn see(deepest: &mut Option<Deepest>, (depth, node): (f64, usize), limits: &[Dep
 pub(super) fn depths(scene: &Scene, meetings: &[Meeting]) -> impl Iterator<Item = Indicator> {
     meetings.iter().filter(|meeting| meeting.may_be_soft()).filter_map(move |meeting| {
         let Deepest { depth, limit, time, nodes } = meeting.deepest?;
-        let when = time.map_or(String::new(), |t| format!(" at t = {} s", told(t)));
+        let when = time.map_or(String::new(), |t| format!(" at t = {} s", four_digits(t)));
         let said = format!(
             "node {} is {depth:.2e} m inside obstacle \"{}\"{when} (limit: {:.2e} m, {})",
             nodes[0] + 1,
@@ -146,7 +146,7 @@ pub(super) fn passages(trajectory: &Trajectory) -> impl Iterator<Item = Indicato
                  thicker than {:.1e} m",
                 known.passages,
                 on(nodes),
-                told(time),
+                four_digits(time),
                 2.0 * known.half_thickness
             )
         };
@@ -172,7 +172,7 @@ pub(super) fn between_nodes(trajectory: &Trajectory) -> impl Iterator<Item = Ind
              {})",
             on(nodes),
             known.obstacle,
-            told(time.unwrap_or_default()),
+            four_digits(time.unwrap_or_default()),
             limit.depth,
             limit.reason
         );

@@ -1,6 +1,6 @@
 //! Whether a scene is in units other than metres, kilograms, seconds and pascals.
 
-use crate::base::input::{percent, told};
+use crate::base::input::{four_digits, percent};
 use crate::base::vector::{dot, norm};
 use crate::dynamics::report::{Indicator, Verdict};
 use crate::elements::body::Body;
@@ -59,7 +59,7 @@ pub(super) fn of_scene(scene: &Scene) -> Vec<Indicator> {
     }));
     let dipoles = (!scene.dipoles().is_empty()).then(|| {
         let said =
-            format!("the moment of a dipole is {} A m^2 (limit: {STRONGEST_DIPOLE} A m^2)", told(moment));
+            format!("the moment of a dipole is {} A m^2 (limit: {STRONGEST_DIPOLE} A m^2)", four_digits(moment));
         let beyond = || {
             format!("{said}: is it in emu (0.001 A m^2) or A mm^2 (1e-6 A m^2)? A cube of neodymium of 1 cm has 1 A m^2")
         };
@@ -77,7 +77,7 @@ pub(super) fn of_scene(scene: &Scene) -> Vec<Indicator> {
         ),
     ];
     let all = measured.map(|(name, value, most, what, known)| {
-        let said = format!("{what} is {} T (limit: {most} T)", told(value));
+        let said = format!("{what} is {} T (limit: {most} T)", four_digits(value));
         let beyond = || format!("{said}: is it in mT (0.001 T) or gauss (0.0001 T)? {known}");
         Indicator::trusted(name, (value, "T"), [0.0, most], || said.clone(), beyond)
     });
@@ -138,7 +138,7 @@ fn materials(body: &Body) -> Vec<Indicator> {
         let density = material.density;
         let said = format!(
             "the density is {} kg/m^3 (limits: {} to {} kg/m^3)",
-            told(density),
+            four_digits(density),
             DENSITIES[0],
             DENSITIES[1]
         );
@@ -153,7 +153,11 @@ fn materials(body: &Body) -> Vec<Indicator> {
             false => (STIFFEST, "any material"),
         };
         let young = material.young;
-        let said = format!("young is {} Pa (limit for {of}: {} Pa)", told(young), told(most));
+        let said = format!(
+            "young is {} Pa (limit for {of}: {} Pa)",
+            four_digits(young),
+            four_digits(most)
+        );
         let beyond = || {
             format!(
                 "{said}: soft silicone has 1e5 Pa, hard rubber 1e7; is it in other units than Pa?"
@@ -191,8 +195,8 @@ fn thickness(body: &Body) -> Option<Indicator> {
     let part = thickness / size;
     let said = format!(
         "the body is {} m thick, {} times as much as it is across (limit: {THICKEST} times)",
-        told(thickness),
-        told(part)
+        four_digits(thickness),
+        four_digits(part)
     );
     let beyond = || format!("{said}: is thickness in mm? It is in metres");
     Some(Indicator::trusted("thickness", (part, "1"), [0.0, THICKEST], || said.clone(), beyond))

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::fmt;
 
-use crate::base::input::{percent, told};
+use crate::base::input::{four_digits, percent};
 use crate::scene::reduced_model::ReducedModel;
 
 /// How a run by a reduced model went.
@@ -133,7 +133,7 @@ impl fmt::Display for ReducedReport {
         }
         for ToldReading { name, unit, error } in &self.readings {
             let unit = if unit == "1" { "" } else { unit };
-            write!(f, ", {name} {} {unit}", told(*error))?;
+            write!(f, ", {name} {} {unit}", four_digits(*error))?;
         }
         Ok(())
     }

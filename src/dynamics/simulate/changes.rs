@@ -2,7 +2,7 @@
 //!
 //! A command edits a copy of the phase in force: new forces go into the existing equations, new constraints
 //! make new equations, and the run goes on from the state at that time. A number that a command has set once
-//! is shared by forces and phase (`Live`): the next command sets it and builds nothing, so that ticks of a
+//! is shared by forces and phase (`SharedValue`): the next command sets it and builds nothing, so that ticks of a
 //! controller allocate nothing under methods without a new start. Checkpoints, forks and samples hold a
 //! frozen copy; each sample refers to the phase in force at its time.
 //!
@@ -28,7 +28,7 @@ use crate::dynamics::system::{Energy, System};
 use crate::dynamics::trajectory::Sample;
 use crate::elements::force::Forces;
 use crate::scene::constraint::ConstraintRow;
-use crate::scene::forces::Live;
+use crate::scene::forces::SharedValue;
 use crate::scene::timeline::Phase;
 
 /// Part of the equations that a command changes.
@@ -208,7 +208,7 @@ impl Run {
     }
 
     /// Sets numbers of the phase in force.
-    pub(super) fn set_live(&mut self, live: &Live, values: &[f64]) -> Result<(), Error> {
+    pub(super) fn set_live(&mut self, live: &SharedValue, values: &[f64]) -> Result<(), Error> {
         self.expect_commands()?;
         live.set(values);
         if !self.keep_on()? {
@@ -250,7 +250,7 @@ impl Run {
             kept: Kept {
                 time,
                 state: state.to_vec(),
-                phase: self.phase.frozen(),
+                phase: self.phase.snapshot(),
                 number: self.number,
                 is_commanded: self.is_commanded,
                 origins: rows.iter().map(ConstraintRow::origin).collect(),
@@ -309,7 +309,7 @@ impl Run {
             Some(system) => system.rows().to_vec(),
             None => self.equations(&self.phase, &self.state)?.rows().to_vec(),
         };
-        let phase = self.phase.frozen();
+        let phase = self.phase.snapshot();
         let forces = self.scene.forces_in(&phase)?;
         let (alpha, name) = (self.settings.alpha, &phase.name);
         let system = self.scene.system_by(&self.matrices, forces, rows, alpha, name)?;

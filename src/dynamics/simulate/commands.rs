@@ -6,7 +6,7 @@ use crate::base::input::{InputError, finite};
 use crate::dynamics::error::Error;
 use crate::elements::mesh::Selection;
 use crate::scene::constraint::{Axes, Axis, Constrained, Constraint, Motion};
-use crate::scene::forces::{Live, Signal, Signals, TimeTable, VectorSignal, WrenchKind};
+use crate::scene::forces::{SharedValue, Signal, Signals, TimeTable, VectorSignal, WrenchKind};
 use crate::scene::timeline::{Input, LoadKind, Phase, Quantity, Scene, Target};
 
 /// Commands. Each takes effect at the present time and stays in force until another one replaces it or the
@@ -262,7 +262,7 @@ impl Simulation {
             return Ok(());
         }
         self.command(Change::Loads, |phase, _| {
-            phase.set(Input { quantity, target, signal: signal.thawed() });
+            phase.set(Input { quantity, target, signal: signal.settable() });
             Ok(())
         })
     }
@@ -275,7 +275,7 @@ impl Simulation {
     /// set. (The forces read them: nothing is rebuilt.)
     fn set_live(
         &mut self,
-        find: impl Fn(&Phase) -> Option<Live>,
+        find: impl Fn(&Phase) -> Option<SharedValue>,
         quantity: Quantity,
         values: &[f64],
     ) -> Result<bool, Error> {

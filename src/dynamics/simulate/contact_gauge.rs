@@ -1,6 +1,6 @@
 //! How quantities of a contact are read: its force, the area in touch, the largest pressure.
 
-use super::reading::By;
+use super::reading::ContactSource;
 use super::view::View;
 use crate::base::input::InputError;
 use crate::dynamics::trajectory::Sample;
@@ -38,21 +38,25 @@ impl ContactGauge {
     /// Names and nodes that the scene does not have; a touch of which nothing says on what it acts.
     pub(super) fn new(
         scene: &Scene,
-        by: &By,
+        by: &ContactSource,
         nodes: Option<&Selection>,
         of_body: Option<&str>,
     ) -> Result<Self, InputError> {
         let body = scene.body();
         let acting = match by {
-            By::Obstacle(name) => Acting::Obstacle(Box::new(ActingObstacle::new(scene, name)?)),
-            By::Touch(name) => Acting::Touch(Box::new(scene.touch_force(name, "touch")?)),
+            ContactSource::Obstacle(name) => {
+                Acting::Obstacle(Box::new(ActingObstacle::new(scene, name)?))
+            }
+            ContactSource::Touch(name) => {
+                Acting::Touch(Box::new(scene.touch_force(name, "touch")?))
+            }
         };
         let count = body.mesh().node_count();
         let nodes: Vec<usize> = match (nodes, of_body, by) {
             (Some(nodes), ..) => body.mesh().select(nodes)?,
             (None, Some(name), _) => body.part_named(name, "body")?.nodes.collect(),
-            (None, None, By::Obstacle(_)) => (0..count).collect(),
-            (None, None, By::Touch(_)) => {
+            (None, None, ContactSource::Obstacle(_)) => (0..count).collect(),
+            (None, None, ContactSource::Touch(_)) => {
                 let help = "a touch acts on both sides alike: name the body or the nodes on which it is read";
                 return Err(InputError::new("body", "missing", help));
             }

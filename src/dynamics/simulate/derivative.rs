@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use super::component::Component;
 use super::output::Value;
 use super::outputs::VOLUME;
-use super::reading::{Reading, What};
+use super::reading::{Reading, ReadingKind};
 use super::spot::{At, Spot};
 use super::view::{Gauges, View, mean};
 use crate::base::input::InputError;
@@ -69,10 +69,12 @@ impl Reading {
     /// Whether [`linearized`](Self::linearized) can compute its derivative.
     pub(crate) fn has_derivative(&self) -> bool {
         match &self.what {
-            What::Position(spot) | What::Displacement(spot) => !matches!(spot.0, At::Marker(..)),
-            What::CentreOfMass | What::Distance(_) | What::Angle(_) => true,
-            What::ConstraintForce(_) => true,
-            What::Of(output, _) => **output == VOLUME,
+            ReadingKind::Position(spot) | ReadingKind::Displacement(spot) => {
+                !matches!(spot.0, At::Marker(..))
+            }
+            ReadingKind::CentreOfMass | ReadingKind::Distance(_) | ReadingKind::Angle(_) => true,
+            ReadingKind::ConstraintForce(_) => true,
+            ReadingKind::Of(output, _) => **output == VOLUME,
             _ => false,
         }
     }
@@ -116,25 +118,26 @@ impl Reading {
             std::array::from_fn(|i| to[i] - from[i])
         };
         match &self.what {
-            What::Position(Spot(At::Inside(place)))
-            | What::Displacement(Spot(At::Inside(place))) => {
+            ReadingKind::Position(Spot(At::Inside(place)))
+            | ReadingKind::Displacement(Spot(At::Inside(place))) => {
                 let along = self.direction(scene, sample)?;
                 for (node, share) in body.shares_at(place)? {
                     let dofs = linearized.by_displacements[node * d..].iter_mut().take(d);
                     dofs.zip(along).for_each(|(dof, along)| *dof += share * along);
                 }
             }
-            What::Position(Spot(At::Nodes(nodes))) | What::Displacement(Spot(At::Nodes(nodes))) => {
+            ReadingKind::Position(Spot(At::Nodes(nodes)))
+            | ReadingKind::Displacement(Spot(At::Nodes(nodes))) => {
                 add_mean(&self.counted(select(nodes)?), self.direction(scene, sample)?);
             }
-            What::Distance([from, to]) => {
+            ReadingKind::Distance([from, to]) => {
                 let (from, to) = (select(from)?, select(to)?);
                 let along = between([&from, &to]);
                 let along = along.map(|x| x / norm(&along));
                 add_mean(&to, along);
                 add_mean(&from, along.map(|x| -x));
             }
-            What::Angle(lines) => {
+            ReadingKind::Angle(lines) => {
                 let [one, other] = lines;
                 let lines = [
                     [select(&one[0])?, select(&one[1])?],
@@ -152,20 +155,20 @@ impl Reading {
                     add_mean(from, along.map(|x| -x));
                 }
             }
-            What::CentreOfMass => {
+            ReadingKind::CentreOfMass => {
                 let (along, mass) = (self.direction(scene, sample)?, body.mass());
                 let dofs = linearized.by_displacements.chunks_exact_mut(d);
                 for (dofs, nodal) in dofs.zip(body.nodal_masses()) {
                     dofs.iter_mut().zip(along).for_each(|(dof, along)| *dof = along * nodal / mass);
                 }
             }
-            What::Of(output, name) if **output == VOLUME => {
+            ReadingKind::Of(output, name) if **output == VOLUME => {
                 let chamber = &moved.scene.chambers()[scene.chamber_number(name, "chamber")?];
                 let chamber = chamber.force(body, Vec::new())?;
                 linearized.value = chamber.volume(moved.u);
                 chamber.add_gradient(1.0, moved.u, &mut linearized.by_displacements);
             }
-            What::ConstraintForce(nodes) => {
+            ReadingKind::ConstraintForce(nodes) => {
                 let along = self.direction(scene, sample)?;
                 let mut is_read = vec![false; body.mesh().node_count()];
                 let (points, nodes): (Vec<usize>, Vec<usize>) =

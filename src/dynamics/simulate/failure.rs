@@ -1,7 +1,7 @@
 //! Error messages of runs that do not reach their end.
 
 use super::stepper::Failed;
-use crate::base::input::told;
+use crate::base::input::four_digits;
 use crate::dynamics::report::Counts;
 use crate::dynamics::trajectory::Interrupted;
 use crate::integrators::common::{self, Cause};
@@ -46,7 +46,7 @@ pub(super) fn too_many_steps(steps: usize, counts: &Counts) -> Failed {
 }
 
 pub(super) fn out_of_time(limit: f64, method: Method, counts: &Counts) -> Failed {
-    let (limit, steps) = (told(limit), counts.steps);
+    let (limit, steps) = (four_digits(limit), counts.steps);
     let reason = counts.notice.as_deref().unwrap_or(
         "raise max_time, loosen rtol, choose another method or a coarser mesh, or continue from the state that was reached",
     );

@@ -7,7 +7,7 @@ use nalgebra::Vector3;
 
 use super::contact_gauge::ContactGauge;
 use super::output::Value;
-use super::reading::{Lever, OfContact, Place, Reading, What};
+use super::reading::{Lever, OfContact, Place, Reading, ReadingKind};
 use super::rigid_fit::{RigidFit, Turning};
 use super::spot::Motion;
 use super::view::{View, mean};
@@ -36,21 +36,21 @@ impl Reading {
         let select = |nodes: &Selection| scene.body().mesh().select(nodes);
         let d = scene.body().dimension();
         Ok(match &self.what {
-            What::Position(spot) => self.of_spot(scene, spot, Motion::Position)?,
-            What::Displacement(spot) => self.of_spot(scene, spot, Motion::Displacement)?,
-            What::Velocity(spot) => self.of_spot(scene, spot, Motion::Velocity)?,
-            What::Acceleration(spot) => self.of_spot(scene, spot, Motion::Acceleration)?,
-            What::ConstraintForce(nodes) => {
+            ReadingKind::Position(spot) => self.of_spot(scene, spot, Motion::Position)?,
+            ReadingKind::Displacement(spot) => self.of_spot(scene, spot, Motion::Displacement)?,
+            ReadingKind::Velocity(spot) => self.of_spot(scene, spot, Motion::Velocity)?,
+            ReadingKind::Acceleration(spot) => self.of_spot(scene, spot, Motion::Acceleration)?,
+            ReadingKind::ConstraintForce(nodes) => {
                 let sum = constraint_sum(scene, select(nodes)?, move |_, dof| {
                     std::array::from_fn(|i| f64::from(i == dof % d))
                 })?;
                 Box::new(move |view, sample| Value::Vector(sum(view, sample)))
             }
-            What::ConstraintMoment(nodes, lever) => {
+            ReadingKind::ConstraintMoment(nodes, lever) => {
                 scene.body().refuse_around("sensor", "moment of constraints")?;
                 moment(scene, select(nodes)?, lever)?
             }
-            What::Contact(of, by, nodes) => {
+            ReadingKind::Contact(of, by, nodes) => {
                 let of_body = self.body.as_deref();
                 let contact = ContactGauge::new(scene, by, nodes.as_ref(), of_body)?;
                 match of {
@@ -65,53 +65,53 @@ impl Reading {
                     }
                 }
             }
-            What::Gap(touch) => {
+            ReadingKind::Gap(touch) => {
                 let touch = scene.touch_force(touch, "touch")?;
                 Box::new(move |view, _| Value::Number(touch.gap(view.displacements())))
             }
-            What::Of(output, name) => {
+            ReadingKind::Of(output, name) => {
                 let (output, number) = (*output, output.find(scene, name)?);
                 // the component is there
                 Box::new(move |view, _| {
                     (output.read)(view, number).unwrap_or(Value::Number(f64::NAN))
                 })
             }
-            What::MagneticMoment => {
+            ReadingKind::MagneticMoment => {
                 if scene.magnets().is_empty() {
                     let help = "the scene has no magnets";
                     return Err(InputError::new("sensor", "magnetic moment", help));
                 }
                 Box::new(|view, _| Value::of_vector(&view.magnetic_moment()))
             }
-            What::FluidForce(fluid, nodes) => self.of_fluid(scene, fluid, nodes.as_ref())?,
-            What::Stress(place) => {
+            ReadingKind::FluidForce(fluid, nodes) => self.of_fluid(scene, fluid, nodes.as_ref())?,
+            ReadingKind::Stress(place) => {
                 field(scene, place, scene.body().branches(), |field| field.stress)?
             }
-            What::Strain(place) => field(scene, place, None, |field| field.strain)?,
-            What::Distance([from, to]) => {
+            ReadingKind::Strain(place) => field(scene, place, None, |field| field.strain)?,
+            ReadingKind::Distance([from, to]) => {
                 let (from, to) = (select(from)?, select(to)?);
                 Box::new(move |view, _| Value::Number(norm(&between(view, [&from, &to]))))
             }
-            What::Rotation(nodes) if d == 3 => {
+            ReadingKind::Rotation(nodes) if d == 3 => {
                 let (fit, in_turn) = (self.fit(scene, nodes.as_ref())?, self.full_turn() / TAU);
                 Box::new(move |view, _| {
                     Value::Vector(fit.rotation_vector(view).map(|angle| in_turn * angle))
                 })
             }
-            What::AngularVelocity(nodes) => {
+            ReadingKind::AngularVelocity(nodes) => {
                 turning(self.fit(scene, nodes.as_ref())?, d, |turning| turning.velocity)
             }
-            What::AngularAcceleration(nodes) => {
+            ReadingKind::AngularAcceleration(nodes) => {
                 turning(self.fit(scene, nodes.as_ref())?, d, |turning| turning.acceleration)
             }
-            What::Angle(_) | What::Rotation(_) => {
+            ReadingKind::Angle(_) | ReadingKind::Rotation(_) => {
                 let angle = self.angle_gauge(scene)?;
                 Box::new(move |view, _| Value::Number(angle(view)))
             }
-            What::CentreOfMass => self.of_part(scene, |part, view| {
+            ReadingKind::CentreOfMass => self.of_part(scene, |part, view| {
                 part.body.centre_of_mass(&view.displacements()[part.dofs()])
             })?,
-            What::Momentum => self.of_part(scene, |part, view| {
+            ReadingKind::Momentum => self.of_part(scene, |part, view| {
                 let mean = part.body.mean_velocity(&view.velocities()[part.dofs()]);
                 mean.into_iter().map(|v| part.body.mass() * v).collect()
             })?,
@@ -170,10 +170,10 @@ impl Reading {
         let d = scene.body().dimension();
         let in_turn = self.full_turn() / TAU;
         let on = match &self.what {
-            What::Rotation(on) => on.as_ref(),
+            ReadingKind::Rotation(on) => on.as_ref(),
             _ => None,
         };
-        if let What::Angle([from, to]) = &self.what {
+        if let ReadingKind::Angle([from, to]) = &self.what {
             let lines = [line(scene, from)?, line(scene, to)?];
             return Ok(Arc::new(move |view| {
                 let [a, b] = lines.each_ref().map(|[from, to]| between(view, [from, to]));

@@ -1,7 +1,7 @@
 //! Readings of a symmetric scene, translated to its half.
 
 use super::component::Component;
-use super::reading::{Reading, What};
+use super::reading::{Reading, ReadingKind};
 use super::spot::{At, Spot};
 use crate::base::input::InputError;
 use crate::elements::mesh::Selection;
@@ -41,11 +41,17 @@ impl Reading {
             }
         };
         let what = match &self.what {
-            What::Position(Spot(At::Nodes(nodes))) => What::Position(means(nodes)?.into()),
-            What::Displacement(Spot(At::Nodes(nodes))) => What::Displacement(means(nodes)?.into()),
-            What::Velocity(Spot(At::Nodes(nodes))) => What::Velocity(means(nodes)?.into()),
-            What::CentreOfMass if is_along => What::CentreOfMass,
-            What::CentreOfMass => return Err(only_along("centre of mass")),
+            ReadingKind::Position(Spot(At::Nodes(nodes))) => {
+                ReadingKind::Position(means(nodes)?.into())
+            }
+            ReadingKind::Displacement(Spot(At::Nodes(nodes))) => {
+                ReadingKind::Displacement(means(nodes)?.into())
+            }
+            ReadingKind::Velocity(Spot(At::Nodes(nodes))) => {
+                ReadingKind::Velocity(means(nodes)?.into())
+            }
+            ReadingKind::CentreOfMass if is_along => ReadingKind::CentreOfMass,
+            ReadingKind::CentreOfMass => return Err(only_along("centre of mass")),
             _ => {
                 let help = "the half has positions, displacements, velocities and centres of mass: name one of them";
                 return Err(refused("of another kind", help.into()));

@@ -1,7 +1,7 @@
 //! Readings of a scene that is uniform along an axis, translated to its section.
 
 use super::component::Component;
-use super::reading::{By, OfContact, Reading, What};
+use super::reading::{ContactSource, OfContact, Reading, ReadingKind};
 use super::spot::{At, Spot};
 use crate::base::input::InputError;
 use crate::elements::mesh::Selection;
@@ -42,19 +42,28 @@ impl Reading {
             Ok(Selection::of_nodes(own))
         };
         let what = match &self.what {
-            What::Position(Spot(At::Nodes(nodes))) => What::Position(means(nodes)?.into()),
-            What::Displacement(Spot(At::Nodes(nodes))) => What::Displacement(means(nodes)?.into()),
-            What::Velocity(Spot(At::Nodes(nodes))) => What::Velocity(means(nodes)?.into()),
-            What::ConstraintForce(nodes) => match plane.prism.whole_columns(&select(nodes)?) {
-                Some(own) => What::ConstraintForce(Selection::of_nodes(own)),
+            ReadingKind::Position(Spot(At::Nodes(nodes))) => {
+                ReadingKind::Position(means(nodes)?.into())
+            }
+            ReadingKind::Displacement(Spot(At::Nodes(nodes))) => {
+                ReadingKind::Displacement(means(nodes)?.into())
+            }
+            ReadingKind::Velocity(Spot(At::Nodes(nodes))) => {
+                ReadingKind::Velocity(means(nodes)?.into())
+            }
+            ReadingKind::ConstraintForce(nodes) => match plane.prism.whole_columns(&select(nodes)?)
+            {
+                Some(own) => ReadingKind::ConstraintForce(Selection::of_nodes(own)),
                 None => {
                     let help = "the section has that of all nodes of a line along the axis together: name all of them";
                     return refused(&format!("constraint force on {nodes}"), help.into());
                 }
             },
-            what @ (What::CentreOfMass
-            | What::Momentum
-            | What::Contact(OfContact::Force, By::Obstacle(_), None)) => what.clone(),
+            what @ (ReadingKind::CentreOfMass
+            | ReadingKind::Momentum
+            | ReadingKind::Contact(OfContact::Force, ContactSource::Obstacle(_), None)) => {
+                what.clone()
+            }
             _ => {
                 let help = "the section has positions, displacements, velocities, centres of mass, momenta, constraint forces and forces of \
                             obstacles: name one of them";

@@ -15,7 +15,7 @@ use crate::elements::mesh::Selection;
 /// Positions and the like of several nodes are means over them; forces are sums.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Reading {
-    pub(super) what: What,
+    pub(super) what: ReadingKind,
     pub(super) component: Option<Component>,
     /// Whether angles are in degrees.
     pub(super) in_degrees: bool,
@@ -27,7 +27,7 @@ pub struct Reading {
 
 /// Quantity of a reading.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) enum What {
+pub(super) enum ReadingKind {
     Position(Spot),
     Displacement(Spot),
     Velocity(Spot),
@@ -35,7 +35,7 @@ pub(super) enum What {
     ConstraintForce(Selection),
     ConstraintMoment(Selection, Lever),
     /// Of an obstacle on all nodes, of a touch on the body that is read, of both on these nodes.
-    Contact(OfContact, By, Option<Selection>),
+    Contact(OfContact, ContactSource, Option<Selection>),
     /// Of a touch.
     Gap(String),
     /// Of the component with a name.
@@ -67,7 +67,7 @@ pub(super) enum OfContact {
 
 /// Source of a contact: an obstacle, or bodies that touch.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) enum By {
+pub(super) enum ContactSource {
     Obstacle(String),
     Touch(String),
 }
@@ -91,29 +91,29 @@ pub(super) enum Place {
 impl Reading {
     /// Where nodes, or another [place](Spot), are (m).
     pub fn position(place: impl Into<Spot>) -> Self {
-        What::Position(place.into()).into()
+        ReadingKind::Position(place.into()).into()
     }
 
     /// How far nodes, or another [place](Spot), are from their undeformed positions (m).
     pub fn displacement(place: impl Into<Spot>) -> Self {
-        What::Displacement(place.into()).into()
+        ReadingKind::Displacement(place.into()).into()
     }
 
     /// How fast nodes, or another [place](Spot), move (m/s).
     pub fn velocity(place: impl Into<Spot>) -> Self {
-        What::Velocity(place.into()).into()
+        ReadingKind::Velocity(place.into()).into()
     }
 
     /// How the velocity of nodes, or of another [place](Spot), changes (m/s^2): what the equations of motion say in the state of a sample.
     /// In equilibria it is 0.
     pub fn acceleration(place: impl Into<Spot>) -> Self {
-        What::Acceleration(place.into()).into()
+        ReadingKind::Acceleration(place.into()).into()
     }
 
     /// Force of the constraints on nodes together (N), their reaction:
     /// see [`Trajectory::constraint_force`](crate::Trajectory::constraint_force).
     pub fn constraint_force(nodes: impl Into<Selection>) -> Self {
-        What::ConstraintForce(nodes.into()).into()
+        ReadingKind::ConstraintForce(nodes.into()).into()
     }
 
     /// Moment (N m) of the constraints on nodes together about the point `about` (m), fixed in space.
@@ -121,7 +121,8 @@ impl Reading {
     /// It is the sum of (x - about) x f over the nodes, with x their present positions and f the constraint
     /// forces. In the plane it is a number, counter-clockwise; on a line there is none.
     pub fn constraint_moment(nodes: impl Into<Selection>, about: impl Into<Vec<f64>>) -> Self {
-        What::ConstraintMoment(nodes.into(), Lever { about: about.into(), axis: None }).into()
+        ReadingKind::ConstraintMoment(nodes.into(), Lever { about: about.into(), axis: None })
+            .into()
     }
 
     /// The component of the constraint moment along an `axis` through `about`, of a body in space.
@@ -134,12 +135,13 @@ impl Reading {
         axis: impl Into<Vec<f64>>,
     ) -> Self {
         let lever = Lever { about: about.into(), axis: Some(axis.into()) };
-        What::ConstraintMoment(nodes.into(), lever).into()
+        ReadingKind::ConstraintMoment(nodes.into(), lever).into()
     }
 
     /// Force of an obstacle on the body (N).
     pub fn contact_force(obstacle: impl Into<String>) -> Self {
-        What::Contact(OfContact::Force, By::Obstacle(obstacle.into()), None).into()
+        ReadingKind::Contact(OfContact::Force, ContactSource::Obstacle(obstacle.into()), None)
+            .into()
     }
 
     /// Force of an obstacle on some nodes together (N), such as of one finger of a gripper whose forces on
@@ -150,43 +152,44 @@ impl Reading {
 
     /// Force (N) of bodies that [touch](crate::Touch) on one [of them](Self::of_body) or [on](Self::on) some nodes.
     pub fn touch_force(touch: impl Into<String>) -> Self {
-        What::Contact(OfContact::Force, By::Touch(touch.into()), None).into()
+        ReadingKind::Contact(OfContact::Force, ContactSource::Touch(touch.into()), None).into()
     }
 
     /// Area (m^2) of the surface that an obstacle touches, of all bodies or [on](Self::on) some nodes: see
     /// [`NodalContact::area`](crate::NodalContact::area). A string has none.
     pub fn contact_area(obstacle: impl Into<String>) -> Self {
-        What::Contact(OfContact::Area, By::Obstacle(obstacle.into()), None).into()
+        ReadingKind::Contact(OfContact::Area, ContactSource::Obstacle(obstacle.into()), None).into()
     }
 
     /// Area (m^2) of the surface of one [of several bodies](Self::of_body), or [on](Self::on) some nodes, that others
     /// [touch](crate::Touch).
     pub fn touch_area(touch: impl Into<String>) -> Self {
-        What::Contact(OfContact::Area, By::Touch(touch.into()), None).into()
+        ReadingKind::Contact(OfContact::Area, ContactSource::Touch(touch.into()), None).into()
     }
 
     /// The largest contact pressure (Pa) of an obstacle at any node, or [at](Self::on) some of them: see
     /// [`NodalContact::pressure`](crate::NodalContact::pressure).
     pub fn contact_pressure(obstacle: impl Into<String>) -> Self {
-        What::Contact(OfContact::Pressure, By::Obstacle(obstacle.into()), None).into()
+        ReadingKind::Contact(OfContact::Pressure, ContactSource::Obstacle(obstacle.into()), None)
+            .into()
     }
 
     /// The largest contact pressure (Pa) of bodies that [touch](crate::Touch) at any node of one
     /// [of them](Self::of_body), or [at](Self::on) some nodes.
     pub fn touch_pressure(touch: impl Into<String>) -> Self {
-        What::Contact(OfContact::Pressure, By::Touch(touch.into()), None).into()
+        ReadingKind::Contact(OfContact::Pressure, ContactSource::Touch(touch.into()), None).into()
     }
 
     /// The least distance (m) of the surfaces of bodies that [touch](crate::Touch), up to that from which on nothing
     /// acts.
     pub fn gap(touch: impl Into<String>) -> Self {
-        What::Gap(touch.into()).into()
+        ReadingKind::Gap(touch.into()).into()
     }
 
     /// The part of the force of a contact or a fluid, or of an area in touch, that belongs to some nodes; the largest contact pressure at
     /// these; how these turn, instead of a body.
     pub fn on(mut self, nodes: impl Into<Selection>) -> Self {
-        use What::*;
+        use ReadingKind::*;
         if let Contact(_, _, on)
         | FluidForce(_, on)
         | Rotation(on)
@@ -200,40 +203,40 @@ impl Reading {
 
     /// Magnetic moment of all magnets (A m^2).
     pub fn magnetic_moment() -> Self {
-        What::MagneticMoment.into()
+        ReadingKind::MagneticMoment.into()
     }
 
     /// Force of a [fluid](crate::Fluid) (N), drag and pressure, on all nodes, on [some](Self::on) or on those of one
     /// [body](Self::of_body). The effect of added mass is inertia and not part of this force.
     pub fn fluid_force(fluid: impl Into<String>) -> Self {
-        What::FluidForce(fluid.into(), None).into()
+        ReadingKind::FluidForce(fluid.into(), None).into()
     }
 
     /// Stress at nodes (Pa), of the elastic law and of Maxwell branches, without viscosity: see
     /// [`Body::nodal_fields`](crate::Body::nodal_fields), which has that of the elastic law alone.
     pub fn stress(nodes: impl Into<Selection>) -> Self {
-        What::Stress(Place::Nodes(nodes.into())).into()
+        ReadingKind::Stress(Place::Nodes(nodes.into())).into()
     }
 
     /// Stress (Pa) at the point of the body whose undeformed position is `x` (m): interpolated from the nodes
     /// around it by their shape functions.
     pub fn stress_at(x: impl Into<Vec<f64>>) -> Self {
-        What::Stress(Place::Point(x.into())).into()
+        ReadingKind::Stress(Place::Point(x.into())).into()
     }
 
     /// Strain at nodes, as [`stress`](Self::stress).
     pub fn strain(nodes: impl Into<Selection>) -> Self {
-        What::Strain(Place::Nodes(nodes.into())).into()
+        ReadingKind::Strain(Place::Nodes(nodes.into())).into()
     }
 
     /// Strain at a point, as [`stress_at`](Self::stress_at).
     pub fn strain_at(x: impl Into<Vec<f64>>) -> Self {
-        What::Strain(Place::Point(x.into())).into()
+        ReadingKind::Strain(Place::Point(x.into())).into()
     }
 
     /// Distance (m) between nodes, or the middles of sets.
     pub fn distance(from: impl Into<Selection>, to: impl Into<Selection>) -> Self {
-        What::Distance([from.into(), to.into()]).into()
+        ReadingKind::Distance([from.into(), to.into()]).into()
     }
 
     /// Angle (rad) from one line to another, each from its first node (or middle of a set) to its second: in the plane
@@ -246,12 +249,12 @@ impl Reading {
     /// the middle of a run starts again between -pi and pi, except for sensors of the name and kind that were
     /// read until then.
     pub fn angle<S: Into<Selection>>(from: [S; 2], to: [S; 2]) -> Self {
-        What::Angle([from, to].map(|line| line.map(Into::into))).into()
+        ReadingKind::Angle([from, to].map(|line| line.map(Into::into))).into()
     }
 
     /// Where the centre of mass of all bodies is, or of one [of them](Self::of_body) (m).
     pub fn centre_of_mass() -> Self {
-        What::CentreOfMass.into()
+        ReadingKind::CentreOfMass.into()
     }
 
     /// Rotation (rad) of a body as a whole, or [of some nodes](Self::on), from the undeformed shape.
@@ -261,7 +264,7 @@ impl Reading {
     /// [`angle`](Self::angle) (and that of [`Trajectory::rotation`](crate::Trajectory::rotation) up to these); in space a vector along the axis, of a length
     /// between 0 and pi. Nodes in one place, in space on one line, do not tell it.
     pub fn rotation() -> Self {
-        What::Rotation(None).into()
+        ReadingKind::Rotation(None).into()
     }
 
     /// Angular velocity (rad/s) of a body as a whole, or [of some nodes](Self::on): in the plane a number, counter-clockwise, in
@@ -270,18 +273,18 @@ impl Reading {
     /// It is the rate at which the [rotation](Self::rotation) R changes, omega x = R' R^T. Of what moves as a rigid body that is inertia^-1
     /// times angular momentum, whatever the weights.
     pub fn angular_velocity() -> Self {
-        What::AngularVelocity(None).into()
+        ReadingKind::AngularVelocity(None).into()
     }
 
     /// Rate (rad/s^2) of the [angular velocity](Self::angular_velocity), by the accelerations that the equations of motion say; 0 in
     /// equilibria.
     pub fn angular_acceleration() -> Self {
-        What::AngularAcceleration(None).into()
+        ReadingKind::AngularAcceleration(None).into()
     }
 
     /// Momentum of all bodies, or of one [of them](Self::of_body) (kg m/s).
     pub fn momentum() -> Self {
-        What::Momentum.into()
+        ReadingKind::Momentum.into()
     }
 
     /// Of one of several bodies: its centre of mass, how it turns, its momentum, what a touch or a fluid does to it. Default: of all together.
@@ -305,31 +308,33 @@ impl Reading {
     /// An output of the component with a `name`.
     #[cfg(feature = "scene-file")]
     pub(crate) fn of(output: &'static Output, name: impl Into<String>) -> Self {
-        What::Of(output, name.into()).into()
+        ReadingKind::Of(output, name.into()).into()
     }
 
     /// Unit of the numbers.
     pub(crate) fn unit(&self) -> &'static str {
         match self.what {
-            What::Position(_) | What::Displacement(_) | What::CentreOfMass => "m",
-            What::Distance(_) => "m",
-            What::Of(output, _) => output.unit,
-            What::Velocity(_) => "m/s",
-            What::Acceleration(_) => "m/s^2",
-            What::AngularVelocity(_) => "rad/s",
-            What::AngularAcceleration(_) => "rad/s^2",
-            What::Momentum => "kg m/s",
-            What::MagneticMoment => "A m^2",
-            What::ConstraintForce(_) | What::Contact(OfContact::Force, ..) => "N",
-            What::FluidForce(..) => "N",
-            What::Contact(OfContact::Area, ..) => "m^2",
-            What::Contact(OfContact::Pressure, ..) => "Pa",
-            What::Gap(_) => "m",
-            What::ConstraintMoment(..) => "N m",
-            What::Stress(_) => "Pa",
-            What::Strain(_) => "1",
-            What::Angle(_) | What::Rotation(_) if self.in_degrees => DEGREES,
-            What::Angle(_) | What::Rotation(_) => "rad",
+            ReadingKind::Position(_) | ReadingKind::Displacement(_) | ReadingKind::CentreOfMass => {
+                "m"
+            }
+            ReadingKind::Distance(_) => "m",
+            ReadingKind::Of(output, _) => output.unit,
+            ReadingKind::Velocity(_) => "m/s",
+            ReadingKind::Acceleration(_) => "m/s^2",
+            ReadingKind::AngularVelocity(_) => "rad/s",
+            ReadingKind::AngularAcceleration(_) => "rad/s^2",
+            ReadingKind::Momentum => "kg m/s",
+            ReadingKind::MagneticMoment => "A m^2",
+            ReadingKind::ConstraintForce(_) | ReadingKind::Contact(OfContact::Force, ..) => "N",
+            ReadingKind::FluidForce(..) => "N",
+            ReadingKind::Contact(OfContact::Area, ..) => "m^2",
+            ReadingKind::Contact(OfContact::Pressure, ..) => "Pa",
+            ReadingKind::Gap(_) => "m",
+            ReadingKind::ConstraintMoment(..) => "N m",
+            ReadingKind::Stress(_) => "Pa",
+            ReadingKind::Strain(_) => "1",
+            ReadingKind::Angle(_) | ReadingKind::Rotation(_) if self.in_degrees => DEGREES,
+            ReadingKind::Angle(_) | ReadingKind::Rotation(_) => "rad",
         }
     }
 
@@ -347,17 +352,17 @@ impl Reading {
 
     /// Whether it reads forces of constraints, which take an evaluation of all forces.
     pub(super) fn is_of_constraints(&self) -> bool {
-        matches!(self.what, What::ConstraintForce(_) | What::ConstraintMoment(..))
+        matches!(self.what, ReadingKind::ConstraintForce(_) | ReadingKind::ConstraintMoment(..))
     }
 
     /// Whether it reads accelerations, which take one, too.
     pub(super) fn is_of_accelerations(&self) -> bool {
-        matches!(self.what, What::Acceleration(_) | What::AngularAcceleration(_))
+        matches!(self.what, ReadingKind::Acceleration(_) | ReadingKind::AngularAcceleration(_))
     }
 
     /// Whether it follows from the places of nodes alone.
     pub(super) fn is_of_places(&self) -> bool {
-        use What::*;
+        use ReadingKind::*;
         match &self.what {
             Of(output, _) => output.is_of_positions,
             Position(_) | Displacement(_) | Distance(_) | Angle(_) => true,
@@ -372,7 +377,7 @@ impl Reading {
     }
 
     fn is_angle(&self) -> bool {
-        matches!(self.what, What::Angle(_) | What::Rotation(_))
+        matches!(self.what, ReadingKind::Angle(_) | ReadingKind::Rotation(_))
     }
 
     /// The components that are read for a body in `dimension` dimensions; none for a number.
@@ -387,13 +392,13 @@ impl Reading {
         }
         let is_of_bodies = matches!(
             self.what,
-            What::CentreOfMass
-                | What::Rotation(_)
-                | What::AngularVelocity(_)
-                | What::AngularAcceleration(_)
-                | What::Momentum
-                | What::Contact(_, By::Touch(_), _)
-                | What::FluidForce(..)
+            ReadingKind::CentreOfMass
+                | ReadingKind::Rotation(_)
+                | ReadingKind::AngularVelocity(_)
+                | ReadingKind::AngularAcceleration(_)
+                | ReadingKind::Momentum
+                | ReadingKind::Contact(_, ContactSource::Touch(_), _)
+                | ReadingKind::FluidForce(..)
         );
         if let Some(name) = self.body.as_ref().filter(|_| !is_of_bodies) {
             let help = "the centre of mass, how it turns, the momentum and what a touch or a fluid does are all that is read of a body: name its nodes instead";
@@ -401,22 +406,26 @@ impl Reading {
         }
         // the components that are columns by default, and one more that must be requested
         let (all, more): (&[Component], _) = match (&self.what, dimension) {
-            (What::Stress(_), 1) => (&[XX], Some(VonMises)),
-            (What::Stress(_), 2) => (&[XX, YY, ZZ, XY], Some(VonMises)),
-            (What::Stress(_), _) => (&[XX, YY, ZZ, XY, YZ, XZ], Some(VonMises)),
-            (What::Strain(_), 1) => (&[XX], None),
-            (What::Strain(_), 2) => (&[XX, YY, ZZ, XY], None),
-            (What::Strain(_), _) => (&[XX, YY, ZZ, XY, YZ, XZ], None),
-            (What::Position(_) | What::Displacement(_), _)
-            | (What::Velocity(_) | What::Acceleration(_), _)
-            | (What::ConstraintForce(_) | What::Contact(OfContact::Force, ..), _)
-            | (What::CentreOfMass | What::Momentum | What::MagneticMoment, _)
-            | (What::FluidForce(..) | What::Of(Output { is_vector: true, .. }, _), _) => {
-                (&[X, Y, Z][..dimension], Some(Norm))
-            }
-            (What::ConstraintMoment(_, Lever { axis: None, .. }), 3)
-            | (What::Rotation(_) | What::AngularVelocity(_), 3)
-            | (What::AngularAcceleration(_), 3) => (&[X, Y, Z], Some(Norm)),
+            (ReadingKind::Stress(_), 1) => (&[XX], Some(VonMises)),
+            (ReadingKind::Stress(_), 2) => (&[XX, YY, ZZ, XY], Some(VonMises)),
+            (ReadingKind::Stress(_), _) => (&[XX, YY, ZZ, XY, YZ, XZ], Some(VonMises)),
+            (ReadingKind::Strain(_), 1) => (&[XX], None),
+            (ReadingKind::Strain(_), 2) => (&[XX, YY, ZZ, XY], None),
+            (ReadingKind::Strain(_), _) => (&[XX, YY, ZZ, XY, YZ, XZ], None),
+            (ReadingKind::Position(_) | ReadingKind::Displacement(_), _)
+            | (ReadingKind::Velocity(_) | ReadingKind::Acceleration(_), _)
+            | (ReadingKind::ConstraintForce(_) | ReadingKind::Contact(OfContact::Force, ..), _)
+            | (
+                ReadingKind::CentreOfMass | ReadingKind::Momentum | ReadingKind::MagneticMoment,
+                _,
+            )
+            | (
+                ReadingKind::FluidForce(..) | ReadingKind::Of(Output { is_vector: true, .. }, _),
+                _,
+            ) => (&[X, Y, Z][..dimension], Some(Norm)),
+            (ReadingKind::ConstraintMoment(_, Lever { axis: None, .. }), 3)
+            | (ReadingKind::Rotation(_) | ReadingKind::AngularVelocity(_), 3)
+            | (ReadingKind::AngularAcceleration(_), 3) => (&[X, Y, Z], Some(Norm)),
             _ => (&[], None),
         };
         let Some(one) = self.component else { return Ok(all.to_vec()) };
@@ -426,8 +435,8 @@ impl Reading {
     }
 }
 
-impl From<What> for Reading {
-    fn from(what: What) -> Self {
+impl From<ReadingKind> for Reading {
+    fn from(what: ReadingKind) -> Self {
         Self { what, component: None, in_degrees: false, body: None, counts: None }
     }
 }

@@ -65,7 +65,7 @@ pub(super) fn complete(
     phase: &Arc<Phase>,
     is_commanded: bool,
 ) {
-    sample.commanded = Commanded(is_commanded.then(|| phase.frozen()));
+    sample.commanded = Commanded(is_commanded.then(|| phase.snapshot()));
     if sensors.is_empty() {
         return;
     }

@@ -9,7 +9,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use crate::base::vector::largest;
 use crate::dynamics::report::{ReducedReport, ToldReading};
-use crate::dynamics::system::{Lacking, LeftOver, System};
+use crate::dynamics::system::{MissingDisplacement, ResidualSnapshot, System};
 use crate::scene::reduced_model::ReducedModel;
 use crate::scene::timeline::Scene;
 
@@ -18,9 +18,9 @@ use crate::scene::timeline::Scene;
 pub(super) struct ReducedChecks {
     pub(super) report: ReducedReport,
     /// Of the present phase.
-    left_over: Vec<LeftOver>,
+    left_over: Vec<ResidualSnapshot>,
     /// Of all phases, if somebody wants them.
-    lacking: Option<Vec<Lacking>>,
+    lacking: Option<Vec<MissingDisplacement>>,
 }
 
 impl ReducedChecks {
@@ -31,7 +31,7 @@ impl ReducedChecks {
     }
 
     /// Keeps what is left over in a state whose largest displacement is `travel` (m).
-    pub(super) fn keep(&mut self, left_over: LeftOver, travel: f64) {
+    pub(super) fn keep(&mut self, left_over: ResidualSnapshot, travel: f64) {
         self.report.note_state(travel, left_over.outside);
         self.left_over.push(left_over);
     }
@@ -42,7 +42,7 @@ impl ReducedChecks {
         &mut self,
         number: usize,
         equations: impl FnOnce() -> Option<System>,
-        change: impl Fn(&LeftOver, &[f64]) -> Vec<ToldReading>,
+        change: impl Fn(&ResidualSnapshot, &[f64]) -> Vec<ToldReading>,
     ) {
         if self.left_over.is_empty() {
             return;
@@ -58,7 +58,7 @@ impl ReducedChecks {
             self.report.note_imbalance(largest(&displacement));
             self.report.note_changes(change(&state, &displacement));
             if let Some(lacking) = &mut self.lacking {
-                lacking.push(Lacking { phase: number, displacement });
+                lacking.push(MissingDisplacement { phase: number, displacement });
             }
         }
     }
@@ -71,7 +71,7 @@ impl ReducedChecks {
     }
 
     /// The displacements that were lacking, at the end; none unless they were kept.
-    pub(super) fn take_lacking(&mut self) -> Vec<Lacking> {
+    pub(super) fn take_lacking(&mut self) -> Vec<MissingDisplacement> {
         self.lacking.take().unwrap_or_default()
     }
 }

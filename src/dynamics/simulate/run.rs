@@ -29,7 +29,7 @@ use crate::dynamics::indicators::{self, Follower};
 use crate::dynamics::matrices::Matrices;
 use crate::dynamics::report::{Report, ToldReading, creation};
 use crate::dynamics::state::{ENERGIES, State};
-use crate::dynamics::system::{LeftOver, System};
+use crate::dynamics::system::{ResidualSnapshot, System};
 use crate::dynamics::trajectory::{IntegrationFailure, Interrupted, Leap, Sample, Trajectory};
 use crate::elements::body::{Body, Part};
 use crate::elements::force::Forces;
@@ -454,7 +454,7 @@ impl Run {
     }
 
     /// Changes of the readings of nodal positions under additional displacements (m) of a state.
-    fn changes_by(&self, at: &LeftOver, displacements: &[f64]) -> Vec<ToldReading> {
+    fn changes_by(&self, at: &ResidualSnapshot, displacements: &[f64]) -> Vec<ToldReading> {
         if !self.sensors.read_places() {
             return Vec::new();
         }

@@ -210,7 +210,7 @@ pub(super) fn start(
 }
 
 /// Starts an integrator of ordinary differential equations, linear ones or others.
-fn ode<S: Lead>(
+fn ode<S: IntoStepper>(
     equations: S,
     is_linear: bool,
     settings: &Settings,
@@ -226,37 +226,37 @@ fn ode<S: Lead>(
             let options =
                 arkode_options(settings, tolerances, is_linear, holds_liquid)?.max_step(longest);
             let options = first.into_iter().fold(options, ArkodeOptions::initial_step);
-            S::lead(end, Arkode::new(equations, t, y, &options)?)
+            S::into_stepper(end, Arkode::new(equations, t, y, &options)?)
         }
         Method::Rosenbrock => {
             let options = rosenbrock_options(settings, tolerances, equations.system(), is_linear);
             let options = options.max_step(longest);
             let options = first.into_iter().fold(options, rosenbrock::Options::initial_step);
-            S::lead(end, Rosenbrock::new(equations, t, y, &options)?)
+            S::into_stepper(end, Rosenbrock::new(equations, t, y, &options)?)
         }
         Method::Rk => {
             let options = rk::Options::new(settings.rtol, tolerances).max_step(longest);
             let options = first.into_iter().fold(options, rk::Options::initial_step);
-            S::lead(end, DormandPrince::new(equations, t, y, &options)?)
+            S::into_stepper(end, DormandPrince::new(equations, t, y, &options)?)
         }
         // a plan never has `Auto`, and other methods take other equations
         _ => {
             let options = cvode_options(settings, tolerances, holds_liquid).max_step(longest);
-            S::lead(end, Cvode::new(equations, t, y, &options)?)
+            S::into_stepper(end, Cvode::new(equations, t, y, &options)?)
         }
     }
 }
 
-/// Equations that are an ODE, and what leads their integrators.
-trait Lead: Form + Ode + Send + Sized + 'static {
+/// Equations that are an ODE, with the stepper of their integrators.
+trait IntoStepper: Form + Ode + Send + Sized + 'static {
     /// The stepper of an integrator that stops at `end` (s).
-    fn lead<I>(end: f64, integrator: I) -> Result<Box<dyn Stepper>, Failed>
+    fn into_stepper<I>(end: f64, integrator: I) -> Result<Box<dyn Stepper>, Failed>
     where
         I: Integrator<System = Self> + Send + 'static;
 }
 
-impl Lead for System {
-    fn lead<I>(end: f64, integrator: I) -> Result<Box<dyn Stepper>, Failed>
+impl IntoStepper for System {
+    fn into_stepper<I>(end: f64, integrator: I) -> Result<Box<dyn Stepper>, Failed>
     where
         I: Integrator<System = Self> + Send + 'static,
     {

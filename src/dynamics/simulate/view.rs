@@ -8,7 +8,7 @@ use crate::dynamics::state::State;
 use crate::elements::body::{Body, CellField, Grown, MagnetizedPoints, Strands};
 use crate::elements::force::{Force, Forces, NodalForces};
 use crate::elements::mesh::Selection;
-use crate::scene::forces::{ChamberForce, Contact, Filled, Poured, SpringGauge};
+use crate::scene::forces::{ChamberForce, Contact, GasInChamber, LiquidInChamber, SpringGauge};
 use crate::scene::timeline::{LoadKind, Phase, Quantity, Scene, Target};
 #[cfg(feature = "play")]
 use crate::scene::{forces::NodalContact, timeline::ContactReader};
@@ -28,8 +28,8 @@ pub struct View<'a> {
 pub(super) struct Gauges {
     pub(super) chambers: Vec<Arc<ChamberForce>>,
     pub(super) springs: Vec<SpringGauge>,
-    pub(super) gases: Vec<Filled>,
-    pub(super) liquids: Vec<Poured>,
+    pub(super) gases: Vec<GasInChamber>,
+    pub(super) liquids: Vec<LiquidInChamber>,
     /// Their masses at the start (kg), of gases and then of liquids.
     masses: Vec<f64>,
     pub(super) muscles: Vec<Strands>,
@@ -153,7 +153,7 @@ impl<'a> View<'a> {
     }
 
     /// The liquid of that number, which has a surface, under the gravity of the phase.
-    pub(super) fn with_surface(&self, number: usize) -> Result<Poured, InputError> {
+    pub(super) fn with_surface(&self, number: usize) -> Result<LiquidInChamber, InputError> {
         self.scene.poured_in(Some(self.phase), &self.scene.liquids()[number])
     }
 

@@ -126,7 +126,7 @@ impl Scene {
         self.initial_velocities()?;
         let from = self.initial_displacements();
         let starts = from.iter().any(|u| *u != 0.0);
-        self.shut().forces()?; // errors of what is constant, before it rises
+        self.with_fixed_amounts().forces()?; // errors of what is constant, before it rises
         let mut forces = self.loaded(!starts).forces()?;
         indicators::overlap::check_start(self)?;
         let matrices = self.matrices(&forces);

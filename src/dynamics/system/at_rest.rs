@@ -26,8 +26,8 @@ mod tests;
 use std::sync::Arc;
 
 use super::System;
+use super::constrained_solver::nodal_multipliers;
 use super::newton_matrix::NewtonMatrix;
-use super::reduced::nodal_multipliers;
 use super::source::EntrySource;
 use crate::base::input::InputError;
 use crate::base::sparse::{BlockMatrix, NodeMatrix};

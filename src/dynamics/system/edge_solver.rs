@@ -48,7 +48,7 @@ pub(super) struct EdgeSolver {
     pub(super) z: Mat<f64>,
     pub(super) of_rows: Mat<f64>,
     /// The diagonal of X^-1 at the frames, as it is without the general rows.
-    pub(super) lightness: Vec<f64>,
+    pub(super) inverse_diagonal: Vec<f64>,
     pieces: Vec<Piece>,
     rows: Vec<[f64; 3]>,
     columns: Vec<[f64; 3]>,
@@ -182,7 +182,7 @@ impl EdgeSolver {
             places: edges.iter().map(|edge| edge.nodes.map(place)).collect(),
             z: Mat::zeros(free, count),
             of_rows: Mat::zeros(general, count),
-            lightness: vec![0.0; count],
+            inverse_diagonal: vec![0.0; count],
             frames,
             pieces: Vec::new(),
             rows: vec![[0.0; 3]; edges.len()],
@@ -323,7 +323,7 @@ impl EdgeSolver {
     /// hold all of a frame.
     fn largest(&self, edge: usize) -> f64 {
         let square = dot(&self.columns[edge], &self.columns[edge]);
-        square * self.lightness.iter().fold(0.0_f64, |most, x| most.max(x.abs()))
+        square * self.inverse_diagonal.iter().fold(0.0_f64, |most, x| most.max(x.abs()))
     }
 
     /// Corrects the solution `x` = X^-1 f, and the multipliers `mu` of the general rows `numbers`, by the multipliers that

@@ -14,7 +14,7 @@
 
 use std::sync::Arc;
 
-use super::reduced::nodal_multipliers;
+use super::constrained_solver::nodal_multipliers;
 use super::{Reduction, System};
 use crate::base::input::InputError;
 use crate::base::simd::add;
@@ -26,7 +26,7 @@ use crate::scene::reduced_model::ReducedModel;
 
 /// A state of a reduced model, with what all unknowns would feel in it except the forces of cells, which depend on nothing else.
 #[derive(Debug, Clone)]
-pub(crate) struct LeftOver {
+pub(crate) struct ResidualSnapshot {
     /// Time (s), and how long the phase has lasted then (s).
     pub(crate) time: f64,
     age: f64,
@@ -42,7 +42,7 @@ pub(crate) struct LeftOver {
 
 /// Displacements (m) of all nodes that a reduced model lacks, as determined from a state in a phase.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Lacking {
+pub(crate) struct MissingDisplacement {
     pub(crate) phase: usize,
     pub(crate) displacement: Vec<f64>,
 }
@@ -102,7 +102,7 @@ impl System {
         t: f64,
         state: &[f64],
         [start, end]: [f64; 2],
-    ) -> Result<Option<LeftOver>, Failure> {
+    ) -> Result<Option<ResidualSnapshot>, Failure> {
         let age = t - start;
         let part = age / (end - start);
         match &mut self.reduction {
@@ -122,7 +122,14 @@ impl System {
         let a = self.reduced_accelerations(t, [u, v, internal])?;
         let outside = self.reduction.as_ref().map_or(0.0, |own| own.outside(u));
         let state = [u.to_vec(), v.to_vec(), a];
-        Ok(Some(LeftOver { time: t, age, state, internal: internal.to_vec(), forces, outside }))
+        Ok(Some(ResidualSnapshot {
+            time: t,
+            age,
+            state,
+            internal: internal.to_vec(),
+            forces,
+            outside,
+        }))
     }
 
     /// Accelerations (m/s^2) of all nodes as a reduced model has them.
@@ -169,13 +176,17 @@ impl System {
     /// Of the tangents of the first and of the last state those tell that resist more: a body on the way to where it comes to
     /// rest may be about to buckle, and move far under any force. Those that do not resist every motion, which take longer to factorize, are asked only where
     /// the others tell more than `enough` (m), or nothing.
-    pub(crate) fn imbalances(&mut self, states: &[LeftOver], enough: f64) -> Vec<Option<Vec<f64>>> {
+    pub(crate) fn imbalances(
+        &mut self,
+        states: &[ResidualSnapshot],
+        enough: f64,
+    ) -> Vec<Option<Vec<f64>>> {
         let mut least = vec![None; states.len()];
         let residuals: Result<Vec<_>, Failure> =
             states.iter().map(|state| self.residual(state)).collect();
         let Ok(residuals) = residuals else { return least };
         let (first, others) = (states.first(), states.get(1..).unwrap_or_default());
-        let at: Vec<&LeftOver> = first.into_iter().chain(others.last()).collect();
+        let at: Vec<&ResidualSnapshot> = first.into_iter().chain(others.last()).collect();
         for are_definite in [true, false] {
             for at in &at {
                 let found = self.imbalances_by(at, states, &residuals, are_definite);
@@ -191,8 +202,8 @@ impl System {
     }
 
     /// The nodal forces (N) that a state leaves over.
-    fn residual(&mut self, state: &LeftOver) -> Result<Vec<f64>, Failure> {
-        let LeftOver { time, state: [u, v, a], internal, forces, .. } = state;
+    fn residual(&mut self, state: &ResidualSnapshot) -> Result<Vec<f64>, Failure> {
+        let ResidualSnapshot { time, state: [u, v, a], internal, forces, .. } = state;
         self.at.nodal.clear();
         self.add_forces_of_matrices(u, v)?;
         self.add_forces_where(|force| force.is_by_cells(), *time, u, v)?;
@@ -207,16 +218,16 @@ impl System {
     /// The imbalances with the tangents of one of the states, where these can be factorized: if they `are_definite`.
     fn imbalances_by(
         &mut self,
-        at: &LeftOver,
-        states: &[LeftOver],
+        at: &ResidualSnapshot,
+        states: &[ResidualSnapshot],
         residuals: &[Vec<f64>],
         are_definite: bool,
     ) -> Vec<Option<Vec<f64>>> {
-        let LeftOver { time, state: [u, v, _], internal, .. } = at;
+        let ResidualSnapshot { time, state: [u, v, _], internal, .. } = at;
         // a step so long that inertia hardly matters, except where nothing resists a motion
         let [size, speed] = self.matrices.scales;
         let slow = SLOW * size / speed;
-        let step = |state: &LeftOver| slow.min(state.age);
+        let step = |state: &ResidualSnapshot| slow.min(state.age);
         // Maxwell branches are least stiff in the longest step
         let longest = states.iter().map(step).fold(0.0, f64::max);
         let (strains, amounts) = self.parts_of(internal);

@@ -13,7 +13,7 @@
 //! differences between the halves of each step alone, and sees a third of their change.
 
 use super::System;
-use super::reduced::nodal_multipliers;
+use super::constrained_solver::nodal_multipliers;
 use crate::base::simd::{Formula, each};
 use crate::base::tensor::Real;
 use crate::base::vector::dot;

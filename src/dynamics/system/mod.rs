@@ -36,6 +36,7 @@
 
 mod at_rest;
 mod cholesky;
+mod constrained_solver;
 mod dae;
 mod dae_jacobian;
 mod differences;
@@ -55,7 +56,6 @@ mod newton;
 mod newton_matrix;
 mod ode;
 mod rates;
-mod reduced;
 mod reduced_branches;
 mod reduced_dae;
 mod reduced_flow;
@@ -79,14 +79,14 @@ use std::ops::Range;
 use std::sync::Arc;
 
 pub(crate) use at_rest::{AtRest, ForceBalance};
+use constrained_solver::{ConstrainedSolver, EXACT, nodal_multipliers};
 pub(crate) use dae::{DaeForm, Index};
 use edges::Edges;
 use ends::Ends;
 pub(crate) use expected::Vibrations;
 pub(crate) use form::Form;
-pub(crate) use imbalance::{Lacking, LeftOver};
+pub(crate) use imbalance::{MissingDisplacement, ResidualSnapshot};
 use newton_matrix::NewtonMatrix;
-use reduced::{EXACT, Reduced, nodal_multipliers};
 pub(crate) use reduced_dae::ReducedDae;
 pub(crate) use reduced_form::{Lift, ReducedForm};
 use reduction::Reduction;
@@ -118,7 +118,7 @@ pub(crate) struct System {
     rows: Vec<ConstraintRow>,
     /// Stabilization rate alpha (1/s).
     alpha: f64,
-    inertia: Reduced,
+    inertia: ConstrainedSolver,
     /// Edges that keep the shape of rigid pieces.
     edges: Edges,
     /// All edges, including those that constraints keep already.
@@ -207,14 +207,14 @@ impl System {
         };
         let mut edges = Edges::new(matrices.rigid.as_deref(), &matrices.positions, dimension);
         let all_edges = edges.clone();
-        let mut inertia = Reduced::new(&matrices, &rows, &edges.list, coupling);
+        let mut inertia = ConstrainedSolver::new(&matrices, &rows, &edges.list, coupling);
         let values = &matrices.inertia.values;
         let mut begun = inertia.begin(EXACT, |source| values[source.entry()]);
         if let (Some(solver), Ok(())) = (&mut inertia.edges, &begun) {
             let is_kept = solver.independent(&edges);
             if is_kept.contains(&false) {
                 edges = edges.retained(&is_kept);
-                inertia = Reduced::new(&matrices, &rows, &edges.list, coupling);
+                inertia = ConstrainedSolver::new(&matrices, &rows, &edges.list, coupling);
                 begun = inertia.begin(EXACT, |source| values[source.entry()]);
             }
         }
@@ -249,7 +249,7 @@ impl System {
             brought: 0.0,
         };
         let mut newton = newton;
-        let rooms = flow_of(&flow).map_or(0, |flow| flow.rooms());
+        let rooms = flow_of(&flow).map_or(0, |flow| flow.reservoirs());
         newton.hold_amounts([rooms, amounts], dofs);
         let (base, refusal) = (matrices.clone(), String::new());
         let linear_edges = edges.clone();

@@ -30,9 +30,9 @@ use std::sync::Arc;
 
 use super::System;
 use super::cholesky::Indefinite;
+use super::constrained_solver::nodal_multipliers;
 use super::edges::stabilized;
 use super::newton_matrix::{ITERATED, NewtonMatrix, SOLVED_ONCE};
-use super::reduced::nodal_multipliers;
 use super::source::EntrySource;
 use crate::base::sparse::BlockMatrix;
 use crate::base::vector::{dot, largest};

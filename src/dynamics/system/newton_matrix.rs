@@ -2,10 +2,10 @@
 
 use std::sync::Arc;
 
+use super::constrained_solver::ConstrainedSolver;
 use super::differences::Differences;
 use super::edges::Edge;
 use super::flow_matrix::FlowMatrix;
-use super::reduced::Reduced;
 use super::source::Coupling;
 use crate::base::sparse::BlockMatrix;
 use crate::dynamics::matrices::Matrices;
@@ -18,7 +18,7 @@ pub(super) const ITERATED: f64 = 1e-5;
 pub(super) const SOLVED_ONCE: f64 = 1e-11;
 
 pub(super) struct NewtonMatrix {
-    pub(super) solver: Reduced,
+    pub(super) solver: ConstrainedSolver,
     pub(super) stiffness: Tangent,
     pub(super) damping: Tangent,
     pub(super) differences: Differences,
@@ -100,7 +100,7 @@ impl NewtonMatrix {
     ) -> Self {
         let dofs = matrices.dofs();
         Self {
-            solver: Reduced::new(matrices, rows, edges, Coupling::AllAxes),
+            solver: ConstrainedSolver::new(matrices, rows, edges, Coupling::AllAxes),
             stiffness: Tangent::new(matrices, &matrices.stiffness, follows),
             damping: Tangent::new(matrices, &matrices.damping, follows),
             differences: Differences::new(matrices.scales),
@@ -131,7 +131,7 @@ impl NewtonMatrix {
 
     /// Continues with matrices on another pattern, without tangents yet.
     pub(super) fn move_to(&mut self, matrices: &Matrices, rows: &[ConstraintRow], edges: &[Edge]) {
-        let mut solver = Reduced::new(matrices, rows, edges, Coupling::AllAxes);
+        let mut solver = ConstrainedSolver::new(matrices, rows, edges, Coupling::AllAxes);
         solver.count_from(&self.solver);
         self.solver = solver;
         self.stiffness = Tangent::new(matrices, &matrices.stiffness, self.follows);

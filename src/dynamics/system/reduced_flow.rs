@@ -35,7 +35,7 @@ impl ReducedFlow {
     pub(super) fn new(force: &Arc<dyn Force>, shapes: &Shapes) -> Self {
         let flow = force.flow();
         let unknowns = flow.map_or(0, |flow| flow.start().len());
-        let rooms = flow.map_or(0, |flow| flow.rooms());
+        let rooms = flow.map_or(0, |flow| flow.reservoirs());
         let (count, free) = (shapes.count(), shapes.free());
         Self {
             force: force.clone(),

@@ -80,7 +80,7 @@ impl Scene {
     /// # Errors
     /// As [`validate`](Self::validate).
     pub fn spectrum(&self) -> Result<Vec<Spectrum>, InputError> {
-        let shut = self.shut();
+        let shut = self.with_fixed_amounts();
         let forces = shut.forces()?;
         let matrices = self.matrices(&forces);
         let rest = vec![0.0; self.body().dofs()];

@@ -9,7 +9,7 @@ use nalgebra::{DMatrix, SymmetricEigen};
 
 use super::System;
 use super::at_rest::shifted;
-use super::reduced::Reduced;
+use super::constrained_solver::ConstrainedSolver;
 use super::rigid::{self, Shape};
 use super::shapes::Shapes;
 use super::source::Coupling;
@@ -236,7 +236,7 @@ impl System {
             return Vec::new();
         }
         let mut solver =
-            Reduced::new(&self.matrices, &self.rows, &self.edges.list, Coupling::AllAxes);
+            ConstrainedSolver::new(&self.matrices, &self.rows, &self.edges.list, Coupling::AllAxes);
         let mut shift = SHIFT * highest;
         // Kt may have become indefinite by compression
         while !self.shift(&mut solver, shift) {
@@ -298,7 +298,7 @@ impl System {
     }
 
     /// Factorizes Kt + `shift` M in `solver`. Returns whether it is positive definite.
-    fn shift(&self, solver: &mut Reduced, shift: f64) -> bool {
+    fn shift(&self, solver: &mut ConstrainedSolver, shift: f64) -> bool {
         let (inertia, stiffness) = (&self.matrices.inertia, self.tangents().0);
         let factorized = solver.factorize(|source| shifted(inertia, stiffness, shift, source));
         if let (Ok(()), Some(edges)) = (&factorized, &mut solver.edges) {

@@ -39,11 +39,11 @@ pub(super) struct Symmetric {
     values: Vec<f64>,
     cholesky: Cholesky,
     /// None where a factor is cheap.
-    rented: Option<Rented>,
+    rented: Option<BudgetedCg>,
 }
 
 /// Iterations instead of a factor.
-struct Rented {
+struct BudgetedCg {
     gradients: Gradients,
     /// Whether systems with the matrix in force are solved by them.
     is_open: bool,
@@ -78,14 +78,14 @@ impl Symmetric {
         let rent = cholesky.work() / DENSE_SPEED / iteration;
         let saved = 4.0 * cholesky.entries() as f64 / iteration;
         let gradients = gradients.filter(|_| rent >= WORTH_ITERATING);
-        let rented = gradients.map(|gradients| Rented::new(gradients(), rent, saved));
+        let rented = gradients.map(|gradients| BudgetedCg::new(gradients(), rent, saved));
         Self { free, sources, carried, values, cholesky, rented }
     }
 
     /// Has iterations tried before a factor, up to so many more than solves with the factor would cost.
     #[cfg(test)]
     pub(super) fn rent(&mut self, gradients: Gradients, iterations: f64) {
-        self.rented = Some(Rented::new(gradients, iterations, 0.0));
+        self.rented = Some(BudgetedCg::new(gradients, iterations, 0.0));
     }
 
     /// Sets a positive definite matrix, which is factorized only where that is cheap or turns out to be
@@ -125,7 +125,7 @@ impl Symmetric {
 
     /// Ends iterations, and copies the matrix in force to where it is factorized.
     fn end_iterations(&mut self) {
-        if let Some(Rented { is_open, matrices, gradients, .. }) = &mut self.rented
+        if let Some(BudgetedCg { is_open, matrices, gradients, .. }) = &mut self.rented
             && std::mem::take(is_open)
         {
             *matrices = matrices.saturating_sub(1);
@@ -181,7 +181,7 @@ impl Symmetric {
     }
 }
 
-impl Rented {
+impl BudgetedCg {
     fn new(gradients: Gradients, rent: f64, saved: f64) -> Self {
         Self {
             gradients,

@@ -1,7 +1,7 @@
 //! Boundary extraction: the faces that belong to one cell only.
 
 use super::{Block, FaceKind, Mesh};
-use crate::base::input::{InputError, told};
+use crate::base::input::{InputError, four_digits};
 
 /// A face of a cell: a node in 1D, an edge in 2D, a face in 3D.
 ///
@@ -94,7 +94,7 @@ impl Mesh {
     pub(crate) fn told_middle(&self, nodes: &[usize]) -> String {
         let mean = |axis: usize| {
             let sum: f64 = nodes.iter().map(|&node| self.position(node)[axis]).sum();
-            told(sum / nodes.len() as f64)
+            four_digits(sum / nodes.len() as f64)
         };
         format!("({})", (0..self.dimension).map(mean).collect::<Vec<_>>().join(", "))
     }

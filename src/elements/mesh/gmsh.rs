@@ -17,7 +17,7 @@ use types::ElementType;
 
 use super::shape::corner_measures;
 use super::{CellKind, Mesh};
-use crate::base::input::{InputError, read_at_most, told};
+use crate::base::input::{InputError, four_digits, read_at_most};
 
 /// Bytes that a file may have: those of some ten million nodes.
 const MOST_BYTES: u64 = 2 << 30;
@@ -216,7 +216,7 @@ fn space(
     let round_off = ROUND_OFF * (0..3).map(largest).fold(0.0, f64::max);
     let size = bounds.map(|[low, high]| high - low).into_iter().fold(0.0, f64::max);
     let [low, high] = bounds[2];
-    let [from, to] = [low, high].map(told);
+    let [from, to] = [low, high].map(four_digits);
     if high - low > ROUNDED * size {
         let extends = format!("extends along z, from {from} to {to} m");
         let (cells, faces) = (kind.name(), kind.dimension() == 2);
@@ -236,7 +236,7 @@ fn space(
         let plane = if high - low > round_off {
             format!(
                 "z from {from} to {to} m, which is round-off beside its size of {} m,",
-                told(size)
+                four_digits(size)
             )
         } else {
             format!("z = {from} m, the same everywhere,")

@@ -17,10 +17,10 @@ use crate::scene::timeline::{
 /// Constraints, inputs and obstacles in force.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct InForce {
-    constraints: Vec<(Constrained, Given<Motion>)>,
+pub(super) struct PhaseOverrides {
+    constraints: Vec<(Constrained, Stored<Motion>)>,
     /// None in files in which they stand by their quantities.
-    inputs: Option<Vec<(Quantity, Target, GivenSignal)>>,
+    inputs: Option<Vec<(Quantity, Target, StoredSignal)>>,
     /// Names of the obstacles that act; without: all.
     contact: ContactWith,
     /// Obstacles that commands have set in motion: name, offset from where its velocity or path would have
@@ -28,27 +28,28 @@ pub(super) struct InForce {
     moving: Vec<(String, [f64; 3], Option<[f64; 3]>)>,
     // inputs of files that were written when each quantity had a list
     #[serde(default, skip_serializing)]
-    loads: Vec<(Selection, LoadKind, Given<VectorSignal>)>,
+    loads: Vec<(Selection, LoadKind, Stored<VectorSignal>)>,
     #[serde(default, skip_serializing)]
-    actuations: Vec<(Vec<String>, Given<SignalKind>)>,
+    actuations: Vec<(Vec<String>, Stored<SignalKind>)>,
     #[serde(default, skip_serializing)]
-    pressures: Vec<(String, Given<SignalKind>)>,
+    pressures: Vec<(String, Stored<SignalKind>)>,
     #[serde(default, skip_serializing)]
-    openings: Vec<(String, Given<SignalKind>)>,
+    openings: Vec<(String, Stored<SignalKind>)>,
     #[serde(default, skip_serializing)]
-    flows: Vec<(String, Given<SignalKind>)>,
+    flows: Vec<(String, Stored<SignalKind>)>,
     #[serde(default, skip_serializing)]
-    magnetic_field: Option<Given<VectorSignal>>,
+    magnetic_field: Option<Stored<VectorSignal>>,
     #[serde(default, skip_serializing)]
-    dipoles: Vec<(String, DipolePart, Given<VectorSignal>)>,
+    dipoles: Vec<(String, DipolePart, Stored<VectorSignal>)>,
 }
 
 /// A motion or a signal.
 #[derive(Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-enum Given<T> {
+enum Stored<T> {
     /// A function, by the number (from 0) among its like that the phase has in the scene.
-    OfScene(usize),
+    #[serde(rename = "of_scene")]
+    SceneFunction(usize),
     #[serde(untagged)]
     Itself(T),
 }
@@ -86,7 +87,7 @@ impl Changing for SignalKind {
     }
 }
 
-impl<T: Changing> Given<T> {
+impl<T: Changing> Stored<T> {
     /// `own` are its like in the scene.
     ///
     /// # Errors
@@ -98,7 +99,7 @@ impl<T: Changing> Given<T> {
     ) -> Result<Self, InputError> {
         let Some(function) = value.function() else { return Ok(Self::Itself(value.clone())) };
         let place = own.position(|own| own.function() == Some(function));
-        place.map(Self::OfScene).ok_or_else(|| {
+        place.map(Self::SceneFunction).ok_or_else(|| {
             let help = "a file cannot hold it; command a constant or a table before";
             InputError::new(name(), "a function of time", help)
         })
@@ -112,7 +113,7 @@ impl<T: Changing> Given<T> {
     {
         match self {
             Self::Itself(value) => Ok(value),
-            Self::OfScene(place) => own.nth(place).cloned().ok_or_else(|| {
+            Self::SceneFunction(place) => own.nth(place).cloned().ok_or_else(|| {
                 format!("{what} {place} is none of the phase in the scene: write it anew")
             }),
         }
@@ -144,12 +145,12 @@ fn vectors(phase: &Phase, of: impl Fn(Quantity) -> bool) -> impl Iterator<Item =
 /// The signal of an input.
 #[derive(Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-enum GivenSignal {
-    Number(Given<SignalKind>),
-    Vector(Given<VectorSignal>),
+enum StoredSignal {
+    Number(Stored<SignalKind>),
+    Vector(Stored<VectorSignal>),
 }
 
-impl GivenSignal {
+impl StoredSignal {
     fn of(
         signal: &InputSignal,
         own: &Phase,
@@ -157,10 +158,10 @@ impl GivenSignal {
     ) -> Result<Self, InputError> {
         match signal {
             InputSignal::Number(Signal(signal)) => {
-                Given::of(signal, numbers(own, |_| true), name).map(Self::Number)
+                Stored::of(signal, numbers(own, |_| true), name).map(Self::Number)
             }
             InputSignal::Vector(signal) => {
-                Given::of(signal, vectors(own, |_| true), name).map(Self::Vector)
+                Stored::of(signal, vectors(own, |_| true), name).map(Self::Vector)
             }
         }
     }
@@ -173,18 +174,18 @@ impl GivenSignal {
     }
 }
 
-impl InForce {
+impl PhaseOverrides {
     /// `phase`, which is the phase `own` of the scene as commands have changed it.
     ///
     /// # Errors
     /// A function that `own` does not have.
     pub(super) fn of(phase: &Phase, own: &Phase) -> Result<Self, InputError> {
         let constraints = phase.constraints.iter().map(|Constraint { what, how }| {
-            let how = Given::of(how, motions(own), || format!("path of {what:?}"))?;
+            let how = Stored::of(how, motions(own), || format!("path of {what:?}"))?;
             Ok((what.clone(), how))
         });
         let inputs = phase.inputs.iter().map(|Input { quantity, target, signal }| {
-            let signal = GivenSignal::of(signal, own, || quantity.of(target))?;
+            let signal = StoredSignal::of(signal, own, || quantity.of(target))?;
             Ok((*quantity, target.clone(), signal))
         });
         let moving = phase.redirected.iter().map(|obstacle| {
@@ -212,7 +213,7 @@ impl InForce {
     pub(super) fn read(mut self, own: &Phase, scene: &Scene) -> Result<Phase, String> {
         let inputs = match self.inputs.take() {
             Some(inputs) => {
-                let read = |(quantity, target, signal): (_, _, GivenSignal)| {
+                let read = |(quantity, target, signal): (_, _, StoredSignal)| {
                     Ok(Input { quantity, target, signal: signal.read(own)? })
                 };
                 inputs.into_iter().map(read).collect::<Result<_, String>>()?
@@ -248,7 +249,7 @@ impl InForce {
         let mut add = |quantity, target, signal: InputSignal| {
             inputs.push(Input { quantity, target, signal });
         };
-        let named = |list: &mut Vec<(String, Given<SignalKind>)>| {
+        let named = |list: &mut Vec<(String, Stored<SignalKind>)>| {
             let list = take(list).into_iter();
             list.map(|(name, signal)| (vec![name], signal)).collect::<Vec<_>>()
         };

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::commands::InForce;
+use super::commands::PhaseOverrides;
 use super::identity::Identity;
 use crate::base::input::{InputError, finite};
 use crate::dynamics::simulate::{Angles, Checkpoint, Choice, Kept};
@@ -41,7 +41,7 @@ pub(super) struct Record {
     time: f64,
     /// Number of the phase in force, from 0.
     phase: usize,
-    in_force: InForce,
+    in_force: PhaseOverrides,
     #[serde(deserialize_with = "Option::deserialize")]
     chosen: Option<Choice>,
     #[serde(deserialize_with = "Option::deserialize")]
@@ -99,7 +99,7 @@ impl Record {
             scene: Identity::of(scene),
             time: kept.time,
             phase: kept.number,
-            in_force: InForce::of(&kept.phase, &scene.phases()[kept.number])?,
+            in_force: PhaseOverrides::of(&kept.phase, &scene.phases()[kept.number])?,
             chosen: checkpoint.choice(),
             next_step: kept.first_step,
             steps: kept.steps,

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::cells::{BOX, CELLS, GROUP, cells};
 use super::contents::AutoRequest;
-use super::keys::{AUTO, Holds, Key, TableKeys};
+use super::keys::{AUTO, Key, TableKeys, ValueType};
 use super::material::{MATERIAL, substance};
 use super::mesh::{self, AutoCells, MESH};
 use super::table::Table;
@@ -23,67 +23,67 @@ pub(super) const BODY: TableKeys = TableKeys::new(
     "What moves: a mesh made of a material. A list of several, `[[body]]`, feel each other where they touch by \
      `[[touch]]`; ties, springs and combinations of displacements that are held join them.",
     &[
-        Key::new("name", Holds::Text, "its name among several bodies")
-            .law("It is a node set and a group of cells, and stands before the node sets and groups of the body: `finger/tip`.")
+        Key::new("name", ValueType::Text, "its name among several bodies")
+            .note("It is a node set and a group of cells, and stands before the node sets and groups of the body: `finger/tip`.")
             .default("`body 1`, `body 2` and so on"),
-        Key::new("mesh", Holds::Table(&MESH), "the mesh").required(),
+        Key::new("mesh", ValueType::Table(&MESH), "the mesh").required(),
         Key::number("thickness", "the thickness of a body in the plane", "m")
             .default("required in two dimensions; none if axisymmetric"),
         Key::number("area", "the cross section of a string", "m^2")
             .default("required in one dimension"),
         Key::new(
             "strain",
-            Holds::Word(|| STRAINS.map(|(word, _)| word).into()),
+            ValueType::Word(|| STRAINS.map(|(word, _)| word).into()),
             "the measure of strain",
         )
-        .law(
+        .note(
             "Cauchy's is linear, right while no cell turns by more than some degrees; Green's follows any rotation, \
              with the law of the material; `auto` is Green's, and the report tells whether Cauchy's would do.",
         )
         .default("auto"),
         Key::new(
             "viscous",
-            Holds::Word(|| VISCOUS.map(|(word, _)| word).into()),
+            ValueType::Word(|| VISCOUS.map(|(word, _)| word).into()),
             "the law of viscosity",
         )
-        .law("Natural viscosity, -B v, brakes rotations, too; objective viscosity takes the rate of Green's strain.")
+        .note("Natural viscosity, -B v, brakes rotations, too; objective viscosity takes the rate of Green's strain.")
         .default("natural with Cauchy strain, objective with Green strain"),
         Key::new(
             "inertia",
-            Holds::Word(|| INERTIA.map(|(word, _)| word).into()),
+            ValueType::Word(|| INERTIA.map(|(word, _)| word).into()),
             "how inertia is shared out",
         )
-        .law("Consistent with the shape functions, or lumped at the nodes.")
+        .note("Consistent with the shape functions, or lumped at the nodes.")
         .default("consistent"),
         Key::new(
             "plane",
-            Holds::Word(|| PLANE.map(|(word, _)| word).into()),
+            ValueType::Word(|| PLANE.map(|(word, _)| word).into()),
             "the quantity that is 0 across cells of two dimensions, or that they are turned about the axis",
         )
-        .law("Strain: of bodies that are long across the plane. Stress: of sheets, whose thickness changes. Axisymmetric: x is the radius r, 0 or \
+        .note("Strain: of bodies that are long across the plane. Stress: of sheets, whose thickness changes. Axisymmetric: x is the radius r, 0 or \
               above, and y the height z of a body of revolution about r = 0; it has no thickness, and forces and masses are those of a whole turn.")
         .default("strain in the plane, stress in space (membranes)"),
         Key::new(
             "dilatation",
-            Holds::Word(|| DILATATION.map(|(word, _)| word).into()),
+            ValueType::Word(|| DILATATION.map(|(word, _)| word).into()),
             "where the body resists a change of its volume",
         )
-        .law("At each point of a cell, a nearly incompressible body locks. `linear`: projected onto linear functions of each cell, \
+        .note("At each point of a cell, a nearly incompressible body locks. `linear`: projected onto linear functions of each cell, \
               accurate; for `hexahedra27` and `rectangles9`, for triangles and tetrahedra with `bubbles`, and for `hexahedra20`, whose pressures are not reliable then. `mean`: in the mean over each cell, for \
               `rectangles`, `hexahedra`, `triangles6` and `tetrahedra10`.")
         .default("points, or what goes with `cells = \"auto\"` and `bubbles`"),
-        Key::new("material", Holds::Table(&MATERIAL), "what the body is made of").required(),
-        Key::new("region", Holds::Tables(&REGION), "parts with a material of their own"),
-        Key::new("velocity", Holds::Vector, "its velocity at first, in place of that of `[initial]`")
+        Key::new("material", ValueType::Table(&MATERIAL), "what the body is made of").required(),
+        Key::new("region", ValueType::Tables(&REGION), "parts with a material of their own"),
+        Key::new("velocity", ValueType::Vector, "its velocity at first, in place of that of `[initial]`")
             .in_unit("m/s")
             .default("that of `[initial]`"),
         Key::new(
             "spin",
-            Holds::OneOrMore(&Holds::Number),
+            ValueType::OneOrMore(&ValueType::Number),
             "its angular velocity at first about its own centre of mass, on top of that",
         )
         .in_unit("rad/s")
-        .law("One number in the plane, counter-clockwise; three in space.")
+        .note("One number in the plane, counter-clockwise; three in space.")
         .default("0"),
     ],
     "[body]\n\
@@ -110,11 +110,11 @@ const REGION: TableKeys = TableKeys::new(
     "A part of the body with a material of its own. A cell of several regions has the keys of all of them: where two give the same \
      key, that of the later one in the file counts.",
     &[
-        Key::new("name", Holds::Text, "the name of the region, for who reads the file"),
+        Key::new("name", ValueType::Text, "the name of the region, for who reads the file"),
         BOX,
         GROUP,
         CELLS,
-        Key::new("material", Holds::Table(&MATERIAL), "the keys of the material that differ")
+        Key::new("material", ValueType::Table(&MATERIAL), "the keys of the material that differ")
             .required(),
     ],
     "[[body.region]]\n\
@@ -128,10 +128,10 @@ pub(super) const POINT: TableKeys = TableKeys::new(
     "[[point]]",
     "A point mass: a node that belongs to no cell. Its name is a node set.",
     &[
-        Key::new("name", Holds::Text, "the name of the point").required(),
-        Key::new("position", Holds::Vector, "its undeformed position").in_unit("m").required(),
+        Key::new("name", ValueType::Text, "the name of the point").required(),
+        Key::new("position", ValueType::Vector, "its undeformed position").in_unit("m").required(),
         Key::number("mass", "its mass", "kg").required(),
-        Key::new("body", Holds::Text, "the name of the body that it is a node of")
+        Key::new("body", ValueType::Text, "the name of the body that it is a node of")
             .default("required with several bodies"),
     ],
     "[[point]]\nname = \"hub\"\nposition = [0.05, 0.05]\nmass = 0.001",

@@ -1,6 +1,6 @@
 //! Cells by a box, a group or their numbers.
 
-use super::keys::{Holds, Key};
+use super::keys::{Key, ValueType};
 use super::selection::{CORNERS, corners};
 use super::table::Table;
 use super::value::Value;
@@ -8,11 +8,11 @@ use crate::dynamics::error::Error;
 use crate::elements::body::CellSelection;
 use crate::elements::mesh::Mesh;
 
-pub(super) const BOX: Key = Key::new("box", Holds::Corners, CORNERS).in_unit("m");
-pub(super) const GROUP: Key =
-    Key::new("group", Holds::Text, "the name of a group of cells").law("A physical group of Gmsh.");
+pub(super) const BOX: Key = Key::new("box", ValueType::Corners, CORNERS).in_unit("m");
+pub(super) const GROUP: Key = Key::new("group", ValueType::Text, "the name of a group of cells")
+    .note("A physical group of Gmsh.");
 pub(super) const CELLS: Key =
-    Key::new("cells", Holds::List(&Holds::Count), "numbers of cells, from 1");
+    Key::new("cells", ValueType::List(&ValueType::Count), "numbers of cells, from 1");
 
 /// The cells that one of these keys of `table` selects, if any of them is there.
 pub(super) fn cells(table: &Table, mesh: &Mesh) -> Result<Option<CellSelection>, Error> {

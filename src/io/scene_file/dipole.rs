@@ -1,7 +1,7 @@
 //! `[[dipole]]`.
 
 use super::course::vectors;
-use super::keys::{Holds, Key, TableKeys};
+use super::keys::{Key, TableKeys, ValueType};
 use super::surroundings::unique;
 use super::table::Table;
 use super::value::Value;
@@ -16,14 +16,14 @@ pub(super) const DIPOLE: TableKeys = TableKeys::new(
      each `[[magnet]]` at its deformed place. In the plane it is that of a dipole in space which lies in the plane of the body, as its moment does. It acts in all phases; \
      `drive` in a phase moves it and changes its moment.",
     &[
-        Key::new("name", Holds::Text, "the name of the dipole").default("dipole 1, dipole 2, ..."),
-        Key::new("moment", Holds::ChangingVector, "the moment m")
+        Key::new("name", ValueType::Text, "the name of the dipole").default("dipole 1, dipole 2, ..."),
+        Key::new("moment", ValueType::ChangingVector, "the moment m")
             .in_unit("A m^2")
-            .law("Of a magnet of the remanence b and the volume V it is b V/mu_0: 1.03 for 1 cm^3 of neodymium of 1.3 T.")
+            .note("Of a magnet of the remanence b and the volume V it is b V/mu_0: 1.03 for 1 cm^3 of neodymium of 1.3 T.")
             .required(),
-        Key::new("position", Holds::ChangingVector, "the position p").in_unit("m"),
-        Key::new("times", Holds::List(&Holds::Number), "times in ascending order").in_unit("s"),
-        Key::new("positions", Holds::List(&Holds::Vector), "the positions at these times").in_unit("m"),
+        Key::new("position", ValueType::ChangingVector, "the position p").in_unit("m"),
+        Key::new("times", ValueType::List(&ValueType::Number), "times in ascending order").in_unit("s"),
+        Key::new("positions", ValueType::List(&ValueType::Vector), "the positions at these times").in_unit("m"),
     ],
     "[[dipole]]\nname = \"lead\"\nmoment = [0.0, 1.0]\nposition = [\"0.05 + 0.01*t\", 0.3]",
 )

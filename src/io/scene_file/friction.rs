@@ -1,13 +1,13 @@
 //! Coefficients of Coulomb's friction.
 
-use super::keys::{Holds, Key, TableKeys};
+use super::keys::{Key, TableKeys, ValueType};
 use super::table::Table;
 use super::value::Value;
 use crate::dynamics::error::Error;
 
 pub(super) const FRICTION_COEFFICIENT: Key = Key::new(
     "friction_coefficient",
-    Holds::Either(&[Holds::Number, Holds::Table(&COEFFICIENTS)]),
+    ValueType::Either(&[ValueType::Number, ValueType::Table(&COEFFICIENTS)]),
     "Coulomb's coefficient of friction, or both of them",
 )
 .in_unit("1")

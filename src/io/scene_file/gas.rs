@@ -1,6 +1,6 @@
 //! `[[gas]]`, `[[supply]]` and `[[orifice]]`.
 
-use super::keys::{Holds, Key, TableKeys};
+use super::keys::{Key, TableKeys, ValueType};
 use super::surroundings::unique;
 use super::value::Value;
 use crate::base::input::{InputError, not_negative};
@@ -14,12 +14,12 @@ pub(super) const GAS: TableKeys = TableKeys::new(
      volume V and the amount m; the walls are pressed by what it exceeds the `atmosphere` of the file by. The amount changes \
      by orifices alone.",
     &[
-        Key::new("chamber", Holds::Text, "the name of the chamber").required(),
+        Key::new("chamber", ValueType::Text, "the name of the chamber").required(),
         Key::number("pressure", "the absolute pressure p_0 in the undeformed shape", "Pa")
-            .law("There it fills the volume V_0 with m_0 = p_0 V_0 1.185e-5 kg of air at 20 C.")
+            .note("There it fills the volume V_0 with m_0 = p_0 V_0 1.185e-5 kg of air at 20 C.")
             .default("101325"),
         Key::number("exponent", "the exponent n", "1")
-            .law("1 is isothermal, 1.4 adiabatic, and what is between them polytropic.")
+            .note("1 is isothermal, 1.4 adiabatic, and what is between them polytropic.")
             .default("1"),
     ],
     "[[gas]]\nchamber = \"inside\"\npressure = 1.2e5\nexponent = 1.4",
@@ -29,10 +29,10 @@ pub(super) const SUPPLY: TableKeys = TableKeys::new(
     "[[supply]]",
     "What orifices draw gas from, or a vacuum into which they let it.",
     &[
-        Key::new("name", Holds::Text, "the name of the supply").required(),
-        Key::new("pressure", Holds::Changing, "its absolute pressure")
+        Key::new("name", ValueType::Text, "the name of the supply").required(),
+        Key::new("pressure", ValueType::Changing, "its absolute pressure")
             .in_unit("Pa")
-            .law("A number, or a formula of `t`.")
+            .note("A number, or a formula of `t`.")
             .required(),
     ],
     "[[supply]]\nname = \"pump\"\npressure = 2.0e5",
@@ -45,15 +45,15 @@ pub(super) const ORIFICE: TableKeys = TableKeys::new(
      place of it if p_2/p_1 > 0.999; rho_0 = 1.185 kg/m^3. With an `area` it is a nozzle without losses up to its narrowest section, \
      q = C_d A p_1/sqrt(R T_1) sqrt(7 (r^(2/1.4) - r^(2.4/1.4))), r = p_2/p_1 but not below 0.528. `open` in a phase says how far it is open; without it, wholly.",
     &[
-        Key::new("name", Holds::Text, "the name of the orifice").required(),
-        Key::new("from", Holds::Text, "one end: a supply, a chamber with gas, or `atmosphere`").required(),
-        Key::new("to", Holds::Text, "the other end, likewise").required(),
+        Key::new("name", ValueType::Text, "the name of the orifice").required(),
+        Key::new("from", ValueType::Text, "one end: a supply, a chamber with gas, or `atmosphere`").required(),
+        Key::new("to", ValueType::Text, "the other end, likewise").required(),
         Key::number("conductance", "the sonic conductance C", "m^3/(s Pa)")
-            .law("1e-8 are 0.6 l/min for each bar; a short nozzle has some 2e-3 times its area in m^2."),
+            .note("1e-8 are 0.6 l/min for each bar; a short nozzle has some 2e-3 times its area in m^2."),
         Key::number("critical_ratio", "the critical ratio b of pressures, from 0 to below 1", "1").default("0.5"),
         Key::number("area", "the area A of a nozzle", "m^2"),
         Key::number("discharge", "its coefficient of discharge C_d, above 0 and up to 1", "1")
-            .law("Some 0.95 of one that is round, 0.6 to 0.85 of a hole with sharp edges.")
+            .note("Some 0.95 of one that is round, 0.6 to 0.85 of a hole with sharp edges.")
             .default("1"),
     ],
     "[[orifice]]\nname = \"valve\"\nfrom = \"pump\"\nto = \"inside\"\nconductance = 1.0e-9",

@@ -1,7 +1,7 @@
 //! `[[growth]]`.
 
 use super::cells::{BOX, CELLS, GROUP, cells};
-use super::keys::{Holds, Key, TableKeys};
+use super::keys::{Key, TableKeys, ValueType};
 use super::material::{AXIS, course};
 use super::surroundings::unique;
 use super::table::Table;
@@ -16,15 +16,15 @@ pub(super) const GROWTH: TableKeys = TableKeys::new(
      without stress. Alike in all directions, or along a vector or around an axis, as fibres run; across that they keep their size, or change it by a share of the strain \
      or so that their volume stays. All of the body, or the cells of a `box`, a `group` or a list. For Green's strain with any law.",
     &[
-        Key::new("name", Holds::Text, "the name of the growth, which no spring and no muscle has")
+        Key::new("name", ValueType::Text, "the name of the growth, which no spring and no muscle has")
             .default("growth 1, growth 2, ..."),
-        Key::new("along", Holds::Vector, "a vector along which they grow, of any length")
+        Key::new("along", ValueType::Vector, "a vector along which they grow, of any length")
             .default("alike in all directions"),
-        Key::new("centre", Holds::Vector, "a point of the axis around which they grow").in_unit("m"),
+        Key::new("centre", ValueType::Vector, "a point of the axis around which they grow").in_unit("m"),
         AXIS,
         Key::number("pitch", "angle by which the direction of growth climbs along the axis: 0 are rings, others helices", "rad").default("0"),
         Key::number("across", "growth across the direction, by that along it: 0 is none, 1 is alike", "1").default("0"),
-        Key::new("keeps_volume", Holds::Flag, "whether they get thinner across the direction as they grow along it, and keep their volume")
+        Key::new("keeps_volume", ValueType::Flag, "whether they get thinner across the direction as they grow along it, and keep their volume")
             .default("false"),
         BOX,
         GROUP,

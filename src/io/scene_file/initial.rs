@@ -1,6 +1,6 @@
 //! `[initial]`.
 
-use super::keys::{Holds, Key, TableKeys};
+use super::keys::{Key, TableKeys, ValueType};
 use super::selection::selection;
 use super::value::Value;
 use crate::dynamics::error::Error;
@@ -13,29 +13,29 @@ pub(super) const INITIAL: TableKeys = TableKeys::new(
     &[
         Key::new(
             "from",
-            Holds::Text,
+            ValueType::Text,
             "the state that `pliant run` or `pliant static` has left of bodies with the same meshes: the directory, or its \
              `state.json`, relative to the scene file",
         )
-        .law(
+        .note(
             "It gives all unknowns by the names of bodies, chambers, actuators and pipes: displacements, velocities, Maxwell \
              branches, masses of gas and liquid, lags, flow rates; what only one of both has is a warning. All else may \
              differ. Time begins anew, and with it signals and paths: an obstacle is where the scene has it at t = 0.",
         )
         .default("undeformed, at rest"),
-        Key::new("velocity", Holds::Vector, "the velocity of all nodes")
+        Key::new("velocity", ValueType::Vector, "the velocity of all nodes")
             .in_unit("m/s")
-            .law("Not beside a state `from` which they move already.")
+            .note("Not beside a state `from` which they move already.")
             .default("0"),
         Key::new(
             "spin",
-            Holds::OneOrMore(&Holds::Number),
+            ValueType::OneOrMore(&ValueType::Number),
             "the angular velocity about the centre of mass, on top of that",
         )
         .in_unit("rad/s")
-        .law("One number in the plane, counter-clockwise; three in space.")
+        .note("One number in the plane, counter-clockwise; three in space.")
         .default("0"),
-        Key::new("nodes", Holds::Tables(&OF_NODES), "nodes with velocities of their own instead"),
+        Key::new("nodes", ValueType::Tables(&OF_NODES), "nodes with velocities of their own instead"),
     ],
     "[initial]\nvelocity = [1.0, 5.0]\nspin = 6.3",
 );
@@ -44,8 +44,8 @@ const OF_NODES: TableKeys = TableKeys::new(
     "initial.nodes",
     "Nodes with a velocity of their own at first.",
     &[
-        Key::new("nodes", Holds::Nodes, "nodes").required(),
-        Key::new("velocity", Holds::Vector, "their velocity").in_unit("m/s").required(),
+        Key::new("nodes", ValueType::Nodes, "nodes").required(),
+        Key::new("velocity", ValueType::Vector, "their velocity").in_unit("m/s").required(),
     ],
     "[initial]\nnodes = [{ nodes = \"top\", velocity = [1.0, 0.0] }]",
 );

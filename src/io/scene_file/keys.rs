@@ -34,13 +34,13 @@ pub(super) struct Kind {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Key {
     pub(super) name: &'static str,
-    pub(super) holds: Holds,
+    pub(super) holds: ValueType,
     pub(super) meaning: Meaning,
     /// More to know, a sentence in Markdown; often empty.
-    pub(super) law: &'static str,
+    pub(super) note: &'static str,
     pub(super) default: Default,
     /// The new name, if this is an old name of a key, which is still read.
-    pub(super) now: Option<&'static str>,
+    pub(super) renamed_to: Option<&'static str>,
 }
 
 /// Meaning of a value, with its unit.
@@ -62,7 +62,7 @@ pub(super) enum Default {
 
 /// Type of the value of a key.
 #[derive(Debug, Clone, Copy)]
-pub(super) enum Holds {
+pub(super) enum ValueType {
     Number,
     /// A whole number, 0 or above.
     Count,
@@ -145,7 +145,7 @@ impl TableKeys {
 }
 
 #[cfg(any(feature = "fit", feature = "sweep"))]
-impl Holds {
+impl ValueType {
     /// The tables that may stand there.
     fn each_table(&self, see: &mut dyn FnMut(&'static TableKeys)) {
         match self {
@@ -161,9 +161,9 @@ impl Holds {
 
 impl Key {
     /// A key that may be left out.
-    pub(super) const fn new(name: &'static str, holds: Holds, meaning: &'static str) -> Self {
+    pub(super) const fn new(name: &'static str, holds: ValueType, meaning: &'static str) -> Self {
         let meaning = Meaning { text: meaning, unit: "" };
-        Self { name, holds, meaning, law: "", default: Default::Words("none"), now: None }
+        Self { name, holds, meaning, note: "", default: Default::Words("none"), renamed_to: None }
     }
 
     /// A key of a number that may be left out. Unit "1": it has none.
@@ -172,7 +172,7 @@ impl Key {
         meaning: &'static str,
         unit: &'static str,
     ) -> Self {
-        Self::new(name, Holds::Number, meaning).in_unit(unit)
+        Self::new(name, ValueType::Number, meaning).in_unit(unit)
     }
 
     /// A key of a vector that has to be there.
@@ -181,7 +181,7 @@ impl Key {
         meaning: &'static str,
         unit: &'static str,
     ) -> Self {
-        Self::new(name, Holds::Vector, meaning).in_unit(unit).required()
+        Self::new(name, ValueType::Vector, meaning).in_unit(unit).required()
     }
 
     pub(super) const fn in_unit(mut self, unit: &'static str) -> Self {
@@ -189,8 +189,8 @@ impl Key {
         self
     }
 
-    pub(super) const fn law(mut self, law: &'static str) -> Self {
-        self.law = law;
+    pub(super) const fn note(mut self, note: &'static str) -> Self {
+        self.note = note;
         self
     }
 
@@ -204,9 +204,9 @@ impl Key {
         self
     }
 
-    /// An old name of the key `now`.
-    pub(super) const fn now(mut self, now: &'static str) -> Self {
-        self.now = Some(now);
+    /// An old name of the key with this `name`.
+    pub(super) const fn renamed_to(mut self, name: &'static str) -> Self {
+        self.renamed_to = Some(name);
         self
     }
 }

@@ -1,6 +1,6 @@
 //! `[[lag]]`.
 
-use super::keys::{Holds, Key, TableKeys};
+use super::keys::{Key, TableKeys, ValueType};
 use super::phase::names;
 use super::value::Value;
 use crate::base::input::InputError;
@@ -14,15 +14,15 @@ pub(super) const LAG: TableKeys = TableKeys::new(
      `time`, or one for rising and one for falling. With `activation`, the muscle's a by its largest stress, T is `rise` (0.5 + 1.5 a) and `fall`/(0.5 + 1.5 a) \
      (D. G. Thelen (2003)). What is heated is commanded by a power: `capacity` theta' = power - `loss` theta, and `per_kelvin` theta drives it.",
     &[
-        Key::new("actuators", Holds::OneOrMore(&Holds::Text), "names of springs, cables, muscles and growths, each with a state of its own").required(),
+        Key::new("actuators", ValueType::OneOrMore(&ValueType::Text), "names of springs, cables, muscles and growths, each with a state of its own").required(),
         Key::number("time", "the time after which 1/e of a step is left", "s"),
         Key::number("rise", "that for commands above the state", "s"),
         Key::number("fall", "that for commands below the state", "s"),
-        Key::new("activation", Holds::Flag, "whether it is the activation of muscles by Hill's law").default("false"),
+        Key::new("activation", ValueType::Flag, "whether it is the activation of muscles by Hill's law").default("false"),
         Key::number("capacity", "the heat of a kelvin", "J/K"),
         Key::number("loss", "the power that a kelvin gives away", "W/K"),
         Key::number("per_kelvin", "what drives it per kelvin: a force, a tension, a length of a winch, a stress or a strain", "N, m, Pa or 1 by K")
-            .law("Of a spring below 0 if it contracts as it gets warm."),
+            .note("Of a spring below 0 if it contracts as it gets warm."),
     ],
     "[[muscle]]\nname = \"biceps\"\nalong = [1.0, 0.0]\nhill = { largest = 2e5 }\n\n[[lag]]\nactuators = \"biceps\"\nrise = 0.015\nfall = 0.05\nactivation = true",
 )

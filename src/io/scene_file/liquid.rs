@@ -1,6 +1,6 @@
 //! `[[liquid]]` and `[[pipe]]`.
 
-use super::keys::{Holds, Key, TableKeys};
+use super::keys::{Key, TableKeys, ValueType};
 use super::surroundings::unique;
 use super::value::Value;
 use crate::dynamics::error::Error;
@@ -13,7 +13,7 @@ pub(super) const LIQUID: TableKeys = TableKeys::new(
      chamber and the volume V_m that it would have without pressure, which a `flow` in phases changes. Where there is gravity it has weight: p is the mean, and the \
      pressure on the walls grows with depth. Its own motion, its inertia, is left out.",
     &[
-        Key::new("chamber", Holds::Text, "the name of the chamber").required(),
+        Key::new("chamber", ValueType::Text, "the name of the chamber").required(),
         Key::number("bulk_modulus", "the bulk modulus K", "Pa").default("2.2e9, water"),
         Key::number("density", "the density without pressure", "kg/m^3").default("1000"),
         Key::number(
@@ -21,14 +21,14 @@ pub(super) const LIQUID: TableKeys = TableKeys::new(
             "V_m at the start, as a part of the volume of the undeformed chamber",
             "1",
         )
-        .law("With 1 there is no pressure at first; with a `surface` it has to be below 1.")
+        .note("With 1 there is no pressure at first; with a `surface` it has to be below 1.")
         .default("1"),
         Key::new(
             "surface",
-            Holds::Flag,
+            ValueType::Flag,
             "whether it has a level surface under air of the pressure outside, in a chamber that is open or vented and not full",
         )
-        .law("It is not compressed: walls feel rho g (h - z) below the level h, which follows from the volume, and nothing above it. Needs gravity.")
+        .note("It is not compressed: walls feel rho g (h - z) below the level h, which follows from the volume, and nothing above it. Needs gravity.")
         .default("false"),
     ],
     "[[liquid]]\nchamber = \"inside\"\nbulk_modulus = 2.2e9\ndensity = 1000.0",
@@ -40,21 +40,21 @@ pub(super) const PIPE: TableKeys = TableKeys::new(
      (rho l/A) dq/dt = p_1 - p_2 + rho g (z_1 - z_2) - R q - zeta rho q |q|/(2 A^2), R = 8 pi mu l/A^2. Of a chamber that is full p is the mean pressure and z the height of its middle, of one with a \
      `surface` p is 0 and z the level; a supply and the atmosphere are at the height that the chamber at the other end has in the undeformed shape.",
     &[
-        Key::new("name", Holds::Text, "the name of the pipe").required(),
+        Key::new("name", ValueType::Text, "the name of the pipe").required(),
         Key::new(
             "from",
-            Holds::Text,
+            ValueType::Text,
             "one end: a chamber with a liquid, a supply, or `atmosphere`",
         )
         .required(),
-        Key::new("to", Holds::Text, "the other end, likewise").required(),
+        Key::new("to", ValueType::Text, "the other end, likewise").required(),
         Key::number("length", "the length l", "m").required(),
         Key::number("area", "the area A of its section", "m^2")
-            .law("A tube 4 mm wide has 1.26e-5.")
+            .note("A tube 4 mm wide has 1.26e-5.")
             .required(),
         Key::number("viscosity", "the viscosity mu of the liquid", "Pa s").default("1e-3, water"),
         Key::number("loss", "the coefficient zeta of losses at ends, bends and valves", "1")
-            .law("Some 0.5 where it begins with sharp edges, 1 where it ends in a chamber.")
+            .note("Some 0.5 where it begins with sharp edges, 1 where it ends in a chamber.")
             .default("0"),
     ],
     "[[pipe]]\nname = \"tube\"\nfrom = \"atmosphere\"\nto = \"inside\"\nlength = 0.5\narea = 1.26e-5",

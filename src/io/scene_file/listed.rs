@@ -1,38 +1,39 @@
 //! Meshes that are listed in a scene file, node by node: those that programs hand over.
 
-use super::keys::{Holds, Key, TableKeys};
+use super::keys::{Key, TableKeys, ValueType};
 use super::table::Table;
 use super::value::{Value, number_of};
 use crate::dynamics::error::Error;
 use crate::elements::mesh::{CellKind, Mesh, Selection};
 
 pub(super) const KEYS: &[Key] = &[
-    Key::new("positions", Holds::List(&Holds::Vector), "where each node is")
+    Key::new("positions", ValueType::List(&ValueType::Vector), "where each node is")
         .in_unit("m")
         .required(),
     Key::new(
         "cells",
-        Holds::Word(|| CellKind::ALL.iter().map(|kind| kind.word()).collect()),
+        ValueType::Word(|| CellKind::ALL.iter().map(|kind| kind.word()).collect()),
         "what the cells are",
     )
     .required(),
     Key::new(
         "connectivity",
-        Holds::List(&Holds::List(&Holds::Count)),
+        ValueType::List(&ValueType::List(&ValueType::Count)),
         "the nodes of each cell, by number (from 1)",
     )
-    .law("In the order of VTK: corners counter-clockwise, then the middles of edges.")
+    .note("In the order of VTK: corners counter-clockwise, then the middles of edges.")
     .required(),
-    Key::new("sets", Holds::Tables(&SET), "sets of nodes with names"),
-    Key::new("groups", Holds::Tables(&GROUP), "groups of cells with names, for regions"),
+    Key::new("sets", ValueType::Tables(&SET), "sets of nodes with names"),
+    Key::new("groups", ValueType::Tables(&GROUP), "groups of cells with names, for regions"),
 ];
 
 const SET: TableKeys = TableKeys::new(
     "sets",
     "A set of nodes of a listed mesh.",
     &[
-        Key::new("name", Holds::Text, "the name of the set").required(),
-        Key::new("nodes", Holds::List(&Holds::Count), "its nodes, by number (from 1)").required(),
+        Key::new("name", ValueType::Text, "the name of the set").required(),
+        Key::new("nodes", ValueType::List(&ValueType::Count), "its nodes, by number (from 1)")
+            .required(),
     ],
     "mesh = { kind = \"listed\", positions = [[0.0, 0.0], [0.1, 0.0], [0.0, 0.1]], cells = \"triangles\", connectivity = [[1, 2, 3]], sets = [{ name = \"tip\", nodes = [2, 3] }] }",
 );
@@ -41,8 +42,9 @@ const GROUP: TableKeys = TableKeys::new(
     "groups",
     "A group of cells of a listed mesh.",
     &[
-        Key::new("name", Holds::Text, "the name of the group").required(),
-        Key::new("cells", Holds::List(&Holds::Count), "its cells, by number (from 1)").required(),
+        Key::new("name", ValueType::Text, "the name of the group").required(),
+        Key::new("cells", ValueType::List(&ValueType::Count), "its cells, by number (from 1)")
+            .required(),
     ],
     "mesh = { kind = \"listed\", positions = [[0.0, 0.0], [0.1, 0.0], [0.0, 0.1]], cells = \"triangles\", connectivity = [[1, 2, 3]], groups = [{ name = \"stiff\", cells = [1] }] }",
 );

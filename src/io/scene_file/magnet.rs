@@ -2,7 +2,7 @@
 
 use super::cells::{BOX, CELLS, GROUP, cells};
 use super::course::vectors_until;
-use super::keys::{Holds, Key, TableKeys};
+use super::keys::{Key, TableKeys, ValueType};
 use super::phase_keys::MAGNETIC_FIELD;
 use super::value::Value;
 use crate::dynamics::error::Error;
@@ -14,9 +14,9 @@ pub(super) const MAGNET: TableKeys = TableKeys::new(
     "A part of the body that is a hard magnet, on which the `magnetic_field` of a phase acts: its remanence moves along with the material. All of the body, or \
      the cells of a `box`, a `group` or a list.",
     &[
-        Key::new("remanence", Holds::Vector, "the remanence in the undeformed shape")
+        Key::new("remanence", ValueType::Vector, "the remanence in the undeformed shape")
             .in_unit("T")
-            .law("Of elastomers filled with powder some 0.1 T, of magnets of neodymium 1.3 T.")
+            .note("Of elastomers filled with powder some 0.1 T, of magnets of neodymium 1.3 T.")
             .required(),
         BOX,
         GROUP,

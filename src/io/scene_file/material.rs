@@ -1,6 +1,6 @@
 //! `material`, of the body or of a region, and its `law`.
 
-use super::keys::{Holds, Key, Kind, TableKeys};
+use super::keys::{Key, Kind, TableKeys, ValueType};
 use super::table::Table;
 use super::value::Value;
 use crate::dynamics::error::Error;
@@ -14,48 +14,48 @@ pub(super) const MATERIAL: TableKeys = TableKeys::new(
      viscosity from `viscosity` and `poisson` in the same way.",
     &[
         Key::number("density", "the density", "kg/m^3").default(OF_BODY),
-        Key::new("rigid", Holds::Flag, "whether what is made of it is rigid")
-            .law("The mesh then gives its shape and inertia, and it moves by 3 degrees of freedom (6 in space). Only `density` is needed, or `mass`; \
+        Key::new("rigid", ValueType::Flag, "whether what is made of it is rigid")
+            .note("The mesh then gives its shape and inertia, and it moves by 3 degrees of freedom (6 in space). Only `density` is needed, or `mass`; \
                   in equilibria `young`, by default 1e8 Pa, keeps its shape.")
             .default("false; in a region, as the body"),
         Key::number("mass", "the mass of a rigid body, in place of `density`", "kg")
-            .law("Of a whole body that is one piece, without regions.")
+            .note("Of a whole body that is one piece, without regions.")
             .default("that of `density`"),
-        Key::new("centre", Holds::Vector, "the undeformed position of the centre of mass of a rigid body")
+        Key::new("centre", ValueType::Vector, "the undeformed position of the centre of mass of a rigid body")
             .in_unit("m")
-            .law("Goes with `inertia`.")
+            .note("Goes with `inertia`.")
             .default("that of a uniform density"),
         Key::new(
             "inertia",
-            Holds::Either(&[
-                Holds::Number,
-                Holds::Array(&Holds::Number, 3),
-                Holds::Array(&Holds::Array(&Holds::Number, 3), 3),
+            ValueType::Either(&[
+                ValueType::Number,
+                ValueType::Array(&ValueType::Number, 3),
+                ValueType::Array(&ValueType::Array(&ValueType::Number, 3), 3),
             ]),
             "moments of inertia of a rigid body about its centre of mass",
         )
         .in_unit("kg m^2")
-        .law("Goes with `mass`. In the plane one number; in space the three principal moments, where x, y and z are principal axes of the \
+        .note("Goes with `mass`. In the plane one number; in space the three principal moments, where x, y and z are principal axes of the \
               undeformed body, or the symmetric matrix, with the products -int x y dm beside its diagonal.")
         .default("those of a uniform density"),
         Key::number("young", "Young's modulus at small strains", "Pa")
-            .law("It follows from the constants of a law that has them.")
+            .note("It follows from the constants of a law that has them.")
             .default(OF_BODY),
         Key::number("poisson", "Poisson's ratio at small strains, below 0.5", "1")
-            .law("It follows from the law's `bulk`, if that is given.")
+            .note("It follows from the law's `bulk`, if that is given.")
             .default(OF_BODY),
         Key::number("viscosity", "the viscous modulus", "Pa s")
-            .law("Equilibria do not depend on it.")
+            .note("Equilibria do not depend on it.")
             .default("0; in a region, that of the body"),
         Key::number("mass_damping", "damping in proportion to mass: force -a M v", "1/s")
-            .law("As of air or water around: it brakes motions of the whole body, too. Vibrations of circular frequency omega are damped by \
+            .note("As of air or water around: it brakes motions of the whole body, too. Vibrations of circular frequency omega are damped by \
                   the ratio a / (2 omega).")
             .default("0; in a region, that of the body"),
-        Key::new("branch", Holds::Tables(&BRANCH), "Maxwell branches, springs that relax")
+        Key::new("branch", ValueType::Tables(&BRANCH), "Maxwell branches, springs that relax")
             .default("none; in a region, those of the body"),
-        Key::new("fibres", Holds::Tables(&FIBRES), "families of fibres that stiffen it along their course")
+        Key::new("fibres", ValueType::Tables(&FIBRES), "families of fibres that stiffen it along their course")
             .default("none; in a region, those of the body"),
-        Key::new("law", Holds::Table(&LAW), "what becomes of the moduli at large strains").default(
+        Key::new("law", ValueType::Table(&LAW), "what becomes of the moduli at large strains").default(
             "as `strain` says: linear elasticity with Cauchy's, St. Venant-Kirchhoff with Green's",
         ),
     ],
@@ -73,7 +73,7 @@ const BRANCH: TableKeys = TableKeys::new(
             .required(),
         Key::number("time", "the relaxation time", "s").required(),
         Key::number("yield_stress", "the von Mises stress below which nothing relaxes", "Pa")
-            .law("Above it G' = (1 - `yield_stress` / q) dev(E - G) / `time`, q being the spring's: what shears relaxes down to it, a change of volume does not, and \
+            .note("Above it G' = (1 - `yield_stress` / q) dev(E - G) / `time`, q being the spring's: what shears relaxes down to it, a change of volume does not, and \
                   what has flowed stays, as in dough.")
             .default("0"),
     ],
@@ -99,11 +99,11 @@ const FIBRES: TableKeys = TableKeys::new(
 .one_of(&[&["along"], &["centre"]]);
 
 pub(super) const ALONG: Key =
-    Key::new("along", Holds::Vector, "a vector along them, of any length");
+    Key::new("along", ValueType::Vector, "a vector along them, of any length");
 pub(super) const CENTRE: Key =
-    Key::new("centre", Holds::Vector, "a point of the axis that they run around").in_unit("m");
+    Key::new("centre", ValueType::Vector, "a point of the axis that they run around").in_unit("m");
 pub(super) const AXIS: Key =
-    Key::new("axis", Holds::Vector, "direction of the axis, of any length; none in the plane")
+    Key::new("axis", ValueType::Vector, "direction of the axis, of any length; none in the plane")
         .default("across the plane");
 pub(super) const PITCH: Key = Key::number(
     "pitch",
@@ -151,8 +151,8 @@ pub(super) const LAW: TableKeys = TableKeys::new(
         about: "W = sum of mu_p / alpha_p (l1^alpha_p + l2^alpha_p + l3^alpha_p - 3) + U, with the principal stretches l of J^(-2/3) C: rubber over its \
                 whole range; 2 mu = sum of mu_p alpha_p",
         keys: &[
-            Key::new("moduli", Holds::List(&Holds::Number), "mu_p of one to three terms").in_unit("Pa").required(),
-            Key::new("exponents", Holds::List(&Holds::Number), "alpha_p of the same terms").in_unit("1").required(),
+            Key::new("moduli", ValueType::List(&ValueType::Number), "mu_p of one to three terms").in_unit("Pa").required(),
+            Key::new("exponents", ValueType::List(&ValueType::Number), "alpha_p of the same terms").in_unit("1").required(),
             BULK,
         ],
     },

@@ -1,6 +1,6 @@
 //! `mesh` of `[body]`: generators and files.
 
-use super::keys::{AUTO, Holds, Key, Kind, TableKeys};
+use super::keys::{AUTO, Key, Kind, TableKeys, ValueType};
 use super::listed::{self, listed};
 use super::selection::selection;
 use super::table::Table;
@@ -17,29 +17,29 @@ pub(super) const MESH: TableKeys = TableKeys::new(
      `right`, `bottom`, `top` (in space `front` and `back`, too), rings `inner` and `outer`; those of Gmsh have the \
      names of physical groups.",
     &[
-        Key::new("origin", Holds::Vector, "the place of the lower corner, or of the centre of a ring")
+        Key::new("origin", ValueType::Vector, "the place of the lower corner, or of the centre of a ring")
             .in_unit("m")
             .default("the origin"),
         Key::new(
             "turn",
-            Holds::OneOrMore(&Holds::Number),
+            ValueType::OneOrMore(&ValueType::Number),
             "the angle by which the mesh is turned about the origin before it is brought to its place",
         )
         .in_unit("rad")
-        .law("One number in the plane, counter-clockwise; in space three, the axis times the angle. It turns nodes alone: boxes, and \
+        .note("One number in the plane, counter-clockwise; in space three, the axis times the angle. It turns nodes alone: boxes, and \
               directions of fibres, muscles, growths and remanences, are given in space, as the mesh lies after it.")
         .default("0"),
-        Key::new("quadratic", Holds::Flag, "whether cells get mid nodes")
-            .law(FINER)
+        Key::new("quadratic", ValueType::Flag, "whether cells get mid nodes")
+            .note(FINER)
             .default("false"),
-        Key::new("halved", Holds::Count, "how often each cell is divided at the middles of its edges")
-            .law("After `quadratic`, and like it.")
+        Key::new("halved", ValueType::Count, "how often each cell is divided at the middles of its edges")
+            .note("After `quadratic`, and like it.")
             .default("0"),
-        Key::new("halved_in", Holds::Tables(&HALVED_IN), "where triangles and tetrahedra are divided further")
-            .law("After `halved`, and like it.")
+        Key::new("halved_in", ValueType::Tables(&HALVED_IN), "where triangles and tetrahedra are divided further")
+            .note("After `halved`, and like it.")
             .default("nowhere"),
-        Key::new("bubbles", Holds::Flag, "whether triangles and tetrahedra get mid nodes, and one in the middle of each cell and face")
-            .law("With `dilatation = \"linear\"`, which goes with them, they are the cells for nearly incompressible bodies of any \
+        Key::new("bubbles", ValueType::Flag, "whether triangles and tetrahedra get mid nodes, and one in the middle of each cell and face")
+            .note("With `dilatation = \"linear\"`, which goes with them, they are the cells for nearly incompressible bodies of any \
                   shape: `triangles7` and `tetrahedra15`. After `halved_in`, and like it.")
             .default("false"),
     ],
@@ -51,7 +51,7 @@ pub(super) const MESH: TableKeys = TableKeys::new(
         about: "segments along x",
         keys: &[
             Key::number("length", "the length", "m").required(),
-            Key::new("nodes", Holds::Count, "the number of nodes").required(),
+            Key::new("nodes", ValueType::Count, "the number of nodes").required(),
         ],
     },
     Kind { word: "rectangle", about: "a grid along x and y", keys: &[SIZE, NODES, CELLS, grading(2)] },
@@ -61,17 +61,17 @@ pub(super) const MESH: TableKeys = TableKeys::new(
         word: "cuboid",
         about: "a grid along x, y and z",
         keys: &[
-            Key::new("size", Holds::Array(&Holds::Number, 3), "lengths along x, y and z")
+            Key::new("size", ValueType::Array(&ValueType::Number, 3), "lengths along x, y and z")
                 .in_unit("m")
                 .required(),
-            Key::new("nodes", Holds::Array(&Holds::Count, 3), "corner nodes along x, y and z")
+            Key::new("nodes", ValueType::Array(&ValueType::Count, 3), "corner nodes along x, y and z")
                 .required(),
             Key::new(
                 "cells",
-                Holds::Word(|| words(&solid_cells(AutoCells::default()))),
+                ValueType::Word(|| words(&solid_cells(AutoCells::default()))),
                 "how the grid is divided",
             )
-            .law("`auto` is `tetrahedra10`, quadratic; for a Poisson's ratio of 0.45 or more it is `hexahedra27` with \
+            .note("`auto` is `tetrahedra10`, quadratic; for a Poisson's ratio of 0.45 or more it is `hexahedra27` with \
                   `dilatation = \"linear\"`, as of silicone.")
             .required(),
             grading(3),
@@ -80,17 +80,17 @@ pub(super) const MESH: TableKeys = TableKeys::new(
     Kind {
         word: "gmsh",
         about: "a file of Gmsh, of version 4.1 or 2.2; coordinates are metres",
-        keys: &[Key::new("file", Holds::Text, "the path of a Gmsh mesh, relative to the scene file")
+        keys: &[Key::new("file", ValueType::Text, "the path of a Gmsh mesh, relative to the scene file")
             .required()],
     },
     Kind {
         word: "surface",
         about: "the closed surface of a rigid solid, of triangles: a file STL (text or binary), OBJ or Gmsh",
         keys: &[
-            Key::new("file", Holds::Text, "the path of a file .stl, .obj or .msh, relative to the scene file")
+            Key::new("file", ValueType::Text, "the path of a file .stl, .obj or .msh, relative to the scene file")
                 .required(),
             Key::number("scale", "the length of which the coordinates are multiples", "m")
-                .law("0.001 of a drawing in millimetres.")
+                .note("0.001 of a drawing in millimetres.")
                 .default("1"),
         ],
     },
@@ -102,12 +102,12 @@ const HALVED_IN: TableKeys = TableKeys::new(
     "A place where cells are divided further, as sharp corners and clamps need it: those that have one of the nodes, and cells around \
      them as far as it takes for no node to hang on an edge.",
     &[
-        Key::new("nodes", Holds::Nodes, "nodes of the mesh that there is by then"),
-        Key::new("times", Holds::Count, "how often cells that have one of the nodes are divided")
-            .law("Goes with `nodes`.")
+        Key::new("nodes", ValueType::Nodes, "nodes of the mesh that there is by then"),
+        Key::new("times", ValueType::Count, "how often cells that have one of the nodes are divided")
+            .note("Goes with `nodes`.")
             .default("1"),
-        Key::new("cells", Holds::List(&Holds::Count), "numbers of cells, from 1, of the mesh that there is by then")
-            .law("`pliant static --refine` writes such lists."),
+        Key::new("cells", ValueType::List(&ValueType::Count), "numbers of cells, from 1, of the mesh that there is by then")
+            .note("`pliant static --refine` writes such lists."),
     ],
     "mesh = { kind = \"rectangle\", size = [0.1, 0.02], nodes = [11, 3], cells = \"triangles6\", halved_in = [{ nodes = \"left\", times = 2 }] }",
 )
@@ -117,32 +117,38 @@ const FINER: &str = "Triangles, tetrahedra and hexahedra; quadrilaterals are div
      those of the mesh without this; new nodes of rings are on their circles; where several nodes are held, moved or under tractions, those between them are, too. Forces \
      on each node stay at the nodes that there were, and stiffness and damping of obstacles per node are shared out.";
 
-const SIZE: Key =
-    Key::new("size", Holds::Array(&Holds::Number, 2), "width and height").in_unit("m").required();
+const SIZE: Key = Key::new("size", ValueType::Array(&ValueType::Number, 2), "width and height")
+    .in_unit("m")
+    .required();
 const NODES: Key =
-    Key::new("nodes", Holds::Array(&Holds::Count, 2), "corner nodes along x and y").required();
+    Key::new("nodes", ValueType::Array(&ValueType::Count, 2), "corner nodes along x and y")
+        .required();
 const CELLS: Key = Key::new(
     "cells",
-    Holds::Word(|| words(&plane_cells(AutoCells::default()))),
+    ValueType::Word(|| words(&plane_cells(AutoCells::default()))),
     "how the grid is divided",
 )
-.law("Linear `triangles` are too stiff in bending, `crossed` ones less so; `triangles6`, quadratic, bend well, and \
+.note("Linear `triangles` are too stiff in bending, `crossed` ones less so; `triangles6`, quadratic, bend well, and \
       `auto` is those; for a Poisson's ratio of 0.45 or more in plane strain it is `rectangles9` with `dilatation = \"linear\"`, \
       as of silicone.")
 .required();
 const fn grading(axes: usize) -> Key {
     let about = "the length of the last cell along each axis by that of the first one";
-    Key::new("grading", Holds::Array(&Holds::Number, axes), about)
+    Key::new("grading", ValueType::Array(&ValueType::Number, axes), about)
         .in_unit("1")
-        .law("Within 1e-4 and 1e4; each cell is longer than the one before it by the same factor. Put the fine end where \
+        .note("Within 1e-4 and 1e4; each cell is longer than the one before it by the same factor. Put the fine end where \
               stress is: a clamp on the left asks for a number above 1.")
         .default("1 along each axis: equal cells")
 }
 const ROUND: &[Key] = &[
     Key::number("inner", "the inner radius", "m").required(),
     Key::number("outer", "the outer radius", "m").required(),
-    Key::new("nodes", Holds::Array(&Holds::Count, 2), "corner nodes around and along the radius")
-        .required(),
+    Key::new(
+        "nodes",
+        ValueType::Array(&ValueType::Count, 2),
+        "corner nodes around and along the radius",
+    )
+    .required(),
     CELLS,
 ];
 

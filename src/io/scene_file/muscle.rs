@@ -1,7 +1,7 @@
 //! `[[muscle]]`.
 
 use super::cells::{BOX, CELLS, GROUP, cells};
-use super::keys::{Holds, Key, TableKeys};
+use super::keys::{Key, TableKeys, ValueType};
 use super::material::{ALONG, AXIS, CENTRE, PITCH, course};
 use super::surroundings::unique;
 use super::value::Value;
@@ -16,7 +16,7 @@ pub(super) const MUSCLE: TableKeys = TableKeys::new(
      long they are, in addition to the elasticity of the material. They lie along a vector, or around an axis, in all of the body or in \
      the cells of a `box`, a `group` or a list. For bodies with Green's strain.",
     &[
-        Key::new("name", Holds::Text, "the name of the muscle, which no spring has").default("muscle 1, muscle 2, ..."),
+        Key::new("name", ValueType::Text, "the name of the muscle, which no spring has").default("muscle 1, muscle 2, ..."),
         ALONG,
         CENTRE,
         AXIS,
@@ -24,7 +24,7 @@ pub(super) const MUSCLE: TableKeys = TableKeys::new(
         BOX,
         GROUP,
         CELLS,
-        Key::new("hill", Holds::Table(&HILL), "lets it pull less far from its best length and as it shortens").default("it pulls alike"),
+        Key::new("hill", ValueType::Table(&HILL), "lets it pull less far from its best length and as it shortens").default("it pulls alike"),
     ],
     "[[muscle]]\nname = \"upper\"\nalong = [1.0, 0.0]\nbox = [[0.0, 0.01], [0.1, 0.02]] # cells whose centroid lies in it",
 )

@@ -1,7 +1,7 @@
 //! `[[obstacle]]`.
 
 use super::friction::{FRICTION_COEFFICIENT, coefficients};
-use super::keys::{Holds, Key, Kind, TableKeys};
+use super::keys::{Key, Kind, TableKeys, ValueType};
 use super::surroundings::unique;
 use super::table::Table;
 use super::value::Value;
@@ -16,7 +16,7 @@ pub(super) const OBSTACLE: TableKeys = TableKeys::new(
      `damping` and `tangential_damping` are per area as well (N s/m^3). Coulomb's friction is a part of the \
      normal force, and needs no scaling: what sticks creeps, slower than `sticking_speed`.",
     &[
-        Key::new("name", Holds::Text, "the name of the obstacle")
+        Key::new("name", ValueType::Text, "the name of the obstacle")
             .default("obstacle 1, ..."),
         Key::number("stiffness", "the stiffness per node", "N/m"),
         Key::number("stiffness_density", "the stiffness per area of the body's boundary", "N/m^3"),
@@ -26,17 +26,17 @@ pub(super) const OBSTACLE: TableKeys = TableKeys::new(
         FRICTION_COEFFICIENT,
         Key::number("sticking_speed", "the speed below which friction sticks", "m/s")
             .default("a thousandth of the size of the body per second"),
-        Key::new("backward", Holds::Table(&BACKWARD), "a way in which friction is larger, as by bristles, scales or claws"),
-        Key::new("adhesion", Holds::Flag, "whether damping may pull at a body that leaves")
+        Key::new("backward", ValueType::Table(&BACKWARD), "a way in which friction is larger, as by bristles, scales or claws"),
+        Key::new("adhesion", ValueType::Flag, "whether damping may pull at a body that leaves")
             .default("false"),
-        Key::new("velocity", Holds::Vector, "the velocity of the obstacle").in_unit("m/s").default("0"),
-        Key::new("path", Holds::Table(&WAY), "the path of the obstacle, in place of a velocity"),
+        Key::new("velocity", ValueType::Vector, "the velocity of the obstacle").in_unit("m/s").default("0"),
+        Key::new("path", ValueType::Table(&WAY), "the path of the obstacle, in place of a velocity"),
         Key::number(
             "friction",
             "a force against sliding in proportion to its speed",
             "N s/m",
         )
-        .now("tangential_damping"),
+        .renamed_to("tangential_damping"),
     ],
     "[[obstacle]]\n\
      name = \"floor\"\n\
@@ -54,10 +54,10 @@ const BACKWARD: TableKeys = TableKeys::new(
     "Larger friction against sliding one way; what slides at an angle to it has less, and all other ways have \
      `friction_coefficient`.",
     &[
-        Key::new("direction", Holds::Vector, "the way in which friction is larger, in space")
+        Key::new("direction", ValueType::Vector, "the way in which friction is larger, in space")
             .required(),
         Key::number("friction_coefficient", "the static coefficient of friction that way", "1")
-            .law("The kinetic one is larger in proportion.")
+            .note("The kinetic one is larger in proportion.")
             .required(),
     ],
     "[[obstacle]]\nkind = \"half-plane\"\npoint = [0.0, 0.0]\nnormal = [0.0, 1.0]\nstiffness_density = 1.0e7\n\
@@ -93,7 +93,7 @@ const DISC: Kind = Kind {
     keys: &[
         Key::vector("centre", "the centre", "m"),
         RADIUS,
-        Key::new("cavity", Holds::Flag, "whether bodies are inside of it").default("false"),
+        Key::new("cavity", ValueType::Flag, "whether bodies are inside of it").default("false"),
     ],
 };
 
@@ -105,11 +105,11 @@ const BOX: Kind = Kind {
         Key::vector("max", "the upper corner", "m"),
         Key::new(
             "turn",
-            Holds::OneOrMore(&Holds::Number),
+            ValueType::OneOrMore(&ValueType::Number),
             "the angle by which the box is turned about its middle",
         )
         .in_unit("rad")
-        .law(
+        .note(
             "One number in the plane, counter-clockwise; in space three, the axis times the angle.",
         )
         .default("0"),
@@ -129,7 +129,7 @@ const CAPSULE: Kind = Kind {
 const UNION: Kind = Kind {
     word: "union",
     about: "several shapes as one, which move together",
-    keys: &[Key::new("parts", Holds::Tables(&PARTS), "the shapes").required()],
+    keys: &[Key::new("parts", ValueType::Tables(&PARTS), "the shapes").required()],
 };
 
 const RADIUS: Key = Key::number("radius", "the radius", "m").required();
@@ -139,16 +139,16 @@ const WAY: TableKeys = TableKeys::new(
     "The obstacle runs smoothly (a cubic spline) through points, and begins and ends at rest; before and after it stays. Or it \
      follows formulas without `abs`, `min`, `max` and `step`, which have no velocity at their kinks.",
     &[
-        Key::new("times", Holds::List(&Holds::Number), "times in ascending order").in_unit("s"),
+        Key::new("times", ValueType::List(&ValueType::Number), "times in ascending order").in_unit("s"),
         Key::new(
             "displacements",
-            Holds::List(&Holds::Vector),
+            ValueType::List(&ValueType::Vector),
             "displacements, at these times, from where it was said to be",
         )
         .in_unit("m"),
         Key::new(
             "displacement",
-            Holds::ChangingVector,
+            ValueType::ChangingVector,
             "the displacement from where it was said to be",
         )
         .in_unit("m"),

@@ -1,17 +1,17 @@
 //! The keys of `[[phase]]` and of the tables in it.
 
-use super::keys::{Holds, Key, TableKeys};
+use super::keys::{Key, TableKeys, ValueType};
 
 pub(super) const PHASE: TableKeys = TableKeys::new(
     "[[phase]]",
     "A stretch of time with its own constraints, loads and contacts. Displacements and velocities carry over from \
      phase to phase. Times in it are those of the scene.",
     &[
-        Key::new("name", Holds::Text, "the name of the phase").default("phase 1, ..."),
+        Key::new("name", ValueType::Text, "the name of the phase").default("phase 1, ..."),
         Key::number("until", "the end of the phase", "s").required(),
-        Key::new("end", Holds::Table(&END), "a sensor that ends the phase before")
+        Key::new("end", ValueType::Table(&END), "a sensor that ends the phase before")
             .default("at `until` alone"),
-        Key::new("gravity", Holds::Vector, "the acceleration of gravity in this phase")
+        Key::new("gravity", ValueType::Vector, "the acceleration of gravity in this phase")
             .in_unit("m/s^2")
             .default("that of the file"),
         part(&HOLD, "nodes that stay where they are"),
@@ -29,20 +29,20 @@ pub(super) const PHASE: TableKeys = TableKeys::new(
         part(&FLOW, "flows of liquids into chambers"),
         part(&ACTUATE, "forces in springs and cables, stresses of muscles, strains of growth"),
         part(&DRIVE, "where dipoles are, and their moments"),
-        Key::new("magnetic_field", Holds::Table(&MAGNETIC_FIELD), "the magnetic field"),
+        Key::new("magnetic_field", ValueType::Table(&MAGNETIC_FIELD), "the magnetic field"),
         Key::new(
             "contact",
-            Holds::Either(&[Holds::Flag, Holds::OneOrMore(&Holds::Text)]),
+            ValueType::Either(&[ValueType::Flag, ValueType::OneOrMore(&ValueType::Text)]),
             "the obstacles that act",
         )
-        .law("All, none, or those of these names.")
+        .note("All, none, or those of these names.")
         .default("true"),
         Key::new(
             "project_velocity",
-            Holds::Flag,
+            ValueType::Flag,
             "whether the phase begins with velocities that its constraints allow",
         )
-        .law("What is taken away is lost, as in a perfectly plastic impact.")
+        .note("What is taken away is lost, as in a perfectly plastic impact.")
         .default("false"),
     ],
     "[[phase]]\nname = \"push\"\nuntil = 0.5\nhold = [{ nodes = \"bottom\" }]\ncontact = false",
@@ -54,7 +54,7 @@ pub(super) const END: TableKeys = TableKeys::new(
      does not count before it has been on the other side. The next phase begins at once, and ends at its own `until`; the last \
      phase has no such end.",
     &[
-        Key::new("sensor", Holds::Text, "the name of the sensor, of one with several columns that of the column: `tip.y`").required(),
+        Key::new("sensor", ValueType::Text, "the name of the sensor, of one with several columns that of the column: `tip.y`").required(),
         Key::number("above", "the level above which it rises, in the unit of the sensor", ""),
         Key::number("below", "the level below which it falls", ""),
     ],
@@ -65,21 +65,21 @@ pub(super) const END: TableKeys = TableKeys::new(
 .one_of(&[&["above"], &["below"]]);
 
 const fn part(keys: &'static TableKeys, meaning: &'static str) -> Key {
-    Key::new(keys.name, Holds::Tables(keys), meaning)
+    Key::new(keys.name, ValueType::Tables(keys), meaning)
 }
 
-const NODES: Key = Key::new("nodes", Holds::Nodes, "nodes").required();
+const NODES: Key = Key::new("nodes", ValueType::Nodes, "nodes").required();
 const AXES: Key =
-    Key::new("axes", Holds::Axes, "the axes that are prescribed").default("all of them");
+    Key::new("axes", ValueType::Axes, "the axes that are prescribed").default("all of them");
 const TIMES: Key =
-    Key::new("times", Holds::List(&Holds::Number), "times in ascending order").in_unit("s");
+    Key::new("times", ValueType::List(&ValueType::Number), "times in ascending order").in_unit("s");
 const PERIOD: Key = Key::new(
     "period",
-    Holds::Number,
+    ValueType::Number,
     "the time after which the table is repeated, up to the end of the phase",
 )
 .in_unit("s")
-.law("From its last time a line leads to the first value, a period after the first time.")
+.note("From its last time a line leads to the first value, a period after the first time.")
 .default("once");
 
 pub(super) const HOLD: TableKeys = TableKeys::new(
@@ -92,7 +92,11 @@ pub(super) const HOLD: TableKeys = TableKeys::new(
 pub(super) const MOVE: TableKeys = TableKeys::new(
     "move",
     "Nodes move on, with a constant velocity, from where they are when the phase begins.",
-    &[NODES, AXES, Key::new("velocity", Holds::Along, "the velocity").in_unit("m/s").required()],
+    &[
+        NODES,
+        AXES,
+        Key::new("velocity", ValueType::Along, "the velocity").in_unit("m/s").required(),
+    ],
     "move = [{ nodes = \"right\", velocity = [0.0, -0.16] }]",
 );
 
@@ -106,14 +110,14 @@ pub(super) const PATH: TableKeys = TableKeys::new(
         TIMES,
         Key::new(
             "displacements",
-            Holds::List(&Holds::Along),
+            ValueType::List(&ValueType::Along),
             "displacements from the undeformed position at these times",
         )
-        .law("Not from where the nodes are when the phase begins: a path that begins elsewhere draws them there at once, which is warned of.")
+        .note("Not from where the nodes are when the phase begins: a path that begins elsewhere draws them there at once, which is warned of.")
         .in_unit("m"),
         Key::new(
             "displacement",
-            Holds::OneOrMore(&Holds::Changing),
+            ValueType::OneOrMore(&ValueType::Changing),
             "the displacement from the undeformed position, for each of the axes",
         )
         .in_unit("m"),
@@ -131,13 +135,13 @@ pub(super) const ROTATE: TableKeys = TableKeys::new(
      smoothly (a cubic spline that begins and ends at rest) by what the angle has changed since then.",
     &[
         NODES,
-        Key::new("centre", Holds::Vector, "the point, or one of the axis").in_unit("m").required(),
-        Key::new("axis", Holds::Array(&Holds::Number, 3), "the direction of the axis")
+        Key::new("centre", ValueType::Vector, "the point, or one of the axis").in_unit("m").required(),
+        Key::new("axis", ValueType::Array(&ValueType::Number, 3), "the direction of the axis")
             .in_unit("1")
-            .law("In space only; in the plane nodes turn counter-clockwise."),
+            .note("In space only; in the plane nodes turn counter-clockwise."),
         Key::number("rate", "the angular velocity", "rad/s"),
         TIMES,
-        Key::new("angles", Holds::List(&Holds::Number), "angles at these times").in_unit("rad"),
+        Key::new("angles", ValueType::List(&ValueType::Number), "angles at these times").in_unit("rad"),
     ],
     "rotate = [{ nodes = \"left\", centre = [0.0, 0.01], times = [0.0, 0.5], angles = [0.0, 1.5708] }]",
 )
@@ -149,7 +153,7 @@ pub(super) const SYMMETRY: TableKeys = TableKeys::new(
      node by node there has to be halved: loads, point masses, springs, `stiffness` of obstacles.",
     &[
         NODES,
-        Key::new("normal", Holds::Vector, "the normal of the plane, of any length")
+        Key::new("normal", ValueType::Vector, "the normal of the plane, of any length")
             .in_unit("1")
             .required(),
     ],
@@ -160,7 +164,7 @@ pub(super) const HOLD_COMBINATION: TableKeys = TableKeys::new(
     "hold_combination",
     "A row of constraints: the sum of displacements, each times a coefficient, keeps the value that it has when the phase \
      begins. Two nodes with 1 and -1 move alike along an axis.",
-    &[Key::new("terms", Holds::Tables(&TERMS), "the displacements").required()],
+    &[Key::new("terms", ValueType::Tables(&TERMS), "the displacements").required()],
     "hold_combination = [{ terms = [\n\
      \x20   { node = 3, axis = \"x\", coefficient = 1.0 },\n\
      \x20   { node = 6, axis = \"x\", coefficient = -1.0 },\n\
@@ -171,8 +175,8 @@ pub(super) const TERMS: TableKeys = TableKeys::new(
     "terms",
     "One displacement of a row.",
     &[
-        Key::new("node", Holds::Count, "the number of the node, from 1").required(),
-        Key::new("axis", Holds::Word(|| vec!["x", "y", "z"]), "the axis").required(),
+        Key::new("node", ValueType::Count, "the number of the node, from 1").required(),
+        Key::new("axis", ValueType::Word(|| vec!["x", "y", "z"]), "the axis").required(),
         Key::number("coefficient", "the coefficient, other than 0", "1").required(),
     ],
     "hold_combination = [{ terms = [{ node = 3, axis = \"y\", coefficient = 1.0 }] }]",
@@ -184,19 +188,19 @@ pub(super) const LOAD: TableKeys = TableKeys::new(
      interpolated linearly, and constant before and after. Directions stay as the body turns.",
     &[
         NODES,
-        Key::new("force", Holds::ChangingVector, "the force on each node").in_unit("N"),
-        Key::new("total", Holds::ChangingVector, "the force on all nodes together")
+        Key::new("force", ValueType::ChangingVector, "the force on each node").in_unit("N"),
+        Key::new("total", ValueType::ChangingVector, "the force on all nodes together")
             .in_unit("N")
-            .law("Spread evenly over the faces that the nodes make up; nodes without faces share it equally."),
-        Key::new("traction", Holds::ChangingVector, "the force per undeformed area of the faces")
+            .note("Spread evenly over the faces that the nodes make up; nodes without faces share it equally."),
+        Key::new("traction", ValueType::ChangingVector, "the force per undeformed area of the faces")
             .in_unit("N/m^2"),
         TIMES,
         PERIOD,
-        Key::new("forces", Holds::List(&Holds::Vector), "the force on each node at these times")
+        Key::new("forces", ValueType::List(&ValueType::Vector), "the force on each node at these times")
             .in_unit("N"),
-        Key::new("totals", Holds::List(&Holds::Vector), "the force on all nodes at these times")
+        Key::new("totals", ValueType::List(&ValueType::Vector), "the force on all nodes at these times")
             .in_unit("N"),
-        Key::new("tractions", Holds::List(&Holds::Vector), "the traction at these times")
+        Key::new("tractions", ValueType::List(&ValueType::Vector), "the traction at these times")
             .in_unit("N/m^2"),
     ],
     "load = [\n\
@@ -219,12 +223,12 @@ pub(super) const MOMENT: TableKeys = TableKeys::new(
      of a rigid body. Moments of a table are interpolated linearly, and constant before and after.",
     &[
         NODES,
-        Key::new("moment", Holds::ChangingVector, "the moment")
+        Key::new("moment", ValueType::ChangingVector, "the moment")
             .in_unit("N m")
-            .law("In the plane a number, counter-clockwise; in space a vector."),
+            .note("In the plane a number, counter-clockwise; in space a vector."),
         TIMES,
         PERIOD,
-        Key::new("moments", Holds::List(&Holds::Vector), "moments at these times").in_unit("N m"),
+        Key::new("moments", ValueType::List(&ValueType::Vector), "moments at these times").in_unit("N m"),
     ],
     "moment = [{ nodes = \"right\", times = [0.0, 0.1], moments = [[0.0], [0.001]] }]",
 )
@@ -236,13 +240,13 @@ pub(super) const FOLLOWER: TableKeys = TableKeys::new(
      shape. Those of a table are interpolated linearly, and constant before and after.",
     &[
         NODES,
-        Key::new("force", Holds::ChangingVector, "the force on all nodes together").in_unit("N"),
-        Key::new("moment", Holds::ChangingVector, "the moment, in the plane a number")
+        Key::new("force", ValueType::ChangingVector, "the force on all nodes together").in_unit("N"),
+        Key::new("moment", ValueType::ChangingVector, "the moment, in the plane a number")
             .in_unit("N m"),
         TIMES,
         PERIOD,
-        Key::new("forces", Holds::List(&Holds::Vector), "forces at these times").in_unit("N"),
-        Key::new("moments", Holds::List(&Holds::Vector), "moments at these times").in_unit("N m"),
+        Key::new("forces", ValueType::List(&ValueType::Vector), "forces at these times").in_unit("N"),
+        Key::new("moments", ValueType::List(&ValueType::Vector), "moments at these times").in_unit("N m"),
     ],
     "follower = [{ nodes = \"right\", force = [\"-0.01*min(t/0.1, 1)\", 0.0] }]",
 )
@@ -253,7 +257,7 @@ pub(super) const PRESSURE: TableKeys = TableKeys::new(
     "The pressure in a chamber, positive if it blows it up. That of a table is interpolated linearly, and is \
      constant before and after.",
     &[
-        Key::new("chamber", Holds::Text, "the name of a chamber").required(),
+        Key::new("chamber", ValueType::Text, "the name of a chamber").required(),
         VALUE,
         TIMES,
         PERIOD,
@@ -263,9 +267,10 @@ pub(super) const PRESSURE: TableKeys = TableKeys::new(
 )
 .one_of(&[&["value"], &["times", "values"]]);
 
-const VALUE: Key = Key::new("value", Holds::Changing, "the pressure").in_unit("Pa");
+const VALUE: Key = Key::new("value", ValueType::Changing, "the pressure").in_unit("Pa");
 const VALUES: Key =
-    Key::new("values", Holds::List(&Holds::Number), "pressures at these times").in_unit("Pa");
+    Key::new("values", ValueType::List(&ValueType::Number), "pressures at these times")
+        .in_unit("Pa");
 
 pub(super) const PRESSURE_ON: TableKeys = TableKeys::new(
     "pressure_on",
@@ -281,11 +286,11 @@ pub(super) const OPEN: TableKeys = TableKeys::new(
     "How far an orifice is open, from 0 (shut) to 1. The opening of a table is interpolated linearly, and is constant before and \
      after.",
     &[
-        Key::new("orifice", Holds::Text, "the name of an orifice").required(),
-        Key::new("opening", Holds::Changing, "how far it is open").in_unit("1"),
+        Key::new("orifice", ValueType::Text, "the name of an orifice").required(),
+        Key::new("opening", ValueType::Changing, "how far it is open").in_unit("1"),
         TIMES,
         PERIOD,
-        Key::new("openings", Holds::List(&Holds::Number), "openings at these times").in_unit("1"),
+        Key::new("openings", ValueType::List(&ValueType::Number), "openings at these times").in_unit("1"),
     ],
     "open = [{ orifice = \"valve\", times = [0.0, 0.1], openings = [0.0, 1.0] }]",
 )
@@ -296,11 +301,11 @@ pub(super) const FLOW: TableKeys = TableKeys::new(
     "How much liquid flows into a chamber, as from a syringe or a pump; below 0 it flows out. That of a table is interpolated linearly, and is \
      constant before and after.",
     &[
-        Key::new("chamber", Holds::Text, "the name of a chamber with a liquid").required(),
-        Key::new("rate", Holds::Changing, "the volume, without pressure, that flows in per time").in_unit("m^3/s"),
+        Key::new("chamber", ValueType::Text, "the name of a chamber with a liquid").required(),
+        Key::new("rate", ValueType::Changing, "the volume, without pressure, that flows in per time").in_unit("m^3/s"),
         TIMES,
         PERIOD,
-        Key::new("rates", Holds::List(&Holds::Number), "rates at these times").in_unit("m^3/s"),
+        Key::new("rates", ValueType::List(&ValueType::Number), "rates at these times").in_unit("m^3/s"),
     ],
     "flow = [{ chamber = \"inside\", times = [0.0, 0.1], rates = [0.0, 1.0e-6] }]",
 )
@@ -311,24 +316,24 @@ pub(super) const ACTUATE: TableKeys = TableKeys::new(
     "Forces of the actuators in springs, tensions of cables, lengths that winches have drawn in, stresses of muscles, strains of growth, and powers of what is heated. Those of a table are \
      interpolated linearly, and are constant before and after.",
     &[
-        Key::new("springs", Holds::OneOrMore(&Holds::Text), "names of springs and cables"),
-        Key::new("muscles", Holds::OneOrMore(&Holds::Text), "names of muscles"),
-        Key::new("growths", Holds::OneOrMore(&Holds::Text), "names of growths"),
-        Key::new("heated", Holds::OneOrMore(&Holds::Text), "names of springs, cables, muscles and growths that a `[[lag]]` heats"),
-        Key::new("force", Holds::Changing, "the force: of a spring positive if it extends, of a cable if it pulls").in_unit("N"),
-        Key::new("length", Holds::Changing, "of a winch: the length that it has drawn in").in_unit("m"),
-        Key::new("stress", Holds::Changing, "of a muscle: the force per section of the undeformed shape by which it pulls; below 0 it pushes")
+        Key::new("springs", ValueType::OneOrMore(&ValueType::Text), "names of springs and cables"),
+        Key::new("muscles", ValueType::OneOrMore(&ValueType::Text), "names of muscles"),
+        Key::new("growths", ValueType::OneOrMore(&ValueType::Text), "names of growths"),
+        Key::new("heated", ValueType::OneOrMore(&ValueType::Text), "names of springs, cables, muscles and growths that a `[[lag]]` heats"),
+        Key::new("force", ValueType::Changing, "the force: of a spring positive if it extends, of a cable if it pulls").in_unit("N"),
+        Key::new("length", ValueType::Changing, "of a winch: the length that it has drawn in").in_unit("m"),
+        Key::new("stress", ValueType::Changing, "of a muscle: the force per section of the undeformed shape by which it pulls; below 0 it pushes")
             .in_unit("Pa"),
-        Key::new("strain", Holds::Changing, "of a growth: by how much what is free gets longer; of heat the coefficient of expansion times the change of temperature")
+        Key::new("strain", ValueType::Changing, "of a growth: by how much what is free gets longer; of heat the coefficient of expansion times the change of temperature")
             .in_unit("1"),
-        Key::new("power", Holds::Changing, "the power that heats them, each by itself").in_unit("W"),
+        Key::new("power", ValueType::Changing, "the power that heats them, each by itself").in_unit("W"),
         TIMES,
         PERIOD,
-        Key::new("forces", Holds::List(&Holds::Number), "forces at these times").in_unit("N"),
-        Key::new("lengths", Holds::List(&Holds::Number), "lengths at these times").in_unit("m"),
-        Key::new("strains", Holds::List(&Holds::Number), "strains at these times").in_unit("1"),
-        Key::new("stresses", Holds::List(&Holds::Number), "stresses at these times").in_unit("Pa"),
-        Key::new("powers", Holds::List(&Holds::Number), "powers at these times").in_unit("W"),
+        Key::new("forces", ValueType::List(&ValueType::Number), "forces at these times").in_unit("N"),
+        Key::new("lengths", ValueType::List(&ValueType::Number), "lengths at these times").in_unit("m"),
+        Key::new("strains", ValueType::List(&ValueType::Number), "strains at these times").in_unit("1"),
+        Key::new("stresses", ValueType::List(&ValueType::Number), "stresses at these times").in_unit("Pa"),
+        Key::new("powers", ValueType::List(&ValueType::Number), "powers at these times").in_unit("W"),
     ],
     "actuate = [{ springs = \"down\", times = [0.2, 0.3], forces = [0.0, -0.8] }]",
 )
@@ -350,13 +355,13 @@ pub(super) const DRIVE: TableKeys = TableKeys::new(
     "Where a `[[dipole]]` is in this phase, or its moment, in place of what the scene says; a moment of 0 switches it off. Those of tables are interpolated linearly, \
      and constant before and after.",
     &[
-        Key::new("dipole", Holds::Text, "the name of the dipole").required(),
-        Key::new("position", Holds::ChangingVector, "its position").in_unit("m"),
-        Key::new("moment", Holds::ChangingVector, "its moment").in_unit("A m^2"),
+        Key::new("dipole", ValueType::Text, "the name of the dipole").required(),
+        Key::new("position", ValueType::ChangingVector, "its position").in_unit("m"),
+        Key::new("moment", ValueType::ChangingVector, "its moment").in_unit("A m^2"),
         TIMES,
         PERIOD,
-        Key::new("positions", Holds::List(&Holds::Vector), "its positions at these times").in_unit("m"),
-        Key::new("moments", Holds::List(&Holds::Vector), "its moments at these times").in_unit("A m^2"),
+        Key::new("positions", ValueType::List(&ValueType::Vector), "its positions at these times").in_unit("m"),
+        Key::new("moments", ValueType::List(&ValueType::Vector), "its moments at these times").in_unit("A m^2"),
     ],
     "drive = [{ dipole = \"lead\", times = [0.0, 0.1], positions = [[0.05, 0.3], [0.1, 0.3]] }]",
 )
@@ -367,12 +372,12 @@ pub(super) const MAGNETIC_FIELD: TableKeys = TableKeys::new(
     "The magnetic field that acts on the magnets: `field` everywhere, and `gradient` (x - `centre`) beside it. That of a table is interpolated linearly, and constant \
      before and after.",
     &[
-        Key::new("field", Holds::ChangingVector, "the field").in_unit("T"),
+        Key::new("field", ValueType::ChangingVector, "the field").in_unit("T"),
         TIMES,
         PERIOD,
-        Key::new("fields", Holds::List(&Holds::Vector), "the field at these times").in_unit("T"),
-        Key::new("gradient", Holds::List(&Holds::Vector), "rows of dB_i/dx_j, a symmetric matrix, in space without trace").in_unit("T/m"),
-        Key::new("centre", Holds::Vector, "where the gradient adds nothing").in_unit("m").default("the origin"),
+        Key::new("fields", ValueType::List(&ValueType::Vector), "the field at these times").in_unit("T"),
+        Key::new("gradient", ValueType::List(&ValueType::Vector), "rows of dB_i/dx_j, a symmetric matrix, in space without trace").in_unit("T/m"),
+        Key::new("centre", ValueType::Vector, "where the gradient adds nothing").in_unit("m").default("the origin"),
     ],
     "magnetic_field = { field = [0.0, \"0.01*sin(20*t)\"] }",
 )

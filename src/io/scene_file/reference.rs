@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::keys::{Default, Holds, Key, TableKeys};
+use super::keys::{Default, Key, TableKeys, ValueType};
 use super::material::LAW;
 use super::top::TOP;
 
@@ -78,11 +78,13 @@ fn tables_from(first: &'static TableKeys) -> Vec<&'static TableKeys> {
 }
 
 /// The tables in a value.
-fn inside(holds: &'static Holds) -> Vec<&'static TableKeys> {
+fn inside(holds: &'static ValueType) -> Vec<&'static TableKeys> {
     match holds {
-        Holds::Table(keys) | Holds::Tables(keys) => vec![*keys],
-        Holds::Array(inner, _) | Holds::List(inner) | Holds::OneOrMore(inner) => inside(inner),
-        Holds::Either(several) => several.iter().flat_map(inside).collect(),
+        ValueType::Table(keys) | ValueType::Tables(keys) => vec![*keys],
+        ValueType::Array(inner, _) | ValueType::List(inner) | ValueType::OneOrMore(inner) => {
+            inside(inner)
+        }
+        ValueType::Either(several) => several.iter().flat_map(inside).collect(),
         _ => Vec::new(),
     }
 }
@@ -120,43 +122,43 @@ fn heading(table: &TableKeys) -> String {
 }
 
 fn row(page: &mut String, key: &Key) -> std::fmt::Result {
-    let Key { name, holds, meaning, law, default, now } = key;
+    let Key { name, holds, meaning, note, default, renamed_to } = key;
     let default = match default {
         Default::Required => "required",
         Default::Words(words) => words,
     };
     let (kind, unit) = (kind_of(holds), meaning.unit);
-    let meaning = match (now, *law) {
-        (Some(now), _) => format!("old name of `{now}`"),
+    let meaning = match (renamed_to, *note) {
+        (Some(name), _) => format!("old name of `{name}`"),
         (None, "") => meaning.text.into(),
-        (None, law) => format!("{}. {law}", meaning.text),
+        (None, note) => format!("{}. {note}", meaning.text),
     };
     writeln!(page, "| `{name}` | {kind} | {unit} | {default} | {meaning} |")
 }
 
 /// Type of a value, in words.
-fn kind_of(holds: &Holds) -> String {
+fn kind_of(holds: &ValueType) -> String {
     match holds {
-        Holds::Number => "number".into(),
-        Holds::Count => "whole number".into(),
-        Holds::Flag => "`true` or `false`".into(),
-        Holds::Text => "text".into(),
-        Holds::Word(words) => words_of(&words()),
-        Holds::Array(inner, count) => format!("list of {count}: {}", kind_of(inner)),
-        Holds::List(inner) => format!("list: {}", kind_of(inner)),
-        Holds::OneOrMore(inner) => format!("{}, or a list", kind_of(inner)),
-        Holds::Either(several) => several.iter().map(kind_of).collect::<Vec<_>>().join("; or "),
-        Holds::Vector => "vector".into(),
-        Holds::Along => "numbers along axes".into(),
-        Holds::Changing => "number or formula".into(),
-        Holds::ChangingVector => "vector or formulas".into(),
-        Holds::Nodes => "nodes".into(),
-        Holds::Corners => "corners".into(),
-        Holds::Axes => "axes".into(),
-        Holds::Table(keys) => {
+        ValueType::Number => "number".into(),
+        ValueType::Count => "whole number".into(),
+        ValueType::Flag => "`true` or `false`".into(),
+        ValueType::Text => "text".into(),
+        ValueType::Word(words) => words_of(&words()),
+        ValueType::Array(inner, count) => format!("list of {count}: {}", kind_of(inner)),
+        ValueType::List(inner) => format!("list: {}", kind_of(inner)),
+        ValueType::OneOrMore(inner) => format!("{}, or a list", kind_of(inner)),
+        ValueType::Either(several) => several.iter().map(kind_of).collect::<Vec<_>>().join("; or "),
+        ValueType::Vector => "vector".into(),
+        ValueType::Along => "numbers along axes".into(),
+        ValueType::Changing => "number or formula".into(),
+        ValueType::ChangingVector => "vector or formulas".into(),
+        ValueType::Nodes => "nodes".into(),
+        ValueType::Corners => "corners".into(),
+        ValueType::Axes => "axes".into(),
+        ValueType::Table(keys) => {
             format!("table [{}](#{})", keys.name.trim_matches(['[', ']']), anchor(keys))
         }
-        Holds::Tables(keys) => {
+        ValueType::Tables(keys) => {
             format!("tables [{}](#{})", keys.name.trim_matches(['[', ']']), anchor(keys))
         }
     }

@@ -2,7 +2,7 @@
 
 use serde_json::{Map, Value, json};
 
-use super::keys::{Default, Holds, Key, TableKeys};
+use super::keys::{Default, Key, TableKeys, ValueType};
 use super::reference::tables;
 use super::selection::BOX;
 use super::top::TOP;
@@ -102,7 +102,7 @@ fn closed(keys: impl Iterator<Item = &'static Key> + Clone) -> Value {
 /// The schema of a value with the words that an editor shows.
 fn described(key: &Key) -> Value {
     let mut schema = value(&key.holds);
-    let words = match (key.now, key.default) {
+    let words = match (key.renamed_to, key.default) {
         (Some(now), _) => format!("Old name of {now}."),
         (None, Default::Required) => format!("{}. Required.", key.meaning),
         (None, Default::Words(words)) => format!("{}. Default: {words}.", key.meaning),
@@ -110,35 +110,37 @@ fn described(key: &Key) -> Value {
     if schema.get("$ref").is_some() {
         schema = json!({ "allOf": [schema] }); // next to a reference all else is ignored
     }
-    schema["description"] = [&words, key.law].join(" ").trim().into();
+    schema["description"] = [&words, key.note].join(" ").trim().into();
     schema
 }
 
-fn value(holds: &Holds) -> Value {
+fn value(holds: &ValueType) -> Value {
     let one_or_more = |inner: Value| {
         let list = json!({ "type": "array", "items": inner });
         json!({ "anyOf": [inner, list] })
     };
     match holds {
-        Holds::Number => json!({ "type": "number" }),
-        Holds::Count => json!({ "type": "integer", "minimum": 0 }),
-        Holds::Flag => json!({ "type": "boolean" }),
-        Holds::Text => json!({ "type": "string" }),
-        Holds::Word(words) => json!({ "enum": words() }),
-        Holds::Array(inner, count) => json!({
+        ValueType::Number => json!({ "type": "number" }),
+        ValueType::Count => json!({ "type": "integer", "minimum": 0 }),
+        ValueType::Flag => json!({ "type": "boolean" }),
+        ValueType::Text => json!({ "type": "string" }),
+        ValueType::Word(words) => json!({ "enum": words() }),
+        ValueType::Array(inner, count) => json!({
             "type": "array", "items": value(inner), "minItems": count, "maxItems": count,
         }),
-        Holds::List(inner) => json!({ "type": "array", "items": value(inner) }),
-        Holds::OneOrMore(inner) => one_or_more(value(inner)),
-        Holds::Either(several) => json!({ "anyOf": several.iter().map(value).collect::<Vec<_>>() }),
-        Holds::Vector => reference("a vector"),
-        Holds::Along => reference("numbers along axes"),
-        Holds::Changing => reference("a number or a formula"),
-        Holds::ChangingVector => reference("a vector or formulas"),
-        Holds::Nodes => reference("nodes"),
-        Holds::Corners => reference("corners"),
-        Holds::Axes => reference("axes"),
-        Holds::Table(keys) => reference(keys.name),
-        Holds::Tables(keys) => one_or_more(reference(keys.name)),
+        ValueType::List(inner) => json!({ "type": "array", "items": value(inner) }),
+        ValueType::OneOrMore(inner) => one_or_more(value(inner)),
+        ValueType::Either(several) => {
+            json!({ "anyOf": several.iter().map(value).collect::<Vec<_>>() })
+        }
+        ValueType::Vector => reference("a vector"),
+        ValueType::Along => reference("numbers along axes"),
+        ValueType::Changing => reference("a number or a formula"),
+        ValueType::ChangingVector => reference("a vector or formulas"),
+        ValueType::Nodes => reference("nodes"),
+        ValueType::Corners => reference("corners"),
+        ValueType::Axes => reference("axes"),
+        ValueType::Table(keys) => reference(keys.name),
+        ValueType::Tables(keys) => one_or_more(reference(keys.name)),
     }
 }

@@ -2,7 +2,7 @@
 
 use toml::de::DeValue;
 
-use super::keys::{Holds, Key, Meaning, TableKeys};
+use super::keys::{Key, Meaning, TableKeys, ValueType};
 use super::value::{Value, number_of};
 use crate::dynamics::error::Error;
 use crate::elements::mesh::{Mesh, Selection};
@@ -70,7 +70,7 @@ fn number(value: Value) -> Result<usize, Error> {
 pub(super) const BOX: TableKeys = TableKeys::new(
     "box",
     "All nodes within a box.",
-    &[Key::new("box", Holds::Corners, CORNERS).in_unit("m").required()],
+    &[Key::new("box", ValueType::Corners, CORNERS).in_unit("m").required()],
     "hold = [{ nodes = { box = [[0.0, 0.0], [0.1, 0.02]] } }]",
 );
 

@@ -1,6 +1,6 @@
 //! `[[sensor]]`.
 
-use super::keys::{Holds, Key, Kind, TableKeys};
+use super::keys::{Key, Kind, TableKeys, ValueType};
 use super::selection::selection;
 use super::table::Table;
 use super::value::{Value, number_of};
@@ -15,9 +15,9 @@ pub(super) const SENSOR: TableKeys = TableKeys::new(
      components has a column for each: `tip.x`, `tip.y`. Of several nodes, positions and the like are means, forces \
      are sums.",
     &[
-        Key::new("name", Holds::Text, "the name of the sensor").required(),
-        Key::new("component", Holds::Word(|| Component::WORDS.map(|(word, _)| word).into()), "one component alone")
-            .law("Vectors have `x`, `y`, `z` and their length `norm`; tensors `xx` and so on; stress has `von-mises` besides.")
+        Key::new("name", ValueType::Text, "the name of the sensor").required(),
+        Key::new("component", ValueType::Word(|| Component::WORDS.map(|(word, _)| word).into()), "one component alone")
+            .note("Vectors have `x`, `y`, `z` and their length `norm`; tensors `xx` and so on; stress has `von-mises` besides.")
             .default("all, each a column"),
     ],
     "[[sensor]]\nname = \"bottom\"\nkind = \"constraint-force\"\nnodes = \"all\"\ncomponent = \"y\"",
@@ -56,10 +56,10 @@ const OWN: [Kind; 21] = [
         about: "the moment of what holds or moves nodes about a point that stays where it is (N m), counter-clockwise in the plane",
         keys: &[
             NODES,
-            Key::new("about", Holds::Vector, "the point").in_unit("m").required(),
+            Key::new("about", ValueType::Vector, "the point").in_unit("m").required(),
             Key::new(
                 "axis",
-                Holds::Vector,
+                ValueType::Vector,
                 "the direction along which it is read, of a body in space",
             )
             .default("all components, each a column"),
@@ -83,7 +83,7 @@ const OWN: [Kind; 21] = [
     Kind {
         word: "gap",
         about: "the least distance of the surfaces of bodies that touch, up to that from which on nothing acts (m)",
-        keys: &[Key::new("touch", Holds::Text, "the name of the contact").required()],
+        keys: &[Key::new("touch", ValueType::Text, "the name of the contact").required()],
     },
     Kind {
         word: "magnetic-moment",
@@ -94,8 +94,8 @@ const OWN: [Kind; 21] = [
         word: "fluid-force",
         about: "the force of a fluid, its drag and pressure, on all nodes, on some of them or on those of one body (N)",
         keys: &[
-            Key::new("fluid", Holds::Text, "the name of the fluid").required(),
-            Key::new("nodes", Holds::Nodes, "the nodes on which it acts").default("all"),
+            Key::new("fluid", ValueType::Text, "the name of the fluid").required(),
+            Key::new("nodes", ValueType::Nodes, "the nodes on which it acts").default("all"),
             BODY,
         ],
     },
@@ -113,8 +113,8 @@ const OWN: [Kind; 21] = [
         word: "distance",
         about: "the distance between two nodes, or the middles of sets (m)",
         keys: &[
-            Key::new("from", Holds::Nodes, "where it is measured from").required(),
-            Key::new("to", Holds::Nodes, "where it is measured to").required(),
+            Key::new("from", ValueType::Nodes, "where it is measured from").required(),
+            Key::new("to", ValueType::Nodes, "where it is measured to").required(),
         ],
     },
     Kind {
@@ -153,7 +153,7 @@ const COMPONENTS: [[Key; 1]; OUTPUTS.len()] = {
     let mut k = 0;
     while k < keys.len() {
         let of = OUTPUTS[k].of;
-        keys[k] = [Key::new(of.key, Holds::Text, of.about).required()];
+        keys[k] = [Key::new(of.key, ValueType::Text, of.about).required()];
         k += 1;
     }
     keys
@@ -180,51 +180,52 @@ const MARKER: TableKeys = TableKeys::new(
     "marker",
     "A point beside the body, as on a post or a plate: it moves with nodes as if both were one rigid body, by the rigid motion nearest to theirs.",
     &[
-        Key::new("nodes", Holds::Nodes, "the nodes that it moves with").required(),
+        Key::new("nodes", ValueType::Nodes, "the nodes that it moves with").required(),
         Key::vector("at", "where it is in the undeformed shape", "m"),
     ],
     "[[sensor]]\nname = \"lamp\"\nkind = \"position\"\nmarker = { nodes = \"top\", at = [0.05, 0.15] }",
 );
 
 const OBSTACLE: Key =
-    Key::new("obstacle", Holds::Text, "the name of the obstacle").default("`touch`");
+    Key::new("obstacle", ValueType::Text, "the name of the obstacle").default("`touch`");
 const TOUCH: Key =
-    Key::new("touch", Holds::Text, "the name of the contact of bodies").default("`obstacle`");
-const TOUCHED: Key = Key::new("nodes", Holds::Nodes, "the nodes on which it acts").default("all").law(
+    Key::new("touch", ValueType::Text, "the name of the contact of bodies").default("`obstacle`");
+const TOUCHED: Key = Key::new("nodes", ValueType::Nodes, "the nodes on which it acts").default("all").note(
     "Those of one finger, say: the forces on both sides of what is gripped cancel each other. A `touch` needs `nodes` or \
      `body`, as it acts on both sides alike: all of its forces together are 0.",
 );
 const TOUCHED_BODY: Key =
-    Key::new("body", Holds::Text, "the body on which a `touch` acts").default("`nodes`");
-const NODES: Key = Key::new("nodes", Holds::Nodes, "the nodes").required();
+    Key::new("body", ValueType::Text, "the body on which a `touch` acts").default("`nodes`");
+const NODES: Key = Key::new("nodes", ValueType::Nodes, "the nodes").required();
 const SPOT: [Key; 3] = [
-    Key::new("nodes", Holds::Nodes, "the nodes").default("`inside` or `marker`"),
+    Key::new("nodes", ValueType::Nodes, "the nodes").default("`inside` or `marker`"),
     Key::new(
         "inside",
-        Holds::Vector,
+        ValueType::Vector,
         "the undeformed position of a point of a body, whatever nodes are near",
     )
     .in_unit("m")
     .default("`nodes` or `marker`"),
     Key::new(
         "marker",
-        Holds::Table(&MARKER),
+        ValueType::Table(&MARKER),
         "a point beside the body that moves with nodes of it",
     )
     .default("`nodes` or `inside`"),
 ];
 const TURNED: Key =
-    Key::new("nodes", Holds::Nodes, "the nodes that turn, all of which count alike")
+    Key::new("nodes", ValueType::Nodes, "the nodes that turn, all of which count alike")
         .default("the body");
-const PLACES: Key = Key::new("nodes", Holds::Nodes, "the nodes").default("`point`");
+const PLACES: Key = Key::new("nodes", ValueType::Nodes, "the nodes").default("`point`");
 const POINT: Key =
-    Key::new("point", Holds::Vector, "the undeformed position of a point of the body")
+    Key::new("point", ValueType::Vector, "the undeformed position of a point of the body")
         .in_unit("m")
         .default("`nodes`");
-const UNIT: Key = Key::new("unit", Holds::Word(|| vec!["rad", "deg"]), "the unit").default("rad");
+const UNIT: Key =
+    Key::new("unit", ValueType::Word(|| vec!["rad", "deg"]), "the unit").default("rad");
 const BODY: Key =
-    Key::new("body", Holds::Text, "the name of one of several bodies").default("all together");
-const LINE: Holds = Holds::Array(&Holds::Nodes, 2);
+    Key::new("body", ValueType::Text, "the name of one of several bodies").default("all together");
+const LINE: ValueType = ValueType::Array(&ValueType::Nodes, 2);
 
 /// A sensor's name, and what it reads in `scene`.
 pub(super) fn sensor(value: &Value, scene: &Scene) -> Result<(String, Reading), Error> {

@@ -1,7 +1,7 @@
 //! `[solver]`, `[statics]` and `[output]`.
 
 use super::contents::{AccuracyRequest, Format, OutputRequest, StaticsRequest};
-use super::keys::{Holds, Key, TableKeys};
+use super::keys::{Key, TableKeys, ValueType};
 use super::selection::selection;
 use super::smaller::{HALF, PLANE};
 use super::value::Value;
@@ -36,33 +36,33 @@ const OPTIONS: [Key; SettingsOption::ALL.len() + 5] = {
 
 const ACCURACY: Key = Key::new(
     "accuracy",
-    Holds::Either(&[Holds::Number, Holds::Text]),
+    ValueType::Either(&[ValueType::Number, ValueType::Text]),
     "how accurate the motion has to be, as `\"1%\"` or `0.01`",
 )
-.law(
+.note(
     "The scene is run with a tighter and tighter `rtol`, until two runs agree to that: see `pliant run --help`. Not beside \
      `rtol`.",
 )
 .default("one run by `rtol`");
-const QUANTITY: Key = Key::new("quantity", Holds::Text, "what `accuracy` is of")
-    .law(QUANTITIES)
+const QUANTITY: Key = Key::new("quantity", ValueType::Text, "what `accuracy` is of")
+    .note(QUANTITIES)
     .default("the whole motion");
 const REDUCED: Key = Key::new(
     "reduced",
-    Holds::Text,
+    ValueType::Text,
     "the reduced model by which it is run: a file of `pliant reduce`, relative to the scene file",
 )
-.law("`\"\"` is all unknowns. Statics always takes all of them.")
+.note("`\"\"` is all unknowns. Statics always takes all of them.")
 .default("all unknowns");
 const QUANTITIES: &str = "`motion`; a sensor or a set of nodes, with a component where need be, as `tip.y`; `com`, `rotation`; \
      behind a colon the part that counts, where all times do not: `end`, `max`, `min`, `frequency`, `damping`.";
 
 const fn key(option: &SettingsOption) -> Key {
     let holds = match option.value {
-        Kind::Number(_) => Holds::Number,
-        Kind::Count(_) => Holds::Count,
-        Kind::Flag(_) => Holds::Flag,
-        Kind::Word(words, _) => Holds::Word(words),
+        Kind::Number(_) => ValueType::Number,
+        Kind::Count(_) => ValueType::Count,
+        Kind::Flag(_) => ValueType::Flag,
+        Kind::Word(words, _) => ValueType::Word(words),
     };
     Key::new(option.key, holds, option.meaning).in_unit(option.unit).default(option.default)
 }
@@ -72,19 +72,19 @@ pub(super) const STATICS: TableKeys = TableKeys::new(
     "How `pliant static` seeks an equilibrium: that under the constraints, loads, obstacles and springs of a phase at its end. \
      What earlier phases have moved and this one holds stays there. Friction does not act.",
     &[
-        Key::new("phase", Holds::Text, "the name of the phase").default("the first one"),
-        Key::new("load_steps", Holds::Count, "steps in which constraints and loads are brought on")
-            .law("With more than one, the results have the equilibrium of each, with its `load factor`.")
+        Key::new("phase", ValueType::Text, "the name of the phase").default("the first one"),
+        Key::new("load_steps", ValueType::Count, "steps in which constraints and loads are brought on")
+            .note("With more than one, the results have the equilibrium of each, with its `load factor`.")
             .default("1"),
-        Key::new("arc_steps", Holds::Count, "most steps by arc length")
-            .law(
+        Key::new("arc_steps", ValueType::Count, "most steps by arc length")
+            .note(
                 "With them the load rises and falls as the path of equilibria has it, through snap-through and \
                  snap-back, until all of it acts. The first step is that of one of the `load_steps`, and none is longer.",
             )
             .default("0: the load is given"),
         Key::number("rtol", "the largest force left over, relative to the largest force", "1")
             .default("1e-10"),
-        Key::new("max_iterations", Holds::Count, "Newton iterations of one load step")
+        Key::new("max_iterations", ValueType::Count, "Newton iterations of one load step")
             .default("100"),
         Key::number("min_load_step", "the smallest load step, as a part of the whole load", "1")
             .default("1e-3"),
@@ -97,13 +97,13 @@ pub(super) const OUTPUT: TableKeys = TableKeys::new(
     "What `pliant run` writes.",
     &[
         Key::number("step", "the time between samples", "s").default("the ends of the phases only"),
-        Key::new("times", Holds::List(&Holds::Number), "times of samples, in any order, in place of a step")
+        Key::new("times", ValueType::List(&ValueType::Number), "times of samples, in any order, in place of a step")
             .in_unit("s")
-            .law("The start and the ends of the phases are sampled besides."),
-        Key::new("track", Holds::Nodes, "nodes whose displacements the table lists"),
+            .note("The start and the ends of the phases are sampled besides."),
+        Key::new("track", ValueType::Nodes, "nodes whose displacements the table lists"),
         Key::new(
             "formats",
-            Holds::OneOrMore(&Holds::Word(|| Format::ALL.map(Format::name).into())),
+            ValueType::OneOrMore(&ValueType::Word(|| Format::ALL.map(Format::name).into())),
             "what is written: a table, files for ParaView, snapshots, an animation, a plot of sensors and energies \
              as a drawing or as pixels",
         )

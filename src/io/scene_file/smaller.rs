@@ -1,7 +1,7 @@
 //! Smaller models by which a scene is run: `half` and `plane` of `[solver]`.
 
 use super::contents::OutputRequest;
-use super::keys::{Holds, Key};
+use super::keys::{Key, ValueType};
 use super::table::Table;
 use crate::base::input::InputError;
 use crate::base::vector::distinct;
@@ -13,20 +13,20 @@ use crate::scene::timeline::{Scene, Smaller};
 
 pub(super) const HALF: Key = Key::new(
     "half",
-    Holds::Word(|| AXES.map(|(word, _)| word).into()),
+    ValueType::Word(|| AXES.map(|(word, _)| word).into()),
     "the axis across which the scene is cut at its middle: half of it is run",
 )
-.law(
+.note(
     "The scene has to be symmetric. Sensors read what they would read of the whole; forces and energies are those of the half. Of both halves \
      it is that below the cut, unless sensors are on the other side. `\"\"` is the whole.",
 )
 .default("the whole");
 pub(super) const PLANE: Key = Key::new(
     "plane",
-    Holds::Word(|| AXES.map(|(word, _)| word).into()),
+    ValueType::Word(|| AXES.map(|(word, _)| word).into()),
     "the axis of space across which a section of the scene is run in a plane",
 )
-.law(
+.note(
     "The scene has to be the same all along it. It is in plane strain where both ends are held along the axis, and else in plane stress. \
      `\"\"` is all of space.",
 )

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use toml::de::DeTable;
 
-use super::keys::{Holds, Key, Kind, TableKeys};
+use super::keys::{Key, Kind, TableKeys, ValueType};
 use super::set_value::SetValue;
 use super::source::{SourceText, no_toml, text_of};
 use super::table::Table;
@@ -108,7 +108,7 @@ pub enum SampleMethod {
     Sobol,
 }
 
-const SAMPLE_COUNT: Key = Key::new("count", Holds::Count, "the number of points").required();
+const SAMPLE_COUNT: Key = Key::new("count", ValueType::Count, "the number of points").required();
 
 const SAMPLE: TableKeys = TableKeys::new(
     "[sample]",
@@ -120,32 +120,32 @@ const SAMPLE: TableKeys = TableKeys::new(
     Kind {
         word: "latin-hypercube",
         about: "each range is cut into as many parts as there are points, and each part has one point",
-        keys: &[Key::new("seed", Holds::Count, "another seed, other points").default("0")],
+        keys: &[Key::new("seed", ValueType::Count, "another seed, other points").default("0")],
     },
     Kind {
         word: "sobol",
         about: "Sobol's sequence: more points can be added later, and those that are there stay",
         keys: &[
-            Key::new("skip", Holds::Count, "how many points are left out at its beginning")
-                .law("The first one has all keys at the ends `from`.")
+            Key::new("skip", ValueType::Count, "how many points are left out at its beginning")
+                .note("The first one has all keys at the ends `from`.")
                 .default("0"),
         ],
     },
 ]);
 
-const VALUE: Holds = Holds::Either(&[Holds::Number, Holds::Text, Holds::Flag]);
+const VALUE: ValueType = ValueType::Either(&[ValueType::Number, ValueType::Text, ValueType::Flag]);
 
 const KEY: TableKeys = TableKeys::new(
     "[[key]]",
     "A key of the scene, and the values that it takes. Each of them is combined with all values of the other keys.",
     &[
-        Key::new("name", Holds::Text, "the key of the scene file, as `--set` takes it").required(),
-        Key::new("values", Holds::List(&VALUE), "a list of values"),
-        Key::new("from", Holds::Number, "the least value of a range"),
-        Key::new("to", Holds::Number, "the largest value of a range"),
-        Key::new("count", Holds::Count, "how many values the range has, with both ends"),
-        Key::new("step", Holds::Number, "the distance of the values of the range"),
-        Key::new("scale", Holds::Word(|| SCALES.map(|(word, _)| word).into()), "whether equal steps are differences or ratios")
+        Key::new("name", ValueType::Text, "the key of the scene file, as `--set` takes it").required(),
+        Key::new("values", ValueType::List(&VALUE), "a list of values"),
+        Key::new("from", ValueType::Number, "the least value of a range"),
+        Key::new("to", ValueType::Number, "the largest value of a range"),
+        Key::new("count", ValueType::Count, "how many values the range has, with both ends"),
+        Key::new("step", ValueType::Number, "the distance of the values of the range"),
+        Key::new("scale", ValueType::Word(|| SCALES.map(|(word, _)| word).into()), "whether equal steps are differences or ratios")
             .default("`\"linear\"`"),
     ],
     "[[key]]\nname = \"obstacle.floor.stiffness\"\nfrom = 20.0\nto = 2000.0\ncount = 40\nscale = \"logarithmic\"",
@@ -159,41 +159,41 @@ pub(super) const STUDY: TableKeys = TableKeys::new(
     "The study file",
     "The keys before the first table. `pliant sweep` runs the scene, or finds its equilibrium, once for each combination of the values of all keys.",
     &[
-        Key::new("title", Holds::Text, "the title, for pictures and pages"),
-        Key::new("scene", Holds::Text, "the scene file, relative to this one").required(),
+        Key::new("title", ValueType::Text, "the title, for pictures and pages"),
+        Key::new("scene", ValueType::Text, "the scene file, relative to this one").required(),
         Key::new(
             "set",
-            Holds::List(&Holds::Text),
+            ValueType::List(&ValueType::Text),
             "values that all runs have, as `--set` takes them",
         ),
         Key::new(
             "quantities",
-            Holds::List(&Holds::Text),
+            ValueType::List(&ValueType::Text),
             "what is kept of each run: as `--quantity` of `run` takes them, each one number",
         )
-        .law("As `\"com.y:max\"`; `:end`, `:max`, `:min`, `:frequency`, `:damping`.")
+        .note("As `\"com.y:max\"`; `:end`, `:max`, `:min`, `:frequency`, `:damping`.")
         .required(),
-        Key::new("static", Holds::Flag, "whether equilibria are sought, and nothing is run")
-            .law(
+        Key::new("static", ValueType::Flag, "whether equilibria are sought, and nothing is run")
+            .note(
                 "As `pliant static` does, by `[statics]` of the scene. Quantities are those of the equilibrium: `\"tip.y\"`. Not beside \
                  `accuracy`.",
             )
             .default("false"),
         Key::new(
             "accuracy",
-            Holds::Either(&[Holds::Text, Holds::Number]),
+            ValueType::Either(&[ValueType::Text, ValueType::Number]),
             "how accurate each run has to be, as `--accuracy` of `run` takes it",
         )
-        .law("In the quantity that `[solver]` of the scene names, or else the first one.")
+        .note("In the quantity that `[solver]` of the scene names, or else the first one.")
         .default("that of the scene"),
         Key::new(
             "table",
-            Holds::Text,
+            ValueType::Text,
             "a table (CSV) each row of which is a point; its heads are keys of the scene",
         )
-        .law("Combined with the values of other keys, if there are any."),
-        Key::new("key", Holds::Tables(&KEY), "the keys that are varied"),
-        Key::new("sample", Holds::Table(&SAMPLE), "how ranges without steps are filled"),
+        .note("Combined with the values of other keys, if there are any."),
+        Key::new("key", ValueType::Tables(&KEY), "the keys that are varied"),
+        Key::new("sample", ValueType::Table(&SAMPLE), "how ranges without steps are filled"),
     ],
     "title = \"How high the square jumps\"\nscene = \"square-jump.toml\"\nquantities = [\"com.y:max\"]",
 );

@@ -1,7 +1,7 @@
 //! `[[spring]]`, `[[cable]]` and `[[chamber]]`.
 
 use super::friction::{FRICTION_COEFFICIENT, coefficients};
-use super::keys::{Holds, Key, TableKeys};
+use super::keys::{Key, TableKeys, ValueType};
 use super::selection::selection;
 use super::table::Table;
 use super::value::Value;
@@ -14,10 +14,11 @@ pub(super) const SPRING: TableKeys = TableKeys::new(
     "[[spring]]",
     "A spring with damper and actuator between two nodes, or a node and a fixed point. It acts in all phases; `actuate` in a phase adds a force.",
     &[
-        Key::new("name", Holds::Text, "the name of the spring").default("spring 1, spring 2, ..."),
+        Key::new("name", ValueType::Text, "the name of the spring")
+            .default("spring 1, spring 2, ..."),
         Key::new(
             "ends",
-            Holds::Array(&Holds::Either(&[Holds::Nodes, Holds::Table(&END)]), 2),
+            ValueType::Array(&ValueType::Either(&[ValueType::Nodes, ValueType::Table(&END)]), 2),
             "one node each, by number or name, or a point of space",
         )
         .required(),
@@ -33,20 +34,20 @@ pub(super) const CABLE: TableKeys = TableKeys::new(
     "A cable (tendon) along a path, straight from place to place and free to slide around those between its ends. It only pulls, by one \
      tension along all of its path if there is no friction. It acts in all phases; `actuate` in a phase drives it, at its first place.",
     &[
-        Key::new("name", Holds::Text, "the name of the cable").default("spring 1, spring 2, ..."),
+        Key::new("name", ValueType::Text, "the name of the cable").default("spring 1, spring 2, ..."),
         Key::new(
             "path",
-            Holds::List(&Holds::Either(&[Holds::Nodes, Holds::Table(&END), Holds::Table(&INSIDE)])),
+            ValueType::List(&ValueType::Either(&[ValueType::Nodes, ValueType::Table(&END), ValueType::Table(&INSIDE)])),
             "nodes, by number, name or box, places in the body, and points of space, in order",
         )
-        .law("Nodes of a set or a box follow each other by their distance from the place before them, or from the first of them.")
+        .note("Nodes of a set or a box follow each other by their distance from the place before them, or from the first of them.")
         .required(),
-        Key::number("stiffness", "the stiffness", "N/m").law("With the modulus E and the section A it is E A / length.").default("0"),
+        Key::number("stiffness", "the stiffness", "N/m").note("With the modulus E and the section A it is E A / length.").default("0"),
         Key::number("length", "the natural length", "m").default("that of the path at the start"),
         Key::number("damping", "the damping", "N s/m")
-            .law("That of a motor whose tension falls from f at rest to 0 at the speed v is f/v.")
+            .note("That of a motor whose tension falls from f at rest to 0 at the speed v is f/v.")
             .default("0"),
-        Key::new("winch", Holds::Flag, "whether `actuate` gives the length that is drawn in, not the tension").default("false"),
+        Key::new("winch", ValueType::Flag, "whether `actuate` gives the length that is drawn in, not the tension").default("false"),
         FRICTION_COEFFICIENT,
         Key::number("sticking_speed", "the speed below which it creeps instead of sticking", "m/s")
             .default("0.001 times its length per second"),
@@ -72,35 +73,35 @@ pub(super) const CHAMBER: TableKeys = TableKeys::new(
     "[[chamber]]",
     "A closed space that `pressure` in a phase blows up, unless it has `[[gas]]` or a `[[liquid]]`.",
     &[
-        Key::new("name", Holds::Text, "the name of the chamber").required(),
+        Key::new("name", ValueType::Text, "the name of the chamber").required(),
         Key::new(
             "nodes",
-            Holds::Nodes,
+            ValueType::Nodes,
             "the nodes of its walls: part of the boundary, or a closed polygon of numbers",
         ),
         Key::new(
             "triangles",
-            Holds::List(&Holds::Array(&Holds::Count, 3)),
+            ValueType::List(&ValueType::Array(&ValueType::Count, 3)),
             "the triangles of its walls in space, by the numbers of their nodes",
         )
-        .law("A closed surface, all of them counter-clockwise as seen from outside, or all clockwise."),
+        .note("A closed surface, all of them counter-clockwise as seen from outside, or all clockwise."),
         Key::new(
             "closed_by_line",
-            Holds::Flag,
+            ValueType::Flag,
             "whether walls in the plane that are open are closed by the straight line between their ends",
         )
-        .law("Without it a gap is an error.")
+        .note("Without it a gap is an error.")
         .default("false"),
         Key::new(
             "closed_by_lid",
-            Holds::Flag,
+            ValueType::Flag,
             "whether walls in space that are open are closed by lids on their rims, from the mean of a rim's nodes to its edges",
         )
-        .law("Without it a rim is an error. The nodes of the rim feel the pressure on its lid.")
+        .note("Without it a rim is an error. The nodes of the rim feel the pressure on its lid.")
         .default("false"),
         Key::number("thickness", "the thickness", "m").default("that of the body"),
         Key::number("burst", "the pressure, above that outside, at which it bursts", "Pa")
-            .law("The first step that ends with more ends the run, with an error that says when and how much.")
+            .note("The first step that ends with more ends the run, with an error that says when and how much.")
             .default("none"),
     ],
     "[[chamber]]\nname = \"inside\"\nnodes = \"inner\"",

@@ -46,7 +46,7 @@ impl<'a> Table<'a> {
         let mut table = Self { source, key, at, entries, keys, kind: None };
         if let Some(key) = table.first_beside(&table.names(keys.all())) {
             let name = key.get_ref();
-            let known = table.names(keys.all().filter(|key| key.now.is_none()));
+            let known = table.names(keys.all().filter(|key| key.renamed_to.is_none()));
             let message = match stand_in(name).filter(|_| table.key.is_empty()) {
                 Some(stand_in) => format!("scene files have no such table: {stand_in}"),
                 None => format!("unknown key; {}", unknown(name, &known)),
@@ -58,7 +58,7 @@ impl<'a> Table<'a> {
             let kind = table.required(KIND, |value| value.word(&words))?;
             let all = || kind.keys.iter().chain(keys.keys);
             if let Some(key) = table.first_beside(&table.names(all())) {
-                let known = table.names(all().filter(|key| key.now.is_none()));
+                let known = table.names(all().filter(|key| key.renamed_to.is_none()));
                 let (word, known) = (kind.word, list(&known));
                 let message = format!("kind = \"{word}\" has no such key; it has {known}");
                 return Err(source.error(&key.span(), &table.full(key.get_ref()), message));
@@ -129,7 +129,9 @@ impl<'a> Table<'a> {
 
     fn note_old_names(&self) -> Result<(), Error> {
         for key in self.keys.all() {
-            let (Some(now), Some(value)) = (key.now, self.entries.get(key.name)) else { continue };
+            let (Some(now), Some(value)) = (key.renamed_to, self.entries.get(key.name)) else {
+                continue;
+            };
             let old = key.name;
             if self.entries.contains_key(now) {
                 return Err(self.error(format!("{old} is the old name of {now}: give that alone")));
@@ -158,7 +160,8 @@ impl<'a> Table<'a> {
     /// The value of `key`, or of its old name, if it is there.
     pub(super) fn get(&self, name: &str) -> Option<Value<'a>> {
         let meaning = self.meaning(name);
-        let mut old = self.keys.all().filter(|key| key.now == Some(name)).map(|key| key.name);
+        let mut old =
+            self.keys.all().filter(|key| key.renamed_to == Some(name)).map(|key| key.name);
         let value = self.entry(name).or_else(|| old.find_map(|old| self.entry(old)))?;
         Some(Value { meaning, ..value })
     }

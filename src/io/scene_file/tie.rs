@@ -1,6 +1,6 @@
 //! `[[tie]]`.
 
-use super::keys::{Holds, Key, TableKeys};
+use super::keys::{Key, TableKeys, ValueType};
 use super::selection::selection;
 use super::value::Value;
 use crate::dynamics::error::Error;
@@ -11,8 +11,8 @@ pub(super) const TIE: TableKeys = TableKeys::new(
     "Nodes of one body that are glued to another, whose mesh need not match: in all phases each moves with the point at which it is. Of \
      two surfaces either may be named: nodes of the finer one follow the coarser one, and those of a deformable one a rigid one.",
     &[
-        Key::new("nodes", Holds::Nodes, "the nodes").required(),
-        Key::new("to", Holds::Text, "the name of the body that they are glued to").required(),
+        Key::new("nodes", ValueType::Nodes, "the nodes").required(),
+        Key::new("to", ValueType::Text, "the name of the body that they are glued to").required(),
     ],
     "[[tie]]\nnodes = \"tip/left\"\nto = \"base\"",
 );

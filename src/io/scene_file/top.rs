@@ -7,7 +7,7 @@ use super::fluid::{self, FLUID};
 use super::gas::{self, GAS, ORIFICE, SUPPLY};
 use super::growth::{self, GROWTH};
 use super::initial::{self, INITIAL};
-use super::keys::{Holds, Key, TableKeys};
+use super::keys::{Key, TableKeys, ValueType};
 use super::lag::{self, LAG};
 use super::liquid::{self, LIQUID, PIPE};
 use super::magnet::{self, MAGNET};
@@ -30,43 +30,43 @@ pub(super) const TOP: TableKeys = TableKeys::new(
     "The file",
     "The keys before the first table.",
     &[
-        Key::new("title", Holds::Text, "the title, for pictures and pages"),
-        Key::new("dimension", Holds::Count, "the dimension of space")
-            .law("1, 2 or 3. In a higher one than the mesh has, bars are strings and surfaces membranes.")
+        Key::new("title", ValueType::Text, "the title, for pictures and pages"),
+        Key::new("dimension", ValueType::Count, "the dimension of space")
+            .note("1, 2 or 3. In a higher one than the mesh has, bars are strings and surfaces membranes.")
             .default("that of the mesh"),
-        Key::new("gravity", Holds::Vector, "the acceleration of gravity")
+        Key::new("gravity", ValueType::Vector, "the acceleration of gravity")
             .in_unit("m/s^2")
             .default("0"),
         Key::number("atmosphere", "the absolute pressure of the air around chambers with gas", "Pa")
             .default("101325"),
-        Key::new("unusual", Holds::List(&Holds::Text), "quantities that are meant as they are, though they look like wrong units")
-            .law("Of `size`, `mass`, `density`, `young`, `wave-speed`, `thickness`, `weight`, `remanence`, `magnetic-field`, `dipole-moment`, `absolute-pressure`, `orifice-area`, `touch-start`, `facets`: they are not [warned of](scenes/warnings.md#warnings).")
+        Key::new("unusual", ValueType::List(&ValueType::Text), "quantities that are meant as they are, though they look like wrong units")
+            .note("Of `size`, `mass`, `density`, `young`, `wave-speed`, `thickness`, `weight`, `remanence`, `magnetic-field`, `dipole-moment`, `absolute-pressure`, `orifice-area`, `touch-start`, `facets`: they are not [warned of](scenes/warnings.md#warnings).")
             .default("none"),
-        Key::new("body", Holds::Tables(&BODY), "what moves").required(),
-        Key::new("point", Holds::Tables(&POINT), "point masses"),
-        Key::new("initial", Holds::Table(&INITIAL), "how the body moves at first").default("at rest"),
-        Key::new("tie", Holds::Tables(&TIE), "ties between bodies"),
-        Key::new("touch", Holds::Tables(&TOUCH), "contact of bodies with each other and themselves"),
-        Key::new("spring", Holds::Tables(&SPRING), "springs"),
-        Key::new("cable", Holds::Tables(&CABLE), "cables"),
-        Key::new("muscle", Holds::Tables(&MUSCLE), "muscles in the bodies"),
-        Key::new("growth", Holds::Tables(&GROWTH), "cells that grow, by swelling or heat"),
-        Key::new("lag", Holds::Tables(&LAG), "actuators that follow their commands with a delay"),
-        Key::new("magnet", Holds::Tables(&MAGNET), "magnets in the bodies"),
-        Key::new("dipole", Holds::Tables(&DIPOLE), "magnets outside of the bodies"),
-        Key::new("chamber", Holds::Tables(&CHAMBER), "chambers"),
-        Key::new("gas", Holds::Tables(&GAS), "gas in chambers"),
-        Key::new("supply", Holds::Tables(&SUPPLY), "what gas is drawn from"),
-        Key::new("orifice", Holds::Tables(&ORIFICE), "what gas flows through"),
-        Key::new("liquid", Holds::Tables(&LIQUID), "liquids in chambers"),
-        Key::new("pipe", Holds::Tables(&PIPE), "pipes between liquids in chambers"),
-        Key::new("fluid", Holds::Tables(&FLUID), "fluids around bodies"),
-        Key::new("obstacle", Holds::Tables(&OBSTACLE), "obstacles"),
-        Key::new("phase", Holds::Tables(&PHASE), "the phases, one after the other").required(),
-        Key::new("sensor", Holds::Tables(&SENSOR), "what is read with each sample"),
-        Key::new("solver", Holds::Table(&SOLVER), "how it is integrated"),
-        Key::new("statics", Holds::Table(&STATICS), "how its equilibrium is sought"),
-        Key::new("output", Holds::Table(&OUTPUT), "what is written"),
+        Key::new("body", ValueType::Tables(&BODY), "what moves").required(),
+        Key::new("point", ValueType::Tables(&POINT), "point masses"),
+        Key::new("initial", ValueType::Table(&INITIAL), "how the body moves at first").default("at rest"),
+        Key::new("tie", ValueType::Tables(&TIE), "ties between bodies"),
+        Key::new("touch", ValueType::Tables(&TOUCH), "contact of bodies with each other and themselves"),
+        Key::new("spring", ValueType::Tables(&SPRING), "springs"),
+        Key::new("cable", ValueType::Tables(&CABLE), "cables"),
+        Key::new("muscle", ValueType::Tables(&MUSCLE), "muscles in the bodies"),
+        Key::new("growth", ValueType::Tables(&GROWTH), "cells that grow, by swelling or heat"),
+        Key::new("lag", ValueType::Tables(&LAG), "actuators that follow their commands with a delay"),
+        Key::new("magnet", ValueType::Tables(&MAGNET), "magnets in the bodies"),
+        Key::new("dipole", ValueType::Tables(&DIPOLE), "magnets outside of the bodies"),
+        Key::new("chamber", ValueType::Tables(&CHAMBER), "chambers"),
+        Key::new("gas", ValueType::Tables(&GAS), "gas in chambers"),
+        Key::new("supply", ValueType::Tables(&SUPPLY), "what gas is drawn from"),
+        Key::new("orifice", ValueType::Tables(&ORIFICE), "what gas flows through"),
+        Key::new("liquid", ValueType::Tables(&LIQUID), "liquids in chambers"),
+        Key::new("pipe", ValueType::Tables(&PIPE), "pipes between liquids in chambers"),
+        Key::new("fluid", ValueType::Tables(&FLUID), "fluids around bodies"),
+        Key::new("obstacle", ValueType::Tables(&OBSTACLE), "obstacles"),
+        Key::new("phase", ValueType::Tables(&PHASE), "the phases, one after the other").required(),
+        Key::new("sensor", ValueType::Tables(&SENSOR), "what is read with each sample"),
+        Key::new("solver", ValueType::Table(&SOLVER), "how it is integrated"),
+        Key::new("statics", ValueType::Table(&STATICS), "how its equilibrium is sought"),
+        Key::new("output", ValueType::Table(&OUTPUT), "what is written"),
     ],
     "title = \"A beam sinks\"\ndimension = 2\ngravity = [0.0, -9.8]",
 );

@@ -1,7 +1,7 @@
 //! `[[touch]]`.
 
 use super::friction::{FRICTION_COEFFICIENT, coefficients};
-use super::keys::{Holds, Key, TableKeys};
+use super::keys::{Key, TableKeys, ValueType};
 use super::surroundings::unique;
 use super::value::Value;
 use crate::dynamics::error::Error;
@@ -13,14 +13,14 @@ pub(super) const TOUCH: TableKeys = TableKeys::new(
     "Contact of bodies with each other and with themselves: surfaces nearer than `distance` D push each other apart, by the pressure \
      k (D - d)^2 (D + 2 d)/(3 d^2) of a barrier at the distance d, which nothing passes, or by k (D - d) of a spring.",
     &[
-        Key::new("name", Holds::Text, "the name of the contact, for sensors").default("touch"),
+        Key::new("name", ValueType::Text, "the name of the contact, for sensors").default("touch"),
         Key::new(
             "bodies",
-            Holds::List(&Holds::Text),
+            ValueType::List(&ValueType::Text),
             "the bodies that touch each other; a single one touches itself",
         )
         .default("all, and each of them itself"),
-        Key::new("law", Holds::Word(|| vec!["barrier", "spring"]), "how the pressure grows")
+        Key::new("law", ValueType::Word(|| vec!["barrier", "spring"]), "how the pressure grows")
             .default("barrier"),
         Key::number("stiffness_density", "the stiffness k per area", "N/m^3")
             .default("a tenth of the least Young's modulus over D; all of it for a spring"),

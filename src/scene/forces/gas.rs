@@ -11,7 +11,7 @@
 //! without flow.
 //!
 //! As a constant, m makes the gas a force with a potential: statics, spectra, central differences and the
-//! Jacobian of `ida-klu` need no code of their own (`Scene::shut`, `closed.rs`, `content.rs`). Its
+//! Jacobian of `ida-klu` need no code of their own (`Scene::with_fixed_amounts`, `fixed_amount.rs`, `chamber_fluid.rs`). Its
 //! tangent -(p - p_a) V'' + (n p/V) V' V'^T is full over the nodes of the walls, and so is the pattern. As unknowns,
 //! for all other methods, amounts stand behind the strains of Maxwell branches, y = (u, v, E_d, E_s, G, m),
 //! in a `Flow` (`elements/force.rs`) that `dynamics/system/flow_matrix.rs` eliminates.
@@ -27,7 +27,7 @@ pub use orifice::Orifice;
 pub(crate) use orifice::{End, OrificeFlow, Supply};
 
 use super::chamber::{ChamberForce, TURNED};
-use super::content::{Content, Fill};
+use super::chamber_fluid::{ChamberFluid, Fill};
 use crate::base::input::{InputError, not_negative, positive};
 use crate::base::sparse::BlockMatrix;
 use crate::elements::force::NodalForces;
@@ -100,7 +100,7 @@ impl Gas {
         walls: ChamberForce,
         dofs: usize,
         outside: f64,
-    ) -> Result<Filled, InputError> {
+    ) -> Result<GasInChamber, InputError> {
         let input = |key: &str| format!("gas in chamber \"{}\" {key}", self.chamber);
         let pressure = positive(&input("pressure"), self.pressure, "Pa, absolute")?;
         let exponent = positive(&input("exponent"), self.exponent, "")?;
@@ -111,14 +111,15 @@ impl Gas {
             return Err(InputError::new(input("volume"), format!("{volume:.1e}"), help));
         }
         let amount = pressure * volume / GAS_CONSTANT_TIMES_TEMPERATURE;
-        let mut filled = Filled { walls, pressure, volume, amount, exponent, outside, zero: 0.0 };
+        let mut filled =
+            GasInChamber { walls, pressure, volume, amount, exponent, outside, zero: 0.0 };
         filled.zero = filled.brought(ATMOSPHERE)[0];
         Ok(filled)
     }
 }
 
 /// Gas within walls.
-pub(crate) struct Filled {
+pub(crate) struct GasInChamber {
     walls: ChamberForce,
     /// p_0 (Pa), V_0 (m^3) and m_0 (kg).
     pressure: f64,
@@ -131,7 +132,7 @@ pub(crate) struct Filled {
     zero: f64,
 }
 
-impl Filled {
+impl GasInChamber {
     /// V_0 (m^3)
     pub(crate) fn natural_volume(&self) -> f64 {
         self.volume
@@ -200,7 +201,7 @@ impl Filled {
     }
 }
 
-impl Content for Filled {
+impl ChamberFluid for GasInChamber {
     fn walls(&self) -> &ChamberForce {
         &self.walls
     }

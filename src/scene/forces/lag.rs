@@ -11,7 +11,7 @@ mod tests;
 
 use std::sync::Arc;
 
-use super::signal::{self, Live, Signal, finite_at};
+use super::signal::{self, SharedValue, Signal, finite_at};
 use crate::base::input::{InputError, finite, positive};
 use crate::elements::force::{Force, NodalForces};
 use crate::elements::material::Hill;
@@ -173,7 +173,7 @@ pub(crate) struct Lagging {
     /// The sum of these is the command times the gain.
     drives: Vec<Signal>,
     /// The state and its rate, which the force reads.
-    state: Live,
+    state: SharedValue,
     force: Option<Arc<dyn Force>>,
 }
 
@@ -186,7 +186,7 @@ impl Lagging {
         drives: Vec<Signal>,
     ) -> Self {
         let (name, lag, hill) = (name.to_owned(), lag.clone(), hill.cloned());
-        Self { name, lag, hill, size, drives, state: Live::new(&[0.0; 2]), force: None }
+        Self { name, lag, hill, size, drives, state: SharedValue::new(&[0.0; 2]), force: None }
     }
 
     /// Signal that drives its force: the lag state.

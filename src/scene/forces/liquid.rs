@@ -9,7 +9,7 @@ mod whole;
 use std::fmt;
 
 use super::chamber::ChamberForce;
-use super::content::{Content, Fill};
+use super::chamber_fluid::{ChamberFluid, Fill};
 use super::gas::LEAST;
 use super::moment::Moment;
 use super::signal::{self, Signal, finite_at};
@@ -150,7 +150,7 @@ impl Liquid {
         dofs: usize,
         weight: Weight,
         flow: Vec<Signal>,
-    ) -> Result<Poured, InputError> {
+    ) -> Result<LiquidInChamber, InputError> {
         let input = |key: &str| format!("liquid in chamber \"{}\" {key}", self.chamber);
         let bulk = positive(&input("bulk_modulus"), self.bulk_modulus, "Pa")?;
         let density = positive(&input("density"), self.density, "kg/m^3")?;
@@ -178,7 +178,7 @@ impl Liquid {
             }
         };
         let unloaded = if self.has_surface { LEAST * amount } else { density * volume };
-        Ok(Poured { held, density, unloaded, flow })
+        Ok(LiquidInChamber { held, density, unloaded, flow })
     }
 }
 
@@ -198,14 +198,14 @@ pub(crate) enum Weight {
 }
 
 /// A liquid within walls.
-pub(crate) struct Poured {
+pub(crate) struct LiquidInChamber {
     held: Box<dyn Held>,
     density: f64,
     unloaded: f64,
     flow: Vec<Signal>,
 }
 
-impl Poured {
+impl LiquidInChamber {
     /// The natural volume (m^3) of an `amount` (kg).
     pub(crate) fn natural(&self, amount: f64) -> f64 {
         amount / self.density
@@ -229,7 +229,7 @@ impl Poured {
     /// dE/dm (J/kg) of an `amount` (kg), and its derivative by the amount in a chamber that stays (J/kg^2).
     ///
     /// # Errors
-    /// As [`Content::press`].
+    /// As [`ChamberFluid::press`].
     pub(crate) fn brought(&self, u: &[f64], amount: f64) -> Result<[f64; 2], Failure> {
         self.held.brought(u, amount)
     }
@@ -251,7 +251,7 @@ impl Poured {
     }
 }
 
-impl Content for Poured {
+impl ChamberFluid for LiquidInChamber {
     fn walls(&self) -> &ChamberForce {
         self.held.walls()
     }

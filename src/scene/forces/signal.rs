@@ -30,17 +30,17 @@ pub(crate) enum SignalKind {
     TimeTable(TimeTable),
     Formula(Arc<Formula>),
     #[cfg_attr(feature = "checkpoint", serde(skip))]
-    Live(Live),
+    Shared(SharedValue),
     /// An unknown of a run and its rate, as they are at the time for which forces are evaluated.
     #[cfg_attr(feature = "checkpoint", serde(skip))]
-    State(Live),
+    State(SharedValue),
 }
 
 /// Numbers that stay until a command sets others, even while forces read them.
 #[derive(Clone)]
-pub(crate) struct Live(Arc<[AtomicU64]>);
+pub(crate) struct SharedValue(Arc<[AtomicU64]>);
 
-impl Live {
+impl SharedValue {
     pub(crate) fn new(values: &[f64]) -> Self {
         Self(values.iter().map(|value| AtomicU64::new(value.to_bits())).collect())
     }
@@ -82,7 +82,7 @@ impl Signal {
     }
 
     /// An unknown of a run: `state` and its rate.
-    pub(crate) fn of_state(state: Live) -> Self {
+    pub(crate) fn of_state(state: SharedValue) -> Self {
         Self(SignalKind::State(state))
     }
 
@@ -167,14 +167,14 @@ impl Signal {
             SignalKind::Function { function, .. } => function(t),
             SignalKind::TimeTable(table) => table.at(t, 0),
             SignalKind::Formula(formula) => formula.at(t).0[0],
-            SignalKind::Live(live) | SignalKind::State(live) => live.at(0),
+            SignalKind::Shared(live) | SignalKind::State(live) => live.at(0),
         }
     }
 
     /// Its rate at time `t` (s); of a function by the difference of two values.
     pub(crate) fn rate(&self, t: f64) -> f64 {
         match &self.0 {
-            SignalKind::Constant(_) | SignalKind::Live(_) => 0.0,
+            SignalKind::Constant(_) | SignalKind::Shared(_) => 0.0,
             SignalKind::Function { function, .. } => {
                 let apart = f64::EPSILON.cbrt() * t.abs().max(1e-3);
                 (function(t + apart) - function(t - apart)) / (2.0 * apart)
@@ -210,20 +210,20 @@ impl Signal {
     }
 
     /// The number that a command can set, if it is one.
-    pub(crate) fn live(&self) -> Option<&Live> {
+    pub(crate) fn live(&self) -> Option<&SharedValue> {
         match &self.0 {
-            SignalKind::Live(live) => Some(live),
+            SignalKind::Shared(live) => Some(live),
             _ => None,
         }
     }
 
     /// The same signal; a constant becomes a number that a command can set.
-    pub(crate) fn thawed(self) -> Self {
-        self.value().map_or(self, |value| Self(SignalKind::Live(Live::new(&[value]))))
+    pub(crate) fn settable(self) -> Self {
+        self.value().map_or(self, |value| Self(SignalKind::Shared(SharedValue::new(&[value]))))
     }
 
     /// The same signal; a number that a command can set becomes a constant.
-    pub(crate) fn frozen(&self) -> Self {
+    pub(crate) fn snapshot(&self) -> Self {
         self.live().map_or_else(|| self.clone(), |live| Self::constant(live.at(0)))
     }
 
@@ -231,7 +231,7 @@ impl Signal {
     pub(crate) fn breaks(&self) -> &[f64] {
         match &self.0 {
             SignalKind::Constant(_) | SignalKind::Formula(_) => &[],
-            SignalKind::Live(_) | SignalKind::State(_) => &[],
+            SignalKind::Shared(_) | SignalKind::State(_) => &[],
             SignalKind::Function { breaks, .. } => breaks,
             SignalKind::TimeTable(table) => &table.times,
         }
@@ -244,7 +244,7 @@ impl Signal {
             SignalKind::Function { breaks, .. } => finite(&format!("breaks of {input}"), breaks),
             SignalKind::TimeTable(table) => table.validate(input, 1),
             SignalKind::Formula(_) => Ok(()),
-            SignalKind::Live(live) | SignalKind::State(live) => finite(input, &[live.at(0)]),
+            SignalKind::Shared(live) | SignalKind::State(live) => finite(input, &[live.at(0)]),
         }
     }
 }
@@ -262,7 +262,7 @@ impl fmt::Debug for Signal {
             SignalKind::Function { .. } => f.write_str("function of time"),
             SignalKind::TimeTable(table) => table.fmt(f),
             SignalKind::Formula(formula) => formula.fmt(f),
-            SignalKind::Live(live) | SignalKind::State(live) => write!(f, "{}", live.at(0)),
+            SignalKind::Shared(live) | SignalKind::State(live) => write!(f, "{}", live.at(0)),
         }
     }
 }
@@ -308,7 +308,7 @@ pub(crate) enum VectorSignal {
     #[cfg_attr(not(any(feature = "checkpoint", feature = "scene-file")), allow(dead_code))]
     Formulas(Arc<[Formula]>),
     #[cfg_attr(feature = "checkpoint", serde(skip))]
-    Live(Live),
+    Shared(SharedValue),
 }
 
 impl VectorSignal {
@@ -341,28 +341,28 @@ impl VectorSignal {
             Self::Formulas(formulas) => {
                 vector.iter_mut().zip(&**formulas).for_each(|(x, formula)| *x = formula.at(t).0[0]);
             }
-            Self::Live(live) => vector.iter_mut().enumerate().for_each(|(i, x)| *x = live.at(i)),
+            Self::Shared(live) => vector.iter_mut().enumerate().for_each(|(i, x)| *x = live.at(i)),
         }
     }
 
     /// The numbers that a command can set, if it consists of such.
-    pub(crate) fn live(&self) -> Option<&Live> {
+    pub(crate) fn live(&self) -> Option<&SharedValue> {
         match self {
-            Self::Live(live) => Some(live),
+            Self::Shared(live) => Some(live),
             _ => None,
         }
     }
 
     /// The same vector; a constant becomes numbers that a command can set.
-    pub(crate) fn thawed(self) -> Self {
+    pub(crate) fn settable(self) -> Self {
         match self {
-            Self::Constant(values) => Self::Live(Live::new(&values)),
+            Self::Constant(values) => Self::Shared(SharedValue::new(&values)),
             other => other,
         }
     }
 
     /// The same vector; numbers that a command can set become constants.
-    pub(crate) fn frozen(&self) -> Self {
+    pub(crate) fn snapshot(&self) -> Self {
         self.live().map_or_else(|| self.clone(), |live| Self::Constant(live.get()))
     }
 
@@ -418,14 +418,14 @@ impl VectorSignal {
             Self::Function { dimension, .. } => *dimension,
             Self::TimeTable(table) => table.values.first().map_or(0, Vec::len),
             Self::Formulas(formulas) => formulas.len(),
-            Self::Live(live) => live.0.len(),
+            Self::Shared(live) => live.0.len(),
         }
     }
 
     /// Times (s) at which the vector changes its law.
     pub(crate) fn breaks(&self) -> &[f64] {
         match self {
-            Self::Constant(_) | Self::Function { .. } | Self::Formulas(_) | Self::Live(_) => &[],
+            Self::Constant(_) | Self::Function { .. } | Self::Formulas(_) | Self::Shared(_) => &[],
             Self::TimeTable(table) => &table.times,
         }
     }
@@ -458,7 +458,7 @@ impl VectorSignal {
                 let help = format!("it needs {needed} component(s) ({unit})");
                 Err(InputError::new(input, format!("{formulas:?}"), help))
             }
-            Self::Live(live) => numbers(&live.get()),
+            Self::Shared(live) => numbers(&live.get()),
         }
     }
 }
@@ -470,7 +470,7 @@ impl fmt::Debug for VectorSignal {
             Self::Function { .. } => f.write_str("function of time"),
             Self::TimeTable(table) => table.fmt(f),
             Self::Formulas(formulas) => formulas.fmt(f),
-            Self::Live(live) => write!(f, "{:?}", live.get()),
+            Self::Shared(live) => write!(f, "{:?}", live.get()),
         }
     }
 }

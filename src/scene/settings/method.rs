@@ -105,7 +105,7 @@ impl Method {
             Self::IdaKlu | Self::CentralDifference
                 if scene.orifices().is_empty() && !scene.pours() =>
             {
-                scene.shut()
+                scene.with_fixed_amounts()
             }
             _ => Cow::Borrowed(scene),
         }

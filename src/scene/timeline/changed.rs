@@ -31,7 +31,7 @@ impl Phase {
     }
 
     /// The phase with constants in place of numbers that commands can set: later commands do not change it.
-    pub(crate) fn frozen(self: &Arc<Self>) -> Arc<Self> {
+    pub(crate) fn snapshot(self: &Arc<Self>) -> Arc<Self> {
         if !self.is_live() {
             return self.clone();
         }

@@ -8,8 +8,8 @@ use super::{Phase, Scene, unique};
 use crate::base::input::{InputError, find, not_negative, unknown_among};
 use crate::elements::force::{Force, Forces};
 use crate::scene::forces::{
-    AmountFlow, Chamber, Closed, Content, DipolePart, End, Filled, Gas, Lagging, Orifice,
-    OrificeFlow, Poured, Signal, Supply,
+    AmountFlow, Chamber, ChamberFluid, DipolePart, End, FixedAmount, Gas, GasInChamber, Lagging,
+    LiquidInChamber, Orifice, OrificeFlow, Signal, Supply,
 };
 
 /// Name of an open end of an orifice or a pipe.
@@ -94,7 +94,7 @@ impl Scene {
     /// Number of amounts of gas and liquids, of states of actuators that lag and of flows of pipes that are unknowns.
     #[cfg(feature = "checkpoint")]
     pub(crate) fn flowing_amounts(&self) -> usize {
-        if self.is_shut { 0 } else { self.flowing_count() }
+        if self.has_fixed_amounts { 0 } else { self.flowing_count() }
     }
 
     /// The last unknowns of a state: amounts of gases, then of liquids, states of actuators that lag, and flows of pipes; none where these are constants.
@@ -114,11 +114,11 @@ impl Scene {
     }
 
     /// The same scene with constant amounts of gas and liquids, without orifices, pipes and lags: for what has no unknowns for them.
-    pub(crate) fn shut(&self) -> Cow<'_, Self> {
+    pub(crate) fn with_fixed_amounts(&self) -> Cow<'_, Self> {
         if !self.has_gas() && self.liquids.is_empty() && self.lags.is_empty() {
             return Cow::Borrowed(self);
         }
-        let mut shut = Self { is_shut: true, ..self.clone() };
+        let mut shut = Self { has_fixed_amounts: true, ..self.clone() };
         shut.orifices.clear();
         shut.pipes.clear();
         let flows = |quantity| matches!(quantity, Quantity::Opening | Quantity::Flow);
@@ -128,7 +128,7 @@ impl Scene {
 
     /// The same for statics: with actuators, and amounts of gas and liquids, that rise from rest if so asked.
     pub(crate) fn loaded(&self, rises: bool) -> Self {
-        Self { rises, ..self.shut().into_owned() }
+        Self { rises, ..self.with_fixed_amounts().into_owned() }
     }
 
     /// The last unknowns of a state of statics, as [`flowing`](Self::flowing) has them, for a `fraction` of the load of `phase`; none where there are neither gases nor liquids. `acting` is the phase under that fraction.
@@ -146,8 +146,10 @@ impl Scene {
         }
         let (gases, liquids) = (self.filled()?, self.poured(Some(phase))?);
         let whole = self.starting_masses(&gases, &liquids);
-        let unloaded =
-            gases.iter().map(Filled::unloaded).chain(liquids.iter().map(Poured::unloaded));
+        let unloaded = gases
+            .iter()
+            .map(GasInChamber::unloaded)
+            .chain(liquids.iter().map(LiquidInChamber::unloaded));
         let masses = unloaded.zip(whole).map(|(from, whole)| from + fraction * (whole - from));
         let lags = self.lags().map(|(name, _)| self.drive_at(name, acting, phase.until, &[])[0]);
         let pipes = self.pipes.iter().map(|_| 0.0);
@@ -177,7 +179,7 @@ impl Scene {
     ///
     /// # Errors
     /// A chamber that does not exist, or has two gases; numbers out of range.
-    pub(crate) fn filled(&self) -> Result<Vec<Filled>, InputError> {
+    pub(crate) fn filled(&self) -> Result<Vec<GasInChamber>, InputError> {
         unique("gas in chamber", self.gases.iter().map(|gas| &*gas.chamber))?;
         let fill = |gas: &Gas| {
             let chamber = &self.chambers[self.chamber_number(&gas.chamber, "chamber of gas")?];
@@ -267,7 +269,7 @@ impl Scene {
         let liquids = self.poured(Some(phase))?;
         let pipes = self.pipe_flows()?;
         let mut start = self.starting_masses(&gases, &liquids);
-        if self.is_shut {
+        if self.has_fixed_amounts {
             let mut masses = start.into_iter();
             for (gas, mass) in gases.into_iter().zip(&mut masses) {
                 let from = gas.unloaded();
@@ -286,7 +288,7 @@ impl Scene {
     }
 
     /// The force of an `amount` (kg) that stays, or rises `from` another one up to the time `end` (s).
-    fn closed<C: Content + 'static>(
+    fn closed<C: ChamberFluid + 'static>(
         &self,
         content: C,
         amount: f64,
@@ -294,8 +296,8 @@ impl Scene {
     ) -> Arc<dyn Force> {
         let dofs = self.body.dofs();
         match self.rises {
-            true => Arc::new(Closed::rising(content, amount, dofs, [from, end])),
-            false => Arc::new(Closed::new(content, amount, dofs)),
+            true => Arc::new(FixedAmount::rising(content, amount, dofs, [from, end])),
+            false => Arc::new(FixedAmount::new(content, amount, dofs)),
         }
     }
 

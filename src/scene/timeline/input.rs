@@ -12,7 +12,7 @@ use crate::elements::body::Body;
 use crate::elements::force::Force;
 use crate::elements::mesh::Selection;
 use crate::scene::forces::{
-    DipolePart, Live, Signal, SignalKind, VectorSignal, WrenchForce, WrenchKind,
+    DipolePart, SharedValue, Signal, SignalKind, VectorSignal, WrenchForce, WrenchKind,
 };
 
 /// A quantity that phases prescribe.
@@ -263,7 +263,7 @@ impl InputSignal {
         }
     }
 
-    pub(super) fn live(&self) -> Option<&Live> {
+    pub(super) fn live(&self) -> Option<&SharedValue> {
         match self {
             Self::Number(signal) => signal.live(),
             Self::Vector(signal) => signal.live(),
@@ -271,17 +271,17 @@ impl InputSignal {
     }
 
     /// The same signal; a constant becomes numbers that a command can set.
-    pub(crate) fn thawed(self) -> Self {
+    pub(crate) fn settable(self) -> Self {
         match self {
-            Self::Number(signal) => Self::Number(signal.thawed()),
-            Self::Vector(signal) => Self::Vector(signal.thawed()),
+            Self::Number(signal) => Self::Number(signal.settable()),
+            Self::Vector(signal) => Self::Vector(signal.settable()),
         }
     }
 
-    pub(super) fn frozen(&self) -> Self {
+    pub(super) fn snapshot(&self) -> Self {
         match self {
-            Self::Number(signal) => Self::Number(signal.frozen()),
-            Self::Vector(signal) => Self::Vector(signal.frozen()),
+            Self::Number(signal) => Self::Number(signal.snapshot()),
+            Self::Vector(signal) => Self::Vector(signal.snapshot()),
         }
     }
 

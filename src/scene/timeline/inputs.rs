@@ -3,7 +3,7 @@
 use super::input::{Input, InputSignal, LoadKind, Quantity, Target};
 use super::{Phase, Scene};
 use crate::elements::mesh::Selection;
-use crate::scene::forces::{Dipole, Live, Signal, VectorSignal};
+use crate::scene::forces::{Dipole, SharedValue, Signal, VectorSignal};
 
 impl Phase {
     pub(crate) fn with(mut self, input: Input) -> Self {
@@ -37,7 +37,7 @@ impl Phase {
     }
 
     /// The numbers of a quantity that a command can set, if they alone act on the target.
-    pub(crate) fn live(&self, quantity: Quantity, target: &Target) -> Option<&Live> {
+    pub(crate) fn live(&self, quantity: Quantity, target: &Target) -> Option<&SharedValue> {
         let mut all = self.inputs_on(quantity, target);
         let only = all.next().filter(|input| all.next().is_none() && input.target == *target)?;
         only.signal.live()
@@ -115,7 +115,7 @@ impl Phase {
 
     /// Replaces numbers that commands can set by constants.
     pub(super) fn freeze(&mut self) {
-        self.inputs.iter_mut().for_each(|input| input.signal = input.signal.frozen());
+        self.inputs.iter_mut().for_each(|input| input.signal = input.signal.snapshot());
     }
 
     /// Replaces what statics scale by this `fraction` of its value at the end of the phase.

@@ -73,7 +73,7 @@ impl Scene {
         actuator: &str,
         drives: &[Signal],
     ) -> Result<Option<(usize, Lagging)>, InputError> {
-        let mut lags = self.lags().enumerate().filter(|_| !self.is_shut);
+        let mut lags = self.lags().enumerate().filter(|_| !self.has_fixed_amounts);
         let Some((number, (_, lag))) = lags.find(|(_, (name, _))| *name == actuator) else {
             return Ok(None);
         };

@@ -4,7 +4,7 @@ use super::input::{Input, Quantity, Target};
 use super::{Phase, Scene, unique};
 use crate::base::input::InputError;
 use crate::base::vector::norm;
-use crate::scene::forces::{Liquid, Poured, Signal, Weight};
+use crate::scene::forces::{Liquid, LiquidInChamber, Signal, Weight};
 
 /// Parts of the time between two breaks of a flow in which it is added up.
 const PARTS: usize = 50;
@@ -57,12 +57,12 @@ impl Scene {
     ///
     /// # Errors
     /// A chamber that does not exist, or has two contents; numbers out of range; a flow where amounts are constants; a surface without gravity.
-    pub(crate) fn poured(&self, phase: Option<&Phase>) -> Result<Vec<Poured>, InputError> {
+    pub(crate) fn poured(&self, phase: Option<&Phase>) -> Result<Vec<LiquidInChamber>, InputError> {
         for (chamber, flow) in phase.into_iter().flat_map(|phase| phase.signals(Quantity::Flow)) {
             let input = format!("flow of phase \"{}\"", phase.map_or("", Phase::name));
             self.liquid_number(chamber, &input)?;
             flow.validate(&input)?;
-            if self.is_shut {
+            if self.has_fixed_amounts {
                 let help = "this method has no unknowns for amounts that change: take another one";
                 return Err(InputError::new(input, format!("into \"{chamber}\""), help));
             }
@@ -79,7 +79,7 @@ impl Scene {
         &self,
         phase: Option<&Phase>,
         liquid: &Liquid,
-    ) -> Result<Poured, InputError> {
+    ) -> Result<LiquidInChamber, InputError> {
         let name = liquid.chamber();
         let chamber = &self.chambers[self.chamber_number(name, "chamber of liquid")?];
         if self.gas_in(name).is_some() {

@@ -105,7 +105,7 @@ pub struct Scene {
     /// Absolute pressure (Pa) around chambers with gas.
     atmosphere: f64,
     /// If true, gas and liquid masses are prescribed instead of integrated, and lagged actuators have their steady-state input.
-    is_shut: bool,
+    has_fixed_amounts: bool,
     /// If true, these masses and the inputs of springs and growths rise linearly: from zero load at t = 0 to their values at the
     /// end of the phase.
     rises: bool,
@@ -160,7 +160,7 @@ impl Scene {
             pipes: Vec::new(),
             supplies: Vec::new(),
             atmosphere: ATMOSPHERE,
-            is_shut: false,
+            has_fixed_amounts: false,
             rises: false,
             ties: Vec::new(),
             touches: Vec::new(),

@@ -3,7 +3,7 @@
 use std::fmt;
 
 use super::{Phase, Scene};
-use crate::base::input::{InputError, told};
+use crate::base::input::{InputError, four_digits};
 use crate::elements::material::Plane;
 use crate::scene::constraint::Axis;
 
@@ -39,7 +39,7 @@ impl fmt::Display for Smaller {
         match self {
             Self::Rigid => f.write_str("all of it rigid"),
             Self::Half { axis, at } => {
-                write!(f, "half of it, cut at {} = {} m", axis.word(), told(*at))
+                write!(f, "half of it, cut at {} = {} m", axis.word(), four_digits(*at))
             }
             Self::Plane { axis, plane } => {
                 write!(f, "in a plane across {} (plane {})", axis.word(), plane.name())

@@ -4,17 +4,21 @@ use std::collections::BTreeMap;
 
 use super::scene_state::INPUT;
 use super::{Scene, SceneState};
-use crate::base::input::{InputError, told};
+use crate::base::input::{InputError, four_digits};
 use crate::base::vector::norm;
 use crate::elements::body::Branches;
-use crate::scene::forces::{Content, Filled, Liquid, Obstacle, Pipe, Poured};
+use crate::scene::forces::{ChamberFluid, GasInChamber, Liquid, LiquidInChamber, Obstacle, Pipe};
 
 /// Distances (as fractions of the size of the body) below which an obstacle is where it was.
 const SAME_PLACE: f64 = 1e-6;
 
 impl Scene {
     /// Masses (kg) at the start of the gases and then of the liquids, which are these.
-    pub(crate) fn starting_masses(&self, gases: &[Filled], liquids: &[Poured]) -> Vec<f64> {
+    pub(crate) fn starting_masses(
+        &self,
+        gases: &[GasInChamber],
+        liquids: &[LiquidInChamber],
+    ) -> Vec<f64> {
         let gases = self.gases.iter().zip(gases).map(|(gas, filled)| {
             self.mass_in_state(|state| &state.gases, &gas.chamber).unwrap_or(filled.amount())
         });
@@ -23,7 +27,7 @@ impl Scene {
     }
 
     /// The mass (kg) of a liquid at the start, whose chamber has it as `poured`.
-    pub(super) fn starting_liquid(&self, liquid: &Liquid, poured: &Poured) -> f64 {
+    pub(super) fn starting_liquid(&self, liquid: &Liquid, poured: &LiquidInChamber) -> f64 {
         self.mass_in_state(|state| &state.liquids, liquid.chamber()).unwrap_or(poured.amount())
     }
 
@@ -89,7 +93,7 @@ impl Scene {
             "the scene has no {what} in a chamber of that name: give it `[[{what}]]`, or remove \"{chamber}\" from `{}` of the state",
             if what == "gas" { "gases" } else { "liquids" }
         );
-        let value = format!("{} kg of {what} in chamber \"{chamber}\"", told(*amount));
+        let value = format!("{} kg of {what} in chamber \"{chamber}\"", four_digits(*amount));
         Err(InputError::new(INPUT, value, help))
     }
 

@@ -52,7 +52,7 @@ impl List {
             }
             SignalKind::Constant(_)
             | SignalKind::TimeTable(_)
-            | SignalKind::Live(_)
+            | SignalKind::Shared(_)
             | SignalKind::State(_) => {}
         }
     }
@@ -76,7 +76,7 @@ impl List {
                     })));
                 }
             }
-            VectorSignal::Constant(_) | VectorSignal::TimeTable(_) | VectorSignal::Live(_) => {}
+            VectorSignal::Constant(_) | VectorSignal::TimeTable(_) | VectorSignal::Shared(_) => {}
         }
     }
 

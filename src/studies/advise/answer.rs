@@ -5,7 +5,7 @@ use std::fmt;
 use super::advice::{Advice, Candidate};
 use super::choice::Choice;
 use super::smaller_model::SmallerModel;
-use crate::base::input::{percent, short, told};
+use crate::base::input::{four_digits, percent, short};
 use crate::dynamics::report::Verdict;
 use crate::elements::body::Strain;
 use crate::studies::work_precision::look::Look;
@@ -121,8 +121,8 @@ impl fmt::Display for Advice {
                 f,
                 "It can be known until t = {} s only: small errors grow there, as after impacts. What follows is about \
                  the motion until t = {} s; rely on energies and means later on.",
-                told(until),
-                told(self.end)
+                four_digits(until),
+                four_digits(self.end)
             )?;
         }
         let run = |candidate: &Candidate| match (candidate.error, &candidate.failure) {

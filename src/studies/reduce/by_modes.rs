@@ -21,7 +21,7 @@ use super::{
 use crate::base::input::InputError;
 use crate::base::vector::largest;
 use crate::dynamics::error::Error;
-use crate::dynamics::system::Lacking;
+use crate::dynamics::system::MissingDisplacement;
 use crate::dynamics::trajectory::Trajectory;
 use crate::scene::ReducedModel;
 use crate::scene::timeline::Scene;
@@ -132,7 +132,8 @@ impl Enrichment<'_> {
             let model = self.kit.model(&phases, &counts, 0.0)?;
             let found = self.run(model, last.as_ref(), &mut failure)?;
             let lacking = found.iter().flat_map(|seen| seen.runs.iter().take(scenes.len()));
-            let lacking: Vec<Lacking> = lacking.flat_map(|(run, _)| run.lacking.clone()).collect();
+            let lacking: Vec<MissingDisplacement> =
+                lacking.flat_map(|(run, _)| run.lacking.clone()).collect();
             let error =
                 |seen: &Option<Seen>| seen.as_ref().map_or(f64::INFINITY, |seen| seen.model.error);
             let is_enough = error(&found) <= *within;

@@ -5,7 +5,7 @@ use std::fmt;
 use std::path::Path;
 
 use super::{Reduced, Tried, Verified};
-use crate::base::input::{percent, short, told};
+use crate::base::input::{four_digits, percent, short};
 #[cfg(feature = "output")]
 use crate::dynamics::error::Error;
 #[cfg(feature = "output")]
@@ -94,7 +94,7 @@ impl Reduced {
             .logarithmic(true, true)
             .marked("reduced models", points.iter().copied());
         if let Some(full) = self.full_seconds {
-            let name = format!("time with all unknowns: {} s", told(full));
+            let name = format!("time with all unknowns: {} s", four_digits(full));
             chart = chart.reference(name, [(full, least), (full, most)]);
         }
         chart
@@ -119,7 +119,7 @@ impl Reduced {
         for Tried { unknowns, cells, error, told: said, seconds } in &self.tried {
             let cells = if *cells == 0 { "exact".into() } else { cells.to_string() };
             let error = if error.is_finite() { percent(*error) } else { String::new() };
-            let (said, seconds) = (percent(*said), told(*seconds));
+            let (said, seconds) = (percent(*said), four_digits(*seconds));
             writeln!(f, "{unknowns:8} {cells:>9} {error:>10} {said:>10} {seconds:>11}")?;
         }
         writeln!(f, "{unknowns:8} {cells:>9}\n")?;
@@ -127,7 +127,7 @@ impl Reduced {
             f,
             "{}; it took {} s, and no run of all unknowns: `pliant reduce --verify` makes one",
             self.model,
-            told(self.training_seconds)
+            four_digits(self.training_seconds)
         )
     }
 }
@@ -145,15 +145,22 @@ impl fmt::Display for Reduced {
                 continue;
             }
             let [error, said] = [*error, *said].map(percent);
-            let (faster, seconds) = (short(full / seconds), told(*seconds));
+            let (faster, seconds) = (short(full / seconds), four_digits(*seconds));
             writeln!(
                 f,
                 "{unknowns:8} {cells:>9} {error:>10} {said:>10} {seconds:>11} {faster:>9}"
             )?;
         }
-        writeln!(f, "{unknowns:8} {cells:>9} {:>10} {:>10} {:>11} {:>9}\n", "", "", told(full), 1)?;
+        writeln!(
+            f,
+            "{unknowns:8} {cells:>9} {:>10} {:>10} {:>11} {:>9}\n",
+            "",
+            "",
+            four_digits(full),
+            1
+        )?;
         let Some(chosen) = self.chosen() else { return write!(f, "{}", self.model) };
-        let training = told(self.training_seconds);
+        let training = four_digits(self.training_seconds);
         write!(f, "{}, ", self.model)?;
         match self.pays_from() {
             Some(run) => write!(
@@ -175,7 +182,7 @@ impl fmt::Display for Verified {
         }
         let faster = short(full_seconds / seconds);
         let [error, said] = [error, said].map(percent);
-        let [full, seconds] = [full_seconds, seconds].map(told);
+        let [full, seconds] = [full_seconds, seconds].map(four_digits);
         write!(
             f,
             "off by {error}, the run tells {said}; {seconds} s in place of {full} s, {faster} times the speed"

@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use serde_json::{Value, json};
 
-use crate::base::input::{positive, told};
+use crate::base::input::{four_digits, positive};
 use crate::dynamics::error::Error;
 use crate::dynamics::report::Indicator;
 use crate::dynamics::simulate::{Progress, Sampling};
@@ -68,7 +68,7 @@ impl Look {
             Ok(motion) => (motion, None),
             Err(Error::Integration(stopped)) => {
                 let cause = match stopped.is_interruption() {
-                    true => format!("{} s of computing", told(seconds)),
+                    true => format!("{} s of computing", four_digits(seconds)),
                     false => stopped.cause(),
                 };
                 (stopped.trajectory, Some(cause))
@@ -114,7 +114,12 @@ impl fmt::Display for Look {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { indicators, until, end, cause } = self;
         if let Some(cause) = cause {
-            writeln!(f, "looked at until t = {} s of {} s: {cause}", told(*until), told(*end))?;
+            writeln!(
+                f,
+                "looked at until t = {} s of {} s: {cause}",
+                four_digits(*until),
+                four_digits(*end)
+            )?;
         }
         let lines: Vec<String> = indicators.iter().map(Indicator::to_string).collect();
         f.write_str(&lines.join("\n"))

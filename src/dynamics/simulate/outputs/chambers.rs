@@ -1,10 +1,10 @@
 //! Outputs of chambers.
 
 use super::super::output::{Kind, Output, Value};
-use super::super::reading::{Reading, What};
+use super::super::reading::{Reading, ReadingKind};
 use super::super::view::View;
 use crate::base::input::InputError;
-use crate::scene::forces::Content;
+use crate::scene::forces::ChamberFluid;
 use crate::scene::timeline::Quantity;
 
 const CHAMBER: Kind = Kind {
@@ -71,11 +71,11 @@ impl Reading {
     /// Gauge pressure in a chamber (Pa); of a liquid with weight the mean, of one with a surface the value at the
     /// lowest wall point.
     pub fn pressure(chamber: impl Into<String>) -> Self {
-        What::Of(&PRESSURE, chamber.into()).into()
+        ReadingKind::Of(&PRESSURE, chamber.into()).into()
     }
 
     /// Volume that the walls of a chamber enclose (m^3).
     pub fn chamber_volume(chamber: impl Into<String>) -> Self {
-        What::Of(&VOLUME, chamber.into()).into()
+        ReadingKind::Of(&VOLUME, chamber.into()).into()
     }
 }

@@ -1,7 +1,7 @@
 //! Outputs of dipoles.
 
 use super::super::output::{Kind, Output, Value};
-use super::super::reading::{Reading, What};
+use super::super::reading::{Reading, ReadingKind};
 use super::super::view::View;
 use crate::base::input::InputError;
 use crate::scene::forces::{DipolePart, VectorSignal, point_dipole};
@@ -85,11 +85,11 @@ impl View<'_> {
 impl Reading {
     /// Force of a [dipole](crate::Dipole) on all magnets (N): see [`View::dipole_force`](crate::View::dipole_force).
     pub fn dipole_force(dipole: impl Into<String>) -> Self {
-        What::Of(&FORCE, dipole.into()).into()
+        ReadingKind::Of(&FORCE, dipole.into()).into()
     }
 
     /// Position (m) of a [dipole](crate::Dipole).
     pub fn dipole_position(dipole: impl Into<String>) -> Self {
-        What::Of(&POSITION, dipole.into()).into()
+        ReadingKind::Of(&POSITION, dipole.into()).into()
     }
 }

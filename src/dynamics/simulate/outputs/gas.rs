@@ -1,7 +1,7 @@
 //! Outputs of gas in chambers, and of what it flows through.
 
 use super::super::output::{Kind, Output, Value};
-use super::super::reading::{Reading, What};
+use super::super::reading::{Reading, ReadingKind};
 use super::super::view::View;
 use crate::base::input::InputError;
 
@@ -91,16 +91,16 @@ impl View<'_> {
 impl Reading {
     /// Absolute pressure (Pa) of the gas in a chamber.
     pub fn absolute_pressure(chamber: impl Into<String>) -> Self {
-        What::Of(&ABSOLUTE_PRESSURE, chamber.into()).into()
+        ReadingKind::Of(&ABSOLUTE_PRESSURE, chamber.into()).into()
     }
 
     /// Amount of gas (kg) in a chamber.
     pub fn gas_amount(chamber: impl Into<String>) -> Self {
-        What::Of(&AMOUNT, chamber.into()).into()
+        ReadingKind::Of(&AMOUNT, chamber.into()).into()
     }
 
     /// Flow of gas (kg/s) through an orifice, from its first end to its second.
     pub fn gas_flow(orifice: impl Into<String>) -> Self {
-        What::Of(&FLOW, orifice.into()).into()
+        ReadingKind::Of(&FLOW, orifice.into()).into()
     }
 }

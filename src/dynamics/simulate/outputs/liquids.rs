@@ -1,7 +1,7 @@
 //! Outputs of liquids in chambers, and of pipes.
 
 use super::super::output::{Kind, Output, Value};
-use super::super::reading::{Reading, What};
+use super::super::reading::{Reading, ReadingKind};
 use super::super::view::View;
 use crate::base::input::InputError;
 use crate::scene::timeline::Quantity;
@@ -112,21 +112,21 @@ impl View<'_> {
 impl Reading {
     /// Natural volume of the liquid in a chamber (m^3).
     pub fn liquid_volume(chamber: impl Into<String>) -> Self {
-        What::Of(&VOLUME, chamber.into()).into()
+        ReadingKind::Of(&VOLUME, chamber.into()).into()
     }
 
     /// Flow of liquid into a chamber (m^3/s).
     pub fn liquid_flow(chamber: impl Into<String>) -> Self {
-        What::Of(&FLOW, chamber.into()).into()
+        ReadingKind::Of(&FLOW, chamber.into()).into()
     }
 
     /// Height (m) of the surface of the liquid in a chamber above the origin, against gravity: see [`Liquid::surface`](crate::Liquid::surface).
     pub fn liquid_level(chamber: impl Into<String>) -> Self {
-        What::Of(&LEVEL, chamber.into()).into()
+        ReadingKind::Of(&LEVEL, chamber.into()).into()
     }
 
     /// Flow of liquid (m^3/s) through a [pipe](crate::Pipe), from its first end to its second.
     pub fn pipe_flow(pipe: impl Into<String>) -> Self {
-        What::Of(&PIPE_FLOW, pipe.into()).into()
+        ReadingKind::Of(&PIPE_FLOW, pipe.into()).into()
     }
 }

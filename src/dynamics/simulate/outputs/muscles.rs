@@ -1,7 +1,7 @@
 //! Outputs of muscles, and of actuators that are heated.
 
 use super::super::output::{Kind, Output, Value};
-use super::super::reading::{Reading, What};
+use super::super::reading::{Reading, ReadingKind};
 use super::super::view::View;
 use crate::base::input::InputError;
 use crate::elements::body::Contraction;
@@ -122,22 +122,22 @@ impl View<'_> {
 impl Reading {
     /// Stress by which a muscle pulls (Pa): see [`View::muscle_stress`](crate::View::muscle_stress).
     pub fn muscle_stress(muscle: impl Into<String>) -> Self {
-        What::Of(&STRESS, muscle.into()).into()
+        ReadingKind::Of(&STRESS, muscle.into()).into()
     }
 
     /// Stretch of the fibres of a muscle relative to the undeformed shape: see
     /// [`View::muscle_stretch`](crate::View::muscle_stretch).
     pub fn muscle_stretch(muscle: impl Into<String>) -> Self {
-        What::Of(&STRETCH, muscle.into()).into()
+        ReadingKind::Of(&STRETCH, muscle.into()).into()
     }
 
     /// Activation of a muscle with [Hill's law](crate::Hill), from 0 to 1: see [`View::activation`](crate::View::activation).
     pub fn activation(muscle: impl Into<String>) -> Self {
-        What::Of(&ACTIVATION, muscle.into()).into()
+        ReadingKind::Of(&ACTIVATION, muscle.into()).into()
     }
 
     /// Temperature rise (K) of a [heated](crate::Lag::heated) actuator above its surroundings.
     pub fn temperature(actuator: impl Into<String>) -> Self {
-        What::Of(&TEMPERATURE, actuator.into()).into()
+        ReadingKind::Of(&TEMPERATURE, actuator.into()).into()
     }
 }

@@ -1,7 +1,7 @@
 //! Outputs of springs and cables.
 
 use super::super::output::{Kind, Output, Value};
-use super::super::reading::{Reading, What};
+use super::super::reading::{Reading, ReadingKind};
 use super::super::view::View;
 use crate::base::input::InputError;
 use crate::dynamics::state::State;
@@ -84,17 +84,17 @@ impl View<'_> {
 impl Reading {
     /// Force with which a spring pulls its ends together (N): see [`View::spring_pull`](crate::View::spring_pull).
     pub fn spring_pull(spring: impl Into<String>) -> Self {
-        What::Of(&PULL, spring.into()).into()
+        ReadingKind::Of(&PULL, spring.into()).into()
     }
 
     /// Tension of a cable at its last place (N), which friction along its path makes another one than its
     /// [pull](Self::spring_pull) at the drive.
     pub fn tension_at_end(cable: impl Into<String>) -> Self {
-        What::Of(&TENSION_AT_END, cable.into()).into()
+        ReadingKind::Of(&TENSION_AT_END, cable.into()).into()
     }
 
     /// Length of a spring (m), or of the path of a cable.
     pub fn spring_length(spring: impl Into<String>) -> Self {
-        What::Of(&LENGTH, spring.into()).into()
+        ReadingKind::Of(&LENGTH, spring.into()).into()
     }
 }

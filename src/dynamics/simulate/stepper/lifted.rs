@@ -1,6 +1,6 @@
 //! The integrator of a phase that is run by a reduced model: it takes the unknowns of that, and shows all others.
 
-use super::{Failed, Lead, Stepper, ida_options_of, ode};
+use super::{Failed, IntoStepper, Stepper, ida_options_of, ode};
 use crate::base::input::InputError;
 use crate::dynamics::report::Counts;
 use crate::dynamics::state::ENERGIES;
@@ -57,8 +57,8 @@ pub(super) fn start(
     ode(equations, is_linear, settings, tolerances, [t, end], first, &y)
 }
 
-impl Lead for ReducedForm {
-    fn lead<I>(end: f64, integrator: I) -> Result<Box<dyn Stepper>, Failed>
+impl IntoStepper for ReducedForm {
+    fn into_stepper<I>(end: f64, integrator: I) -> Result<Box<dyn Stepper>, Failed>
     where
         I: Integrator<System = Self> + Send + 'static,
     {

@@ -128,7 +128,7 @@ fn lids() {
 
 /// Two rooms with the same pressure, apart or corner to corner.
 #[test]
-fn rooms() {
+fn reservoirs() {
     let plate = Mesh::rectangle([5.0, 5.0], [6, 6], Cells::Rectangles).unwrap();
     for min in [2.0, 3.0] {
         let mesh = hollow(&hollow(&plate, 1.0, 2.0), min, min + 1.0);

@@ -2,22 +2,22 @@
 //!
 //! Absolute tolerances of amounts are to the first amount as those of strains are to 1.
 
-use super::Filled;
+use super::GasInChamber;
 use super::orifice::{End, OrificeFlow};
 use crate::base::sparse::BlockMatrix;
 use crate::base::vector::distinct;
 use crate::elements::force::{Flow, FlowDerivatives, Force, NodalForces, Tangents};
 use crate::integrators::ode::Failure;
-use crate::scene::forces::content::{Content, Fill};
+use crate::scene::forces::chamber_fluid::{ChamberFluid, Fill};
 use crate::scene::forces::lag::Lagging;
-use crate::scene::forces::liquid::Poured;
+use crate::scene::forces::liquid::LiquidInChamber;
 use crate::scene::forces::pipe::PipeFlow;
 
 /// All gases of a scene and the orifices between them, behind them all liquids, what lags, and the pipes between liquids, whose flows are the last unknowns.
 pub(crate) struct AmountFlow {
-    pub(super) gases: Vec<Filled>,
+    pub(super) gases: Vec<GasInChamber>,
     orifices: Vec<OrificeFlow>,
-    pub(super) liquids: Vec<Poured>,
+    pub(super) liquids: Vec<LiquidInChamber>,
     lagging: Vec<Lagging>,
     pub(super) pipes: Vec<PipeFlow>,
     pub(super) start: Vec<f64>,
@@ -26,9 +26,9 @@ pub(crate) struct AmountFlow {
 impl AmountFlow {
     /// `start` are the unknowns at the start of the scene.
     pub(crate) fn new(
-        gases: Vec<Filled>,
+        gases: Vec<GasInChamber>,
         orifices: Vec<OrificeFlow>,
-        liquids: Vec<Poured>,
+        liquids: Vec<LiquidInChamber>,
         lagging: Vec<Lagging>,
         pipes: Vec<PipeFlow>,
         start: Vec<f64>,
@@ -42,25 +42,25 @@ impl AmountFlow {
     }
 
     /// All gases, and then all liquids.
-    fn all(&self) -> impl Iterator<Item = &dyn Content> {
-        let gases = self.gases.iter().map(|gas| gas as &dyn Content);
-        gases.chain(self.liquids.iter().map(|liquid| liquid as &dyn Content))
+    fn all(&self) -> impl Iterator<Item = &dyn ChamberFluid> {
+        let gases = self.gases.iter().map(|gas| gas as &dyn ChamberFluid);
+        gases.chain(self.liquids.iter().map(|liquid| liquid as &dyn ChamberFluid))
     }
 }
 
 /// Whether it hardly changes its volume.
-fn is_stiff(content: &dyn Content) -> bool {
+fn is_stiff(content: &dyn ChamberFluid) -> bool {
     content.volume_under(content.amount(), 0.0).is_some()
 }
 
 impl Flow for AmountFlow {
-    fn rooms(&self) -> usize {
+    fn reservoirs(&self) -> usize {
         self.gases.len() + self.liquids.len() + self.lagging.len()
     }
 
     /// Of flows those of speeds in their pipes.
     fn tolerances(&self, strain: f64, velocity: f64) -> Vec<f64> {
-        let amounts = self.all().map(Content::amount);
+        let amounts = self.all().map(ChamberFluid::amount);
         let sizes = amounts.chain(self.lagging.iter().map(Lagging::size));
         let of_amounts = sizes.map(|size| strain * size);
         of_amounts.chain(self.pipes.iter().map(|pipe| velocity * pipe.area)).collect()
@@ -122,7 +122,7 @@ impl Flow for AmountFlow {
     }
 
     fn kinetic_of(&self, unknowns: &[f64]) -> f64 {
-        let flows = &unknowns[self.rooms()..];
+        let flows = &unknowns[self.reservoirs()..];
         self.pipes.iter().zip(flows).map(|(pipe, &flow)| pipe.kinetic(flow)).sum()
     }
 
@@ -168,7 +168,7 @@ impl Flow for AmountFlow {
             &mut *derivatives;
         let [stiff, pressing] = pressures;
         let ([by_volumes, by_amounts], [flows, pressures]) = (rates, work);
-        let (rooms, count) = (self.rooms(), self.start.len());
+        let (rooms, count) = (self.reservoirs(), self.start.len());
         gradients.fill(0.0);
         [&mut *by_volumes, by_amounts, stiff, pressing, flows].iter_mut().for_each(|x| x.fill(0.0));
         for (number, (content, &amount)) in self.all().zip(amounts).enumerate() {

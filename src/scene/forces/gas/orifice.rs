@@ -4,7 +4,7 @@
 //! The root of ISO 6358 has an infinite slope at equal pressures; the cubic in its place, above a ratio of
 //! 0.999, has one of 79 times (b = 0.5) the choked flow over the pressure.
 
-use super::{Filled, GAS_CONSTANT_TIMES_TEMPERATURE};
+use super::{GAS_CONSTANT_TIMES_TEMPERATURE, GasInChamber};
 use crate::base::input::{InputError, positive};
 use crate::integrators::ode::Failure;
 use crate::scene::forces::Signal;
@@ -189,7 +189,7 @@ impl OrificeFlow {
     pub(crate) fn rate(
         &self,
         t: f64,
-        gases: &[Filled],
+        gases: &[GasInChamber],
         pressures: &[f64],
     ) -> Result<[f64; 3], Failure> {
         let opening = match self.opening.is_empty() {

@@ -29,7 +29,7 @@ impl AmountFlow {
         rates: &mut [f64],
     ) -> Result<f64, Failure> {
         let mut supplied = 0.0;
-        for (at, pipe) in (self.rooms()..).zip(&self.pipes) {
+        for (at, pipe) in (self.reservoirs()..).zip(&self.pipes) {
             let flow = unknowns[at];
             let [friction, _] = pipe.friction(flow);
             let mut drive = -friction;
@@ -61,7 +61,7 @@ impl AmountFlow {
     ) -> Result<(), Failure> {
         let FlowDerivatives { pressures: [_, pressing], rates, power, heat, .. } = derivatives;
         let [by_volumes, by_unknowns] = rates;
-        let (rooms, count) = (self.rooms(), self.start.len());
+        let (rooms, count) = (self.reservoirs(), self.start.len());
         for (row, pipe) in (rooms..).zip(&self.pipes) {
             let flow = at[1][row];
             let [friction, slope] = pipe.friction(flow);
@@ -89,7 +89,7 @@ impl AmountFlow {
     /// mu (J/kg) at an end of a pipe, and its derivative by the amount there (J/kg^2).
     ///
     /// # Errors
-    /// As those of [`Content::press`](crate::scene::forces::Content::press); a supply that is not finite.
+    /// As those of [`ChamberFluid::press`](crate::scene::forces::Content::press); a supply that is not finite.
     fn mu(
         &self,
         t: f64,

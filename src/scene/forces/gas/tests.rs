@@ -1,6 +1,6 @@
 //! Gas and orifices against their own derivatives and against values of the standard.
 
-use super::{AmountFlow, Filled, GAS_CONSTANT_TIMES_TEMPERATURE, Gas, Orifice};
+use super::{AmountFlow, GAS_CONSTANT_TIMES_TEMPERATURE, Gas, GasInChamber, Orifice};
 use crate::base::sparse::BlockMatrix;
 use crate::elements::body::Body;
 use crate::elements::force::{Flow, FlowDerivatives, NodalForces};
@@ -9,7 +9,7 @@ use crate::elements::mesh::{Cells, Mesh};
 use crate::scene::forces::{Chamber, End};
 
 /// A room of 0.1 m x 0.1 m in a square, 1 m thick.
-fn filled(pressure: f64, exponent: f64) -> (Body, Filled) {
+fn filled(pressure: f64, exponent: f64) -> (Body, GasInChamber) {
     let mesh = Mesh::rectangle([0.1, 0.1], [2, 2], Cells::Rectangles).unwrap();
     let material = Material { density: 1000.0, young: 1e6, poisson: 0.3, viscosity: 0.0 };
     let body = Body::new(mesh, material).thickness(1.0).build().unwrap();

@@ -20,7 +20,7 @@ use crate::elements::force::NodalForces;
 use crate::integrators::ode::Failure;
 use crate::scene::forces::basin::{Basin, Level, NoLevel};
 use crate::scene::forces::chamber::{ChamberForce, TURNED};
-use crate::scene::forces::content::{Content, Fill};
+use crate::scene::forces::chamber_fluid::{ChamberFluid, Fill};
 
 /// A liquid that stands in its walls up to a level.
 pub(super) struct Pool {
@@ -83,7 +83,7 @@ impl Pool {
     }
 }
 
-impl Content for Pool {
+impl ChamberFluid for Pool {
     fn walls(&self) -> &ChamberForce {
         &self.walls
     }

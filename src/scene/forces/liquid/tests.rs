@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::{Liquid, Poured, Weight};
+use super::{Liquid, LiquidInChamber, Weight};
 use crate::base::sparse::BlockMatrix;
 use crate::base::vector::dot;
 use crate::elements::body::Body;
@@ -10,15 +10,15 @@ use crate::elements::force::{Force, NodalForces};
 use crate::elements::material::Material;
 use crate::elements::mesh::{CellKind, Cells, Mesh, Selection, SolidCells};
 use crate::scene::forces::Chamber;
-use crate::scene::forces::closed::Closed;
-use crate::scene::forces::content::{Content, Fill};
+use crate::scene::forces::chamber_fluid::{ChamberFluid, Fill};
+use crate::scene::forces::fixed_amount::FixedAmount;
 
 /// Strong gravity, and a liquid that is light to compress, so that nothing is round-off.
 const GRAVITY: f64 = 400.0;
 const BULK: f64 = 1e5;
 
 /// A liquid in the middle of a square or a cube of 3 cells along each side, which are of second order, and displacements under which all is curved.
-fn poured(dimension: usize, gravity: f64) -> (Body, Poured, Vec<f64>) {
+fn poured(dimension: usize, gravity: f64) -> (Body, LiquidInChamber, Vec<f64>) {
     let material = Material { density: 1000.0, young: 1e6, poisson: 0.3, viscosity: 0.0 };
     let (mesh, kind) = match dimension {
         2 => {
@@ -54,7 +54,7 @@ fn poured(dimension: usize, gravity: f64) -> (Body, Poured, Vec<f64>) {
 /// Directions of gravity in the plane and in space.
 const DOWN: [[f64; 3]; 2] = [[0.6, -0.8, 0.0], [0.48, 0.36, -0.8]];
 
-fn forces(liquid: &Poured, u: &[f64], amount: f64) -> Vec<f64> {
+fn forces(liquid: &LiquidInChamber, u: &[f64], amount: f64) -> Vec<f64> {
     let mut forces = NodalForces::zeros(u.len());
     liquid.press(u, Fill::of(amount), &mut forces).unwrap();
     forces.conservative.to_vec()
@@ -91,7 +91,7 @@ fn forces_and_tangents_belong_to_the_energy() {
         let amount = liquid.amount();
         let (volume, heavy) = (liquid.walls().volume(&u), forces(&liquid, &u, amount));
         let amount = liquid.amount();
-        let closed = Closed::new(liquid, amount, u.len());
+        let closed = FixedAmount::new(liquid, amount, u.len());
         let pattern = Arc::new(body.inertia().pattern().with_pairs(&closed.couplings()));
         let [mut stiffness, mut damping] =
             [(), ()].map(|()| BlockMatrix::zeros(&pattern, dimension));

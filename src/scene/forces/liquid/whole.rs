@@ -29,7 +29,7 @@ use crate::base::sparse::BlockMatrix;
 use crate::elements::force::NodalForces;
 use crate::integrators::ode::Failure;
 use crate::scene::forces::chamber::{ChamberForce, TURNED};
-use crate::scene::forces::content::{Content, Fill};
+use crate::scene::forces::chamber_fluid::{ChamberFluid, Fill};
 use crate::scene::forces::moment::Moment;
 
 /// A liquid that fills its walls.
@@ -113,7 +113,7 @@ impl Whole {
     }
 }
 
-impl Content for Whole {
+impl ChamberFluid for Whole {
     fn walls(&self) -> &ChamberForce {
         &self.walls
     }

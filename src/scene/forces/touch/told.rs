@@ -4,7 +4,7 @@ use std::fmt;
 
 use super::force::TouchForce;
 use super::spec::Touch;
-use crate::base::input::told;
+use crate::base::input::four_digits;
 use crate::elements::body::Body;
 use crate::scene::forces::thickness;
 
@@ -43,7 +43,7 @@ impl fmt::Display for TouchDistance {
         write!(f, "{}: within {:.2e} m{by_default}", self.touch, self.distance)?;
         match &self.thinnest {
             Some((name, thickness)) => {
-                let part = told(self.distance / thickness);
+                let part = four_digits(self.distance / thickness);
                 write!(f, ", {part} of the thickness of \"{name}\"")
             }
             None => Ok(()),

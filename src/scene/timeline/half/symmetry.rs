@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::super::smaller::{SAME, check_known, times_of};
 use super::super::{Phase, Scene};
-use crate::base::input::{InputError, told};
+use crate::base::input::{InputError, four_digits};
 use crate::base::vector::largest;
 use crate::elements::mesh::Mirror;
 use crate::scene::constraint::{Axis, ConstraintRow, PhaseStart, prescribe};
@@ -57,7 +57,7 @@ impl<'a> Symmetry<'a> {
 
     /// The error for something that is not symmetric.
     fn refused(&self, input: impl Into<String>, value: impl Into<String>) -> InputError {
-        let plane = format!("{} = {} m", self.axis.word(), told(self.mirror.at));
+        let plane = format!("{} = {} m", self.axis.word(), four_digits(self.mirror.at));
         let help = format!("it is not symmetric to the plane {plane}: {HALF}");
         InputError::new(input, value.into(), help)
     }
@@ -71,7 +71,7 @@ impl<'a> Symmetry<'a> {
             let mut sides = free.map(|&node| mesh.position(node)[*axis] > *at);
             let first = sides.next();
             if first.is_none() || sides.any(|side| Some(side) != first) {
-                let plane = format!("{} = {} m", self.axis.word(), told(*at));
+                let plane = format!("{} = {} m", self.axis.word(), four_digits(*at));
                 let help = format!(
                     "it lies across the plane of symmetry {plane} or in it: take an even number of cells across it"
                 );

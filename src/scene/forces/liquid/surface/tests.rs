@@ -5,9 +5,9 @@ use crate::base::vector::{dot, largest};
 use crate::elements::body::{Body, Strain};
 use crate::elements::force::{Force, NodalForces};
 use crate::elements::mesh::{Cells, Mesh, Selection, SolidCells};
-use crate::scene::forces::closed::Closed;
-use crate::scene::forces::content::{Content, Fill};
-use crate::scene::forces::liquid::{Poured, Weight};
+use crate::scene::forces::chamber_fluid::{ChamberFluid, Fill};
+use crate::scene::forces::fixed_amount::FixedAmount;
+use crate::scene::forces::liquid::{LiquidInChamber, Weight};
 use crate::scene::forces::tests::{check, nodal_forces, noise};
 use crate::scene::forces::{Chamber, Liquid};
 use crate::studies::samples::SQUARE_MATERIAL;
@@ -32,7 +32,7 @@ fn inside([across, up]: [usize; 2]) -> Chamber {
     Chamber::within("tank", bottom.chain(right).chain(top).chain(left).collect::<Vec<usize>>())
 }
 
-fn poured(body: &Body, chamber: &Chamber, fill: f64, down: [f64; 3]) -> Poured {
+fn poured(body: &Body, chamber: &Chamber, fill: f64, down: [f64; 3]) -> LiquidInChamber {
     let walls = chamber.force(body, Vec::new()).unwrap();
     let basin = chamber.basin(body, &walls, down).unwrap();
     let weight = Weight::OfSurface { basin, gravity: GRAVITY };
@@ -40,14 +40,14 @@ fn poured(body: &Body, chamber: &Chamber, fill: f64, down: [f64; 3]) -> Poured {
     liquid.pour(walls, body.dofs(), weight, Vec::new()).unwrap()
 }
 
-fn forces(liquid: &Poured, u: &[f64], amount: f64) -> Vec<f64> {
+fn forces(liquid: &LiquidInChamber, u: &[f64], amount: f64) -> Vec<f64> {
     let mut forces = NodalForces::zeros(u.len());
     liquid.press(u, Fill::of(amount), &mut forces).unwrap();
     forces.conservative.to_vec()
 }
 
 /// Rooms with walls of all kinds of pieces: a polygon, holes in blocks with and without mid nodes, a cup with a lid.
-fn rooms() -> Vec<(Body, Chamber)> {
+fn reservoirs() -> Vec<(Body, Chamber)> {
     let hollow = |mesh: Mesh, dimension: usize, is_quadratic: bool| {
         let is_middle = |cell: &&[usize]| {
             let inside =
@@ -112,7 +112,7 @@ fn forces_and_tangents_belong_to_the_energy() {
             let difference = (ahead - behind) / (2.0 * more);
             assert!((slope / difference - 1.0).abs() < 1e-4, "{number}: {slope} {difference}");
             let amount = liquid.amount();
-            let closed = Closed::new(liquid, amount, n);
+            let closed = FixedAmount::new(liquid, amount, n);
             // the tangent has a kink where a corner is at the level
             let size = check(&closed, (d, &cells), 0.0, &u, &vec![0.0; n], 1e-5);
             assert!(size > 1.0, "{number}: {size}");
@@ -195,7 +195,7 @@ fn walls_feel_the_pressure_of_the_depth() {
     let body = self::body(mesh);
     let liquid = poured(&body, &Chamber::within("tank", [1, 4, 3]), 0.5, down);
     let amount = liquid.amount();
-    let closed = Closed::new(liquid, amount, body.dofs());
+    let closed = FixedAmount::new(liquid, amount, body.dofs());
     let felt = nodal_forces(&closed, 0.0, &[0.0; 8], &[0.0; 8]).conservative.to_vec();
     // from the upper side down to the lower left corner: V = w h^2/2 with h = 0.2 sqrt(0.5)
     let height = 0.2 * 0.5_f64.sqrt();

@@ -3,7 +3,7 @@
 use faer::Mat;
 use faer::prelude::Solve;
 
-use super::{Coupling, EXACT, EntrySource, Reduced, nodal_multipliers};
+use super::{ConstrainedSolver, Coupling, EXACT, EntrySource, nodal_multipliers};
 use crate::scene::constraint::{Axis, ConstraintRow, PhaseStart};
 use crate::studies::samples::SQUARE_MATERIAL;
 use crate::{Body, Cells, Inertia, Mesh, Phase, Scene, Strain};
@@ -44,7 +44,7 @@ fn compare(scene: &Scene, coupling: Coupling, [mass, stiffness]: [f64; 2]) -> bo
     let natural = vec![0.0; n];
     let rows: Vec<ConstraintRow> =
         scene.rows(&scene.phases()[0], &PhaseStart { time: 0.0, u: &natural }).unwrap();
-    let mut reduced = Reduced::new(&matrices, &rows, &[], coupling);
+    let mut reduced = ConstrainedSolver::new(&matrices, &rows, &[], coupling);
     let value = |source: EntrySource| {
         let (entry, transposed, axes) = (source.entry(), source.transposed(), source.axes());
         let own = if axes[0] == axes[1] { mass * matrices.inertia.values[entry] } else { 0.0 };
@@ -73,7 +73,7 @@ fn compare(scene: &Scene, coupling: Coupling, [mass, stiffness]: [f64; 2]) -> bo
     let (f, d) = (wave(n, 0.3), wave(rows.len(), 0.7));
     let right = Mat::from_fn(n + rows.len(), 1, |i, _| if i < n { f[i] } else { d[i - n] });
     let exact = dense.partial_piv_lu().solve(&right);
-    let check = |reduced: &mut Reduced, tolerance: f64| {
+    let check = |reduced: &mut ConstrainedSolver, tolerance: f64| {
         let (mut x, mut mu) = (vec![0.0; n], vec![0.0; rows.len()]);
         reduced.solve(&rows, &f, &d, &mut x, &mut mu);
         nodal_multipliers(&rows, &mut mu, |dof| {
@@ -92,7 +92,7 @@ fn compare(scene: &Scene, coupling: Coupling, [mass, stiffness]: [f64; 2]) -> bo
 
     // and by iterations, in place of a factor or before it
     for iterations in [1e4, 2.0] {
-        let new = Reduced::new(&matrices, &rows, &[], coupling);
+        let new = ConstrainedSolver::new(&matrices, &rows, &[], coupling);
         let mut iterating = new.rent(&matrices, &rows, coupling, iterations);
         for _ in 0..2 {
             if iterating.begin(EXACT, value).is_err() {
@@ -152,7 +152,7 @@ fn rows_that_follow_from_others_are_found() {
         let natural = vec![0.0; scene.body().dofs()];
         let start = PhaseStart { time: 0.0, u: &natural };
         let rows = scene.rows(&scene.phases()[0], &start).unwrap();
-        let mut reduced = Reduced::new(&matrices, &rows, &[], Coupling::SameAxis);
+        let mut reduced = ConstrainedSolver::new(&matrices, &rows, &[], Coupling::SameAxis);
         assert!(reduced.factorize(|source| matrices.inertia.values[source.entry()]).is_err());
         assert_eq!(reduced.dependent_row(), Some(expected));
     }
@@ -173,16 +173,16 @@ fn iterations_meet_directions_of_negative_curvature() {
         let k = held.body().stiffness().symmetric(entry, transposed, axes);
         if entry == transposed && axes[0] == axes[1] { 0.7 * k } else { k }
     };
-    let solution = |mut solver: Reduced| {
+    let solution = |mut solver: ConstrainedSolver| {
         let f = wave(natural.len(), 0.3);
         let (mut x, mut mu) = (natural.clone(), vec![0.0; rows.len()]);
         solver.solve(&rows, &f, &vec![0.0; rows.len()], &mut x, &mut mu);
         (x, solver.counts())
     };
-    let mut direct = Reduced::new(&matrices, &rows, &[], Coupling::AllAxes);
+    let mut direct = ConstrainedSolver::new(&matrices, &rows, &[], Coupling::AllAxes);
     assert!(direct.factorize(value).is_err());
     direct.factorize_indefinite().unwrap();
-    let mut iterating = Reduced::new(&matrices, &rows, &[], Coupling::AllAxes).rent(
+    let mut iterating = ConstrainedSolver::new(&matrices, &rows, &[], Coupling::AllAxes).rent(
         &matrices,
         &rows,
         Coupling::AllAxes,

@@ -3,14 +3,14 @@
 use std::collections::BTreeSet;
 use std::sync::{Mutex, PoisonError};
 
-use super::content::{Content, Fill};
+use super::chamber_fluid::{ChamberFluid, Fill};
 use crate::base::sparse::BlockMatrix;
 use crate::elements::force::{Force, NodalForces, Reservoir, Tangents};
 use crate::integrators::ode::Failure;
 
 /// The force of an amount that stays. The pressure on one wall depends on where all others are: its tangent is full over the
 /// nodes of the walls.
-pub(crate) struct Closed<C> {
+pub(crate) struct FixedAmount<C> {
     content: C,
     /// The whole amount (kg).
     amount: f64,
@@ -23,7 +23,7 @@ pub(crate) struct Closed<C> {
     gradient: Mutex<Vec<f64>>,
 }
 
-impl<C: Content> Closed<C> {
+impl<C: ChamberFluid> FixedAmount<C> {
     /// With an `amount` (kg), among `dofs` displacement components.
     pub(crate) fn new(content: C, amount: f64, dofs: usize) -> Self {
         let nodes: BTreeSet<usize> = content.walls().couplings().into_iter().flatten().collect();
@@ -45,7 +45,7 @@ impl<C: Content> Closed<C> {
     }
 }
 
-impl<C: Content> Force for Closed<C> {
+impl<C: ChamberFluid> Force for FixedAmount<C> {
     fn add_forces(
         &self,
         t: f64,

@@ -22,7 +22,7 @@ impl Fill {
 }
 
 /// An amount of something within walls, whose energy depends on it and on the displacements of the walls alone.
-pub(crate) trait Content: Send + Sync {
+pub(crate) trait ChamberFluid: Send + Sync {
     /// Its walls.
     fn walls(&self) -> &ChamberForce;
 

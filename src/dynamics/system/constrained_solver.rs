@@ -34,7 +34,7 @@ use crate::scene::constraint::ConstraintRow;
 pub(super) const EXACT: f64 = 1e-13;
 
 /// Solver for one X and one set of constraints.
-pub(super) struct Reduced {
+pub(super) struct ConstrainedSolver {
     /// The free part of X.
     symmetric: Symmetric,
     /// Entries of X between a free row (position in `free`) and a fixed column (dof), with their share.
@@ -63,7 +63,7 @@ struct Spring {
     diagonal: Vec<EntrySource>,
 }
 
-impl Reduced {
+impl ConstrainedSolver {
     pub(super) fn new(
         matrices: &Matrices,
         rows: &[ConstraintRow],
@@ -231,7 +231,7 @@ impl Reduced {
             z.fill(0.0);
             z[edges.frames[column]] = 1.0;
             self.symmetric.solve(z);
-            edges.lightness[column] = z[edges.frames[column]];
+            edges.inverse_diagonal[column] = z[edges.frames[column]];
             self.general.right.fill(0.0);
             self.general.correct(z);
             edges.of_rows.col_as_slice_mut(column).copy_from_slice(&self.general.right);
