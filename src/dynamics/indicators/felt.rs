@@ -43,7 +43,7 @@ pub(super) fn friction(trajectory: &Trajectory, samples: &[&Sample]) -> Option<I
     }
     let part = rubs / presses;
     let said = format!(
-        "friction exerts {} of what presses on obstacles (limit: {})",
+        "the friction force is {} of the normal force on obstacles (limit: {})",
         percent(part),
         percent(FELT)
     );
@@ -80,7 +80,7 @@ pub(super) fn depth(
     let part = deepest.depth() / way;
     let name = deepest.obstacle();
     let said = format!(
-        "nodes go into obstacle \"{name}\" by {} of their way (limit: {})",
+        "the penetration of obstacle \"{name}\" is {} of the travel of the nodes (limit: {})",
         percent(part),
         percent(MOST_DEPTH)
     );

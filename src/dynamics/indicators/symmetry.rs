@@ -61,7 +61,7 @@ pub(super) fn mirrors(body: &Body, samples: &[&Sample]) -> Vec<Indicator> {
     let indicator = |(axis, part): (usize, f64)| {
         let (name, across) = (["mirror-x", "mirror-y", "mirror-z"][axis], AXES[axis]);
         let said = format!(
-            "the motion is {} off its mirror image across {across} (limit: {})",
+            "the motion is asymmetric across {across} by {} (limit: {})",
             off(part),
             percent(MIRRORED)
         );

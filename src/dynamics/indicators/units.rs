@@ -225,7 +225,7 @@ fn weight(scene: &Scene, body: &Body) -> Option<Indicator> {
     );
     let beyond = || {
         format!(
-            "{said}: nothing this soft stands; look at the units of young (Pa), density (kg/m^3), gravity (m/s^2) and the mesh (m)"
+            "{said}: such a body collapses under its own weight; check the units of young (Pa), density (kg/m^3), gravity (m/s^2) and the mesh (m)"
         )
     };
     Some(Indicator::trusted(

@@ -24,8 +24,10 @@ pub(super) fn standing_still(refusal: &str) -> Failed {
 pub(super) fn crawling(count: usize, step: f64, time: f64, refusal: &str) -> Option<Failed> {
     let reason = change_in_no_time(refusal);
     (step < CRAWLING * f64::EPSILON * time.abs()).then(|| {
-        format!("{count} steps of {step:.1e} s in the mean, which is next to round-off, lead nowhere: {reason}")
-            .into()
+        format!(
+            "no progress: {count} steps of {step:.1e} s in the mean, close to round-off: {reason}"
+        )
+        .into()
     })
 }
 

@@ -66,13 +66,13 @@ pub(super) const BODY: TableKeys = TableKeys::new(
         Key::new(
             "dilatation",
             ValueType::Word(|| DILATATION.map(|(word, _)| word).into()),
-            "where the body resists a change of its volume",
+            "the treatment of volumetric strain, against locking",
         )
         .note("At each point of a cell, a nearly incompressible body locks. `linear`: projected onto linear functions of each cell, \
               accurate; for `hexahedra27` and `rectangles9`, for triangles and tetrahedra with `bubbles`, and for `hexahedra20`, whose pressures are not reliable then. `mean`: in the mean over each cell, for \
               `rectangles`, `hexahedra`, `triangles6` and `tetrahedra10`.")
         .default("points, or what goes with `cells = \"auto\"` and `bubbles`"),
-        Key::new("material", ValueType::Table(&MATERIAL), "what the body is made of").required(),
+        Key::new("material", ValueType::Table(&MATERIAL), "the material").required(),
         Key::new("region", ValueType::Tables(&REGION), "parts with a material of their own"),
         Key::new("velocity", ValueType::Vector, "its velocity at first, in place of that of `[initial]`")
             .in_unit("m/s")

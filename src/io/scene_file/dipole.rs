@@ -12,7 +12,7 @@ use crate::scene::timeline::Scene;
 
 pub(super) const DIPOLE: TableKeys = TableKeys::new(
     "[[dipole]]",
-    "A magnet outside of the bodies, which moves as it is told: a point dipole of the moment m at p, whose field mu_0/(4 pi) (3 (m . r) r/|r|^5 - m/|r|^3), r = x - p, acts on \
+    "An external magnet with prescribed motion: a point dipole of the moment m at p, whose field mu_0/(4 pi) (3 (m . r) r/|r|^5 - m/|r|^3), r = x - p, acts on \
      each `[[magnet]]` at its deformed place. In the plane it is that of a dipole in space which lies in the plane of the body, as its moment does. It acts in all phases; \
      `drive` in a phase moves it and changes its moment.",
     &[

@@ -82,7 +82,7 @@ const OWN: [Kind; 21] = [
     },
     Kind {
         word: "gap",
-        about: "the least distance of the surfaces of bodies that touch, up to that from which on nothing acts (m)",
+        about: "the least gap between the surfaces of bodies that touch, at most the contact distance (m)",
         keys: &[Key::new("touch", ValueType::Text, "the name of the contact").required()],
     },
     Kind {

@@ -39,7 +39,7 @@ pub(super) const TOP: TableKeys = TableKeys::new(
             .default("0"),
         Key::number("atmosphere", "the absolute pressure of the air around chambers with gas", "Pa")
             .default("101325"),
-        Key::new("unusual", ValueType::List(&ValueType::Text), "quantities that are meant as they are, though they look like wrong units")
+        Key::new("unusual", ValueType::List(&ValueType::Text), "quantities whose warnings of units are suppressed")
             .note("Of `size`, `mass`, `density`, `young`, `wave-speed`, `thickness`, `weight`, `remanence`, `magnetic-field`, `dipole-moment`, `absolute-pressure`, `orifice-area`, `touch-start`, `facets`: they are not [warned of](scenes/warnings.md#warnings).")
             .default("none"),
         Key::new("body", ValueType::Tables(&BODY), "what moves").required(),

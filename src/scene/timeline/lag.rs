@@ -47,7 +47,7 @@ impl Scene {
             lag.validate(name)?;
             let muscle = self.muscle_named(name);
             if lag.is_activation() && muscle.and_then(|muscle| muscle.law()).is_none() {
-                let help = "its activation is a part of the largest stress of Hill's law: name a muscle that has one, or take a first-order lag";
+                let help = "an activation lag needs a muscle with Hill's law (`hill`): name one, or use a first-order lag";
                 return Err(InputError::new("lag", format!("of \"{name}\""), help));
             }
         }
