@@ -14,3 +14,4 @@ mod scene_file_words;
 mod scene_files;
 mod sensors;
 mod smaller_models;
+mod vtu;

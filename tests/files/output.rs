@@ -9,9 +9,8 @@ use pliant::{
     Body, CellField, Cells, Material, Mesh, NodalContact, NodalField, Obstacle, Phase, Sampling,
     Scene, Settings, Shape, SolidCells, Strain, Trajectory,
 };
-use vtkio::model::{
-    Attribute, CellType, DataSet, Piece, UnstructuredGridPiece, VertexNumbers, Vtk,
-};
+
+use crate::vtu::{Array, arrays};
 
 type Outcome = Result<(), Box<dyn Error>>;
 
@@ -338,39 +337,12 @@ fn a_logarithmic_chart_spaces_decades_equally() -> Outcome {
     Ok(())
 }
 
-fn read_grid(path: &Path) -> Result<UnstructuredGridPiece, Box<dyn Error>> {
-    let DataSet::UnstructuredGrid { pieces, .. } = Vtk::import(path)?.data else {
-        return Err("not an unstructured grid".into());
-    };
-    match pieces.into_iter().next() {
-        Some(Piece::Inline(piece)) => Ok(*piece),
-        other => Err(format!("no inline piece but {other:?}").into()),
-    }
-}
-
-/// Compares arrays of `components` per point or cell, in order.
-fn check_arrays(
-    arrays: Vec<Attribute>,
-    components: usize,
-    expected: &[(&str, Vec<f64>)],
-) -> Outcome {
-    assert_eq!(arrays.len(), expected.len());
-    for (attribute, (name, values)) in arrays.into_iter().zip(expected) {
-        let Attribute::DataArray(array) = attribute else { return Err("no array".into()) };
-        assert_eq!((array.name.as_str(), array.num_comp()), (*name, components));
-        assert_eq!(array.data.into_vec::<f64>().as_ref(), Some(values), "{name}");
-    }
-    Ok(())
-}
-
 #[test]
 fn vtk_files_hold_mesh_motion_and_forces() -> Outcome {
     let directory = tempfile::tempdir()?;
-    for (name, trajectory, kind) in [
-        ("square", square()?, CellType::Triangle),
-        ("bar", bar()?, CellType::Line),
-        ("block", block()?, CellType::Hexahedron),
-    ] {
+    for (name, trajectory, kind) in
+        [("square", square()?, 5.0), ("bar", bar()?, 3.0), ("block", block()?, 12.0)]
+    {
         write_vtk(&trajectory, directory.path(), name)?;
         let (mut held, mut touched) = (false, false);
         let mesh = trajectory.body().mesh();
@@ -379,62 +351,58 @@ fn vtk_files_hold_mesh_motion_and_forces() -> Outcome {
             nodes.flat_map(|x| [0, 1, 2].map(|i| x.get(i).copied().unwrap_or(0.0))).collect()
         };
         for (number, sample) in trajectory.samples().iter().enumerate() {
-            let piece = read_grid(&directory.path().join(format!("{name}_{number:04}.vtu")))?;
-            assert_eq!(piece.points.into_vec::<f64>(), Some(spatial(mesh.positions())));
-            assert_eq!(piece.cells.types, vec![kind; mesh.cell_count()]);
-            let nodes = mesh.cells().flatten().map(|&node| node as u64).collect();
-            let corners = mesh.kind().nodes() as u64;
-            let offsets = (1..=mesh.cell_count() as u64).map(|k| k * corners).collect();
-            let expected = VertexNumbers::XML { connectivity: nodes, offsets };
-            assert_eq!(piece.cells.cell_verts, expected);
+            let path = directory.path().join(format!("{name}_{number:04}.vtu"));
+            let points = Array::new("Points", 3, spatial(mesh.positions()));
+            assert_eq!(arrays(&path, "Points"), [points]);
+            let nodes = mesh.cells().flatten().map(|&node| node as f64).collect();
+            let corners = mesh.kind().nodes();
+            let ends = (1..=mesh.cell_count()).map(|k| (k * corners) as f64).collect();
+            let cells = [
+                Array::new("connectivity", 1, nodes),
+                Array::new("offsets", 1, ends),
+                Array::new("types", 1, vec![kind; mesh.cell_count()]),
+            ];
+            assert_eq!(arrays(&path, "Cells"), cells);
             let contact = trajectory.contact_forces(sample)?;
             let constraint = trajectory.constraint_forces(sample)?;
             touched |= contact.iter().any(|force| *force != 0.0);
             held |= constraint.iter().any(|force| *force != 0.0);
-            let expected = [
-                ("displacement", spatial(&sample.u)),
-                ("velocity", spatial(&sample.v)),
-                ("contact_force", spatial(&contact)),
-                ("constraint_force", spatial(&constraint)),
-            ];
             let six = |t: [[f64; 3]; 3]| [t[0][0], t[1][1], t[2][2], t[0][1], t[1][2], t[0][2]];
             let nodal = trajectory.body().nodal_fields(&sample.u);
-            let mut of_points = piece.data.point;
+            let stress = nodal.iter().flat_map(|field| six(field.stress)).collect();
             let von_mises = nodal.iter().map(NodalField::von_mises).collect();
             let contacts = trajectory.nodal_contacts(sample)?;
-            let expected_scalars = [
-                ("von_mises", von_mises),
-                ("contact_pressure", contacts.iter().map(NodalContact::pressure).collect()),
-                (
-                    "contact_status",
-                    contacts.iter().map(|nodal| nodal.status().number().into()).collect(),
-                ),
+            let pressure = contacts.iter().map(NodalContact::pressure).collect();
+            let status = contacts.iter().map(|nodal| nodal.status().number().into()).collect();
+            let of_points = [
+                Array::new("displacement", 3, spatial(&sample.u)),
+                Array::new("velocity", 3, spatial(&sample.v)),
+                Array::new("contact_force", 3, spatial(&contact)),
+                Array::new("constraint_force", 3, spatial(&constraint)),
+                Array::new("stress", 6, stress),
+                Array::new("von_mises", 1, von_mises),
+                Array::new("contact_pressure", 1, pressure),
+                Array::new("contact_status", 1, status),
             ];
-            check_arrays(of_points.split_off(5), 1, &expected_scalars)?;
-            let stress = nodal.iter().flat_map(|field| six(field.stress)).collect();
-            check_arrays(of_points.split_off(4), 6, &[("stress", stress)])?;
-            check_arrays(of_points, 3, &expected)?;
+            assert_eq!(arrays(&path, "PointData"), of_points);
             let cells = trajectory.body().cell_fields(&sample.u);
             let tensors = |tensor: fn(&CellField) -> [[f64; 3]; 3]| {
                 cells.iter().flat_map(|cell| six(tensor(cell))).collect()
             };
-            let (strain, stress) = (tensors(|cell| cell.strain), tensors(|cell| cell.stress));
-            let mut of_cells = piece.data.cell;
-            let scalars = of_cells.split_off(2);
-            check_arrays(of_cells, 6, &[("strain", strain), ("stress", stress)])?;
-            let von_mises = cells.iter().map(CellField::von_mises).collect();
-            let energy = cells.iter().map(|cell| cell.energy_density).collect();
+            let scalars = |scalar: fn(&CellField) -> f64| cells.iter().map(scalar).collect();
             let pressure = |f: &CellField| -(0..3).map(|i| f.stress[i][i]).sum::<f64>() / 3.0;
             let strain = trajectory.body().strain();
             let stretch = |k| cells.iter().map(|cell| cell.stretches(strain)[k]).collect();
-            let expected = [
-                ("von_mises", von_mises),
-                ("strain_energy_density", energy),
-                ("pressure", cells.iter().map(pressure).collect()),
-                ("largest_stretch", stretch(0)),
-                ("least_stretch", stretch(2)),
+            let of_cells = [
+                Array::new("strain", 6, tensors(|cell| cell.strain)),
+                Array::new("stress", 6, tensors(|cell| cell.stress)),
+                Array::new("von_mises", 1, scalars(CellField::von_mises)),
+                Array::new("strain_energy_density", 1, scalars(|cell| cell.energy_density)),
+                Array::new("pressure", 1, scalars(pressure)),
+                Array::new("largest_stretch", 1, stretch(0)),
+                Array::new("least_stretch", 1, stretch(2)),
             ];
-            check_arrays(scalars, 1, &expected)?;
+            assert_eq!(arrays(&path, "CellData"), of_cells);
         }
         assert!(held && touched == (name == "square"), "{name}");
         let text = fs::read_to_string(directory.path().join(format!("{name}.pvd")))?;

@@ -7,6 +7,8 @@ use pliant::{
     Body, Cells, Material, Mesh, Phase, Sampling, Scene, Settings, SolidCells, Strain, Trajectory,
 };
 
+use crate::vtu::arrays;
+
 const RUBBER: Material = Material { density: 1000.0, young: 1e6, poisson: 0.3, viscosity: 40.0 };
 
 /// A bar, rectangle or cuboid, pulled at its upper or right end.
@@ -121,12 +123,12 @@ fn vtk_files_name_the_kind_of_cell() {
     for (trajectory, number, ..) in bodies() {
         let mesh = trajectory.body().mesh();
         write_vtk(&trajectory, directory.path(), "body").unwrap();
-        let grid = vtkio::Vtk::import(directory.path().join("body_0000.vtu")).unwrap();
-        let vtkio::model::DataSet::UnstructuredGrid { pieces, .. } = grid.data else { panic!() };
-        let piece = pieces.into_iter().next().unwrap().into_loaded_piece_data(None).unwrap();
-        assert!(piece.cells.types.iter().all(|&kind| kind as u8 == number), "{:?}", mesh.kind());
-        assert_eq!(piece.cells.types.len(), mesh.cell_count());
-        assert_eq!(piece.points.len(), 3 * mesh.node_count());
+        let path = directory.path().join("body_0000.vtu");
+        let [nodes, ends, types] = &*arrays(&path, "Cells") else { panic!() };
+        assert_eq!(types.numbers, vec![f64::from(number); mesh.cell_count()], "{:?}", mesh.kind());
+        assert_eq!(ends.numbers.len(), mesh.cell_count());
+        assert_eq!(ends.numbers.last(), Some(&(nodes.numbers.len() as f64)));
+        assert_eq!(arrays(&path, "Points")[0].numbers.len(), 3 * mesh.node_count());
     }
 }
 
@@ -145,18 +147,11 @@ fn vtk_files_tell_bodies_apart() {
     let motion = scene.simulate(&Settings::default(), &Sampling::phase_ends()).unwrap();
     let directory = tempfile::tempdir().unwrap();
     write_vtk(&motion, directory.path(), "both").unwrap();
-    let grid = vtkio::Vtk::import(directory.path().join("both_0000.vtu")).unwrap();
-    let vtkio::model::DataSet::UnstructuredGrid { pieces, .. } = grid.data else { panic!() };
-    let piece = pieces.into_iter().next().unwrap().into_loaded_piece_data(None).unwrap();
+    let arrays = arrays(&directory.path().join("both_0000.vtu"), "CellData");
     let of_cells = |wanted: &str| {
-        let arrays = piece.data.cell.iter().filter_map(|attribute| match attribute {
-            vtkio::model::Attribute::DataArray(array) => Some(array),
-            _ => None,
-        });
-        let mut arrays = arrays.filter(|array| array.name == wanted);
-        let array = arrays.next().unwrap();
-        array.data.clone().into_vec::<f64>().unwrap()
+        let array = arrays.iter().find(|array| array.name == wanted);
+        &array.unwrap().numbers
     };
-    assert_eq!(of_cells("body"), [0.0, 1.0]);
+    assert_eq!(*of_cells("body"), [0.0, 1.0]);
     assert!(of_cells("largest_stretch").iter().all(|stretch| (stretch - 2.0).abs() < 1e-9));
 }

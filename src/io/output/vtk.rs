@@ -1,12 +1,9 @@
 //! Files for ParaView.
 
-use std::io;
 use std::path::Path;
 
-use vtkio::model::{
-    Attribute, Attributes, ByteOrder, CellType, Cells, DataArray, DataSet, UnstructuredGridPiece,
-    Version, VertexNumbers, Vtk,
-};
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
 
 use super::write_file;
 use crate::base::input::InputError;
@@ -69,9 +66,7 @@ pub fn write_vtk(
     let file_name = |number: usize| format!("{name}_{number:04}.vtu");
     for (number, sample) in trajectory.samples().iter().enumerate() {
         let grid = grid(trajectory, sample)?;
-        write_file(&directory.join(file_name(number)), |file| {
-            grid.write_xml(file).map_err(io::Error::other)
-        })?;
+        write_file(&directory.join(file_name(number)), |file| file.write_all(grid.as_bytes()))?;
     }
     write_file(&directory.join(format!("{name}.pvd")), |file| {
         writeln!(file, r#"<?xml version="1.0"?>"#)?;
@@ -85,114 +80,128 @@ pub fn write_vtk(
     })
 }
 
-fn grid(trajectory: &Trajectory, sample: &Sample) -> Result<Vtk, Error> {
-    let mesh = trajectory.body().mesh();
-    let spatial = |components: &[f64]| -> Vec<f64> {
-        let nodes = components.chunks_exact(mesh.dimension());
-        nodes.flat_map(|x| (0..3).map(|i| x.get(i).copied().unwrap_or(0.0))).collect()
-    };
-    let vectors = |name: &str, components: &[f64]| {
-        Attribute::DataArray(DataArray::vectors(name).with_vec(spatial(components)))
-    };
+/// XML file of a sample, with all numbers as base64 of their bytes
+/// (<https://docs.vtk.org/en/latest/vtk_file_formats/vtkxml_file_format.html>).
+fn grid(trajectory: &Trajectory, sample: &Sample) -> Result<String, Error> {
+    let body = trajectory.body();
+    let mesh = body.mesh();
     let contacts = trajectory.nodal_contacts(sample)?;
     let nodal = trajectory.nodal_fields(sample)?;
     let fields = trajectory.cell_fields(sample)?;
-    let body = trajectory.body();
+    // with 0 for the components that they lack in space
+    let vectors = |name: &str, components: &[f64]| {
+        let vectors = components.chunks_exact(mesh.dimension());
+        reals(name, 3, vectors.flat_map(|x| (0..3).map(|i| x.get(i).copied().unwrap_or(0.0))))
+    };
+    let of_points = [
+        vectors("displacement", &sample.u),
+        vectors("velocity", &sample.v),
+        vectors("contact_force", &trajectory.contact_forces(sample)?),
+        vectors("constraint_force", &trajectory.constraint_forces(sample)?),
+        tensors("stress", nodal.iter().map(|field| field.stress)),
+        reals("von_mises", 1, nodal.iter().map(NodalField::von_mises)),
+        reals("contact_pressure", 1, contacts.iter().map(NodalContact::pressure)),
+        reals("contact_status", 1, contacts.iter().map(|nodal| nodal.status().number().into())),
+    ];
+
     let stretches = fields.iter().enumerate();
     let stretches: Vec<[f64; 3]> =
         stretches.map(|(cell, field)| field.stretches(body.strain_of(cell))).collect();
-    let scalars = |name: &str, value: fn(&CellField) -> f64| {
-        scalars(name, fields.iter().map(value).collect())
-    };
-    let tensors = |name: &str, tensor: fn(&CellField) -> [[f64; 3]; 3]| {
-        tensors(name, fields.iter().map(tensor))
-    };
-    let cell_type = |kind: CellKind| match kind {
-        CellKind::Segment => CellType::Line,
-        CellKind::Triangle => CellType::Triangle,
-        CellKind::Triangle6 => CellType::QuadraticTriangle,
-        CellKind::Triangle7 => CellType::BiquadraticTriangle,
-        CellKind::Quadrilateral => CellType::Quad,
-        CellKind::Quadrilateral9 => CellType::BiquadraticQuad,
-        CellKind::Tetrahedron => CellType::Tetra,
-        // ParaView has none of 15 nodes
-        CellKind::Tetrahedron10 | CellKind::Tetrahedron15 => CellType::QuadraticTetra,
-        CellKind::Hexahedron => CellType::Hexahedron,
-        CellKind::Hexahedron20 => CellType::QuadraticHexahedron,
-        CellKind::Hexahedron27 => CellType::TriquadraticHexahedron,
-    };
-    let shown = |kind: CellKind| match kind {
-        CellKind::Tetrahedron15 => 10,
-        kind => kind.nodes(),
-    };
-    let ends = mesh.cells_with_kinds().scan(0, |end, (kind, _)| {
-        *end += shown(kind) as u64;
-        Some(*end)
-    });
     let mut of_cells = vec![
-        tensors("strain", |field| field.strain),
-        tensors("stress", |field| field.stress),
-        scalars("von_mises", CellField::von_mises),
-        scalars("strain_energy_density", |field| field.energy_density),
-        scalars("pressure", CellField::pressure),
-        self::scalars("largest_stretch", stretches.iter().map(|s| s[0]).collect()),
-        self::scalars("least_stretch", stretches.iter().map(|s| s[2]).collect()),
+        tensors("strain", fields.iter().map(|field| field.strain)),
+        tensors("stress", fields.iter().map(|field| field.stress)),
+        reals("von_mises", 1, fields.iter().map(CellField::von_mises)),
+        reals("strain_energy_density", 1, fields.iter().map(|field| field.energy_density)),
+        reals("pressure", 1, fields.iter().map(CellField::pressure)),
+        reals("largest_stretch", 1, stretches.iter().map(|s| s[0])),
+        reals("least_stretch", 1, stretches.iter().map(|s| s[2])),
     ];
     if !body.is_single() {
         let parts = body.parts().zip(0_u32..);
         let numbers = parts.flat_map(|(part, number)| part.cells.map(move |_| f64::from(number)));
-        of_cells.push(self::scalars("body", numbers.collect()));
+        of_cells.push(reals("body", 1, numbers));
     }
-    Ok(Vtk {
-        version: Version::new_xml(1, 0),
-        title: String::new(),
-        byte_order: ByteOrder::LittleEndian,
-        data: DataSet::inline(UnstructuredGridPiece {
-            points: spatial(mesh.positions()).into(),
-            cells: Cells {
-                cell_verts: VertexNumbers::XML {
-                    connectivity: mesh
-                        .cells_with_kinds()
-                        .flat_map(|(kind, cell)| &cell[..shown(kind)])
-                        .map(|&node| node as u64)
-                        .collect(),
-                    offsets: ends.collect(),
-                },
-                types: mesh.cells_with_kinds().map(|(kind, _)| cell_type(kind)).collect(),
-            },
-            data: Attributes {
-                point: vec![
-                    vectors("displacement", &sample.u),
-                    vectors("velocity", &sample.v),
-                    vectors("contact_force", &trajectory.contact_forces(sample)?),
-                    vectors("constraint_force", &trajectory.constraint_forces(sample)?),
-                    self::tensors("stress", nodal.iter().map(|field| field.stress)),
-                    self::scalars("von_mises", nodal.iter().map(NodalField::von_mises).collect()),
-                    self::scalars(
-                        "contact_pressure",
-                        contacts.iter().map(NodalContact::pressure).collect(),
-                    ),
-                    self::scalars(
-                        "contact_status",
-                        contacts.iter().map(|nodal| nodal.status().number().into()).collect(),
-                    ),
-                ],
-                cell: of_cells,
-            },
-        }),
-        file_path: None,
-    })
+
+    let cells = || mesh.cells_with_kinds();
+    let nodes = cells().flat_map(|(kind, cell)| &cell[..vtk_type(kind).1]);
+    let ends = cells().scan(0, |end, (kind, _)| {
+        *end += vtk_type(kind).1;
+        Some(*end)
+    });
+    let types = cells().map(|(kind, _)| vtk_type(kind).0);
+    let index = |index: usize| (index as u64).to_le_bytes();
+    let of_mesh = [
+        array("UInt64", "connectivity", 1, nodes.map(|&node| (node as f64, index(node)))),
+        array("UInt64", "offsets", 1, ends.map(|end| (end as f64, index(end)))),
+        array("UInt8", "types", 1, types.map(|number| (number.into(), [number]))),
+    ];
+    Ok(format!(
+        concat!(
+            r#"<VTKFile type="UnstructuredGrid" version="1.0" byte_order="LittleEndian" header_type="UInt64">"#,
+            r#"<UnstructuredGrid><Piece NumberOfPoints="{}" NumberOfCells="{}">"#,
+            r#"<PointData Scalars="von_mises" Vectors="displacement">{}</PointData>"#,
+            r#"<CellData Scalars="von_mises">{}</CellData><Points>{}</Points><Cells>{}</Cells>"#,
+            "</Piece></UnstructuredGrid></VTKFile>",
+        ),
+        mesh.node_count(),
+        mesh.cell_count(),
+        of_points.concat(),
+        of_cells.concat(),
+        vectors("Points", mesh.positions()),
+        of_mesh.concat(),
+    ))
 }
 
-fn scalars(name: &str, values: Vec<f64>) -> Attribute {
-    Attribute::DataArray(DataArray::scalars(name, 1).with_vec(values))
+/// Type of a cell in VTK, and how many of its nodes such a cell has.
+fn vtk_type(kind: CellKind) -> (u8, usize) {
+    let number = match kind {
+        CellKind::Segment => 3,
+        CellKind::Triangle => 5,
+        CellKind::Triangle6 => 22,
+        CellKind::Triangle7 => 34,
+        CellKind::Quadrilateral => 9,
+        CellKind::Quadrilateral9 => 28,
+        CellKind::Tetrahedron => 10,
+        CellKind::Tetrahedron10 => 24,
+        // VTK has none of 15 nodes: its first ten
+        CellKind::Tetrahedron15 => return (24, 10),
+        CellKind::Hexahedron => 12,
+        CellKind::Hexahedron20 => 25,
+        CellKind::Hexahedron27 => 29,
+    };
+    (number, kind.nodes())
 }
 
-fn tensors(name: &str, tensors: impl Iterator<Item = [[f64; 3]; 3]>) -> Attribute {
-    Attribute::generic(name, 6).with_data(tensors.flat_map(six).collect::<Vec<_>>())
+/// Symmetric tensors, with their components in the order of VTK.
+fn tensors(name: &str, tensors: impl Iterator<Item = [[f64; 3]; 3]>) -> String {
+    let order = [[0, 0], [1, 1], [2, 2], [0, 1], [1, 2], [0, 2]];
+    reals(name, 6, tensors.flat_map(|tensor| order.map(|[i, j]| tensor[i][j])))
 }
 
-/// The components of a symmetric tensor in the order of VTK.
-fn six(tensor: [[f64; 3]; 3]) -> [f64; 6] {
-    [[0, 0], [1, 1], [2, 2], [0, 1], [1, 2], [0, 2]].map(|[i, j]| tensor[i][j])
+fn reals(name: &str, components: usize, values: impl Iterator<Item = f64>) -> String {
+    array("Float64", name, components, values.map(|x| (x, x.to_le_bytes())))
+}
+
+/// XML element of an array of numbers, each of which is given with its bytes. Their length (bytes) precedes them.
+fn array<const N: usize>(
+    number_type: &str,
+    name: &str,
+    components: usize,
+    numbers: impl Iterator<Item = (f64, [u8; N])>,
+) -> String {
+    let mut bytes = Vec::new();
+    // a range leaves out what is not a number, such as strains of rigid cells
+    let (mut least, mut greatest) = (f64::NAN, f64::NAN);
+    for (number, its_bytes) in numbers {
+        least = least.min(number);
+        greatest = greatest.max(number);
+        bytes.extend(its_bytes);
+    }
+    let length = (bytes.len() as u64).to_le_bytes();
+    let numbers = STANDARD.encode([&length, &*bytes].concat());
+    let several = (components > 1).then(|| format!(r#" NumberOfComponents="{components}""#));
+    let components = several.unwrap_or_default();
+    format!(
+        r#"<DataArray type="{number_type}" Name="{name}"{components} format="binary" RangeMin="{least}" RangeMax="{greatest}">{numbers}</DataArray>"#
+    )
 }

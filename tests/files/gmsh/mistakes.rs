@@ -137,6 +137,22 @@ fn unsuitable_cells_get_a_message() {
     assert!(read(file("2 2 1 2\n1 1 8 1\n1 1 3 2\n2 1 2 1\n2 1 2 4\n")).is_ok());
 }
 
+/// Memory stays in proportion to the file: 3000 blocks on a curve of 3000 groups would be nine million names.
+#[test]
+fn groups_of_many_blocks_are_bounded() {
+    let file = |groups: usize, blocks: usize| {
+        let names: String = (1..=groups).map(|tag| format!("{tag} ")).collect();
+        let lines = "1 7 1 1\n1 1 2\n".repeat(blocks);
+        format!(
+            "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Entities\n0 1 0 0\n7 0 0 0 1 0 0 {groups} {names} 0\n$EndEntities\n\
+             $Nodes\n1 2 1 2\n1 7 0 2\n1\n2\n0 0 0\n1 0 0\n$EndNodes\n\
+             $Elements\n{blocks} {blocks} 1 1\n{lines}$EndElements\n"
+        )
+    };
+    assert_eq!(read(file(20, 1)).unwrap().cell_groups().len(), 20);
+    says(read(file(3000, 3000)), &["broken at line", "$Elements", "too many physical groups"]);
+}
+
 /// No cut of a file is read, and none panics: text and binary.
 #[test]
 fn files_that_end_early_get_a_message() {

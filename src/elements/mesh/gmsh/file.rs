@@ -222,12 +222,19 @@ impl Sections {
         for what in ["number of elements", "least tag", "greatest tag"] {
             reader.size(what)?;
         }
+        let mut memberships = 0;
         for _ in 0..blocks {
             reader.int("dimension of an entity")?;
             let entity = reader.int("tag of an entity")?;
             let kind = kind(reader)?;
             let count = reader.size("number of elements")?;
             let groups = self.groups.get(&(kind.dimension, entity)).cloned().unwrap_or_default();
+            // each block has a copy of the groups of its entity
+            memberships += groups.len();
+            if memberships > reader.file_length() {
+                let problem = "its entities have too many physical groups for so many blocks";
+                return Err(reader.broken(problem));
+            }
             let mut tags = Vec::new();
             for _ in 0..count {
                 reader.size("tag of an element")?;

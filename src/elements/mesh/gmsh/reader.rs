@@ -25,6 +25,11 @@ impl<'a> Reader<'a> {
         Self { file, at: 0, encoding: Encoding::Text, section: "its format".into() }
     }
 
+    /// Bytes of the whole file.
+    pub(super) fn file_length(&self) -> usize {
+        self.file.len()
+    }
+
     pub(super) fn is_text(&self) -> bool {
         self.encoding == Encoding::Text
     }
