@@ -47,7 +47,7 @@ fn forces(liquid: &LiquidInChamber, u: &[f64], amount: f64) -> Vec<f64> {
 }
 
 /// Rooms with walls of all kinds of pieces: a polygon, holes in blocks with and without mid nodes, a cup with a lid.
-fn reservoirs() -> Vec<(Body, Chamber)> {
+fn rooms() -> Vec<(Body, Chamber)> {
     let hollow = |mesh: Mesh, dimension: usize, is_quadratic: bool| {
         let is_middle = |cell: &&[usize]| {
             let inside =
