@@ -47,7 +47,7 @@ def body(
     mesh
         the mesh. Required.
     material
-        what the body is made of. Required.
+        the material. Required.
     name
         its name among several bodies. Default: `body 1`, `body 2` and so on. It is a node set and a group of cells,
         and stands before the node sets and groups of the body: `finger/tip`.
@@ -70,7 +70,7 @@ def body(
         sheets, whose thickness changes. Axisymmetric: x is the radius r, 0 or above, and y the height z of a body of
         revolution about r = 0; it has no thickness, and forces and masses are those of a whole turn.
     dilatation
-        where the body resists a change of its volume. Default: points, or what goes with `cells = "auto"` and
+        the treatment of volumetric strain, against locking. Default: points, or what goes with `cells = "auto"` and
         `bubbles`. At each point of a cell, a nearly incompressible body locks. `linear`: projected onto linear
         functions of each cell, accurate; for `hexahedra27` and `rectangles9`, for triangles and tetrahedra with
         `bubbles`, and for `hexahedra20`, whose pressures are not reliable then. `mean`: in the mean over each cell,
@@ -1400,8 +1400,8 @@ def lag(
     loss
         the power that a kelvin gives away (W/K). Default: none.
     per_kelvin
-        what drives it per kelvin: a force, a tension, a length of a winch, a stress or a strain (N, m, Pa or 1 by K).
-        Default: none. Of a spring below 0 if it contracts as it gets warm.
+        the actuation per kelvin of temperature rise: a force, a tension, a length of a winch, a stress or a strain
+        (N, m, Pa or 1 by K). Default: none. Of a spring below 0 if it contracts as it gets warm.
     """
     return _table(
         actuators=actuators,
@@ -1453,10 +1453,10 @@ def dipole(
     times: Sequence[float] | None = None,
     positions: Sequence[Vector] | None = None,
 ) -> dict:
-    r"""A magnet outside of the bodies, which moves as it is told: a point dipole of the moment m at p, whose field
-    mu_0/(4 pi) (3 (m . r) r/|r|^5 - m/|r|^3), r = x - p, acts on each `[[magnet]]` at its deformed place. In the
-    plane it is that of a dipole in space which lies in the plane of the body, as its moment does. It acts in all
-    phases; `drive` in a phase moves it and changes its moment.
+    r"""An external magnet with prescribed motion: a point dipole of the moment m at p, whose field mu_0/(4 pi) (3 (m . r)
+    r/|r|^5 - m/|r|^3), r = x - p, acts on each `[[magnet]]` at its deformed place. In the plane it is that of a
+    dipole in space which lies in the plane of the body, as its moment does. It acts in all phases; `drive` in a phase
+    moves it and changes its moment.
 
     Parameters
     ----------
@@ -3282,8 +3282,8 @@ def sensor_gap(
     touch: str,
     component: Literal["x", "y", "z", "norm", "xx", "yy", "zz", "xy", "yz", "xz", "von-mises"] | None = None,
 ) -> dict:
-    r"""Sensor of the kind "gap": the least distance of the surfaces of bodies that touch, up to that from which on
-    nothing acts (m).
+    r"""Sensor of the kind "gap": the least gap between the surfaces of bodies that touch, at most the contact distance
+    (m).
 
     Parameters
     ----------

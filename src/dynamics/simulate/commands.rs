@@ -25,7 +25,7 @@ impl Simulation {
     /// A name that no chamber has; numbers that are not finite.
     pub fn pressure(&mut self, chamber: &str, pressure: impl Into<Signal>) -> Result<(), Error> {
         self.scene().chamber_number(chamber, "pressure of chamber")?;
-        self.set(Input::new(Quantity::Pressure, Target::one(chamber), pressure.into()))
+        self.set_named(Quantity::Pressure, chamber, pressure.into())
     }
 
     /// Sets how far an orifice is open, from 0 (shut) to 1, in place of the present opening.
@@ -38,7 +38,7 @@ impl Simulation {
         if let Some(value) = opening.value().filter(|value| !(0.0..=1.0).contains(value)) {
             return Err(InputError::new(input, value, "it must be from 0 (shut) to 1").into());
         }
-        self.set(Input::new(Quantity::Opening, Target::one(orifice), opening))
+        self.set_named(Quantity::Opening, orifice, opening)
     }
 
     /// Sets the flow (m^3/s) of liquid into a chamber, in place of the present one; below 0 it flows out.
@@ -48,7 +48,7 @@ impl Simulation {
     /// `central-difference`).
     pub fn flow(&mut self, chamber: &str, flow: impl Into<Signal>) -> Result<(), Error> {
         self.scene().liquid_number(chamber, "flow into chamber")?;
-        self.set(Input::new(Quantity::Flow, Target::one(chamber), flow.into()))
+        self.set_named(Quantity::Flow, chamber, flow.into())
     }
 
     /// Sets the force (N) of the actuator of a spring, in place of the present one; a positive one extends
@@ -65,7 +65,7 @@ impl Simulation {
         if let (Some(muscle), Some(stress)) = (muscle, force.value()) {
             muscle.check_stress(stress)?;
         }
-        self.set(Input::new(Quantity::Actuation, Target::one(spring), force))
+        self.set_named(Quantity::Actuation, spring, force)
     }
 
     /// Sets a force (N) on each of the nodes, one component per dimension, in place of the load given for the
@@ -265,6 +265,17 @@ impl Simulation {
             phase.set(Input { quantity, target, signal: signal.settable() });
             Ok(())
         })
+    }
+
+    /// The same for a component with a name, without allocations where a number takes the place of another one.
+    fn set_named(&mut self, quantity: Quantity, name: &str, signal: Signal) -> Result<(), Error> {
+        let shared = |phase: &Phase| phase.shared_of(quantity, name).cloned();
+        if let Some(value) = signal.value()
+            && self.set_live(shared, quantity, &[value])?
+        {
+            return Ok(());
+        }
+        self.set(Input::new(quantity, Target::one(name), signal))
     }
 
     fn set_load(&mut self, nodes: Selection, force: VectorSignal) -> Result<(), Error> {

@@ -9,7 +9,7 @@ use crate::elements::body::{Body, CellField, Grown, MagnetizedPoints, Strands};
 use crate::elements::force::{Force, Forces, NodalForces};
 use crate::elements::mesh::Selection;
 use crate::scene::forces::{ChamberForce, Contact, GasInChamber, LiquidInChamber, SpringGauge};
-use crate::scene::timeline::{LoadKind, Phase, Quantity, Scene, Target};
+use crate::scene::timeline::{LoadKind, Phase, Quantity, Scene};
 #[cfg(feature = "play")]
 use crate::scene::{forces::NodalContact, timeline::ContactReader};
 
@@ -140,7 +140,8 @@ impl<'a> View<'a> {
 
     /// An input of one component, of a component of the scene.
     pub(super) fn input(&self, quantity: Quantity, name: &str) -> f64 {
-        self.scene.input_at(self.phase, quantity, &Target::one(name), self.time)[0]
+        let signals = self.phase.signals_of(quantity, name).map(|signal| signal.at(self.time));
+        signals.reduce(|sum, more| sum + more).unwrap_or(quantity.row().absent)
     }
 
     /// Calls `see` with the scene, the phase, the displacements and the extra unknowns.

@@ -43,6 +43,16 @@ impl Phase {
         only.signal.live()
     }
 
+    /// The same for the component with a `name`.
+    pub(crate) fn shared_of(&self, quantity: Quantity, name: &str) -> Option<&SharedValue> {
+        let acts = |input: &&Input| {
+            input.quantity == quantity && input.target.names().iter().any(|own| own == name)
+        };
+        let mut all = self.inputs.iter().filter(acts);
+        let only = all.next().filter(|_| all.next().is_none())?;
+        only.signal.live().filter(|_| only.target.names().len() == 1)
+    }
+
     /// Signals of components that have a quantity, by their names.
     pub(crate) fn signals(
         &self,

@@ -77,8 +77,10 @@ impl View<'_> {
     }
 
     fn dipole_value(&self, number: usize, part: DipolePart) -> Value {
-        let vector = self.dipole_part(number, part);
-        Value::of_vector(&vector.components(self.time, self.body().dimension()))
+        let mut vector = [0.0; 3];
+        let components = &mut vector[..self.body().dimension()];
+        self.dipole_part(number, part).at(self.time, components);
+        Value::Vector(vector)
     }
 }
 
