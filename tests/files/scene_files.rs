@@ -269,6 +269,8 @@ fn all_scenes_are_run() {
         "quadruped",
         "jumping-robot",
         "jellyfish",
+        // where moments and followers are tested
+        "fluttering-column",
         // where contact is tested
         "cradle",
         "ring-on-table",
