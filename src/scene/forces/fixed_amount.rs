@@ -36,7 +36,7 @@ impl<C: ChamberFluid> FixedAmount<C> {
         Self { rise: Some([from, end]), ..Self::new(content, amount, dofs) }
     }
 
-    /// What is in the chamber at time `t` (s).
+    /// The fill of the chamber at time `t` (s).
     fn at(&self, t: f64) -> Fill {
         self.rise.map_or(Fill::of(self.amount), |[from, end]| Fill {
             amount: from + t / end * (self.amount - from),

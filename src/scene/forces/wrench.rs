@@ -87,39 +87,17 @@ impl WrenchKind {
 }
 
 impl WrenchForce {
-    pub(crate) fn moment(
-        body: &Body,
-        nodes: &Selection,
-        value: &VectorSignal,
-    ) -> Result<Arc<dyn Force>, InputError> {
-        Ok(Arc::new(Self::new(body, WrenchKind::Moment, nodes, value.clone())?))
-    }
-
-    pub(crate) fn follower_force(
-        body: &Body,
-        nodes: &Selection,
-        value: &VectorSignal,
-    ) -> Result<Arc<dyn Force>, InputError> {
-        Ok(Arc::new(Self::new(body, WrenchKind::FollowerForce, nodes, value.clone())?))
-    }
-
-    pub(crate) fn follower_moment(
-        body: &Body,
-        nodes: &Selection,
-        value: &VectorSignal,
-    ) -> Result<Arc<dyn Force>, InputError> {
-        Ok(Arc::new(Self::new(body, WrenchKind::FollowerMoment, nodes, value.clone())?))
-    }
-
+    /// The force of a `value` on the nodes that `selection` names.
+    ///
     /// # Errors
     /// A body on a line or of revolution; nodes that do not exist, in one point or, in space, on one line; a value with another number of
     /// components.
-    pub(crate) fn new(
+    pub(crate) fn build(
         body: &Body,
         kind: WrenchKind,
         selection: &Selection,
-        value: VectorSignal,
-    ) -> Result<Self, InputError> {
+        value: &VectorSignal,
+    ) -> Result<Arc<dyn Force>, InputError> {
         let (what, unit) = match kind {
             WrenchKind::Moment => ("moment", "N m"),
             WrenchKind::FollowerForce => ("follower force", "N"),
@@ -142,7 +120,7 @@ impl WrenchForce {
             })
             .collect();
         let centre = points.iter().map(|point| point.weight * point.natural).sum();
-        let wrench = Self { kind, points, centre, dimension, value };
+        let wrench = Self { kind, points, centre, dimension, value: value.clone() };
         let spread = wrench.spread_matrix(&vec![0.0; body.dofs()], centre);
         let [least, most] = match dimension {
             2 => [spread.m33, body.size().powi(2)],
@@ -152,7 +130,7 @@ impl WrenchForce {
             }
         };
         if least > THIN * most {
-            return Ok(wrench);
+            return Ok(Arc::new(wrench));
         }
         match dimension {
             2 => refused("they lie in one point, which does not turn: name several"),

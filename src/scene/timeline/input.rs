@@ -124,15 +124,21 @@ impl Quantity {
                 row("load on", ["load", "nodes"], word, unit)
             }
             Self::Wrench(WrenchKind::Moment) => Row {
-                on_nodes: Some(WrenchForce::moment),
+                on_nodes: Some(|body, nodes, value| {
+                    WrenchForce::build(body, WrenchKind::Moment, nodes, value)
+                }),
                 ..row("moment on", ["moment", "nodes"], "moment", "N m")
             },
             Self::Wrench(WrenchKind::FollowerForce) => Row {
-                on_nodes: Some(WrenchForce::follower_force),
+                on_nodes: Some(|body, nodes, value| {
+                    WrenchForce::build(body, WrenchKind::FollowerForce, nodes, value)
+                }),
                 ..row("follower force on", ["follower", "nodes"], "force", "N")
             },
             Self::Wrench(WrenchKind::FollowerMoment) => Row {
-                on_nodes: Some(WrenchForce::follower_moment),
+                on_nodes: Some(|body, nodes, value| {
+                    WrenchForce::build(body, WrenchKind::FollowerMoment, nodes, value)
+                }),
                 ..row("follower moment on", ["follower", "nodes"], "moment", "N m")
             },
             Self::Field => row("magnetic field", ["magnetic_field", ""], "field", "T"),

@@ -1,9 +1,12 @@
 //! Moments and followers on nodes: sums, power and tangents.
 
+use std::sync::Arc;
+
 use nalgebra::{Matrix3, Rotation3, Vector3};
 
 use super::{check, nodal_forces, noise};
 use crate::elements::body::Body;
+use crate::elements::force::Force;
 use crate::elements::mesh::{Cells, Mesh, SolidCells};
 use crate::scene::forces::{VectorSignal, WrenchForce, WrenchKind};
 use crate::studies::samples::SQUARE_MATERIAL;
@@ -20,10 +23,10 @@ fn bodies() -> [Body; 2] {
     ]
 }
 
-fn wrench(body: &Body, kind: WrenchKind) -> (WrenchForce, Vec<f64>) {
+fn wrench(body: &Body, kind: WrenchKind) -> (Arc<dyn Force>, Vec<f64>) {
     let value = [0.4, -0.7, 0.9][..kind.rank(body.dimension())].to_vec();
     let signal = VectorSignal::Constant(value.clone());
-    (WrenchForce::new(body, kind, &"right".into(), signal).unwrap(), value)
+    (WrenchForce::build(body, kind, &"right".into(), &signal).unwrap(), value)
 }
 
 /// The position (m) or force (N) of a node.
@@ -47,9 +50,9 @@ fn moments() {
         let (d, cells) = (body.dimension(), body.mesh().cells().collect::<Vec<&[usize]>>());
         let (moment, value) = wrench(&body, WrenchKind::Moment);
         let (u, v) = (noise(body.dofs(), 0.02, 1.0), noise(body.dofs(), 1.0, 2.0));
-        let stiffest = check(&moment, (d, &cells), 0.3, &u, &v, 1e-7);
+        let stiffest = check(&*moment, (d, &cells), 0.3, &u, &v, 1e-7);
         assert!(stiffest > 1.0, "{stiffest}");
-        let forces = nodal_forces(&moment, 0.3, &u, &v).applied;
+        let forces = nodal_forces(&*moment, 0.3, &u, &v).applied;
         let (mut sum, mut about) = (Vector3::zeros(), Vector3::zeros());
         for node in 0..body.mesh().node_count() {
             let (f, x) =
@@ -75,7 +78,7 @@ fn followers() {
         for kind in KINDS {
             let (follower, _) = wrench(&body, kind);
             let [before, after] =
-                [&rest, &moved].map(|u| nodal_forces(&follower, 0.3, u, &rest).applied);
+                [&rest, &moved].map(|u| nodal_forces(&*follower, 0.3, u, &rest).applied);
             let follows = if kind == WrenchKind::Moment { Matrix3::identity() } else { turn };
             let sum = |forces: &[f64]| {
                 (0..body.mesh().node_count()).map(|n| at(forces, n, d)).sum::<Vector3<f64>>()
@@ -85,7 +88,7 @@ fn followers() {
                 .all(|n| (turn * at(&before, n, d) - at(&after, n, d)).norm() < 1e-13);
             // in the plane a moment is the same for all rotations
             assert_eq!(is_turned, kind != WrenchKind::Moment || d == 2, "{kind:?}");
-            check(&follower, (d, &cells), 0.3, &moved, &rest, 1e-7);
+            check(&*follower, (d, &cells), 0.3, &moved, &rest, 1e-7);
         }
     }
 }
@@ -97,7 +100,7 @@ fn nodes_that_do_not_turn() {
     let say = |body: &Body, kind, nodes: &[usize], value: &[f64]| {
         let signal = VectorSignal::Constant(value.to_vec());
         let nodes = nodes.to_vec().into();
-        WrenchForce::new(body, kind, &nodes, signal).map(|_| ()).unwrap_err().to_string()
+        WrenchForce::build(body, kind, &nodes, &signal).map(|_| ()).unwrap_err().to_string()
     };
     let one = say(&plane, WrenchKind::Moment, &[1], &[1.0]);
     assert!(one.contains("one point"), "{one}");
