@@ -15,8 +15,16 @@ use crate::damping::{RUBBER, frequency, plucked, run, shape};
 /// Shares and times (s) of the branches.
 const BRANCHES: [(f64, f64); 2] = [(0.5, 0.02), (0.8, 0.3)];
 
-const METHODS: [Method; 5] =
-    [Method::Auto, Method::CvodeBdf, Method::CvodeAdams, Method::Arkode, Method::Rk];
+const METHODS: [Method; 8] = [
+    Method::Auto,
+    Method::CvodeBdf,
+    Method::CvodeAdams,
+    Method::Arkode,
+    Method::Rosenbrock,
+    Method::Ida,
+    Method::IdaIndexTwo,
+    Method::Rk,
+];
 
 fn relaxing(material: Material) -> Substance {
     BRANCHES
@@ -147,7 +155,14 @@ fn creep() {
     let body = Body::new(Mesh::bar(0.1, 5).unwrap(), light).area(1e-4).strain(Strain::Cauchy);
     let scene = Scene::new(body.build().unwrap())
         .phase(Phase::until(0.4).hold("left").load("right", [1e-1]));
-    for method in [Method::Auto, Method::CvodeBdf, Method::Arkode] {
+    for method in [
+        Method::Auto,
+        Method::CvodeBdf,
+        Method::Arkode,
+        Method::Rosenbrock,
+        Method::Ida,
+        Method::IdaIndexTwo,
+    ] {
         let trajectory = run(&scene, method, 1e-7);
         for sample in &trajectory.samples()[1..] {
             let decay = (-sample.time / (tau * (1.0 + g))).exp();
@@ -195,7 +210,7 @@ fn vibrations() {
             println!("{method} {inertia:?}: {worst:e}");
             // measured: 1.4e-4 (BDF), 5e-5 (Adams), 1.1e-5 (ARKODE) and less
             let limit = match method {
-                Method::CvodeBdf | Method::CvodeAdams => 3e-4,
+                Method::CvodeBdf | Method::CvodeAdams | Method::Ida | Method::IdaIndexTwo => 3e-4,
                 _ => 3e-5,
             };
             assert!(worst < limit, "{method} {inertia:?}: {worst:e}");
@@ -232,12 +247,13 @@ fn beams_with_mean(until: f64) -> [Scene; 2] {
 #[test]
 fn methods_agree_on_large_motion() {
     let [flat, solid] = beams_with_mean(0.1);
-    let all = &[Method::Auto, Method::CvodeBdf, Method::Arkode][..];
+    let all =
+        &[Method::Auto, Method::CvodeBdf, Method::Ida, Method::Arkode, Method::Rosenbrock][..];
     // how far it swings (m), by which methods, how well energy is kept, and what becomes heat (J)
     for (scene, far, methods, kept, heat) in [
         (beam(0.3), 0.02, all, 1e-6, 1e-4),
-        (flat, 0.01, &all[..2], 3e-6, 1e-5), // measured: 1.5e-6
-        (solid, 0.01, &all[..2], 3e-6, 1e-5),
+        (flat, 0.01, &all[..3], 3e-6, 1e-5), // measured: 1.5e-6
+        (solid, 0.01, &all[..3], 3e-6, 1e-5),
     ] {
         let reference = run(&scene, Method::Rk, 1e-8);
         let largest = reference.samples().iter().flat_map(|sample| &sample.u);

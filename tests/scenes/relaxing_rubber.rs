@@ -140,7 +140,7 @@ fn stress_times_section_is_the_pull() {
                 "thickness",
                 Reading::strain_at(vec![0.4 * SIDE; d]).component(own(Component::ZZ)),
             );
-        let settings = Settings { method: Method::CvodeBdf, rtol: 1e-4, ..Settings::default() };
+        let settings = Settings { method: Method::Arkode, rtol: 1e-4, ..Settings::default() };
         let motion = scene.simulate(&settings, &sampling).unwrap();
         for sample in &motion.samples()[1..] {
             let [xx, yy, zz, strain] = sample.sensors[..] else { panic!("four sensors") };
@@ -148,8 +148,8 @@ fn stress_times_section_is_the_pull() {
             let pull = motion.constraint_force(sample, "right").unwrap()[0];
             let ratio = xx * SIDE * SIDE * thickness / pull;
             println!("{what} {}: {ratio} {yy} {zz}", sample.time);
-            // inertia is what differs (measured: 2e-4 at rtol 1e-6); without the branches the ratio is 0.7 to 0.87
-            assert!((ratio - 1.0).abs() < 2e-3, "{what}: {ratio}");
+            // inertia is what differs: nothing damps the cube (measured: 2.6e-4); without the branches the ratio is 0.7 to 0.87
+            assert!((ratio - 1.0).abs() < 4e-4, "{what}: {ratio}");
             if plane == Some(Plane::Strain) {
                 assert!((yy / zz - 1.0).abs() < 1e-3, "{what}: {yy} {zz}");
             }

@@ -6,7 +6,6 @@ use super::sensor::Sensors;
 use super::view::{Gauges, View};
 use crate::base::input::InputError;
 use crate::dynamics::equilibrium::{Equilibrium, NoEquilibrium};
-use crate::dynamics::state::State;
 use crate::dynamics::trajectory::Trajectory;
 
 impl Equilibrium {
@@ -52,17 +51,9 @@ fn read(trajectory: &mut Trajectory, sampling: &Sampling) -> Result<(), InputErr
     let at_rest = vec![0.0; scene.body().dofs()];
     let mut rows = Vec::with_capacity(trajectory.samples().len());
     for sample in trajectory.samples() {
-        let (u, v, others) = (&sample.u, &sample.v, &sample.amounts);
-        let state = State { u, v, dissipated: 0.0, supplied: sample.energy.supplied, others };
         let phase = trajectory.phase_of(sample)?;
-        let view = View {
-            scene,
-            phase,
-            gauges: &gauges,
-            time: sample.time,
-            state,
-            accelerations: &at_rest,
-        };
+        let view = View::of_sample((scene, &gauges), phase, sample);
+        let view = View { accelerations: &at_rest, ..view };
         rows.push(sensors.read(&view, sample, &angles));
         sensors.follow(&view, &mut angles);
     }

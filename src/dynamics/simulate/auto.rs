@@ -129,7 +129,7 @@ pub(super) const PATIENCE: usize = 1024;
 const FAR_TOO_SHORT: f64 = 1.0 / 8000.0;
 
 impl Plan {
-    /// The plan for a phase whose equations are `system`, from time `t` and `state` = (u, v, ...).
+    /// The plan for a phase whose equations are `system`, from time `t` and `state`.
     pub(super) fn new(asked: &Settings, system: &mut System, t: f64, state: &[f64]) -> Self {
         if asked.method != Method::Auto {
             return Self {
@@ -279,8 +279,7 @@ impl Plan {
         if !self.is_on_trial() {
             return None;
         }
-        let takes_all = Method::Rosenbrock.takes_branches() || system.relaxation_rate() == 0.0;
-        if self.asked.max_order.is_some() || self.asked.rtol < COARSE || !takes_all {
+        if self.asked.max_order.is_some() || self.asked.rtol < COARSE {
             let reason = "commands change forces";
             let starts_anew = method == Method::CvodeBdf;
             return starts_anew

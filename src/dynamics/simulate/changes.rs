@@ -68,7 +68,7 @@ impl Run {
         }
     }
 
-    /// Writes (u, v, energies) at a time (s) within the last step.
+    /// Writes the state at a time (s) within the last step.
     pub(super) fn look(&mut self, t: f64, state: &mut [f64]) -> Result<(), Error> {
         match &mut self.integration {
             Integration::Running(work) if t < self.time => {
@@ -83,7 +83,7 @@ impl Run {
         }
     }
 
-    /// Energies of `state` = (u, v, energies) at time `t` (s).
+    /// Energies of `state` at time `t` (s).
     pub(super) fn energy(&self, t: f64, state: &[f64]) -> Energy {
         match self.system() {
             Some(system) => energy(system, t, state),
@@ -94,7 +94,7 @@ impl Run {
         }
     }
 
-    /// The sample of `state` = (u, v, energies) at time `t` (s).
+    /// The sample of `state` at time `t` (s).
     pub(super) fn sample(&mut self, t: f64, state: &[f64]) -> Result<Sample, Error> {
         let number = self.number;
         let accelerates = self.sensors.need_accelerations();
@@ -120,7 +120,7 @@ impl Run {
         Ok(())
     }
 
-    /// Makes `state` = (u, v, energies) at time `t` (s), at or before the present one and in the same phase, the
+    /// Makes `state` at time `t` (s), at or before the present one and in the same phase, the
     /// present state.
     pub(super) fn set_state(&mut self, t: f64, state: &[f64]) -> Result<(), Error> {
         let system = self.rest()?;
@@ -303,7 +303,7 @@ impl Run {
         Ok(())
     }
 
-    /// An independent run from `state` = (u, v, energies) at time `t` (s) on.
+    /// An independent run from `state` at time `t` (s) on.
     pub(super) fn fork(&self, t: f64, state: &[f64]) -> Result<Self, Error> {
         let rows = match self.system() {
             Some(system) => system.rows().to_vec(),
@@ -385,8 +385,7 @@ impl Run {
 
     /// Counts a sudden change of the stored energy (J) as supplied from outside.
     pub(super) fn supply(&mut self, energy: f64) {
-        let supplied = 2 * self.scene.body().dofs() + 1;
-        self.state[supplied] += energy;
+        *self.layout.of_mut(&mut self.state).supplied += energy;
     }
 
     /// The phase in force from the present time on, integrated by `plan`.

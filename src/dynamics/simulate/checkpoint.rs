@@ -26,7 +26,7 @@ pub struct Checkpoint {
 #[derive(Clone)]
 pub(crate) struct Kept {
     pub(crate) time: f64,
-    /// (u, v, energies)
+    /// The unknowns, in the order of their `Layout`.
     pub(crate) state: Vec<f64>,
     /// The phase in force, as commands have changed it, and its number.
     pub(crate) phase: Arc<Phase>,

@@ -10,7 +10,6 @@ use super::spot::{At, Spot};
 use super::view::{Gauges, View, mean};
 use crate::base::input::InputError;
 use crate::base::vector::{cross, dot, norm};
-use crate::dynamics::state::State;
 use crate::dynamics::trajectory::Sample;
 use crate::elements::basis::Finer;
 use crate::elements::mesh::Selection;
@@ -52,18 +51,8 @@ impl Reading {
     fn value_at(&self, scene: &Scene, sample: &Sample) -> Result<Value, InputError> {
         let gauge = self.gauge(scene)?;
         let gauges = Gauges::new(scene)?;
-        let state = State {
-            u: &sample.u,
-            v: &sample.v,
-            dissipated: 0.0,
-            supplied: 0.0,
-            others: &sample.amounts,
-        };
         let phase = &scene.phases()[sample.phase];
-        Ok(gauge(
-            &View { scene, phase, gauges: &gauges, time: sample.time, state, accelerations: &[] },
-            sample,
-        ))
+        Ok(gauge(&View::of_sample((scene, &gauges), phase, sample), sample))
     }
 
     /// Whether [`linearized`](Self::linearized) can compute its derivative.

@@ -66,7 +66,7 @@ const STANDING: usize = 20;
 const PRECISION: f64 = 1e-12;
 
 impl Events {
-    /// From now on holds the switches of `system` as they are at `t` and `state` = (u, v, ...), if events are
+    /// From now on holds the switches of `system` as they are at `t` and `state`, if events are
     /// `located`.
     pub(super) fn begin(&mut self, system: &System, t: f64, state: &[f64], located: bool) {
         refill(&mut self.clearances, system.switches(), 0.0);
@@ -101,7 +101,7 @@ impl Events {
             return Ok(Met::Nothing);
         }
         let (system, after) = (stepper.system(), stepper.state());
-        let ends = [before, after].map(|state| State::of(state, system.dofs()));
+        let ends = [before, after].map(|state| system.layout().of(state));
         let step = Step { times: [start, end], u: ends.map(|at| at.u), v: ends.map(|at| at.v) };
         let passage = system.passage(&step, tolerance, &mut self.clearances);
         let mut event = self.change(system, end, after).then_some(end);
@@ -228,7 +228,7 @@ impl Events {
         state: &[f64],
         is_wanted: impl Fn(Range<usize>) -> bool,
     ) {
-        let State { u, v, .. } = State::of(state, system.dofs());
+        let State { u, v, .. } = system.layout().of(state);
         system.switch_values(t, u, v, &mut self.values, is_wanted);
     }
 }

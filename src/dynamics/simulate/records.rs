@@ -1,4 +1,4 @@
-//! Quantities derived from a state (u, v, energies, ...) of the run: energies, samples, projected velocities.
+//! Quantities derived from a state of the run: energies, samples, projected velocities.
 
 use std::mem::take;
 use std::sync::Arc;
@@ -15,13 +15,12 @@ use crate::scene::constraint::ConstraintRow;
 use crate::scene::settings::{Method, Settings};
 use crate::scene::timeline::{Phase, Scene};
 
-/// Sample from `state` = (u, v, energies, ...) at `time` alone, without constraint forces, energies that have to be
+/// Sample from `state` at `time` alone, without constraint forces, energies that have to be
 /// evaluated, and readings of sensors.
 pub(super) fn of_state(phase: usize, system: &System, time: f64, state: &[f64]) -> Sample {
-    let State { u, v, dissipated, supplied, others } = State::of(state, system.dofs());
-    let internal = internal(system, others);
-    let (strains, amounts) =
-        internal.split_at(internal.len().saturating_sub(system.amounts().len()));
+    let layout = system.layout();
+    let State { u, v, internal, dissipated, supplied, .. } = layout.of(state);
+    let (strains, amounts) = layout.split(internal);
     Sample {
         time,
         phase,
@@ -38,7 +37,7 @@ pub(super) fn of_state(phase: usize, system: &System, time: f64, state: &[f64]) 
     }
 }
 
-/// The sample of `state` = (u, v, energies, ...) at `time`, without readings of sensors. Accelerations are for
+/// The sample of `state` at `time`, without readings of sensors. Accelerations are for
 /// sensors that read them, and kept until then.
 pub(super) fn sample(
     phase: usize,
@@ -47,8 +46,8 @@ pub(super) fn sample(
     state: &[f64],
     accelerates: bool,
 ) -> Result<Sample, Failure> {
-    let State { u, v, others, .. } = State::of(state, system.dofs());
-    let multipliers = system.multipliers(time, u, v, internal(system, others))?.to_vec();
+    let State { u, v, internal, .. } = system.layout().of(state);
+    let multipliers = system.multipliers(time, u, v, internal)?.to_vec();
     let accelerations =
         if accelerates { system.computed_accelerations().to_vec() } else { Vec::new() };
     let energy = energy(system, time, state);
@@ -70,24 +69,16 @@ pub(super) fn complete(
         return;
     }
     let accelerations = &take(&mut sample.accelerations)[..];
-    let Sample { time, ref u, ref v, energy, .. } = *sample;
-    let Energy { dissipated, supplied, .. } = energy;
-    let state = State { u, v, dissipated, supplied, others: &sample.amounts };
-    let view = View { scene, phase, gauges, time, state, accelerations };
+    let view = View { accelerations, ..View::of_sample((scene, gauges), phase, sample) };
     let readings = sensors.read(&view, sample, angles);
     sample.sensors = readings;
 }
 
-/// Energies of `state` = (u, v, energies, ...) at `time`.
+/// Energies of `state` at `time`.
 pub(super) fn energy(system: &System, time: f64, state: &[f64]) -> Energy {
-    let State { u, v, dissipated, supplied, others } = State::of(state, system.dofs());
-    let energy = system.energy(time, u, v, internal(system, others));
+    let State { u, v, internal, dissipated, supplied, .. } = system.layout().of(state);
+    let energy = system.energy(time, u, v, internal);
     Energy { dissipated, supplied, ..energy }
-}
-
-/// The internal unknowns among the last part of a state, `others`, in which multipliers follow them.
-fn internal<'a>(system: &System, others: &'a [f64]) -> &'a [f64] {
-    others.get(..system.internal()).unwrap_or_default()
 }
 
 /// Projects the velocities of `state` onto those that the constraints allow, if the phase requires that or
@@ -113,7 +104,7 @@ pub(super) fn begin_to_move(
     system: &mut System,
     state: &mut [f64],
 ) {
-    let v = State::of(state, system.dofs()).v;
+    let v = system.layout().of(state).v;
     let violates = |row: &ConstraintRow| row.apply(v) != row.prescribed(0.0).velocity;
     if largest(v) > 0.0 && (system.rows().iter().any(violates) || system.distorts(v)) {
         project_now(system, 0.0, state);
@@ -123,7 +114,7 @@ pub(super) fn begin_to_move(
 }
 
 fn project_now(system: &mut System, time: f64, state: &mut [f64]) {
-    let StateMut { u, v, supplied, .. } = StateMut::of(state, system.dofs());
+    let StateMut { u, v, supplied, .. } = system.layout().of_mut(state);
     let before = system.energy(time, u, v, &[]).kinetic;
     system.project(time, u, v);
     *supplied += system.energy(time, u, v, &[]).kinetic - before;

@@ -28,7 +28,7 @@ use crate::dynamics::error::Error;
 use crate::dynamics::indicators::{self, Follower};
 use crate::dynamics::matrices::Matrices;
 use crate::dynamics::report::{Report, ToldReading, creation};
-use crate::dynamics::state::{ENERGIES, State};
+use crate::dynamics::state::{Layout, State};
 use crate::dynamics::system::{ResidualSnapshot, System};
 use crate::dynamics::trajectory::{IntegrationFailure, Interrupted, Leap, Sample, Trajectory};
 use crate::elements::body::{Body, Part};
@@ -74,8 +74,9 @@ pub(super) struct Run {
     pub(super) phase_run: PhaseRun,
     pub(super) integration: Integration,
     pub(super) time: f64,
-    /// (u, v, energies, internal strains)
     pub(super) state: Vec<f64>,
+    /// Positions of its unknowns.
+    pub(super) layout: Layout,
     /// Steps taken since t = 0.
     pub(super) steps: usize,
     /// Steps in a row that did not move time ahead.
@@ -130,7 +131,8 @@ impl Run {
         if let Some(branches) = &matrices.branches {
             scene.start_branches(branches, &mut internal);
         }
-        let mut state = [u, &v, &[0.0; ENERGIES], &internal].concat();
+        let layout = system.layout();
+        let mut state = layout.state(u, &v, &internal);
         begin_to_move(settings, phase, &mut system, &mut state);
         let mut first = records::sample(0, &mut system, 0.0, &state, sensors.need_accelerations())
             .map_err(|failure| scene.bad_start(failure))?;
@@ -175,6 +177,7 @@ impl Run {
             clock,
             time: 0.0,
             state,
+            layout,
             steps: 0,
             standing: 0,
             rollback_point: RollbackPoint::default(),
@@ -415,6 +418,7 @@ impl Run {
             integration: Integration::Absent,
             time: self.time,
             state: self.state.clone(),
+            layout: self.layout,
             steps: self.steps,
             standing: 0,
             trajectory: self.trajectory.at_end(),
@@ -461,9 +465,15 @@ impl Run {
         let [u, v, _] = &at.state;
         let moved: Vec<f64> = u.iter().zip(displacements).map(|(u, x)| u + x).collect();
         let Self { scene, phase, gauges, .. } = self;
-        let view = |u| {
-            let state = State { u, v, dissipated: 0.0, supplied: 0.0, others: &[] };
-            View { scene, phase, gauges, time: at.time, state, accelerations: &[] }
+        let view = |u| View {
+            scene,
+            phase,
+            gauges,
+            time: at.time,
+            u,
+            v,
+            amounts: &[],
+            accelerations: &[],
         };
         let sample = self.trajectory.last();
         self.sensors.changes([(&view(u), sample), (&view(&moved), sample)])
@@ -513,9 +523,10 @@ impl Run {
         if !self.sensors.have_angles() {
             return;
         }
-        let Self { scene, phase, gauges, time, state, sensors, angles, .. } = self;
-        let state = State::of(state, scene.body().dofs());
-        let view = View { scene, phase, gauges, time: *time, state, accelerations: &[] };
+        let Self { scene, phase, gauges, time, state, layout, sensors, angles, .. } = self;
+        let (time, State { u, v, internal, .. }) = (*time, layout.of(state));
+        let (_, amounts) = layout.split(internal);
+        let view = View { scene, phase, gauges, time, u, v, amounts, accelerations: &[] };
         sensors.follow(&view, angles);
     }
 

@@ -16,7 +16,7 @@ use crate::base::input::{InputError, finite, positive};
 use crate::base::vector::largest;
 use crate::dynamics::error::{Error, Panicked, guarded};
 use crate::dynamics::report::Report;
-use crate::dynamics::state::{State, StateMut};
+use crate::dynamics::state::State;
 use crate::dynamics::system::Energy;
 use crate::dynamics::trajectory::{Sample, Trajectory};
 use crate::scene::settings::Settings;
@@ -56,7 +56,7 @@ pub struct Simulation {
     pub(super) run: Run,
     /// The present: at the end of the last step or within it.
     pub(super) time: f64,
-    /// (u, v, energies)
+    /// The unknowns, in the order of their `Layout`.
     pub(super) now: Vec<f64>,
     /// Whether there was a command since time last advanced.
     pub(super) commanded: bool,
@@ -105,13 +105,15 @@ impl Simulation {
     /// The motion at the present time.
     pub fn view(&self) -> View<'_> {
         let Self { run, time, now, .. } = self;
-        let state = State::of(now, run.scene.body().dofs());
+        let State { u, v, internal, .. } = run.layout.of(now);
         View {
             scene: &run.scene,
             phase: &run.phase,
             gauges: &run.gauges,
             time: *time,
-            state,
+            u,
+            v,
+            amounts: run.layout.split(internal).1,
             accelerations: &[],
         }
     }
@@ -338,17 +340,18 @@ impl Simulation {
         self.check_goes_on()?;
         let before = self.energy().balance();
         let mut state = self.now.clone();
-        let parts = StateMut::of(&mut state, self.run.scene.body().dofs());
+        let layout = self.run.layout;
+        let parts = layout.of_mut(&mut state);
         guarded(|| change(parts.u, parts.v))?;
         finite("state", &state)?;
         let body = self.run.scene.body();
         if let Some(rigid) = body.rigid_pieces() {
-            let State { u, v, .. } = State::of(&state, body.dofs());
+            let State { u, v, .. } = layout.of(&state);
             rigid.check("displacements", u, "m", body.size())?;
             rigid.check("velocities", v, "m/s", largest(v))?;
         }
         let after = self.run.energy(self.time, &state).balance();
-        *StateMut::of(&mut state, self.run.scene.body().dofs()).supplied += after - before;
+        *layout.of_mut(&mut state).supplied += after - before;
         self.run.set_state(self.time, &state)?;
         (self.now, self.commanded) = (state, true);
         Ok(())

@@ -4,7 +4,6 @@
 use std::mem::take;
 
 use crate::dynamics::report::Counts;
-use crate::dynamics::state::ENERGIES;
 use crate::dynamics::system::{DaeForm, Form, Index, SecondOrderForm, System};
 use crate::integrators::central_difference::CentralDifference;
 use crate::integrators::common::Integrator;
@@ -42,7 +41,7 @@ pub(super) trait Stepper: Send {
     /// Size of the next step (s), if it is known.
     fn next_step(&self) -> f64;
 
-    /// The state at the end of the last step: (u, v, energies, ...).
+    /// The state at the end of the last step.
     fn state(&self) -> &[f64];
 
     /// Number of its unknowns.
@@ -162,7 +161,7 @@ fn compression(indefinite: usize) -> Option<String> {
     })
 }
 
-/// Starts the integrator that the settings name at `t` with `state` = (u, v, energies) and, if it is known,
+/// Starts the integrator that the settings name at `t` with `state` and, if it is known,
 /// the first step size `first` (s); it will stop at `end`.
 pub(super) fn start(
     mut system: System,
@@ -175,14 +174,14 @@ pub(super) fn start(
     if system.is_reduced() {
         return lifted::start(system, settings, atol, [t, end], first, state);
     }
-    let n = system.dofs();
-    let mut tolerances = vec![atol.position; n];
-    tolerances.resize(2 * n, atol.velocity);
-    tolerances.resize(2 * n + ENERGIES, atol.energy);
-    tolerances.resize(system.unknowns() - system.amounts().len(), atol.strain);
+    let layout = system.layout();
+    let mut tolerances = vec![atol.position; layout.dofs];
+    tolerances.resize(layout.motion().end, atol.velocity);
+    tolerances.resize(tolerances.len() + layout.strains, atol.strain);
     let of_flow = system.flow_tolerances(atol.strain, atol.velocity);
     system.settle_between(&of_flow);
     tolerances.extend(of_flow);
+    tolerances.resize(layout.unknowns(), atol.energy);
     system.expect_iteration(iterates(settings.method, &system));
     let longest = settings.max_step.unwrap_or(f64::INFINITY);
     match settings.method {
@@ -365,10 +364,8 @@ fn ida_options(
     equations: &mut DaeForm,
 ) -> Result<IdaOptions, Failed> {
     // What is not marked as differential stays out of the error test: energies and multipliers.
-    let (motion, unknowns) = (2 * equations.system.dofs(), equations.system.unknowns());
-    let amounts = motion + ENERGIES..unknowns;
-    let is_differential = |i: usize| i < motion || amounts.contains(&i);
-    let differential: Vec<bool> = (0..equations.size()).map(is_differential).collect();
+    let first_energy = equations.system.layout().energies().start;
+    let differential: Vec<bool> = (0..equations.size()).map(|i| i < first_energy).collect();
     let linear_solver = match settings.method {
         Method::IdaKlu => LinearSolver::Klu {
             pattern: jacobian_pattern(equations)?,

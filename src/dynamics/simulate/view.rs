@@ -4,7 +4,7 @@ use std::fmt;
 use std::sync::Arc;
 
 use crate::base::input::InputError;
-use crate::dynamics::state::State;
+use crate::dynamics::trajectory::Sample;
 use crate::elements::body::{Body, CellField, Grown, MagnetizedPoints, Strands};
 use crate::elements::force::{Force, Forces, NodalForces};
 use crate::elements::mesh::Selection;
@@ -19,7 +19,10 @@ pub struct View<'a> {
     pub(super) phase: &'a Phase,
     pub(super) gauges: &'a Gauges,
     pub(super) time: f64,
-    pub(super) state: State<'a>,
+    /// Displacements (m) and velocities (m/s), and the amounts of the scene; none of these where they are constants.
+    pub(super) u: &'a [f64],
+    pub(super) v: &'a [f64],
+    pub(super) amounts: &'a [f64],
     /// Accelerations (m/s^2) where a sensor reads them, or else none.
     pub(super) accelerations: &'a [f64],
 }
@@ -80,6 +83,16 @@ impl fmt::Debug for View<'_> {
 }
 
 impl<'a> View<'a> {
+    /// The motion at a `sample`, in a phase of the scene.
+    pub(super) fn of_sample(
+        (scene, gauges): (&'a Scene, &'a Gauges),
+        phase: &'a Phase,
+        sample: &'a Sample,
+    ) -> Self {
+        let Sample { time, u, v, amounts, .. } = sample;
+        View { scene, phase, gauges, time: *time, u, v, amounts, accelerations: &[] }
+    }
+
     /// Time (s).
     pub fn time(&self) -> f64 {
         self.time
@@ -92,12 +105,12 @@ impl<'a> View<'a> {
 
     /// Displacements (m), dimension components per node.
     pub fn displacements(&self) -> &'a [f64] {
-        self.state.u
+        self.u
     }
 
     /// Velocities (m/s), dimension components per node.
     pub fn velocities(&self) -> &'a [f64] {
-        self.state.v
+        self.v
     }
 
     /// Mean position (m) of the nodes of `selection`, one component per dimension.
@@ -107,7 +120,7 @@ impl<'a> View<'a> {
     pub fn position(&self, selection: impl Into<Selection>) -> Result<Vec<f64>, InputError> {
         let selection = selection.into();
         let natural = self.mean(&selection, self.body().mesh().positions())?;
-        let moved = self.mean(&selection, self.state.u)?;
+        let moved = self.mean(&selection, self.u)?;
         Ok(natural.iter().zip(moved).map(|(x, u)| x + u).collect())
     }
 
@@ -116,17 +129,17 @@ impl<'a> View<'a> {
     /// # Errors
     /// As [`position`](Self::position).
     pub fn velocity(&self, selection: impl Into<Selection>) -> Result<Vec<f64>, InputError> {
-        self.mean(&selection.into(), self.state.v)
+        self.mean(&selection.into(), self.v)
     }
 
     /// Centre of mass (m).
     pub fn centre_of_mass(&self) -> Vec<f64> {
-        self.body().centre_of_mass(self.state.u)
+        self.body().centre_of_mass(self.u)
     }
 
     /// Velocity of the centre of mass (m/s).
     pub fn mean_velocity(&self) -> Vec<f64> {
-        self.body().mass_average(self.state.v)
+        self.body().mass_average(self.v)
     }
 
     /// How far an orifice is open.
@@ -150,7 +163,7 @@ impl<'a> View<'a> {
         &self,
         see: impl FnOnce(&Scene, &Phase, &[f64], &[f64]) -> R,
     ) -> R {
-        see(self.scene, self.phase, self.state.u, self.state.others)
+        see(self.scene, self.phase, self.u, self.amounts)
     }
 
     /// The liquid of that number, which has a surface, under the gravity of the phase.
@@ -161,7 +174,7 @@ impl<'a> View<'a> {
     /// The amount (kg) of that number, of gases and then of liquids.
     pub(super) fn amount(&self, number: usize) -> f64 {
         // where they are no unknowns, amounts stay what they are
-        self.scene.flowing(self.state.others).unwrap_or(&self.gauges.masses)[number]
+        self.scene.flowing(self.amounts).unwrap_or(&self.gauges.masses)[number]
     }
 
     /// That of the liquid of that number.
@@ -191,7 +204,7 @@ impl<'a> View<'a> {
     }
 
     pub(super) fn actuation_with_rate(&self, spring: &str) -> [f64; 2] {
-        self.scene.drive_at(spring, self.phase, self.time, self.state.others)
+        self.scene.drive_at(spring, self.phase, self.time, self.amounts)
     }
 
     /// Force (N) on each of the nodes of `selection`, as the mean over them, one component per dimension.
@@ -246,7 +259,7 @@ impl<'a> View<'a> {
     /// A name that no fluid has.
     pub fn fluid_force(&self, fluid: &str) -> Result<Vec<f64>, InputError> {
         let force = self.scene.fluid_force(fluid, self.phase, "fluid")?;
-        let sum = force.on(self.time, self.state.u, self.state.v, None);
+        let sum = force.on(self.time, self.u, self.v, None);
         Ok(sum[..self.body().dimension()].to_vec())
     }
 
@@ -254,13 +267,13 @@ impl<'a> View<'a> {
     #[cfg(feature = "play")]
     pub(crate) fn nodal_contacts(&self, reader: &ContactReader) -> Option<Vec<NodalContact>> {
         let obstacles = self.scene.contacts(self.phase).ok()?;
-        reader.read(&obstacles, self.time, [self.state.u, self.state.v]).ok()
+        reader.read(&obstacles, self.time, [self.u, self.v]).ok()
     }
 
     /// The forces of an obstacle (N) on all nodes, dimension components each.
     fn contact_forces(&self, obstacle: &str) -> Result<Vec<f64>, InputError> {
         self.scene.obstacle_number(obstacle, "obstacle")?;
-        let (body, State { u, v, .. }) = (self.body(), self.state);
+        let (body, u, v) = (self.body(), self.u, self.v);
         let mut nodal = NodalForces::zeros(body.dofs());
         for acting in self.phase.contacts(self.scene.obstacles())? {
             if acting.name() == obstacle {
@@ -283,15 +296,14 @@ impl<'a> View<'a> {
     /// mass. `None` in other dimensions. The sensor
     /// [`Reading::rotation`](crate::dynamics::simulate::Reading::rotation) is continuous over whole turns.
     pub fn rotation(&self) -> Option<f64> {
-        self.body().rotation(self.state.u)
+        self.body().rotation(self.u)
     }
 
     /// Magnetic moment (A m^2) of all magnets, one component per dimension.
     pub fn magnetic_moment(&self) -> Vec<f64> {
         let d = self.body().dimension();
         let mut moment = vec![0.0; d];
-        let places =
-            self.body().mesh().positions().chunks_exact(d).zip(self.state.u.chunks_exact(d));
+        let places = self.body().mesh().positions().chunks_exact(d).zip(self.u.chunks_exact(d));
         for ((x, u), pole) in places.zip(&self.gauges.poles) {
             for (axis, moment) in moment.iter_mut().enumerate() {
                 *moment += pole * (x[axis] + u[axis]);
@@ -307,13 +319,13 @@ impl<'a> View<'a> {
 
     /// Strain, stress and strain energy density of each cell.
     pub fn cell_fields(&self) -> Vec<CellField> {
-        self.body().cell_fields_of(self.state.u, &self.grown())
+        self.body().cell_fields_of(self.u, &self.grown())
     }
 
     /// The cells that have grown.
     pub(super) fn grown(&self) -> Vec<Grown> {
         // errors were found when the phase began
-        self.scene.grown(self.phase, self.time, self.state.others).unwrap_or_default()
+        self.scene.grown(self.phase, self.time, self.amounts).unwrap_or_default()
     }
 
     fn mean(&self, selection: &Selection, x: &[f64]) -> Result<Vec<f64>, InputError> {

@@ -10,7 +10,6 @@ use crate::base::input::InputError;
 use crate::base::root::{Direction, crosses};
 use crate::base::vector::largest;
 use crate::dynamics::error::{Error, guarded};
-use crate::dynamics::state::State;
 
 /// An event that may be met while time advances.
 struct Pending<'a> {
@@ -293,14 +292,13 @@ impl Simulation {
         event: &mut dyn FnMut(&View) -> f64,
     ) -> Result<f64, Error> {
         let view = self.view();
-        let fastest = largest(view.state.v);
+        let fastest = largest(view.v);
         if fastest == 0.0 {
             return Ok(0.0);
         }
         let ahead = AHEAD * view.body().size() / fastest;
-        let u: Vec<f64> =
-            view.state.u.iter().zip(view.state.v).map(|(u, v)| u + ahead * v).collect();
-        let near = View { state: State { u: &u, ..view.state }, ..view };
+        let u: Vec<f64> = view.u.iter().zip(view.v).map(|(u, v)| u + ahead * v).collect();
+        let near = View { u: &u, ..view };
         Ok(self.value_in(&near, number, event)? - self.value(number, event)?)
     }
 

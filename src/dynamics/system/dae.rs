@@ -1,26 +1,28 @@
-//! The differential-algebraic forms. Of index 1: y = (u, v, energy dissipated, energy supplied, lambda),
-//! with the residuals
+//! The differential-algebraic forms. Of index 1: y = (u, v, x, energy dissipated, energy supplied, lambda), where x are strains
+//! of Maxwell branches and amounts with the rates q, with the residuals
 //!
 //! ```text
 //! u' - v
 //! M v' - f - A lambda
+//! x' - q
 //! (two energy rates)
 //! A^T v' + 2 alpha (A^T v - b') + alpha^2 (A^T u - b) - b''
 //! ```
 //!
 //! Of index 2, stabilized by second multipliers eta (C. W. Gear, G. K. Gupta, B. Leimkuhler, "Automatic
 //! integration of Euler-Lagrange equations with constraints", J. Comput. Appl. Math. 12-13 (1985) 77-90):
-//! y = (u, v, energies, lambda, eta), with
+//! y = (u, v, x, energies, lambda, eta), with
 //!
 //! ```text
 //! M (u' - v) - A eta
 //! M v' - f - A lambda
+//! x' - q
 //! (two energy rates)
 //! A^T v - b'
 //! A^T u - b
 //! ```
 //!
-//! In both, amounts of gas that flows come before the multipliers, with the residuals m' - q.
+//! Strains and amounts are eliminated from Newton's systems as in the ODE form (`newton.rs`): cj x - dq is I - gamma J over gamma.
 //!
 //! Edges of rigid pieces (`edges.rs`) have multipliers behind those of the rows, which press with x at their nodes, and in the
 //! form of index 2 second ones behind eta. Their residuals are x.x'' + x'.x' + 2 alpha x.x' + alpha^2 g, or x.x' and g. The
@@ -36,7 +38,7 @@
 //! gamma x'.xu, known last, is left out: iterations converge by the angle that a piece turns in a time gamma.
 
 use super::System;
-use crate::dynamics::state::{State, StateMut};
+use crate::dynamics::state::State;
 use crate::integrators::ode::{Dae, Failure};
 use crate::scene::constraint::Prescribed;
 
@@ -93,33 +95,35 @@ impl DaeForm {
         }
     }
 
-    /// y and y' with which the residual vanishes, from (u, v) and the energies at the beginning of `state`.
+    /// y and y' with which the residual vanishes, from the `state` of the phase.
     pub(crate) fn consistent(
         &mut self,
         t: f64,
         state: &[f64],
     ) -> Result<(Vec<f64>, Vec<f64>), Failure> {
-        let State { u, v, others, .. } = State::of(state, self.system.dofs());
-        self.system.evaluate(t, u, v, others)?;
+        let layout = self.system.layout;
+        let State { u, v, internal, .. } = layout.of(state);
+        self.system.evaluate(t, u, v, internal)?;
         let (dissipated, supplied) = self.system.powers(v, &self.system.at.multipliers);
         let of_edges = &self.system.edges.multipliers;
         let mut y = [state, &self.system.at.multipliers, of_edges].concat();
         y.resize(self.size(), 0.0);
-        let flowing = &self.system.at.flowing[0];
-        let mut yp = [v, &self.system.at.acceleration, &[dissipated, supplied], flowing].concat();
-        yp.resize(self.size(), 0.0);
+        let mut yp = vec![0.0; self.size()];
+        let rates = layout.of_mut(&mut yp);
+        rates.u.copy_from_slice(v);
+        rates.v.copy_from_slice(&self.system.at.acceleration);
+        self.system.copy_internal_rates(rates.internal);
+        (*rates.dissipated, *rates.supplied) = (dissipated, supplied);
         Ok((y, yp))
     }
 
     /// Takes the state for that in which rigid pieces enter the Newton matrix.
     fn linearize_edges(&mut self, y: &[f64], yp: &[f64]) {
-        let n = self.system.dofs();
-        let internal = self.system.internal();
-        let System { edges, linear_edges, rows, alpha, .. } = &mut self.system;
-        let State { u, v, others, .. } = State::of(y, n);
+        let System { edges, linear_edges, rows, alpha, layout, .. } = &mut self.system;
+        let State { u, v, multipliers, .. } = layout.of(y);
         edges.move_to(*alpha, u, v);
-        edges.accelerate(State::of(yp, n).v);
-        let of_edges = &others[internal + rows.len()..][..edges.list.len()];
+        edges.accelerate(layout.of(yp).v);
+        let of_edges = &multipliers[rows.len()..][..edges.list.len()];
         edges.multipliers.copy_from_slice(of_edges);
         linear_edges.copy_from(edges);
     }
@@ -133,15 +137,17 @@ impl Dae for DaeForm {
         yp: &[f64],
         residual: &mut [f64],
     ) -> Result<(), Failure> {
-        let n = self.system.dofs();
-        let (State { u, v, others, .. }, rates) = (State::of(y, n), State::of(yp, n));
-        let (amounts, multipliers) = others.split_at(self.system.internal());
+        let layout = self.system.layout;
+        let (State { u, v, internal, multipliers, .. }, rates) = (layout.of(y), layout.of(yp));
         let (multipliers, slips) = multipliers.split_at(self.constraints());
         let of_rows = &multipliers[..self.system.rows.len()];
-        self.system.evaluate_forces(t, u, v, amounts)?;
+        self.system.evaluate_forces(t, u, v, internal)?;
         self.system.evaluate_rows(t, u, v)?;
         self.system.edges.accelerate(rates.v);
         let (dissipated, supplied) = self.system.powers(v, of_rows);
+        let residual = layout.of_mut(residual);
+        self.system.copy_internal_rates(residual.internal);
+        residual.internal.iter_mut().zip(rates.internal).for_each(|(r, rate)| *r = rate - *r);
         let System { matrices, rows, edges, at, .. } = &mut self.system;
         at.multipliers.copy_from_slice(of_rows);
 
@@ -152,9 +158,8 @@ impl Dae for DaeForm {
             }
             edges.subtract_pull(of_edges, momentum);
         };
-        let residual = StateMut::of(residual, n);
         let (kinematic, dynamic) = (residual.u, residual.v);
-        for i in 0..n {
+        for i in 0..layout.dofs {
             kinematic[i] = rates.u[i] - v[i];
             dynamic[i] = -at.total[i];
         }
@@ -176,12 +181,7 @@ impl Dae for DaeForm {
         }
         *residual.dissipated = rates.dissipated - dissipated;
         *residual.supplied = rates.supplied - supplied;
-        let (of_amounts, of_rows) = residual.others.split_at_mut(amounts.len());
-        for ((residual, rate), flow) in of_amounts.iter_mut().zip(rates.others).zip(&at.flowing[0])
-        {
-            *residual = rate - flow;
-        }
-        let (of_rates, of_positions) = of_rows.split_at_mut(multipliers.len());
+        let (of_rates, of_positions) = residual.multipliers.split_at_mut(multipliers.len());
         for (k, row) in rows.iter().enumerate() {
             match self.index {
                 Index::One => of_rates[k] = row.apply(rates.v) - at.demands[k],
@@ -215,7 +215,7 @@ impl Dae for DaeForm {
         values: &mut [f64],
     ) -> Result<(), Failure> {
         self.linearize_edges(y, yp);
-        let State { u, v, .. } = State::of(y, self.system.dofs());
+        let State { u, v, .. } = self.system.layout.of(y);
         self.system.update_tangents(t, u, v, false);
         let mut slots = self.slots.iter();
         self.visit_jacobian(cj, |_, _, value| {
@@ -228,28 +228,21 @@ impl Dae for DaeForm {
 
     fn newton_setup(&mut self, t: f64, cj: f64, y: &[f64], yp: &[f64]) -> Result<(), Failure> {
         self.linearize_edges(y, yp);
-        let State { u, v, others, .. } = State::of(y, self.system.dofs());
-        let amounts = &others[..self.system.internal()];
-        self.system.set_lagging(t, amounts);
-        self.system.update_tangents(t, u, v, false);
-        self.system.add_flow_tangents(t, [u, v, amounts]);
-        self.system.factorize_newton(1.0 / cj)
+        self.system.linearize(t, y, 1.0 / cj, false).map(|_| ())
     }
 
     fn newton_solve(&mut self, r: &mut [f64]) -> Result<(), Failure> {
-        let r = StateMut::of(r, self.system.dofs());
+        let r = self.system.layout.of_mut(r);
         let gamma = self.system.gamma();
-        let (amounts, of_rows) = r.others.split_at_mut(self.system.internal());
-        amounts.iter_mut().for_each(|r| *r *= gamma);
-        let (r3, r4) = of_rows.split_at_mut(self.constraints());
+        r.internal.iter_mut().for_each(|r| *r *= gamma);
+        let (r3, r4) = r.multipliers.split_at_mut(self.constraints());
         match self.index {
-            Index::One => self.system.solve_newton_index_one(r.u, r.v, amounts, r3),
-            Index::Two => self.system.solve_newton_index_two(r.u, r.v, amounts, [r3, r4]),
+            Index::One => self.system.solve_newton_index_one(r.u, r.v, r.internal, r3),
+            Index::Two => self.system.solve_newton_index_two(r.u, r.v, r.internal, [r3, r4]),
         }
-        let (dissipated, supplied) = self.system.power_changes();
-        let [heated, brought] = self.system.solve_amounts(r.u, amounts);
-        *r.dissipated = gamma * (*r.dissipated + dissipated + heated);
-        *r.supplied = gamma * (*r.supplied + supplied + brought);
+        let [dissipated, supplied] = self.system.solve_internal(r.u, r.internal);
+        *r.dissipated = gamma * (*r.dissipated + dissipated);
+        *r.supplied = gamma * (*r.supplied + supplied);
         Ok(())
     }
 }

@@ -8,7 +8,6 @@ mod tests;
 
 use super::System;
 use super::dae::DaeForm;
-use crate::dynamics::state;
 
 impl DaeForm {
     /// The pattern of the Jacobian: where its columns begin, and the rows of their entries, ascending. It
@@ -36,7 +35,8 @@ impl DaeForm {
         let (n, d) = (self.system.dofs(), matrices.dimension);
         let (stiffness, damping) = self.system.tangents();
         let (inertia, pattern) = (&matrices.inertia, matrices.pattern());
-        let lambda = state::length(n);
+        let energies = self.system.layout.energies();
+        let lambda = energies.end;
         let of_edges = lambda + rows.len();
         // entry (column, row) of the pattern; the one that is wanted is (row, column)
         let block = |matrix: &[f64], entry: usize, row_axis: usize, column_axis: usize| {
@@ -77,7 +77,7 @@ impl DaeForm {
                 }
             }
         }
-        (2 * n..lambda).for_each(|energy| visit(energy, energy, cj));
+        energies.for_each(|energy| visit(energy, energy, cj));
         for (k, row) in rows.iter().enumerate() {
             for &(dof, c) in &row.terms {
                 visit(lambda + k, dof, alpha * alpha * c);

@@ -7,14 +7,15 @@ use crate::integrators::ode::Failure;
 impl System {
     /// Writes the rates of the internal unknowns.
     pub(super) fn copy_internal_rates(&self, rates: &mut [f64]) {
-        let (strains, amounts) = rates.split_at_mut(self.at.relaxing.len());
+        let (strains, amounts) = self.layout.split_mut(rates);
         strains.copy_from_slice(&self.at.relaxing);
         amounts.copy_from_slice(&self.at.flowing[0]);
     }
 
     /// Brings forces of actuators that lag to the `internal` unknowns at time `t`.
     pub(super) fn set_lagging(&self, t: f64, internal: &[f64]) {
-        if let (Some(flow), (_, amounts @ [_, ..])) = (flow_of(&self.flow), self.parts_of(internal))
+        if let (Some(flow), (_, amounts @ [_, ..])) =
+            (flow_of(&self.flow), self.layout.split(internal))
         {
             flow.set(t, amounts);
         }
@@ -72,11 +73,5 @@ impl System {
             }
         }
         matrix.resist_by(newton.gamma);
-    }
-
-    /// Turns the residuals `x` of the amounts and flows into their changes, by those of the displacements, `xu`. Returns the changes
-    /// of the power (W) that becomes heat and of that which is supplied with them.
-    pub(super) fn solve_amounts(&mut self, xu: &[f64], x: &mut [f64]) -> [f64; 2] {
-        self.newton.flow.as_mut().map_or([0.0; 2], |flow| flow.solve(xu, x))
     }
 }

@@ -95,7 +95,7 @@ impl System {
         self.reduction.as_ref().map_or(0, |reduction| reduction.difference_evaluations())
     }
 
-    /// Residual snapshot of the `state` = (u, v, ...) of a reduced model at time `t`, if a check is due: at some
+    /// Residual snapshot of the `state` of a reduced model at time `t`, if a check is due: at some
     /// fractions of the phase from `start` to `end` (s).
     pub(crate) fn left_over(
         &mut self,
@@ -112,11 +112,11 @@ impl System {
             }
             _ => return Ok(None),
         }
-        let State { u, v, others: internal, .. } = State::of(state, self.dofs());
+        let State { u, v, internal, .. } = self.layout.of(state);
         self.at.nodal.clear();
         self.set_lagging(t, internal);
         self.add_forces_where(|force| !force.is_by_cells(), t, u, v)?;
-        self.add_flow_forces(t, u, self.parts_of(internal).1)?;
+        self.add_flow_forces(t, u, self.layout.split(internal).1)?;
         self.at.nodal.add_up(&mut self.at.total);
         let forces = self.at.total.clone();
         let a = self.reduced_accelerations(t, [u, v, internal])?;
@@ -138,7 +138,7 @@ impl System {
         t: f64,
         [u, v, internal]: [&[f64]; 3],
     ) -> Result<Vec<f64>, Failure> {
-        let (strains, amounts) = internal.split_at(self.at.relaxing.len().min(internal.len()));
+        let (strains, amounts) = self.layout.split(internal);
         let Some(reduction) = &mut self.reduction else { return Ok(vec![0.0; u.len()]) };
         let [q, p] = reduction.coordinates(&self.rows, t, [u, v]);
         // the strains of all cells are known here
@@ -230,7 +230,7 @@ impl System {
         let step = |state: &ResidualSnapshot| slow.min(state.age);
         // Maxwell branches are least stiff in the longest step
         let longest = states.iter().map(step).fold(0.0, f64::max);
-        let (strains, amounts) = self.parts_of(internal);
+        let (strains, amounts) = self.layout.split(internal);
         self.set_lagging(*time, internal);
         self.newton.is_set = false;
         self.update_tangents(*time, u, v, false);

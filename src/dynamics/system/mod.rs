@@ -20,15 +20,12 @@
 //! dot products, nothing depends on them, and the error control leaves them out; they make the energy balance
 //! as accurate as the integration itself.
 //!
-//! The state is y = (u, v, E_d, E_s, G, m): displacements, velocities, energies dissipated and supplied,
-//! strains of Maxwell branches, amounts of gas and liquid with the states of actuators. DAE forms have
-//! multipliers in the place of G and refuse branches, as central differences and Rosenbrock methods do.
-//! Forces add up in three vectors (conservative, dissipative, applied), so that both powers are one dot
+//! `dynamics/state.rs` owns the order of the unknowns, y = (u, v, strains, amounts, E_d, E_s), behind which differential-algebraic
+//! forms have multipliers. Forces add up in three vectors (conservative, dissipative, applied), so that both powers are one dot
 //! product each and no force has an account of its own. Quadrature after the run would cost more evaluations
 //! of forces than the integration. Tolerances of the energies are loose (energies at strains of order 1) and
 //! not infinite: unknowns that Newton's iteration does not control grow without bound, as BDF extrapolates
-//! their errors. To Rosenbrock methods they are integrals, which have to be the last unknowns, and so not
-//! where branches or amounts follow.
+//! their errors. To Rosenbrock methods and the internal Runge-Kutta method they are integrals.
 //!
 //! A row of the constraints that goes on into the next phase starts where the phase before prescribed it, so
 //! that the error of the stabilization is not passed on. Multipliers follow from the constrained rows of M
@@ -99,7 +96,7 @@ use crate::base::input::InputError;
 use crate::base::sparse::NodeMatrix;
 use crate::base::vector::dot;
 use crate::dynamics::matrices::Matrices;
-use crate::dynamics::state::{self, State};
+use crate::dynamics::state::{Layout, State};
 use crate::elements::body::Branches;
 use crate::elements::force::{Flow, Force, Forces, NodalForces, Reservoir, Step};
 use crate::integrators::ode::Failure;
@@ -115,6 +112,7 @@ pub(crate) struct System {
     of_rigid: Forces,
     /// That whose amounts are unknowns, if there is one.
     flow: Option<Arc<dyn Force>>,
+    layout: Layout,
     rows: Vec<ConstraintRow>,
     /// Stabilization rate alpha (1/s).
     alpha: f64,
@@ -235,7 +233,8 @@ impl System {
         let newton = NewtonMatrix::new(&matrices, &rows, &edges.list, follows(&matrices, &forces));
         let (of_rigid, flow, forces) = parted(forces);
         let amounts = flow_of(&flow).map_or(0, |flow| flow.start().len());
-        let internal = matrices.branches.as_ref().map_or(0, Branches::unknowns);
+        let strains = matrices.branches.as_ref().map_or(0, Branches::unknowns);
+        let layout = Layout { dofs, strains, amounts };
         let at = Evaluation {
             nodal: NodalForces::zeros(dofs),
             total: vec![0.0; dofs],
@@ -243,7 +242,7 @@ impl System {
             multipliers: vec![0.0; rows.len()],
             rates: vec![0.0; rows.len()],
             demands: vec![0.0; rows.len()],
-            relaxing: vec![0.0; internal],
+            relaxing: vec![0.0; strains],
             relaxed: 0.0,
             flowing: [vec![0.0; amounts], vec![0.0; amounts]],
             brought: 0.0,
@@ -259,6 +258,7 @@ impl System {
             forces,
             of_rigid,
             flow,
+            layout,
             rows,
             alpha,
             inertia,
@@ -271,6 +271,11 @@ impl System {
             ends: Ends::default(),
             reduction: None,
         })
+    }
+
+    /// Positions of the unknowns.
+    pub(crate) fn layout(&self) -> Layout {
+        self.layout
     }
 
     /// Number of displacement components.
@@ -384,10 +389,10 @@ impl System {
 
     /// Asks the forces whether the step from displacements `before` to the state `after` makes sense.
     pub(crate) fn check_step(&self, t: f64, before: &[f64], after: &[f64]) -> Result<(), Failure> {
-        let State { u, others, .. } = State::of(after, before.len());
+        let State { u, internal, .. } = self.layout.of(after);
         let all = self.forces.iter().chain(&self.flow);
         all.into_iter().try_for_each(|force| force.check_step(t, before, u))?;
-        let (_, amounts) = self.parts_of(others);
+        let (_, amounts) = self.layout.split(internal);
         match flow_of(&self.flow) {
             Some(flow) if !amounts.is_empty() => flow.check(t, u, amounts),
             _ => Ok(()),
@@ -476,7 +481,7 @@ impl System {
             },
             ..Energy::default()
         };
-        let (strains, amounts) = self.parts_of(internal);
+        let (strains, amounts) = self.layout.split(internal);
         self.set_lagging(t, internal);
         if let (Some(branches), [_, ..]) = (branches, strains) {
             energy.strain += branches.energy(u, strains);
@@ -528,14 +533,14 @@ impl System {
         self.set_lagging(t, internal);
         self.collect_forces(t, u, v)?;
         self.add_branch_forces(u, internal);
-        self.add_flow_forces(t, u, self.parts_of(internal).1)?;
+        self.add_flow_forces(t, u, self.layout.split(internal).1)?;
         self.at.nodal.add_up(&mut self.at.total);
         Ok(())
     }
 
     /// Adds the forces of Maxwell branches, and sets the rates of their strains.
     fn add_branch_forces(&mut self, u: &[f64], internal: &[f64]) {
-        let (strains, _) = self.parts_of(internal);
+        let (strains, _) = self.layout.split(internal);
         let Evaluation { nodal, relaxing, relaxed, .. } = &mut self.at;
         if let (Some(branches), [_, ..]) = (&self.matrices.branches, strains) {
             *relaxed = branches.add_forces(u, strains, &mut nodal.conservative, relaxing);
@@ -611,12 +616,12 @@ impl System {
 
     /// Number of unknowns of the ODE form.
     pub(crate) fn unknowns(&self) -> usize {
-        state::length(self.dofs()) + self.internal()
+        self.layout.unknowns()
     }
 
     /// Number of internal unknowns: strains of Maxwell branches, and behind them amounts of gas and states of actuators that lag.
     pub(crate) fn internal(&self) -> usize {
-        self.at.relaxing.len() + self.amounts().len()
+        self.layout.internal().len()
     }
 
     /// Absolute tolerances of the amounts and flows, where those of strains (1) and velocities (m/s) are these.
@@ -627,11 +632,6 @@ impl System {
     /// The amounts of gas (kg) the states of actuators that lag and the flows of pipes (m^3/s) at the start of the scene; none without any.
     pub(crate) fn amounts(&self) -> &[f64] {
         flow_of(&self.flow).map_or(&[], |flow| flow.start())
-    }
-
-    /// The internal strains and the amounts among the `internal` unknowns, if these are given.
-    fn parts_of<'a>(&self, internal: &'a [f64]) -> (&'a [f64], &'a [f64]) {
-        internal.split_at(self.at.relaxing.len().min(internal.len()))
     }
 
     /// The internal unknowns of a start: strains with which Maxwell branches are free of stress at the displacements

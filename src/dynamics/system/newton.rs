@@ -37,6 +37,7 @@ use super::source::EntrySource;
 use crate::base::sparse::BlockMatrix;
 use crate::base::vector::{dot, largest};
 use crate::dynamics::matrices::Matrices;
+use crate::dynamics::state::State;
 use crate::integrators::ode::Failure;
 
 /// Pairs that have room in the Newton matrix though they are no longer near, for each that is.
@@ -62,6 +63,28 @@ impl System {
     /// Kt and D in force.
     pub(crate) fn tangents(&self) -> (&BlockMatrix, &BlockMatrix) {
         (self.newton.stiffness.get(), self.newton.damping.get())
+    }
+
+    /// Updates the tangents to the state `y` at time `t`, unless `reuse` allows older ones, and sets N for steps of the
+    /// parameter `gamma`. Returns whether the tangents are current.
+    pub(super) fn linearize(
+        &mut self,
+        t: f64,
+        y: &[f64],
+        gamma: f64,
+        reuse: bool,
+    ) -> Result<bool, Failure> {
+        let State { u, v, internal, .. } = self.layout.of(y);
+        let (strains, amounts) = self.layout.split(internal);
+        self.set_lagging(t, internal);
+        // what Maxwell branches add depends on gamma
+        let current = self.update_tangents(t, u, v, reuse && strains.is_empty());
+        self.add_branch_tangents(gamma, u, strains);
+        if current {
+            self.add_flow_tangents(t, [u, v, amounts]);
+        }
+        self.factorize_newton(gamma)?;
+        Ok(current)
     }
 
     /// Updates Kt and D to (t, u, v), unless `reuse` allows older ones. Returns whether they are current.
@@ -224,15 +247,10 @@ impl System {
         rv: &mut [f64],
         internal: &[f64],
     ) {
-        let NewtonMatrix { stiffness, right, demands, gamma, place, flow, .. } = &mut self.newton;
-        right.iter_mut().zip(&self.at.total).for_each(|(right, f)| *right = share * f);
-        let (strains, amounts) = internal.split_at(self.at.relaxing.len());
-        if let (Some(branches), [_, ..]) = (&self.matrices.branches, strains) {
-            branches.add_residuals(*gamma, place.each_ref().map(|at| &at[..]), strains, right);
-        }
-        if let Some(flow) = flow {
-            flow.add_residuals(*gamma, ru, amounts, right);
-        }
+        let right = self.newton.right.iter_mut();
+        right.zip(&self.at.total).for_each(|(right, f)| *right = share * f);
+        self.add_internal_residuals(ru, internal);
+        let NewtonMatrix { stiffness, right, demands, gamma, .. } = &mut self.newton;
         self.matrices.inertia.add_product(self.matrices.dimension, 1.0, rv, right);
         for ((demand, row), of_forces) in demands.iter_mut().zip(&self.rows).zip(&self.at.demands) {
             *demand = row.apply(rv) + share * of_forces;
@@ -260,23 +278,42 @@ impl System {
         rv.copy_from_slice(&self.newton.xv);
     }
 
-    /// Turns the residuals `x` of the internal strains into their changes, by those of the displacements,
-    /// `xu`. Returns the change of the power that they dissipate (W).
-    pub(super) fn solve_branches(&mut self, xu: &[f64], x: &mut [f64]) -> f64 {
-        let (NewtonMatrix { place, gamma, .. }, rates) = (&self.newton, &self.at.relaxing);
-        let branches = self.matrices.branches.as_ref();
+    /// Adds to the right-hand side what the residuals of the `internal` unknowns, and those of the displacements, `ru`, do to
+    /// the forces.
+    fn add_internal_residuals(&mut self, ru: &[f64], internal: &[f64]) {
+        let NewtonMatrix { right, gamma, place, flow, .. } = &mut self.newton;
+        let (strains, amounts) = self.layout.split(internal);
+        if let (Some(branches), [_, ..]) = (&self.matrices.branches, strains) {
+            branches.add_residuals(*gamma, place.each_ref().map(|at| &at[..]), strains, right);
+        }
+        if let Some(flow) = flow {
+            flow.add_residuals(*gamma, ru, amounts, right);
+        }
+    }
+
+    /// Turns the residuals `x` of the internal unknowns into their changes, by those of the displacements, `xu`. Returns the
+    /// changes of the powers (W) dissipated and supplied along the whole of the last solution.
+    pub(super) fn solve_internal(&mut self, xu: &[f64], x: &mut [f64]) -> [f64; 2] {
+        let (dissipated, supplied) = self.power_changes();
+        let (strains, amounts) = self.layout.split_mut(x);
+        let NewtonMatrix { place, gamma, flow, .. } = &mut self.newton;
         let place = place.each_ref().map(|at| &at[..]);
-        branches.map_or(0.0, |branches| branches.solve(*gamma, place, rates, xu, x))
+        let relaxed =
+            self.matrices.branches.as_ref().map_or(0.0, |branches| {
+                branches.solve(*gamma, place, &self.at.relaxing, xu, strains)
+            });
+        let [heated, brought] = flow.as_mut().map_or([0.0; 2], |flow| flow.solve(xu, amounts));
+        [dissipated + relaxed + heated, supplied + brought]
     }
 
     /// The Newton system of the index-1 form, cj dF/dy' + dF/dy with cj = 1/gamma: the residuals
-    /// `r1`, `r2`, `r3` become xu, xv and the changes of lambda and of the multipliers of edges. `amounts` are gamma times
-    /// those of the amounts of gas.
+    /// `r1`, `r2`, `r3` become xu, xv and the changes of lambda and of the multipliers of edges. `internal` are gamma times
+    /// those of the internal unknowns.
     pub(super) fn solve_newton_index_one(
         &mut self,
         r1: &mut [f64],
         r2: &mut [f64],
-        amounts: &[f64],
+        internal: &[f64],
         r3: &mut [f64],
     ) {
         let gamma = self.newton.gamma;
@@ -284,12 +321,11 @@ impl System {
         r1.iter_mut().for_each(|r| *r *= gamma);
         self.matrices.rigid.iter().for_each(|rigid| rigid.carry(r1));
         self.add_strays(r1);
-        let NewtonMatrix { stiffness, right, demands, flow, solver, .. } = &mut self.newton;
+        let NewtonMatrix { stiffness, right, .. } = &mut self.newton;
         right.iter_mut().zip(&*r2).for_each(|(f, r)| *f = gamma * r);
         stiffness.get().add_product(-gamma, r1, right);
-        if let Some(flow) = flow {
-            flow.add_residuals(gamma, r1, amounts, right);
-        }
+        self.add_internal_residuals(r1, internal);
+        let NewtonMatrix { demands, solver, .. } = &mut self.newton;
         demands.iter_mut().zip(&*r3).for_each(|(d, r)| *d = gamma * r);
         if let Some(solver) = &mut solver.edges {
             let of_edges = &r3[self.rows.len()..];
@@ -316,7 +352,7 @@ impl System {
         &mut self,
         r1: &mut [f64],
         r2: &mut [f64],
-        amounts: &[f64],
+        internal: &[f64],
         [r3, r4]: [&mut [f64]; 2],
     ) {
         let gamma = self.newton.gamma;
@@ -340,12 +376,11 @@ impl System {
             r4[rows..].copy_from_slice(&solver.multipliers);
         }
         self.add_strays(r1);
-        let NewtonMatrix { stiffness, right, demands, flow, solver, .. } = &mut self.newton;
+        let NewtonMatrix { stiffness, right, .. } = &mut self.newton;
         right.iter_mut().zip(&*r2).for_each(|(f, r)| *f = gamma * r);
         stiffness.get().add_product(-gamma, r1, right);
-        if let Some(flow) = flow {
-            flow.add_residuals(gamma, r1, amounts, right);
-        }
+        self.add_internal_residuals(r1, internal);
+        let NewtonMatrix { demands, solver, .. } = &mut self.newton;
         demands.copy_from_slice(&r3[..rows]);
         if let Some(solver) = &mut solver.edges {
             let turned = r3[rows..].iter().zip(self.edges.turned(r1));

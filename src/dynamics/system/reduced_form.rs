@@ -1,5 +1,4 @@
 //! The equations of a phase by a reduced model, as an ODE: y = (q, q', internal unknowns, energy dissipated, energy supplied).
-//! Energies come last, where integrals have to be.
 //!
 //! A phase by a reduced model is a form of the same `System`, as the differential-algebraic forms are. The
 //! run sees states of all nodes (`dynamics/simulate/stepper/lifted.rs`), so that samples, sensors, events,
@@ -14,7 +13,7 @@ mod tests;
 use super::System;
 use super::form::Form;
 use crate::base::vector::largest;
-use crate::dynamics::state::{ENERGIES, State, StateMut};
+use crate::dynamics::state::{ENERGIES, State};
 use crate::integrators::ode::{Failure, Ode};
 
 /// The equations of a phase in the unknowns of a reduced model.
@@ -25,7 +24,7 @@ pub(crate) struct ReducedForm {
 }
 
 impl ReducedForm {
-    /// The equations of a `system` that has a reduced model, from its `state` = (u, v, energies, internal unknowns) at time t
+    /// The equations of a `system` that has a reduced model, from its `state` at time t
     /// on; with the unknowns of that state. Kinetic energy lost by projecting the velocities onto the model counts as supplied,
     /// below 0.
     ///
@@ -44,9 +43,10 @@ impl ReducedForm {
         if let Some(y) = form.unknowns_of(t, state) {
             return Ok((form, y));
         }
-        let State { u, v, dissipated, supplied, others } = State::of(state, form.system.dofs());
+        let layout = form.system.layout;
+        let State { u, v, internal, dissipated, supplied, .. } = layout.of(state);
         let kinetic = form.system.energy(t, u, v, &[]).kinetic;
-        let (strains, amounts) = form.system.parts_of(others);
+        let (strains, amounts) = layout.split(internal);
         let System { reduction, matrices, rows, .. } = &mut form.system;
         let [p, of_branches] = match reduction {
             Some(own) => own.begin(matrices, rows, t, [u, v, strains]),
@@ -56,30 +56,30 @@ impl ReducedForm {
         let mut y = [&vec![0.0; free][..], &p, &of_branches, amounts, &energies].concat();
         let mut lifted = vec![0.0; state.len()];
         form.lift(t, &y, &mut lifted);
-        let n = form.system.dofs();
-        let kept = form.system.energy(t, &lifted[..n], &lifted[n..2 * n], &[]).kinetic;
+        let State { u, v, .. } = layout.of(&lifted);
+        let kept = form.system.energy(t, u, v, &[]).kinetic;
         parts_mut(&mut y, free)[3][1] += kept - kinetic;
         Ok((form, y))
     }
 
-    /// Writes (u, v, energies, internal unknowns) for the unknowns y at time t.
+    /// Writes the state of all nodes for the unknowns y at time t.
     pub(crate) fn lift(&mut self, t: f64, y: &[f64], state: &mut [f64]) {
-        let System { reduction, rows, matrices, .. } = &mut self.system;
+        let System { reduction, rows, layout, .. } = &mut self.system;
         let [q, p, internal, energies] = parts(y, self.free);
-        let all = StateMut::of(state, matrices.dofs());
+        let all = layout.of_mut(state);
         if let Some(reduction) = reduction {
-            reduction.lift(rows, t, [q, p, internal], [all.u, all.v, all.others]);
+            reduction.lift(rows, t, [q, p, internal], [all.u, all.v, all.internal]);
         }
         (*all.dissipated, *all.supplied) = (energies[0], energies[1]);
     }
 
-    /// The unknowns of a state (u, v, energies, internal unknowns) at time t, if the model has it.
+    /// The unknowns of a state of all nodes at time t, if the model has it.
     pub(crate) fn unknowns_of(&mut self, t: f64, state: &[f64]) -> Option<Vec<f64>> {
-        let n = self.system.dofs();
-        let State { u, v, dissipated, supplied, others } = State::of(state, n);
+        let layout = self.system.layout;
+        let State { u, v, internal, dissipated, supplied, .. } = layout.of(state);
         let reduction = self.system.reduction.as_ref().filter(|own| own.has_begun())?;
         let [q, p] = reduction.coordinates(&self.system.rows, t, [u, v]);
-        let (strains, amounts) = self.system.parts_of(others);
+        let (strains, amounts) = layout.split(internal);
         let of_branches = reduction.branch_unknowns_of(strains)?;
         let y = [&q[..], &p, &of_branches, amounts, &[dissipated, supplied]].concat();
         let mut lifted = vec![0.0; state.len()];
@@ -88,7 +88,8 @@ impl ReducedForm {
             let most = own.iter().zip(lifted).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
             most > ROUND_OFF * largest(own)
         };
-        (!differs(u, &lifted[..n]) && !differs(v, &lifted[n..2 * n])).then_some(y)
+        let own = layout.of(&lifted);
+        (!differs(u, own.u) && !differs(v, own.v)).then_some(y)
     }
 
     /// Number of shapes that are free: q comes first, then as many numbers q', then the internal unknowns.

@@ -367,10 +367,10 @@ impl Reduction {
         rows: &[ConstraintRow],
         t: f64,
         [q, p, internal]: [&[f64]; 3],
-        [u, v, others]: [&mut [f64]; 3],
+        [u, v, all]: [&mut [f64]; 3],
     ) {
         let (of_branches, amounts) = internal.split_at(self.branch_unknowns());
-        let (strains, own_amounts) = others.split_at_mut(others.len() - amounts.len());
+        let (strains, own_amounts) = all.split_at_mut(all.len() - amounts.len());
         own_amounts.copy_from_slice(amounts);
         if let Some(branches) = &mut self.branches {
             branches.lift(of_branches, strains);

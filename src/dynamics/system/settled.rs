@@ -5,13 +5,11 @@
 //! forces. So it is interpolated in between, along a parabola, and the walls are moved to the volume that has it: by less than
 //! the tolerances, and as an impulse of the pressure would move them.
 
-use std::ops::Range;
-
 use super::ends::Ends;
 use super::{System, flow_of};
 use crate::base::simd::add_multiple;
 use crate::base::vector::dot;
-use crate::dynamics::state::{self, State};
+use crate::dynamics::state::{State, StateMut};
 
 /// Multiples of the tolerance of an amount by which volumes are changed at most, each relative to the whole. Beyond them the pressure
 /// does what a parabola does not.
@@ -55,9 +53,10 @@ impl System {
         ends.times.rotate_left(1);
         ends.pressures.rotate_left(1);
         ends.times[3] = t;
-        let State { u, others, .. } = State::of(state, self.dofs());
-        flow.write_pressures(u, &others[self.amount_range()], &mut ends.pressures[3]);
+        let State { u, internal, .. } = self.layout.of(state);
+        flow.write_pressures(u, self.layout.split(internal).1, &mut ends.pressures[3]);
     }
+
     /// The pressures at the ends of the last steps.
     pub(crate) fn ends_mut(&mut self) -> &mut Ends {
         &mut self.ends
@@ -65,16 +64,15 @@ impl System {
 
     /// Gives liquids in an interpolated `state` at time `t` (s) the pressures between those at the ends of the last step.
     pub(crate) fn settle(&mut self, t: f64, state: &mut [f64]) {
-        let (range, dofs) = (self.amount_range(), self.dofs());
-        let Self { flow, ends, rows, inertia, .. } = self;
+        let Self { flow, ends, rows, inertia, layout, .. } = self;
         let Some(flow) = flow_of(flow).filter(|_| !ends.tolerances.is_empty()) else { return };
         if !(ends.times[2]..=ends.times[3]).contains(&t) {
             return;
         }
         // rigid pieces turn on as they do
         inertia.edges.iter_mut().for_each(|edges| edges.demands.fill(0.0));
-        let (u, others) = state.split_at_mut(dofs);
-        let amounts = &others[state::length(dofs) - dofs..][range];
+        let StateMut { u, internal, .. } = layout.of_mut(state);
+        let (_, amounts) = layout.split(internal);
         for (room, &amount) in (0..ROUNDS).flat_map(|_| amounts.iter().enumerate()) {
             let pressure = ends.pressure(room, t);
             let Ends { tolerances, gradient, motion, demands, multipliers, .. } = &mut *ends;
@@ -90,11 +88,5 @@ impl System {
                 add_multiple(lacks / compliance, motion, u);
             }
         }
-    }
-
-    /// The amounts among the last part of a state.
-    fn amount_range(&self) -> Range<usize> {
-        let strains = self.at.relaxing.len();
-        strains..strains + self.amounts().len()
     }
 }

@@ -6,7 +6,7 @@ use super::commands::PhaseOverrides;
 use super::identity::Identity;
 use crate::base::input::{InputError, finite};
 use crate::dynamics::simulate::{Angles, Checkpoint, Choice, Kept};
-use crate::dynamics::state::State;
+use crate::dynamics::state::Layout;
 use crate::scene::timeline::Scene;
 
 /// Format of the files that this version writes, and the least that it reads. In format 5, inputs of phases stand by their quantities.
@@ -89,9 +89,9 @@ impl Record {
         let (scene, kept) = (checkpoint.scene(), checkpoint.kept());
         finite("the state", &kept.state)?;
         finite("the energy balance", &[&kept.energies[..], &[kept.balance]].concat())?;
-        let state = State::of(&kept.state, scene.body().dofs());
-        let strains = scene.body().branches().map_or(0, |branches| branches.unknowns());
-        let (strains, amounts) = state.others.split_at(strains);
+        let layout = Layout::of_scene(scene);
+        let state = layout.of(&kept.state);
+        let (strains, amounts) = layout.split(state.internal);
         Ok(Self {
             what: WHAT.into(),
             format: FORMAT,
@@ -126,13 +126,12 @@ impl Record {
             VERSION => differs,
             other => format!("{differs} (written by pliant {other}, read by {VERSION})"),
         })?;
-        let dofs = scene.body().dofs();
-        let internal = scene.body().branches().map_or(0, |branches| branches.unknowns());
+        let Layout { dofs, strains, amounts } = Layout::of_scene(scene);
         for (what, numbers, needed) in [
             ("displacements", &self.displacements, dofs),
             ("velocities", &self.velocities, dofs),
-            ("internal strains", &self.internal_strains, internal),
-            ("amounts of gas and states of lags", &self.amounts, scene.flowing_amounts()),
+            ("internal strains", &self.internal_strains, strains),
+            ("amounts of gas and states of lags", &self.amounts, amounts),
         ] {
             if numbers.len() != needed {
                 let found = numbers.len();
@@ -168,9 +167,9 @@ impl Record {
             state: [
                 self.displacements,
                 self.velocities,
-                energies,
                 self.internal_strains,
                 self.amounts,
+                energies,
             ]
             .concat(),
             phase: self.in_force.read(phase, scene)?.into(),

@@ -60,7 +60,7 @@ impl Method {
 
     /// Whether it integrates bodies with [Maxwell branches](crate::MaxwellBranch).
     pub(crate) fn takes_branches(self) -> bool {
-        matches!(self, Self::Auto | Self::CvodeBdf | Self::CvodeAdams | Self::Arkode | Self::Rk)
+        !matches!(self, Self::IdaKlu | Self::CentralDifference)
     }
 
     /// Name of the method: `auto`, `cvode-bdf`, `cvode-adams`, `ida`, `ida-klu`,

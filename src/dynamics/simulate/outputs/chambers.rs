@@ -21,7 +21,7 @@ pub(super) static PRESSURE: Output = Output {
     is_vector: false,
     is_of_positions: false,
     read: |view, number| {
-        let (scene, u) = (view.scene, view.state.u);
+        let (scene, u) = (view.scene, view.u);
         let chamber = scene.chambers()[number].name();
         let pressure = if let Some(number) = scene.gas_in(chamber) {
             view.gauges.gases[number].gauge(u, view.amount(number))
@@ -45,7 +45,7 @@ pub(in crate::dynamics::simulate) static VOLUME: Output = Output {
     of: CHAMBER,
     is_vector: false,
     is_of_positions: true,
-    read: |view, number| Ok(Value::Number(view.gauges.chambers[number].volume(view.state.u))),
+    read: |view, number| Ok(Value::Number(view.gauges.chambers[number].volume(view.u))),
 };
 
 impl View<'_> {

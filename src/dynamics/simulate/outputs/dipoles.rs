@@ -24,7 +24,7 @@ pub(super) static FORCE: Output = Output {
         let parts = DipolePart::ALL.map(|part| view.dipole_part(number, part));
         let now = point_dipole(parts, view.time, view.body().dimension());
         let magnets = view.gauges.magnetized.iter();
-        magnets.for_each(|magnet| magnet.add_force(&now, view.state.u, &mut force));
+        magnets.for_each(|magnet| magnet.add_force(&now, view.u, &mut force));
         Ok(Value::Vector(force))
     },
 };

@@ -83,7 +83,7 @@ impl View<'_> {
     }
 
     fn gas_pressure(&self, number: usize) -> f64 {
-        let pressure = self.gauges.gases[number].pressure(self.state.u, self.amount(number));
+        let pressure = self.gauges.gases[number].pressure(self.u, self.amount(number));
         pressure.map_or(f64::NAN, |[pressure, _]| pressure)
     }
 }

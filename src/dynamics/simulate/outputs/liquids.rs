@@ -56,7 +56,7 @@ pub(super) static LEVEL: Output = Output {
     is_vector: false,
     is_of_positions: false,
     read: |view, number| {
-        let level = view.with_surface(number)?.level(view.state.u, view.liquid_amount(number));
+        let level = view.with_surface(number)?.level(view.u, view.liquid_amount(number));
         Ok(Value::Number(level))
     },
 };
@@ -69,7 +69,7 @@ pub(super) static PIPE_FLOW: Output = Output {
     is_vector: false,
     is_of_positions: false,
     read: |view, number| {
-        let flowing = view.scene.flowing(view.state.others);
+        let flowing = view.scene.flowing(view.amounts);
         let first = |all: &[f64]| all.len() - view.scene.pipes().len();
         Ok(Value::Number(flowing.map_or(0.0, |all| all[first(all) + number])))
     },

@@ -43,7 +43,7 @@ pub(super) static STRESS: Output = Output {
         let Some(law) = muscle.law() else { return Ok(Value::Number(stress)) };
         let contraction = Contraction { law, stress };
         let strands = &view.gauges.muscles[number];
-        Ok(Value::Number(strands.mean_pull(contraction, view.state.u, view.state.v)))
+        Ok(Value::Number(strands.mean_pull(contraction, view.u, view.v)))
     },
 };
 
@@ -54,7 +54,7 @@ pub(super) static STRETCH: Output = Output {
     of: MUSCLE,
     is_vector: false,
     is_of_positions: true,
-    read: |view, number| Ok(Value::Number(view.gauges.muscles[number].mean_stretch(view.state.u))),
+    read: |view, number| Ok(Value::Number(view.gauges.muscles[number].mean_stretch(view.u))),
 };
 
 pub(super) static ACTIVATION: Output = Output {

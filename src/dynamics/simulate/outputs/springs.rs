@@ -4,7 +4,6 @@ use super::super::output::{Kind, Output, Value};
 use super::super::reading::{Reading, ReadingKind};
 use super::super::view::View;
 use crate::base::input::InputError;
-use crate::dynamics::state::State;
 
 const SPRING: Kind = Kind {
     key: "spring",
@@ -45,7 +44,7 @@ pub(super) static LENGTH: Output = Output {
     of: SPRING,
     is_vector: false,
     is_of_positions: true,
-    read: |view, number| Ok(Value::Number(view.gauges.springs[number].length(view.state.u))),
+    read: |view, number| Ok(Value::Number(view.gauges.springs[number].length(view.u))),
 };
 
 impl View<'_> {
@@ -75,7 +74,7 @@ impl View<'_> {
     }
 
     fn pulls(&self, number: usize) -> [f64; 2] {
-        let State { u, v, .. } = self.state;
+        let Self { u, v, .. } = self;
         let actuation = self.actuation_with_rate(self.scene.springs()[number].name());
         self.gauges.springs[number].pulls(u, v, actuation)
     }

@@ -13,7 +13,7 @@ use crate::scene::settings::{AbsoluteTolerances, Method, Settings};
 /// An integrator of a reduced model.
 struct Lifted<I> {
     integrator: I,
-    /// (u, v, energies, internal unknowns) at the end of the last step.
+    /// The state at the end of the last step.
     state: Vec<f64>,
     /// Room for the unknowns of the model.
     seen: Vec<f64>,
