@@ -76,11 +76,13 @@ pub use elements::{
 };
 pub use integrators::common::Integrator;
 #[cfg(feature = "scene-file")]
-pub use io::scene_file::{OutputRequest, SceneFile};
+pub use io::scene_file::{DeviceTable, OutputRequest, SceneFile};
 #[cfg(feature = "bodies")]
 pub use scene::{
-    BodyState, Phase, ReducedModel, Scene, SceneState, Smaller, Term,
+    BodyState, Device, DeviceGauge, DeviceInput, DeviceOutput, DeviceSignals, DeviceState,
+    DeviceValue, Phase, ReducedModel, Scene, SceneState, Smaller, Term,
     constraint::{Axis, Prescribed},
+    devices::*,
     forces::*,
     settings::{
         AbsoluteTolerances, ContactEvents, Method, Settings, SettingsOption, SettingsValue,

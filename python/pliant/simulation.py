@@ -169,6 +169,10 @@ class Simulation:
         """Force (N) of a fluid on the bodies, drag and pressure."""
         return self._simulation.fluid_force(fluid)
 
+    def device_output(self, device: str, output: str) -> Array:
+        """Output of a device by its word, as the `force` (N) of a wind: one component per dimension, or one."""
+        return self._simulation.device_output(device, output)
+
     def spring_length(self, spring: str) -> float:
         """Length (m) of a spring."""
         return self._simulation.spring_length(spring)
@@ -258,6 +262,10 @@ class Simulation:
     def follower_moment(self, nodes: Nodes, moment: float | Sequence[float]) -> None:
         """Sets a moment (N m) on nodes together that turns with them, in place of the one that these nodes have."""
         self._simulation.follower_moment(nodes, _vector(moment))
+
+    def set_input(self, device: str, input: str, value: float | Sequence[float]) -> None:
+        """Sets an input of a device by its word, as the `velocity` (m/s) of a wind: a number, or one component per dimension."""
+        self._simulation.set_input(device, input, float(value) if np.isscalar(value) else _vector(value))
 
     def set_magnetic_field(self, field: Sequence[float]) -> None:
         """Sets the magnetic field (T) that acts on magnets, one component per dimension; a gradient of it stays."""

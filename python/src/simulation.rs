@@ -4,8 +4,8 @@ use std::path::PathBuf;
 use std::sync::MutexGuard;
 
 use numpy::{PyArray1, PyArray2, PyReadonlyArray2};
-use pliant::Selection;
 use pliant::simulate::Direction;
+use pliant::{Selection, Signals};
 use pyo3::gc::{PyTraverseError, PyVisit};
 use pyo3::prelude::*;
 
@@ -37,6 +37,13 @@ impl Checkpoint {
 pub struct Simulation {
     inner: Watched,
     title: String,
+}
+
+/// A value for an input of a device.
+#[derive(FromPyObject)]
+enum InputValue {
+    Number(f64),
+    Vector(Vec<f64>),
 }
 
 /// Nodes: the name of a set, a number (from 1), or several.
@@ -237,6 +244,17 @@ impl Simulation {
         Ok(PyArray1::from_vec(py, force))
     }
 
+    /// Output of a device.
+    fn device_output<'py>(
+        &self,
+        py: Python<'py>,
+        device: &str,
+        output: &str,
+    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let value = self.lock()?.view().device(device, output).map_err(raised)?;
+        Ok(PyArray1::from_vec(py, value))
+    }
+
     /// Force (N) of a fluid on the bodies.
     fn fluid_force<'py>(
         &self,
@@ -371,6 +389,18 @@ impl Simulation {
     /// Sets a moment (N m) on nodes together that turns with them.
     fn follower_moment(&self, nodes: Nodes, moment: Vec<f64>) -> PyResult<()> {
         self.lock()?.follower_moment(nodes, moment).map_err(raised)
+    }
+
+    /// Sets an input of a device.
+    fn set_input(&self, device: &str, word: &str, value: InputValue) -> PyResult<()> {
+        let mut simulation = self.lock()?;
+        let set = match value {
+            InputValue::Number(number) => simulation.device_input(device, word, number),
+            InputValue::Vector(vector) => {
+                simulation.device_input(device, word, Signals::from(vector))
+            }
+        };
+        set.map_err(raised)
     }
 
     /// Sets the magnetic field (T) that acts on magnets.

@@ -62,6 +62,26 @@ def test_moments_and_followers():
     assert stretched.position("right")[0] > beam.position("right")[0]
 
 
+def test_wind_is_set():
+    """A plate that is held feels C_n rho/2 v^2 times its area on both sides; the air at rest pushes nothing."""
+    plate = pliant.Scene(
+        body=dict(
+            mesh=dict(kind="rectangle", size=[0.01, 0.1], nodes=[2, 5], cells="rectangles"),
+            thickness=0.1,
+            material=dict(density=1000.0, young=1e7, poisson=0.3, viscosity=1e3),
+        ),
+        wind=[dict(name="gust", drag=0.6)],
+        phase=[dict(until=1.0, hold=dict(nodes="all"))],
+    ).start()
+    assert np.all(plate.device_output("gust", "force") == 0.0)
+    plate.set_input("gust", "velocity", [10.0, 0.0])
+    plate.advance_to(0.1)
+    force = plate.device_output("gust", "force")
+    assert abs(force[0] - 2 * 0.6 * 0.5 * 1.2 * 100.0 * 0.01) < 1e-12 and force[1] == 0.0
+    with pytest.raises(pliant.InputError, match="velocity"):
+        plate.set_input("gust", "speed", 1.0)
+
+
 def test_states_are_returned_to():
     beam = BEAM.start(rtol=1e-8)
     beam.advance_to(0.1)

@@ -36,7 +36,7 @@ pub struct InputError {
 
 impl InputError {
     /// `input` = `value` cannot be used: `help`.
-    pub(crate) fn new(
+    pub fn new(
         input: impl Into<String>,
         value: impl Display,
         help: impl Into<String>,

@@ -271,6 +271,7 @@ fn all_scenes_are_run() {
         "jellyfish",
         // where moments and followers are tested
         "fluttering-column",
+        "gust",
         // where contact is tested
         "cradle",
         "ring-on-table",

@@ -21,6 +21,7 @@ mod contact_motion;
 mod contact_rings;
 mod contact_truths;
 mod damping;
+mod devices;
 mod dipoles;
 mod driving;
 mod fluids;

@@ -157,6 +157,7 @@ fn surroundings(scene: &Scene) -> Result<(), Failure> {
     let liquids = scene.liquids().iter().map(|liquid| liquid.chamber()).collect();
     let pipes = scene.pipes().iter().map(|pipe| pipe.name()).collect();
     let fluids = scene.fluids().iter().map(|fluid| fluid.name()).collect();
+    let devices = scene.devices().iter().map(|device| device.name()).collect();
     let obstacles = scene.obstacles().iter().map(|obstacle| obstacle.name()).collect();
     for (label, names) in [
         ("springs", springs),
@@ -171,6 +172,7 @@ fn surroundings(scene: &Scene) -> Result<(), Failure> {
         ("liquids", liquids),
         ("pipes", pipes),
         ("fluids", fluids),
+        ("devices", devices),
         ("obstacles", obstacles),
     ] {
         let names: Vec<&str> = names;

@@ -51,7 +51,7 @@ pub(super) fn of(present: &Present, colours: Option<usize>, since: Option<f64>) 
         "dipoles": picture.dipoles(&view),
         "everywhere": Picture::everywhere(&view),
         "remanence": picture.remanence(&view),
-        "water": picture.water(&view),
+        "lines": picture.lines(&view),
         "actuations": actuations.collect::<Vec<_>>(),
         "pull": hand.map(Hand::to_json),
         "speed": pace.speed,

@@ -5,13 +5,15 @@
 //! exactly the signal that acted (`io/scene_file/rewrite.rs`). A load has a slider for each component, each
 //! with lines of its own, and the table of all of them acts.
 
+use std::sync::Arc;
+
 use serde_json::{Value, json};
 
 use crate::dynamics::simulate::Simulation;
 use crate::elements::body::{Body, Part};
 use crate::elements::mesh::Selection;
 use crate::scene::forces::{Chamber, Dipole, DipolePart};
-use crate::scene::timeline::{self, LoadKind, Phase, Quantity, Row, Scene};
+use crate::scene::timeline::{self, Device, DeviceInput, LoadKind, Phase, Quantity, Row, Scene};
 
 /// The input that a slider sets, or a component of it.
 #[derive(Debug, Clone, PartialEq)]
@@ -136,6 +138,7 @@ impl Slider {
             .chain(scene.dipoles().iter().flat_map(|dipole| Self::of_dipole(scene, dipole)))
             .chain(loads)
             .chain(Self::on_nodes(scene, force))
+            .chain(Self::of_devices(scene))
             .collect()
     }
 
@@ -162,6 +165,24 @@ impl Slider {
             parts.into_iter().zip(axes).map(slider).collect::<Vec<_>>()
         });
         sliders.collect()
+    }
+
+    /// One slider per component of the inputs of devices that phases set.
+    fn of_devices(scene: &Scene) -> Vec<Self> {
+        let of_device = |device: &Arc<dyn Device>| {
+            let of_input = |input: &'static DeviceInput| {
+                let whole = Target::of(Quantity::Device(input), device.name());
+                let rank = whole.quantity.rank(scene.body().dimension());
+                let parts: Vec<Target> = (0..rank).map(|axis| whole.along(axis)).collect();
+                let largest = parts.iter().map(|part| part.largest_in(scene)).fold(0.0, f64::max);
+                let names = ["x", "y", "z"].map(|axis| format!("{} {axis}", input.word));
+                let names = if rank == 1 { vec![input.word.into()] } else { names.into() };
+                let slider = move |(part, what)| Self::new(part, what, [largest, 1.0], input.unit);
+                parts.into_iter().zip(names).map(slider).collect::<Vec<_>>()
+            };
+            device.inputs().iter().flat_map(of_input).collect::<Vec<_>>()
+        };
+        scene.devices().iter().flat_map(of_device).collect()
     }
 
     /// One slider per component of the position and of the moment of a dipole.

@@ -7,7 +7,7 @@ use crate::dynamics::error::Error;
 use crate::elements::mesh::Selection;
 use crate::scene::constraint::{Axes, Axis, Constrained, Constraint, Motion};
 use crate::scene::forces::{SharedValue, Signal, Signals, TimeTable, VectorSignal, WrenchKind};
-use crate::scene::timeline::{Input, LoadKind, Phase, Quantity, Scene, Target};
+use crate::scene::timeline::{DeviceValue, Input, LoadKind, Phase, Quantity, Scene, Target};
 
 /// Commands. Each takes effect at the present time and stays in force until another one replaces it or the
 /// phase ends: the next phase begins as the scene defines it. At the end of the scene, where nothing is left
@@ -115,6 +115,20 @@ impl Simulation {
     pub fn magnetic_field(&mut self, field: impl Into<Vec<f64>>) -> Result<(), Error> {
         let field = VectorSignal::Constant(field.into());
         self.set(Input::new(Quantity::Field, Target::Everything, field))
+    }
+
+    /// Sets an input of a [device](crate::Device), by the name of the one and the word of the other, in place of the present value.
+    ///
+    /// # Errors
+    /// A name that no device has, a word that none of its inputs has, a value of another rank, numbers that are not finite.
+    pub fn device_input(
+        &mut self,
+        device: &str,
+        word: &str,
+        value: impl Into<DeviceValue>,
+    ) -> Result<(), Error> {
+        let input = self.scene().device_input(device, word, value.into())?;
+        self.set(input)
     }
 
     /// Sets a [moment](Phase::moment) (N m) on nodes, in place of the one given for the same selection.

@@ -76,6 +76,12 @@ impl Reading {
                     (output.read)(view, number).unwrap_or(Value::Number(f64::NAN))
                 })
             }
+            ReadingKind::OfDevice(output, name) => {
+                let device = scene.device_number(name, "device")?;
+                let number = scene.output_number(device, output.word)?;
+                let is_vector = output.is_vector;
+                Box::new(move |view, _| view.device_value(device, number, is_vector))
+            }
             ReadingKind::MagneticMoment => {
                 if scene.magnets().is_empty() {
                     let help = "the scene has no magnets";

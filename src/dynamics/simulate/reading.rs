@@ -9,6 +9,7 @@ use super::spot::Spot;
 use crate::base::input::InputError;
 use crate::dynamics::trajectory::DEGREES;
 use crate::elements::mesh::Selection;
+use crate::scene::timeline::DeviceOutput;
 
 /// A quantity that a sensor reads: see [`Sampling::read`](crate::Sampling::read).
 ///
@@ -40,6 +41,8 @@ pub(super) enum ReadingKind {
     Gap(String),
     /// Of the component with a name.
     Of(&'static Output, String),
+    /// Of the device with a name.
+    OfDevice(&'static DeviceOutput, String),
     MagneticMoment,
     /// Of all nodes, or of these.
     FluidForce(String, Option<Selection>),
@@ -305,6 +308,11 @@ impl Reading {
         self
     }
 
+    /// An `output` of the [device](crate::Device) with a name.
+    pub fn device(device: impl Into<String>, output: &'static DeviceOutput) -> Self {
+        ReadingKind::OfDevice(output, device.into()).into()
+    }
+
     /// An output of the component with a `name`.
     #[cfg(feature = "scene-file")]
     pub(crate) fn of(output: &'static Output, name: impl Into<String>) -> Self {
@@ -319,6 +327,7 @@ impl Reading {
             }
             ReadingKind::Distance(_) => "m",
             ReadingKind::Of(output, _) => output.unit,
+            ReadingKind::OfDevice(output, _) => output.unit,
             ReadingKind::Velocity(_) => "m/s",
             ReadingKind::Acceleration(_) => "m/s^2",
             ReadingKind::AngularVelocity(_) => "rad/s",
@@ -422,7 +431,10 @@ impl Reading {
             | (
                 ReadingKind::FluidForce(..) | ReadingKind::Of(Output { is_vector: true, .. }, _),
                 _,
-            ) => (&[X, Y, Z][..dimension], Some(Norm)),
+            )
+            | (ReadingKind::OfDevice(DeviceOutput { is_vector: true, .. }, _), _) => {
+                (&[X, Y, Z][..dimension], Some(Norm))
+            }
             (ReadingKind::ConstraintMoment(_, Lever { axis: None, .. }), 3)
             | (ReadingKind::Rotation(_) | ReadingKind::AngularVelocity(_), 3)
             | (ReadingKind::AngularAcceleration(_), 3) => (&[X, Y, Z], Some(Norm)),

@@ -20,7 +20,7 @@ use crate::scene::timeline::{
 pub(super) struct PhaseOverrides {
     constraints: Vec<(Constrained, Stored<Motion>)>,
     /// None in files in which they stand by their quantities.
-    inputs: Option<Vec<(Quantity, Target, StoredSignal)>>,
+    inputs: Option<Vec<(StoredQuantity, Target, StoredSignal)>>,
     /// Names of the obstacles that act; without: all.
     contact: ContactWith,
     /// Obstacles that commands have set in motion: name, offset from where its velocity or path would have
@@ -41,6 +41,35 @@ pub(super) struct PhaseOverrides {
     magnetic_field: Option<Stored<VectorSignal>>,
     #[serde(default, skip_serializing)]
     dipoles: Vec<(String, DipolePart, Stored<VectorSignal>)>,
+}
+
+/// A quantity; of a device the word of its input.
+#[derive(Serialize, Deserialize)]
+#[serde(untagged)]
+enum StoredQuantity {
+    Device { input: String },
+    Known(Quantity),
+}
+
+impl StoredQuantity {
+    fn of(quantity: Quantity) -> Self {
+        match quantity {
+            Quantity::Device(input) => Self::Device { input: input.word.into() },
+            known => Self::Known(known),
+        }
+    }
+
+    /// # Errors
+    /// An input that the device does not have.
+    fn read(self, target: &Target, scene: &Scene) -> Result<Quantity, String> {
+        let input = match self {
+            Self::Known(quantity) => return Ok(quantity),
+            Self::Device { input } => input,
+        };
+        let device = target.names().first().map_or("", |name| name);
+        let row = scene.device_row(device, &input).map_err(|error| error.to_string())?;
+        Ok(Quantity::Device(row))
+    }
 }
 
 /// A motion or a signal.
@@ -186,7 +215,7 @@ impl PhaseOverrides {
         });
         let inputs = phase.inputs.iter().map(|Input { quantity, target, signal }| {
             let signal = StoredSignal::of(signal, own, || quantity.of(target))?;
-            Ok((*quantity, target.clone(), signal))
+            Ok((StoredQuantity::of(*quantity), target.clone(), signal))
         });
         let moving = phase.redirected.iter().map(|obstacle| {
             (obstacle.name().into(), obstacle.offset(), obstacle.constant_velocity())
@@ -213,7 +242,8 @@ impl PhaseOverrides {
     pub(super) fn read(mut self, own: &Phase, scene: &Scene) -> Result<Phase, String> {
         let inputs = match self.inputs.take() {
             Some(inputs) => {
-                let read = |(quantity, target, signal): (_, _, StoredSignal)| {
+                let read = |(quantity, target, signal): (StoredQuantity, _, StoredSignal)| {
+                    let quantity = quantity.read(&target, scene)?;
                     Ok(Input { quantity, target, signal: signal.read(own)? })
                 };
                 inputs.into_iter().map(read).collect::<Result<_, String>>()?

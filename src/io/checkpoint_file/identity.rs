@@ -96,6 +96,9 @@ impl Identity {
         if !scene.fluids().is_empty() {
             parts.push(("fluids".into(), text(of_text(scene.fluids()))));
         }
+        if !scene.devices().is_empty() {
+            parts.push(("devices".into(), text(of_text(scene.devices()))));
+        }
         if !scene.touches().is_empty() {
             parts.push(("touches".into(), touches));
         }

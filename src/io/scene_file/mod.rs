@@ -42,6 +42,7 @@ mod body;
 mod cells;
 mod contents;
 mod course;
+mod device;
 mod dipole;
 mod fluid;
 mod friction;
@@ -90,6 +91,8 @@ use toml::de::DeTable;
 pub use self::contents::{
     AccuracyRequest, AutoRequest, Format, OutputRequest, SceneFile, StaticsRequest,
 };
+pub use self::device::DeviceTable;
+use self::device::take_devices;
 #[cfg(any(feature = "fit", feature = "sweep"))]
 pub(crate) use self::overrides::problem;
 use self::overrides::{as_toml, merge};
@@ -131,7 +134,20 @@ impl SceneFile {
     /// As [`read`](Self::read); [`Error::Input`] for an override that is no key and value.
     pub fn read_with(path: impl AsRef<Path>, overrides: &[String]) -> Result<Self, Error> {
         let path = path.as_ref();
-        parse(text_of(path)?, path, overrides)
+        parse(text_of(path)?, path, overrides, &[])
+    }
+
+    /// As [`read_with`](Self::read_with), with tables of [devices](crate::Device) that the calling crate defines.
+    ///
+    /// # Errors
+    /// As [`read_with`](Self::read_with).
+    pub fn read_with_devices(
+        path: impl AsRef<Path>,
+        overrides: &[String],
+        devices: &[DeviceTable],
+    ) -> Result<Self, Error> {
+        let path = path.as_ref();
+        parse(text_of(path)?, path, overrides, devices)
     }
 
     /// The text of a scene file, with the values of `overrides`, as those of [`read_with`](Self::read_with),
@@ -208,11 +224,16 @@ impl SceneFile {
     /// # Errors
     /// As there.
     pub fn parse_with(text: &str, path: &Path, overrides: &[String]) -> Result<Self, Error> {
-        parse(text.into(), path, overrides)
+        parse(text.into(), path, overrides, &[])
     }
 }
 
-fn parse(mut text: String, path: &Path, overrides: &[String]) -> Result<SceneFile, Error> {
+fn parse(
+    mut text: String,
+    path: &Path,
+    overrides: &[String],
+    devices: &[DeviceTable],
+) -> Result<SceneFile, Error> {
     let own = text.len();
     // overrides follow the text, so that errors have a place to point to
     let mut padded = Vec::with_capacity(overrides.len());
@@ -229,8 +250,10 @@ fn parse(mut text: String, path: &Path, overrides: &[String]) -> Result<SceneFil
     for over in &padded {
         merge(&mut entries, DeTable::parse(over).map_err(no_toml)?.into_inner(), &text)?;
     }
+    let leaves = leaves::leaves(&entries);
+    let devices = take_devices(&source, &mut entries, devices)?;
     let top = Table::new(&source, String::new(), at, &entries, &TOP)?;
-    let file = top::scene_file(&top)?;
-    let scene = file.scene.written_with(leaves::leaves(&entries));
+    let file = top::scene_file(&top, devices)?;
+    let scene = file.scene.written_with(leaves);
     Ok(SceneFile { scene, notes: source.notes.take(), ..file })
 }

@@ -7,7 +7,7 @@ use super::keys::TableKeys;
 use super::magnet::magnetic_field;
 use super::phase_keys::{
     ACTUATE, DRIVE, END, FLOW, FOLLOWER, HOLD, HOLD_COMBINATION, LOAD, MOMENT, MOVE, OPEN, PATH,
-    PHASE, PRESSURE, PRESSURE_ON, ROTATE, SYMMETRY, TERMS,
+    PHASE, PRESSURE, PRESSURE_ON, ROTATE, SET, SYMMETRY, TERMS,
 };
 use super::selection::selection;
 use super::table::Table;
@@ -17,14 +17,14 @@ use crate::base::vector::norm;
 use crate::dynamics::error::Error;
 use crate::elements::mesh::Selection;
 use crate::scene::constraint::Axis;
-use crate::scene::forces::{Dipole, DipolePart};
+use crate::scene::forces::{Dipole, DipolePart, Signals};
 use crate::scene::timeline::{Input, Phase, Quantity, Row, Scene, Target};
 
 /// Adds a table inside of a phase.
 type Add = fn(Phase, &Table, &Scene) -> Result<Phase, Error>;
 
 /// The tables inside of a phase: what they add.
-const PARTS: [(&TableKeys, Add); 15] = [
+const PARTS: [(&TableKeys, Add); 16] = [
     (&HOLD, hold),
     (&MOVE, moving),
     (&PATH, path),
@@ -40,6 +40,7 @@ const PARTS: [(&TableKeys, Add); 15] = [
     (&FLOW, flow),
     (&ACTUATE, actuate),
     (&DRIVE, drive),
+    (&SET, set),
 ];
 
 /// The scene with the phases that `values` describe at its end.
@@ -217,6 +218,21 @@ fn drive(mut phase: Phase, table: &Table, scene: &Scene) -> Result<Phase, Error>
         }
     }
     Ok(phase)
+}
+
+fn set(phase: Phase, table: &Table, scene: &Scene) -> Result<Phase, Error> {
+    let known: Vec<&str> = scene.devices().iter().map(|device| device.name()).collect();
+    let device = table.required("device", |value| named(value, &known))?;
+    let word = table.required("input", Value::string)?;
+    let input = scene.device_row(&device, word).map_err(|error| table.blame(error))?;
+    if !input.is_vector {
+        let value = course(table, phase.end(), "value", "values")?;
+        return Ok(phase.device_input(device, input, value));
+    }
+    let value = vectors_until(table, phase.end(), "value", scene.body().dimension())?;
+    // one of them is there: the table's groups say so
+    let value = value.ok_or_else(|| table.missing("value", "expected a vector"))?;
+    Ok(phase.device_input(device, input, Signals(value)))
 }
 
 fn pressure(phase: Phase, table: &Table, scene: &Scene) -> Result<Phase, Error> {

@@ -29,6 +29,7 @@ pub(super) const PHASE: TableKeys = TableKeys::new(
         part(&FLOW, "flows of liquids into chambers"),
         part(&ACTUATE, "forces in springs and cables, stresses of muscles, strains of growth"),
         part(&DRIVE, "where dipoles are, and their moments"),
+        part(&SET, "inputs of devices, such as winds"),
         Key::new("magnetic_field", ValueType::Table(&MAGNETIC_FIELD), "the magnetic field"),
         Key::new(
             "contact",
@@ -366,6 +367,26 @@ pub(super) const DRIVE: TableKeys = TableKeys::new(
     "drive = [{ dipole = \"lead\", times = [0.0, 0.1], positions = [[0.05, 0.3], [0.1, 0.3]] }]",
 )
 .one_of(&[&["position"], &["moment"], &["times", "positions"], &["times", "moments"]]);
+
+pub(super) const SET: TableKeys = TableKeys::new(
+    "set",
+    "An input of a device by its word: the `velocity` of a `[[wind]]`. A number or a vector, as the input is. Values of a table are interpolated linearly, and are \
+     constant before and after.",
+    &[
+        Key::new("device", ValueType::Text, "the name of the device").required(),
+        Key::new("input", ValueType::Text, "the word of the input").required(),
+        Key::new("value", ValueType::Either(&[ValueType::Changing, ValueType::ChangingVector]), "its value, in the unit of the input"),
+        TIMES,
+        PERIOD,
+        Key::new(
+            "values",
+            ValueType::Either(&[ValueType::List(&ValueType::Number), ValueType::List(&ValueType::Vector)]),
+            "its values at these times",
+        ),
+    ],
+    "set = [{ device = \"gust\", input = \"velocity\", value = [\"5*sin(3*t)\", 0.0] }]",
+)
+.one_of(&[&["value"], &["times", "values"]]);
 
 pub(super) const MAGNETIC_FIELD: TableKeys = TableKeys::new(
     "magnetic_field",

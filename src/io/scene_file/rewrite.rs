@@ -92,6 +92,8 @@ fn inputs(phase: &Phase, key: &str, scene: &Scene) -> String {
         let Row { keys: [_, of], word, .. } = quantity.row();
         let (of, word) = match target {
             Target::Named(names) if *quantity == Quantity::Actuation => actuator(names, scene),
+            // the word is that of the input, which stands beside its value
+            _ if matches!(quantity, Quantity::Device(_)) => (of, "value"),
             _ => (of, word),
         };
         let target = match target {
@@ -99,7 +101,13 @@ fn inputs(phase: &Phase, key: &str, scene: &Scene) -> String {
                 let names: Vec<String> = names.iter().map(|name| quoted(name)).collect();
                 format!("{of} = [{}], ", names.join(", "))
             }
-            Target::Named(names) => format!("{of} = {}, ", quoted(&names.join(", "))),
+            Target::Named(names) => {
+                let input = match quantity {
+                    Quantity::Device(input) => format!("input = {}, ", quoted(input.word)),
+                    _ => String::new(),
+                };
+                format!("{of} = {}, {input}", quoted(&names.join(", ")))
+            }
             Target::Nodes(Selection::Set(name)) => format!("{of} = {}, ", quoted(name)),
             Target::Nodes(Selection::Numbers(numbers)) => format!("{of} = {numbers:?}, "),
             Target::Nodes(Selection::Box { min, max }) => {

@@ -25,7 +25,7 @@ pub(super) const SENSOR: TableKeys = TableKeys::new(
 .kinds(&KINDS);
 
 /// Quantities of places, contacts, fields and bodies.
-const OWN: [Kind; 21] = [
+const OWN: [Kind; 22] = [
     Kind {
         word: "position",
         about: "where nodes, a point of a body or a marker are (m)",
@@ -97,6 +97,14 @@ const OWN: [Kind; 21] = [
             Key::new("fluid", ValueType::Text, "the name of the fluid").required(),
             Key::new("nodes", ValueType::Nodes, "the nodes on which it acts").default("all"),
             BODY,
+        ],
+    },
+    Kind {
+        word: "device",
+        about: "an output of a device by its word: the `force` of a `[[wind]]` (N)",
+        keys: &[
+            Key::new("device", ValueType::Text, "the name of the device").required(),
+            Key::new("output", ValueType::Text, "the word of the output").required(),
         ],
     },
     Kind {
@@ -259,6 +267,7 @@ pub(super) fn sensor(value: &Value, scene: &Scene) -> Result<(String, Reading), 
         "fluid-force" => {
             of_nodes(&table, mesh, of_body(&table, Reading::fluid_force(named("fluid")?))?)?
         }
+        "device" => device(&table, scene)?,
         "stress" => field(&table, mesh, Reading::stress, Reading::stress_at)?,
         "strain" => field(&table, mesh, Reading::strain, Reading::strain_at)?,
         "distance" => {
@@ -284,6 +293,16 @@ pub(super) fn sensor(value: &Value, scene: &Scene) -> Result<(String, Reading), 
     let alone = Sampling::phase_ends().read(name, reading.clone());
     alone.check(scene).map_err(|error| table.blame(error))?;
     Ok((name.into(), reading))
+}
+
+/// An output of a device.
+fn device(table: &Table, scene: &Scene) -> Result<Reading, Error> {
+    let (name, word) =
+        (table.required("device", Value::string)?, table.required("output", Value::string)?);
+    let blame = |error| table.blame(error);
+    let device = scene.device_number(name, "device").map_err(blame)?;
+    let number = scene.output_number(device, word).map_err(blame)?;
+    Ok(Reading::device(name, &scene.devices()[device].outputs()[number]))
 }
 
 /// A place whose motion is read.

@@ -1,7 +1,10 @@
 //! The whole file.
 
+use std::sync::Arc;
+
 use super::body::{self, BODY, POINT};
 use super::contents::{OutputRequest, SceneFile};
+use super::device::{self, WIND};
 use super::dipole::{self, DIPOLE};
 use super::fluid::{self, FLUID};
 use super::gas::{self, GAS, ORIFICE, SUPPLY};
@@ -24,7 +27,7 @@ use super::tie::{self, TIE};
 use super::touch::{self, TOUCH};
 use super::value::Value;
 use crate::dynamics::error::Error;
-use crate::scene::timeline::Scene;
+use crate::scene::timeline::{Device, Scene};
 
 pub(super) const TOP: TableKeys = TableKeys::new(
     "The file",
@@ -61,6 +64,7 @@ pub(super) const TOP: TableKeys = TableKeys::new(
         Key::new("liquid", ValueType::Tables(&LIQUID), "liquids in chambers"),
         Key::new("pipe", ValueType::Tables(&PIPE), "pipes between liquids in chambers"),
         Key::new("fluid", ValueType::Tables(&FLUID), "fluids around bodies"),
+        Key::new("wind", ValueType::Tables(&WIND), "wind over faces"),
         Key::new("obstacle", ValueType::Tables(&OBSTACLE), "obstacles"),
         Key::new("phase", ValueType::Tables(&PHASE), "the phases, one after the other").required(),
         Key::new("sensor", ValueType::Tables(&SENSOR), "what is read with each sample"),
@@ -75,7 +79,7 @@ pub(super) const TOP: TableKeys = TableKeys::new(
 type Add = fn(Scene, &Value) -> Result<Scene, Error>;
 
 /// Contents of the file with the top-level table `top`.
-pub(super) fn scene_file(top: &Table) -> Result<SceneFile, Error> {
+pub(super) fn scene_file(top: &Table, devices: Vec<Arc<dyn Device>>) -> Result<SceneFile, Error> {
     let title = top.optional("title", Value::string)?.unwrap_or_default();
     let (dimension, points) = (top.get("dimension"), top.get("point"));
     let body =
@@ -104,7 +108,8 @@ pub(super) fn scene_file(top: &Table) -> Result<SceneFile, Error> {
         Some(Err(_)) => initial,
         None => None,
     };
-    let parts: [(&str, Add); 17] = [
+    let mut scene = devices.into_iter().fold(scene, Scene::shared_device);
+    let parts: [(&str, Add); 18] = [
         ("tie", tie::add_tie),
         ("touch", touch::add_touch),
         ("spring", surroundings::add_spring),
@@ -121,6 +126,7 @@ pub(super) fn scene_file(top: &Table) -> Result<SceneFile, Error> {
         ("liquid", liquid::add_liquid),
         ("pipe", liquid::add_pipe),
         ("fluid", fluid::add_fluid),
+        ("wind", device::add_wind),
         ("obstacle", obstacle::add_obstacle),
     ];
     for (key, add) in parts {

@@ -39,6 +39,7 @@ impl Scene {
         let dipole = self.dipoles.first().map(|dipole| dipole.name());
         let fluid = self.fluids.first().map(Fluid::name);
         let touch = self.touches.first().map(Touch::name);
+        let device = self.devices.first().map(|device| device.name());
         for (what, name) in [
             ("cable", cable),
             ("muscle", muscle),
@@ -47,6 +48,7 @@ impl Scene {
             ("dipole", dipole),
             ("fluid", fluid),
             ("touch", touch),
+            ("device", device),
         ] {
             name.map_or(Ok(()), |name| refuse(what, name))?;
         }

@@ -4,7 +4,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use super::input::{LoadKind, Quantity, Target};
-use super::{Phase, Scene};
+use super::{Device, Phase, Scene};
 use crate::base::input::{InputError, check_memory};
 use crate::elements::basis::Finer;
 use crate::elements::body::{Body, BodyBuilder, Part};
@@ -144,6 +144,9 @@ impl Scene {
             .iter()
             .map(|fluid| fluid.with_nodes(|nodes| change.extended(nodes)))
             .collect::<Result<_, _>>()?;
+        let nodes = |nodes: &Selection| change.extended(nodes);
+        let finer_device = |device: &Arc<dyn Device>| device.on_finer_mesh(&nodes);
+        scene.devices = self.devices.iter().map(finer_device).collect::<Result<_, _>>()?;
         scene.muscles = self
             .muscles
             .iter()

@@ -60,6 +60,7 @@ impl Scene {
             }
         }
         self.add_fluids(phase, &mut forces)?;
+        self.add_devices(phase, &mut forces)?;
         for contact in self.contacts(phase)? {
             forces.push(Arc::new(contact));
         }

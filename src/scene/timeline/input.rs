@@ -7,6 +7,7 @@
 use std::fmt;
 use std::sync::Arc;
 
+use super::device::DeviceInput;
 use crate::base::input::InputError;
 use crate::elements::body::Body;
 use crate::elements::force::Force;
@@ -38,6 +39,9 @@ pub(crate) enum Quantity {
     Field,
     /// Of a dipole, in place of the scene's.
     Dipole(DipolePart),
+    /// Of a device, which has the row.
+    #[cfg_attr(feature = "checkpoint", serde(skip))]
+    Device(&'static DeviceInput),
 }
 
 /// Reference of the value of a load: each node, all nodes together, or undeformed area.
@@ -149,6 +153,9 @@ impl Quantity {
             Self::Dipole(DipolePart::Moment) => {
                 row("moment of dipole", ["drive", "dipole"], "moment", "A m^2")
             }
+            Self::Device(&DeviceInput { word, unit, absent, is_scaled, .. }) => {
+                Row { absent, scales: is_scaled, ..row(word, ["set", "device"], word, unit) }
+            }
         }
     }
 
@@ -167,6 +174,13 @@ impl Quantity {
         match self {
             Self::Load(_) | Self::Field | Self::Dipole(_) => dimension,
             Self::Wrench(kind) => kind.rank(dimension),
+            Self::Device(input) => {
+                if input.is_vector {
+                    dimension
+                } else {
+                    1
+                }
+            }
             Self::Actuation | Self::Pressure | Self::Opening | Self::Flow => 1,
             Self::FacePressure => 1,
         }

@@ -3,6 +3,7 @@
 mod around;
 mod changed;
 mod contacts;
+mod device;
 mod dipole;
 mod early;
 mod finer;
@@ -35,6 +36,9 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 
 pub(crate) use contacts::ContactReader;
+pub use device::{
+    Device, DeviceGauge, DeviceInput, DeviceOutput, DeviceSignals, DeviceState, DeviceValue,
+};
 #[cfg(any(feature = "scene-file", feature = "study"))]
 pub(crate) use half::Half;
 #[cfg(feature = "scene-file")]
@@ -113,6 +117,7 @@ pub struct Scene {
     touches: Vec<Touch>,
     obstacles: Vec<Obstacle>,
     /// Other forces.
+    devices: Vec<Arc<dyn Device>>,
     forces: Forces,
     phases: Vec<Phase>,
     start: Start,
@@ -165,6 +170,7 @@ impl Scene {
             ties: Vec::new(),
             touches: Vec::new(),
             obstacles: Vec::new(),
+            devices: Vec::new(),
             forces: Forces::new(),
             phases: Vec::new(),
             unusual: Vec::new(),

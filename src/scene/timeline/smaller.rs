@@ -70,6 +70,7 @@ pub(super) fn check_known(scene: &Scene, model: &str, instead: &str) -> Result<(
         ("touches", scene.touches.len()),
         ("moments, followers and other inputs of phases", unknown_inputs.sum()),
         ("ties", scene.ties.len()),
+        ("devices", scene.devices.len()),
         ("forces that are not of this crate", scene.forces.len()),
         ("rigid materials", body.substances().filter(|made_of| made_of.is_rigid).count()),
         ("families of fibres", body.substances().map(|made_of| made_of.fibres.len()).sum()),

@@ -79,7 +79,7 @@ const everywhere = data.everywhere.map((name) => ({ name, largest: 0 }));
 /** The number of arrows on magnets: the key asks whether there are any. */
 const remanence = { length: data.arrows };
 /** The present, as the simulation told it last. */
-let frame = { time: 0, phase: 0, actuations: springs.map(() => 0), water: "", everywhere: [], remanence: "", colours: null };
+let frame = { time: 0, phase: 0, actuations: springs.map(() => 0), lines: "", everywhere: [], remanence: "", colours: null };
 let colouring = new Uint8Array(0);
 
 /** Points of the chart at most. */
@@ -152,8 +152,8 @@ function remanenceAt() {
 }
 
 /** The ends of the lines along which surfaces of liquids meet walls (m). */
-function waterAt() {
-  return singles(frame.water);
+function linesAt() {
+  return singles(frame.lines);
 }
 
 function phaseAt() {

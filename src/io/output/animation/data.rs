@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 
 use super::colours::{Fields, Quantity};
 use super::geometry::{Geometry, in_view};
-use super::{acting, contacts, dipoles, pack, water};
+use super::{acting, contacts, dipoles, lines, pack};
 use crate::base::input::InputError;
 use crate::dynamics::error::Error;
 use crate::dynamics::system::Energy;
@@ -55,7 +55,7 @@ pub(super) fn gather(trajectory: &Trajectory, name: &str) -> Result<Value, Error
         "dipoles": dipoles::tracks(trajectory, &frames)?,
         "everywhere": acting::everywhere(trajectory, &frames)?,
         "remanence": acting::arrows(trajectory, &frames, &remanence),
-        "water": water::tracks(trajectory, &frames)?,
+        "lines": lines::tracks(trajectory, &frames)?,
         "obstacles": obstacles_in(trajectory, &frames)?,
         "springs": springs(trajectory, &frames, &geometry, &ends)?,
         "points": geometry.places(&points),

@@ -4,7 +4,7 @@ use serde_json::{Value, json};
 
 use super::colours::{Fields, Quantity};
 use super::geometry::Geometry;
-use super::{STYLE, acting, data, dipoles, filled, pack, water};
+use super::{STYLE, acting, data, dipoles, filled, lines, pack};
 use crate::dynamics::error::Error;
 use crate::dynamics::simulate::View;
 use crate::dynamics::system::Energy;
@@ -24,7 +24,7 @@ const DRAWING: &str = concat!(
     include_str!("page/dipoles.js"),
     include_str!("page/arrow.js"),
     include_str!("page/acting.js"),
-    include_str!("page/water.js"),
+    include_str!("page/lines.js"),
     include_str!("page/stage.js"),
     include_str!("page/chart.js"),
     include_str!("page/sensors.js"),
@@ -106,8 +106,10 @@ impl Picture {
     }
 
     /// The ends of all lines along which surfaces of liquids meet walls (m), one after the other.
-    pub(crate) fn water(&self, view: &View) -> Value {
-        view.with_states(water::at)
+    pub(crate) fn lines(&self, view: &View) -> Value {
+        view.with_states(|scene, phase, motion, amounts| {
+            lines::at(scene, phase, view.time(), motion, amounts)
+        })
     }
 
     /// The positions (m) and the moments (A m^2) of all dipoles.

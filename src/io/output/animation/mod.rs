@@ -24,10 +24,10 @@ mod contacts;
 mod data;
 mod dipoles;
 mod geometry;
+mod lines;
 #[cfg(feature = "play")]
 mod live;
 mod pack;
-mod water;
 
 use std::fs;
 use std::path::Path;
@@ -78,7 +78,7 @@ const OF_EACH: &str = concat!(
     include_str!("page/contacts.js"),
     include_str!("page/dipoles.js"),
     include_str!("page/acting.js"),
-    include_str!("page/water.js"),
+    include_str!("page/lines.js"),
 );
 /// HTML before and after the data of a page.
 const DATA: [&str; 2] = ["<script type=\"application/json\" id=\"data\">", "</script>"];

@@ -30,8 +30,8 @@ pub(in crate::io::output) struct View {
     pub(super) obstacles: Vec<Vec<Outline>>,
     /// Places and moments of the dipoles of each panel.
     pub(super) dipoles: Vec<Vec<[Point; 2]>>,
-    /// Where surfaces of liquids meet walls in each panel.
-    pub(super) waterlines: Vec<Vec<[Point; 2]>>,
+    /// Surfaces of liquids and devices in each panel.
+    pub(super) lines: Vec<Vec<[Point; 2]>>,
 }
 
 impl View {
@@ -43,7 +43,7 @@ impl View {
             tops: Vec::new(),
             obstacles: samples.iter().map(|sample| outlines(trajectory, sample)).collect(),
             dipoles: samples.iter().map(|sample| dipoles(trajectory, sample)).collect(),
-            waterlines: samples.iter().map(|sample| waterlines(trajectory, sample)).collect(),
+            lines: samples.iter().map(|sample| lines(trajectory, sample)).collect(),
         };
         for sample in samples {
             let points = positions(trajectory, sample);
@@ -129,11 +129,14 @@ fn dipoles(trajectory: &Trajectory, sample: &Sample) -> Vec<[Point; 2]> {
     all.unwrap_or_default()
 }
 
-/// Lines along which surfaces of liquids meet walls at a sample (m).
-fn waterlines(trajectory: &Trajectory, sample: &Sample) -> Vec<[Point; 2]> {
+/// Lines along which surfaces of liquids meet walls at a sample (m), and those of devices.
+fn lines(trajectory: &Trajectory, sample: &Sample) -> Vec<[Point; 2]> {
     let d = trajectory.body().dimension();
     let all = trajectory.phase_of(sample).map(|phase| {
-        let lines = trajectory.scene().waterlines(phase, &sample.u, &sample.amounts).into_iter();
+        let Sample { time, u, v, amounts, .. } = sample;
+        let scene = trajectory.scene();
+        let devices = scene.device_lines(phase, *time, [u, v]);
+        let lines = scene.waterlines(phase, u, amounts).into_iter().chain(devices);
         lines.map(|line| line.map(|end| drawn(&end[..d]))).collect()
     });
     all.unwrap_or_default()

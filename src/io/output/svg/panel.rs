@@ -82,11 +82,11 @@ impl Panel<'_> {
         if !faces.is_empty() {
             panel = panel.add(surfaces(faces, line_width(body.mesh(), &points)));
         }
-        let water = &self.view.waterlines[self.number];
-        if !water.is_empty() {
+        let lines = &self.view.lines[self.number];
+        if !lines.is_empty() {
             let mut data = Data::default();
-            water.iter().for_each(|line| data.polyline(&self.placed(line), false));
-            let path = Path::new().set("class", "water").set("d", data.0).set("fill", "none");
+            lines.iter().for_each(|line| data.polyline(&self.placed(line), false));
+            let path = Path::new().set("class", "lines").set("d", data.0).set("fill", "none");
             panel = panel.add(path.set("stroke", "#0072b2").set("stroke-width", 1.5));
         }
         if !self.trajectory.scene().springs().is_empty() {

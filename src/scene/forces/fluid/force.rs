@@ -46,12 +46,12 @@ impl FluidForce {
     /// Each force (N) on a node, by what it does to the energy. Returns the power (W) by which a current carries bodies along.
     fn each(
         &self,
-        t: f64,
+        current: [f64; 3],
         u: &[f64],
         v: &[f64],
         mut see: impl FnMut(Kind, usize, [f64; 3]),
     ) -> f64 {
-        let (d, current) = (self.faces.dimension, self.current(t));
+        let d = self.faces.dimension;
         let mut power = 0.0;
         self.faces.each_point(u, |at| {
             let facing = at.facing();
@@ -85,10 +85,19 @@ impl FluidForce {
     /// The sum of its forces (N), on all nodes or those that `is_read` names.
     pub(crate) fn on(&self, t: f64, u: &[f64], v: &[f64], is_read: Option<&[bool]>) -> [f64; 3] {
         let mut sum = [0.0; 3];
-        self.each(t, u, v, |_, node, force| {
+        self.each(self.current(t), u, v, |_, node, force| {
             if is_read.is_none_or(|is_read| is_read[node]) {
                 sum.iter_mut().zip(force).for_each(|(sum, force)| *sum += force);
             }
+        });
+        sum
+    }
+
+    /// That sum on all nodes, in a current of this velocity (m/s).
+    pub(crate) fn in_current(&self, current: [f64; 3], u: &[f64], v: &[f64]) -> [f64; 3] {
+        let mut sum = [0.0; 3];
+        self.each(current, u, v, |_, _, force| {
+            sum.iter_mut().zip(force).for_each(|(sum, force)| *sum += force);
         });
         sum
     }
@@ -137,7 +146,7 @@ impl Force for FluidForce {
             finite_at(t, format_args!("{}", self.input), w)?;
         }
         let d = self.faces.dimension;
-        let power = self.each(t, u, v, |kind, node, force| {
+        let power = self.each(self.current(t), u, v, |kind, node, force| {
             let of_kind = match kind {
                 Kind::Closed => &mut forces.conservative,
                 Kind::Drag => &mut forces.dissipative,

@@ -19,7 +19,7 @@ const everywhere = data.everywhere.map(({ name, along: numbers }) => {
   return { name, along, largest: Math.max(...sizes) };
 });
 const remanence = singles(data.remanence);
-const water = data.water.map(singles);
+const lines = data.lines.map(singles);
 const springs = data.springs.map((spring) => ({ ...spring, forces: singles(spring.forces) }));
 
 function momentAt(time) {
@@ -71,8 +71,8 @@ function remanenceAt({ before, after, share }) {
 }
 
 /** The ends of the lines along which surfaces of liquids meet walls (m), at the sample at hand or, between two, at the next. */
-function waterAt({ before, after, share }) {
-  return water[share > 0 ? after : before] ?? [];
+function linesAt({ before, after, share }) {
+  return lines[share > 0 ? after : before] ?? [];
 }
 
 /** The phase at `time`; its end belongs to it. */

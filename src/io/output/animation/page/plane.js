@@ -55,7 +55,7 @@ function drawPlane(sheet, moment, quantity) {
   const [xs, ys] = positionsAt(moment);
   const points = { xs: xs.map(layout.x), ys: ys.map(layout.y) };
   drawBody(context, layout, points, moment, quantity);
-  drawWater(context, ([x, y]) => [layout.x(x), layout.y(y)], moment);
+  drawLines(context, ([x, y]) => [layout.x(x), layout.y(y)], moment);
   drawSprings(context, points, moment);
   drawMarks(context, points, phaseAt(moment.time), () => true);
   const place = ([x, y]) => [layout.x(x), layout.y(y)];

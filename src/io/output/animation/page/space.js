@@ -51,7 +51,7 @@ function drawSpace(sheet, moment, quantity) {
   obstacles.sort((a, b) => b.depth - a.depth);
   for (const obstacle of obstacles) if (obstacle.depth >= depth) obstacle.draw(context, 1);
   const seen = drawSurface(context, eye, points, position, moment, quantity);
-  drawWater(context, eye.place, moment);
+  drawLines(context, eye.place, moment);
   drawSprings(context, points, moment);
   drawMarks(context, points, phaseAt(moment.time), (node) => seen[node]);
   for (const obstacle of obstacles) if (obstacle.depth < depth) obstacle.draw(context, 0.45);

@@ -1,7 +1,7 @@
-// Surfaces of liquids: lines along which they meet the walls.
+// Lines beside the bodies: where surfaces of liquids meet the walls, and devices.
 
-function drawWater(context, place, moment) {
-  const ends = waterAt(moment);
+function drawLines(context, place, moment) {
+  const ends = linesAt(moment);
   context.beginPath();
   for (let end = 0; end < ends.length; end += axes) {
     const [x, y] = place(ends.slice(end, end + axes));

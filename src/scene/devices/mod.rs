@@ -1,0 +1,5 @@
+//! The devices of this crate, each in one file: what [`Device`](crate::Device) asks for, by the means that any other crate has.
+
+mod wind;
+
+pub use wind::Wind;
