@@ -401,7 +401,7 @@ struct Hermite {
 }
 
 impl Hermite {
-    /// At the part `s` of a step of size `h`.
+    /// At the fraction `s` of a step of size `h`.
     fn new(s: f64, h: f64) -> Self {
         let r = 1.0 - s;
         Self {

@@ -64,7 +64,7 @@ impl ExplicitOptions {
         Self { tolerances: Tolerances::new(rtol, atol), steps: StepOptions::default() }
     }
 
-    step_options!();
+    step_options!(steps);
 
     pub(crate) fn check(&self, y0: &[f64]) -> Result<(), InputError> {
         self.tolerances.check(y0)?;

@@ -142,7 +142,7 @@ impl JacobianCheck {
             sizes.for_each(|(size, product)| *size += product.abs());
         }
         for half in [0, 1] {
-            // small terms of a row show in the direction that leaves out the largest one
+            // small terms of a row show in the direction that omits the largest one
             self.random = seed;
             self.choose_direction(y, half);
             if self.direction.iter().all(|v| *v == 0.0) {

@@ -30,25 +30,25 @@ impl StepOptions {
     }
 }
 
-/// Builder methods for the field `steps`, a [`StepOptions`].
+/// Builder methods for a field that is a [`StepOptions`].
 macro_rules! step_options {
-    () => {
+    ($($field:ident).+) => {
         /// Size of the first step; negative when integrating backwards. Default: estimated.
         pub fn initial_step(mut self, h: f64) -> Self {
-            self.steps.initial_step = Some(h);
+            self.$($field).+.initial_step = Some(h);
             self
         }
 
         /// Upper bound of |step size|, for systems with short pulses that a long step would not see.
         /// Default: none, which is infinity.
         pub fn max_step(mut self, h: f64) -> Self {
-            self.steps.max_step = (h != f64::INFINITY).then_some(h);
+            self.$($field).+.max_step = (h != f64::INFINITY).then_some(h);
             self
         }
 
         /// Steps allowed in one call of `solve_to`. Default: 100,000.
         pub fn max_steps(mut self, steps: u32) -> Self {
-            self.steps.max_steps = steps;
+            self.$($field).+.max_steps = steps;
             self
         }
     };

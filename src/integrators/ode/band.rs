@@ -15,11 +15,11 @@ pub struct BandMut<'a> {
 }
 
 impl<'a> BandMut<'a> {
-    /// A view of `data`: columns of `stride` numbers each, the diagonal entry at place `diagonal`
+    /// A view of `data`: columns of `stride` numbers each, the diagonal entry at index `diagonal`
     /// of its column.
     ///
     /// # Panics
-    /// If a column has no room for the band.
+    /// If a column is too short for the band.
     #[must_use]
     pub fn new(
         data: &'a mut [f64],

@@ -108,7 +108,7 @@ pub trait Dae {
         Err(missing("quadratures"))
     }
 
-    /// Writes the residual of the sensitivity s = dy/dp of a parameter p, given by its place among the
+    /// Writes the residual of the sensitivity s = dy/dp of a parameter p, given by its index among the
     /// [`parameters`](Self::parameters), into `residual` (zero on entry): (dF/dy) s + (dF/dy') s' + dF/dp.
     /// `sp` is s'.
     #[allow(clippy::too_many_arguments)] // two states, two sensitivities

@@ -16,6 +16,15 @@ pub(crate) enum Entries<'a> {
 }
 
 impl Entries<'_> {
+    /// Sets entry (row, column), whose position among the values of a pattern is `position`.
+    pub(crate) fn set(&mut self, entry: (usize, usize), position: usize, value: f64) {
+        match self {
+            Self::Dense(matrix) => matrix[entry] = value,
+            Self::Band(band) => band[entry] = value,
+            Self::Sparse(values) => values[position] = value,
+        }
+    }
+
     /// Lets the system write df/dy.
     pub(crate) fn jacobian(
         self,

@@ -93,7 +93,7 @@ pub trait Ode {
     /// As [`rhs`](Self::rhs), for the residual y - y0 - gamma f(t, y) of an implicit step, if
     /// [`newton_solve`](Self::newton_solve) solves its linear systems.
     ///
-    /// Terms that are left out here have to be added by `newton_solve` to its right-hand side, times `gamma`.
+    /// Terms that are omitted here have to be added by `newton_solve` to its right-hand side, times `gamma`.
     /// So M y' = f need not be solved for y' in each iteration: where M is a part of the matrix anyway, the
     /// right-hand side is M r + gamma f. Default: all of `rhs`.
     fn newton_rhs(&mut self, t: f64, y: &[f64], ydot: &mut [f64]) -> Result<(), Failure> {
@@ -184,7 +184,7 @@ pub trait Ode {
         Err(missing("quadratures"))
     }
 
-    /// Writes the right-hand side of the sensitivity s = dy/dp of a parameter p, given by its place among the
+    /// Writes the right-hand side of the sensitivity s = dy/dp of a parameter p, given by its index among the
     /// [`parameters`](Self::parameters), into `sdot` (zero on entry): (df/dy) s + df/dp. `ydot` is f(t, y).
     fn sensitivity_rhs(
         &mut self,

@@ -62,7 +62,7 @@ where
 
     fn explicit_rhs(&mut self, t: f64, y: &[f64], ydot: &mut [f64]) -> Result<(), Failure> {
         if self.system.is_split() {
-            return Err(Failure::Fatal("what is split has no place in `split`".into()));
+            return Err(Failure::Fatal("the stiff part of `split` is itself split".into()));
         }
         (self.explicit)(t, y, ydot)
     }

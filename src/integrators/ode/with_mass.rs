@@ -40,7 +40,7 @@ impl From<Mat<f64>> for MassMatrix {
 }
 
 impl MassMatrix {
-    /// Checks that the `actual` number of entries is the `expected` one, for which the integrator has room.
+    /// Checks that the `actual` number of entries is the `expected` one, for which the integrator has storage.
     fn check(&self, actual: usize, expected: usize) -> Result<(), Failure> {
         let what = match self {
             Self::Diagonal(_) => "numbers on its diagonal",

@@ -19,7 +19,7 @@ pub(super) const A5: [f64; 4] =
 pub(super) const A6: [f64; 5] =
     [9017.0 / 3168.0, -355.0 / 33.0, 46732.0 / 5247.0, 49.0 / 176.0, -5103.0 / 18656.0];
 
-// The weights that follow leave out stage 2, whose weight is zero in all of them: the entries
+// The weights that follow omit stage 2, whose weight is zero in all of them: the entries
 // belong to stages 1, 3, 4, 5, 6 and, where there is a sixth, 7.
 
 /// Solution of order 5.

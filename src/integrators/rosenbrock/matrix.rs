@@ -9,15 +9,27 @@ use faer::{Mat, MatMut, Par, Spec};
 
 use crate::integrators::common::{Error, Tolerances};
 use crate::integrators::ode::{Failure, Ode, call};
-use crate::integrators::sundials::{self, Jacobian, LinearSolver, NewtonMatrix};
+use crate::integrators::sundials::{self, Differences, LinearSolver, StoredMatrix};
 
 /// J and the factors of I - gamma h J.
-#[derive(Debug)]
-pub(super) enum Matrix {
+pub(super) struct Matrix {
+    jacobian: StoredMatrix,
+    /// None if the system supplies J.
+    differences: Option<Differences>,
+    factors: Factors,
+}
+
+enum Factors {
     /// By faer, whose factorization of a large dense matrix is the faster one.
     Dense(Box<Dense>),
     /// Sparse, or of band form.
-    Stored(Box<NewtonMatrix>),
+    Sundials(Box<sundials::Factors>),
+}
+
+impl fmt::Debug for Matrix {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Matrix").field("jacobian", &self.jacobian).finish_non_exhaustive()
+    }
 }
 
 impl Matrix {
@@ -28,13 +40,16 @@ impl Matrix {
         tolerances: &Tolerances,
     ) -> Result<Option<Self>, Error> {
         solver.check(n)?;
-        Ok(match solver {
-            LinearSolver::Custom => None,
-            LinearSolver::Dense(_) => {
-                Some(Self::Dense(Box::new(Dense::new(solver, n, tolerances))))
-            }
-            _ => Some(Self::Stored(Box::new(NewtonMatrix::new(solver, n, tolerances)?))),
-        })
+        let factors = match solver {
+            LinearSolver::Custom => return Ok(None),
+            LinearSolver::Dense(_) => Factors::Dense(Box::new(Dense::new(n))),
+            _ => Factors::Sundials(Box::new(sundials::Factors::new(solver, n)?)),
+        };
+        let differences = match solver.takes_quotients() {
+            true => Differences::of_ode(solver, n, tolerances, &[]),
+            false => None,
+        };
+        Ok(Some(Self { jacobian: StoredMatrix::new(solver, n), differences, factors }))
     }
 
     /// Evaluates J at (t, y), where `at` is y and f(t, y). Returns how often f was evaluated.
@@ -42,88 +57,62 @@ impl Matrix {
         &mut self,
         system: &mut S,
         t: f64,
-        at: [&[f64]; 2],
+        [y, slope]: [&[f64]; 2],
     ) -> Result<u64, Failure> {
-        match self {
-            Self::Dense(dense) => dense.update(system, t, at),
-            Self::Stored(stored) => stored.update(system, t, at),
-        }
+        let Some(differences) = &mut self.differences else {
+            return self.jacobian.entries().jacobian(system, t, y, slope).map(|()| 0);
+        };
+        let before = differences.evaluations;
+        let values = self.jacobian.values_mut();
+        differences.of_rhs(y, slope, values, &mut |y, ydot| call::rhs(system, t, y, ydot))?;
+        Ok(differences.evaluations - before)
     }
 
     /// The first number of J that is not finite, column by column, with its place.
     pub(super) fn not_finite(&self) -> Option<(usize, f64)> {
-        let values = match self {
-            Self::Dense(dense) => &dense.jacobian,
-            Self::Stored(stored) => stored.values(),
-        };
+        let values = self.jacobian.values();
         let place = values.iter().position(|value| !value.is_finite())?;
         Some((place, values[place]))
     }
 
     /// Writes the product of J with `v`.
     pub(super) fn multiply(&self, v: &[f64], out: &mut [f64]) {
-        match self {
-            Self::Dense(dense) => {
-                out.fill(0.0);
-                for (column, v) in dense.jacobian.chunks_exact(v.len()).zip(v) {
-                    out.iter_mut().zip(column).for_each(|(out, entry)| *out += entry * v);
-                }
-            }
-            Self::Stored(stored) => stored.multiply(v, out),
-        }
+        self.jacobian.multiply(v, out);
     }
 
     /// Factorizes I - gamma J; `false` if it is singular.
     pub(super) fn factorize(&mut self, gamma: f64) -> bool {
-        match self {
-            Self::Dense(dense) => dense.factorize(gamma),
-            Self::Stored(stored) => stored.factorize(gamma),
+        match &mut self.factors {
+            Factors::Dense(dense) => dense.factorize(self.jacobian.values(), gamma),
+            Factors::Sundials(factors) => factors.factorize(&self.jacobian, gamma),
         }
     }
 
     /// Replaces `r` by the solution; returns whether there is one.
     pub(super) fn solve(&mut self, r: &mut [f64]) -> bool {
-        match self {
-            Self::Dense(dense) => {
+        match &mut self.factors {
+            Factors::Dense(dense) => {
                 dense.solve(r);
                 true
             }
-            Self::Stored(stored) => stored.solve(r),
+            Factors::Sundials(factors) => factors.solve(r),
         }
     }
 }
 
-/// A dense matrix.
-pub(super) struct Dense {
-    /// Column by column.
-    jacobian: Vec<f64>,
-    /// None if the system supplies it.
-    differences: Option<sundials::Differences>,
+/// The factors of a dense matrix.
+struct Dense {
     factors: Mat<f64>,
     forward: Vec<usize>,
     inverse: Vec<usize>,
     memory: MemBuffer,
 }
 
-impl fmt::Debug for Dense {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Dense").field("jacobian", &self.jacobian).finish_non_exhaustive()
-    }
-}
-
 impl Dense {
-    fn new(solver: &LinearSolver, n: usize, tolerances: &Tolerances) -> Self {
+    fn new(n: usize) -> Self {
         let scratch = factor::lu_in_place_scratch::<usize, f64>(n, n, Par::Seq, Spec::default())
             .or(solve::solve_in_place_scratch::<usize, f64>(n, 1, Par::Seq));
-        let differences = match solver {
-            LinearSolver::Dense(Jacobian::DifferenceQuotients) => {
-                sundials::Differences::of_ode(solver, n, tolerances, &[])
-            }
-            _ => None,
-        };
         Self {
-            jacobian: vec![0.0; n * n],
-            differences,
             factors: Mat::zeros(n, n),
             forward: vec![0; n],
             inverse: vec![0; n],
@@ -131,28 +120,11 @@ impl Dense {
         }
     }
 
-    fn update<S: Ode>(
-        &mut self,
-        system: &mut S,
-        t: f64,
-        [y, slope]: [&[f64]; 2],
-    ) -> Result<u64, Failure> {
-        let (n, values) = (y.len(), &mut self.jacobian);
-        let Some(differences) = &mut self.differences else {
-            values.fill(0.0);
-            let matrix = MatMut::from_column_major_slice_mut(values, n, n);
-            return system.dense_jacobian(t, y, slope, matrix).map(|()| 0);
-        };
-        let before = differences.evaluations;
-        differences.of_rhs(y, slope, values, &mut |y, ydot| call::rhs(system, t, y, ydot))?;
-        Ok(differences.evaluations - before)
-    }
-
-    fn factorize(&mut self, gamma: f64) -> bool {
+    fn factorize(&mut self, jacobian: &[f64], gamma: f64) -> bool {
         let n = self.forward.len();
         for j in 0..n {
             let column = self.factors.col_as_slice_mut(j);
-            for (entry, slope) in column.iter_mut().zip(&self.jacobian[j * n..][..n]) {
+            for (entry, slope) in column.iter_mut().zip(&jacobian[j * n..][..n]) {
                 *entry = -gamma * slope;
             }
             column[j] += 1.0;

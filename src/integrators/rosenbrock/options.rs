@@ -2,7 +2,7 @@
 
 use super::tableau::{RODASP2, ROS34PW2, Tableau};
 use crate::base::input::InputError;
-use crate::integrators::common::{AbsoluteTolerance, ExplicitOptions};
+use crate::integrators::common::{AbsoluteTolerance, ExplicitOptions, step_options};
 use crate::integrators::sundials::{Jacobian, LinearSolver};
 
 /// Tolerances, method and limits of a [`Rosenbrock`](super::Rosenbrock).
@@ -18,7 +18,7 @@ use crate::integrators::sundials::{Jacobian, LinearSolver};
 #[must_use]
 pub struct Options {
     /// Tolerances and step sizes.
-    pub(super) forward: ExplicitOptions,
+    pub(crate) forward: ExplicitOptions,
     pub(super) order: u32,
     pub(super) solver: LinearSolver,
     pub(super) trusts_jacobian: bool,
@@ -87,23 +87,7 @@ impl Options {
         self
     }
 
-    /// Size of the first step. Default: estimated.
-    pub fn initial_step(mut self, h: f64) -> Self {
-        self.forward = self.forward.initial_step(h);
-        self
-    }
-
-    /// Upper bound of the step size. Default: none, which is infinity.
-    pub fn max_step(mut self, h: f64) -> Self {
-        self.forward = self.forward.max_step(h);
-        self
-    }
-
-    /// Steps allowed in one call of `solve_to`. Default: 100,000.
-    pub fn max_steps(mut self, steps: u32) -> Self {
-        self.forward = self.forward.max_steps(steps);
-        self
-    }
+    step_options!(forward.steps);
 
     /// The method of that order.
     pub(super) fn tableau(&self) -> Result<&'static Tableau, InputError> {

@@ -177,7 +177,7 @@ impl StepMethod for LinearlyImplicit {
     }
 }
 
-/// The dense output at the part `theta` of a step.
+/// The dense output at the fraction `theta` of a step.
 pub(super) fn interpolate(ends: [&[f64]; 2], bends: &[Vec<f64>; 2], theta: f64, out: &mut [f64]) {
     let ([start, end], [p, q], rest) = (ends, bends, 1.0 - theta);
     for (i, out) in out.iter_mut().enumerate() {

@@ -3,9 +3,9 @@
 //! The stages are solved for in the form without products with the Jacobian: `newton_rhs` and `newton_solve`
 //! of a system serve as they do for ARKODE, and except for the first slope no stage solves a system with M.
 //! df/dt is a difference quotient. The matrix is that of the system, a dense one, or a band or sparse one of
-//! `integrators/sundials/newton_matrix.rs`.
+//! `integrators/sundials/factors.rs`.
 //!
-//! Unknowns that are integrals (`Ode::integrals`), such as the energies of bodies, are left out of the error
+//! Unknowns that are integrals (`Ode::integrals`), such as the energies of bodies, are omitted from the error
 //! test and follow by Simpson's rule from their rates at both ends and in the middle of the step. In the
 //! Newton system their row is quadratic, which is right for an iteration and wrong for a single solve.
 

@@ -1,6 +1,6 @@
 //! Discontinuities of a run: events, breaks, and the jumps at both.
 //!
-//! Where an action changes something, the step ends there and the integrator starts anew. A break ends a step
+//! Where an action changes something, the step ends there and the integrator restarts. A break ends a step
 //! at the last floating-point number before it, so that equations which test `t < break` are on the left side
 //! up to there, and on the right side from the new start on.
 
@@ -127,7 +127,7 @@ impl<'a> Run<'a> {
     /// That is judged over the shortest time in which the function changes by more than noise.
     fn leads_back(&mut self, i: usize, turn: Turn) -> Result<bool, Reason> {
         // the present y' of a DAE is that of the step's polynomial, or accurate only for a step as short as
-        // the last: consistent values are sought anew from zero, on the scale of the span
+        // the last: consistent values are sought again from zero, on the scale of the span
         let (mut y, mut slope) = (self.y.clone(), vec![0.0; self.yp.len()]);
         let start = Start { t: self.t, y: &mut y, yp: &mut slope, s: None };
         if self.engine.correct(start, self.span.1).is_err() || !self.engine.can_be_consistent() {

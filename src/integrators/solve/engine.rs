@@ -4,10 +4,10 @@ use faer::{MatMut, MatRef};
 
 use crate::integrators::{
     common::{Error, Integrator, Reached, Statistics},
-    ode::{Borrowed, Dae, Failure, Ode, call},
+    ode::{Borrowed, Dae, Failure, Ode, call, delegate::delegate},
     rk::DormandPrince,
     rosenbrock::Rosenbrock,
-    sundials::{Arkode, Cvode, Ida, IdaOptions, InitialCondition},
+    sundials::{Arkode, Ida, IdaOptions, InitialCondition, Solver, WithSensitivities},
 };
 
 /// An integrator, whatever its kind and its system.
@@ -28,13 +28,11 @@ pub(super) trait Engine {
     /// Writes the right-hand side of an ODE; does nothing for a DAE, whose slope is known already.
     fn slope(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<(), Failure>;
     /// Writes the sensitivities at `t`, within the last step.
-    fn interpolate_sensitivities(&mut self, t: f64, out: MatMut<'_, f64>) -> Result<(), Error>;
-    /// Number of integrals.
-    fn quadrature_count(&self) -> usize;
+    fn sensitivities_at(&mut self, t: f64, out: MatMut<'_, f64>) -> Result<(), Error>;
     /// Writes the integrals from the last start to `t`, within the last step.
-    fn interpolate_quadratures(&mut self, t: f64, out: &mut [f64]) -> Result<(), Error>;
+    fn quadratures_at(&mut self, t: f64, out: &mut [f64]) -> Result<(), Error>;
     /// Sets the initial sensitivities to `s`, after a new start.
-    fn set_sensitivities(&mut self, s: MatRef<'_, f64>) -> Result<(), Error>;
+    fn start_sensitivities(&mut self, s: MatRef<'_, f64>) -> Result<(), Error>;
     /// Corrects the start before the first step, as far as that is allowed, so that it and its sensitivities
     /// satisfy the equations.
     fn make_consistent(&mut self, _towards: f64) -> Result<(), Error> {
@@ -77,32 +75,20 @@ pub(super) struct DaeEngine<S> {
 
 macro_rules! forward {
     () => {
-        fn t(&self) -> f64 {
-            self.integrator.t()
-        }
-
-        fn y(&self) -> &[f64] {
-            self.integrator.y()
-        }
-
-        fn step(&mut self, towards: f64) -> Result<Reached, Error> {
-            self.integrator.step(towards)
+        delegate! { @methods [integrator]
+            fn t() -> f64;
+            fn y() -> &[f64];
+            fn step(towards: f64) -> Result<Reached, Error>;
+            fn interpolate(t: f64, derivative: u32, out: &mut [f64]) -> Result<(), Error>;
+            fn interpolant_degree() -> u32;
+            fn statistics() -> Statistics;
+            fn sensitivities_at(t: f64, out: MatMut<'_, f64>) -> Result<(), Error>;
+            fn start_sensitivities(s: MatRef<'_, f64>) -> Result<(), Error>;
+            fn quadratures_at(t: f64, out: &mut [f64]) -> Result<(), Error>;
         }
 
         fn set_stop_time(&mut self, t: f64) -> Result<(), Error> {
             self.integrator.set_stop_time(Some(t))
-        }
-
-        fn interpolate(&mut self, t: f64, derivative: u32, out: &mut [f64]) -> Result<(), Error> {
-            self.integrator.interpolate(t, derivative, out)
-        }
-
-        fn interpolant_degree(&self) -> u32 {
-            self.integrator.interpolant_degree()
-        }
-
-        fn statistics(&self) -> Statistics {
-            self.integrator.statistics()
         }
 
         fn parameters(&self) -> &[f64] {
@@ -115,77 +101,57 @@ macro_rules! forward {
     };
 }
 
-/// Sensitivities and integrals of integrators that compute them.
-macro_rules! with_sensitivities {
-    () => {
-        fn interpolate_sensitivities(&mut self, t: f64, out: MatMut<'_, f64>) -> Result<(), Error> {
-            self.integrator.interpolate_sensitivities(t, 0, out)
-        }
+/// Sensitivities and integrals; an integrator without them writes nothing.
+pub(super) trait Extras {
+    fn sensitivities_at(&mut self, _: f64, _: MatMut<'_, f64>) -> Result<(), Error> {
+        Ok(())
+    }
 
-        fn set_sensitivities(&mut self, s: MatRef<'_, f64>) -> Result<(), Error> {
-            self.integrator.set_sensitivities(s)
-        }
+    fn start_sensitivities(&mut self, _: MatRef<'_, f64>) -> Result<(), Error> {
+        Ok(())
+    }
 
-        fn quadrature_count(&self) -> usize {
-            self.integrator.system().quadrature_count()
-        }
-
-        fn interpolate_quadratures(&mut self, t: f64, out: &mut [f64]) -> Result<(), Error> {
-            self.integrator.interpolate_quadratures(t, 0, out)
-        }
-    };
+    fn quadratures_at(&mut self, _: f64, _: &mut [f64]) -> Result<(), Error> {
+        Ok(())
+    }
 }
 
-/// The same for integrators without them: nothing is written.
-macro_rules! without_sensitivities {
-    () => {
-        fn interpolate_sensitivities(&mut self, _: f64, _: MatMut<'_, f64>) -> Result<(), Error> {
-            Ok(())
-        }
+impl<S> Extras for Arkode<S> {}
+impl<S> Extras for DormandPrince<S> {}
+impl<S> Extras for Rosenbrock<S> {}
 
-        fn set_sensitivities(&mut self, _: MatRef<'_, f64>) -> Result<(), Error> {
-            Ok(())
-        }
+impl<K: WithSensitivities, S> Extras for Solver<K, S> {
+    fn sensitivities_at(&mut self, t: f64, out: MatMut<'_, f64>) -> Result<(), Error> {
+        self.interpolate_sensitivities(t, 0, out)
+    }
 
-        fn quadrature_count(&self) -> usize {
-            0
-        }
+    fn start_sensitivities(&mut self, s: MatRef<'_, f64>) -> Result<(), Error> {
+        self.set_sensitivities(s)
+    }
 
-        fn interpolate_quadratures(&mut self, _: f64, _: &mut [f64]) -> Result<(), Error> {
-            Ok(())
-        }
-    };
+    fn quadratures_at(&mut self, t: f64, out: &mut [f64]) -> Result<(), Error> {
+        self.interpolate_quadratures(t, 0, out)
+    }
 }
 
-macro_rules! ode_engine {
-    ($integrator:ident, $sensitivities:ident) => {
-        impl<S: Ode> Engine for OdeEngine<$integrator<S>> {
-            forward!();
-            $sensitivities!();
+impl<I: Integrator<System: Ode> + Extras> Engine for OdeEngine<I> {
+    forward!();
 
-            fn yp(&self) -> &[f64] {
-                &[]
-            }
+    fn yp(&self) -> &[f64] {
+        &[]
+    }
 
-            fn slope(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<(), Failure> {
-                call::rhs(self.integrator.system_mut(), t, y, out)
-            }
+    fn slope(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<(), Failure> {
+        call::rhs(self.integrator.system_mut(), t, y, out)
+    }
 
-            fn restart(&mut self, t: f64, y: &[f64], _: &[f64]) -> Result<(), Error> {
-                self.integrator.reinit(t, y)
-            }
-        }
-    };
+    fn restart(&mut self, t: f64, y: &[f64], _: &[f64]) -> Result<(), Error> {
+        self.integrator.reinit(t, y)
+    }
 }
-
-ode_engine!(Cvode, with_sensitivities);
-ode_engine!(Arkode, without_sensitivities);
-ode_engine!(DormandPrince, without_sensitivities);
-ode_engine!(Rosenbrock, without_sensitivities);
 
 impl<S: Dae> Engine for DaeEngine<S> {
     forward!();
-    with_sensitivities!();
 
     fn yp(&self) -> &[f64] {
         self.integrator.yp()

@@ -3,7 +3,7 @@
 use super::{
     error::Reason,
     event::{Jump, check_crosses, check_landed},
-    history::{Act, HistoryPart, Passage, Place, follow},
+    history::{Act, HistoryPart, Passage, Snapshot, follow},
     method::Method,
     options::Options,
     problem::{Equations, Problem},
@@ -152,7 +152,7 @@ impl<F: Functional> Functional for Piece<'_, F> {
 
 impl<F: Functional> BackwardRun<'_, '_, F> {
     /// From the end to the start.
-    fn gradient(&mut self, parts: &[HistoryPart], end: &Place) -> Result<Gradient, Reason> {
+    fn gradient(&mut self, parts: &[HistoryPart], end: &Snapshot) -> Result<Gradient, Reason> {
         let start = Gradient::at_end(&mut self.functional, end.t, &end.y, &end.p);
         let start = start.map_err(|failure| unknown("terminal functional", failure))?;
         let mut gradient = start.check()?;
@@ -165,15 +165,20 @@ impl<F: Functional> BackwardRun<'_, '_, F> {
         Ok(gradient)
     }
 
-    /// Integrates backward from the time `to` to the place `from`.
-    fn integrate(&mut self, from: &Place, to: f64, gradient: &mut Gradient) -> Result<(), Reason> {
+    /// Integrates backward from the time `to` to the state `from`.
+    fn integrate(
+        &mut self,
+        from: &Snapshot,
+        to: f64,
+        gradient: &mut Gradient,
+    ) -> Result<(), Reason> {
         if from.t == to {
             return Ok(());
         }
         let Self { problem, functional, method, span, options, back } = self;
         let piece = Piece { functional, lambda: &gradient.initial_state };
         let sign = (span.1 - span.0).signum();
-        let Place { t, y, yp, p } = from;
+        let Snapshot { t, y, yp, p } = from;
         problem.equations.set_parameters(p);
         let max_steps = u32::try_from(options.max_steps).unwrap_or(u32::MAX);
         let part = match &mut problem.equations {
@@ -232,7 +237,7 @@ impl<F: Functional> BackwardRun<'_, '_, F> {
     /// the jump.
     fn gain_of_time(&mut self, passage: &Passage, gradient: &Gradient) -> Result<f64, Reason> {
         let Passage { before, after, ends, .. } = passage;
-        let mut running = |at: &Place| {
+        let mut running = |at: &Snapshot| {
             let h = self.functional.running(at.t, &at.y, &at.p, None);
             h.map_err(|failure| unknown("functional at a jump", failure))
         };
@@ -253,7 +258,7 @@ impl<F: Functional> BackwardRun<'_, '_, F> {
     }
 
     /// The time derivative of the state.
-    fn slope(&mut self, at: &Place) -> Result<Vec<f64>, Reason> {
+    fn slope(&mut self, at: &Snapshot) -> Result<Vec<f64>, Reason> {
         let mut slope = at.yp.clone();
         if let Equations::Ode(system) = &mut self.problem.equations {
             slope.resize(at.y.len(), 0.0);
@@ -270,7 +275,7 @@ impl<F: Functional> BackwardRun<'_, '_, F> {
         &mut self,
         passage: &Passage,
         size: f64,
-        shift: impl Fn(&mut Place, f64),
+        shift: impl Fn(&mut Snapshot, f64),
     ) -> Vec<f64> {
         let distance = f64::EPSILON.cbrt() * size;
         let mut landed = |distance: f64| {
@@ -281,7 +286,7 @@ impl<F: Functional> BackwardRun<'_, '_, F> {
             let g = function.map_or(0.0, |g| g(place.t, &place.y, &place.p));
             // an action that reads these gets NaN: the differences would miss how they change
             place.yp.fill(f64::NAN);
-            let Place { t, mut y, mut yp, mut p } = place;
+            let Snapshot { t, mut y, mut yp, mut p } = place;
             let mut jump = Jump { t, y: &mut y, yp: &mut yp, p: &mut p, ends: false };
             for act in &passage.acts {
                 let action = match *act {
@@ -299,7 +304,7 @@ impl<F: Functional> BackwardRun<'_, '_, F> {
     }
 
     /// The time in which the state changes by its size.
-    fn unit_of_time(&self, at: &Place, slope: &[f64]) -> f64 {
+    fn unit_of_time(&self, at: &Snapshot, slope: &[f64]) -> f64 {
         self.options.tolerances.reach(&at.y, slope, (self.span.1 - self.span.0).abs())
     }
 }

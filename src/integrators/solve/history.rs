@@ -15,7 +15,7 @@ use crate::integrators::ode::Borrowed;
 
 /// A time, the state there, its time derivative (of a DAE), and the parameters of the equations.
 #[derive(Clone)]
-pub(super) struct Place {
+pub(super) struct Snapshot {
     pub(super) t: f64,
     pub(super) y: Vec<f64>,
     pub(super) yp: Vec<f64>,
@@ -24,9 +24,9 @@ pub(super) struct Place {
 
 /// One part of a solution.
 pub(super) enum HistoryPart {
-    /// From a place to a time, without a jump.
+    /// From a state to a time, without a jump.
     Smooth {
-        from: Place,
+        from: Snapshot,
         to: f64,
     },
     Jump(Passage),
@@ -40,8 +40,8 @@ pub(super) struct Passage {
     pub(super) crosses: bool,
     /// The actions, in this order.
     pub(super) acts: Vec<Act>,
-    pub(super) before: Place,
-    pub(super) after: Place,
+    pub(super) before: Snapshot,
+    pub(super) after: Snapshot,
     /// Whether the solution ends with it.
     pub(super) ends: bool,
 }
@@ -59,7 +59,7 @@ impl Act {
     }
 }
 
-impl Place {
+impl Snapshot {
     fn of(run: &Run<'_>) -> Self {
         let (y, yp) = (run.y().to_vec(), run.yp().to_vec());
         Self { t: run.t(), y, yp, p: run.parameters().to_vec() }
@@ -67,10 +67,10 @@ impl Place {
 }
 
 /// The problem lent to a run, with actions that record where they are called.
-fn lend<'b>(problem: &'b mut Problem<'_>, log: &'b RefCell<Vec<(Act, Place)>>) -> Problem<'b> {
+fn lend<'b>(problem: &'b mut Problem<'_>, log: &'b RefCell<Vec<(Act, Snapshot)>>) -> Problem<'b> {
     let note = move |act: Act, jump: &Jump<'_>| {
         let (y, yp, p) = (jump.y.to_vec(), jump.yp.to_vec(), jump.p.to_vec());
-        log.borrow_mut().push((act, Place { t: jump.t, y, yp, p }));
+        log.borrow_mut().push((act, Snapshot { t: jump.t, y, yp, p }));
     };
     let events = problem.events.iter_mut().enumerate().map(|(i, event)| {
         let Event { function, direction, last, action, samples, touching, .. } = event;
@@ -114,18 +114,18 @@ pub(super) fn follow(
     method: Method,
     span: (f64, f64),
     options: &Options,
-) -> Result<(Vec<HistoryPart>, Place), Reason> {
+) -> Result<(Vec<HistoryPart>, Snapshot), Reason> {
     let log = RefCell::new(Vec::new());
     let mut run = Run::new(lend(problem, &log), method, span, options)?;
     let mut parts = Vec::new();
-    let mut from = Place::of(&run);
+    let mut from = Snapshot::of(&run);
     while let Some(step) = run.advance()? {
         let touched: Vec<_> =
             step.events.iter().filter(|at| at.sign == 0).map(|at| at.event).collect();
         let noted = log.take();
         let Some((act, first)) = noted.first() else { continue };
         let to = if act.is_of_event() { first.t } else { run.just_before(first.t) };
-        let here = Place::of(&run);
+        let here = Snapshot::of(&run);
         parts.push(HistoryPart::Smooth { from, to });
         let mut groups =
             noted.chunk_by(|(a, _), (b, _)| a.is_of_event() == b.is_of_event()).peekable();
@@ -143,7 +143,7 @@ pub(super) fn follow(
         }
         from = here;
     }
-    let here = Place::of(&run);
+    let here = Snapshot::of(&run);
     let ending = match run.end() {
         Some(End::Event(i)) => Some(i),
         _ => None,

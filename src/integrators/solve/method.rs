@@ -7,60 +7,42 @@ use super::{
 };
 use crate::base::input::InputError;
 use crate::integrators::{
-    common::{Error, Tolerances},
+    common::{Error, StepOptions, Tolerances},
     ode::{Boxed, MassKind},
     rk,
     rosenbrock::{self, Rosenbrock},
     sundials::{
         Arkode, ArkodeOptions, ButcherTable, Cvode, CvodeOptions, Ida, IdaOptions, Jacobian,
-        LinearSolver, MassForm, Multistep,
+        LinearSolver, MassForm, Multistep, OfMultistep, SolverOptions,
     },
 };
 
-// The options of each integrator are types of their own, with builders of the same names.
-
-/// Options that all integrators have.
-macro_rules! common {
-    ($built:expr, $options:expr, $sign:expr) => {{
-        let mut built = $built;
-        if let Some(h) = $options.initial_step {
-            built = built.initial_step(h.copysign($sign));
-        }
-        if let Some(h) = $options.max_step {
-            built = built.max_step(h);
-        }
-        built
-    }};
+/// Step sizes, for the direction `sign` of time.
+fn steps(options: &Options, sign: f64) -> StepOptions {
+    let initial_step = options.initial_step.map(|h| h.copysign(sign));
+    let max_step = options.max_step.filter(|h| *h != f64::INFINITY);
+    StepOptions { initial_step, max_step, ..StepOptions::default() }
 }
 
-/// Options that those of SUNDIALS have.
-macro_rules! sundials {
-    ($built:expr, $options:expr, $sign:expr) => {{
-        let mut built = common!($built, $options, $sign);
-        if let Some(h) = $options.min_step {
-            built = built.min_step(h);
-        }
-        if let Some(solver) = &$options.linear_solver {
-            built = built.newton(solver.clone());
-        }
-        built
-            .sign_constraints($options.sign_constraints.as_slice())
-            .check_jacobian($options.check_jacobian)
-    }};
+/// Options that all integrators of SUNDIALS have.
+fn shared<O>(mut built: SolverOptions<O>, options: &Options, sign: f64) -> SolverOptions<O> {
+    built.steps = steps(options, sign);
+    built = options.min_step.into_iter().fold(built, SolverOptions::min_step);
+    built = options.linear_solver.iter().cloned().fold(built, SolverOptions::newton);
+    built
+        .sign_constraints(options.sign_constraints.as_slice())
+        .check_jacobian(options.check_jacobian)
 }
 
 /// Options that multistep methods have.
-macro_rules! ordered {
-    ($built:expr, $options:expr, $sign:expr) => {{
-        let mut built = sundials!($built, $options, $sign);
-        if let Some(order) = $options.max_order {
-            built = built.max_order(order);
-        }
-        if let Some(sensitivities) = &$options.sensitivities {
-            built = built.sensitivities(sensitivities.clone());
-        }
-        built
-    }};
+fn multistep<O: OfMultistep>(
+    built: SolverOptions<O>,
+    options: &Options,
+    sign: f64,
+) -> SolverOptions<O> {
+    let built = shared(built, options, sign);
+    let built = options.max_order.into_iter().fold(built, SolverOptions::max_order);
+    options.sensitivities.iter().cloned().fold(built, SolverOptions::sensitivities)
 }
 
 /// An integration method.
@@ -123,7 +105,7 @@ impl Method {
         // those written in Rust
         let internal = matches!(self, Self::DormandPrince | Self::Rosenbrock);
         if let (Some(order), false) = (options.max_order, multistep || self == Self::Rosenbrock) {
-            return refused("max_order", order.to_string(), "has one order, which its table tells");
+            return refused("max_order", order.to_string(), "has one order, that of its table");
         }
         let explicit = match self {
             Self::RungeKutta(table) => !table.is_implicit(),
@@ -174,22 +156,22 @@ impl Method {
         };
         Ok(match self {
             Self::RungeKutta(table) => {
-                let built = sundials!(ArkodeOptions::new(rtol, atol).table(table), options, sign);
+                let built = shared(ArkodeOptions::new(rtol, atol).table(table), options, sign);
                 Box::new(OdeEngine { integrator: Arkode::new(system, t, y, &built)? })
             }
             Self::DormandPrince => {
-                let built = common!(rk::Options::new(rtol, atol), options, sign);
+                let mut built = rk::Options::new(rtol, atol);
+                built.steps = steps(options, sign);
                 Box::new(OdeEngine { integrator: rk::DormandPrince::new(system, t, y, &built)? })
             }
             Self::Rosenbrock => {
-                let mut built = common!(rosenbrock::Options::new(rtol, atol), options, sign)
-                    .check_jacobian(options.check_jacobian);
-                if let Some(solver) = &options.linear_solver {
-                    built = built.newton(solver.clone());
-                }
-                if let Some(order) = options.max_order {
-                    built = built.order(order);
-                }
+                let built =
+                    rosenbrock::Options::new(rtol, atol).check_jacobian(options.check_jacobian);
+                let solver = options.linear_solver.iter().cloned();
+                let built = solver.fold(built, rosenbrock::Options::newton);
+                let mut built =
+                    options.max_order.into_iter().fold(built, rosenbrock::Options::order);
+                built.forward.steps = steps(options, sign);
                 Box::new(OdeEngine { integrator: Rosenbrock::new(system, t, y, &built)? })
             }
             _ => {
@@ -203,7 +185,7 @@ impl Method {
     pub(super) fn cvode(self, options: &Options, sign: f64) -> CvodeOptions {
         let Tolerances { rtol, atol } = options.tolerances.clone();
         let family = if self == Self::Adams { Multistep::Adams } else { Multistep::Bdf };
-        let built = ordered!(CvodeOptions::new(rtol, atol).method(family), options, sign);
+        let built = multistep(CvodeOptions::new(rtol, atol).method(family), options, sign);
         if options.project { built.project() } else { built }
     }
 
@@ -215,9 +197,10 @@ impl Method {
         differential: Option<Vec<bool>>,
     ) -> IdaOptions {
         let Tolerances { rtol, atol } = options.tolerances.clone();
-        let built = ordered!(IdaOptions::new(rtol, atol), options, sign);
+        let built = multistep(IdaOptions::new(rtol, atol), options, sign);
         differential.into_iter().fold(built, IdaOptions::differential)
     }
+
     /// The equations in the form that this method takes: for IDA, those with a mass matrix as a DAE. Refuses
     /// equations that it does not take, and options that it does not have.
     pub(super) fn take<'a>(

@@ -109,7 +109,7 @@ impl<'a> Problem<'a> {
     }
 
     /// F(t, y, y') = 0, starting from `y` and its time derivative `yp`, which have to satisfy the equations
-    /// unless [`differential`](Self::differential) tells which of them may be corrected.
+    /// unless [`differential`](Self::differential) says which of them may be corrected.
     pub fn dae(system: impl Dae + 'a, y: impl Into<Vec<f64>>, yp: impl Into<Vec<f64>>) -> Self {
         let system = Box::new(system);
         Self::new(Equations::Dae { system, yp: yp.into(), differential: None }, y.into())
@@ -180,7 +180,7 @@ impl<'a> Problem<'a> {
     /// [ended](super::Solution::saved).
     ///
     /// The run has the state, the parameters and the counts of events that were saved. The span starts at the
-    /// saved time; breaks up to then are left out.
+    /// saved time; breaks up to then are omitted.
     pub fn resume(mut self, saved: Saved) -> Self {
         self.saved = Some(saved);
         self

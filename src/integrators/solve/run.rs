@@ -163,10 +163,11 @@ impl<'a> Run<'a> {
             }
         }
         breaks.sort_by(|a, b| ((b.t - a.t) * sign).total_cmp(&0.0));
+        let quadrature_count = equations.quadrature_count();
         let mut engine = method.engine(equations, (start, sign), &y, options)?;
         let jumps = events.iter().any(|event| event.action.is_some()) || !breaks.is_empty();
         if options.sensitivities.is_some() && jumps && !engine.can_be_consistent() {
-            let help = "to go on across actions and breaks, Problem::differential tells which unknowns are differential";
+            let help = "to go on across actions and breaks, Problem::differential says which unknowns are differential";
             return Err(InputError::new("sensitivities", "given for a DAE", help).into());
         }
         let mut carried = options.sensitivities.as_ref().map(|s| Carried::new(s, y.len()));
@@ -174,7 +175,7 @@ impl<'a> Run<'a> {
         match (&mut carried, saved_sensitivities.or(initial_sensitivities.as_ref())) {
             (Some(carried), Some(s)) => carried.start(s, engine.as_mut())?,
             (None, Some(_)) if initial_sensitivities.is_some() => {
-                let help = "Options::sensitivities tells which parameters they belong to";
+                let help = "Options::sensitivities says which parameters they belong to";
                 return Err(InputError::new("initial_sensitivities", "given", help).into());
             }
             _ => {}
@@ -193,7 +194,7 @@ impl<'a> Run<'a> {
             };
             watches.push(EventTracker::new(event, start, g));
         }
-        let mut quadratures = vec![0.0; engine.quadrature_count()];
+        let mut quadratures = vec![0.0; quadrature_count];
         if let Some(saved) = &saved {
             quadratures.clone_from(&saved.quadratures);
         }
@@ -329,7 +330,7 @@ impl<'a> Run<'a> {
         let (n, mut s) = (self.y.len(), vec![0.0; carried.s.len()]);
         let columns = s.len() / n;
         let out = MatMut::from_column_major_slice_mut(&mut s, n, columns);
-        self.engine.interpolate_sensitivities(t, out)?;
+        self.engine.sensitivities_at(t, out)?;
         Ok(s)
     }
 
@@ -337,7 +338,7 @@ impl<'a> Run<'a> {
     pub(super) fn quadratures_at(&mut self, t: f64) -> Result<Vec<f64>, common::Error> {
         let [_, past] = &self.quadratures;
         let mut q = past.clone();
-        self.engine.interpolate_quadratures(t, &mut q)?;
+        self.engine.quadratures_at(t, &mut q)?;
         q.iter_mut().zip(past).for_each(|(q, past)| *q += past);
         Ok(q)
     }

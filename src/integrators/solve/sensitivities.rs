@@ -60,7 +60,7 @@ impl Carried {
         let columns = self.parameters.len();
         let n = self.s.len() / columns;
         let s = MatMut::from_column_major_slice_mut(&mut self.s, n, columns);
-        Ok(engine.interpolate_sensitivities(t, s)?)
+        Ok(engine.sensitivities_at(t, s)?)
     }
 
     /// The derivatives tau of the time of an event with respect to the parameters, where `g` is its function:
@@ -136,6 +136,6 @@ impl Carried {
     pub(super) fn hand_over(&self, engine: &mut dyn Engine) -> Result<(), Reason> {
         let columns = self.parameters.len();
         let s = MatRef::from_column_major_slice(&self.s, self.s.len() / columns, columns);
-        Ok(engine.set_sensitivities(s)?)
+        Ok(engine.start_sensitivities(s)?)
     }
 }

@@ -26,7 +26,7 @@ impl Run<'_> {
             return Ok(None);
         }
         self.check_limits()?;
-        self.start_anew()?;
+        self.restart_if_changed()?;
         self.occurred.clear();
         self.before = None;
         let (t_old, end) = (self.t, self.span.1);
@@ -68,7 +68,7 @@ impl Run<'_> {
             carried.read(self.engine.as_mut(), t)?;
         }
         let [q, past] = &mut self.quadratures;
-        self.engine.interpolate_quadratures(t, q)?;
+        self.engine.quadratures_at(t, q)?;
         q.iter_mut().zip(past).for_each(|(q, past)| *q += *past);
         let at_break = at_break && stops_at.is_none_or(|at| at == self.engine.t());
         if stops_at.is_some() {
@@ -96,7 +96,7 @@ impl Run<'_> {
     }
 
     /// Restarts the integrator after a change.
-    fn start_anew(&mut self) -> Result<(), Reason> {
+    fn restart_if_changed(&mut self) -> Result<(), Reason> {
         if !self.stale {
             return Ok(());
         }

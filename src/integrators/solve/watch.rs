@@ -208,7 +208,7 @@ impl EventTracker {
                     next.g = still;
                 }
             }
-            // where |g| has a minimum: around the last sample, or near an end, as the slope there tells
+            // where |g| has a minimum: around the last sample, or near an end, by the slope there
             let dip = match before {
                 Some(first) if is_lower(last, first) && !is_lower(next, last) => Some(first),
                 None if is_lower(last, next) && falls_from(last, next, &mut at)? => Some(last),

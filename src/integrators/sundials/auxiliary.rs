@@ -2,11 +2,18 @@
 
 use std::ptr;
 
-use super::{context::Context, ffi, linear::Linear, vector::Vector};
+use super::{
+    context::Context,
+    ffi,
+    functions::{QuadratureFunctions, SensitivityFunctions},
+    linear::Linear,
+    vector::Vector,
+};
 use crate::integrators::common::Error;
 
 /// Integrals at the present time.
 pub(super) struct Quadratures {
+    pub(super) functions: &'static QuadratureFunctions,
     pub(super) values: Vector,
     /// A vector of the same length, for integrals at other times.
     pub(super) scratch: Vector,
@@ -14,6 +21,7 @@ pub(super) struct Quadratures {
 
 /// Sensitivities at the present time, one vector for each parameter.
 pub(super) struct Sensitivity {
+    pub(super) functions: &'static SensitivityFunctions,
     pub(super) s: Vectors,
     /// Time derivatives of the sensitivities of a DAE, at the start.
     pub(super) sp: Option<Vectors>,
@@ -23,6 +31,13 @@ pub(super) struct Sensitivity {
     pub(super) values: Vec<f64>,
     /// C's number of the method.
     pub(super) method: i32,
+}
+
+impl Sensitivity {
+    /// The C vectors of s and of s', which is null for an ODE.
+    pub(super) fn raw(&mut self) -> [*mut ffi::N_Vector; 2] {
+        [self.s.raw(), self.sp.as_mut().map_or(ptr::null_mut(), Vectors::raw)]
+    }
 }
 
 /// Vectors of equal length, and the array of them that C requires.

@@ -1,103 +1,85 @@
 //! The C functions through which IDA calls a [`Dae`].
-//!
-//! All of them get the [`Host`] of the solver as their data pointer, and live serial vectors; those that they
-//! fill are different from the others. That is what their SAFETY comments refer to.
 
-use std::ffi::c_void;
-
-use super::{
-    ffi,
-    host::Host,
-    linear_solver::LinearSolver,
-    serial::{slice, slice_mut},
-};
+use super::{callbacks::callbacks, host::Host, linear_solver::LinearSolver};
 use crate::integrators::{
     common::{Callback, Point},
     ode::{Dae, Failure, call},
 };
 
-/// `IDAResFn`
-pub(super) unsafe extern "C" fn residual<S: Dae>(
-    t: f64,
-    y: ffi::N_Vector,
-    yp: ffi::N_Vector,
-    residual: ffi::N_Vector,
-    data: *mut c_void,
-) -> i32 {
-    // SAFETY: see the module.
-    let (host, y, yp, residual) =
-        unsafe { (Host::<S>::of(data), slice(y), slice(yp), slice_mut(residual)) };
-    host.guard_output(Callback::Residual, t, residual, |system, residual| {
-        call::residual(system, t, y, yp, residual)
-    })
-}
-
-/// `IDARootFn`
-pub(super) unsafe extern "C" fn roots<S: Dae>(
-    t: f64,
-    y: ffi::N_Vector,
-    yp: ffi::N_Vector,
-    g: *mut f64,
-    data: *mut c_void,
-) -> i32 {
-    // SAFETY: see the module; `g` has as many places as root functions were declared.
-    let (host, y, yp, g) = unsafe {
-        let host = Host::<S>::of(data);
-        let g = std::slice::from_raw_parts_mut(g, host.root_count);
-        (host, slice(y), slice(yp), g)
-    };
-    host.guard_output(Callback::Roots, t, g, |system, g| call::dae_roots(system, t, y, yp, g))
-}
-
-/// `IDAQuadRhsFn`
-pub(super) unsafe extern "C" fn quadratures<S: Dae>(
-    t: f64,
-    y: ffi::N_Vector,
-    yp: ffi::N_Vector,
-    qdot: ffi::N_Vector,
-    data: *mut c_void,
-) -> i32 {
-    // SAFETY: see the module.
-    let (host, y, yp, qdot) =
-        unsafe { (Host::<S>::of(data), slice(y), slice(yp), slice_mut(qdot)) };
-    host.guard_output(Callback::Quadratures, t, qdot, |system, qdot| {
-        call::dae_quadratures(system, t, y, yp, qdot)
-    })
-}
-
-/// `IDALsJacFn`; for a user-supplied solver it sets up the matrix that the system keeps.
-#[allow(clippy::too_many_arguments)] // as C has it
-pub(super) unsafe extern "C" fn jacobian<S: Dae>(
-    t: f64,
-    cj: f64,
-    y: ffi::N_Vector,
-    yp: ffi::N_Vector,
-    residual: ffi::N_Vector,
-    jacobian: ffi::SUNMatrix,
-    data: *mut c_void,
-    _: ffi::N_Vector,
-    _: ffi::N_Vector,
-    _: ffi::N_Vector,
-) -> i32 {
-    // SAFETY: see the module; SUNDIALS passes the matrix that was made for the linear solver of the host.
-    let (host, y, yp, residual, values) = unsafe {
-        let host = Host::<S>::of(data);
-        let values = host.stored(jacobian);
-        (host, slice(y), slice(yp), slice(residual), values)
-    };
-    host.setup_time = t;
-    if matches!(host.linear_solver, Some(LinearSolver::Custom)) {
-        return host.guard(Callback::NewtonSetup, t, |system| system.newton_setup(t, cj, y, yp));
+callbacks! {
+    /// `IDAResFn`
+    fn residual<S: Dae>(t: f64, y: read, yp: read, residual: write, host: (data S)) {
+        let call = |system: &mut S, residual: &mut [f64]| call::residual(system, t, y, yp, residual);
+        host.guard_output(Callback::Residual, t, residual, call)
     }
-    match evaluate_jacobian(host, t, (cj, y, yp), residual, values) {
-        0 => check_jacobian(host, t, (cj, y, yp), values, |_, _, _| Ok(())),
-        failed => failed,
+
+    /// `IDARootFn`
+    fn roots<S: Dae>(t: f64, y: read, yp: read, g: (roots host), host: (data S)) {
+        host.guard_output(Callback::Roots, t, g, |system, g| call::dae_roots(system, t, y, yp, g))
+    }
+
+    /// `IDAQuadRhsFn`
+    fn quadratures<S: Dae>(t: f64, y: read, yp: read, qdot: write, host: (data S)) {
+        let call = |system: &mut S, qdot: &mut [f64]| call::dae_quadratures(system, t, y, yp, qdot);
+        host.guard_output(Callback::Quadratures, t, qdot, call)
+    }
+
+    /// `IDALsJacFn`; for a user-supplied solver it sets up the matrix that the system keeps.
+    fn jacobian<S: Dae>(
+        t: f64, cj: f64, y: read, yp: read, residual: read, values: (stored host), host: (data S), _: vector,
+        _: vector, _: vector
+    ) {
+        host.setup_time = t;
+        if matches!(host.linear_solver, Some(LinearSolver::Custom)) {
+            return host.guard(Callback::NewtonSetup, t, |system| system.newton_setup(t, cj, y, yp));
+        }
+        match evaluate_jacobian(host, t, (cj, y, yp), residual, values) {
+            0 => check_jacobian(host, t, (cj, y, yp), values, |_, _, _| Ok(())),
+            failed => failed,
+        }
+    }
+
+    /// `IDALsJacTimesVecFn`
+    fn jacobian_times<S: Dae>(
+        t: f64, y: read, yp: read, _: vector, v: read, jv: write, cj: f64, host: (data S), _: vector, _: vector
+    ) {
+        let times = |system: &mut S, v: &[f64], jv: &mut [f64]| {
+            call::dae_jacobian_times(system, t, cj, y, yp, v, jv)
+        };
+        match host.guard_output(Callback::JacobianTimes, t, jv, |system, jv| times(system, v, jv)) {
+            0 => check_jacobian(host, t, (cj, y, yp), &[], times),
+            failed => failed,
+        }
+    }
+
+    /// `IDALsPrecSetupFn`
+    fn precondition_setup<S: Dae>(
+        t: f64, y: read, yp: read, residual: read, cj: f64, host: (data S)
+    ) {
+        // Taken out of the host, which calls the system meanwhile.
+        let Some(mut ilu) = host.ilu.take() else {
+            return host.guard(Callback::NewtonSetup, t, |system| system.newton_setup(t, cj, y, yp));
+        };
+        let mut outcome =
+            ilu.update_jacobian(|values| evaluate_jacobian(host, t, (cj, y, yp), residual, values));
+        if outcome == 0 {
+            outcome = host.check_pivots(t, ilu.factorize());
+        }
+        host.ilu = Some(ilu);
+        outcome
+    }
+
+    /// `IDALsPrecSolveFn`
+    fn precondition_solve<S: Dae>(
+        t: f64, _: vector, _: vector, _: vector, r: read, z: write, _: f64, _: f64, host: (data S)
+    ) {
+        host.precondition(t, r, z, Dae::newton_solve)
     }
 }
 
 /// Checks the dF/dy + cj dF/dy' that the system has just supplied: its entries, or the products that `times`
 /// writes.
-pub(super) fn check_jacobian<S: Dae>(
+fn check_jacobian<S: Dae>(
     host: &mut Host<S>,
     t: f64,
     (cj, y, yp): (f64, &[f64], &[f64]),
@@ -112,7 +94,7 @@ pub(super) fn check_jacobian<S: Dae>(
 
 /// The values of dF/dy + cj dF/dy' that the linear solver or its preconditioner stores: difference quotients,
 /// or the system's own.
-pub(super) fn evaluate_jacobian<S: Dae>(
+fn evaluate_jacobian<S: Dae>(
     host: &mut Host<S>,
     t: f64,
     (cj, y, yp): (f64, &[f64], &[f64]),

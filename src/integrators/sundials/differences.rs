@@ -62,7 +62,7 @@ fn is_undefined<E: Refused>(outcome: &Result<(), E>, value: &[f64]) -> bool {
 struct Increments {
     tolerances: Tolerances,
     /// The increment of each unknown, as a fraction of its size.
-    parts: Vec<f64>,
+    fractions: Vec<f64>,
     /// Change of the function by the last shift of each unknown.
     changes: Vec<Change>,
 }
@@ -77,8 +77,8 @@ struct Change {
 /// Limits of the shift of an unknown, as a fraction of its size. Salane's fractions fall below the root of
 /// the rounding error, 2^-26, where a shift changes much; but in stiff equations near equilibrium, whose
 /// terms cancel, any shift does, and shorter ones give noise.
-const LEAST_PART: f64 = 1.490_116_119_384_765_6e-8;
-const LARGEST_PART: f64 = 0.1;
+const LEAST_FRACTION: f64 = 1.490_116_119_384_765_6e-8;
+const LARGEST_FRACTION: f64 = 0.1;
 /// 2^-52 to the powers of 7/8, 3/4 and 1/4: limits of the change of the function, relative to its size. A
 /// change below the first is rounding: such a column is shifted once more, ten times as far. Below the
 /// second, its next shift is ten times as far; above the third, a tenth.
@@ -92,14 +92,14 @@ impl Change {
         self.largest < ROUNDING * self.size
     }
 
-    /// The fraction for the next shift, after one by `part`.
-    fn next(self, part: f64) -> f64 {
+    /// The fraction for the next shift, after one by `fraction`.
+    fn next(self, fraction: f64) -> f64 {
         let factor = match self {
             Self { largest, size } if largest < SMALL * size => 10.0,
             Self { largest, size } if largest > LARGE * size => 0.1,
             _ => 1.0,
         };
-        (factor * part).clamp(LEAST_PART, LARGEST_PART)
+        (factor * fraction).clamp(LEAST_FRACTION, LARGEST_FRACTION)
     }
 }
 
@@ -113,7 +113,7 @@ impl Differences {
     ) -> Option<Self> {
         let increments = Increments {
             tolerances: tolerances.clone(),
-            parts: vec![LEAST_PART; n],
+            fractions: vec![LEAST_FRACTION; n],
             changes: vec![Change::default(); n],
         };
         Some(Self::new(Shape::of(solver)?, n, Some(increments), signs))
@@ -130,7 +130,7 @@ impl Differences {
     pub(super) fn restart(&mut self) {
         self.evaluations = 0;
         if let Some(increments) = &mut self.increments {
-            increments.parts.fill(LEAST_PART);
+            increments.fractions.fill(LEAST_FRACTION);
         }
     }
 
@@ -163,20 +163,20 @@ impl Differences {
         evaluate: &mut Evaluate<'_, E>,
     ) -> Result<(), E> {
         let Self { shape, colouring, signs, y: shifted, value, evaluations, .. } = self;
-        let Some(Increments { tolerances, parts, changes }) = &mut self.increments else {
+        let Some(Increments { tolerances, fractions, changes }) = &mut self.increments else {
             return Ok(());
         };
         let (n, stored) = (y.len(), values.len());
-        let shift = |j: usize, part: f64| {
+        let shift = |j: usize, fraction: f64| {
             let forward = if ydot[j] < 0.0 { -1.0 } else { 1.0 };
-            let step = forward * part * tolerances.size_of(j, y[j]);
+            let step = forward * fraction * tolerances.size_of(j, y[j]);
             let is_allowed = signs.get(j).is_none_or(|sign| sign.allows(y[j] + step));
             y[j] + if is_allowed { step } else { -step }
         };
         shifted.copy_from_slice(y);
         for colour in 0..colouring.count() {
             let columns = colouring.columns(colour);
-            columns.iter().for_each(|&j| shifted[j] = shift(j, parts[j]));
+            columns.iter().for_each(|&j| shifted[j] = shift(j, fractions[j]));
             *evaluations += 1;
             let outcome = evaluate(shifted, value);
             if is_undefined(&outcome, value) {
@@ -193,12 +193,12 @@ impl Differences {
             }
             let mut again = false;
             for &j in columns {
-                let column = &mut values[shape.places(j, n, stored)];
+                let column = &mut values[shape.positions(j, n, stored)];
                 let rows = |k: usize| shape.row(j, k);
                 changes[j] = difference(column, rows, [value, ydot], shifted[j] - y[j]);
-                let is_lost = changes[j].is_lost() && parts[j] < LARGEST_PART;
+                let is_lost = changes[j].is_lost() && fractions[j] < LARGEST_FRACTION;
                 again |= is_lost;
-                shifted[j] = if is_lost { shift(j, 10.0 * parts[j]) } else { y[j] };
+                shifted[j] = if is_lost { shift(j, 10.0 * fractions[j]) } else { y[j] };
             }
             if again {
                 *evaluations += 1;
@@ -207,16 +207,16 @@ impl Differences {
             for &j in columns {
                 if shifted[j] != y[j] {
                     let rows = |k: usize| shape.row(j, k);
-                    let places = shape.places(j, n, stored);
-                    let farther = change(places.len(), rows, [value, ydot]);
+                    let positions = shape.positions(j, n, stored);
+                    let farther = change(positions.len(), rows, [value, ydot]);
                     if changes[j].largest * farther.size < farther.largest * changes[j].size {
-                        let column = &mut values[places];
+                        let column = &mut values[positions];
                         changes[j] = difference(column, rows, [value, ydot], shifted[j] - y[j]);
-                        parts[j] *= 10.0;
+                        fractions[j] *= 10.0;
                     }
                     shifted[j] = y[j];
                 }
-                parts[j] = changes[j].next(parts[j]);
+                fractions[j] = changes[j].next(fractions[j]);
             }
         }
         Ok(())
@@ -258,7 +258,7 @@ impl Differences {
                 return outcome;
             }
             for &j in columns {
-                let column = &mut values[self.shape.places(j, n, stored)];
+                let column = &mut values[self.shape.positions(j, n, stored)];
                 let rows = |k: usize| self.shape.row(j, k);
                 difference(column, rows, [&self.value, residual], self.y[j] - y[j]);
                 (self.y[j], self.yp[j]) = (y[j], yp[j]);
@@ -319,7 +319,7 @@ impl Scales {
         // the result pointer is valid.
         unsafe {
             get_weights(self.memory, self.weights.raw());
-            (self.functions.get_current_step)(self.memory, &raw mut h);
+            (self.functions.get_current_step.1)(self.memory, &raw mut h);
         }
         (h, self.weights.as_slice())
     }

@@ -1,6 +1,6 @@
-//! The C functions that the integrators have in common, apart from their names.
+//! The C functions of the integrators, in tables with a column for each.
 
-use std::ffi::c_void;
+use std::{ffi::c_void, ptr};
 
 use super::ffi;
 
@@ -24,11 +24,17 @@ pub(super) type Set<T> = Named<unsafe extern "C" fn(*mut c_void, T) -> i32>;
 /// A function with two arguments besides the memory block, mostly to set an option or callbacks.
 pub(super) type SetTwo<A, B> = Named<unsafe extern "C" fn(*mut c_void, A, B) -> i32>;
 
+/// A function with three arguments besides the memory block.
+pub(super) type SetThree<A, B, C> = Named<unsafe extern "C" fn(*mut c_void, A, B, C) -> i32>;
+
 /// A function that reads one value.
-pub(super) type Get<T> = unsafe extern "C" fn(*mut c_void, *mut T) -> i32;
+pub(super) type Get<T> = Set<*mut T>;
+
+/// Interpolates: (memory, time, derivative, result).
+type GetDky = SetThree<f64, i32, ffi::N_Vector>;
 
 /// Reads the counters, orders, step sizes and time that every integrator keeps.
-pub(super) type GetIntegratorStats = unsafe extern "C" fn(
+type GetIntegratorStats = unsafe extern "C" fn(
     memory: *mut c_void,
     steps: *mut i64,
     evaluations: *mut i64,
@@ -44,149 +50,287 @@ pub(super) type GetIntegratorStats = unsafe extern "C" fn(
 
 /// Integrates: (memory, target, time reached, y, y', task). An ODE has null for y'.
 pub(super) type Solve =
-    unsafe fn(*mut c_void, f64, *mut f64, ffi::N_Vector, ffi::N_Vector, i32) -> i32;
+    Named<unsafe fn(*mut c_void, f64, *mut f64, ffi::N_Vector, ffi::N_Vector, i32) -> i32>;
 
-/// Starts again: (memory, time, y, y'). An ODE has null for y'.
-pub(super) type Reinit = unsafe fn(*mut c_void, f64, ffi::N_Vector, ffi::N_Vector) -> i32;
+/// The right-hand sides of ARKODE, explicit and implicit; the other integrators keep theirs.
+pub(super) type Stages = [ffi::ARKRhsFn; 2];
 
-/// One integrator of SUNDIALS. All functions take its memory block first; a table never mixes
-/// functions of two integrators.
-pub(super) struct Functions {
-    /// The name of the integrator in errors.
-    pub(super) integrator: &'static str,
-    pub(super) free: unsafe extern "C" fn(*mut *mut c_void),
-    pub(super) solve: Named<Solve>,
-    pub(super) reinit: Named<Reinit>,
-    /// Continues from a time and state after a change of the system, with the previous step size.
-    pub(super) reset: Option<SetTwo<f64, ffi::N_Vector>>,
-    /// ARKODE does, and would refuse another stop time if the direction of time has been reversed.
-    pub(super) reinit_forgets_stop_time: bool,
-    /// Codes of `solve` for a call that cannot be made.
-    pub(super) refusals: &'static [i32],
-
-    /// Codes of `solve` for a mass matrix that cannot be factorized.
-    pub(super) mass_failures: &'static [i32],
-
-    pub(super) set_error_handler: SetTwo<ffi::CVErrHandlerFn, *mut c_void>,
-    pub(super) set_user_data: Set<*mut c_void>,
-    pub(super) scalar_tolerances: SetTwo<f64, f64>,
-    pub(super) vector_tolerances: SetTwo<f64, ffi::N_Vector>,
-    pub(super) set_linear_solver: SetTwo<ffi::SUNLinearSolver, ffi::SUNMatrix>,
-    pub(super) allow_inactive_roots: Named<unsafe extern "C" fn(*mut c_void) -> i32>,
-    pub(super) set_max_steps: Set<i64>,
-    pub(super) set_initial_step: Set<f64>,
-    pub(super) set_max_step: Set<f64>,
-    pub(super) set_min_step: Set<f64>,
-    /// IDA has none.
-    pub(super) set_max_error_test_failures: Option<Set<i32>>,
-    /// The order of a Runge-Kutta method is that of its table.
-    pub(super) set_max_order: Option<Set<i32>>,
-    pub(super) set_convergence_coefficient: Set<f64>,
-    /// For a Krylov method.
-    pub(super) set_tolerance_factor: Set<f64>,
-    pub(super) set_stop_time: Set<f64>,
-    pub(super) set_constraints: Set<ffi::N_Vector>,
-
-    pub(super) get_root_info: Set<*mut i32>,
-    pub(super) get_dky: Named<unsafe extern "C" fn(*mut c_void, f64, i32, ffi::N_Vector) -> i32>,
-    /// Codes of `get_dky` for a time outside the last step, and for too high a derivative.
-    pub(super) bad_time: i32,
-    pub(super) bad_derivative: i32,
-    /// gamma of y - gamma f(t, y), or cj of IDA.
-    pub(super) get_step_parameter: Get<f64>,
-    /// In the first step of a multistep method CVODE reports 0.
-    pub(super) get_current_step: Get<f64>,
-    pub(super) get_error_weights: Set<ffi::N_Vector>,
-    pub(super) get_linear_flag: Get<i64>,
-    pub(super) get_integrator_stats: GetIntegratorStats,
-    pub(super) get_nonlinear_stats: unsafe extern "C" fn(*mut c_void, *mut i64, *mut i64) -> i32,
-    pub(super) get_step_failures: Get<i64>,
-    pub(super) get_jacobian_evaluations: Get<i64>,
-    pub(super) get_quotient_evaluations: Get<i64>,
-    pub(super) get_linear_iterations: Get<i64>,
-    pub(super) get_linear_failures: Get<i64>,
-    pub(super) get_preconditioner_setups: Get<i64>,
-    pub(super) get_preconditioner_solves: Get<i64>,
-    pub(super) get_root_evaluations: Get<i64>,
-    /// For right-hand sides that are split.
-    pub(super) get_explicit_evaluations: Option<Get<i64>>,
-    /// CVODE alone detects stability limits.
-    pub(super) get_stability_reductions: Option<Get<i64>>,
-    pub(super) get_tolerance_scale: Get<f64>,
-    /// ARKODE has none.
-    pub(super) quadratures: Option<&'static QuadratureFunctions>,
-    /// ARKODE has none.
-    pub(super) sensitivities: Option<&'static SensitivityFunctions>,
-}
+/// Starts again: (memory, right-hand sides, time, y, y'). An ODE has null for y'.
+type Reinit = Named<unsafe fn(*mut c_void, Stages, f64, ffi::N_Vector, ffi::N_Vector) -> i32>;
 
 /// Starts sensitivities again: (memory, method, s, s'). An ODE has null for s'.
-pub(super) type ReinitSensitivities =
-    unsafe fn(*mut c_void, i32, *mut ffi::N_Vector, *mut ffi::N_Vector) -> i32;
-
-/// The functions of CVODES and IDAS for sensitivities.
-pub(super) struct SensitivityFunctions {
-    pub(super) reinit: Named<ReinitSensitivities>,
-    pub(super) set_parameters:
-        Named<unsafe extern "C" fn(*mut c_void, *mut f64, *mut f64, *mut i32) -> i32>,
-    pub(super) set_tolerances: Named<unsafe extern "C" fn(*mut c_void) -> i32>,
-    pub(super) set_error_control: Set<i32>,
-    pub(super) get: SetTwo<*mut f64, *mut ffi::N_Vector>,
-    pub(super) get_dky:
-        Named<unsafe extern "C" fn(*mut c_void, f64, i32, i32, ffi::N_Vector) -> i32>,
-    pub(super) get_evaluations: Get<i64>,
-}
-
-/// The functions of CVODES and IDAS for quadratures.
-pub(super) struct QuadratureFunctions {
-    pub(super) reinit: Set<ffi::N_Vector>,
-    pub(super) scalar_tolerances: SetTwo<f64, f64>,
-    pub(super) vector_tolerances: SetTwo<f64, ffi::N_Vector>,
-    pub(super) set_error_control: Set<i32>,
-    pub(super) get: SetTwo<*mut f64, ffi::N_Vector>,
-    pub(super) get_dky: Named<unsafe extern "C" fn(*mut c_void, f64, i32, ffi::N_Vector) -> i32>,
-    pub(super) get_evaluations: Get<i64>,
-}
+type ReinitSensitivities =
+    Named<unsafe fn(*mut c_void, i32, *mut ffi::N_Vector, *mut ffi::N_Vector) -> i32>;
 
 /// Returns lambda and lambda': (memory, problem, time, lambda, lambda'). An ODE has null for lambda'.
-pub(super) type GetBackward =
-    unsafe fn(*mut c_void, i32, *mut f64, ffi::N_Vector, ffi::N_Vector) -> i32;
+type GetBackward =
+    Named<unsafe fn(*mut c_void, i32, *mut f64, ffi::N_Vector, ffi::N_Vector) -> i32>;
 
 /// Starts a backward problem: (memory, problem, time, lambda, lambda'). An ODE has null for lambda'.
 pub(super) type InitBackward =
-    unsafe fn(*mut c_void, i32, f64, ffi::N_Vector, ffi::N_Vector) -> i32;
+    Named<unsafe fn(*mut c_void, i32, f64, ffi::N_Vector, ffi::N_Vector) -> i32>;
 
-/// The functions of CVODES and IDAS for backward problems, which belong to the memory of the forward run and
-/// are identified by a number.
-pub(super) struct BackwardFunctions {
+/// Sets an option of a backward problem: (memory, problem).
+pub(super) type SetBackward = Named<unsafe fn(*mut c_void, i32) -> i32>;
+
+/// Gives a backward problem its integrals: (memory, problem, initial values, which are zero).
+pub(super) type InitBackwardQuadratures = Named<unsafe fn(*mut c_void, i32, ffi::N_Vector) -> i32>;
+
+/// Defines a table with a column for each integrator: first functions that all of them have, then those that some have
+/// (`-`: no), then anything else.
+macro_rules! table {
+    ($(#[$doc:meta])* $table:ident: $first:ident, $second:ident;
+     $($(#[$about:meta])* $field:ident: $type:ty = $a:ident, $b:ident;)+
+     [others] $($(#[$about_value:meta])* $value:ident: $value_type:ty = $value_a:expr, $value_b:expr;)*) => {
+        table!(@struct $table [$(#[$doc])*] $($(#[$about])* $field: $type,)+
+               $($(#[$about_value])* $value: $value_type,)*);
+        impl $table {
+            table!(@column $first [$($field $a)+] [] [$($value $value_a)*]);
+            table!(@column $second [$($field $b)+] [] [$($value $value_b)*]);
+        }
+    };
+    ($(#[$doc:meta])* $table:ident: $first:ident, $second:ident, $third:ident;
+     $($(#[$about:meta])* $field:ident: $type:ty = $a:ident, $b:ident, $c:ident;)+
+     [some] $($(#[$about_some:meta])* $some:ident: $some_type:ty = $some_a:tt, $some_b:tt, $some_c:tt;)+
+     [others] $($(#[$about_value:meta])* $value:ident: $value_type:ty = $value_a:expr, $value_b:expr, $value_c:expr;)+
+    ) => {
+        table!(@struct $table [$(#[$doc])*] $($(#[$about])* $field: $type,)+
+               $($(#[$about_some])* $some: Option<$some_type>,)+ $($(#[$about_value])* $value: $value_type,)+);
+        impl $table {
+            table!(@column $first [$($field $a)+] [$($some $some_a)+] [$($value $value_a)+]);
+            table!(@column $second [$($field $b)+] [$($some $some_b)+] [$($value $value_b)+]);
+            table!(@column $third [$($field $c)+] [$($some $some_c)+] [$($value $value_c)+]);
+        }
+    };
+    (@struct $table:ident [$($doc:tt)*] $($(#[$about:meta])* $field:ident: $type:ty,)+) => {
+        $($doc)*
+        pub(super) struct $table {
+            $($(#[$about])* pub(super) $field: $type,)+
+        }
+    };
+    (@column $column:ident [$($field:ident $function:ident)+] [$($some:ident $cell:tt)*]
+     [$($value:ident $other:expr)*]) => {
+        pub(super) const $column: &'static Self = &Self {
+            $($field: named!($function),)+
+            $($some: table!(@cell $cell),)*
+            $($value: $other,)*
+        };
+    };
+    (@cell -) => { None };
+    (@cell $function:ident) => { Some(named!($function)) };
+}
+
+table! {
+    /// One integrator of SUNDIALS. All functions take its memory block first.
+    Functions: CVODE, IDA, ARKODE;
+
+    set_error_handler: SetTwo<ffi::CVErrHandlerFn, *mut c_void>
+        = CVodeSetErrHandlerFn, IDASetErrHandlerFn, ARKStepSetErrHandlerFn;
+    set_user_data: Set<*mut c_void> = CVodeSetUserData, IDASetUserData, ARKStepSetUserData;
+    scalar_tolerances: SetTwo<f64, f64> = CVodeSStolerances, IDASStolerances, ARKStepSStolerances;
+    vector_tolerances: SetTwo<f64, ffi::N_Vector> = CVodeSVtolerances, IDASVtolerances, ARKStepSVtolerances;
+    set_linear_solver: SetTwo<ffi::SUNLinearSolver, ffi::SUNMatrix>
+        = CVodeSetLinearSolver, IDASetLinearSolver, ARKStepSetLinearSolver;
+    set_nonlinear_solver: Set<ffi::SUNNonlinearSolver>
+        = CVodeSetNonlinearSolver, IDASetNonlinearSolver, ARKStepSetNonlinearSolver;
+    allow_inactive_roots: Named<unsafe extern "C" fn(*mut c_void) -> i32>
+        = CVodeSetNoInactiveRootWarn, IDASetNoInactiveRootWarn, ARKStepSetNoInactiveRootWarn;
+    set_max_steps: Set<i64> = CVodeSetMaxNumSteps, IDASetMaxNumSteps, ARKStepSetMaxNumSteps;
+    set_initial_step: Set<f64> = CVodeSetInitStep, IDASetInitStep, ARKStepSetInitStep;
+    set_max_step: Set<f64> = CVodeSetMaxStep, IDASetMaxStep, ARKStepSetMaxStep;
+    set_min_step: Set<f64> = CVodeSetMinStep, IDASetMinStep, ARKStepSetMinStep;
+    set_convergence_coefficient: Set<f64> = CVodeSetNonlinConvCoef, IDASetNonlinConvCoef, ARKStepSetNonlinConvCoef;
+    /// For a Krylov method.
+    set_tolerance_factor: Set<f64> = CVodeSetEpsLin, IDASetEpsLin, ARKStepSetEpsLin;
+    set_stop_time: Set<f64> = CVodeSetStopTime, IDASetStopTime, ARKStepSetStopTime;
+    set_constraints: Set<ffi::N_Vector> = CVodeSetConstraints, IDASetConstraints, ARKStepSetConstraints;
+    get_root_info: Get<i32> = CVodeGetRootInfo, IDAGetRootInfo, ARKStepGetRootInfo;
+    get_dky: GetDky = CVodeGetDky, IDAGetDky, ARKStepGetDky;
+    /// gamma of y - gamma f(t, y), or cj of IDA.
+    get_step_parameter: Get<f64> = CVodeGetCurrentGamma, IDAGetCurrentCj, ARKStepGetCurrentGamma;
+    /// In the first step of a multistep method CVODE reports 0.
+    get_current_step: Get<f64> = CVodeGetCurrentStep, IDAGetCurrentStep, ARKStepGetCurrentStep;
+    get_error_weights: Set<ffi::N_Vector> = CVodeGetErrWeights, IDAGetErrWeights, ARKStepGetErrWeights;
+    get_linear_flag: Get<i64> = CVodeGetLastLinFlag, IDAGetLastLinFlag, ARKStepGetLastLinFlag;
+    get_nonlinear_stats: SetTwo<*mut i64, *mut i64>
+        = CVodeGetNonlinSolvStats, IDAGetNonlinSolvStats, ARKStepGetNonlinSolvStats;
+    get_step_failures: Get<i64> = CVodeGetNumStepSolveFails, IDAGetNumStepSolveFails, ARKStepGetNumStepSolveFails;
+    get_jacobian_evaluations: Get<i64> = CVodeGetNumJacEvals, IDAGetNumJacEvals, ARKStepGetNumJacEvals;
+    get_quotient_evaluations: Get<i64> = CVodeGetNumLinRhsEvals, IDAGetNumLinResEvals, ARKStepGetNumLinRhsEvals;
+    get_linear_iterations: Get<i64> = CVodeGetNumLinIters, IDAGetNumLinIters, ARKStepGetNumLinIters;
+    get_linear_failures: Get<i64> = CVodeGetNumLinConvFails, IDAGetNumLinConvFails, ARKStepGetNumLinConvFails;
+    get_preconditioner_setups: Get<i64> = CVodeGetNumPrecEvals, IDAGetNumPrecEvals, ARKStepGetNumPrecEvals;
+    get_preconditioner_solves: Get<i64> = CVodeGetNumPrecSolves, IDAGetNumPrecSolves, ARKStepGetNumPrecSolves;
+    get_root_evaluations: Get<i64> = CVodeGetNumGEvals, IDAGetNumGEvals, ARKStepGetNumGEvals;
+    get_tolerance_scale: Get<f64> = CVodeGetTolScaleFactor, IDAGetTolScaleFactor, ARKStepGetTolScaleFactor;
+
+    [some]
+    /// Continues from a time and state after a change of the system, with the previous step size.
+    reset: SetTwo<f64, ffi::N_Vector> = -, -, ARKStepReset;
+    set_max_error_test_failures: Set<i32> = CVodeSetMaxErrTestFails, -, ARKStepSetMaxErrTestFails;
+    /// The order of a Runge-Kutta method is that of its table.
+    set_max_order: Set<i32> = CVodeSetMaxOrd, IDASetMaxOrd, -;
+    get_stability_reductions: Get<i64> = CVodeGetNumStabLimOrderReds, -, -;
+    /// Evaluations of an explicit and of an implicit right-hand side.
+    get_rhs_evaluations: SetTwo<*mut i64, *mut i64> = -, -, ARKStepGetNumRhsEvals;
+
+    [others]
     /// The name of the integrator in errors.
-    pub(super) integrator: &'static str,
-    /// The integrator as it runs forward with checkpoints.
-    pub(super) forward: &'static Functions,
+    integrator: &'static str = "CVODE", "IDA", "ARKODE";
+    free: unsafe extern "C" fn(*mut *mut c_void) = ffi::CVodeFree, ffi::IDAFree, ffi::ARKStepFree;
+    // SAFETY: whoever calls through the table vouches for the arguments, here and in the other rows.
+    solve: Solve = ("CVode", |memory, target, t, y, _, task| unsafe { ffi::CVode(memory, target, y, t, task) }),
+        ("IDASolve", |memory, target, t, y, yp, task| unsafe { ffi::IDASolve(memory, target, t, y, yp, task) }),
+        ("ARKStepEvolve", |memory, target, t, y, _, task| unsafe { ffi::ARKStepEvolve(memory, target, y, t, task) });
+    // SAFETY: as above.
+    reinit: Reinit = ("CVodeReInit", |memory, _, t, y, _| unsafe { ffi::CVodeReInit(memory, t, y) }),
+        ("IDAReInit", |memory, _, t, y, yp| unsafe { ffi::IDAReInit(memory, t, y, yp) }),
+        ("ARKStepReInit", |memory, [f, g], t, y, _| unsafe { ffi::ARKStepReInit(memory, f, g, t, y) });
+    /// ARKODE does, and would refuse another stop time if the direction of time has been reversed.
+    reinit_forgets_stop_time: bool = false, false, true;
+    get_integrator_stats: GetIntegratorStats
+        = ffi::CVodeGetIntegratorStats, ffi::IDAGetIntegratorStats, arkode_integrator_stats;
+    /// Codes of `solve` for a call that cannot be made.
+    refusals: &'static [i32] = &[ffi::CV_ILL_INPUT, ffi::CV_TOO_CLOSE, ffi::CV_BAD_T], &[ffi::IDA_ILL_INPUT],
+        &[ffi::ARK_ILL_INPUT, ffi::ARK_TOO_CLOSE, ffi::ARK_BAD_T];
+    /// Codes of `solve` for a mass matrix that cannot be factorized.
+    mass_failures: &'static [i32] = &[], &[], &[ffi::ARK_MASSSETUP_FAIL, ffi::ARK_MASSSOLVE_FAIL];
+    /// Codes of `get_dky` for a time outside the last step, and for too high a derivative.
+    bad_time: i32 = ffi::CV_BAD_T, ffi::IDA_BAD_T, ffi::ARK_BAD_T;
+    bad_derivative: i32 = ffi::CV_BAD_K, ffi::IDA_BAD_K, ffi::ARK_BAD_K;
+    /// ARKODE has neither integrals nor sensitivities.
+    quadratures: Option<&'static QuadratureFunctions>
+        = Some(QuadratureFunctions::CVODE), Some(QuadratureFunctions::IDA), None;
+    sensitivities: Option<&'static SensitivityFunctions>
+        = Some(SensitivityFunctions::CVODE), Some(SensitivityFunctions::IDA), None;
+}
+
+table! {
+    /// The functions for quadratures.
+    QuadratureFunctions: CVODE, IDA;
+    reinit: Set<ffi::N_Vector> = CVodeQuadReInit, IDAQuadReInit;
+    scalar_tolerances: SetTwo<f64, f64> = CVodeQuadSStolerances, IDAQuadSStolerances;
+    vector_tolerances: SetTwo<f64, ffi::N_Vector> = CVodeQuadSVtolerances, IDAQuadSVtolerances;
+    set_error_control: Set<i32> = CVodeSetQuadErrCon, IDASetQuadErrCon;
+    get: SetTwo<*mut f64, ffi::N_Vector> = CVodeGetQuad, IDAGetQuad;
+    get_dky: GetDky = CVodeGetQuadDky, IDAGetQuadDky;
+    get_evaluations: Get<i64> = CVodeGetQuadNumRhsEvals, IDAGetQuadNumRhsEvals;
+    [others]
+}
+
+table! {
+    /// The functions for sensitivities.
+    SensitivityFunctions: CVODE, IDA;
+    set_parameters: SetThree<*mut f64, *mut f64, *mut i32> = CVodeSetSensParams, IDASetSensParams;
+    set_tolerances: Named<unsafe extern "C" fn(*mut c_void) -> i32> = CVodeSensEEtolerances, IDASensEEtolerances;
+    set_error_control: Set<i32> = CVodeSetSensErrCon, IDASetSensErrCon;
+    get: SetTwo<*mut f64, *mut ffi::N_Vector> = CVodeGetSens, IDAGetSens;
+    get_dky: Named<unsafe extern "C" fn(*mut c_void, f64, i32, i32, ffi::N_Vector) -> i32>
+        = CVodeGetSensDky1, IDAGetSensDky1;
+    get_evaluations: Get<i64> = CVodeGetSensNumRhsEvals, IDAGetSensNumResEvals;
+    [others]
+    // SAFETY: as above.
+    reinit: ReinitSensitivities
+        = ("CVodeSensReInit", |memory, method, s, _| unsafe { ffi::CVodeSensReInit(memory, method, s) }),
+        ("IDASensReInit", |memory, method, s, sp| unsafe { ffi::IDASensReInit(memory, method, s, sp) });
+}
+
+table! {
+    /// The functions for backward problems, which belong to the memory of the forward run and are identified by a
+    /// number, the first argument.
+    BackwardFunctions: CVODE, IDA;
     /// (memory, steps between checkpoints, interpolation)
-    pub(super) init_checkpoints: SetTwo<i64, i32>,
-    pub(super) create: Named<unsafe fn(*mut c_void, *mut i32) -> i32>,
-    pub(super) init: Named<InitBackward>,
-    pub(super) vector_tolerances:
-        Named<unsafe extern "C" fn(*mut c_void, i32, f64, ffi::N_Vector) -> i32>,
-    pub(super) set_user_data: SetTwo<i32, *mut c_void>,
-    pub(super) set_max_steps: SetTwo<i32, i64>,
-    pub(super) set_linear_solver:
-        Named<unsafe extern "C" fn(*mut c_void, i32, ffi::SUNLinearSolver, ffi::SUNMatrix) -> i32>,
-    pub(super) set_jacobian: Named<unsafe fn(*mut c_void, i32) -> i32>,
-    /// Takes the initial values of the integrals, which are zero.
-    pub(super) init_quadratures: Named<unsafe fn(*mut c_void, i32, ffi::N_Vector) -> i32>,
-    pub(super) set_quadrature_error_control: SetTwo<i32, i32>,
-    pub(super) quadrature_tolerances:
-        Named<unsafe extern "C" fn(*mut c_void, i32, f64, ffi::N_Vector) -> i32>,
+    init_checkpoints: SetTwo<i64, i32> = CVodeAdjInit, IDAAdjInit;
+    vector_tolerances: SetThree<i32, f64, ffi::N_Vector> = CVodeSVtolerancesB, IDASVtolerancesB;
+    set_user_data: SetTwo<i32, *mut c_void> = CVodeSetUserDataB, IDASetUserDataB;
+    set_max_steps: SetTwo<i32, i64> = CVodeSetMaxNumStepsB, IDASetMaxNumStepsB;
+    set_linear_solver: SetThree<i32, ffi::SUNLinearSolver, ffi::SUNMatrix>
+        = CVodeSetLinearSolverB, IDASetLinearSolverB;
+    set_quadrature_error_control: SetTwo<i32, i32> = CVodeSetQuadErrConB, IDASetQuadErrConB;
+    quadrature_tolerances: SetThree<i32, f64, ffi::N_Vector> = CVodeQuadSVtolerancesB, IDAQuadSVtolerancesB;
     /// (memory, target, task)
-    pub(super) solve: unsafe extern "C" fn(*mut c_void, f64, i32) -> i32,
-    pub(super) get: Named<GetBackward>,
-    pub(super) get_quadratures:
-        Named<unsafe extern "C" fn(*mut c_void, i32, *mut f64, ffi::N_Vector) -> i32>,
+    solve: SetTwo<f64, i32> = CVodeB, IDASolveB;
+    get_quadratures: SetThree<i32, *mut f64, ffi::N_Vector> = CVodeGetQuadB, IDAGetQuadB;
+    get_current_time: Get<f64> = CVodeGetCurrentTime, IDAGetCurrentTime;
+    get_current_order: Get<i32> = CVodeGetCurrentOrder, IDAGetCurrentOrder;
+    [others]
+    integrator: &'static str = "CVODE in the backward run", "IDA in the backward run";
     /// The memory of the backward problem.
-    pub(super) get_memory: unsafe extern "C" fn(*mut c_void, i32) -> *mut c_void,
-    pub(super) get_current_time: Get<f64>,
-    pub(super) get_current_order: Get<i32>,
+    get_memory: unsafe extern "C" fn(*mut c_void, i32) -> *mut c_void
+        = ffi::CVodeGetAdjCVodeBmem, ffi::IDAGetAdjIDABmem;
+    /// Integrates forward with checkpoints.
+    // SAFETY: as above, here and in the other rows.
+    solve_forward: Solve
+        = ("CVodeF", |memory, target, t, y, _, task| unsafe { ffi::CVodeF(memory, target, y, t, task, &mut 0) }),
+        ("IDASolveF", |memory, target, t, y, yp, task| unsafe {
+            ffi::IDASolveF(memory, target, t, y, yp, task, &mut 0)
+        });
+    /// (memory, number of the problem)
+    // SAFETY: as above.
+    create: Named<unsafe fn(*mut c_void, *mut i32) -> i32>
+        = ("CVodeCreateB", |memory, which| unsafe { ffi::CVodeCreateB(memory, ffi::CV_BDF, which) }),
+        ("IDACreateB", |memory, which| unsafe { ffi::IDACreateB(memory, which) });
+    // SAFETY: as above.
+    get: GetBackward
+        = ("CVodeGetB", |memory, which, t, lambda, _| unsafe { ffi::CVodeGetB(memory, which, t, lambda) }),
+        ("IDAGetB", |memory, which, t, lambda, slope| unsafe { ffi::IDAGetB(memory, which, t, lambda, slope) });
+}
+
+table! {
+    /// The functions of the integrators of ODEs that take callbacks.
+    OdeFunctions: CVODE, ARKODE;
+    set_roots: SetTwo<i32, ffi::CVRootFn> = CVodeRootInit, ARKStepRootInit;
+    set_jacobian: Set<ffi::CVLsJacFn> = CVodeSetJacFn, ARKStepSetJacFn;
+    set_jacobian_times: SetTwo<ffi::CVLsJacTimesSetupFn, ffi::CVLsJacTimesVecFn>
+        = CVodeSetJacTimes, ARKStepSetJacTimes;
+    set_preconditioner: SetTwo<ffi::CVLsPrecSetupFn, ffi::CVLsPrecSolveFn>
+        = CVodeSetPreconditioner, ARKStepSetPreconditioner;
+    set_newton_rhs: Set<ffi::CVRhsFn> = CVodeSetNlsRhsFn, ARKStepSetNlsRhsFn;
+    [others]
+}
+
+/// `CVodeGetIntegratorStats` for ARKODE: evaluations are the sum of explicit and implicit ones, and both
+/// orders are that of the table.
+unsafe extern "C" fn arkode_integrator_stats(
+    memory: *mut c_void,
+    steps: *mut i64,
+    evaluations: *mut i64,
+    setups: *mut i64,
+    error_test_failures: *mut i64,
+    last_order: *mut i32,
+    current_order: *mut i32,
+    initial_step: *mut f64,
+    last_step: *mut f64,
+    current_step: *mut f64,
+    current_time: *mut f64,
+) -> i32 {
+    let [mut explicit, mut implicit] = [0; 2];
+    let (mut implicit_table, mut explicit_table) = (ptr::null_mut(), ptr::null_mut());
+    // SAFETY: whoever calls through the table vouches for memory and places; a table that is
+    // there lives as long as the memory.
+    unsafe {
+        let code = ffi::ARKStepGetStepStats(
+            memory,
+            steps,
+            initial_step,
+            last_step,
+            current_step,
+            current_time,
+        );
+        ffi::ARKStepGetNumRhsEvals(memory, &raw mut explicit, &raw mut implicit);
+        ffi::ARKStepGetNumLinSolvSetups(memory, setups);
+        ffi::ARKStepGetNumErrTestFails(memory, error_test_failures);
+        ffi::ARKStepGetCurrentButcherTables(
+            memory,
+            &raw mut implicit_table,
+            &raw mut explicit_table,
+        );
+        *evaluations = explicit + implicit;
+        let table = if implicit_table.is_null() { explicit_table } else { implicit_table };
+        let order = table.as_ref().map_or(0, |table| table.q);
+        (*last_order, *current_order) = (order, order);
+        code
+    }
 }
 
 // Tasks and codes that all integrators number alike: the shared code uses CVODE's names.

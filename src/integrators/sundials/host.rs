@@ -110,7 +110,7 @@ impl Troubles {
     }
 
     /// Whether all that went wrong is a request for a smaller step, at another time than `start`, from where the step goes.
-    pub(super) fn ask_for_less(&self, start: f64) -> bool {
+    pub(super) fn requests_smaller_step(&self, start: f64) -> bool {
         let is_worse = self.panic.is_some() || self.fatal.is_some() || self.wrong.is_some();
         !is_worse
             && self.stuck < MOST_STUCK

@@ -11,15 +11,15 @@ use super::pattern::Pattern;
 /// Y. Saad, Iterative Methods for Sparse Linear Systems, section 10.3, column by column.
 pub(super) struct IncompleteLu {
     pattern: Pattern,
-    /// Place of each diagonal entry among the values.
+    /// Position of each diagonal entry among the values.
     diagonal: Vec<usize>,
     jacobian: Vec<f64>,
     /// Whether all of `jacobian` was evaluated.
     has_jacobian: bool,
     /// L below the diagonal (its own diagonal is 1), and U.
     factors: Vec<f64>,
-    /// Place of the entry of each row in the column that is being eliminated, if it has one.
-    places: Vec<Option<usize>>,
+    /// Position of the entry of each row in the column that is being eliminated, if it has one.
+    positions: Vec<Option<usize>>,
 }
 
 impl IncompleteLu {
@@ -28,12 +28,12 @@ impl IncompleteLu {
         let above = |j: usize| pattern.column(j).partition_point(|&i| (i as usize) < j);
         let zeros = vec![0.0; pattern.entry_count()];
         Self {
-            diagonal: (0..n).map(|j| pattern.places(j).start + above(j)).collect(),
+            diagonal: (0..n).map(|j| pattern.positions(j).start + above(j)).collect(),
             pattern: pattern.clone(),
             jacobian: zeros.clone(),
             has_jacobian: false,
             factors: zeros,
-            places: vec![None; n],
+            positions: vec![None; n],
         }
     }
 
@@ -72,22 +72,22 @@ impl IncompleteLu {
     }
 
     fn eliminate(&mut self) -> Result<(), usize> {
-        let Self { pattern, diagonal, factors, places, .. } = self;
+        let Self { pattern, diagonal, factors, positions, .. } = self;
         for (j, &pivot) in diagonal.iter().enumerate() {
-            let column = pattern.places(j);
+            let column = pattern.positions(j);
             let rows = pattern.column(j);
-            rows.iter().zip(column.clone()).for_each(|(&i, at)| places[i as usize] = Some(at));
+            rows.iter().zip(column.clone()).for_each(|(&i, at)| positions[i as usize] = Some(at));
             for (&k, at) in rows.iter().zip(column.start..pivot) {
                 let k = k as usize;
                 let upper = factors[at];
-                let below = diagonal[k] + 1..pattern.places(k).end;
+                let below = diagonal[k] + 1..pattern.positions(k).end;
                 for (&i, from) in pattern.rows(below.clone()).iter().zip(below) {
-                    if let Some(to) = places[i as usize] {
+                    if let Some(to) = positions[i as usize] {
                         factors[to] -= factors[from] * upper;
                     }
                 }
             }
-            rows.iter().for_each(|&i| places[i as usize] = None);
+            rows.iter().for_each(|&i| positions[i as usize] = None);
             let value = factors[pivot];
             if value == 0.0 || !value.is_finite() {
                 return Err(j);
@@ -99,18 +99,19 @@ impl IncompleteLu {
 
     /// Replaces `x` by U^-1 L^-1 x.
     pub(super) fn solve(&self, x: &mut [f64]) {
-        let subtract = |x: &mut [f64], places: std::ops::Range<usize>, solved: f64| {
-            for (&i, factor) in self.pattern.rows(places.clone()).iter().zip(&self.factors[places])
+        let subtract = |x: &mut [f64], positions: std::ops::Range<usize>, solved: f64| {
+            for (&i, factor) in
+                self.pattern.rows(positions.clone()).iter().zip(&self.factors[positions])
             {
                 x[i as usize] -= factor * solved;
             }
         };
         for (j, &pivot) in self.diagonal.iter().enumerate() {
-            subtract(x, pivot + 1..self.pattern.places(j).end, x[j]);
+            subtract(x, pivot + 1..self.pattern.positions(j).end, x[j]);
         }
         for (j, &pivot) in self.diagonal.iter().enumerate().rev() {
             x[j] /= self.factors[pivot];
-            subtract(x, self.pattern.places(j).start..pivot, x[j]);
+            subtract(x, self.pattern.positions(j).start..pivot, x[j]);
         }
     }
 }
@@ -129,7 +130,7 @@ mod tests {
         let mut ilu = IncompleteLu::new(pattern);
         ilu.update_jacobian(|values| {
             for j in 0..pattern.dimension() {
-                for (&i, at) in pattern.column(j).iter().zip(pattern.places(j)) {
+                for (&i, at) in pattern.column(j).iter().zip(pattern.positions(j)) {
                     let a = entry(i as usize, j);
                     let identity = if i as usize == j { 1.0 } else { 0.0 };
                     values[at] = gamma.map_or(a, |gamma| (identity - a) / gamma);
@@ -175,7 +176,7 @@ mod tests {
         }
     }
 
-    /// With fill left out, L U still equals the matrix wherever that has entries.
+    /// Without fill, L U still equals the matrix wherever that has entries.
     #[test]
     fn the_factors_reproduce_the_entries() {
         let n = 25;

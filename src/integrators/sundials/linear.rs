@@ -251,7 +251,7 @@ unsafe extern "C" fn solve<S>(
     let Some(custom) = &host.custom_solve else { return ffi::SUNLS_PACKAGE_FAIL_UNREC };
     let (newton_solve, mut parameter) = (custom.solve, f64::NAN);
     // SAFETY: the memory is that of the integrator which is calling; it only reads a number.
-    unsafe { (custom.step_parameter)(custom.memory, &raw mut parameter) };
+    unsafe { (custom.step_parameter.1)(custom.memory, &raw mut parameter) };
     let call = |system: &mut S, x: &mut [f64]| newton_solve(system, parameter, x);
     // SUNDIALS takes unknown codes of a linear solver for success.
     match host.guard_output(Callback::NewtonSolve, host.setup_time, x, call) {

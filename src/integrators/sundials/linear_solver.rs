@@ -73,7 +73,7 @@ impl LinearSolver {
         match *self {
             Self::Dense(_) => Entries::Dense(MatMut::from_column_major_slice_mut(values, n, n)),
             Self::Band { lower, upper, .. } => {
-                // room for pivots may lie above the band
+                // space for pivots may lie above the band
                 let stride = values.len() / n;
                 Entries::Band(BandMut::new(values, stride, stride - lower - 1, lower, upper))
             }
@@ -102,7 +102,7 @@ impl LinearSolver {
     }
 
     /// Whether entries, of the matrix or of its preconditioner, are difference quotients.
-    pub(super) fn takes_quotients(&self) -> bool {
+    pub(crate) fn takes_quotients(&self) -> bool {
         let entries = match self {
             Self::Dense(jacobian) | Self::Band { jacobian, .. } | Self::Klu { jacobian, .. } => {
                 Some(*jacobian)

@@ -5,7 +5,7 @@ use faer::MatMut;
 use super::{linear_solver::LinearSolver, stored_matrix::StoredMatrix};
 use crate::integrators::{
     common::{Error, check_whole},
-    ode::{BandMut, Dae, Failure, MassKind, Ode, call},
+    ode::{BandMut, Dae, Failure, MassKind, Ode, call, delegate::delegate},
 };
 
 /// The DAE M y' - f(t, y) = 0 of an [`Ode`] with a mass matrix, for [`Ida`](super::Ida).
@@ -75,7 +75,7 @@ impl<S: Ode> MassForm<S> {
     ///
     /// That is exact where each differential unknown has mass of its own, as with a diagonal M. Where M
     /// couples unknowns so that only combinations of them have mass, as a capacitor between two nodes does,
-    /// all of them count as differential: [`consistent_start`](super::Ida::consistent_start) cannot tell
+    /// all of them count as differential: [`consistent_start`](super::Ida::consistent_start) cannot determine
     /// which to change then, and the start has to satisfy the constraints.
     ///
     /// # Errors
@@ -119,6 +119,12 @@ impl<S: Ode> MassForm<S> {
 }
 
 impl<S: Ode> Dae for MassForm<S> {
+    delegate! { @methods [system]
+        fn root_count() -> usize;
+        fn quadrature_count() -> usize;
+        fn parameters() -> &[f64];
+    }
+
     fn residual(
         &mut self,
         t: f64,
@@ -177,16 +183,8 @@ impl<S: Ode> Dae for MassForm<S> {
         Ok(())
     }
 
-    fn root_count(&self) -> usize {
-        self.system.root_count()
-    }
-
     fn roots(&mut self, t: f64, y: &[f64], _yp: &[f64], g: &mut [f64]) -> Result<(), Failure> {
         call::roots(&mut self.system, t, y, g)
-    }
-
-    fn quadrature_count(&self) -> usize {
-        self.system.quadrature_count()
     }
 
     fn quadratures(
@@ -197,10 +195,6 @@ impl<S: Ode> Dae for MassForm<S> {
         qdot: &mut [f64],
     ) -> Result<(), Failure> {
         call::quadratures(&mut self.system, t, y, qdot)
-    }
-
-    fn parameters(&self) -> &[f64] {
-        self.system.parameters()
     }
 
     fn set_parameters(&mut self, values: &[f64]) {

@@ -1,95 +1,71 @@
 //! The C functions through which CVODE or ARKODE solves linear systems without a matrix of their own: by the
 //! solver of an [`Ode`], or by a Krylov method.
-//!
-//! All of them get the [`Host`] of the solver as their data pointer, and live serial vectors; those that they
-//! fill are different from the others. That is what their SAFETY comments refer to.
-
-use std::ffi::c_void;
 
 use super::{
+    callbacks::callbacks,
     ffi,
     host::Host,
     ode_callbacks::{check_jacobian, evaluate_jacobian},
-    serial::{slice, slice_mut},
 };
 use crate::integrators::{
     common::Callback,
     ode::{Ode, call},
 };
 
-/// `CVLsJacTimesVecFn`
-pub(super) unsafe extern "C" fn jacobian_times<S: Ode>(
-    v: ffi::N_Vector,
-    jv: ffi::N_Vector,
-    t: f64,
-    y: ffi::N_Vector,
-    ydot: ffi::N_Vector,
-    data: *mut c_void,
-    _: ffi::N_Vector,
-) -> i32 {
-    // SAFETY: see the module.
-    let (host, v, jv, y, ydot) =
-        unsafe { (Host::<S>::of(data), slice(v), slice_mut(jv), slice(y), slice(ydot)) };
-    let outcome = host.guard_output(Callback::JacobianTimes, t, jv, |system, jv| {
-        call::jacobian_times(system, t, y, ydot, v, jv)
-    });
-    if outcome != 0 {
-        return outcome;
+callbacks! {
+    /// `CVLsJacTimesVecFn`
+    fn jacobian_times<S: Ode>(
+        v: read, jv: write, t: f64, y: read, ydot: read, host: (data S), _: vector
+    ) {
+        let times = |system: &mut S, v: &[f64], jv: &mut [f64]| {
+            call::jacobian_times(system, t, y, ydot, v, jv)
+        };
+        match host.guard_output(Callback::JacobianTimes, t, jv, |system, jv| times(system, v, jv)) {
+            0 => check_jacobian(host, t, y, &[], times),
+            failed => failed,
+        }
     }
-    check_jacobian(host, t, y, &[], |system, v, jv| call::jacobian_times(system, t, y, ydot, v, jv))
+
+    /// `ARKLsLinSysFn`: as [`newton_setup`], with an argument for the mass matrix; there is none here.
+    fn newton_setup_with_mass<S: Ode>(
+        t: f64, y: read, ydot: read, _: (ffi::SUNMatrix), _: (ffi::SUNMatrix), reuse: i32, current: (result i32),
+        gamma: f64, host: (data S), _: vector, _: vector, _: vector
+    ) {
+        set_up(host, t, [y, ydot], (gamma, reuse), current)
+    }
+
+    /// `CVLsLinSysFn`: for a user-supplied solver, which stores I - gamma J itself.
+    fn newton_setup<S: Ode>(
+        t: f64, y: read, ydot: read, _: (ffi::SUNMatrix), reuse: i32, current: (result i32), gamma: f64,
+        host: (data S), _: vector, _: vector, _: vector
+    ) {
+        set_up(host, t, [y, ydot], (gamma, reuse), current)
+    }
+
+    /// `CVLsPrecSetupFn`: by the system, or by an incomplete factorization.
+    fn precondition_setup<S: Ode>(
+        t: f64, y: read, ydot: read, reuse: i32, current: (result i32), gamma: f64, host: (data S)
+    ) {
+        set_up(host, t, [y, ydot], (gamma, reuse), current)
+    }
+
+    /// `CVLsPrecSolveFn`
+    fn precondition_solve<S: Ode>(
+        t: f64, _: vector, _: vector, r: read, z: write, gamma: f64, _: f64, _: i32, host: (data S)
+    ) {
+        host.precondition(t, r, z, |system, z| system.newton_solve(gamma, z))
+    }
 }
 
-/// `ARKLsLinSysFn`: as [`newton_setup`], with an argument for the mass matrix; there is none here.
-#[allow(clippy::too_many_arguments)] // as C has it
-pub(super) unsafe extern "C" fn newton_setup_with_mass<S: Ode>(
+/// Sets up I - gamma J, or a preconditioner for it: by the system, or by an incomplete factorization. `current` is
+/// whether J is that of this point.
+fn set_up<S: Ode>(
+    host: &mut Host<S>,
     t: f64,
-    y: ffi::N_Vector,
-    ydot: ffi::N_Vector,
-    _: ffi::SUNMatrix,
-    _mass: ffi::SUNMatrix,
-    reuse: i32,
-    current: *mut i32,
-    gamma: f64,
-    data: *mut c_void,
-    _: ffi::N_Vector,
-    _: ffi::N_Vector,
-    _: ffi::N_Vector,
+    [y, ydot]: [&[f64]; 2],
+    (gamma, reuse): (f64, i32),
+    current: &mut i32,
 ) -> i32 {
-    // SAFETY: both have the same contract.
-    unsafe { precondition_setup::<S>(t, y, ydot, reuse, current, gamma, data) }
-}
-
-/// `CVLsLinSysFn`: for a user-supplied solver, which stores I - gamma J itself.
-#[allow(clippy::too_many_arguments)] // as C has it
-pub(super) unsafe extern "C" fn newton_setup<S: Ode>(
-    t: f64,
-    y: ffi::N_Vector,
-    ydot: ffi::N_Vector,
-    _: ffi::SUNMatrix,
-    reuse: i32,
-    current: *mut i32,
-    gamma: f64,
-    data: *mut c_void,
-    _: ffi::N_Vector,
-    _: ffi::N_Vector,
-    _: ffi::N_Vector,
-) -> i32 {
-    // SAFETY: both have the same contract.
-    unsafe { precondition_setup::<S>(t, y, ydot, reuse, current, gamma, data) }
-}
-
-/// `CVLsPrecSetupFn`: by the system, or by an incomplete factorization.
-pub(super) unsafe extern "C" fn precondition_setup<S: Ode>(
-    t: f64,
-    y: ffi::N_Vector,
-    ydot: ffi::N_Vector,
-    reuse: i32,
-    current: *mut i32,
-    gamma: f64,
-    data: *mut c_void,
-) -> i32 {
-    // SAFETY: see the module.
-    let (host, y, ydot) = unsafe { (Host::<S>::of(data), slice(y), slice(ydot)) };
     host.setup_time = t;
     let reuse = reuse != 0;
     let mut fresh = false;
@@ -112,25 +88,6 @@ pub(super) unsafe extern "C" fn precondition_setup<S: Ode>(
             outcome
         }
     };
-    // SAFETY: `current` is a valid place for the result.
-    unsafe { *current = i32::from(fresh) };
+    *current = i32::from(fresh);
     outcome
-}
-
-/// `CVLsPrecSolveFn`
-#[allow(clippy::too_many_arguments)] // as C has it
-pub(super) unsafe extern "C" fn precondition_solve<S: Ode>(
-    t: f64,
-    _: ffi::N_Vector,
-    _: ffi::N_Vector,
-    r: ffi::N_Vector,
-    z: ffi::N_Vector,
-    gamma: f64,
-    _tolerance: f64,
-    _side: i32,
-    data: *mut c_void,
-) -> i32 {
-    // SAFETY: see the module.
-    let (host, r, z) = unsafe { (Host::<S>::of(data), slice(r), slice_mut(z)) };
-    host.precondition(t, r, z, |system, z| system.newton_solve(gamma, z))
 }

@@ -7,11 +7,11 @@ use crate::base::input::InputError;
 /// The sparsity pattern of a square matrix in compressed sparse columns (CSC).
 ///
 /// Rows are sorted within each column, no entry occurs twice, and every diagonal entry is stored, zero or
-/// not: SUNDIALS adds the identity in place and writes out of bounds where the diagonal has no room
+/// not: SUNDIALS adds the identity in place and writes out of bounds where the diagonal has no space
 /// (`SUNMatScaleAddI_Sparse`, SUNDIALS 6.4.1). A `Pattern` cannot be made without these properties.
 ///
 /// The values of a Jacobian come in the order of [`row_indices`](Self::row_indices);
-/// [`position`](Self::position) finds the place of one entry.
+/// [`position`](Self::position) finds the position of one entry.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(try_from = "Unchecked"))]
@@ -93,7 +93,7 @@ impl Pattern {
     /// The pattern of a matrix in CSC form: the rows of column j are
     /// `row_indices[column_pointers[j]..column_pointers[j + 1]]`.
     ///
-    /// Nothing is rearranged, so values that belong to these arrays keep their places.
+    /// Nothing is rearranged, so values that belong to these arrays keep their positions.
     ///
     /// # Errors
     /// If the arrays do not fit together, a row is out of range, the rows of a
@@ -170,7 +170,7 @@ impl Pattern {
     }
 
     /// The values of a matrix with these (row, column, value) entries, in the order of this pattern; values
-    /// at the same place add up.
+    /// at the same position add up.
     ///
     /// # Errors
     /// If an entry is not stored.
@@ -180,11 +180,11 @@ impl Pattern {
     ) -> Result<Vec<f64>, InputError> {
         let mut values = vec![0.0; self.entry_count()];
         for (row, column, value) in entries {
-            let place = self.position(row, column).ok_or_else(|| {
+            let position = self.position(row, column).ok_or_else(|| {
                 let help = "the sparsity pattern has to have it, with those of all matrices";
                 InputError::new("entry", format!("({row}, {column})"), help)
             })?;
-            values[place] += value;
+            values[position] += value;
         }
         Ok(values)
     }
@@ -203,16 +203,16 @@ impl Pattern {
 
     /// Rows of the entries of column `j`.
     pub(super) fn column(&self, j: usize) -> &[i64] {
-        self.rows(self.places(j))
+        self.rows(self.positions(j))
     }
 
-    /// Rows of the entries at these places.
-    pub(super) fn rows(&self, places: Range<usize>) -> &[i64] {
-        &self.row_indices[places]
+    /// Rows of the entries at these positions.
+    pub(super) fn rows(&self, positions: Range<usize>) -> &[i64] {
+        &self.row_indices[positions]
     }
 
-    /// Places of the entries of column `j` among the values.
-    pub(super) fn places(&self, j: usize) -> Range<usize> {
+    /// Positions of the entries of column `j` among the values.
+    pub(super) fn positions(&self, j: usize) -> Range<usize> {
         self.column_pointers[j] as usize..self.column_pointers[j + 1] as usize
     }
 }

@@ -111,7 +111,7 @@ where
         for j in 0..n {
             set(&mut y, &mut yp, j, (f64::NAN, f64::NAN));
             (self.evaluate)(&y, &yp, &mut f).map_err(|failure| {
-                let help = "equations that refuse NaN are asked by sampling";
+                let help = "use sampling for equations that refuse NaN";
                 let input = format!("equations with NaN for unknown {j}");
                 InputError::new(input, failure.into_error(), help)
             })?;

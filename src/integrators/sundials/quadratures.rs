@@ -1,7 +1,7 @@
 //! Integrals along the solution (quadratures), by CVODES and IDAS.
 
 use super::{
-    auxiliary::Quadratures, ffi, functions::SetTwo, options::QuadratureOptions, session::Session,
+    auxiliary::Quadratures, ffi, functions::SetTwo, options::SolverOptions, session::Session,
     vector::Vector,
 };
 use crate::base::input::InputError;
@@ -36,12 +36,8 @@ impl<K, S> CarriesIntegrals for Session<K, S> {
             out.copy_from_slice(self.quadratures());
             return Ok(());
         }
-        let (Some(functions), Some(quadratures)) =
-            (self.memory.functions.quadratures, &self.quadratures)
-        else {
-            return Ok(());
-        };
-        let ((name, get_dky), scratch) = (functions.get_dky, quadratures.scratch.raw());
+        let Some(quadratures) = &self.quadratures else { return Ok(()) };
+        let ((name, get_dky), scratch) = (quadratures.functions.get_dky, quadratures.scratch.raw());
         // SAFETY: memory and vector are alive, and the vector has as many numbers as there are integrals.
         self.look_back(name, t, derivative, |memory, t, order| unsafe {
             get_dky(memory, t, order, scratch)
@@ -58,14 +54,14 @@ impl<K, S> Session<K, S> {
     ///
     /// # Safety
     /// `init` belongs to this integrator, and `callback` fits the host.
-    pub(super) unsafe fn set_quadratures<F>(
+    pub(super) unsafe fn set_quadratures<F, O>(
         &mut self,
         count: usize,
         init: SetTwo<F, ffi::N_Vector>,
         callback: F,
-        (options, of_unknowns): (&QuadratureOptions, &Tolerances),
+        options: &SolverOptions<O>,
     ) -> Result<(), Error> {
-        check_tolerances(count, options.tolerances.as_ref())?;
+        check_tolerances(count, options.quadrature_tolerances.as_ref())?;
         let Some(functions) = self.memory.functions.quadratures.filter(|_| count > 0) else {
             return Ok(());
         };
@@ -73,16 +69,15 @@ impl<K, S> Session<K, S> {
         let values = Vector::from_slice(&zeros, &self.context)?;
         let scratch = Vector::from_slice(&zeros, &self.context)?;
         let (memory, initial) = (self.memory.raw, values.raw());
-        self.quadratures = Some(Quadratures { values, scratch });
+        self.quadratures = Some(Quadratures { functions, values, scratch });
         // SAFETY: the memory is alive and copies the vector; the caller vouches for the rest.
         self.host.call(init, |init| unsafe { init(memory, callback, initial) })?;
-        if !options.error_control {
+        if !options.quadrature_error_control {
             return Ok(());
         }
-        let tolerances = match &options.tolerances {
-            Some(tolerances) => tolerances.clone(),
-            None => Tolerances::new(of_unknowns.rtol, of_unknowns.least_atol()),
-        };
+        let tolerances = options.quadrature_tolerances.clone().unwrap_or_else(|| {
+            Tolerances::new(options.tolerances.rtol, options.tolerances.least_atol())
+        });
         // SAFETY: the length of a vector was checked; the other value is a plain number.
         unsafe {
             let set = (functions.scalar_tolerances, functions.vector_tolerances);
@@ -93,15 +88,12 @@ impl<K, S> Session<K, S> {
 
     /// Reads the integrals at the present time, after a step.
     pub(super) fn read_quadratures(&mut self) -> Result<(), Error> {
-        let (Some(functions), Some(quadratures)) =
-            (self.memory.functions.quadratures, &self.quadratures)
-        else {
-            return Ok(());
-        };
+        let Some(quadratures) = &self.quadratures else { return Ok(()) };
         let (memory, mut t) = (self.memory.raw, 0.0);
         // SAFETY: the memory is alive, and the result pointers are valid.
-        self.host
-            .call(functions.get, |get| unsafe { get(memory, &raw mut t, quadratures.values.raw()) })
+        self.host.call(quadratures.functions.get, |get| unsafe {
+            get(memory, &raw mut t, quadratures.values.raw())
+        })
     }
 
     /// Sets the integrals to zero, with a new start.
@@ -114,14 +106,10 @@ impl<K, S> Session<K, S> {
 
     /// Lets C start from the present integrals.
     pub(super) fn hand_over_quadratures(&mut self) -> Result<(), Error> {
-        let (Some(functions), Some(quadratures)) =
-            (self.memory.functions.quadratures, &self.quadratures)
-        else {
-            return Ok(());
-        };
-        let values = quadratures.values.raw();
+        let Some(quadratures) = &self.quadratures else { return Ok(()) };
+        let (reinit, values) = (quadratures.functions.reinit, quadratures.values.raw());
         // SAFETY: the memory is alive and copies the vector.
-        unsafe { self.set(functions.reinit, values) }
+        unsafe { self.set(reinit, values) }
     }
 }
 

@@ -1,9 +1,8 @@
 //! Statistics of an integrator of SUNDIALS, and why it stopped.
 
-use std::ffi::c_void;
-
 use super::{
     ffi,
+    functions::Get,
     host::ErrorSource,
     index::Index,
     progress::STRETCH,
@@ -22,7 +21,7 @@ impl<K, S> Session<K, S> {
         let Memory { raw: memory, functions } = self.memory;
         let mut s = self.step_statistics();
         let [mut iterations, mut nonlinear_fails] = [0; 2];
-        let count = |get: unsafe extern "C" fn(*mut c_void, *mut i64) -> i32| {
+        let count = |(_, get): Get<i64>| {
             let mut count = 0;
             // SAFETY: the memory is alive, the result pointer is valid. Functions which do not apply, say to
             // a solver without Jacobian, leave it untouched.
@@ -31,8 +30,12 @@ impl<K, S> Session<K, S> {
         };
         // SAFETY: the memory is alive, every result pointer is valid.
         unsafe {
-            (functions.get_nonlinear_stats)(memory, &raw mut iterations, &raw mut nonlinear_fails);
-            (functions.get_tolerance_scale)(memory, &raw mut s.tolerance_scale);
+            (functions.get_nonlinear_stats.1)(
+                memory,
+                &raw mut iterations,
+                &raw mut nonlinear_fails,
+            );
+            (functions.get_tolerance_scale.1)(memory, &raw mut s.tolerance_scale);
         }
         s.nonlinear_iterations = iterations as u64;
         s.nonlinear_failures = nonlinear_fails as u64;
@@ -48,7 +51,12 @@ impl<K, S> Session<K, S> {
         s.root_evaluations = if s.steps > 0 { count(functions.get_root_evaluations) } else { 0 };
         s.quadrature_evaluations =
             functions.quadratures.map_or(0, |functions| count(functions.get_evaluations));
-        s.explicit_evaluations = functions.get_explicit_evaluations.map_or(0, count);
+        if let ([Some(_), Some(_)], Some((_, get))) = (self.stages, functions.get_rhs_evaluations) {
+            let [mut explicit, mut implicit] = [0; 2];
+            // SAFETY: as above.
+            unsafe { get(memory, &raw mut explicit, &raw mut implicit) };
+            s.explicit_evaluations = explicit as u64;
+        }
         s.sensitivity_evaluations =
             functions.sensitivities.map_or(0, |functions| count(functions.get_evaluations));
         s.stability_reductions = functions.get_stability_reductions.map_or(0, count);
@@ -96,7 +104,7 @@ impl<K, S> Session<K, S> {
         let mut flag = 0;
         // SAFETY: the memory is alive, the result pointer is valid.
         let code =
-            unsafe { (self.memory.functions.get_linear_flag)(self.memory.raw, &raw mut flag) };
+            unsafe { (self.memory.functions.get_linear_flag.1)(self.memory.raw, &raw mut flag) };
         code == 0 && codes.iter().any(|&code| i64::from(code) == flag)
     }
 

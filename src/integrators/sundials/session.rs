@@ -11,7 +11,7 @@ use super::{
     context::Context,
     differences::{Differences, Scales},
     ffi,
-    functions::{Functions, Set, SetTwo},
+    functions::{Functions, OdeFunctions, Set, SetTwo, Solve, Stages},
     host::{CustomSolve, Host, HostBox, NewtonSolve, keep_message},
     ilu::IncompleteLu,
     jacobian::Jacobian,
@@ -19,15 +19,18 @@ use super::{
     linear::Linear,
     linear_solver::LinearSolver,
     nonlinear::FixedPoint,
-    options::Limits,
+    ode_callbacks::{jacobian, newton_rhs},
+    ode_krylov::{jacobian_times, precondition_setup, precondition_solve},
+    options::SolverOptions,
     progress::Progress,
     shape::Shape,
     signs::{self, Sign},
     stop_time::StopTime,
     vector::Vector,
 };
-use crate::integrators::common::{
-    AbsoluteTolerance, Error, JacobianCheck, StepOptions, Tolerances,
+use crate::integrators::{
+    common::{AbsoluteTolerance, Error, JacobianCheck, Tolerances},
+    ode::Ode,
 };
 
 /// How often a step may be tried again with a smaller size because its error is too large. The 7 of CVODE and
@@ -40,6 +43,10 @@ const ERROR_TEST_FAILURES: i32 = 20;
 pub(super) struct Session<K, S> {
     // Fields are dropped in this order: first what uses the others.
     pub(super) memory: Memory,
+    /// Integrates.
+    pub(super) solve: Solve,
+    /// The right-hand sides of ARKODE.
+    pub(super) stages: Stages,
     fixed_point: Option<FixedPoint>,
     linear: Option<Linear>,
     /// Mass matrix and its linear solver, if there is one.
@@ -141,6 +148,8 @@ impl<K, S> Session<K, S> {
         })?;
         Ok(Self {
             memory,
+            solve: functions.solve,
+            stages: [None; 2],
             fixed_point: None,
             linear: None,
             mass: None,
@@ -208,12 +217,8 @@ impl<K, S> Session<K, S> {
 
     /// Registers the host, after the integrator was initialised with the callbacks for it, and
     /// sets tolerances and the options of the step size control.
-    pub(super) fn configure(
-        &mut self,
-        tolerances: &Tolerances,
-        steps: &StepOptions,
-        limits: &Limits,
-    ) -> Result<(), Error> {
+    pub(super) fn configure<O>(&mut self, options: &SolverOptions<O>) -> Result<(), Error> {
+        let steps = &options.steps;
         self.max_steps = steps.max_steps;
         self.initial_step = steps.initial_step;
         let functions = self.memory.functions;
@@ -221,7 +226,7 @@ impl<K, S> Session<K, S> {
         // numbers.
         unsafe {
             let set = (functions.scalar_tolerances, functions.vector_tolerances);
-            self.set_tolerances(set, tolerances)?;
+            self.set_tolerances(set, &options.tolerances)?;
             self.set(functions.set_user_data, self.host.as_ptr())?;
             self.set(functions.set_max_steps, i64::from(steps.max_steps))?;
             if let Some(set) = functions.set_max_error_test_failures {
@@ -230,18 +235,18 @@ impl<K, S> Session<K, S> {
             for (function, value) in [
                 (functions.set_initial_step, steps.initial_step),
                 (functions.set_max_step, steps.max_step),
-                (functions.set_min_step, limits.min_step),
-                (functions.set_convergence_coefficient, limits.convergence_coefficient),
+                (functions.set_min_step, options.min_step),
+                (functions.set_convergence_coefficient, options.convergence_coefficient),
             ] {
                 if let Some(value) = value {
                     self.set(function, value)?;
                 }
             }
-            if let (Some(set), Some(order)) = (functions.set_max_order, limits.max_order) {
+            if let (Some(set), Some(order)) = (functions.set_max_order, options.max_order) {
                 self.set(set, order as i32)?;
             }
         }
-        self.set_signs(&limits.signs)
+        self.set_signs(&options.signs)
     }
 
     /// Forgets the factors after a failure: the matrix of Newton's iteration may be half written.
@@ -290,12 +295,12 @@ impl<K, S> Session<K, S> {
     }
 
     /// Gives the Newton iteration its linear solver.
-    pub(super) fn set_newton(
+    pub(super) fn set_newton<O>(
         &mut self,
-        solver: &LinearSolver,
+        options: &SolverOptions<O>,
         solve: NewtonSolve<S>,
-        (tolerances, limits): (&Tolerances, &Limits),
     ) -> Result<(), Error> {
+        let (solver, tolerances) = (&options.linear_solver, &options.tolerances);
         let Memory { raw: memory, functions } = self.memory;
         let step_parameter = functions.get_step_parameter;
         self.host.get_mut().custom_solve = Some(CustomSolve { solve, step_parameter, memory });
@@ -310,7 +315,7 @@ impl<K, S> Session<K, S> {
             let differences = Differences::of_ode(solver, n, tolerances, &self.signs);
             self.host.get_mut().differences = differences;
         }
-        if !limits.trusts_jacobian && solver.supplied().is_some() {
+        if !options.trusts_jacobian && solver.supplied().is_some() {
             let check = JacobianCheck::new(n, tolerances);
             let is_matrix = !matches!(solver, LinearSolver::Krylov(_));
             let shape = Shape::of(solver).filter(|_| is_matrix);
@@ -356,18 +361,42 @@ impl<K, S> Session<K, S> {
         Ok(())
     }
 
-    /// Replaces the Newton iteration by a fixed-point iteration, by the function `set`.
+    /// Sets how the equations of an implicit step of an ODE are solved; `set_up_custom` registers the set-up of a
+    /// user-supplied linear solver.
     ///
     /// # Safety
-    /// The function belongs to this integrator and attaches a nonlinear solver.
-    pub(super) unsafe fn set_fixed_point(
+    /// The functions belong to this integrator.
+    pub(super) unsafe fn set_nonlinear<O>(
         &mut self,
-        set: Set<ffi::SUNNonlinearSolver>,
-        acceleration: u32,
-    ) -> Result<(), Error> {
-        let made = FixedPoint::new(&self.y, acceleration, &self.context)?;
-        let solver = self.fixed_point.insert(made).raw();
-        // SAFETY: the caller vouches for the function; the solver is dropped after the memory.
-        unsafe { self.set(set, solver) }
+        functions: &OdeFunctions,
+        options: &SolverOptions<O>,
+        set_up_custom: impl FnOnce(&mut Self) -> Result<(), Error>,
+    ) -> Result<(), Error>
+    where
+        S: Ode,
+    {
+        if let Some(acceleration) = options.fixed_point {
+            let made = FixedPoint::new(&self.y, acceleration, &self.context)?;
+            let solver = self.fixed_point.insert(made).raw();
+            // SAFETY: the solver is dropped after the memory.
+            return unsafe { self.set(self.memory.functions.set_nonlinear_solver, solver) };
+        }
+        self.set_newton(options, S::newton_solve)?;
+        // SAFETY: the callbacks fit the registered host; the caller vouches for the functions.
+        unsafe {
+            match &options.linear_solver {
+                LinearSolver::Custom => {
+                    set_up_custom(self)?;
+                    self.set(functions.set_newton_rhs, Some(newton_rhs::<S>))
+                }
+                LinearSolver::Krylov(krylov) => {
+                    let (set_up, solve) = (precondition_setup::<S>, precondition_solve::<S>);
+                    let times = (functions.set_jacobian_times, Some(jacobian_times::<S> as _));
+                    let set = functions.set_preconditioner;
+                    self.set_krylov(krylov, times, (set, Some(set_up as _), Some(solve as _)))
+                }
+                _ => self.set(functions.set_jacobian, Some(jacobian::<S>)),
+            }
+        }
     }
 }

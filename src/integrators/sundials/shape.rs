@@ -34,17 +34,17 @@ impl Shape {
         }
     }
 
-    /// Places of the entries of column `j` among the `stored` numbers of a matrix with `n` columns.
-    pub(super) fn places(&self, j: usize, n: usize, stored: usize) -> Range<usize> {
+    /// Positions of the entries of column `j` among the `stored` numbers of a matrix with `n` columns.
+    pub(super) fn positions(&self, j: usize, n: usize, stored: usize) -> Range<usize> {
         match self {
             Self::Dense => j * n..(j + 1) * n,
             Self::Band { lower, upper } => {
                 let stride = stored / n;
-                // room for pivots may lie above the band
+                // space for pivots may lie above the band
                 let diagonal = j * stride + stride - lower - 1;
                 diagonal - upper.min(&j)..diagonal + (n - j).min(lower + 1)
             }
-            Self::Sparse(pattern) => pattern.places(j),
+            Self::Sparse(pattern) => pattern.positions(j),
         }
     }
 
@@ -57,11 +57,11 @@ impl Shape {
         }
     }
 
-    /// Calls `visit` with the row, column and place of each entry.
+    /// Calls `visit` with the row, column and position of each entry.
     pub(super) fn each(&self, n: usize, stored: usize, mut visit: impl FnMut(usize, usize, usize)) {
         for j in 0..n {
-            for (k, place) in self.places(j, n, stored).enumerate() {
-                visit(self.row(j, k), j, place);
+            for (k, position) in self.positions(j, n, stored).enumerate() {
+                visit(self.row(j, k), j, position);
             }
         }
     }
@@ -69,7 +69,7 @@ impl Shape {
     /// Writes the product of the matrix with `v`.
     pub(super) fn multiply(&self, values: &[f64], v: &[f64], out: &mut [f64]) {
         out.fill(0.0);
-        self.each(v.len(), values.len(), |i, j, place| out[i] += values[place] * v[j]);
+        self.each(v.len(), values.len(), |i, j, position| out[i] += values[position] * v[j]);
     }
 }
 
@@ -77,7 +77,7 @@ impl Shape {
 mod tests {
     use super::{Pattern, Shape};
 
-    /// A band with and without room for pivots, and the same as a sparse matrix.
+    /// A band with and without space for pivots, and the same as a sparse matrix.
     #[test]
     fn bands_are_sparse_matrices() {
         for (n, lower, upper) in [(6, 1, 2), (4, 3, 0), (5, 4, 4), (1, 0, 0)] {
@@ -87,13 +87,13 @@ mod tests {
             let v: Vec<f64> = (0..n).map(|j| 1.0 + j as f64).collect();
             let product = |shape: &Shape, stored: usize| {
                 let (mut values, mut out) = (vec![f64::NAN; stored], vec![0.0; n]);
-                shape.each(n, stored, |i, j, place| values[place] = entry(i, j));
+                shape.each(n, stored, |i, j, position| values[position] = entry(i, j));
                 shape.multiply(&values, &v, &mut out);
                 out
             };
             let expected = product(&sparse, pattern.entry_count());
-            for room in [0, lower.min(n - 1 - upper)] {
-                assert_eq!(product(&band, n * (lower + upper + 1 + room)), expected);
+            for space in [0, lower.min(n - 1 - upper)] {
+                assert_eq!(product(&band, n * (lower + upper + 1 + space)), expected);
             }
         }
     }

@@ -7,7 +7,7 @@ use faer::{MatMut, MatRef};
 use super::{quadratures::CarriesIntegrals, sensitivity::CarriesSensitivities};
 use crate::integrators::{
     common::{Error, Integrator, Reached, Statistics},
-    ode::{Borrowed, Dae, Ode},
+    ode::{Borrowed, Dae, Ode, delegate::delegate},
 };
 
 /// The kind of a [`Solver`]: CVODE, ARKODE or IDA.
@@ -29,7 +29,15 @@ pub trait Kind {
 pub trait WithSensitivities: Kind<Session: CarriesSensitivities> {}
 
 /// An integrator of SUNDIALS: [`Cvode`](super::Cvode), [`Arkode`](super::Arkode) or [`Ida`](super::Ida), by
-/// the parameter `K`. Their common interface is [`Integrator`].
+/// the parameter `K`. Their common interface is [`Integrator`]:
+///
+/// | method | C functions |
+/// | --- | --- |
+/// | `solve_to`, `step` | `CVode`, `ARKStepEvolve` or `IDASolve` with the task `CV_NORMAL` or `CV_ONE_STEP` |
+/// | `interpolate` | `CVodeGetDky`, `ARKStepGetDky` or `IDAGetDky` |
+/// | `set_stop_time` | `CVodeSetStopTime`, `ARKStepSetStopTime` or `IDASetStopTime`, called with the next step |
+/// | `reinit` | `CVodeReInit`, `ARKStepReInit` or `IDAReInit` |
+/// | `resume` | `ARKStepReset` for ARKODE; the others need a new start |
 ///
 /// It owns the system `S`; [`Borrowed`] lends it one. It can be sent to another
 /// thread if the system can.
@@ -118,62 +126,20 @@ impl<K: Kind, S> Solver<K, S> {
 impl<K: Kind, S> Integrator for Solver<K, S> {
     type System = S;
 
-    fn t(&self) -> f64 {
-        self.session.t()
-    }
-
-    fn y(&self) -> &[f64] {
-        self.session.y()
-    }
-
-    /// `CVode`, `ARKStepEvolve` or `IDASolve` with the task `CV_NORMAL`.
-    fn solve_to(&mut self, t: f64) -> Result<Reached, Error> {
-        self.session.solve_to(t)
-    }
-
-    /// `CVode`, `ARKStepEvolve` or `IDASolve` with the task `CV_ONE_STEP`.
-    fn step(&mut self, towards: f64) -> Result<Reached, Error> {
-        self.session.step(towards)
-    }
-
-    fn last_step(&self) -> (f64, f64) {
-        self.session.last_step()
-    }
-
-    fn last_order(&self) -> u32 {
-        self.session.last_order()
-    }
-
-    fn interpolant_degree(&self) -> u32 {
-        self.session.interpolant_degree()
-    }
-
-    /// `CVodeGetDky`, `ARKStepGetDky` or `IDAGetDky`.
-    fn interpolate(&mut self, t: f64, derivative: u32, out: &mut [f64]) -> Result<(), Error> {
-        self.session.interpolate(t, derivative, out)
-    }
-
-    /// `CVodeSetStopTime`, `ARKStepSetStopTime` or `IDASetStopTime`, called with the next step.
-    fn set_stop_time(&mut self, t: Option<f64>) -> Result<(), Error> {
-        self.session.set_stop_time(t)
-    }
-
-    /// `CVodeReInit`, `ARKStepReInit` or `IDAReInit`.
-    fn reinit(&mut self, t: f64, y: &[f64]) -> Result<(), Error> {
-        self.session.reinit(t, y)
-    }
-
-    /// `ARKStepReset` for ARKODE; the others need a new start.
-    fn resume(&mut self, t: f64, y: &[f64]) -> Result<bool, Error> {
-        self.session.resume(t, y)
-    }
-
-    fn roots_found(&self) -> &[i32] {
-        self.session.roots_found()
-    }
-
-    fn statistics(&self) -> Statistics {
-        self.session.statistics()
+    delegate! { @methods [session]
+        fn t() -> f64;
+        fn y() -> &[f64];
+        fn solve_to(t: f64) -> Result<Reached, Error>;
+        fn step(towards: f64) -> Result<Reached, Error>;
+        fn last_step() -> (f64, f64);
+        fn last_order() -> u32;
+        fn interpolant_degree() -> u32;
+        fn interpolate(t: f64, derivative: u32, out: &mut [f64]) -> Result<(), Error>;
+        fn set_stop_time(t: Option<f64>) -> Result<(), Error>;
+        fn reinit(t: f64, y: &[f64]) -> Result<(), Error>;
+        fn resume(t: f64, y: &[f64]) -> Result<bool, Error>;
+        fn roots_found() -> &[i32];
+        fn statistics() -> Statistics;
     }
 
     fn system(&self) -> &S {

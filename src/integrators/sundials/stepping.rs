@@ -185,7 +185,7 @@ impl<K, S> Session<K, S> {
             // SAFETY: the value is a plain number.
             unsafe { self.set(functions.set_initial_step, stop - self.t)? };
         }
-        let (name, solve) = functions.solve;
+        let (name, solve) = self.solve;
         // C writes to other vectors than the present state, which is kept if C fails to give another
         let (memory, y, before) = (self.memory.raw, self.scratch.raw(), self.t);
         let yp = self.slope_scratch.as_ref().map_or(ptr::null_mut(), Vector::raw);
@@ -326,7 +326,7 @@ impl<K, S> Session<K, S> {
         // a state where the right-hand side is undefined itself stays so
         if !failed
             || self.has_fixed_step
-            || !self.host.get().troubles.ask_for_less(end)
+            || !self.host.get().troubles.requests_smaller_step(end)
             || end + h == end
         {
             return Ok(false);
@@ -352,9 +352,11 @@ impl<K, S> Session<K, S> {
 
     /// Makes C start at time `t` from the present state: `CVodeReInit`, `ARKStepReInit` or `IDAReInit`.
     fn start_c(&mut self, t: f64) -> Result<(), Error> {
-        let (memory, y, yp) = (self.memory.raw, self.y.raw(), self.raw_yp());
-        // SAFETY: memory and vectors are alive; the integrator copies the vectors.
-        self.host.call(self.memory.functions.reinit, |reinit| unsafe { reinit(memory, t, y, yp) })
+        let Memory { raw: memory, functions } = self.memory;
+        let (stages, y, yp) = (self.stages, self.y.raw(), self.raw_yp());
+        // SAFETY: memory and vectors are alive; the integrator copies the vectors, and the right-hand sides are those
+        // that it was made with.
+        self.host.call(functions.reinit, |reinit| unsafe { reinit(memory, stages, t, y, yp) })
     }
 
     /// Whether the state that C has written is finite.

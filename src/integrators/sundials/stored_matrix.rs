@@ -8,7 +8,7 @@ use crate::integrators::{
 
 /// A matrix in the form of a linear solver.
 #[derive(Clone, Debug)]
-pub(in crate::integrators::sundials) struct StoredMatrix {
+pub(crate) struct StoredMatrix {
     solver: LinearSolver,
     shape: Shape,
     n: usize,
@@ -17,7 +17,7 @@ pub(in crate::integrators::sundials) struct StoredMatrix {
 
 impl StoredMatrix {
     /// An `n` x `n` matrix of zeros.
-    pub(in crate::integrators::sundials) fn new(solver: &LinearSolver, n: usize) -> Self {
+    pub(crate) fn new(solver: &LinearSolver, n: usize) -> Self {
         let count = match solver {
             LinearSolver::Dense(_) => n * n,
             LinearSolver::Band { lower, upper, .. } => n * (lower + upper + 1),
@@ -29,9 +29,7 @@ impl StoredMatrix {
     }
 
     /// The linear solver for transposed matrices.
-    pub(in crate::integrators::sundials) fn backward_solver(
-        &self,
-    ) -> Result<LinearSolver, InputError> {
+    pub(crate) fn backward_solver(&self) -> Result<LinearSolver, InputError> {
         match &self.solver {
             LinearSolver::Dense(_) => Ok(LinearSolver::Dense(Jacobian::Supplied)),
             LinearSolver::Band { lower, upper, .. } => Ok(LinearSolver::Band {
@@ -41,7 +39,7 @@ impl StoredMatrix {
             }),
             LinearSolver::Klu { .. } => {
                 let mut entries = Vec::new();
-                self.each_place(|i, j, _| entries.push((j, i)));
+                self.each_position(|i, j, _| entries.push((j, i)));
                 let pattern = Pattern::from_entries(self.n, entries)?;
                 Ok(LinearSolver::Klu { pattern, jacobian: Jacobian::Supplied })
             }
@@ -54,97 +52,71 @@ impl StoredMatrix {
     }
 
     /// Its entries, set to zero and to be filled.
-    pub(in crate::integrators::sundials) fn entries(&mut self) -> Entries<'_> {
+    pub(crate) fn entries(&mut self) -> Entries<'_> {
         self.values.fill(0.0);
         self.solver.entries(self.n, &mut self.values)
     }
 
     /// The stored entries.
-    pub(in crate::integrators::sundials) fn values(&self) -> &[f64] {
+    pub(crate) fn values(&self) -> &[f64] {
         &self.values
     }
 
     /// The same, to be written.
-    pub(in crate::integrators::sundials) fn values_mut(&mut self) -> &mut [f64] {
+    pub(crate) fn values_mut(&mut self) -> &mut [f64] {
         &mut self.values
     }
 
     /// Writes its product with `v`.
-    pub(in crate::integrators::sundials) fn multiply(&self, v: &[f64], out: &mut [f64]) {
+    pub(crate) fn multiply(&self, v: &[f64], out: &mut [f64]) {
         self.shape.multiply(&self.values, v, out);
     }
 
     /// Writes I - gamma J into the matrix of its own linear solver, which is zero before.
-    pub(in crate::integrators::sundials) fn write_shifted(&self, gamma: f64, entries: Entries<'_>) {
-        let value = |i: usize, j: usize, place: usize| {
+    pub(crate) fn write_shifted(&self, gamma: f64, mut entries: Entries<'_>) {
+        self.each_position(|i, j, position| {
             let unit = if i == j { 1.0 } else { 0.0 };
-            unit - gamma * self.values[place]
-        };
-        match entries {
-            Entries::Dense(mut matrix) => {
-                self.each_place(|i, j, place| matrix[(i, j)] = value(i, j, place));
-            }
-            Entries::Band(mut band) => {
-                self.each_place(|i, j, place| band[(i, j)] = value(i, j, place));
-            }
-            Entries::Sparse(values) => {
-                self.each_place(|i, j, place| values[place] = value(i, j, place));
-            }
-        }
+            entries.set((i, j), position, unit - gamma * self.values[position]);
+        });
     }
 
     /// Calls `visit` with row, column and value of each entry.
-    pub(in crate::integrators::sundials) fn each(&self, mut visit: impl FnMut(usize, usize, f64)) {
-        self.each_place(|i, j, place| visit(i, j, self.values[place]));
+    pub(crate) fn each(&self, mut visit: impl FnMut(usize, usize, f64)) {
+        self.each_position(|i, j, position| visit(i, j, self.values[position]));
     }
 
-    /// Calls `visit` with row, column and place among the values of each entry.
-    pub(in crate::integrators::sundials) fn each_place(
-        &self,
-        visit: impl FnMut(usize, usize, usize),
-    ) {
+    /// Calls `visit` with row, column and position among the values of each entry.
+    pub(crate) fn each_position(&self, visit: impl FnMut(usize, usize, usize)) {
         self.shape.each(self.n, self.values.len(), visit);
     }
 
     /// Adds `factor` J^T lambda.
-    pub(in crate::integrators::sundials) fn add_transposed_times(
-        &self,
-        factor: f64,
-        lambda: &[f64],
-        out: &mut [f64],
-    ) {
+    pub(crate) fn add_transposed_times(&self, factor: f64, lambda: &[f64], out: &mut [f64]) {
         self.each(|i, j, value| out[j] += factor * value * lambda[i]);
     }
 
-    /// Writes the transpose of another matrix of this form, whose entries are `value(row, place)`, into the
+    /// Writes the transpose of another matrix of this form, whose entries are `value(row, position)`, into the
     /// matrix of `backward`, the linear solver for transposed matrices.
-    pub(in crate::integrators::sundials) fn write_transposed(
+    pub(crate) fn write_transposed(
         &self,
         backward: &LinearSolver,
-        entries: Entries<'_>,
+        mut entries: Entries<'_>,
         value: impl Fn(usize, usize) -> f64,
     ) {
-        match (entries, backward) {
-            (Entries::Dense(mut matrix), _) => {
-                self.each_place(|i, j, place| matrix[(j, i)] = value(i, place));
+        self.each_position(|i, j, position| {
+            let to = match backward {
+                LinearSolver::Klu { pattern, .. } => pattern.position(j, i),
+                _ => Some(position),
+            };
+            if let Some(to) = to {
+                entries.set((j, i), to, value(i, position));
             }
-            (Entries::Band(mut band), _) => {
-                self.each_place(|i, j, place| band[(j, i)] = value(i, place));
-            }
-            (Entries::Sparse(values), LinearSolver::Klu { pattern, .. }) => {
-                self.each_place(|i, j, place| {
-                    if let Some(to) = pattern.position(j, i) {
-                        values[to] = value(i, place);
-                    }
-                });
-            }
-            _ => {}
-        }
+        });
     }
 }
 
 /// Difference quotients for matrices of one form.
-pub(in crate::integrators::sundials) struct Quotients {
+pub(crate) struct Quotients {
     colouring: Colouring,
     /// Unknowns shifted, and two results.
     moved: Vec<f64>,
@@ -154,7 +126,7 @@ pub(in crate::integrators::sundials) struct Quotients {
 
 impl Quotients {
     /// For matrices of the form of this one.
-    pub(in crate::integrators::sundials) fn new(matrix: &StoredMatrix) -> Self {
+    pub(crate) fn new(matrix: &StoredMatrix) -> Self {
         let vector = || vec![0.0; matrix.n];
         let colouring = matrix.shape.colouring(matrix.n);
         Self { colouring, moved: vector(), ahead: vector(), behind: vector() }
@@ -162,7 +134,7 @@ impl Quotients {
 
     /// Makes `matrix` the Jacobian of `evaluate` at `x`, by central differences with these steps, of as many
     /// columns at once as share no row.
-    pub(in crate::integrators::sundials) fn write(
+    pub(crate) fn write(
         &mut self,
         matrix: &mut StoredMatrix,
         x: &[f64],
@@ -180,9 +152,9 @@ impl Quotients {
             }
             for &j in columns {
                 let distance = (x[j] + step(j)) - (x[j] - step(j));
-                for (k, place) in shape.places(j, *n, values.len()).enumerate() {
+                for (k, position) in shape.positions(j, *n, values.len()).enumerate() {
                     let i = shape.row(j, k);
-                    values[place] = (self.ahead[i] - self.behind[i]) / distance;
+                    values[position] = (self.ahead[i] - self.behind[i]) / distance;
                 }
             }
         }

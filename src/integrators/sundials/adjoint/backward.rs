@@ -5,8 +5,15 @@ use crate::integrators::{
     common::{AbsoluteTolerance, Error, IntegrationError, Integrator, Tolerances},
     ode::{Borrowed, Functional},
     sundials::{
-        auxiliary::Backward, context::Context, ffi, functions::BackwardFunctions, linear::Linear,
-        quadratures::CarriesIntegrals, report::cause_of, session::Session, vector::Vector,
+        auxiliary::Backward,
+        context::Context,
+        ffi,
+        functions::{BackwardFunctions, InitBackward, InitBackwardQuadratures, SetBackward},
+        linear::Linear,
+        quadratures::CarriesIntegrals,
+        report::cause_of,
+        session::Session,
+        vector::Vector,
     },
 };
 
@@ -24,6 +31,9 @@ pub(in crate::integrators::sundials) unsafe trait BackwardProblem {
     type Functional: Functional;
 
     const FUNCTIONS: &'static BackwardFunctions;
+    const INIT: InitBackward;
+    const SET_JACOBIAN: SetBackward;
+    const INIT_QUADRATURES: InitBackwardQuadratures;
 
     fn equations(&mut self) -> &mut Equations<Self::System, Self::Functional>;
 
@@ -54,12 +64,12 @@ impl<P: BackwardProblem> Session<P::Kind, Borrowed<'_, P>> {
         self.host.call(P::FUNCTIONS.init_checkpoints, |init| unsafe {
             init(memory, steps, ffi::CV_HERMITE)
         })?;
-        self.memory.functions = P::FUNCTIONS.forward;
+        self.solve = P::FUNCTIONS.solve_forward;
         // steps must not pass `t`: the equations may jump there
         self.set_stop_time(Some(t))?;
         self.solve_to(t)?;
         let equations = self.host.get_mut().system.0.equations();
-        let integrator = P::FUNCTIONS.forward.integrator;
+        let integrator = self.memory.functions.integrator;
         let mut gradient = equations.terminal(integrator, t, self.y.as_slice())?;
         gradient.value += self.quadratures()[0];
         self.start_back(t, &mut gradient, options)?;
@@ -101,19 +111,19 @@ impl<P: BackwardProblem> Session<P::Kind, Borrowed<'_, P>> {
         // SAFETY: the memory is alive and has this problem; it copies vectors, the linear solver lives longer
         // than it, and the host, which the callbacks fit, is their data.
         unsafe {
-            host.call(functions.init, |init| init(memory, which, t, lambda, slope))?;
+            host.call(P::INIT, |init| init(memory, which, t, lambda, slope))?;
             host.call(functions.vector_tolerances, |set| set(memory, which, *rtol, atol.raw()))?;
             host.call(functions.set_user_data, |set| set(memory, which, data))?;
             host.call(functions.set_max_steps, |set| set(memory, which, max_steps))?;
             host.call(functions.set_linear_solver, |set| set(memory, which, solver, matrix))?;
-            host.call(functions.set_jacobian, |set| set(memory, which))?;
+            host.call(P::SET_JACOBIAN, |set| set(memory, which))?;
         }
         let Some(integrals) = integrals else { return Ok(()) };
         let Tolerances { rtol, atol } = options.tolerances_for(&parameters);
         let atol = Vector::from_slice(&spread(&atol, count), context)?;
         // SAFETY: as above.
         unsafe {
-            host.call(functions.init_quadratures, |init| init(memory, which, integrals))?;
+            host.call(P::INIT_QUADRATURES, |init| init(memory, which, integrals))?;
             host.call(functions.set_quadrature_error_control, |set| set(memory, which, 1))?;
             host.call(functions.quadrature_tolerances, |set| set(memory, which, rtol, atol.raw()))
         }
@@ -127,7 +137,7 @@ impl<P: BackwardProblem> Session<P::Kind, Borrowed<'_, P>> {
         self.host.get_mut().troubles.clear();
         // SAFETY: memory and everything registered with it are alive; `&mut self` keeps others away while
         // callbacks use the host.
-        let code = unsafe { (functions.solve)(memory, t0, ffi::CV_NORMAL) };
+        let code = unsafe { (functions.solve.1)(memory, t0, ffi::CV_NORMAL) };
         self.host.get_mut().troubles.resume_panic();
         if code < 0 {
             return Err(self.stopped_back(which, code, t0));
@@ -157,9 +167,9 @@ impl<P: BackwardProblem> Session<P::Kind, Borrowed<'_, P>> {
         // are valid.
         unsafe {
             let memory = (functions.get_memory)(self.memory.raw, which);
-            (functions.get_current_time)(memory, &raw mut t);
-            (functions.forward.get_current_step)(memory, &raw mut step);
-            (functions.get_current_order)(memory, &raw mut order);
+            (functions.get_current_time.1)(memory, &raw mut t);
+            (self.memory.functions.get_current_step.1)(memory, &raw mut step);
+            (functions.get_current_order.1)(memory, &raw mut order);
         }
         let (otherwise, blame_retries) = cause_of(code, self.max_steps, t0);
         let troubles = &mut self.host.get_mut().troubles;

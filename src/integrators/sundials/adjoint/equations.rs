@@ -14,7 +14,7 @@ use crate::integrators::{
     },
 };
 
-/// A system and a functional, with room for their derivatives.
+/// A system and a functional, with storage for their derivatives.
 pub(in crate::integrators::sundials) struct Equations<S, F> {
     pub(super) system: S,
     functional: F,

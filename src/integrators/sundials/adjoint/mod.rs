@@ -6,8 +6,10 @@ mod equations;
 mod gradient;
 mod ode;
 mod options;
+mod setup;
 
 pub use dae::DaeAdjoint;
 pub use gradient::Gradient;
 pub use ode::Adjoint;
 pub use options::AdjointOptions;
+pub use setup::AdjointOf;

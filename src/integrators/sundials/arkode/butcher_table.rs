@@ -59,7 +59,7 @@ const fn ark(
 impl ButcherTable {
     /// All single tables: diagonally implicit ones, then explicit ones.
     ///
-    /// The one without an error estimate is left out.
+    /// The one without an error estimate is omitted.
     pub const ALL: [Self; 37] = [
         dirk(c"ARKODE_SDIRK_2_1_2", 2),
         dirk(c"ARKODE_BILLINGTON_3_3_2", 2),

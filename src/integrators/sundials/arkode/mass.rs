@@ -1,12 +1,10 @@
 //! The mass matrix of M y' = f(t, y) in ARKODE.
 
-use std::ffi::c_void;
-
 use crate::integrators::{
-    common::{Callback, Error},
+    common::Error,
     ode::{MassKind, Ode},
     sundials::{
-        ffi, functions::named, host::Host, linear::Linear, linear_solver::LinearSolver,
+        ffi, functions::named, linear::Linear, linear_solver::LinearSolver, ode_callbacks,
         session::Session,
     },
 };
@@ -46,25 +44,6 @@ pub(super) fn attach<K, S: Ode>(
     unsafe {
         let code = ffi::ARKStepSetMassLinearSolver(arkode.memory.raw, raw, mass, time_dependent);
         arkode.host.accept("ARKStepSetMassLinearSolver", code)?;
-        arkode.set(named!(ARKStepSetMassFn), Some(fill::<S>))
+        arkode.set(named!(ARKStepSetMassFn), Some(ode_callbacks::mass::<S>))
     }
-}
-
-/// `ARKLsMassFn`
-unsafe extern "C" fn fill<S: Ode>(
-    t: f64,
-    mass: ffi::SUNMatrix,
-    data: *mut c_void,
-    _: ffi::N_Vector,
-    _: ffi::N_Vector,
-    _: ffi::N_Vector,
-) -> i32 {
-    // SAFETY: the data is the host of the solver, which nobody else uses during this call; SUNDIALS passes a
-    // matrix that was made for a linear solver of the same form.
-    let (host, values) = unsafe {
-        let host = Host::<S>::of(data);
-        let values = host.stored(mass);
-        (host, values)
-    };
-    host.guard_entries(Callback::Mass, t, values, |system, entries| entries.mass(system, t))
 }

@@ -2,11 +2,9 @@
 //!
 //! After a failure ARKODE returns the time of a stage with the state at the start of the step. The time that
 //! belongs to that state is therefore recorded by the function of `ARKStepSetStabilityFn`, which is called
-//! once a step. A function after each step (`ARKStepSetPostprocessStepFn`) would tell it, too, but makes
+//! once a step. A function after each step (`ARKStepSetPostprocessStepFn`) would report it, too, but makes
 //! ARKODE evaluate the right-hand side at the ends of steps, which costs accuracy in stiff systems; it serves
 //! fixed steps alone.
-
-use std::{ffi::c_void, ptr};
 
 use super::{mass, options::ArkodeOptions};
 use crate::integrators::{
@@ -14,13 +12,9 @@ use crate::integrators::{
     ode::{Borrowed, MassKind, Ode},
     sundials::{
         ffi,
-        functions::{Functions, named},
-        linear_solver::LinearSolver,
-        nonlinear::NonlinearSolver,
-        ode_callbacks::{explicit_rhs, jacobian, newton_rhs, note_step_end, note_time, rhs, roots},
-        ode_krylov::{
-            jacobian_times, newton_setup_with_mass, precondition_setup, precondition_solve,
-        },
+        functions::{Functions, OdeFunctions, Stages, named},
+        ode_callbacks::{explicit_rhs, note_step_end, note_time, rhs, roots},
+        ode_krylov::newton_setup_with_mass,
         session::{InitialState, Session},
         solver::{Kind, Owner, Solver},
     },
@@ -57,135 +51,6 @@ impl Kind for ArkodeKind {
     const NAME: &'static str = "ARKODE";
 }
 
-impl<S: Ode> Session<ArkodeKind, S> {
-    /// The functions for implicit methods.
-    const IMPLICIT: &'static Functions = &Functions {
-        integrator: ArkodeKind::NAME,
-        free: ffi::ARKStepFree,
-        solve: ("ARKStepEvolve", |memory, target, t, y, _, task| {
-            // SAFETY: whoever calls through the table vouches for the arguments.
-            unsafe { ffi::ARKStepEvolve(memory, target, y, t, task) }
-        }),
-        reinit: ("ARKStepReInit", |memory, t, y, _| {
-            // SAFETY: as above; the callback fits the host of the session.
-            unsafe { ffi::ARKStepReInit(memory, None, Some(rhs::<S>), t, y) }
-        }),
-        reset: Some(named!(ARKStepReset)),
-        reinit_forgets_stop_time: true,
-        refusals: &[ffi::ARK_ILL_INPUT, ffi::ARK_TOO_CLOSE, ffi::ARK_BAD_T],
-        mass_failures: &[ffi::ARK_MASSSETUP_FAIL, ffi::ARK_MASSSOLVE_FAIL],
-        set_error_handler: named!(ARKStepSetErrHandlerFn),
-        set_user_data: named!(ARKStepSetUserData),
-        scalar_tolerances: named!(ARKStepSStolerances),
-        vector_tolerances: named!(ARKStepSVtolerances),
-        set_linear_solver: named!(ARKStepSetLinearSolver),
-        allow_inactive_roots: named!(ARKStepSetNoInactiveRootWarn),
-        set_max_steps: named!(ARKStepSetMaxNumSteps),
-        set_initial_step: named!(ARKStepSetInitStep),
-        set_max_step: named!(ARKStepSetMaxStep),
-        set_min_step: named!(ARKStepSetMinStep),
-        set_max_error_test_failures: Some(named!(ARKStepSetMaxErrTestFails)),
-        set_max_order: None,
-        set_convergence_coefficient: named!(ARKStepSetNonlinConvCoef),
-        set_tolerance_factor: named!(ARKStepSetEpsLin),
-        set_stop_time: named!(ARKStepSetStopTime),
-        set_constraints: named!(ARKStepSetConstraints),
-        get_root_info: named!(ARKStepGetRootInfo),
-        get_dky: named!(ARKStepGetDky),
-        bad_time: ffi::ARK_BAD_T,
-        bad_derivative: ffi::ARK_BAD_K,
-        get_step_parameter: ffi::ARKStepGetCurrentGamma,
-        get_current_step: ffi::ARKStepGetCurrentStep,
-        get_error_weights: named!(ARKStepGetErrWeights),
-        get_linear_flag: ffi::ARKStepGetLastLinFlag,
-        get_integrator_stats,
-        get_nonlinear_stats: ffi::ARKStepGetNonlinSolvStats,
-        get_step_failures: ffi::ARKStepGetNumStepSolveFails,
-        get_jacobian_evaluations: ffi::ARKStepGetNumJacEvals,
-        get_quotient_evaluations: ffi::ARKStepGetNumLinRhsEvals,
-        get_linear_iterations: ffi::ARKStepGetNumLinIters,
-        get_linear_failures: ffi::ARKStepGetNumLinConvFails,
-        get_preconditioner_setups: ffi::ARKStepGetNumPrecEvals,
-        get_preconditioner_solves: ffi::ARKStepGetNumPrecSolves,
-        get_root_evaluations: ffi::ARKStepGetNumGEvals,
-        get_explicit_evaluations: None,
-        get_stability_reductions: None,
-        quadratures: None,
-        sensitivities: None,
-        get_tolerance_scale: ffi::ARKStepGetTolScaleFactor,
-    };
-
-    /// The functions for explicit methods.
-    const EXPLICIT: &'static Functions = &Functions {
-        reinit: ("ARKStepReInit", |memory, t, y, _| {
-            // SAFETY: as above.
-            unsafe { ffi::ARKStepReInit(memory, Some(rhs::<S>), None, t, y) }
-        }),
-        ..*Self::IMPLICIT
-    };
-
-    /// The functions for ImEx pairs.
-    const IMEX: &'static Functions = &Functions {
-        reinit: ("ARKStepReInit", |memory, t, y, _| {
-            // SAFETY: as above.
-            unsafe { ffi::ARKStepReInit(memory, Some(explicit_rhs::<S>), Some(rhs::<S>), t, y) }
-        }),
-        get_explicit_evaluations: Some(get_explicit_evaluations),
-        ..*Self::IMPLICIT
-    };
-}
-
-/// Evaluations of the explicit part.
-unsafe extern "C" fn get_explicit_evaluations(memory: *mut c_void, explicit: *mut i64) -> i32 {
-    let mut implicit = 0;
-    // SAFETY: whoever calls through the table vouches for memory and place.
-    unsafe { ffi::ARKStepGetNumRhsEvals(memory, explicit, &raw mut implicit) }
-}
-
-/// `CVodeGetIntegratorStats` for ARKODE: evaluations are the sum of explicit and implicit ones, and both
-/// orders are that of the table.
-unsafe extern "C" fn get_integrator_stats(
-    memory: *mut c_void,
-    steps: *mut i64,
-    evaluations: *mut i64,
-    setups: *mut i64,
-    error_test_failures: *mut i64,
-    last_order: *mut i32,
-    current_order: *mut i32,
-    initial_step: *mut f64,
-    last_step: *mut f64,
-    current_step: *mut f64,
-    current_time: *mut f64,
-) -> i32 {
-    let [mut explicit, mut implicit] = [0; 2];
-    let (mut implicit_table, mut explicit_table) = (ptr::null_mut(), ptr::null_mut());
-    // SAFETY: whoever calls through the table vouches for memory and places; a table that is
-    // there lives as long as the memory.
-    unsafe {
-        let code = ffi::ARKStepGetStepStats(
-            memory,
-            steps,
-            initial_step,
-            last_step,
-            current_step,
-            current_time,
-        );
-        ffi::ARKStepGetNumRhsEvals(memory, &raw mut explicit, &raw mut implicit);
-        ffi::ARKStepGetNumLinSolvSetups(memory, setups);
-        ffi::ARKStepGetNumErrTestFails(memory, error_test_failures);
-        ffi::ARKStepGetCurrentButcherTables(
-            memory,
-            &raw mut implicit_table,
-            &raw mut explicit_table,
-        );
-        *evaluations = explicit + implicit;
-        let table = if implicit_table.is_null() { explicit_table } else { implicit_table };
-        let order = table.as_ref().map_or(0, |table| table.q);
-        (*last_order, *current_order) = (order, order);
-        code
-    }
-}
-
 impl<S: Ode> Arkode<S> {
     /// A solver for `system`, starting at time `t0` from `y0`.
     ///
@@ -215,50 +80,50 @@ impl<S: Ode> Session<ArkodeKind, S> {
     fn of_arkode(system: S, t0: f64, y0: &[f64], options: &ArkodeOptions) -> Result<Self, Error> {
         check_start(t0, y0)?;
         options.check(y0)?;
-        if !options.table.is_imex() {
+        if !options.own.table.is_imex() {
             check_whole(&system)?;
         } else if !system.is_split() {
             let help = "a pair of tables is for a right-hand side of two parts: see `is_split` and `split`";
-            return Err(Error::input("table", options.table, help));
+            return Err(Error::input("table", options.own.table, help));
         }
 
         let start = InitialState { t: t0, y: y0, yp: None, root_count: system.root_count() };
-        let (is_implicit, is_imex) = (options.table.is_implicit(), options.table.is_imex());
-        let (functions, explicit, implicit) = match (is_imex, is_implicit) {
-            (true, _) => (Self::IMEX, Some(explicit_rhs::<S> as _), Some(rhs::<S> as _)),
-            (false, true) => (Self::IMPLICIT, None, Some(rhs::<S> as _)),
-            (false, false) => (Self::EXPLICIT, Some(rhs::<S> as _), None),
+        let (is_implicit, is_imex) = (options.own.table.is_implicit(), options.own.table.is_imex());
+        let stages: Stages = match (is_imex, is_implicit) {
+            (true, _) => [Some(explicit_rhs::<S>), Some(rhs::<S>)],
+            (false, true) => [None, Some(rhs::<S>)],
+            (false, false) => [Some(rhs::<S>), None],
         };
         let mass_kind = system.mass_kind();
         let solver = match mass_kind {
-            MassKind::Identity => {
-                options.nonlinear.linear_solver().filter(|_| is_implicit).cloned()
-            }
-            _ => Some(mass::check(options.nonlinear.linear_solver())?),
+            MassKind::Identity => options.newton_solver().filter(|_| is_implicit).cloned(),
+            _ => Some(mass::check(options.newton_solver())?),
         };
         let mass_form = solver.clone().filter(|_| mass_kind != MassKind::Identity);
         // SAFETY: `create` gets a live context and a vector of its own, the table is that of
         // ARKODE, and the callbacks fit the host that is registered as their data.
         let mut arkode = unsafe {
-            let create = |y, context| ffi::ARKStepCreate(explicit, implicit, t0, y, context);
-            Self::create(functions, ("ARKStepCreate", create), ArkodeKind, system, &start, solver)?
+            let create = |y, context| ffi::ARKStepCreate(stages[0], stages[1], t0, y, context);
+            let create = ("ARKStepCreate", create);
+            Self::create(Functions::ARKODE, create, ArkodeKind, system, &start, solver)?
         };
+        arkode.stages = stages;
         arkode.host.get_mut().step_end = Some(t0);
-        arkode.configure(&options.tolerances, &options.steps, &options.limits)?;
-        let (implicit_id, explicit_id) = options.table.ids();
+        arkode.configure(options)?;
+        let (implicit_id, explicit_id) = options.own.table.ids();
         let degree = options.interpolant_degree();
         arkode.interpolant_degree = Some(degree);
         // SAFETY: the callback fits the host; the memory is alive and reads the names, C strings, once;
         // the other values are plain numbers.
         unsafe {
-            arkode.set_root_functions(named!(ARKStepRootInit), Some(roots::<S>))?;
+            arkode.set_root_functions(OdeFunctions::ARKODE.set_roots, Some(roots::<S>))?;
             let (implicit, explicit) = (implicit_id.as_ptr(), explicit_id.as_ptr());
             let (memory, data) = (arkode.memory.raw, arkode.host.as_ptr());
             arkode.host.call(named!(ARKStepSetTableName), |set| set(memory, implicit, explicit))?;
             arkode.set(named!(ARKStepSetInterpolantDegree as _), degree as i32)?;
             // Post-processing of steps makes ARKODE evaluate the right-hand side at their ends; it is used
             // for fixed steps only.
-            if let Some(h) = options.fixed_step {
+            if let Some(h) = options.own.fixed_step {
                 arkode.has_fixed_step = true;
                 arkode.set(named!(ARKStepSetFixedStep), h)?;
                 arkode
@@ -285,48 +150,27 @@ fn solve_stages<S: Ode>(
 ) -> Result<(), Error> {
     // SAFETY: the values are plain numbers.
     unsafe {
-        arkode.set(named!(ARKStepSetPredictorMethod as _), options.predictor as i32)?;
-        arkode.set(named!(ARKStepSetMaxNonlinIters as _), options.max_iterations as i32)?;
+        arkode.set(named!(ARKStepSetPredictorMethod as _), options.own.predictor as i32)?;
+        arkode.set(named!(ARKStepSetMaxNonlinIters as _), options.own.max_iterations as i32)?;
         // The slope of a stage follows from its equation: this spares an evaluation, which would
         // also stop the integration if it failed, and magnify errors of stiff components.
         arkode.set(named!(ARKStepSetDeduceImplicitRhs as _), 1)?;
-        if options.linear {
+        if options.own.linear {
             arkode.set(named!(ARKStepSetLinear as _), 0)?;
         }
-        if let Some(steps) = options.nonlinear.max_steps_between_setups {
+        if let Some(steps) = options.max_steps_between_setups {
             arkode.set(named!(ARKStepSetLSetupFrequency as _), steps as i32)?;
         }
     }
-    // SAFETY: the callbacks fit the registered host, and the solvers live as long as the memory.
+    // SAFETY: the functions are those of ARKODE, and the callback fits the registered host; the value is a plain number.
     unsafe {
-        match &options.nonlinear.solver {
-            NonlinearSolver::Newton(solver) => {
-                let for_jacobian = (&options.tolerances, &options.limits);
-                arkode.set_newton(solver, S::newton_solve, for_jacobian)?;
-                if matches!(solver, LinearSolver::Custom) {
-                    arkode
-                        .set(named!(ARKStepSetLinSysFn), Some(newton_setup_with_mass::<S> as _))?;
-                    arkode.set(named!(ARKStepSetNlsRhsFn), Some(newton_rhs::<S> as _))?;
-                } else if let LinearSolver::Krylov(krylov) = solver {
-                    arkode.set_krylov(
-                        krylov,
-                        (named!(ARKStepSetJacTimes), Some(jacobian_times::<S>)),
-                        (
-                            named!(ARKStepSetPreconditioner),
-                            Some(precondition_setup::<S>),
-                            Some(precondition_solve::<S>),
-                        ),
-                    )?;
-                } else {
-                    arkode.set(named!(ARKStepSetJacFn), Some(jacobian::<S> as _))?;
-                }
-                if let Some(steps) = options.max_steps_between_jacobians {
-                    arkode.set(named!(ARKStepSetJacEvalFrequency as _), i64::from(steps))?;
-                }
-            }
-            NonlinearSolver::FixedPoint { acceleration } => {
-                arkode.set_fixed_point(named!(ARKStepSetNonlinearSolver as _), *acceleration)?;
-            }
+        arkode.set_nonlinear(OdeFunctions::ARKODE, options, |arkode| {
+            arkode.set(named!(ARKStepSetLinSysFn), Some(newton_setup_with_mass::<S> as _))
+        })?;
+        if let (Some(_), Some(steps)) =
+            (options.newton_solver(), options.own.max_steps_between_jacobians)
+        {
+            arkode.set(named!(ARKStepSetJacEvalFrequency as _), i64::from(steps))?;
         }
     }
     Ok(())

@@ -4,5 +4,4 @@ mod options;
 mod setup;
 
 pub use options::{CvodeOptions, Multistep};
-pub(super) use setup::WITH_CHECKPOINTS;
 pub use setup::{Cvode, CvodeKind};

@@ -7,6 +7,5 @@ mod start;
 
 pub use options::IdaOptions;
 pub use setup::IdaKind;
-pub(super) use setup::WITH_CHECKPOINTS;
 pub use solver::Ida;
 pub use start::{InitialCondition, StartsDae};

@@ -2,49 +2,31 @@
 
 use crate::base::input::InputError;
 use crate::integrators::{
-    common::{AbsoluteTolerance, StepOptions, Tolerances, check_length, step_options},
+    common::{AbsoluteTolerance, Tolerances, check_length},
     sundials::{
-        jacobian::Jacobian,
         linear_solver::LinearSolver,
-        options::{Limits, QuadratureOptions, builder_methods},
-        sensitivity::Sensitivities,
+        options::{OfMultistep, SolverOptions},
     },
 };
 
 /// Tolerances and limits of an [`Ida`](super::Ida).
+pub type IdaOptions = SolverOptions<OwnOptions>;
+
+/// Options that IDA alone has.
 #[derive(Clone, Debug)]
-#[must_use]
-pub struct IdaOptions {
-    pub(super) tolerances: Tolerances,
-    pub(super) steps: StepOptions,
-    pub(super) limits: Limits,
-    pub(super) quadratures: QuadratureOptions,
-    pub(super) sensitivities: Option<Sensitivities>,
-    pub(super) linear_solver: LinearSolver,
+pub struct OwnOptions {
     pub(super) differential: Option<Vec<bool>>,
     pub(super) suppress_algebraic: bool,
 }
+
+impl OfMultistep for OwnOptions {}
 
 impl IdaOptions {
     /// A Newton iteration on a dense matrix of difference quotients, and these tolerances: local
     /// errors are kept below `rtol |y_i| + atol_i`.
     pub fn new(rtol: f64, atol: impl Into<AbsoluteTolerance>) -> Self {
-        Self {
-            tolerances: Tolerances::new(rtol, atol),
-            steps: StepOptions::default(),
-            limits: Limits::default(),
-            quadratures: QuadratureOptions::default(),
-            sensitivities: None,
-            linear_solver: LinearSolver::Dense(Jacobian::DifferenceQuotients),
-            differential: None,
-            suppress_algebraic: false,
-        }
-    }
-
-    /// Newton iteration with this linear solver (the default, dense with difference quotients).
-    pub fn newton(mut self, solver: LinearSolver) -> Self {
-        self.linear_solver = solver;
-        self
+        let (differential, suppress_algebraic) = (None, false);
+        Self::with(rtol, atol, OwnOptions { differential, suppress_algebraic })
     }
 
     /// For each unknown, whether its derivative occurs in the equations (`true`) or it is
@@ -53,23 +35,17 @@ impl IdaOptions {
     ///
     /// [`InitialCondition::Algebraic`]: super::InitialCondition::Algebraic
     pub fn differential(mut self, differential: impl Into<Vec<bool>>) -> Self {
-        self.differential = Some(differential.into());
+        self.own.differential = Some(differential.into());
         self
     }
 
-    /// Whether algebraic unknowns are left out of the local error test (`IDASetSuppressAlg`). Default: no.
+    /// Whether algebraic unknowns are omitted from the local error test (`IDASetSuppressAlg`). Default: no.
     ///
     /// It is advisable for equations of index 2; the index is then not reported as the reason of failures.
     pub fn suppress_algebraic(mut self, on: bool) -> Self {
-        self.suppress_algebraic = on;
+        self.own.suppress_algebraic = on;
         self
     }
-
-    builder_methods!(order);
-    builder_methods!(quadratures);
-    builder_methods!(sensitivities);
-    step_options!();
-    builder_methods!(limits);
 
     /// Options of an adjoint problem: the linear solver, the tolerances, and which unknowns are differential.
     pub(in crate::integrators::sundials) fn for_adjoint(
@@ -77,11 +53,8 @@ impl IdaOptions {
         y0: &[f64],
     ) -> Result<(&LinearSolver, &Tolerances, &[bool]), InputError> {
         self.check(y0)?;
-        if self.sensitivities.is_some() {
-            let help = "the run forward of an adjoint gradient needs none";
-            return Err(InputError::new("sensitivities", "given", help));
-        }
-        let Some(differential) = &self.differential else {
+        self.check_for_adjoint()?;
+        let Some(differential) = &self.own.differential else {
             let help = "an adjoint gradient needs to know which unknowns are algebraic";
             return Err(InputError::new("differential", "not given", help));
         };
@@ -89,13 +62,10 @@ impl IdaOptions {
     }
 
     pub(super) fn check(&self, y0: &[f64]) -> Result<(), InputError> {
-        self.tolerances.check(y0)?;
-        self.steps.check()?;
-        self.limits.check(self.steps.max_step, y0)?;
-        self.limits.check_order(5)?;
-        if let Some(differential) = &self.differential {
+        self.check_shared(y0, 5)?;
+        if let Some(differential) = &self.own.differential {
             check_length("length of differential", differential.len(), y0.len())?;
-        } else if self.suppress_algebraic {
+        } else if self.own.suppress_algebraic {
             let help = "it needs `differential` to say which unknowns are algebraic";
             return Err(InputError::new("suppress_algebraic", true, help));
         }
@@ -105,6 +75,6 @@ impl IdaOptions {
         if let LinearSolver::Krylov(krylov) = &self.linear_solver {
             krylov.check_for_dae()?;
         }
-        self.linear_solver.check(y0.len())
+        Ok(())
     }
 }

@@ -1,18 +1,12 @@
 //! Where IDA starts: states and their time derivatives, and how they are made consistent.
 
-use std::ptr;
-
 use faer::MatRef;
 
 use super::setup::IdaKind;
 use crate::integrators::{
-    common::{
-        Callback, Cause, Error, IntegrationError, Integrator, check_finite, check_length,
-        check_time,
-    },
+    common::{Callback, Cause, Error, Integrator, check_finite, check_length, check_time},
     ode::{Dae, Failure},
     sundials::{
-        auxiliary::Vectors,
         ffi,
         functions::named,
         index::{Index, index},
@@ -144,17 +138,7 @@ impl<S: Dae> StartsDae for Session<IdaKind, S> {
             Err(Failure::Recoverable(message)) => (Cause::Rejected { callback, t, message }, None),
             Err(Failure::Fatal(error)) => (Cause::Fatal(callback), Some(error)),
         };
-        let statistics = self.step_statistics();
-        Err(IntegrationError {
-            integrator: self.memory.functions.integrator,
-            cause,
-            t,
-            step: statistics.current_step,
-            order: statistics.current_order,
-            message: String::new(),
-            source,
-        }
-        .into())
+        Err(self.error(&self.step_statistics(), cause, String::new(), source))
     }
 
     fn reinit_with(&mut self, t: f64, y: &[f64], yp: &[f64]) -> Result<(), Error> {
@@ -227,8 +211,7 @@ impl<S> Session<IdaKind, S> {
     /// Reads the sensitivities after `IDACalcIC`, which corrects them, too.
     fn read_consistent_sensitivities(&mut self) -> Result<(), Error> {
         let Some(sensitivities) = &mut self.sensitivities else { return Ok(()) };
-        let s = sensitivities.s.raw();
-        let sp = sensitivities.sp.as_mut().map_or(ptr::null_mut(), Vectors::raw);
+        let [s, sp] = sensitivities.raw();
         // SAFETY: memory and vectors are alive; null requests nothing.
         let code = unsafe { ffi::IDAGetSensConsistentIC(self.memory.raw, s, sp) };
         sensitivities.s.copy_to(&mut sensitivities.values);

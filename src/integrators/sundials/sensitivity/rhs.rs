@@ -33,7 +33,7 @@ pub(super) struct Line<'a> {
 }
 
 impl SensitivityRhs {
-    /// Room for sensitivities of `n` unknowns.
+    /// Storage for sensitivities of `n` unknowns.
     pub(super) fn new<S>(
         options: &Sensitivities,
         tolerances: &Tolerances,
@@ -80,7 +80,7 @@ impl SensitivityRhs {
         &self.scales
     }
 
-    /// Place of a parameter among those of the system.
+    /// Index of a parameter among those of the system.
     pub(super) fn parameter(&self, index: usize) -> usize {
         self.parameters[index]
     }

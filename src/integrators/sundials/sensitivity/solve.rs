@@ -51,12 +51,9 @@ impl<K, S> CarriesSensitivities for Session<K, S> {
             out.copy_from(self.sensitivities());
             return Ok(());
         }
-        let (Some(functions), Some(sensitivities)) =
-            (self.memory.functions.sensitivities, &self.sensitivities)
-        else {
-            return Ok(());
-        };
-        let ((name, get_dky), scratch) = (functions.get_dky, sensitivities.scratch.raw());
+        let Some(sensitivities) = &self.sensitivities else { return Ok(()) };
+        let ((name, get_dky), scratch) =
+            (sensitivities.functions.get_dky, sensitivities.scratch.raw());
         for j in 0..out.ncols() {
             // SAFETY: memory and vector are alive, and there is such a sensitivity.
             self.look_back(name, t, derivative, |memory, t, order| unsafe {
@@ -150,6 +147,7 @@ impl<K, S> Session<K, S> {
         };
         let zeros = || Vectors::zeros(n, count, &self.context);
         let sensitivities = Sensitivity {
+            functions,
             s: zeros()?,
             sp: self.yp.is_some().then(zeros).transpose()?,
             scratch: Vector::from_slice(&vec![0.0; n], &self.context)?,
@@ -157,8 +155,7 @@ impl<K, S> Session<K, S> {
             method,
         };
         let sensitivities = self.sensitivities.insert(sensitivities);
-        let s = sensitivities.s.raw();
-        let sp = sensitivities.sp.as_mut().map_or(ptr::null_mut(), Vectors::raw);
+        let [s, sp] = sensitivities.raw();
         self.host.accept(name, init(c_count, method, s, sp))?;
         let (memory, scales) = (self.memory.raw, scales.as_mut_ptr());
         // SAFETY: the memory is alive; it copies the scales, and needs no parameters for our callbacks; the
@@ -174,12 +171,8 @@ impl<K, S> Session<K, S> {
 
     /// Reads the sensitivities at the present time, after a step.
     pub(in crate::integrators::sundials) fn read_sensitivities(&mut self) -> Result<(), Error> {
-        let (Some(functions), Some(sensitivities)) =
-            (self.memory.functions.sensitivities, &mut self.sensitivities)
-        else {
-            return Ok(());
-        };
-        let ((name, get), mut t) = (functions.get, 0.0);
+        let Some(sensitivities) = &mut self.sensitivities else { return Ok(()) };
+        let ((name, get), mut t) = (sensitivities.functions.get, 0.0);
         // SAFETY: the memory is alive, and the result pointers are valid.
         let code = unsafe { get(self.memory.raw, &raw mut t, sensitivities.s.raw()) };
         sensitivities.s.copy_to(&mut sensitivities.values);
@@ -200,15 +193,10 @@ impl<K, S> Session<K, S> {
     pub(in crate::integrators::sundials) fn hand_over_sensitivities(
         &mut self,
     ) -> Result<(), Error> {
-        let (Some(functions), Some(sensitivities)) =
-            (self.memory.functions.sensitivities, &mut self.sensitivities)
-        else {
-            return Ok(());
-        };
+        let Some(sensitivities) = &mut self.sensitivities else { return Ok(()) };
         sensitivities.s.set(&sensitivities.values);
-        let s = sensitivities.s.raw();
-        let sp = sensitivities.sp.as_mut().map_or(ptr::null_mut(), Vectors::raw);
-        let (name, reinit) = functions.reinit;
+        let [s, sp] = sensitivities.raw();
+        let (name, reinit) = sensitivities.functions.reinit;
         // SAFETY: the memory is alive and copies the vectors, of which there are as many as at first.
         let code = unsafe { reinit(self.memory.raw, sensitivities.method, s, sp) };
         self.host.accept(name, code)

@@ -66,9 +66,9 @@ fn factorize<S, F: Functional>(
     let AdjointDae { equations, mass, algebraic, .. } = system;
     let (jacobian, n) = (&equations.jacobian, algebraic.len());
     let (by_slope, by_state) = (mass.values(), jacobian.values());
-    let value = |i: usize, place: usize| match algebraic[i] {
-        true => by_state[place],
-        false => by_slope[place],
+    let value = |i: usize, position: usize| match algebraic[i] {
+        true => by_state[position],
+        false => by_slope[position],
     };
     // SAFETY: the linear solver was made as that of the backward run.
     let factorized = unsafe {
@@ -78,11 +78,11 @@ fn factorize<S, F: Functional>(
     };
     // the known solution: a number for each equation, in its units
     let mut known = vec![0.0; n];
-    jacobian.each_place(|i, _, place| known[i] = value(i, place).abs().max(known[i]));
+    jacobian.each_position(|i, _, position| known[i] = value(i, position).abs().max(known[i]));
     known.iter_mut().enumerate().for_each(|(i, largest)| *largest = uneven(i) / *largest);
     let mut vector = Vector::from_slice(&vec![0.0; n], context)?;
     let rhs = vector.as_mut_slice();
-    jacobian.each_place(|i, j, place| rhs[j] += value(i, place) * known[i]);
+    jacobian.each_position(|i, j, position| rhs[j] += value(i, position) * known[i]);
     let solved = factorized && solve(linear, &mut vector).is_ok();
     let found = vector.as_slice().iter().zip(known);
     let mut errors = found.map(|(x, known)| (x / known - 1.0).abs());

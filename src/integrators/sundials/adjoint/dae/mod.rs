@@ -1,6 +1,5 @@
 //! Adjoint gradients of differential-algebraic equations, by IDAS.
 
-mod callbacks;
 mod end;
 mod problem;
 mod setup;

@@ -1,27 +1,59 @@
 //! The backward problem of a DAE, by IDAS.
 
-use super::{
-    callbacks::{jacobian, quadratures, residual},
-    end::start_of_backward_problem,
-    system::AdjointDae,
-};
+use super::{end::start_of_backward_problem, system::AdjointDae};
 use crate::integrators::{
-    common::Error,
-    ode::{Dae, Functional},
+    common::{Callback, Error},
+    ode::{Borrowed, Dae, Functional},
     sundials::{
         adjoint::{
             backward::{BackwardProblem, Point},
             equations::Equations,
             gradient::Gradient,
         },
+        callbacks::callbacks,
         context::Context,
         ffi,
-        functions::{BackwardFunctions, named},
-        ida::{IdaKind, WITH_CHECKPOINTS},
+        functions::{BackwardFunctions, InitBackward, InitBackwardQuadratures, SetBackward},
+        ida::IdaKind,
         linear::Linear,
+        matrix::stored,
         vector::Vector,
     },
 };
+
+callbacks! {
+    /// `IDAResFnB`
+    fn residual<S: Dae, F: Functional>(
+        t: f64, y: read, yp: read, lambda: read, slope: read, out: write,
+        host: (data Borrowed<'_, AdjointDae<S, F>>)
+    ) {
+        host.guard_output(Callback::Adjoint, t, out, |system, out| {
+            system.0.backward_residual((t, y, yp), (lambda, slope), out)
+        })
+    }
+
+    /// `IDAQuadRhsFnB`
+    fn quadratures<S: Dae, F: Functional>(
+        t: f64, y: read, yp: read, lambda: read, _: vector, out: write,
+        host: (data Borrowed<'_, AdjointDae<S, F>>)
+    ) {
+        host.guard_output(Callback::Adjoint, t, out, |system, out| {
+            system.0.backward_quadratures((t, y, yp), lambda, out)
+        })
+    }
+
+    /// `IDALsJacFnB`
+    fn jacobian<S: Dae, F: Functional>(
+        t: f64, cj: f64, y: read, yp: read, _: vector, _: vector, _: vector, jacobian: (ffi::SUNMatrix),
+        host: (data Borrowed<'_, AdjointDae<S, F>>), _: vector, _: vector, _: vector
+    ) {
+        // SAFETY: SUNDIALS passes the matrix that was made for this linear solver.
+        let values = unsafe { stored(jacobian, &host.system.0.equations.backward, host.n) };
+        host.guard_output(Callback::Adjoint, t, values, |system, values| {
+            system.0.backward_jacobian((t, y, yp), cj, values)
+        })
+    }
+}
 
 // SAFETY: the functions are those of IDA, and the callbacks are those for this system.
 unsafe impl<S: Dae, F: Functional> BackwardProblem for AdjointDae<S, F> {
@@ -29,42 +61,23 @@ unsafe impl<S: Dae, F: Functional> BackwardProblem for AdjointDae<S, F> {
     type System = S;
     type Functional = F;
 
-    const FUNCTIONS: &'static BackwardFunctions = &BackwardFunctions {
-        integrator: "IDA in the backward run",
-        forward: &WITH_CHECKPOINTS,
-        init_checkpoints: named!(IDAAdjInit),
-        create: ("IDACreateB", |memory, which| {
-            // SAFETY: whoever calls through the table vouches for the arguments.
-            unsafe { ffi::IDACreateB(memory, which) }
-        }),
-        init: ("IDAInitB", |memory, which, t, lambda, slope| {
-            // SAFETY: as above.
-            unsafe { ffi::IDAInitB(memory, which, Some(residual::<S, F>), t, lambda, slope) }
-        }),
-        vector_tolerances: named!(IDASVtolerancesB),
-        set_user_data: named!(IDASetUserDataB),
-        set_max_steps: named!(IDASetMaxNumStepsB),
-        set_linear_solver: named!(IDASetLinearSolverB),
-        set_jacobian: ("IDASetJacFnB", |memory, which| {
-            // SAFETY: as above.
-            unsafe { ffi::IDASetJacFnB(memory, which, Some(jacobian::<S, F>)) }
-        }),
-        init_quadratures: ("IDAQuadInitB", |memory, which, integrals| {
+    const FUNCTIONS: &'static BackwardFunctions = BackwardFunctions::IDA;
+
+    const INIT: InitBackward = ("IDAInitB", |memory, which, t, lambda, slope| {
+        // SAFETY: whoever calls it vouches for the arguments.
+        unsafe { ffi::IDAInitB(memory, which, Some(residual::<S, F>), t, lambda, slope) }
+    });
+
+    const SET_JACOBIAN: SetBackward = ("IDASetJacFnB", |memory, which| {
+        // SAFETY: as above.
+        unsafe { ffi::IDASetJacFnB(memory, which, Some(jacobian::<S, F>)) }
+    });
+
+    const INIT_QUADRATURES: InitBackwardQuadratures =
+        ("IDAQuadInitB", |memory, which, integrals| {
             // SAFETY: as above.
             unsafe { ffi::IDAQuadInitB(memory, which, Some(quadratures::<S, F>), integrals) }
-        }),
-        set_quadrature_error_control: named!(IDASetQuadErrConB),
-        quadrature_tolerances: named!(IDAQuadSVtolerancesB),
-        solve: ffi::IDASolveB,
-        get: ("IDAGetB", |memory, which, t, lambda, slope| {
-            // SAFETY: as above.
-            unsafe { ffi::IDAGetB(memory, which, t, lambda, slope) }
-        }),
-        get_quadratures: named!(IDAGetQuadB),
-        get_memory: ffi::IDAGetAdjIDABmem,
-        get_current_time: ffi::IDAGetCurrentTime,
-        get_current_order: ffi::IDAGetCurrentOrder,
-    };
+        });
 
     fn equations(&mut self) -> &mut Equations<S, F> {
         &mut self.equations

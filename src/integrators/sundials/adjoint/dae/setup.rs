@@ -1,14 +1,16 @@
 //! Building an adjoint gradient.
 
-use std::fmt;
-
 use super::system::AdjointDae;
 use crate::integrators::{
     common::{Error, check_finite, check_length, check_start, check_time},
     ode::{Borrowed, Dae, Functional},
     sundials::{
         IdaOptions, InitialCondition,
-        adjoint::{gradient::Gradient, options::AdjointOptions},
+        adjoint::{
+            gradient::Gradient,
+            options::AdjointOptions,
+            setup::{AdjointOf, Runs},
+        },
         ida::{IdaKind, StartsDae},
         session::Session,
     },
@@ -70,24 +72,11 @@ use crate::integrators::{
 /// ```
 ///
 /// User guide: chapter "Using IDAS for Adjoint Sensitivity Analysis".
-pub struct DaeAdjoint<S, F> {
-    system: S,
-    functional: F,
-    runs: Runs,
-}
-
-/// Forward and backward runs of a system and its functional. These come as trait objects, so that the integration is
-/// compiled once, and not for each type.
-struct Runs {
-    /// Time, state and its time derivative.
-    start: (f64, Vec<f64>, Vec<f64>),
-    forward: IdaOptions,
-    options: AdjointOptions,
-}
+pub type DaeAdjoint<S, F> = AdjointOf<IdaOptions, S, F>;
 
 type Equations<'a> = AdjointDae<Borrowed<'a, dyn Dae + 'a>, Borrowed<'a, dyn Functional + 'a>>;
 
-impl Runs {
+impl Runs<IdaOptions> {
     fn equations<'a>(
         &self,
         system: &'a mut (dyn Dae + 'a),
@@ -129,12 +118,6 @@ impl Runs {
     }
 }
 
-impl<S, F> fmt::Debug for DaeAdjoint<S, F> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("DaeAdjoint").field("start", &self.runs.start).finish_non_exhaustive()
-    }
-}
-
 impl<S: Dae, F: Functional> DaeAdjoint<S, F> {
     /// For the solution that starts at time `t0` from the differential unknowns of `y0`.
     ///
@@ -162,14 +145,9 @@ impl<S: Dae, F: Functional> DaeAdjoint<S, F> {
         check_start(t0, y0)?;
         check_length("length of yp0", yp0.len(), y0.len())?;
         check_finite("yp0", yp0)?;
-        options.check(y0.len(), system.parameters().len())?;
+        let sizes = (system.parameters().len(), system.root_count());
+        let runs = Runs::new((t0, y0, yp0), forward, options, sizes)?;
         options.check_for_dae()?;
-        if system.root_count() > 0 {
-            let help = "an adjoint gradient does not stop at events: leave them out";
-            return Err(Error::input("root_count", system.root_count(), help));
-        }
-        let start = (t0, y0.to_vec(), yp0.to_vec());
-        let runs = Runs { start, forward: forward.clone(), options: options.clone() };
         let mut adjoint = Self { system, functional, runs };
         adjoint.runs.check(&mut adjoint.system, &mut adjoint.functional)?;
         Ok(adjoint)
@@ -196,16 +174,5 @@ impl<S: Dae, F: Functional> DaeAdjoint<S, F> {
             return Err(Error::input("end time", t, help));
         }
         self.runs.gradient(&mut self.system, &mut self.functional, t)
-    }
-
-    /// The system.
-    #[must_use]
-    pub fn system(&self) -> &S {
-        &self.system
-    }
-
-    /// The system, to change its parameters; the next [`gradient`](Self::gradient) uses them.
-    pub fn system_mut(&mut self) -> &mut S {
-        &mut self.system
     }
 }

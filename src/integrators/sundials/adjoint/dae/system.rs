@@ -144,7 +144,7 @@ impl<S: Dae, F: Functional> AdjointDae<S, F> {
         let Equations { jacobian, backward, .. } = &self.equations;
         let entries = backward.entries(point.1.len(), values);
         let (by_slope, by_state) = (self.mass.values(), jacobian.values());
-        let value = |_, place: usize| cj * by_slope[place] - by_state[place];
+        let value = |_, position: usize| cj * by_slope[position] - by_state[position];
         jacobian.write_transposed(backward, entries, value);
         Ok(())
     }

@@ -1,6 +1,5 @@
 //! Adjoint gradients of ordinary differential equations, by CVODES.
 
-mod callbacks;
 mod problem;
 mod setup;
 mod system;

@@ -1,26 +1,57 @@
 //! The backward problem of an ODE, by CVODES.
 
-use super::{
-    callbacks::{jacobian, quadratures, rhs},
-    system::AdjointSystem,
-};
+use super::system::AdjointSystem;
 use crate::integrators::{
-    common::Error,
-    ode::{Functional, Ode},
+    common::{Callback, Error},
+    ode::{Borrowed, Functional, Ode},
     sundials::{
         adjoint::{
             backward::{BackwardProblem, Point},
             equations::Equations,
             gradient::Gradient,
         },
+        callbacks::callbacks,
         context::Context,
-        cvode::{CvodeKind, WITH_CHECKPOINTS},
+        cvode::CvodeKind,
         ffi,
-        functions::{BackwardFunctions, named},
+        functions::{BackwardFunctions, InitBackward, InitBackwardQuadratures, SetBackward},
         linear::Linear,
+        matrix::stored,
         vector::Vector,
     },
 };
+
+callbacks! {
+    /// `CVRhsFnB`
+    fn rhs<S: Ode, F: Functional>(
+        t: f64, y: read, lambda: read, out: write, host: (data Borrowed<'_, AdjointSystem<S, F>>)
+    ) {
+        host.guard_output(Callback::Adjoint, t, out, |system, out| {
+            system.0.backward_rhs(t, y, lambda, out)
+        })
+    }
+
+    /// `CVQuadRhsFnB`
+    fn quadratures<S: Ode, F: Functional>(
+        t: f64, y: read, lambda: read, out: write, host: (data Borrowed<'_, AdjointSystem<S, F>>)
+    ) {
+        host.guard_output(Callback::Adjoint, t, out, |system, out| {
+            system.0.backward_quadratures(t, y, lambda, out)
+        })
+    }
+
+    /// `CVLsJacFnB`
+    fn jacobian<S: Ode, F: Functional>(
+        t: f64, y: read, _: vector, _: vector, jacobian: (ffi::SUNMatrix),
+        host: (data Borrowed<'_, AdjointSystem<S, F>>), _: vector, _: vector, _: vector
+    ) {
+        // SAFETY: SUNDIALS passes the matrix that was made for this linear solver.
+        let values = unsafe { stored(jacobian, &host.system.0.equations.backward, host.n) };
+        host.guard_output(Callback::Adjoint, t, values, |system, values| {
+            system.0.backward_jacobian(t, y, values)
+        })
+    }
+}
 
 // SAFETY: the functions are those of CVODE, and the callbacks are those for this system.
 unsafe impl<S: Ode, F: Functional> BackwardProblem for AdjointSystem<S, F> {
@@ -28,42 +59,23 @@ unsafe impl<S: Ode, F: Functional> BackwardProblem for AdjointSystem<S, F> {
     type System = S;
     type Functional = F;
 
-    const FUNCTIONS: &'static BackwardFunctions = &BackwardFunctions {
-        integrator: "CVODE in the backward run",
-        forward: &WITH_CHECKPOINTS,
-        init_checkpoints: named!(CVodeAdjInit),
-        create: ("CVodeCreateB", |memory, which| {
-            // SAFETY: whoever calls through the table vouches for the arguments.
-            unsafe { ffi::CVodeCreateB(memory, ffi::CV_BDF, which) }
-        }),
-        init: ("CVodeInitB", |memory, which, t, lambda, _| {
-            // SAFETY: as above.
-            unsafe { ffi::CVodeInitB(memory, which, Some(rhs::<S, F>), t, lambda) }
-        }),
-        vector_tolerances: named!(CVodeSVtolerancesB),
-        set_user_data: named!(CVodeSetUserDataB),
-        set_max_steps: named!(CVodeSetMaxNumStepsB),
-        set_linear_solver: named!(CVodeSetLinearSolverB),
-        set_jacobian: ("CVodeSetJacFnB", |memory, which| {
-            // SAFETY: as above.
-            unsafe { ffi::CVodeSetJacFnB(memory, which, Some(jacobian::<S, F>)) }
-        }),
-        init_quadratures: ("CVodeQuadInitB", |memory, which, integrals| {
+    const FUNCTIONS: &'static BackwardFunctions = BackwardFunctions::CVODE;
+
+    const INIT: InitBackward = ("CVodeInitB", |memory, which, t, lambda, _| {
+        // SAFETY: whoever calls it vouches for the arguments.
+        unsafe { ffi::CVodeInitB(memory, which, Some(rhs::<S, F>), t, lambda) }
+    });
+
+    const SET_JACOBIAN: SetBackward = ("CVodeSetJacFnB", |memory, which| {
+        // SAFETY: as above.
+        unsafe { ffi::CVodeSetJacFnB(memory, which, Some(jacobian::<S, F>)) }
+    });
+
+    const INIT_QUADRATURES: InitBackwardQuadratures =
+        ("CVodeQuadInitB", |memory, which, integrals| {
             // SAFETY: as above.
             unsafe { ffi::CVodeQuadInitB(memory, which, Some(quadratures::<S, F>), integrals) }
-        }),
-        set_quadrature_error_control: named!(CVodeSetQuadErrConB),
-        quadrature_tolerances: named!(CVodeQuadSVtolerancesB),
-        solve: ffi::CVodeB,
-        get: ("CVodeGetB", |memory, which, t, lambda, _| {
-            // SAFETY: as above.
-            unsafe { ffi::CVodeGetB(memory, which, t, lambda) }
-        }),
-        get_quadratures: named!(CVodeGetQuadB),
-        get_memory: ffi::CVodeGetAdjCVodeBmem,
-        get_current_time: ffi::CVodeGetCurrentTime,
-        get_current_order: ffi::CVodeGetCurrentOrder,
-    };
+        });
 
     fn equations(&mut self) -> &mut Equations<S, F> {
         &mut self.equations

@@ -1,7 +1,5 @@
 //! Building an adjoint gradient.
 
-use std::fmt;
-
 use super::system::AdjointSystem;
 use crate::base::input::InputError;
 use crate::integrators::{
@@ -9,7 +7,11 @@ use crate::integrators::{
     ode::{Borrowed, Functional, Ode},
     sundials::{
         CvodeOptions,
-        adjoint::{gradient::Gradient, options::AdjointOptions},
+        adjoint::{
+            gradient::Gradient,
+            options::AdjointOptions,
+            setup::{AdjointOf, Runs},
+        },
         cvode::CvodeKind,
         session::Session,
     },
@@ -62,23 +64,11 @@ use crate::integrators::{
 /// ```
 ///
 /// User guide: chapter "Using CVODES for Adjoint Sensitivity Analysis".
-pub struct Adjoint<S, F> {
-    system: S,
-    functional: F,
-    runs: Runs,
-}
-
-/// Forward and backward runs of a system and its functional. These come as trait objects, so that the integration is
-/// compiled once, and not for each type.
-struct Runs {
-    start: (f64, Vec<f64>),
-    forward: CvodeOptions,
-    options: AdjointOptions,
-}
+pub type Adjoint<S, F> = AdjointOf<CvodeOptions, S, F>;
 
 type Equations<'a> = AdjointSystem<Borrowed<'a, dyn Ode + 'a>, Borrowed<'a, dyn Functional + 'a>>;
 
-impl Runs {
+impl Runs<CvodeOptions> {
     fn equations<'a>(
         &self,
         system: &'a mut (dyn Ode + 'a),
@@ -113,12 +103,6 @@ impl Runs {
     }
 }
 
-impl<S, F> fmt::Debug for Adjoint<S, F> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Adjoint").field("start", &self.runs.start).finish_non_exhaustive()
-    }
-}
-
 impl<S: Ode, F: Functional> Adjoint<S, F> {
     /// For the solution that starts at time `t0` from `y0`, with options of the forward and of the backward
     /// run.
@@ -135,13 +119,8 @@ impl<S: Ode, F: Functional> Adjoint<S, F> {
         options: &AdjointOptions,
     ) -> Result<Self, Error> {
         check_start(t0, y0)?;
-        options.check(y0.len(), system.parameters().len())?;
-        if system.root_count() > 0 {
-            let help = "an adjoint gradient does not stop at events: leave them out";
-            return Err(Error::input("root_count", system.root_count(), help));
-        }
-        let (start, forward, options) = ((t0, y0.to_vec()), forward.clone(), options.clone());
-        let runs = Runs { start, forward, options };
+        let sizes = (system.parameters().len(), system.root_count());
+        let runs = Runs::new((t0, y0, &[]), forward, options, sizes)?;
         let mut adjoint = Self { system, functional, runs };
         adjoint.runs.check(&mut adjoint.system, &mut adjoint.functional)?;
         Ok(adjoint)
@@ -163,16 +142,5 @@ impl<S: Ode, F: Functional> Adjoint<S, F> {
             return Err(Error::input("end time", t, "it is another than the start"));
         }
         self.runs.gradient(&mut self.system, &mut self.functional, t)
-    }
-
-    /// The system.
-    #[must_use]
-    pub fn system(&self) -> &S {
-        &self.system
-    }
-
-    /// The system, to change its parameters; the next [`gradient`](Self::gradient) uses them.
-    pub fn system_mut(&mut self) -> &mut S {
-        &mut self.system
     }
 }

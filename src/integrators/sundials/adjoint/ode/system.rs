@@ -85,7 +85,7 @@ impl<S: Ode, F: Functional> AdjointSystem<S, F> {
         self.update_jacobian(t, y)?;
         let Equations { jacobian, backward, .. } = &self.equations;
         let entries = backward.entries(y.len(), values);
-        jacobian.write_transposed(backward, entries, |_, place| -jacobian.values()[place]);
+        jacobian.write_transposed(backward, entries, |_, position| -jacobian.values()[position]);
         Ok(())
     }
 
