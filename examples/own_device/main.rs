@@ -5,7 +5,7 @@
 //! What to look for: `jet.rs` is all that knows of the jet, by the public traits `Device` and `Force`. It has a table in the scene
 //! file, `[[jet]]`, inputs that phases set and a program commands, a sensor, a place in checkpoints and lines in the pictures. First the
 //! phase of the file fires it to and fro; then a program takes over: it steers the jet so that the end goes up to 20 mm
-//! and stays there, and a copy from a checkpoint goes on with its commands.
+//! and stays there, and goes on once more from a checkpoint, with the commands that it holds.
 
 #[path = "../common/mod.rs"]
 mod common;
@@ -46,10 +46,9 @@ fn run(arguments: &Arguments) -> Result<(), Error> {
     simulation.device_input("tail", Jet::ANGLE.word, FRAC_PI_2)?;
     steer(&mut simulation, 1.0)?;
     let held = simulation.checkpoint();
-    let mut copy = file.scene.start(&common.settings())?;
-    copy.restore(&held)?;
-    for simulation in [&mut simulation, &mut copy] {
-        steer(simulation, 1.6)?;
+    for _ in 0..2 {
+        simulation.restore(&held)?;
+        steer(&mut simulation, 1.6)?;
         let view = simulation.view();
         let [height, power] =
             [view.position("right")?[1], view.device("tail", Jet::POWER.word)?[0]];

@@ -1751,6 +1751,40 @@ def fluid(
     )
 
 
+def wind(
+    *,
+    drag: float,
+    name: str | None = None,
+    skin_drag: float | None = None,
+    density: float | None = None,
+    nodes: Nodes | None = None,
+) -> dict:
+    r"""Air that drags faces along with its velocity relative to theirs, as a `[[fluid]]` does, and whose `velocity`
+    phases `set`: 0 where they do not.
+
+    Parameters
+    ----------
+    drag
+        the coefficient C_n of drag along the normal (no unit). Required. Faces at the front and at the back both
+        count: 0.6 to 1 for plates, 0.75 to 0.9 for cylinders across, 0.5 for spheres.
+    name
+        the name of the wind. Default: wind 1, wind 2, ...
+    skin_drag
+        the coefficient C_t of drag along the face (no unit). Default: 0.
+    density
+        the density of the air (kg/m^3). Default: 1.2.
+    nodes
+        the nodes of the faces that it blows on. Default: all. Those inside of bodies do not matter.
+    """
+    return _table(
+        drag=drag,
+        name=name,
+        skin_drag=skin_drag,
+        density=density,
+        nodes=nodes,
+    )
+
+
 def obstacle_half_plane(
     *,
     point: Vector,
@@ -2249,6 +2283,7 @@ def phase(
     flow: dict | Sequence[dict] | None = None,
     actuate: dict | Sequence[dict] | None = None,
     drive: dict | Sequence[dict] | None = None,
+    set: dict | Sequence[dict] | None = None,
     magnetic_field: dict | None = None,
     contact: bool | str | Sequence[str] | None = None,
     project_velocity: bool | None = None,
@@ -2296,6 +2331,8 @@ def phase(
         forces in springs and cables, stresses of muscles, strains of growth. Default: none.
     drive
         where dipoles are, and their moments. Default: none.
+    set
+        inputs of devices, such as winds. Default: none.
     magnetic_field
         the magnetic field. Default: none.
     contact
@@ -2324,6 +2361,7 @@ def phase(
         flow=flow,
         actuate=actuate,
         drive=drive,
+        set=set,
         magnetic_field=magnetic_field,
         contact=contact,
         project_velocity=project_velocity,
@@ -2919,6 +2957,44 @@ def drive(
     )
 
 
+def set(
+    *,
+    device: str,
+    input: str,
+    value: Formula | Sequence[Formula] | None = None,
+    times: Sequence[float] | None = None,
+    period: float | None = None,
+    values: Sequence[float] | Sequence[Vector] | None = None,
+) -> dict:
+    r"""An input of a device by its word: the `velocity` of a `[[wind]]`. A number or a vector, as the input is. Values of
+    a table are interpolated linearly, and are constant before and after.
+
+    Parameters
+    ----------
+    device
+        the name of the device. Required.
+    input
+        the word of the input. Required.
+    value
+        its value, in the unit of the input. Default: none.
+    times
+        times in ascending order (s). Default: none.
+    period
+        the time after which the table is repeated, up to the end of the phase (s). Default: once. From its last time
+        a line leads to the first value, a period after the first time.
+    values
+        its values at these times. Default: none.
+    """
+    return _table(
+        device=device,
+        input=input,
+        value=value,
+        times=times,
+        period=period,
+        values=values,
+    )
+
+
 def magnetic_field(
     *,
     field: Sequence[Formula] | None = None,
@@ -3357,6 +3433,36 @@ def sensor_fluid_force(
         component=component,
         nodes=nodes,
         body=body,
+    )
+
+
+def sensor_device(
+    *,
+    name: str,
+    device: str,
+    output: str,
+    component: Literal["x", "y", "z", "norm", "xx", "yy", "zz", "xy", "yz", "xz", "von-mises"] | None = None,
+) -> dict:
+    r"""Sensor of the kind "device": an output of a device by its word: the `force` of a `[[wind]]` (N).
+
+    Parameters
+    ----------
+    name
+        the name of the sensor. Required.
+    device
+        the name of the device. Required.
+    output
+        the word of the output. Required.
+    component
+        one component alone. Default: all, each a column. Vectors have `x`, `y`, `z` and their length `norm`; tensors
+        `xx` and so on; stress has `von-mises` besides.
+    """
+    return _table(
+        kind="device",
+        name=name,
+        device=device,
+        output=output,
+        component=component,
     )
 
 
@@ -4385,6 +4491,7 @@ __all__ = [
     "sensor_contact_area",
     "sensor_contact_force",
     "sensor_contact_pressure",
+    "sensor_device",
     "sensor_dipole_force",
     "sensor_dipole_position",
     "sensor_displacement",
@@ -4412,6 +4519,7 @@ __all__ = [
     "sensor_tension_at_end",
     "sensor_velocity",
     "sensor_volume",
+    "set",
     "sets",
     "solver",
     "spring",
@@ -4421,4 +4529,5 @@ __all__ = [
     "terms",
     "tie",
     "touch",
+    "wind",
 ]

@@ -36,11 +36,7 @@ pub struct InputError {
 
 impl InputError {
     /// `input` = `value` cannot be used: `help`.
-    pub fn new(
-        input: impl Into<String>,
-        value: impl Display,
-        help: impl Into<String>,
-    ) -> Self {
+    pub fn new(input: impl Into<String>, value: impl Display, help: impl Into<String>) -> Self {
         Self { input: input.into(), value: value.to_string(), help: help.into() }
     }
 }

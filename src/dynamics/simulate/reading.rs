@@ -308,11 +308,6 @@ impl Reading {
         self
     }
 
-    /// An `output` of the [device](crate::Device) with a name.
-    pub fn device(device: impl Into<String>, output: &'static DeviceOutput) -> Self {
-        ReadingKind::OfDevice(output, device.into()).into()
-    }
-
     /// An output of the component with a `name`.
     #[cfg(feature = "scene-file")]
     pub(crate) fn of(output: &'static Output, name: impl Into<String>) -> Self {

@@ -3,7 +3,6 @@
 use std::fmt;
 use std::sync::Arc;
 
-use super::output::Value;
 use crate::base::input::InputError;
 use crate::dynamics::trajectory::Sample;
 use crate::elements::body::{Body, CellField, Grown, MagnetizedPoints, Strands};
@@ -42,7 +41,7 @@ pub(super) struct Gauges {
     /// On which dipoles act; empty without dipoles.
     pub(super) magnetized: Arc<[Box<dyn MagnetizedPoints>]>,
     /// The functions that read the outputs of each device.
-    devices: Vec<Vec<DeviceGauge>>,
+    pub(super) devices: Vec<Vec<DeviceGauge>>,
 }
 
 impl Gauges {
@@ -168,30 +167,6 @@ impl<'a> View<'a> {
         see: impl FnOnce(&Scene, &Phase, [&[f64]; 2], &[f64]) -> R,
     ) -> R {
         see(self.scene, self.phase, [self.u, self.v], self.amounts)
-    }
-
-    /// An output of a [device](crate::Device), by the name of the one and the word of the other.
-    ///
-    /// # Errors
-    /// A name that no device has, a word that none of its outputs has.
-    pub fn device(&self, device: &str, output: &str) -> Result<Vec<f64>, InputError> {
-        let number = self.scene.device_number(device, "device")?;
-        let own = self.scene.output_number(number, output)?;
-        let is_vector = self.scene.devices()[number].outputs()[own].is_vector;
-        let rank = if is_vector { self.body().dimension() } else { 1 };
-        Ok(self.device_output(number, own)[..rank].to_vec())
-    }
-
-    /// An output of a device, both by number.
-    pub(super) fn device_value(&self, device: usize, output: usize, is_vector: bool) -> Value {
-        let value = self.device_output(device, output);
-        if is_vector { Value::Vector(value) } else { Value::Number(value[0]) }
-    }
-
-    fn device_output(&self, device: usize, output: usize) -> [f64; 3] {
-        let own = &*self.scene.devices()[device];
-        let state = self.scene.device_state(own, self.phase, self.time, [self.u, self.v]);
-        (self.gauges.devices[device][output])(&state)
     }
 
     /// The liquid of that number, which has a surface, under the gravity of the phase.

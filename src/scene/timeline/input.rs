@@ -7,7 +7,7 @@
 use std::fmt;
 use std::sync::Arc;
 
-use super::device::DeviceInput;
+use super::device_rows::DeviceInput;
 use crate::base::input::InputError;
 use crate::elements::body::Body;
 use crate::elements::force::Force;

@@ -4,6 +4,7 @@ mod around;
 mod changed;
 mod contacts;
 mod device;
+mod device_rows;
 mod dipole;
 mod early;
 mod finer;
@@ -22,6 +23,7 @@ mod phase_end;
 mod pipe;
 mod plane;
 mod reduced;
+mod scene_devices;
 mod scene_state;
 mod smaller;
 mod start;
@@ -36,9 +38,8 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 
 pub(crate) use contacts::ContactReader;
-pub use device::{
-    Device, DeviceGauge, DeviceInput, DeviceOutput, DeviceSignals, DeviceState, DeviceValue,
-};
+pub use device::{Device, DeviceGauge, DeviceSignals, DeviceState, DeviceValue};
+pub use device_rows::{DeviceInput, DeviceOutput};
 #[cfg(any(feature = "scene-file", feature = "study"))]
 pub(crate) use half::Half;
 #[cfg(feature = "scene-file")]

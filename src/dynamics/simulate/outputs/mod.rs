@@ -1,6 +1,7 @@
 //! All outputs: a quantity is a row in the file of its components, and stands in this list.
 
 mod chambers;
+mod devices;
 mod dipoles;
 mod gas;
 mod liquids;

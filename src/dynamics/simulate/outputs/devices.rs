@@ -1,0 +1,45 @@
+//! Outputs of devices, which have their rows.
+
+use super::super::output::Value;
+use super::super::reading::{Reading, ReadingKind};
+use super::super::view::View;
+use crate::base::input::InputError;
+use crate::scene::timeline::DeviceOutput;
+
+impl View<'_> {
+    /// An output of a [device](crate::Device), by the name of the one and the word of the other.
+    ///
+    /// # Errors
+    /// A name that no device has, a word that none of its outputs has.
+    pub fn device(&self, device: &str, output: &str) -> Result<Vec<f64>, InputError> {
+        let number = self.scene.device_number(device, "device")?;
+        let own = self.scene.output_number(number, output)?;
+        let is_vector = self.scene.devices()[number].outputs()[own].is_vector;
+        let rank = if is_vector { self.body().dimension() } else { 1 };
+        Ok(self.device_output(number, own)[..rank].to_vec())
+    }
+
+    /// An output of a device, both by number.
+    pub(in crate::dynamics::simulate) fn device_value(
+        &self,
+        device: usize,
+        output: usize,
+        is_vector: bool,
+    ) -> Value {
+        let value = self.device_output(device, output);
+        if is_vector { Value::Vector(value) } else { Value::Number(value[0]) }
+    }
+
+    fn device_output(&self, device: usize, output: usize) -> [f64; 3] {
+        let own = &*self.scene.devices()[device];
+        let state = self.scene.device_state(own, self.phase, self.time, [self.u, self.v]);
+        (self.gauges.devices[device][output])(&state)
+    }
+}
+
+impl Reading {
+    /// An `output` of the [device](crate::Device) with a name.
+    pub fn device(device: impl Into<String>, output: &'static DeviceOutput) -> Self {
+        ReadingKind::OfDevice(output, device.into()).into()
+    }
+}
