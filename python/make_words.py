@@ -1,4 +1,5 @@
-"""Makes pliant/words.py of the JSON Schema of scene files: `pliant schema | python make_words.py > pliant/words.py`."""
+"""Makes pliant/words.py of the JSON Schema of scene files, as scripts/python.sh does before it tests or builds the module:
+`python3 make_words.py < ../docs/scene.schema.json > pliant/words.py`."""
 
 import json
 import keyword

@@ -18,6 +18,9 @@ environment() { # DIRECTORY PACKAGE...
     "$environment/bin/python" -m pip install -q --disable-pip-version-check "$@"
 }
 
+# builders of tables with all keys, of the schema
+python3 python/make_words.py < docs/scene.schema.json > python/pliant/words.py
+
 case $1 in
 environment)
     environment "$target/python-test" $packages
@@ -52,8 +55,6 @@ wheel)
     mkdir "$copy/python"
     cp -r python/tests python/examples python/make_words.py "$copy/python"
     cp -r docs scenes "$copy"
-    mkdir "$copy/python/pliant"
-    cp python/pliant/words.py "$copy/python/pliant"
     # comparisons with the command are made by `test`, and here if PLIANT_COMMAND names one
     "$target/python-clean/bin/python" -m pytest -q -p no:cacheprovider "$copy/python/tests"
     ls -l "$target/wheels"

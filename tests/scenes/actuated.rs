@@ -1,13 +1,10 @@
 //! Scenes with pressure and springs: against an independent program, against each other, and as
 //! they should end.
 
-use crate::common::{difference, run};
 use pliant::samples::{membrane, membrane_arch, report_8, ring_jump, ring_springs};
-use pliant::{Error, Method, Sampling, Scene, Settings, Trajectory};
+use pliant::{Error, Method, Sampling, Scene, Trajectory};
 
-fn settings(method: Method, rtol: f64) -> Settings {
-    Settings { method, rtol, ..Settings::default() }
-}
+use crate::common::{difference, run, settings};
 
 /// Centre of mass of the ring, with its mass in the middle (cm).
 fn centre(trajectory: &Trajectory, sample: usize) -> [f64; 2] {

@@ -7,18 +7,14 @@ use pliant::{
     Settings, Strain, Trajectory,
 };
 
+use crate::common::distance;
+
 fn run(scene: &Scene, settings: &Settings) -> Trajectory {
     scene.simulate(settings, &Sampling::every(0.05)).unwrap()
 }
 
 fn auto(rtol: f64) -> Settings {
     Settings { method: Method::Auto, rtol, ..Settings::default() }
-}
-
-/// Root mean square distance between the last positions of two runs (m).
-fn distance(a: &Trajectory, b: &Trajectory) -> f64 {
-    let squares = a.last().u.iter().zip(&b.last().u).map(|(a, b)| (a - b).powi(2));
-    (squares.sum::<f64>() / a.body().mesh().node_count() as f64).sqrt()
 }
 
 #[test]

@@ -11,9 +11,7 @@ use pliant::{
 use serde_json::{Value, json};
 use tempfile::TempDir;
 
-pub fn settings(method: Method, rtol: f64) -> Settings {
-    Settings { method, rtol, ..Settings::default() }
-}
+use crate::common::{apart, settings};
 
 /// A clamped beam of rubber in the plane, its lower side within a floor, with a chamber and a spring.
 pub fn beam() -> Scene {
@@ -83,11 +81,6 @@ fn go_on(beam: &mut Simulation) -> Vec<(Vec<f64>, Vec<f64>, Energy)> {
     beam.advance_to(0.025).unwrap();
     seen.push(state(beam));
     seen
-}
-
-fn apart(a: &[f64], b: &[f64]) -> f64 {
-    let largest = a.iter().fold(0.0_f64, |largest, x| largest.max(x.abs()));
-    a.iter().zip(b).fold(0.0_f64, |apart, (a, b)| apart.max((a - b).abs())) / largest
 }
 
 pub fn folder() -> (TempDir, PathBuf) {

@@ -10,7 +10,8 @@ use pliant::{
 };
 use serde_json::{Value, json};
 
-use crate::checkpoint_file::{beam, command, driven, folder, settings};
+use crate::checkpoint_file::{beam, command, driven, folder};
+use crate::common::settings;
 
 #[track_caller]
 fn says<T>(result: Result<T, Error>, words: &[&str]) {

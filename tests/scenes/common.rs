@@ -1,6 +1,9 @@
 //! Shared by the tests of whole scenes.
 
-use pliant::{Method, Sampling, Scene, Settings, Trajectory};
+use pliant::samples::SQUARE_MATERIAL;
+use pliant::{
+    Body, Cells, Equilibrium, Mesh, Method, Sampling, Scene, Settings, Strain, Trajectory,
+};
 
 /// A table of reference values with named columns.
 pub struct Table {
@@ -42,6 +45,18 @@ pub fn methods_with_alpha() -> impl Iterator<Item = Method> {
     Method::ALL.into_iter().filter(|&method| method != Method::IdaIndexTwo)
 }
 
+pub fn settings(method: Method, rtol: f64) -> Settings {
+    Settings { method, rtol, ..Settings::default() }
+}
+
+/// The square of Hirai's examples in a plane without a floor, with Cauchy strain.
+pub fn square() -> Scene {
+    let mesh = Mesh::rectangle([0.3, 0.3], [4, 4], Cells::Triangles).unwrap();
+    Scene::new(
+        Body::new(mesh, SQUARE_MATERIAL).strain(Strain::Cauchy).thickness(0.01).build().unwrap(),
+    )
+}
+
 /// Runs `scene` and samples it at `times`.
 pub fn run(scene: &Scene, settings: &Settings, times: &[f64]) -> Trajectory {
     scene.simulate(settings, &Sampling::at(times)).unwrap()
@@ -60,6 +75,47 @@ pub fn difference(a: &Trajectory, b: &Trajectory) -> f64 {
         }
     }
     worst / largest
+}
+
+/// Largest difference between two sets of displacements, relative to the largest of them.
+pub fn apart(a: &[f64], b: &[f64]) -> f64 {
+    let largest = a.iter().fold(0.0_f64, |largest, x| largest.max(x.abs()));
+    a.iter().zip(b).fold(0.0_f64, |apart, (a, b)| apart.max((a - b).abs())) / largest
+}
+
+/// Root mean square distance between the last positions of two runs (m).
+pub fn distance(a: &Trajectory, b: &Trajectory) -> f64 {
+    let squares = a.last().u.iter().zip(&b.last().u).map(|(a, b)| (a - b).powi(2));
+    (squares.sum::<f64>() / a.body().mesh().node_count() as f64).sqrt()
+}
+
+/// The readings of a sensor, by its number.
+pub fn column(motion: &Trajectory, number: usize) -> Vec<f64> {
+    motion.samples().iter().map(|sample| sample.sensors[number]).collect()
+}
+
+/// Part of the energies that are there by which their balance is off.
+pub fn imbalance(motion: &Trajectory) -> f64 {
+    motion.report().energy_error / motion.report().energy_scale
+}
+
+/// Curvature (1/m) of the middle half of a strip that lay along x from the origin on, of a length and a height.
+pub fn curvature(equilibrium: &Equilibrium, [length, height]: [f64; 2]) -> f64 {
+    let motion = equilibrium.trajectory();
+    let (mesh, u) = (motion.body().mesh(), &motion.last().u);
+    let at = |x: f64, y: f64| {
+        let near = |node: &usize| {
+            let place = mesh.position(*node);
+            (place[0] - x).hypot(place[1] - y) < 1e-9
+        };
+        let node = (0..mesh.node_count()).find(near).unwrap();
+        [0, 1].map(|i| mesh.position(node)[i] + u[2 * node + i])
+    };
+    let turned = |x: f64| {
+        let ([x0, y0], [x1, y1]) = (at(x, 0.0), at(x, height));
+        (x0 - x1).atan2(y1 - y0)
+    };
+    (turned(0.75 * length) - turned(0.25 * length)) / (0.5 * length)
 }
 
 /// What a motion's error may be after many steps, each with an error of `rtol`: two to three times the

@@ -6,14 +6,9 @@ use pliant::{
     Trajectory,
 };
 
-const MASS: f64 = 0.9;
+use crate::common::square;
 
-fn square() -> Scene {
-    let mesh = Mesh::rectangle([0.3, 0.3], [4, 4], Cells::Triangles).unwrap();
-    Scene::new(
-        Body::new(mesh, SQUARE_MATERIAL).strain(Strain::Cauchy).thickness(0.01).build().unwrap(),
-    )
-}
+const MASS: f64 = 0.9;
 
 /// At rest the penalty springs carry the weight, and store (K/2) sum d^2.
 #[test]

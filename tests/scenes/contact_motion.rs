@@ -9,15 +9,13 @@ use pliant::{
     Settings, Touch, Trajectory,
 };
 
+use crate::common::settings;
+
 const SOFT: Material = Material { density: 1000.0, young: 1e5, poisson: 0.3, viscosity: 0.0 };
 const G: f64 = 9.8;
 
 fn rectangle(size: [f64; 2], nodes: [usize; 2], at: [f64; 2]) -> Mesh {
     Mesh::rectangle(size, nodes, Cells::Rectangles).unwrap().translated(&at).unwrap()
-}
-
-fn settings(method: Method, rtol: f64) -> Settings {
-    Settings { method, rtol, ..Settings::default() }
 }
 
 /// Bars of 2 x 10 cm that hang from pins in a row, a millimetre apart, and exchange impulses where they meet, each turned by

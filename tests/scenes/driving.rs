@@ -11,9 +11,7 @@ use pliant::{
     Simulation, Spring, Strain,
 };
 
-fn settings(method: Method, rtol: f64) -> Settings {
-    Settings { method, rtol, ..Settings::default() }
-}
+use crate::common::settings;
 
 fn square() -> Body {
     let mesh = Mesh::rectangle([0.1, 0.1], [4, 4], Cells::Rectangles).unwrap();

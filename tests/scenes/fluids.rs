@@ -1,10 +1,11 @@
 //! Bodies in a fluid against closed forms: falling, coasting, floating, heaving, a gate, a beam that vibrates; methods against each other.
 
-use crate::common::run;
 use pliant::{
-    Body, Cells, Fluid, Material, Mesh, Method, Phase, Plane, Sampling, Scene, Settings,
-    SolidCells, Stability, Statics, Strain, Trajectory, simulate::Reading,
+    Body, Cells, Fluid, Material, Mesh, Method, Phase, Plane, Sampling, Scene, SolidCells,
+    Stability, Statics, Strain, simulate::Reading,
 };
+
+use crate::common::{imbalance, run, settings};
 
 const WATER: f64 = 1000.0;
 const GRAVITY: f64 = 9.8;
@@ -29,15 +30,6 @@ const AREA: f64 = 0.1 * 0.05;
 
 fn down(body: &Body) -> Vec<f64> {
     [0.0, -GRAVITY, 0.0][..body.dimension()].to_vec()
-}
-
-fn settings(method: Method, rtol: f64) -> Settings {
-    Settings { method, rtol, ..Settings::default() }
-}
-
-/// Part of the energies that are there by which their balance is off.
-fn imbalance(motion: &Trajectory) -> f64 {
-    motion.report().energy_error / motion.report().energy_scale
 }
 
 /// A block heavier than water sinks in it as tanh, from rest to the speed at which drag carries its weight less its buoyancy. Both the face below and the one above

@@ -5,8 +5,10 @@ use std::f64::consts::FRAC_PI_2;
 use pliant::simulate::Reading;
 use pliant::{
     Axis, Body, Cells, Chamber, Error, Gas, Material, Mesh, Method, Orifice, Phase, Sampling,
-    Scene, Settings, Signal, Statics, Strain, Trajectory,
+    Scene, Settings, Signal, Statics, Strain,
 };
+
+use crate::common::{column, settings};
 
 /// rho_0 (kg/m^3) and R T (J/kg) of the reference air.
 const DENSITY: f64 = 1.185;
@@ -50,14 +52,6 @@ pub(super) fn phase(until: f64, is_free: bool, count: usize) -> Phase {
         let phase = phase.hold([1, 2, 3, 4].map(at)).hold_axes([5, 6].map(at), [Axis::X]);
         if is_free { phase } else { phase.hold_axes([5, 6].map(at), [Axis::Y]) }
     })
-}
-
-fn settings(method: Method, rtol: f64) -> Settings {
-    Settings { method, rtol, ..Settings::default() }
-}
-
-fn column(motion: &Trajectory, number: usize) -> Vec<f64> {
-    motion.samples().iter().map(|sample| sample.sensors[number]).collect()
 }
 
 fn worst(found: &[f64], expected: impl Fn(usize) -> f64) -> f64 {

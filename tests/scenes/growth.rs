@@ -1,7 +1,7 @@
 //! Growth against closed forms: what is free is without stress, a bar that is held, Timoshenko's bimetal strip, and the balance of energy while
 //! it grows.
 
-use crate::common::run;
+use crate::common::{curvature, run};
 use pliant::{
     Axis, Body, CellSelection, Cells, Error, Growth, Law, Material, Mesh, Method, Phase, Plane,
     Sampling, Scene, Settings, Signal, SolidCells, Statics, Strain, simulate::Reading,
@@ -108,20 +108,7 @@ fn bimetal(plane: Plane, directed: impl Fn(Growth) -> Growth, share: f64) {
         .phase(Phase::until(1.0).hold("left").actuate(["hot"], growth));
     for scene in [scene.clone(), scene.halved().unwrap()] {
         let equilibrium = scene.equilibrium(&Statics::default()).unwrap();
-        let (mesh, u) = (scene.body().mesh(), &equilibrium.trajectory().last().u);
-        let at = |x: f64, y: f64| {
-            let near = |node: &usize| {
-                let place = mesh.position(*node);
-                (place[0] - x).hypot(place[1] - y) < 1e-9
-            };
-            let node = (0..mesh.node_count()).find(near).unwrap();
-            [0, 1].map(|i| mesh.position(node)[i] + u[2 * node + i])
-        };
-        let turned = |x: f64| {
-            let ([x0, y0], [x1, y1]) = (at(x, 0.0), at(x, height));
-            (x0 - x1).atan2(y1 - y0)
-        };
-        let curvature = (turned(0.75 * length) - turned(0.25 * length)) / (0.5 * length);
+        let curvature = curvature(&equilibrium, [length, height]);
         let expected = share * 24.0 * growth / (height * (12.0 + 4.0 * (4.0 / 3.0)));
         let off = curvature / expected - 1.0;
         println!("curvature {curvature} 1/m, off by {off:.1e}");

@@ -3,8 +3,10 @@
 use pliant::simulate::Reading;
 use pliant::{
     Axis, Body, Cells, Chamber, Error, Gas, Liquid, Material, Mesh, Method, Phase, Sampling, Scene,
-    Settings, Signal, Spring, Statics, Strain, Trajectory,
+    Settings, Signal, Spring, Statics, Strain,
 };
+
+use crate::common::{column, settings};
 
 const GRAVITY: f64 = 9.8;
 const DENSITY: f64 = 1000.0;
@@ -12,14 +14,6 @@ const DENSITY: f64 = 1000.0;
 const WIDTH: f64 = 0.3;
 const HEIGHT: f64 = 0.2;
 const DEPTH: f64 = 0.1;
-
-fn settings(method: Method, rtol: f64) -> Settings {
-    Settings { method, rtol, ..Settings::default() }
-}
-
-fn column(motion: &Trajectory, number: usize) -> Vec<f64> {
-    motion.samples().iter().map(|sample| sample.sensors[number]).collect()
-}
 
 /// A rigid vessel of this density (a block, in which the outline of the vessel is drawn), 1 to 4 being its corners row by row, with its lower left corner at the origin.
 fn vessel(density: f64) -> Scene {

@@ -3,21 +3,14 @@
 use pliant::simulate::Reading;
 use pliant::{
     Body, Cells, Chamber, Dilatation, Error, Gas, Law, Liquid, Material, Mesh, Method, Phase,
-    Sampling, Scene, Settings, Signal, SolidCells, Statics, Strain, Trajectory,
-    material::Substance,
+    Sampling, Scene, Settings, Signal, SolidCells, Statics, Strain, material::Substance,
 };
 
 use super::gas::{BASE, HALF, VOLUME, cylinders, phase};
 
+use crate::common::{column, settings};
+
 const WATER: f64 = 2.2e9;
-
-fn settings(method: Method, rtol: f64) -> Settings {
-    Settings { method, rtol, ..Settings::default() }
-}
-
-fn column(motion: &Trajectory, number: usize) -> Vec<f64> {
-    motion.samples().iter().map(|sample| sample.sensors[number]).collect()
-}
 
 /// A piston on water has the frequency sqrt(K A^2/(V m)), and keeps its energy by every method, those with amounts that stay included.
 #[test]

@@ -1,7 +1,7 @@
 //! Muscles against closed forms: blocks that contract by the equilibrium of their law, a strip of two layers that
 //! bends as Timoshenko's does, and the work of a stress that is constant.
 
-use crate::common::run;
+use crate::common::{curvature, run};
 use pliant::{
     Body, CellSelection, Cells, Error, Material, Mesh, Method, Muscle, Phase, Plane, Sampling,
     Scene, Settings, SolidCells, Spring, Statics, Strain, simulate::Reading,
@@ -78,20 +78,7 @@ fn a_strip_bends_as_two_layers_do() {
         .phase(Phase::until(1.0).hold("left").actuate(["upper"], stress));
     for scene in [scene.clone(), scene.halved().unwrap()] {
         let equilibrium = scene.equilibrium(&Statics::default()).unwrap();
-        let (mesh, u) = (scene.body().mesh(), &equilibrium.trajectory().last().u);
-        let at = |x: f64, y: f64| {
-            let near = |node: &usize| {
-                let place = mesh.position(*node);
-                (place[0] - x).hypot(place[1] - y) < 1e-9
-            };
-            let node = (0..mesh.node_count()).find(near).unwrap();
-            [0, 1].map(|i| mesh.position(node)[i] + u[2 * node + i])
-        };
-        let turned = |x: f64| {
-            let ([x0, y0], [x1, y1]) = (at(x, 0.0), at(x, height));
-            (x0 - x1).atan2(y1 - y0)
-        };
-        let curvature = (turned(0.75 * length) - turned(0.25 * length)) / (0.5 * length);
+        let curvature = curvature(&equilibrium, [length, height]);
         let off = curvature / (1.5 * stress / (YOUNG * height)) - 1.0;
         println!("curvature {curvature} 1/m, off by {off:.1e}");
         // strains of 1e-4 change St. Venant and Kirchhoff's stiffness by as much

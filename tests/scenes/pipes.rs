@@ -3,22 +3,15 @@
 use pliant::simulate::Reading;
 use pliant::{
     Body, Cells, Chamber, Gas, Liquid, Material, Mesh, Method, Phase, Pipe, Sampling, Scene,
-    Settings, Spring, Statics, Strain, Trajectory,
+    Spring, Statics, Strain,
 };
 
 use super::gas::{BASE, HALF, VOLUME, cylinders, phase};
 
+use crate::common::{imbalance, settings};
+
 const WATER: f64 = 1000.0;
 const OUTSIDE: f64 = 101_325.0;
-
-fn settings(method: Method, rtol: f64) -> Settings {
-    Settings { method, rtol, ..Settings::default() }
-}
-
-/// Part of the energies that are there by which their balance is off.
-fn imbalance(motion: &Trajectory) -> f64 {
-    motion.report().energy_error / motion.report().energy_scale
-}
 
 /// Methods with unknowns for flows, but those that follow the sound of water.
 const METHODS: [Method; 5] =

@@ -6,15 +6,13 @@ use pliant::reduce::{Training, error, reduce};
 use pliant::simulate::Reading;
 use pliant::{
     Body, Cells, Chamber, Gas, Lag, Law, Liquid, Material, Mesh, Method, Orifice, Phase, Pipe,
-    ReducedModel, Sampling, Scene, Settings, Signal, Spring, Trajectory,
+    ReducedModel, Sampling, Scene, Signal, Spring, Trajectory,
 };
+
+use crate::common::settings;
 
 const RUBBER: Material = Material { density: 1000.0, young: 1e5, poisson: 0.4, viscosity: 100.0 };
 const TIP: usize = 2 * 38 + 1;
-
-fn settings(method: Method, rtol: f64) -> Settings {
-    Settings { method, rtol, ..Settings::default() }
-}
 
 fn run(scene: &Scene, method: Method, rtol: f64) -> Trajectory {
     scene.simulate(&settings(method, rtol), &Sampling::every(0.01)).unwrap()

@@ -9,15 +9,7 @@ use pliant::{
     Signal, Simulation, Spring, Strain, Viscosity,
 };
 
-fn settings(method: Method, rtol: f64) -> Settings {
-    Settings { method, rtol, ..Settings::default() }
-}
-
-/// Largest difference between two sets of displacements, relative to the largest of them.
-fn apart(a: &[f64], b: &[f64]) -> f64 {
-    let largest = a.iter().fold(0.0_f64, |largest, x| largest.max(x.abs()));
-    a.iter().zip(b).fold(0.0_f64, |apart, (a, b)| apart.max((a - b).abs())) / largest
-}
+use crate::common::{apart, settings};
 
 fn displacements(simulation: &Simulation) -> Vec<f64> {
     simulation.view().displacements().to_vec()

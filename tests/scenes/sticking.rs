@@ -6,6 +6,8 @@ use pliant::{
     Strain, Trajectory,
 };
 
+use crate::common::distance;
+
 /// A body of `mesh` that lands sideways.
 fn lands(mesh: Mesh, viscosity: f64, friction: f64, stiffness: f64) -> Scene {
     let material = Material { density: 1000.0, young: 5e6, poisson: 0.3, viscosity };
@@ -26,12 +28,6 @@ fn rectangle(size: [f64; 2], nodes: [usize; 2]) -> Mesh {
 fn run(scene: &Scene, method: Method, rtol: f64, contact_events: ContactEvents) -> Trajectory {
     let settings = Settings { method, rtol, contact_events, ..Settings::default() };
     scene.simulate(&settings, &Sampling::phase_ends()).unwrap()
-}
-
-/// Root mean square distance between the last positions of two runs (m).
-fn distance(a: &Trajectory, b: &Trajectory) -> f64 {
-    let squares = a.last().u.iter().zip(&b.last().u).map(|(a, b)| (a - b).powi(2));
-    (squares.sum::<f64>() / a.body().mesh().node_count() as f64).sqrt()
 }
 
 /// Evaluations are what steps of all methods cost. The choice pays for trials of the explicit method, some hundred steps of 6

@@ -6,6 +6,8 @@ use pliant::{
     Substance,
 };
 
+use crate::common::apart;
+
 const PERIOD: f64 = 1e-3;
 
 /// A clamped beam of rubber in the plane, with a chamber.
@@ -34,12 +36,6 @@ fn driven(scene: &Scene, settings: &Settings, ticks: u32, period: f64) -> (Simul
     }
     let u = simulation.view().displacements().to_vec();
     (simulation, u)
-}
-
-/// Largest difference, relative to the largest displacement.
-fn apart(a: &[f64], b: &[f64]) -> f64 {
-    let largest = a.iter().fold(0.0_f64, |largest, x| largest.max(x.abs()));
-    a.iter().zip(b).fold(0.0_f64, |apart, (a, b)| apart.max((a - b).abs())) / largest
 }
 
 /// Order 3 needs a new matrix every 20 ticks, or where the error grows; order 4 one a step. Against a run at 1e-9

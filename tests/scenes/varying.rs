@@ -1,18 +1,12 @@
 //! What changes with time, said by points, against the same said by functions.
 
-use crate::common::{difference, run};
-use pliant::samples::{MEMBRANE_MATERIAL, SQUARE_MATERIAL};
+use pliant::samples::MEMBRANE_MATERIAL;
 use pliant::{
     Axis, Body, Cells, Chamber, Mesh, Phase, Prescribed, Scene, Settings, Spring, Strain,
     Trajectory,
 };
 
-fn square() -> Scene {
-    let mesh = Mesh::rectangle([0.3, 0.3], [4, 4], Cells::Triangles).unwrap();
-    Scene::new(
-        Body::new(mesh, SQUARE_MATERIAL).strain(Strain::Cauchy).thickness(0.01).build().unwrap(),
-    )
-}
+use crate::common::{difference, run, square};
 
 /// The scenes are the same but for round-off in what they are told. Both integrations err by less
 /// than the bound, a hundred times their tolerance.

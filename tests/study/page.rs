@@ -98,7 +98,16 @@ fn points_stand_where_error_and_time_are() -> Outcome {
     let page = page(&advice(), &beam_jump()?, false)?;
     let chart = between(&page, "<svg", "</svg>").ok_or("no chart")?;
     let chart = roxmltree::Document::parse(chart)?;
-    let [left, top, right, bottom] = [74.0, 14.0, 586.0, 404.0];
+    let number = |node: roxmltree::Node, name: &str| {
+        node.attribute(name).and_then(|text| text.parse::<f64>().ok()).unwrap_or(f64::NAN)
+    };
+    let of_class = |class: &'static str| {
+        chart.descendants().filter(move |node| node.attribute("class") == Some(class))
+    };
+    let field = of_class("field").next().ok_or("no field")?;
+    let [left, top] = ["x", "y"].map(|name| number(field, name));
+    let [right, bottom] = [left + number(field, "width"), top + number(field, "height")];
+    assert!(right - left > 400.0 && bottom - top > 300.0);
     let place = |error: f64, seconds: f64| {
         let (lowest, highest) = (1e-5_f64.log10(), 0.5_f64.log10());
         let more = 0.06 * (highest - lowest);
@@ -106,11 +115,7 @@ fn points_stand_where_error_and_time_are() -> Outcome {
         let x = left + (seconds.log10() + 3.24) / 4.48 * (right - left);
         [x, bottom - part * (bottom - top)]
     };
-    let number = |node: roxmltree::Node, name: &str| {
-        node.attribute(name).and_then(|text| text.parse::<f64>().ok()).unwrap_or(f64::NAN)
-    };
-    let points = chart.descendants().find(|node| node.attribute("class") == Some("points"));
-    let points: Vec<_> = points.ok_or("no points")?.children().filter(|n| n.is_element()).collect();
+    let points: Vec<_> = of_class("mark").collect();
     // all but the failure
     assert_eq!(points.len(), 5);
     let named = |rtol: &str| {
@@ -136,17 +141,32 @@ fn points_stand_where_error_and_time_are() -> Outcome {
     assert!(truth.is_some_and(|d| d.contains(&format!(" {least:.2} "))), "{truth:?}");
     assert!(chart.descendants().filter_map(|n| n.text()).any(|t| t.trim() == "0.001 % or less"));
 
-    let asked = chart.descendants().find(|node| node.attribute("class") == Some("asked"));
-    assert!((number(asked.ok_or("no line")?, "y1") - place(0.01, 1.0)[1]).abs() < 0.006);
-    let band = chart.descendants().find(|node| node.has_tag_name("rect")).ok_or("no band")?;
-    assert!((number(band, "y") - place(0.001, 1.0)[1]).abs() < 0.006);
-    let front = chart.descendants().find(|node| node.has_tag_name("polyline"));
-    let front = front.and_then(|line| line.attribute("points")).ok_or("no front")?;
-    let corners = [&known[0], &known[1], &known[2]].map(|(_, error, seconds)| {
-        let [x, y] = place(*error, *seconds);
-        format!("{x:.2},{y:.2}")
-    });
-    assert_eq!(front, corners.join(" "));
+    // places are written to a hundredth of a pixel
+    let near = |a: f64, b: f64| (a - b).abs() < 0.006;
+    let corners = |node: roxmltree::Node| -> Vec<[f64; 2]> {
+        let data = node.descendants().find_map(|node| node.attribute("d")).unwrap_or_default();
+        let corners = data.split(['M', 'L', 'Z']).filter(|corner| !corner.is_empty());
+        let number = |text: &str| text.parse().unwrap_or(f64::NAN);
+        corners
+            .map(|corner| corner.split_once(' ').map_or([f64::NAN; 2], |(x, y)| [x, y].map(number)))
+            .collect()
+    };
+    let band = corners(of_class("band").next().ok_or("no band")?);
+    assert!(band.iter().any(|[_, y]| near(*y, place(0.001, 1.0)[1])), "{band:?}");
+    let [asked, front] = [0, 1].map(|at| of_class("series").nth(at).map(corners));
+    let asked = asked.ok_or("no line")?;
+    assert!(asked.len() == 2 && asked.iter().all(|[_, y]| near(*y, place(0.01, 1.0)[1])));
+    let front = front.ok_or("no front")?;
+    let expected = [&known[0], &known[1], &known[2]].map(|(_, error, time)| place(*error, *time));
+    assert_eq!(front.len(), expected.len());
+    for ([x, y], [along, up]) in front.into_iter().zip(expected) {
+        assert!(near(x, along) && near(y, up), "{x} {y} {along} {up}");
+    }
+    let texts = chart.descendants().filter_map(|node| node.text().map(str::trim));
+    let texts: Vec<&str> = texts.collect();
+    for name in ["asked: 1 %", "known to 0.1 %", "as written", "enough"] {
+        assert!(texts.contains(&name), "{name}: {texts:?}");
+    }
     Ok(())
 }
 

@@ -2,30 +2,17 @@
 
 use std::path::Path;
 
-use svg::Document;
-use svg::node::element::Group;
-
 use super::COLOURS;
-use super::figure::{
-    Axis, Field, Line, SWATCH, dots, legend_places, page, power_text, text, write_figure,
-};
+use super::figure::{Axis, Figure, Mark, Panel, Series, Theme, power_text};
 use crate::base::input::InputError;
 use crate::dynamics::error::Error;
 
-/// Size of a chart (px).
-const SIZE: [f64; 2] = [800.0, 440.0];
-/// Room on the left, for labels and name of the vertical axis, on the right, and below (px).
-const ROOM: [f64; 3] = [84.0, 24.0, 52.0];
-/// Left and right end of the legend, and where its first line stands, below the title (px).
-const LEGEND: [f64; 3] = [20.0, 780.0, 52.0];
-/// Radius of a dot (px).
-const RADIUS: f64 = 3.0;
+/// Width of a chart, and height of its field (px).
+const SIZE: [f64; 2] = [800.0, 320.0];
 /// Approximate number of lines across the field.
 const LINES: usize = 9;
-const GREY: &str = "#777777";
 /// Dashes of one line of reference after the other, which short ones in the legend tell apart, too.
 const DASHES: [&str; 3] = ["6 5", "2 3", "10 3 2 3"];
-const GRID: &str = "#dedede";
 
 /// A line chart with named series, on linear or logarithmic axes.
 ///
@@ -47,22 +34,6 @@ pub struct Chart {
     axes: [String; 2],
     logarithmic: [bool; 2],
     series: Vec<Series>,
-}
-
-#[derive(Debug, Clone, PartialEq)]
-struct Series {
-    name: String,
-    style: Style,
-    points: Vec<(f64, f64)>,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Style {
-    Line,
-    /// A line with its points marked.
-    Marked,
-    /// A dashed grey line; each has dashes of its own.
-    Reference,
 }
 
 impl Chart {
@@ -94,7 +65,8 @@ impl Chart {
         name: impl Into<String>,
         points: impl IntoIterator<Item = (f64, f64)>,
     ) -> Self {
-        self.with(name.into(), Style::Line, points)
+        let colour = self.next_colour();
+        self.with(name, Series::line(colour, points))
     }
 
     /// As [`series`](Self::series), with a dot at each point: for few points, each a measurement.
@@ -103,7 +75,8 @@ impl Chart {
         name: impl Into<String>,
         points: impl IntoIterator<Item = (f64, f64)>,
     ) -> Self {
-        self.with(name.into(), Style::Marked, points)
+        let colour = self.next_colour();
+        self.with(name, Series { mark: Some(Mark::DOT), ..Series::line(colour, points) })
     }
 
     /// As [`series`](Self::series), dashed and grey: what is expected, to compare with.
@@ -112,17 +85,21 @@ impl Chart {
         name: impl Into<String>,
         points: impl IntoIterator<Item = (f64, f64)>,
     ) -> Self {
-        self.with(name.into(), Style::Reference, points)
+        let before =
+            self.series.iter().filter(|series| series.colour == Theme::PRINT.muted).count();
+        let dashes = DASHES[before % DASHES.len()];
+        self.with(name, Series { dashes, ..Series::line(Theme::PRINT.muted, points) })
     }
 
-    fn with(
-        mut self,
-        name: String,
-        style: Style,
-        points: impl IntoIterator<Item = (f64, f64)>,
-    ) -> Self {
-        self.series.push(Series { name, style, points: points.into_iter().collect() });
+    fn with(mut self, name: impl Into<String>, series: Series) -> Self {
+        self.series.push(Series { name: name.into(), width: 2.0, ..series });
         self
+    }
+
+    fn next_colour(&self) -> &'static str {
+        let before =
+            self.series.iter().filter(|series| series.colour != Theme::PRINT.muted).count();
+        COLOURS[before % 6]
     }
 
     /// Draws the chart to an SVG file, or, with the feature `png`, a PNG file.
@@ -150,66 +127,21 @@ impl Chart {
                 return refuse(point, "along a logarithmic axis it must be positive");
             }
         }
-        write_figure(&self.draw(), path.as_ref())
-    }
-
-    fn points(&self) -> impl Iterator<Item = &(f64, f64)> {
-        self.series.iter().flat_map(|series| &series.points)
-    }
-
-    fn draw(&self) -> Document {
-        let [left, right, first] = LEGEND;
-        let names = self.series.iter().map(|series| &series.name[..]);
-        let places = legend_places(names, [left, right], first);
-        let field = self.field(places.iter().map(|place| place[1]).fold(first, f64::max) + 16.0);
-        // a power of ten that the labels leave out
-        let name = |name: &String, axis: &Axis| match &axis.unit[..] {
-            "" => name.clone(),
-            power => format!("{name} / {power}"),
-        };
-        let title = text(&self.title, [left, 28.0]).set("font-size", 17).set("font-weight", "bold");
-        let mut chart = page(SIZE).add(title).add(field.grid()).add(field.outline());
-        chart = chart
-            .add(field.floor(&name(&self.axes[0], &field.x)).set("font-size", 13))
-            .add(field.side(&name(&self.axes[1], &field.y), 62.0).set("font-size", 13));
-        let mut colours = COLOURS[..6].iter().cycle();
-        let mut dashed = DASHES.iter().cycle();
-        for (series, [x, y]) in self.series.iter().zip(places) {
-            let colour = match series.style {
-                Style::Reference => GREY,
-                Style::Line | Style::Marked => colours.next().unwrap_or(&GREY),
-            };
-            let dashes = match series.style {
-                Style::Reference => dashed.next().unwrap_or(&"none"),
-                Style::Line | Style::Marked => "none",
-            };
-            let mut marks = Vec::new();
-            if series.style == Style::Marked {
-                marks = series.points.iter().map(|(x, y)| field.place(*x, *y)).collect();
-                marks.push([x + 0.5 * SWATCH - 4.0, y]);
-            }
-            let line = field.line(series.points.iter().copied());
-            chart = chart
-                .add(line.draw(colour, 2.0, RADIUS, dashes))
-                .add(Line::swatch([x, y]).draw(colour, 2.0, RADIUS, dashes))
-                .add(dots(Group::new(), marks, RADIUS, colour))
-                .add(text(&series.name, [x + SWATCH, y + 4.0]).set("font-size", 13));
-        }
-        chart
-    }
-
-    /// The field below `top` (px).
-    fn field(&self, top: f64) -> Field {
-        let [log_x, log_y] = self.logarithmic;
         let axis =
             |values: &mut dyn Iterator<Item = f64>, margin, is_logarithmic| match is_logarithmic {
                 true => Axis::logarithmic(values, LINES, power_text),
                 false => Axis::linear(values, margin, LINES, ""),
             };
-        let x = axis(&mut self.points().map(|point| point.0), 0.0, log_x);
-        let y = axis(&mut self.points().map(|point| point.1), 0.05, log_y);
-        let [left, right, below] = ROOM;
-        let edges = [left, top, SIZE[0] - right, SIZE[1] - below];
-        Field { edges, x, y, colours: [super::INK, GRID, "#f3f3f3"] }
+        let axes = [
+            axis(&mut self.points().map(|point| point.0), 0.0, log_x),
+            axis(&mut self.points().map(|point| point.1), 0.05, log_y),
+        ];
+        let names = [0, 1].map(|at| axes[at].label(&self.axes[at]));
+        let panel = Panel { axes, names, series: self.series.clone(), ..Panel::default() };
+        Figure::new(&self.title, vec![panel], SIZE).write(path.as_ref())
+    }
+
+    fn points(&self) -> impl Iterator<Item = &(f64, f64)> {
+        self.series.iter().flat_map(|series| &series.points)
     }
 }

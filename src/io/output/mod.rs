@@ -41,11 +41,9 @@ pub use self::chart::Chart;
 pub(crate) use self::columns::{DIFFERENCE, OF_SENSOR};
 pub use self::csv::{GrowingTable, write_csv, write_energies};
 #[cfg(feature = "sweep")]
-pub(crate) use self::figure::dots;
+pub(crate) use self::figure::shade;
 #[cfg(feature = "study")]
-pub(crate) use self::figure::{
-    Axis, Field, Point, page, power_text, rectangle, round, stroke, text, write_figure,
-};
+pub(crate) use self::figure::{Axis, Figure, Mark, Note, Panel, Series, Theme, power_text};
 pub use self::plot::{Plot, Table};
 pub use self::reference::reference;
 #[cfg(feature = "study")]

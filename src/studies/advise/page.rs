@@ -16,8 +16,6 @@ use crate::studies::work_precision::timing::Budget;
 use crate::studies::work_precision::truth::reason;
 
 const STYLE: &str = include_str!("page/page.css");
-/// The key to the symbols of the chart.
-const KEY: &str = include_str!("page/key.html");
 /// Processor time that each of the motions may take.
 const LONGEST: Duration = Duration::from_secs(20);
 /// How lines about one candidate begin in the text of the advice.
@@ -83,7 +81,7 @@ impl Advice {
         let answer = answer.replacen("</dl>\n", &format!("</dl>\n{sets}"), 1);
         let chart = self.chart().map_or_else(String::new, |chart| {
             let head = "<section class=\"card\" aria-labelledby=\"pareto\">\n<h2 id=\"pareto\">Error and time</h2>";
-            format!("{head}\n<div class=\"pareto\">{chart}</div>\n{KEY}</section>\n")
+            format!("{head}\n<div class=\"pareto\">{chart}</div>\n</section>\n")
         });
         let shown = match motions {
             [] => "No motion is shown.".to_owned(),

@@ -29,7 +29,7 @@ impl Results {
         units: &[&str],
         path: impl AsRef<Path>,
     ) -> Result<(), Error> {
-        let figure = self.figure(sweep, units, true).to_string();
+        let figure = self.figure(sweep, units, true).draw().to_string();
         let rows: Vec<Value> = self.rows.iter().map(|row| of_row(sweep, store, row)).collect();
         let units: Vec<&str> =
             units.iter().map(|unit| if *unit == "1" { "" } else { unit }).collect();

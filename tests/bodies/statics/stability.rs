@@ -5,22 +5,10 @@ use std::f64::consts::TAU;
 
 use pliant::mesh::CellKind;
 use pliant::{
-    Axis, Body, Cells, Equilibrium, Error, Material, Mesh, Obstacle, Phase, Scene, Stability,
-    Statics, Strain,
+    Axis, Body, Cells, Error, Material, Mesh, Obstacle, Phase, Scene, Stability, Statics, Strain,
 };
 
-const RUBBER: Material = Material { density: 1000.0, young: 1e6, poisson: 0.48, viscosity: 40.0 };
-
-fn solve(scene: &Scene) -> Equilibrium {
-    scene.equilibrium(&Statics::default()).unwrap()
-}
-
-fn frequency(equilibrium: &Equilibrium) -> f64 {
-    match equilibrium.stability {
-        Stability::Stable { frequency } => frequency,
-        other => panic!("{other:?}"),
-    }
-}
+use super::{RUBBER, frequency, solve};
 
 /// A truss of two bars from (-1, 0) and (1, 0) to the apex (0, `height`), E A = 10.
 pub(super) fn truss(height: f64, phase: Phase) -> Scene {

@@ -1,5 +1,7 @@
 //! Axes, linear and logarithmic: where their lines are, which numbers stand beside them, and in which unit.
 
+use super::CHARACTER;
+
 const SUPERSCRIPTS: [&str; 10] = ["⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"];
 
 /// Units that take a prefix.
@@ -22,7 +24,7 @@ const LARGEST: f64 = 1e300;
 const LEAST: f64 = 1e-290;
 
 /// A range of numbers with the lines across it.
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Default)]
 pub(crate) struct Axis {
     /// Ends of the range; decades, if the axis is logarithmic.
     low: f64,
@@ -92,6 +94,35 @@ impl Axis {
     pub(crate) fn place(&self, value: f64) -> f64 {
         let value = if self.is_logarithmic { value.log10() } else { value };
         (value.clamp(-LARGEST, LARGEST) - self.low) / (self.high - self.low)
+    }
+
+    /// Width of the widest label (px).
+    pub(super) fn width(&self) -> f64 {
+        let lengths = self.ticks.iter().map(|tick| tick.1.chars().count());
+        CHARACTER * lengths.max().unwrap_or(0) as f64
+    }
+
+    /// The value at a place from 0 to 1.
+    pub(crate) fn value(&self, place: f64) -> f64 {
+        let value = self.low + place * (self.high - self.low);
+        if self.is_logarithmic { 10_f64.powf(value) } else { value }
+    }
+
+    /// The values at both ends.
+    pub(crate) fn ends(&self) -> [f64; 2] {
+        [0.0, 1.0].map(|place| self.value(place))
+    }
+
+    /// The name of a quantity with the unit of the labels, or with the power of ten that they leave out.
+    pub(crate) fn label(&self, name: &str) -> String {
+        match (name, &self.unit[..]) {
+            (name, "" | "1") => name.into(),
+            ("", unit) => unit.into(),
+            (name, unit) if unit.starts_with("10") && !unit.contains(' ') => {
+                format!("{name} / {unit}")
+            }
+            (name, unit) => format!("{name} ({unit})"),
+        }
     }
 }
 

@@ -5,10 +5,9 @@ mod table;
 
 use std::path::Path;
 
-use page::Page;
+use page::figure;
 pub use table::Table;
 
-use super::figure::write_figure;
 use crate::dynamics::error::Error;
 use crate::dynamics::trajectory::Trajectory;
 
@@ -65,9 +64,7 @@ impl Plot {
     /// # Errors
     /// As [`write`](Self::write).
     pub fn write_table(&self, table: &Table, path: impl AsRef<Path>) -> Result<(), Error> {
-        let path = path.as_ref();
         let title = if self.title.is_empty() { &table.title } else { &self.title };
-        let drawing = Page::new(title, table, &table.chosen(self.columns.as_deref())?).draw();
-        write_figure(&drawing, path)
+        figure(title, table, &table.chosen(self.columns.as_deref())?).write(path.as_ref())
     }
 }

@@ -1,37 +1,27 @@
 //! Pictures of the rows of a study: quantities over one key, maps over two, parallel coordinates of more.
 
 mod map;
-mod over_one;
 mod parallel;
-mod scale;
+mod variable;
 
 use std::path::Path;
 
-use svg::Document;
-use svg::node::element::{Group, Title};
-
-use self::scale::Variable;
+use self::variable::Variable;
 use super::row::{Row, RowVerdict};
 use super::run::Sweep;
 use super::table::Results;
 use crate::base::input::digits;
 use crate::dynamics::error::Error;
-use crate::io::output::{page, text, write_figure};
+use crate::io::output::{COLOURS, Figure, Mark, Panel, Series};
 
-/// Size of a panel (px).
-const PANEL: [f64; 2] = [480.0, 400.0];
-/// Room in a panel on the left, above, on the right and below its field (px).
-const ROOM: [f64; 4] = [76.0, 34.0, 84.0, 52.0];
-/// Height of the title (px).
-const HEAD: f64 = 56.0;
-/// Panels side by side.
-const ACROSS: usize = 2;
+/// Width of a panel, and height of its field (px).
+const SIZE: [f64; 2] = [480.0, 314.0];
 /// More rows are not drawn, so that a picture does not grow without bounds.
 const MOST: usize = 20_000;
-const GREY: &str = "#777777";
-const PALE: &str = "#dedede";
 /// Colour of runs that failed.
 const FAILED: &str = "#b9bec4";
+/// A bar that stands on the floor.
+const BAR: &str = "m-3 0 v-10 h6 v10 z";
 
 /// Data of a picture of a study.
 struct Plot<'a> {
@@ -55,12 +45,12 @@ impl Results {
         units: &[&str],
         path: impl AsRef<Path>,
     ) -> Result<(), Error> {
-        write_figure(&self.figure(sweep, units, false), path.as_ref())
+        self.figure(sweep, units, false).write(path.as_ref())
     }
 
-    /// The same as a document, in which each mark has the number of its row (`data-row`), and tells its values if it
+    /// The same as data, in which each mark has the number of its row (`data-row`), and tells its values if it
     /// `is_told`.
-    pub(super) fn figure(&self, sweep: &Sweep, units: &[&str], is_told: bool) -> Document {
+    pub(super) fn figure(&self, sweep: &Sweep, units: &[&str], is_told: bool) -> Figure {
         let stride = self.rows.len().div_ceil(MOST).max(1);
         let rows: Vec<(usize, &Row)> = self.rows.iter().enumerate().step_by(stride).collect();
         let keys = sweep.plan().keys().iter().filter_map(|key| Variable::key(sweep, key, &rows));
@@ -78,57 +68,56 @@ impl Results {
             0 => "",
             _ => "; grey: failed",
         };
-        plot.document(&sweep.file().title, &about)
+        if let ([_, _, _, ..], Some(first)) = (&plot.keys[..], plot.quantities.first()) {
+            about += &format!("; colour: {}", first.name);
+        }
+        Figure { about, columns: 2, ..plot.figure(&sweep.file().title) }
     }
 }
 
 impl Plot<'_> {
-    fn document(&self, title: &str, about: &str) -> Document {
-        let panels: Vec<Group> = match self.keys.len() {
-            1 => self.quantities.iter().map(|quantity| self.over_one(quantity)).collect(),
-            2 => self.quantities.iter().map(|quantity| self.map(quantity)).collect(),
-            _ => vec![self.parallel()],
+    fn figure(&self, title: &str) -> Figure {
+        let panels = match &self.keys[..] {
+            [key] => self.quantities.iter().map(|quantity| self.over(key, quantity)).collect(),
+            [x, y] => self.quantities.iter().map(|quantity| self.map([x, y], quantity)).collect(),
+            _ => return self.parallel(title),
         };
-        let across = panels.len().clamp(1, ACROSS);
-        let down = panels.len().div_ceil(across);
-        let width = match self.keys.len() {
-            1 | 2 => PANEL[0] * across as f64,
-            _ => self.parallel_width(),
-        };
-        let size = [width, HEAD + PANEL[1] * down as f64];
-        let head = Group::new()
-            .add(text(title, [20.0, 26.0]).set("font-size", 16).set("font-weight", 600))
-            .add(text(about, [20.0, 45.0]).set("fill", GREY));
-        panels.into_iter().enumerate().fold(page(size).add(head), |document, (at, panel)| {
-            let [x, y] = [PANEL[0] * (at % across) as f64, HEAD + PANEL[1] * (at / across) as f64];
-            document.add(panel.set("transform", format!("translate({x} {y})")))
-        })
+        Figure::new(title, panels, SIZE)
     }
 
-    /// Tooltip of a row, when the pointer is on its mark.
-    fn told(&self, row: &Row) -> Title {
-        let mut lines: Vec<String> =
-            row.keys.iter().map(|(key, value)| format!("{key} = {value}")).collect();
-        lines.extend(
-            row.quantities
-                .iter()
-                .filter_map(|(name, value)| Some(format!("{name} = {}", digits((*value)?, 6)))),
-        );
-        lines.push(row.verdict.to_string());
-        Title::new(lines.join("\n"))
-    }
-
-    /// The group of a row's mark.
-    fn mark(&self, (number, row): (usize, &Row)) -> Group {
-        let mark = Group::new().set("data-row", number);
-        match self.is_told {
-            true => mark.set("class", "mark").add(self.told(row)),
-            false => mark,
+    /// A quantity over the one key that varies.
+    fn over(&self, key: &Variable, quantity: &Variable) -> Panel {
+        let axes = [key.axis(0.04), quantity.axis(0.06)];
+        let points = key.values.iter().copied().zip(quantity.values.iter().copied());
+        let mut sorted: Vec<(f64, f64)> = points.clone().collect();
+        sorted.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let mut series = Vec::new();
+        if key.words.is_empty() {
+            series.push(Series { width: 1.4, ..Series::line(COLOURS[0], sorted) });
         }
+        let floor = axes[1].ends()[0];
+        series.extend(self.rows.iter().zip(points).map(|(row, (x, y))| {
+            self.of_row(
+                *row,
+                match y.is_finite() {
+                    true => Series::marks(COLOURS[0], Mark { radius: 3.6, ..Mark::DOT }, [(x, y)]),
+                    false => Series::marks(FAILED, Mark { shape: BAR, ..Mark::DOT }, [(x, floor)]),
+                },
+            )
+        }));
+        let names = [axes[0].label(&key.name), axes[1].label(&quantity.name)];
+        Panel { axes, names, series, ..Panel::default() }
     }
-}
 
-/// Left, top, right and bottom of the field of a panel.
-fn field() -> [f64; 4] {
-    [ROOM[0], ROOM[1], PANEL[0] - ROOM[2], PANEL[1] - ROOM[3]]
+    /// What shows a row, with the row's number and values.
+    fn of_row(&self, (number, row): (usize, &Row), series: Series) -> Series {
+        let keys = row.keys.iter().map(|(key, value)| format!("{key} = {value}"));
+        let quantity = |(name, value): (&String, &Option<f64>)| {
+            Some(format!("{name} = {}", digits((*value)?, 6)))
+        };
+        let quantities = row.quantities.iter().filter_map(quantity);
+        let told = keys.chain(quantities).chain([row.verdict.to_string()]);
+        let tip = self.is_told.then(|| told.collect::<Vec<_>>().join("\n"));
+        Series { row: Some(number), tip, ..series }
+    }
 }

@@ -1,4 +1,4 @@
-//! Keys and quantities as axes and as colours.
+//! Keys and quantities as axes.
 
 use std::collections::BTreeSet;
 
@@ -76,27 +76,18 @@ impl Variable {
     /// Its axis, with room at both ends in parts of the range.
     pub(super) fn axis(&self, room: f64) -> Axis {
         let values = self.values.iter().copied();
-        match self.is_logarithmic {
+        let mut axis = match self.is_logarithmic {
             true => Axis::logarithmic(values.filter(|value| *value > 0.0), 2 * LINES, power_text),
-            false => {
-                let mut axis = Axis::linear(values, room, LINES, &self.unit);
-                if !self.words.is_empty() {
-                    let words = self.words.iter().enumerate();
-                    axis.ticks = words
-                        .map(|(at, word)| (at as f64, word.trim_matches('"').into()))
-                        .collect();
-                }
-                axis
-            }
+            false => Axis::linear(values, room, LINES, &self.unit),
+        };
+        if self.is_logarithmic {
+            axis.unit.clone_from(&self.unit);
         }
-    }
-
-    /// Label of an axis.
-    pub(super) fn label(&self, axis: &Axis) -> String {
-        match if self.is_logarithmic { &self.unit[..] } else { &axis.unit } {
-            "" => self.name.clone(),
-            unit => format!("{} ({unit})", self.name),
+        if !self.words.is_empty() {
+            let words = self.words.iter().map(|word| word.trim_matches('"').into());
+            axis.ticks = (0..).map(f64::from).zip(words).collect();
         }
+        axis
     }
 
     /// Its distinct values, ascending.
@@ -106,23 +97,4 @@ impl Variable {
         values.dedup();
         values
     }
-}
-
-/// Colours from the least to the largest value, ever lighter: also a grey picture shows them.
-const RAMP: [[f64; 3]; 6] = [
-    [38.0, 20.0, 84.0],
-    [52.0, 74.0, 140.0],
-    [36.0, 126.0, 142.0],
-    [58.0, 174.0, 118.0],
-    [160.0, 212.0, 70.0],
-    [250.0, 232.0, 74.0],
-];
-
-/// The colour of a place from 0 to 1.
-pub(super) fn colour(place: f64) -> String {
-    let last = RAMP.len() - 1;
-    let x = if place.is_finite() { place.clamp(0.0, 1.0) * last as f64 } else { 0.0 };
-    let at = (x as usize).min(last - 1);
-    let mix = |k: usize| (RAMP[at][k] + (x - at as f64) * (RAMP[at + 1][k] - RAMP[at][k])) as u8;
-    format!("#{:02x}{:02x}{:02x}", mix(0), mix(1), mix(2))
 }
