@@ -115,7 +115,7 @@ fn own_scene() -> String {
 fn a_jet_pushes_as_a_load() {
     let scene = with_jet(&own_scene()).unwrap().scene;
     let thrust = |t: f64| 0.02 * (t / 0.5_f64).min(1.0);
-    let angle = |t: f64| 1.5708 + 0.5 * (6.0 * t).sin();
+    let angle = |t: f64| UP + 0.5 * (6.0 * t).sin();
     let load = move |t: f64| [thrust(t) * angle(t).cos(), thrust(t) * angle(t).sin()];
     let nodes = scene.body().mesh().select(&"right".into()).unwrap().len() as f64;
     let each = move |t| load(t).map(|f| f / nodes);
