@@ -2,8 +2,9 @@
 
 use pliant::body::BodyBuilder;
 use pliant::{
-    Axis, Body, CellSelection, Cells, Inertia, InputError, Material, Mesh, Obstacle, Phase,
-    Sampling, Scene, Settings, SolidCells, Spring,
+    Axis, Body, CellSelection, Cells, Chamber, Growth, Guide, Inertia, InputError, Lag, Material,
+    Mesh, Muscle, Obstacle, Phase, Sampling, Scene, Selection, Settings, Signal, SolidCells,
+    Spring,
 };
 
 const RUBBER: Material = Material { density: 1000.0, young: 1e5, poisson: 0.3, viscosity: 20.0 };
@@ -98,6 +99,117 @@ fn a_beam_in_space_moves_as_its_half() {
     }
 }
 
+/// Springs and cables beside the plane and in it, between nodes and to points of space, driven and not.
+#[test]
+fn springs_and_cables_act_on_the_half() {
+    let cable = |guides: [Guide; 3]| Spring::cable(guides);
+    let side = |x: [f64; 3]| {
+        let [far, near, end] = x.map(|x| [x, 0.08]);
+        cable([Guide::point(far), Guide::inside(near), Guide::inside(end)])
+    };
+    let middle = || [Guide::point([0.1, 0.15]), Guide::nodes([18]), Guide::nodes([8])];
+    let stiff = |spring: Spring| spring.stiffness(30.0).damping(0.1);
+    let scene = Scene::new(block(|body| body))
+        .gravity([0.0, -9.8])
+        .spring(stiff(Spring::between([1], [12])))
+        .spring(stiff(Spring::between([14], [5])))
+        .spring(stiff(Spring::anchored([16], [-0.05, 0.2])).named("left"))
+        .spring(stiff(Spring::anchored([20], [0.25, 0.2])).named("right"))
+        .spring(stiff(Spring::between([3], [13])).named("middle"))
+        .spring(side([-0.01, 0.02, 0.07]).named("left cable"))
+        .spring(side([0.21, 0.18, 0.13]).named("right cable"))
+        .spring(cable(middle()).named("tendon"))
+        .spring(cable(middle()).winch().stiffness(50.0).named("winch"))
+        .lag(Lag::first_order(0.01), ["left", "right"]);
+    let phase = |own: f64| {
+        Phase::until(0.05)
+            .actuate(["left", "right"], 0.1)
+            .actuate(["middle", "tendon"], Signal::ramp(0.0, 0.3, 0.0, 0.05))
+            .actuate(["winch"], Signal::ramp(0.0, 0.01, 0.0, 0.05))
+            .actuate(["left cable"], 0.2)
+            .actuate(["right cable"], own)
+    };
+    agrees(&scene.clone().phase(phase(0.2)), Axis::X);
+    let told = refusal(&scene.clone().phase(phase(0.3)), Axis::X);
+    assert!(told.contains("of \"left cable\"") && told.contains("not symmetric"), "{told}");
+    let lonely = scene.spring(stiff(Spring::between([2], [12]))).phase(phase(0.2));
+    assert!(refusal(&lonely, Axis::X).contains("component = \"spring 10\""));
+}
+
+/// Muscles and growths across the plane, and those that are images of each other: along vectors and around axes.
+#[test]
+fn muscles_and_growths_act_on_the_half() {
+    let slant = |x: f64, cells: [usize; 3]| {
+        Muscle::along([x, 1.0]).within(CellSelection::Numbers(cells.into()))
+    };
+    let swelling = |x: f64, cells: [usize; 2]| {
+        Growth::within(CellSelection::Numbers(cells.into())).around([x, 0.0], []).across(0.3)
+    };
+    let scene = Scene::new(block(|body| body))
+        .muscle(Muscle::along([2.0, 0.0]).within(CellSelection::inside([0.0, 0.0], [0.2, 0.04])))
+        .muscle(slant(0.5, [1, 5, 9]).named("left"))
+        .muscle(slant(-0.5, [8, 12, 4]).named("right"))
+        .growth(Growth::within(CellSelection::Numbers(vec![10, 11])).named("top"))
+        .growth(swelling(0.03, [2, 6]).named("left growth"))
+        .growth(swelling(0.17, [3, 7]).named("right growth"));
+    let phase = |own: f64| {
+        Phase::until(0.05)
+            .actuate(["muscle 1"], Signal::ramp(0.0, 2e3, 0.0, 0.05))
+            .actuate(["left", "right"], 1e3)
+            .actuate(["top"], Signal::ramp(0.0, 0.02, 0.0, 0.05))
+            .actuate(["left growth"], 0.01)
+            .actuate(["right growth"], own)
+    };
+    agrees(&scene.clone().phase(phase(0.01)), Axis::X);
+    let other = scene.muscle(slant(0.5, [2, 6, 10]).named("other"));
+    assert!(refusal(&other.phase(phase(0.01)), Axis::X).contains("component = \"other\""));
+}
+
+/// The cells of a mesh without those whose centres are in one of some boxes.
+fn hollow(mesh: &Mesh, boxes: &[[Vec<f64>; 2]]) -> Mesh {
+    let d = mesh.dimension();
+    let is_left = |cell: &&[usize]| {
+        let x = |i: usize| {
+            cell.iter().map(|&node| mesh.position(node)[i]).sum::<f64>() / cell.len() as f64
+        };
+        !boxes.iter().any(|[min, max]| (0..d).all(|i| x(i) > min[i] && x(i) < max[i]))
+    };
+    let cells = mesh.cells().filter(is_left).flatten().copied().collect();
+    Mesh::new(d, mesh.positions().to_vec(), mesh.kind(), cells).unwrap()
+}
+
+/// Chambers that the plane cuts, in the plane and in space, and two that are images of each other.
+#[test]
+fn chambers_press_on_the_half() {
+    let around = |[min, max]: &[Vec<f64>; 2]| {
+        let wider = |x: &Vec<f64>, by: f64| x.iter().map(|x| x + by).collect::<Vec<f64>>();
+        Selection::Box { min: wider(min, -1e-6), max: wider(max, 1e-6) }
+    };
+    let room = |from: f64, to: f64| [vec![from, 0.01], vec![to, 0.02]];
+    let rooms = [room(0.01, 0.02), room(0.03, 0.05), room(0.06, 0.07)];
+    let mesh = Mesh::rectangle([0.08, 0.03], [9, 4], Cells::Rectangles).unwrap();
+    let body = Body::new(hollow(&mesh, &rooms), RUBBER).thickness(0.02).build().unwrap();
+    let mut scene = Scene::new(body);
+    for (name, room) in ["left", "middle", "right"].into_iter().zip(&rooms) {
+        scene = scene.chamber(Chamber::within(name, around(room)));
+    }
+    let phase = |own: f64| {
+        Phase::until(0.05)
+            .pressure("left", 1e3)
+            .pressure("right", own)
+            .pressure("middle", Signal::ramp(0.0, 2e3, 0.0, 0.05))
+    };
+    agrees(&scene.clone().phase(phase(1e3)), Axis::X);
+    assert!(refusal(&scene.phase(phase(2e3)), Axis::X).contains("chamber \"left\""));
+
+    let room = [vec![0.01; 3], vec![0.03, 0.02, 0.02]];
+    let mesh = Mesh::cuboid([0.04, 0.03, 0.03], [5, 4, 4], SolidCells::Hexahedra).unwrap();
+    let body = Body::new(hollow(&mesh, std::slice::from_ref(&room)), RUBBER).build().unwrap();
+    let scene = Scene::new(body).chamber(Chamber::within("room", around(&room)));
+    let scene = scene.phase(Phase::until(0.03).pressure("room", Signal::ramp(0.0, 4e3, 0.0, 0.03)));
+    agrees(&scene, Axis::X);
+}
+
 /// What the half lacks is refused by its name.
 #[test]
 fn what_is_not_symmetric_is_refused() {
@@ -129,7 +241,7 @@ fn what_is_not_symmetric_is_refused() {
         (plain().spin([1.0]).phase(phase()), &["initial velocities = of node 1"]),
         (plain().obstacle(askew).phase(phase()), &["obstacle", "floor"]),
         (scene().obstacle(ball), &["obstacle", "ball"]),
-        (plain().spring(spring).phase(phase()), &["springs = 1", "not known"]),
+        (plain().spring(spring).phase(phase()), &["component = \"spring 1\"", "crosses the plane"]),
         (plain().obstacle(floor().velocity([0.1, 0.0])).phase(phase()), &["obstacle", "floor"]),
     ];
     for (number, (scene, parts)) in cases.into_iter().enumerate() {

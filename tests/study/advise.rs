@@ -334,10 +334,14 @@ fn half_of_what_is_symmetric_is_told() -> Outcome {
         .initial_velocity(|x| vec![2.0 * (x[0] - 0.05), 0.1 * x[1]])
         .phase(Phase::until(0.02));
     let named = |name: &str| Quantity::named(name, &scene, &[]);
-    // the second is on the side that is left out at first, and the last one's mean counts the middle node as any other
-    for (quantity, has_half) in
-        [(Quantity::motion(), true), (named("right.x")?, true), (named("bottom.y")?, false)]
-    {
+    // the second is on the side that is left out at first; the third one's mean counts the nodes on the other side as their images, and the
+    // last one's has their components across the plane, too
+    for (quantity, has_half) in [
+        (Quantity::motion(), true),
+        (named("right.x")?, true),
+        (named("bottom.y")?, true),
+        (named("bottom")?, false),
+    ] {
         let adviser = Adviser::new(&scene, 0.05).quantity(quantity).budget(30.0);
         let advice = adviser.run(&mut |_| ControlFlow::Continue(()))?;
         println!("{advice}");

@@ -45,7 +45,7 @@ pub(super) fn mirrors(body: &Body, samples: &[&Sample]) -> Vec<Indicator> {
     let d = body.dimension();
     let can_be_halved = d > 1 && !body.is_axisymmetric();
     let Some(scale) = motion(body, samples).filter(|_| can_be_halved) else { return Vec::new() };
-    let images = (0..d).filter_map(|axis| Some((axis, body.mesh().mirror(axis)?.images)));
+    let images = (0..d).filter_map(|axis| Some((axis, body.mesh().mirrored(axis)?.1)));
     let parts = images.map(|(axis, partner)| {
         let square = |sample: &&Sample| {
             let off = |dof: usize| {

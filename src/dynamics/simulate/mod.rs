@@ -16,15 +16,11 @@ mod dipole;
 mod events;
 mod failure;
 mod gauge;
-#[cfg(any(feature = "scene-file", feature = "study"))]
-mod half_reading;
 mod interval;
 mod output;
 mod outputs;
 mod phase_end;
 mod phase_run;
-#[cfg(any(feature = "scene-file", feature = "study"))]
-mod plane_reading;
 mod progress;
 mod reading;
 mod records;
@@ -35,6 +31,8 @@ mod run;
 mod sampling;
 mod sensor;
 mod simulation;
+#[cfg(any(feature = "scene-file", feature = "study"))]
+mod smaller_reading;
 mod spot;
 mod spot_gauge;
 mod stalled;

@@ -1,6 +1,5 @@
 //! The builder of a body: options, checks, assembly.
 
-use std::collections::BTreeSet;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -20,9 +19,10 @@ use super::section::Section;
 use super::whole::{MassMoments, Whole};
 use crate::base::input::{InputError, positive};
 use crate::base::sparse::{BlockMatrix, NodeMatrix, NodePattern};
+use crate::base::vector::distinct;
 use crate::elements::basis::Finer;
 use crate::elements::material::{Plane, Strain, Substance, Viscosity};
-use crate::elements::mesh::{Mesh, Prism};
+use crate::elements::mesh::{Mesh, NodeMap};
 
 /// The builder of a body: see [`Body::new`].
 ///
@@ -159,65 +159,42 @@ impl BodyBuilder {
         })
     }
 
-    /// The part of a single body on one side of a plane of symmetry: the nodes, point masses among them, that `keeps` has, of which
-    /// those on the plane keep half of their point mass.
+    /// The smaller body that stands for a single one: with half of the point masses on a plane of symmetry, or in a `plane`, as thick as
+    /// the prism is long.
     ///
     /// # Errors
-    /// Regions of cells that the mesh does not have.
-    pub(crate) fn half(
+    /// Point masses in a section, whose place in it is not known; regions of cells that the mesh does not have.
+    pub(crate) fn by_map(
         mut self,
-        keeps: &[bool],
-        is_on_plane: impl Fn(usize) -> bool,
+        map: &NodeMap,
+        plane: Option<Plane>,
     ) -> Result<Self, InputError> {
         for (mesh, recipe) in &mut self.bodies {
-            let is_kept = |(_, cell): &(usize, &[usize])| cell.iter().all(|&node| keeps[node]);
-            let cells = mesh.cells().enumerate().filter(is_kept);
-            let cells: Vec<usize> = cells.map(|(number, _)| number).collect();
             let mut regions = Vec::new();
             for (selection, substance) in recipe.regions.drain(..) {
-                let own: BTreeSet<usize> = selection.cells(mesh)?.into_iter().collect();
-                let numbers = (1..).zip(&cells).filter(|(_, cell)| own.contains(cell));
-                let numbers: Vec<usize> = numbers.map(|(number, _)| number).collect();
+                let cells = selection.cells(mesh)?.into_iter().filter_map(|cell| map.cells[cell]);
+                let numbers: Vec<usize> = distinct(cells).iter().map(|cell| cell + 1).collect();
                 if !numbers.is_empty() {
                     regions.push((CellSelection::Numbers(numbers), substance));
                 }
             }
             recipe.regions = regions;
             let points = (mesh.node_count()..).zip(recipe.points.drain(..));
-            let points = points.filter(|(node, _)| keeps[*node]);
+            let points = points.filter(|(node, _)| map.numbers[*node].is_some());
             recipe.points = points
-                .map(|(node, (name, position, mass))| {
-                    (name, position, if is_on_plane(node) { 0.5 * mass } else { mass })
-                })
+                .map(|(node, (name, position, mass))| (name, position, map.share(node) * mass))
                 .collect();
-            *mesh = mesh.part(&cells, |node| keeps[node], &is_on_plane);
-        }
-        Ok(self)
-    }
-
-    /// The section of a single body that is a prism, as thick as that is high.
-    ///
-    /// # Errors
-    /// Point masses, whose place in the section is not known; regions that change along the axis or that the mesh does not have.
-    pub(crate) fn section(mut self, prism: &Prism, plane: Plane) -> Result<Self, InputError> {
-        for (mesh, recipe) in &mut self.bodies {
-            if let Some((name, ..)) = recipe.points.first() {
-                let help = "in a plane it would weigh on all of a line: leave it out";
-                return Err(InputError::new("point mass", format!("\"{name}\""), help));
-            }
-            for (selection, _) in &mut recipe.regions {
-                let (cells, is_whole) = prism.whole_cells(&selection.cells(mesh)?);
-                if !is_whole {
-                    let help = "it changes along the axis: make it the same all along, or leave the scene in space";
-                    return Err(InputError::new("region", &*selection, help));
+            if let Some(plane) = plane {
+                if let Some((name, ..)) = recipe.points.first() {
+                    let help = "in a plane it would weigh on all of a line: leave it out";
+                    return Err(InputError::new("point mass", format!("\"{name}\""), help));
                 }
-                *selection = CellSelection::Numbers(cells.iter().map(|cell| cell + 1).collect());
+                (recipe.plane, recipe.thickness) = (Some(plane), Some(map.ends[1] - map.ends[0]));
+                if plane == Plane::Stress {
+                    recipe.dilatation = Dilatation::AtPoints;
+                }
             }
-            (recipe.plane, recipe.thickness) = (Some(plane), Some(prism.height()));
-            if plane == Plane::Stress {
-                recipe.dilatation = Dilatation::AtPoints;
-            }
-            *mesh = prism.section.clone();
+            *mesh = map.mesh.clone();
         }
         Ok(self)
     }

@@ -4,7 +4,7 @@
 //! case.
 
 use crate::base::input::{InputError, finite, not_negative, positive};
-use crate::base::vector::norm;
+use crate::base::vector::{dot, norm};
 
 /// A family of fibres that stiffens the material in its direction.
 ///
@@ -106,6 +106,34 @@ impl FibreDirection {
     /// Rings around the axis through `centre` (m), in the direction of `axis`.
     pub(crate) fn around(centre: Vec<f64>, axis: Vec<f64>) -> Self {
         Self::Around { centre, axis, pitch: 0.0 }
+    }
+
+    /// Its mirror image in the plane at a place (m) on an axis.
+    pub(crate) fn mirrored(&self, axis: usize, at: f64) -> Self {
+        let turned = |vector: &[f64], twice: f64| {
+            let image = |(i, x): (usize, &f64)| if i == axis { twice - x } else { *x };
+            vector.iter().enumerate().map(image).collect::<Vec<f64>>()
+        };
+        match self {
+            Self::Along(direction) => Self::Along(turned(direction, 0.0)),
+            Self::Around { centre, axis, pitch } => Self::Around {
+                centre: turned(centre, 2.0 * at),
+                axis: turned(axis, 0.0),
+                pitch: -pitch,
+            },
+        }
+    }
+
+    /// Numbers that two courses have in common if they are the same: fibres have no sense of direction.
+    pub(crate) fn numbers(&self) -> Vec<f64> {
+        let (direction, mut numbers) = match self {
+            Self::Along(direction) => (direction, Vec::new()),
+            Self::Around { centre, axis, pitch } => (axis, [&centre[..], &[*pitch]].concat()),
+        };
+        let square = dot(direction, direction);
+        let products = |a: &f64| direction.iter().map(move |b| a * b / square).collect::<Vec<_>>();
+        numbers.extend(direction.iter().flat_map(products));
+        numbers
     }
 
     /// The same as helices, which climb along the axis by an `angle` (rad); what runs along a vector does not change.

@@ -9,6 +9,7 @@ mod generate;
 #[cfg(feature = "gmsh")]
 mod gmsh;
 mod mirror;
+mod node_map;
 mod prism;
 mod round;
 mod select;
@@ -24,8 +25,7 @@ pub use cell::CellKind;
 pub(crate) use cell::FaceKind;
 pub(crate) use generate::BYTES_PER_NODE;
 pub use generate::{Cells, SolidCells};
-pub(crate) use mirror::Mirror;
-pub(crate) use prism::Prism;
+pub(crate) use node_map::NodeMap;
 pub use select::Selection;
 pub(crate) use surface::Enclosed;
 

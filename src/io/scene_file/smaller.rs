@@ -6,10 +6,9 @@ use super::table::Table;
 use crate::base::input::InputError;
 use crate::base::vector::distinct;
 use crate::dynamics::error::Error;
-use crate::dynamics::simulate::Reading;
-use crate::elements::mesh::Selection;
+use crate::elements::mesh::{NodeMap, Selection};
 use crate::scene::constraint::Axis;
-use crate::scene::timeline::{Scene, Smaller};
+use crate::scene::timeline::{Scene, Shrink, Smaller};
 
 pub(super) const HALF: Key = Key::new(
     "half",
@@ -35,11 +34,6 @@ pub(super) const PLANE: Key = Key::new(
 const AXES: [(&str, Option<Axis>); 4] =
     [("x", Some(Axis::X)), ("y", Some(Axis::Y)), ("z", Some(Axis::Z)), ("", None)];
 
-/// A smaller model, what is written of it, and how it is smaller.
-type Shrunk = (Scene, OutputRequest, Smaller);
-
-type Shrink = fn(&Scene, &OutputRequest, Axis) -> Result<Shrunk, InputError>;
-
 /// The scene by the smaller models that the table `solver` names, with what is written of it.
 pub(super) fn smaller(
     mut scene: Scene,
@@ -47,77 +41,38 @@ pub(super) fn smaller(
     solver: &Table<'_>,
 ) -> Result<(Scene, OutputRequest, Vec<Smaller>), Error> {
     let mut all = Vec::new();
-    let steps: [(&str, Shrink); 2] = [("half", half), ("plane", plane)];
-    for (key, shrink) in steps {
+    for (key, shrink) in [("half", Shrink::Half), ("plane", Shrink::Section)] {
         let Some(value) = solver.get(key) else { continue };
-        if let Some(axis) = value.word(&AXES)? {
-            let shrunk = shrink(&scene, &output, axis).map_err(|error| value.error(error))?;
-            let (own, written, how) = shrunk;
-            (scene, output) = (own, written);
-            all.push(how);
-        }
+        let Some(axis) = value.word(&AXES)? else { continue };
+        let made = scene.smaller((shrink, axis), |smaller| mapped(&scene, &output, &smaller.map));
+        let (smaller, written) = made.map_err(|error| value.error(error))?;
+        (scene, output) = (smaller.scene, written);
+        all.push(smaller.kind);
     }
     Ok((scene, output, all))
 }
 
-/// The half that has what is read, that below the cut if both have it.
-fn half(scene: &Scene, output: &OutputRequest, axis: Axis) -> Result<Shrunk, InputError> {
-    let of_side = |is_upper| {
-        let half = scene.half(axis, is_upper)?;
-        let kept = |nodes: &[usize]| {
-            Selection::of_nodes(nodes.iter().filter_map(|node| half.nodes.binary_search(node).ok()))
-        };
-        let written = mapped(scene, output, &kept, &|reading| reading.in_half(scene, &half))?;
-        let kind = Smaller::Half { axis, at: half.at };
-        Ok((half.scene, written, kind))
-    };
-    of_side(false).or_else(|below| of_side(true).map_err(|above| both(below, above)))
-}
-
-/// Why neither half is run.
-fn both(below: InputError, above: InputError) -> InputError {
-    if below.to_string() == above.to_string() {
-        return below;
-    }
-    let help = format!("{}; of the half above the cut: {above}", below.help);
-    InputError::new(below.input, below.value, help)
-}
-
-fn plane(scene: &Scene, output: &OutputRequest, axis: Axis) -> Result<Shrunk, InputError> {
-    let section = scene.section(axis)?;
-    let places = |nodes: &[usize]| {
-        Selection::of_nodes(distinct(nodes.iter().map(|&node| section.prism.columns[node])))
-    };
-    let written = mapped(scene, output, &places, &|reading| reading.in_plane(scene, &section))?;
-    let kind = section.kind();
-    Ok((section.scene, written, kind))
-}
-
-/// Output request for a simplified model of a scene, by its maps of nodes (from 0) and readings.
+/// Output request for a smaller model of a scene.
 fn mapped(
     scene: &Scene,
     output: &OutputRequest,
-    nodes: &dyn Fn(&[usize]) -> Selection,
-    read: &dyn Fn(&Reading) -> Result<Reading, InputError>,
+    map: &NodeMap,
 ) -> Result<OutputRequest, InputError> {
     let mut output = output.clone();
     for (name, reading) in &mut output.sensors {
-        let own = read(reading).map_err(|error| {
-            InputError::new(
-                format!("{} of sensor \"{name}\"", error.input),
-                error.value,
-                error.help,
-            )
+        *reading = reading.by_map(scene, map).map_err(|error| InputError {
+            input: format!("{} of sensor \"{name}\"", error.input),
+            ..error
         })?;
-        *reading = own;
     }
     if let Some(track) = &mut output.track {
-        let own = nodes(&scene.body().mesh().select(track)?);
-        if own == Selection::of_nodes([]) {
+        let nodes = scene.body().mesh().select(track)?;
+        let own = distinct(nodes.iter().filter_map(|&node| map.numbers[node]));
+        if own.is_empty() {
             let help = "it is all on the side that is left out: name nodes on one side, where the sensors are";
             return Err(InputError::new("output.track", &*track, help));
         }
-        *track = own;
+        *track = Selection::of_nodes(own);
     }
     Ok(output)
 }

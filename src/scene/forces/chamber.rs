@@ -95,6 +95,35 @@ impl Chamber {
         Ok(self)
     }
 
+    /// Its properties but for its name and walls, as a text.
+    pub(crate) fn likeness(&self) -> String {
+        let walls = Walls::Triangles(Vec::new());
+        format!("{:?}", Self { name: String::new(), walls, ..self.clone() })
+    }
+
+    /// The nodes of its walls, if it was given by them.
+    pub(crate) fn nodes(&self) -> Option<&Selection> {
+        match &self.walls {
+            Walls::Nodes(nodes) => Some(nodes),
+            Walls::Triangles(_) => None,
+        }
+    }
+
+    /// The part of it on one side of a plane of symmetry, which closes it, in space of a `dimension`.
+    ///
+    /// # Errors
+    /// One that is open but for a line or lids.
+    pub(crate) fn closed_by_plane(self, dimension: usize) -> Result<Self, InputError> {
+        match dimension {
+            _ if self.is_closed_by_line || self.is_closed_by_lid => {
+                let help = "the plane of symmetry would cut the line or lid that closes it: leave the scene whole";
+                Err(InputError::new(self.input("walls"), "open", help))
+            }
+            3 => Ok(self.closed_by_lid()),
+            _ => Ok(self.closed_by_line()),
+        }
+    }
+
     /// A chamber in space, enclosed by `triangles` of nodes (numbers from 1): a closed surface, all
     /// triangles counter-clockwise as seen from outside, or all clockwise.
     pub fn surface(

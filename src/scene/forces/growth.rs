@@ -132,6 +132,16 @@ impl Growth {
         if self.name.is_empty() { self.named(name) } else { self }
     }
 
+    /// Its properties but for its name, its cells and its course, as a text.
+    pub(crate) fn likeness(&self) -> String {
+        format!("growth {:?}", self.across)
+    }
+
+    /// The direction in which it grows, if that is not alike in all.
+    pub(crate) fn course(&self) -> Option<&FibreDirection> {
+        self.course.as_ref()
+    }
+
     /// The same with the cells that `change` makes of those it was given.
     pub(crate) fn with_cells(
         &self,

@@ -108,6 +108,16 @@ impl Muscle {
         if self.name.is_empty() { self.named(name) } else { self }
     }
 
+    /// Its properties but for its name and its fibres, as a text.
+    pub(crate) fn likeness(&self) -> String {
+        format!("muscle {:?}", self.hill)
+    }
+
+    /// The course of its fibres.
+    pub(crate) fn course(&self) -> &FibreDirection {
+        &self.course
+    }
+
     /// The same with the cells that `change` makes of those it was given.
     pub(crate) fn with_cells(
         &self,

@@ -9,6 +9,7 @@ use super::travel::{Cubics, Travel, Waypoints};
 use crate::base::formula::Formula;
 use crate::base::input::{InputError, not_negative, positive};
 use crate::base::vector::axes_across;
+use crate::elements::mesh::NodeMap;
 use crate::scene::constraint::Spline;
 
 /// An obstacle: a signed distance d(x), negative inside, and the law of its penalty force.
@@ -412,41 +413,30 @@ impl Obstacle {
         self.friction.acts()
     }
 
-    /// Whether it is known to be its own mirror image in the plane at a place (m) on an axis at some `times` (s), to within
-    /// `tolerance` (m).
-    pub(crate) fn is_symmetric(&self, plane: (usize, f64), times: &[f64], tolerance: f64) -> bool {
-        let stays = |t: &f64| self.displacement(*t)[plane.0].abs() <= tolerance;
-        let is_skew = |of: &Bristles| of.direction.get(plane.0).is_some_and(|x| *x != 0.0);
-        self.shape.is_symmetric(plane, tolerance)
-            && times.iter().all(stays)
-            && !self.bristles.as_ref().is_some_and(is_skew)
-    }
-
-    /// Its section across an `axis`, in the plane of the other two, for a body between two `ends` (m) on it: `None` if it is not known to be
-    /// the same all along there at some `times` (s). A stiffness per node stays what it is.
-    pub(crate) fn section(
-        &self,
-        axis: usize,
-        ends: [f64; 2],
-        times: &[f64],
-        tolerance: f64,
-    ) -> Option<Self> {
-        let axes = axes_across(axis);
+    /// Equivalent obstacle in a smaller scene: itself if it is known to be its own mirror image at some `times` (s), or its section if it is known
+    /// to be the same all along the axis beside the body then, to within `tolerance` (m); `None` otherwise. A stiffness per node stays what it is.
+    pub(crate) fn by_map(&self, map: &NodeMap, times: &[f64], tolerance: f64) -> Option<Self> {
+        let axis = map.axis;
         let is_along = |of: &Bristles| of.direction.get(axis).is_some_and(|x| *x != 0.0);
         let leaves = |t: &f64| self.displacement(*t)[axis].abs() > tolerance;
         if times.iter().any(leaves) || self.bristles.as_ref().is_some_and(is_along) {
             return None;
         }
-        let bristles = self.bristles.as_ref().map(|of| Bristles {
-            direction: axes.map(|i| of.direction[i]).to_vec(),
+        if !map.is_section() {
+            let is_same = self.shape.is_symmetric((axis, map.ends[0]), tolerance);
+            return is_same.then(|| self.clone());
+        }
+        let (axes, own) = (axes_across(axis), self.validated(3).ok()?);
+        let bristles = own.bristles.as_ref().map(|of| Bristles {
+            direction: map.vector(&of.direction),
             coefficient: of.coefficient,
         });
         Some(Self {
-            shape: self.shape.section(axis, ends, tolerance)?,
-            travel: self.travel.part(axes),
-            offset: [self.offset[axes[0]], self.offset[axes[1]], 0.0],
+            shape: own.shape.section(axis, map.ends, tolerance)?,
+            travel: own.travel.part(axes),
+            offset: [own.offset[axes[0]], own.offset[axes[1]], 0.0],
             bristles,
-            ..self.clone()
+            ..own
         })
     }
 

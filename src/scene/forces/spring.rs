@@ -146,6 +146,17 @@ impl Spring {
         Ok(self)
     }
 
+    /// The same spring with a `share` of its forces but those that drive it.
+    pub(crate) fn share(&self, share: f64) -> Self {
+        let (stiffness, damping) = (share * self.stiffness, share * self.damping);
+        Self { stiffness, damping, ..self.clone() }
+    }
+
+    /// Its properties but for its name and where it runs, as a text.
+    pub(crate) fn likeness(&self) -> String {
+        format!("{:?}", Self { name: String::new(), path: Vec::new(), ..self.clone() })
+    }
+
     /// A spring from the node that `first` selects to the one that `second` selects.
     pub fn between(first: impl Into<Selection>, second: impl Into<Selection>) -> Self {
         Self::new(vec![Guide::nodes(first), Guide::nodes(second)], Kind::Spring)

@@ -194,7 +194,7 @@ impl Quantity {
 
     /// Whether halves and sections of a body know it.
     pub(super) fn is_known_of_parts(self) -> bool {
-        matches!(self, Self::FacePressure | Self::Load(_))
+        matches!(self, Self::FacePressure | Self::Load(_) | Self::Actuation | Self::Pressure)
     }
 
     /// Whether a command for it replaces `other` on the same target: a load replaces loads of all kinds.

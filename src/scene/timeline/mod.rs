@@ -11,7 +11,6 @@ mod finer;
 mod fluid;
 mod forces;
 mod gas;
-mod half;
 mod initial;
 mod input;
 mod inputs;
@@ -21,7 +20,6 @@ mod loading;
 mod phase;
 mod phase_end;
 mod pipe;
-mod plane;
 mod reduced;
 mod scene_devices;
 mod scene_state;
@@ -40,18 +38,16 @@ use std::sync::Arc;
 pub(crate) use contacts::ContactReader;
 pub use device::{Device, DeviceGauge, DeviceSignals, DeviceState, DeviceValue};
 pub use device_rows::{DeviceInput, DeviceOutput};
-#[cfg(any(feature = "scene-file", feature = "study"))]
-pub(crate) use half::Half;
 #[cfg(feature = "scene-file")]
 pub(crate) use input::Row;
 pub(crate) use input::{Input, InputSignal, LoadKind, Quantity, Target};
 #[cfg(feature = "checkpoint")]
 pub(crate) use phase::ContactWith;
 pub use phase::Phase;
-#[cfg(any(feature = "scene-file", feature = "study"))]
-pub(crate) use plane::InPlane;
 pub use scene_state::{BodyState, SceneState};
 pub use smaller::Smaller;
+#[cfg(any(feature = "scene-file", feature = "study"))]
+pub(crate) use smaller::{Shrink, SmallerScene};
 use start::Start;
 pub use term::Term;
 use tie::Tie;

@@ -1,16 +1,19 @@
-//! Simplified models: their display names, and features that none of them supports.
+//! Smaller scenes that stand for a scene: one half of a symmetric one, the section of one that is the same all along an axis.
+//!
+//! Both are one map of nodes (`elements/mesh/node_map.rs`). The scene is compared with its images node by node (`smaller/same.rs`), and
+//! not by the words in which it was written; what the images leave is made of it by `smaller/made.rs`.
+
+mod components;
+mod made;
+mod same;
 
 use std::fmt;
 
-use super::{Phase, Scene};
+use super::Scene;
 use crate::base::input::{InputError, four_digits};
 use crate::elements::material::Plane;
+use crate::elements::mesh::NodeMap;
 use crate::scene::constraint::Axis;
-
-/// Differences below this part of the largest value are round-off.
-pub(super) const SAME: f64 = 1e-9;
-/// Number of times in each phase at which time-dependent quantities are compared.
-const TIMES: u32 = 17;
 
 /// How a model is smaller than the scene that it is of.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -48,38 +51,148 @@ impl fmt::Display for Smaller {
     }
 }
 
-/// Times (s) of a phase that begins at `start` (s), at which things are compared.
-pub(super) fn times_of(phase: &Phase, start: f64) -> Vec<f64> {
-    let part = |k: u32| start + f64::from(k) / f64::from(TIMES - 1) * (phase.until - start);
-    (0..TIMES).map(part).collect()
+/// Kind of a smaller scene across an axis: one of two mirror images, or the section.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Shrink {
+    Half,
+    Section,
 }
 
-/// Refuses what `model`, as in "a half", of is not known; `instead` is what else can be done.
-pub(super) fn check_known(scene: &Scene, model: &str, instead: &str) -> Result<(), InputError> {
-    let body = &scene.body;
-    body.single(model)?;
-    let inputs = scene.phases.iter().flat_map(|phase| &phase.inputs);
-    let unknown_inputs = inputs.map(|input| usize::from(!input.quantity.is_known_of_parts()));
-    let unknown = [
-        ("springs", scene.springs.len()),
-        ("muscles", scene.muscles.len()),
-        ("magnets", scene.magnets.len()),
-        ("growths", scene.growths.len()),
-        ("fluids", scene.fluids.len()),
-        ("chambers", scene.chambers.len()),
-        ("touches", scene.touches.len()),
-        ("moments, followers and other inputs of phases", unknown_inputs.sum()),
-        ("ties", scene.ties.len()),
-        ("devices", scene.devices.len()),
-        ("forces that are not of this crate", scene.forces.len()),
-        ("rigid materials", body.substances().filter(|made_of| made_of.is_rigid).count()),
-        ("families of fibres", body.substances().map(|made_of| made_of.fibres.len()).sum()),
-    ];
-    match unknown.iter().find(|(_, count)| *count > 0) {
-        Some((name, count)) => {
-            let help = format!("what {model} of them does is not known: {instead}");
-            Err(InputError::new(*name, count, help))
+/// A smaller scene, and which nodes of the whole one its nodes stand for.
+#[derive(Debug, Clone)]
+#[cfg_attr(not(any(feature = "scene-file", feature = "study")), allow(dead_code))]
+pub(crate) struct SmallerScene {
+    pub(crate) scene: Scene,
+    pub(crate) kind: Smaller,
+    pub(crate) map: NodeMap,
+}
+
+impl Scene {
+    /// The half of a symmetric scene below its plane of symmetry, which is normal to `axis` and goes through the middle of the body.
+    ///
+    /// It moves as the whole scene does, as long as that stays symmetric: a column that buckles does not, nor does what is pushed
+    /// by round-off out of an unstable place. Nodes on the plane slide in it ([`Phase::symmetry`](crate::Phase::symmetry)), with half of their loads, point masses and
+    /// contact stiffness per node; the cut is no surface. Energies and forces are half of those of the whole scene.
+    ///
+    /// Springs, cables, muscles, growths and chambers are each their own mirror images or that of another one that is driven alike, of which one is left. A
+    /// spring or cable in the plane has half of its forces, and the plane closes a chamber that it cuts.
+    ///
+    /// ```
+    /// use pliant::{Axis, Body, Cells, Material, Mesh, Obstacle, Phase, Scene};
+    ///
+    /// let rubber = Material { density: 1000.0, young: 1e6, poisson: 0.3, viscosity: 40.0 };
+    /// let mesh = Mesh::rectangle([0.2, 0.1], [5, 3], Cells::Rectangles)?;
+    /// let block = Scene::new(Body::new(mesh, rubber).thickness(0.01).build()?)
+    ///     .gravity([0.0, -9.8])
+    ///     .obstacle(Obstacle::half_plane([0.0, -0.01], [0.0, 1.0]).stiffness(100.0))
+    ///     .phase(Phase::until(0.5));
+    /// let half = block.symmetric_half(Axis::X)?;
+    /// assert_eq!(half.body().mesh().node_count(), 9);
+    /// // gravity pulls along the y axis
+    /// assert!(block.symmetric_half(Axis::Y).is_err());
+    /// # Ok::<(), pliant::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// Scenes that [`validate`](Self::validate) refuses. A mesh in which a node has no mirror image, or a cell lies
+    /// across the plane; anything else that is not symmetric: materials, prescribed displacements, loads, pressures on
+    /// faces, gravity, the start, obstacles, actuators. Unsupported features: several bodies, rigid and fibrous materials, springs
+    /// that cross the plane, gas and liquids, magnets, fluids, bodies that touch, forces that are not of this crate.
+    pub fn symmetric_half(&self, axis: Axis) -> Result<Self, InputError> {
+        Ok(self.by_map(self.map_across(Shrink::Half, axis, false)?)?.scene)
+    }
+
+    /// The section across `axis` of a scene in space that is the same all along it, as a scene in a plane: with as many unknowns as one
+    /// layer of nodes has there, or fewer.
+    ///
+    /// The mesh is a prism of hexahedra or tetrahedra, as those of [`Mesh::cuboid`](crate::Mesh::cuboid) are along all axes. The axes of the plane are
+    /// the other two in their order. It is in *plane strain* where both ends of the prism are held along the axis: then it moves as the
+    /// scene in space does, as long as that stays the same all along. Otherwise it is in *plane stress*, as thick as the
+    /// prism is long: what is thin beside its section moves so up to a part of the order of (thickness/width)^2, but near nodes that are
+    /// held along the axis besides, as those of a clamped side. Forces and masses are those of the whole.
+    ///
+    /// ```
+    /// use pliant::{Axis, Body, Material, Mesh, Phase, Plane, Scene, SolidCells};
+    ///
+    /// let rubber = Material { density: 1000.0, young: 1e6, poisson: 0.3, viscosity: 40.0 };
+    /// let mesh = Mesh::cuboid([0.1, 0.005, 0.02], [11, 2, 3], SolidCells::Hexahedra)?;
+    /// let beam = Scene::new(Body::new(mesh, rubber).build()?)
+    ///     .gravity([0.0, 0.0, -9.8])
+    ///     .phase(Phase::until(0.5).hold("left"));
+    /// let plane = beam.in_plane(Axis::Y)?;
+    /// assert_eq!((beam.body().dofs(), plane.body().dofs()), (198, 66));
+    /// // gravity pulls along the z axis
+    /// assert!(beam.in_plane(Axis::Z).is_err());
+    /// # Ok::<(), pliant::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// Scenes that [`validate`](Self::validate) refuses. A mesh that is not such a prism; anything that varies along
+    /// the axis or points along it: materials, prescribed displacements, loads, pressures on faces, gravity, the start,
+    /// obstacles (half-spaces, capsules along the axis and boxes that extend beyond the ends do not vary). Unsupported
+    /// features: several bodies, rigid and fibrous materials, point masses, springs and other actuators, chambers,
+    /// fluids, bodies that touch, forces that are not of this crate. Material laws without a plane-stress form.
+    pub fn in_plane(&self, axis: Axis) -> Result<Self, InputError> {
+        Ok(self.by_map(self.map_across(Shrink::Section, axis, false)?)?.scene)
+    }
+
+    /// The map of its mesh to a smaller one; to the half above the plane if `is_upper`.
+    ///
+    /// # Errors
+    /// Several bodies; a mesh of which there is no such map.
+    pub(crate) fn map_across(
+        &self,
+        shrink: Shrink,
+        axis: Axis,
+        is_upper: bool,
+    ) -> Result<NodeMap, InputError> {
+        match shrink {
+            Shrink::Half => {
+                self.body.single("a half")?;
+                self.body.mesh().half(axis.index(), is_upper)
+            }
+            Shrink::Section => {
+                self.body.single("a section")?;
+                self.body.mesh().section(axis.index())
+            }
         }
-        None => Ok(()),
+    }
+
+    /// The smaller scene by a map of its mesh.
+    fn by_map(&self, map: NodeMap) -> Result<SmallerScene, InputError> {
+        self.validate()?;
+        let same = same::Same { scene: self, map: &map };
+        let held = same::check(&same)?;
+        let (scene, plane) = made::made(&same, &held, &same.components()?)?;
+        let axis = Axis::all(3)[map.axis];
+        let kind = match plane {
+            Some(plane) => Smaller::Plane { axis, plane },
+            None => Smaller::Half { axis, at: map.ends[0] },
+        };
+        Ok(SmallerScene { scene, kind, map })
+    }
+
+    /// The smaller scene across an axis, with what `read` makes of it: of both halves that below the plane, unless `read` refuses it.
+    #[cfg(any(feature = "scene-file", feature = "study"))]
+    pub(crate) fn smaller<T>(
+        &self,
+        (shrink, axis): (Shrink, Axis),
+        read: impl Fn(&SmallerScene) -> Result<T, InputError>,
+    ) -> Result<(SmallerScene, T), InputError> {
+        let of_side = |is_upper| {
+            let smaller = self.by_map(self.map_across(shrink, axis, is_upper)?)?;
+            read(&smaller).map(|read| (smaller, read))
+        };
+        let below = match of_side(false) {
+            Err(below) if shrink == Shrink::Half => below,
+            made => return made,
+        };
+        of_side(true).map_err(|above| match below.to_string() == above.to_string() {
+            true => below,
+            false => {
+                let help = format!("{}; of the half above the cut: {above}", below.help);
+                InputError { help, ..below }
+            }
+        })
     }
 }

@@ -19,6 +19,7 @@ use super::search::{Cut, Search, Solved, Stop};
 use crate::dynamics::equilibrium::MeshEstimate;
 use crate::elements::body::{Inertia, Strain};
 use crate::scene::settings::{ContactEvents, Method, Settings};
+use crate::scene::timeline::Shrink;
 use crate::studies::work_precision::tightening;
 
 /// Parts of the accuracy that errors of each kind may take: of the integration in the runs by which models
@@ -76,8 +77,8 @@ impl Search<'_> {
         }
         self.sweep(&enough, found)?;
         self.rigid(found)?;
-        self.half(found)?;
-        self.plane(found)?;
+        self.smaller(Shrink::Half, found)?;
+        self.smaller(Shrink::Section, found)?;
         self.reduce(found)
     }
 

@@ -7,56 +7,72 @@ use super::search::{Cut, SHORT, Search, Solved, Stop};
 use super::smaller_model::SmallerModel;
 use crate::base::input::InputError;
 use crate::scene::constraint::Axis;
-use crate::scene::timeline::{Scene, Smaller};
+use crate::scene::timeline::{Scene, Shrink, Smaller, SmallerScene};
 use crate::studies::work_precision::quantity::{Quantity, Seen};
 use crate::studies::work_precision::truth::reason;
 
 /// A smaller model, what is read in it, and what of the motion that it is a model of that is compared with.
-pub(super) struct Shrunk {
-    pub(super) kind: Smaller,
-    pub(super) scene: Scene,
-    pub(super) quantity: Quantity,
-    /// How many of its first nodes are looked at, for the whole motion.
-    pub(super) nodes: usize,
-    /// Which of these stand for the nodes compared with, where that is not each for its own.
-    pub(super) points: Option<Vec<usize>>,
-    pub(super) full: Seen,
+struct Shrunk {
+    kind: Smaller,
+    scene: Scene,
+    quantity: Quantity,
+    /// Its nodes that stand for the nodes compared with.
+    points: Vec<usize>,
+    full: Seen,
 }
 
 impl Shrunk {
     /// Difference of the observed motion or quantity from that of the full model.
     fn change(&self, seen: &Seen) -> f64 {
-        match self.points.as_ref().filter(|_| self.quantity.is_motion()) {
-            Some(points) => self.full.error(&seen.of_points(points)).mean,
-            None => self.full.error(seen).mean,
+        let axes: Vec<usize> = (0..self.scene.body().dimension()).collect();
+        match self.quantity.is_motion() {
+            true => self.full.error(&seen.chosen(&self.points, &axes)).mean,
+            false => self.full.error(seen).mean,
         }
     }
 }
 
 impl Search<'_> {
-    /// Runs a smaller model of the fastest motion that is right, across the first axis that has one. `of` makes it, or says nothing
-    /// where there is none; why there is none across any axis is told after `name`, as in "half of it, cut across".
-    pub(super) fn run_across(
-        &mut self,
-        name: &str,
-        found: &mut Found,
-        of: impl Fn(&Self, &Scene, Axis, &Solved) -> Option<Result<Shrunk, InputError>>,
-    ) -> Result<(), Stop> {
+    /// Runs a half or section of the fastest motion that is right, across the first axis that has one. Why there is none across any axis is
+    /// told, of meshes that have one.
+    pub(super) fn smaller(&mut self, shrink: Shrink, found: &mut Found) -> Result<(), Stop> {
         let Some([best, exact]) = self.soft(found) else { return Ok(()) };
         let Ok(scene) = best.choice.scene(&self.scene) else { return Ok(()) };
-        if !scene.body().is_single() {
-            return Ok(());
-        }
         let mut refused = Vec::new();
         for &axis in Axis::all(scene.body().dimension()) {
-            match of(self, &scene, axis, &exact) {
-                Some(Ok(model)) => return self.run_smaller([best, exact], &model, found),
-                Some(Err(error)) => refused.push(format!("{name} {}: {error}", axis.word())),
-                None => {}
+            if scene.map_across(shrink, axis, false).is_err() {
+                continue;
+            }
+            match self.shrunk(&scene, (shrink, axis), &exact.seen) {
+                Ok(model) => return self.run_smaller([best, exact], &model, found),
+                Err(error) => {
+                    let name = ["half of it, cut across", "in a plane across"];
+                    let name = name[usize::from(shrink == Shrink::Section)];
+                    refused.push(format!("{name} {}: {error}", axis.word()));
+                }
             }
         }
         found.not_tried.extend(refused);
         Ok(())
+    }
+
+    fn shrunk(
+        &self,
+        scene: &Scene,
+        across: (Shrink, Axis),
+        full: &Seen,
+    ) -> Result<Shrunk, InputError> {
+        let quantity = &self.request.quantity;
+        let read = |smaller: &SmallerScene| quantity.by_map(scene, &smaller.map);
+        let (SmallerScene { kind, scene, map }, quantity) = scene.smaller(across, read)?;
+        let numbers = map.numbers[..self.nodes].iter().enumerate();
+        let pairs = numbers.filter_map(|(node, number)| Some((node, (*number)?)));
+        let (nodes, points): (Vec<usize>, Vec<usize>) = pairs.unzip();
+        let full = match quantity.is_motion() {
+            true => full.chosen(&nodes, &map.axes()),
+            false => full.clone(),
+        };
+        Ok(Shrunk { kind, scene, quantity, points, full })
     }
 
     /// Runs a smaller model as exactly as what it is a model of was run, to see what it changes, and then as fast.
@@ -88,7 +104,8 @@ impl Search<'_> {
         model: &Shrunk,
         found: &mut Found,
     ) -> Result<Option<Outcome>, Stop> {
-        let Shrunk { kind, scene, quantity, nodes, .. } = model;
+        let Shrunk { kind, scene, quantity, points, .. } = model;
+        let nodes = points.iter().max().map_or(0, |last| last + 1);
         let name = self.kept.name(scene, quantity, &full.choice);
         if let Some(known) = self.kept.get(&name).cloned() {
             self.known += 1;
@@ -96,7 +113,7 @@ impl Search<'_> {
         }
         (self.cut, self.patience) = (None, (PATIENCE * full.seconds).max(SHORT));
         let settings = &full.choice.settings;
-        let outcome = self.observed(scene, (quantity, *nodes), settings, &kind.to_string());
+        let outcome = self.observed(scene, (quantity, nodes), settings, &kind.to_string());
         self.patience = f64::INFINITY;
         match outcome {
             Ok(outcome) => {

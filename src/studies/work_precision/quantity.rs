@@ -12,7 +12,8 @@ use crate::base::input::{InputError, unknown_among};
 use crate::dynamics::equilibrium::Equilibrium;
 use crate::dynamics::simulate::{Component, Reading, Sampling};
 use crate::dynamics::trajectory::{Sample, Trajectory};
-use crate::scene::timeline::{Half, InPlane, Scene};
+use crate::elements::mesh::NodeMap;
+use crate::scene::timeline::Scene;
 
 /// A quantity of interest: the whole motion, or a number that follows from it.
 ///
@@ -287,21 +288,12 @@ impl Quantity {
         matches!(self.part, Part::Largest | Part::Least)
     }
 
-    /// Equivalent quantity in the `half` of a symmetric scene `whole`; for the whole motion, that of the half's nodes.
+    /// Equivalent quantity in the smaller scene by a `map` of the `whole`; for the whole motion, that of its nodes.
     ///
     /// # Errors
-    /// A reading that the half does not have.
-    pub(crate) fn in_half(&self, whole: &Scene, half: &Half) -> Result<Self, InputError> {
-        let reading = self.reading.as_ref().map(|reading| reading.in_half(whole, half));
-        Ok(Self { reading: reading.transpose()?, ..self.clone() })
-    }
-
-    /// Equivalent quantity in the section, `plane`, of a scene in `space`; for the whole motion, the motion in the plane.
-    ///
-    /// # Errors
-    /// A reading that the section does not have.
-    pub(crate) fn in_plane(&self, space: &Scene, plane: &InPlane) -> Result<Self, InputError> {
-        let reading = self.reading.as_ref().map(|reading| reading.in_plane(space, plane));
+    /// A reading that the smaller scene does not have.
+    pub(crate) fn by_map(&self, whole: &Scene, map: &NodeMap) -> Result<Self, InputError> {
+        let reading = self.reading.as_ref().map(|reading| reading.by_map(whole, map));
         Ok(Self { reading: reading.transpose()?, ..self.clone() })
     }
 
@@ -409,23 +401,14 @@ pub(crate) struct Distance {
 }
 
 impl Seen {
-    /// Observation of some of its points (from 0), with the same scale.
-    pub(crate) fn of_points(&self, points: &[usize]) -> Self {
-        let d = self.dimension;
-        let of_time =
-            |x: &Vec<f64>| points.iter().flat_map(|point| &x[point * d..][..d]).copied().collect();
-        Self { values: self.values.iter().map(of_time).collect(), ..self.clone() }
-    }
-
-    /// Observation in space along two axes, with the same scale; numbers stay.
-    pub(crate) fn along(&self, axes: [usize; 2]) -> Self {
-        if self.dimension != 3 {
-            return self.clone();
-        }
-        let chosen =
-            |x: &Vec<f64>| x.chunks_exact(3).flat_map(|point| axes.map(|i| point[i])).collect();
-        let values = self.values.iter().map(chosen).collect();
-        Self { dimension: axes.len(), values, ..self.clone() }
+    /// Observation of some of its points (from 0) along some axes, with the same scale.
+    pub(crate) fn chosen(&self, points: &[usize], axes: &[usize]) -> Self {
+        let of_point = |x: &[f64], point: usize| {
+            axes.iter().map(|i| x[point * self.dimension + i]).collect::<Vec<f64>>()
+        };
+        let of_time = |x: &Vec<f64>| points.iter().flat_map(|&point| of_point(x, point)).collect();
+        let values = self.values.iter().map(of_time).collect();
+        Self { dimension: axes.len(), values, scale: self.scale }
     }
 
     pub(crate) fn distance(&self, other: &Self) -> Distance {
