@@ -29,8 +29,11 @@
 //! SI units throughout. Formulas follow S. Hirai, *Computing Dynamic Deformation*; numbers in
 //! brackets are its equations.
 
-// The rooms of bodies use more of the lowest rooms than the integrators do.
-#![cfg_attr(not(feature = "bodies"), allow(dead_code, unused_imports, unused_macros))]
+// Upper rooms use more of lower ones than these do by themselves.
+#![cfg_attr(
+    not(all(feature = "cli", feature = "play")),
+    allow(dead_code, unused_imports, unused_macros)
+)]
 
 #[cfg(feature = "play")]
 pub mod apps;

@@ -70,7 +70,6 @@ pub(crate) enum Motion {
     #[cfg_attr(feature = "checkpoint", serde(rename = "path"))]
     Spline(Arc<Spline>),
     /// Follow a formula of time without kinks (m; the same for all axes).
-    #[cfg_attr(not(any(feature = "checkpoint", feature = "scene-file")), allow(dead_code))]
     Formula(Arc<Formula>),
     /// Turn from where the nodes are when the phase begins (all axes).
     Turn(Arc<Turn>),

@@ -60,7 +60,6 @@ const NEAR: f64 = 0.05;
 
 impl LearnedKey {
     /// The values of all keys in these scenes.
-    #[cfg(any(feature = "study", test))]
     pub(crate) fn of(scenes: &[&BTreeMap<String, String>]) -> BTreeMap<String, Self> {
         let keys = scenes.iter().flat_map(|scene| scene.keys());
         let learned = |key: &String| {

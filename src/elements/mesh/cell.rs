@@ -1,8 +1,5 @@
 //! Kinds of cells: one row of a table each.
 
-// some columns of the table are used only by readers of files and by pictures
-#![cfg_attr(not(all(feature = "gmsh", feature = "output")), allow(dead_code))]
-
 /// Properties of a cell type. Local numbers of nodes count from 0.
 struct Shape {
     /// The word for them in files.

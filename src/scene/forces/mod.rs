@@ -72,7 +72,6 @@ pub use shape::Shape;
 pub use signal::Signal;
 pub(crate) use signal::{SharedValue, SignalKind, VectorSignal};
 pub use signals::Signals;
-#[cfg(feature = "output")]
 pub(crate) use spring::Joint;
 pub(crate) use spring::SpringGauge;
 pub use spring::{Guide, Spring};

@@ -5,7 +5,6 @@ use std::sync::Arc;
 use super::friction::{Backward, Bristles, Coulomb, Friction};
 use super::shape::{Nearest, Shape};
 use super::travel::{Cubics, Travel, Waypoints};
-#[cfg(feature = "scene-file")]
 use crate::base::formula::Formula;
 use crate::base::input::{InputError, not_negative, positive};
 use crate::base::vector::axes_across;

@@ -305,7 +305,6 @@ pub(crate) enum VectorSignal {
     #[cfg_attr(feature = "checkpoint", serde(rename = "table"))]
     TimeTable(TimeTable),
     /// One per component.
-    #[cfg_attr(not(any(feature = "checkpoint", feature = "scene-file")), allow(dead_code))]
     Formulas(Arc<[Formula]>),
     #[cfg_attr(feature = "checkpoint", serde(skip))]
     Shared(SharedValue),

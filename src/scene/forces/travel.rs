@@ -21,7 +21,6 @@ pub(super) enum Travel {
     /// Along a smooth path through points.
     Path(Arc<Waypoints>),
     /// By smooth formulas of time, one per component (m).
-    #[cfg_attr(not(feature = "scene-file"), allow(dead_code))]
     Formulas(Arc<[Formula]>),
 }
 

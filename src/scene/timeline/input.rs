@@ -68,12 +68,9 @@ pub(crate) struct Row {
     /// Noun phrase that stands before its target.
     pub(crate) name: &'static str,
     /// Key of its list in a phase of a scene file, and of the target in it.
-    #[cfg_attr(not(feature = "play"), allow(dead_code))]
     pub(crate) keys: [&'static str; 2],
     /// Key of its value; with an "s" that of values at times.
-    #[cfg_attr(not(feature = "scene-file"), allow(dead_code))]
     pub(crate) word: &'static str,
-    #[cfg_attr(not(feature = "play"), allow(dead_code))]
     pub(crate) unit: &'static str,
     /// Value where a phase has none.
     pub(crate) absent: f64,

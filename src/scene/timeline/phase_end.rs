@@ -73,7 +73,6 @@ impl Scene {
 
     /// # Errors
     /// Phases that end by sensors, of which `what` (as in "an accuracy") cannot be computed.
-    #[cfg(feature = "study")]
     pub(crate) fn refuse_ends(&self, what: &str) -> Result<(), InputError> {
         let end = self.phases.iter().find_map(|phase| Some((phase, phase.ends.as_ref()?)));
         let Some((phase, end)) = end else { return Ok(()) };

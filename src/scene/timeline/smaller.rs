@@ -60,7 +60,6 @@ pub(crate) enum Shrink {
 
 /// A smaller scene, and which nodes of the whole one its nodes stand for.
 #[derive(Debug, Clone)]
-#[cfg_attr(not(any(feature = "scene-file", feature = "study")), allow(dead_code))]
 pub(crate) struct SmallerScene {
     pub(crate) scene: Scene,
     pub(crate) kind: Smaller,
