@@ -143,7 +143,7 @@ class Scene:
         within : float
             The error that is allowed, as a part of the quantity: 0.02.
         quantity : str, optional
-            What has to be right, as in `--quantity`. Default: the whole motion.
+            Quantity that has to be right, as in `--quantity`. Default: the whole motion.
         budget : float, optional
             Time for the search (s).
         """

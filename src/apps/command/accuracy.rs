@@ -14,7 +14,7 @@ pub struct AccuracyArguments {
     /// their difference is written beside the motion
     #[arg(long, value_name = "PART")]
     accuracy: Option<Fraction>,
-    /// What has to be as accurate: motion, a sensor or node set and a component such as tip.y, com.x, rotation; with
+    /// Quantity that has to be as accurate: motion, a sensor or node set and a component such as tip.y, com.x, rotation; with
     /// :end, :max, :min, :frequency or :damping that alone [default: motion]
     #[arg(long, value_name = "QUANTITY")]
     quantity: Option<String>,

@@ -38,7 +38,7 @@ pub struct Arguments {
     scene: SceneArguments,
     #[command(flatten)]
     settings: SettingsArguments,
-    /// What has to be right: motion, a sensor or node set and a component such as tip.y, com.x, rotation; with :end,
+    /// Quantity that has to be right: motion, a sensor or node set and a component such as tip.y, com.x, rotation; with :end,
     /// :max, :min, :frequency or :damping that alone
     #[arg(long, value_name = "QUANTITY", default_value = "motion")]
     quantity: String,

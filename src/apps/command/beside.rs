@@ -16,10 +16,10 @@ pub struct Arguments {
     /// Directories of the results, or animations
     #[arg(value_name = "OUT", required = true, num_args = 2..)]
     results: Vec<PathBuf>,
-    /// What stands above each of them [default: the names of the directories]
+    /// Captions, one for each [default: the names of the directories]
     #[arg(long, value_delimiter = ',', value_name = "NAMES")]
     names: Option<Vec<String>>,
-    /// What stands above the page [default: the names]
+    /// Title of the page [default: the names]
     #[arg(long, default_value = "", hide_default_value = true)]
     title: String,
     /// The page that is written

@@ -20,7 +20,7 @@ pub struct OutputArguments {
     /// Nodes whose displacements trajectory.csv lists: a set such as "top", or numbers such as 14,15
     #[arg(long, value_name = "NODES", value_parser = selection)]
     track: Option<Selection>,
-    /// What to write besides trajectory.csv and report.json: svg, html, vtk, plot, png
+    /// Formats to write besides trajectory.csv and report.json: svg, html, vtk, plot, png
     #[arg(long, value_delimiter = ',', value_parser = format)]
     formats: Option<Vec<Format>>,
     /// Show no progress and no tables: print warnings, what --accuracy has reached, and the equilibrium that `static` has found

@@ -19,7 +19,7 @@ pub struct Arguments {
     /// Columns of trajectory.csv to draw instead of sensors and energies: com_y,kinetic
     #[arg(long, value_delimiter = ',', value_name = "NAMES")]
     columns: Option<Vec<String>>,
-    /// What stands above [default: the title of the scene]
+    /// Title [default: the title of the scene]
     #[arg(long, default_value = "", hide_default_value = true)]
     title: String,
     /// Write plot.png instead

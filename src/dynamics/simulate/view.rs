@@ -9,7 +9,7 @@ use crate::elements::body::{Body, CellField, Grown, MagnetizedPoints, Strands};
 use crate::elements::force::{Force, Forces, NodalForces};
 use crate::elements::mesh::Selection;
 use crate::scene::forces::{ChamberForce, Contact, GasInChamber, LiquidInChamber, SpringGauge};
-use crate::scene::timeline::{DeviceGauge, LoadKind, Phase, Quantity, Scene};
+use crate::scene::timeline::{Amounts, DeviceGauge, LoadKind, Phase, Quantity, Scene};
 #[cfg(feature = "play")]
 use crate::scene::{forces::NodalContact, timeline::ContactReader};
 
@@ -174,15 +174,22 @@ impl<'a> View<'a> {
         self.scene.poured_in(Some(self.phase), &self.scene.liquids()[number])
     }
 
-    /// The amount (kg) of that number, of gases and then of liquids.
-    pub(super) fn amount(&self, number: usize) -> f64 {
-        // where they are no unknowns, amounts stay what they are
-        self.scene.flowing(self.amounts).unwrap_or(&self.gauges.masses)[number]
+    /// Masses (kg) of the gases and of the liquids; where they are no unknowns, they stay what they are.
+    fn masses(&self) -> [&[f64]; 2] {
+        match self.scene.flowing(self.amounts) {
+            Some(Amounts { gases, liquids, .. }) => [gases, liquids],
+            None => self.gauges.masses.split_at(self.gauges.gases.len()).into(),
+        }
     }
 
-    /// That of the liquid of that number.
-    pub(super) fn liquid_amount(&self, number: usize) -> f64 {
-        self.amount(self.gauges.gases.len() + number)
+    /// The mass (kg) of the gas of that number.
+    pub(super) fn gas_mass(&self, number: usize) -> f64 {
+        self.masses()[0][number]
+    }
+
+    /// The mass (kg) of the liquid of that number.
+    pub(super) fn liquid_mass(&self, number: usize) -> f64 {
+        self.masses()[1][number]
     }
 
     /// Force of the actuator of a spring (N), above 0 where it extends the spring; of a cable its tension, of a winch the

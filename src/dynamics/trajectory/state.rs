@@ -27,7 +27,7 @@ impl Trajectory {
             }),
         };
         let flowing = scene.flowing(&sample.amounts);
-        let masses = flowing.map(<[f64]>::to_vec).or_else(|| {
+        let masses = flowing.map(|all| [all.gases, all.liquids].concat()).or_else(|| {
             let (gases, liquids) = (scene.filled().ok()?, scene.poured(None).ok()?);
             Some(scene.starting_masses(&gases, &liquids))
         });
@@ -40,10 +40,12 @@ impl Trajectory {
             let state = |name: &str| scene.drive_at(name, phase, sample.time, &sample.amounts)[0];
             scene.lags().map(move |(name, _)| (name.to_owned(), state(name)))
         });
-        let pipes = scene.pipes().iter().map(Pipe::name).enumerate().map(|(number, name)| {
-            let first = |all: &[f64]| all.len() - scene.pipes().len();
-            named(name, flowing.map_or(0.0, |all| all[first(all) + number]))
-        });
+        let pipes = scene
+            .pipes()
+            .iter()
+            .map(Pipe::name)
+            .enumerate()
+            .map(|(number, name)| named(name, flowing.map_or(0.0, |all| all.pipes[number])));
         let is_last = sample.time == self.last().time;
         let angles = self.angles.iter().filter(|_| is_last).cloned();
         SceneState {

@@ -59,49 +59,26 @@ impl Identity {
         ];
         let mut parts: Vec<(String, String)> =
             parts.map(|(name, hash)| (name.into(), text(hash))).into();
-        if let Some(state) = scene.starting_state() {
-            parts.push(("state at the start".into(), text(of_text(state))));
-        }
-        // a scene without gas is what it was before there was any
-        if scene.has_gas() {
-            parts.push(("gas".into(), text(of_text(&scene.gas_parts()))));
-        }
-        if !scene.liquids().is_empty() {
-            parts.push(("liquids".into(), text(of_text(scene.liquids()))));
-        }
-        if !scene.pipes().is_empty() {
-            parts.push(("pipes".into(), text(of_text(scene.pipes()))));
-        }
-        // as in files that were written before there were several bodies
         let tied = scene.tied().unwrap_or_default();
-        let [ties, touches] = [of_text(&tied), of_text(&scene.touches())].map(text);
-        if !tied.is_empty() {
-            parts.push(("ties".into(), ties));
-        }
-        if !scene.muscles().is_empty() {
-            parts.push(("muscles".into(), text(of_text(scene.muscles()))));
-        }
-        if !scene.growths().is_empty() {
-            parts.push(("growths".into(), text(of_text(scene.growths()))));
-        }
-        if scene.lags().len() > 0 {
-            parts.push(("lags".into(), text(of_text(&scene.lags().collect::<Vec<_>>()))));
-        }
-        if !scene.magnets().is_empty() {
-            parts.push(("magnets".into(), text(of_text(scene.magnets()))));
-        }
-        if !scene.dipoles().is_empty() {
-            parts.push(("dipoles".into(), text(of_text(scene.dipoles()))));
-        }
-        if !scene.fluids().is_empty() {
-            parts.push(("fluids".into(), text(of_text(scene.fluids()))));
-        }
-        if !scene.devices().is_empty() {
-            parts.push(("devices".into(), text(of_text(scene.devices()))));
-        }
-        if !scene.touches().is_empty() {
-            parts.push(("touches".into(), touches));
-        }
+        let lags: Vec<_> = scene.lags().collect();
+        // a scene without them is what it was before there were any
+        let others = [
+            ("state at the start", scene.starting_state().map(of_text)),
+            ("gas", scene.has_gas().then(|| of_text(&scene.gas_parts()))),
+            ("liquids", of_list(scene.liquids())),
+            ("pipes", of_list(scene.pipes())),
+            ("ties", of_list(&tied)),
+            ("muscles", of_list(scene.muscles())),
+            ("growths", of_list(scene.growths())),
+            ("lags", of_list(&lags)),
+            ("magnets", of_list(scene.magnets())),
+            ("dipoles", of_list(scene.dipoles())),
+            ("fluids", of_list(scene.fluids())),
+            ("devices", of_list(scene.devices())),
+            ("touches", of_list(scene.touches())),
+        ];
+        let others = others.into_iter().filter_map(|(name, hash)| Some((name.into(), text(hash?))));
+        parts.extend(others);
         Self {
             nodes: mesh.node_count(),
             cells: mesh.cell_count(),
@@ -229,6 +206,11 @@ impl fmt::Debug for LoadText<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("Load").field("kind", &self.kind).field("value", self.value).finish()
     }
+}
+
+/// The hash of a list that is not empty.
+fn of_list<T: Debug>(list: &[T]) -> Option<u64> {
+    (!list.is_empty()).then(|| of_text(list))
 }
 
 fn of_text(part: &(impl Debug + ?Sized)) -> u64 {

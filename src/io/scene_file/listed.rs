@@ -13,7 +13,7 @@ pub(super) const KEYS: &[Key] = &[
     Key::new(
         "cells",
         ValueType::Word(|| CellKind::ALL.iter().map(|kind| kind.word()).collect()),
-        "what the cells are",
+        "the kind of the cells",
     )
     .required(),
     Key::new(

@@ -55,7 +55,7 @@ pub(super) const MATERIAL: TableKeys = TableKeys::new(
             .default("none; in a region, those of the body"),
         Key::new("fibres", ValueType::Tables(&FIBRES), "families of fibres that stiffen it along their course")
             .default("none; in a region, those of the body"),
-        Key::new("law", ValueType::Table(&LAW), "what becomes of the moduli at large strains").default(
+        Key::new("law", ValueType::Table(&LAW), "the law at large strains").default(
             "as `strain` says: linear elasticity with Cauchy's, St. Venant-Kirchhoff with Green's",
         ),
     ],

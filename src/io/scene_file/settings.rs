@@ -104,7 +104,7 @@ pub(super) const OUTPUT: TableKeys = TableKeys::new(
         Key::new(
             "formats",
             ValueType::OneOrMore(&ValueType::Word(|| Format::ALL.map(Format::name).into())),
-            "what is written: a table, files for ParaView, snapshots, an animation, a plot of sensors and energies \
+            "files that are written: a table, files for ParaView, snapshots, an animation, a plot of sensors and energies \
              as a drawing or as pixels",
         )
         .default("csv, which is always written"),

@@ -169,7 +169,7 @@ pub(super) const STUDY: TableKeys = TableKeys::new(
         Key::new(
             "quantities",
             ValueType::List(&ValueType::Text),
-            "what is kept of each run: as `--quantity` of `run` takes them, each one number",
+            "quantities that are kept of each run: as `--quantity` of `run` takes them, each one number",
         )
         .note("As `\"com.y:max\"`; `:end`, `:max`, `:min`, `:frequency`, `:damping`.")
         .required(),

@@ -29,54 +29,109 @@ use super::value::Value;
 use crate::dynamics::error::Error;
 use crate::scene::timeline::{Device, Scene};
 
-pub(super) const TOP: TableKeys = TableKeys::new(
-    "The file",
-    "The keys before the first table.",
-    &[
-        Key::new("title", ValueType::Text, "the title, for pictures and pages"),
-        Key::new("dimension", ValueType::Count, "the dimension of space")
-            .note("1, 2 or 3. In a higher one than the mesh has, bars are strings and surfaces membranes.")
-            .default("that of the mesh"),
-        Key::new("gravity", ValueType::Vector, "the acceleration of gravity")
-            .in_unit("m/s^2")
-            .default("0"),
-        Key::number("atmosphere", "the absolute pressure of the air around chambers with gas", "Pa")
-            .default("101325"),
-        Key::new("unusual", ValueType::List(&ValueType::Text), "quantities whose warnings of units are suppressed")
-            .note("Of `size`, `mass`, `density`, `young`, `wave-speed`, `thickness`, `weight`, `remanence`, `magnetic-field`, `dipole-moment`, `absolute-pressure`, `orifice-area`, `touch-start`, `facets`: they are not [warned of](scenes/warnings.md#warnings).")
-            .default("none"),
-        Key::new("body", ValueType::Tables(&BODY), "what moves").required(),
-        Key::new("point", ValueType::Tables(&POINT), "point masses"),
-        Key::new("initial", ValueType::Table(&INITIAL), "how the body moves at first").default("at rest"),
-        Key::new("tie", ValueType::Tables(&TIE), "ties between bodies"),
-        Key::new("touch", ValueType::Tables(&TOUCH), "contact of bodies with each other and themselves"),
-        Key::new("spring", ValueType::Tables(&SPRING), "springs"),
-        Key::new("cable", ValueType::Tables(&CABLE), "cables"),
-        Key::new("muscle", ValueType::Tables(&MUSCLE), "muscles in the bodies"),
-        Key::new("growth", ValueType::Tables(&GROWTH), "cells that grow, by swelling or heat"),
-        Key::new("lag", ValueType::Tables(&LAG), "actuators that follow their commands with a delay"),
-        Key::new("magnet", ValueType::Tables(&MAGNET), "magnets in the bodies"),
-        Key::new("dipole", ValueType::Tables(&DIPOLE), "magnets outside of the bodies"),
-        Key::new("chamber", ValueType::Tables(&CHAMBER), "chambers"),
-        Key::new("gas", ValueType::Tables(&GAS), "gas in chambers"),
-        Key::new("supply", ValueType::Tables(&SUPPLY), "what gas is drawn from"),
-        Key::new("orifice", ValueType::Tables(&ORIFICE), "what gas flows through"),
-        Key::new("liquid", ValueType::Tables(&LIQUID), "liquids in chambers"),
-        Key::new("pipe", ValueType::Tables(&PIPE), "pipes between liquids in chambers"),
-        Key::new("fluid", ValueType::Tables(&FLUID), "fluids around bodies"),
-        Key::new("wind", ValueType::Tables(&WIND), "wind over faces"),
-        Key::new("obstacle", ValueType::Tables(&OBSTACLE), "obstacles"),
-        Key::new("phase", ValueType::Tables(&PHASE), "the phases, one after the other").required(),
-        Key::new("sensor", ValueType::Tables(&SENSOR), "what is read with each sample"),
-        Key::new("solver", ValueType::Table(&SOLVER), "how it is integrated"),
-        Key::new("statics", ValueType::Table(&STATICS), "how its equilibrium is sought"),
-        Key::new("output", ValueType::Table(&OUTPUT), "what is written"),
-    ],
-    "title = \"A beam sinks\"\ndimension = 2\ngravity = [0.0, -9.8]",
-);
+/// Keys before and after those of components.
+const BEFORE: [Key; 8] = [
+    Key::new("title", ValueType::Text, "the title, for pictures and pages"),
+    Key::new("dimension", ValueType::Count, "the dimension of space")
+        .note("1, 2 or 3. In a higher one than the mesh has, bars are strings and surfaces membranes.")
+        .default("that of the mesh"),
+    Key::new("gravity", ValueType::Vector, "the acceleration of gravity")
+        .in_unit("m/s^2")
+        .default("0"),
+    Key::number("atmosphere", "the absolute pressure of the air around chambers with gas", "Pa")
+        .default("101325"),
+    Key::new("unusual", ValueType::List(&ValueType::Text), "quantities whose warnings of units are suppressed")
+        .note("Of `size`, `mass`, `density`, `young`, `wave-speed`, `thickness`, `weight`, `remanence`, `magnetic-field`, `dipole-moment`, `absolute-pressure`, `orifice-area`, `touch-start`, `facets`: they are not [warned of](scenes/warnings.md#warnings).")
+        .default("none"),
+    Key::new("body", ValueType::Tables(&BODY), "what moves").required(),
+    Key::new("point", ValueType::Tables(&POINT), "point masses"),
+    Key::new("initial", ValueType::Table(&INITIAL), "how the body moves at first").default("at rest"),
+];
+const AFTER: [Key; 5] = [
+    Key::new("phase", ValueType::Tables(&PHASE), "the phases, one after the other").required(),
+    Key::new("sensor", ValueType::Tables(&SENSOR), "sensors, each read with each sample"),
+    Key::new("solver", ValueType::Table(&SOLVER), "how it is integrated"),
+    Key::new("statics", ValueType::Table(&STATICS), "how its equilibrium is sought"),
+    Key::new("output", ValueType::Table(&OUTPUT), "the output"),
+];
 
 /// Adds a table to a scene.
 type Add = fn(Scene, &Value) -> Result<Scene, Error>;
+
+/// The tables of components, in the order in which they are read.
+const COMPONENTS: [(Key, Add); 18] = [
+    (Key::new("tie", ValueType::Tables(&TIE), "ties between bodies"), tie::add_tie),
+    (
+        Key::new(
+            "touch",
+            ValueType::Tables(&TOUCH),
+            "contact of bodies with each other and themselves",
+        ),
+        touch::add_touch,
+    ),
+    (Key::new("spring", ValueType::Tables(&SPRING), "springs"), surroundings::add_spring),
+    (Key::new("cable", ValueType::Tables(&CABLE), "cables"), surroundings::add_cable),
+    (Key::new("muscle", ValueType::Tables(&MUSCLE), "muscles in the bodies"), muscle::add_muscle),
+    (
+        Key::new("growth", ValueType::Tables(&GROWTH), "cells that grow, by swelling or heat"),
+        growth::add_growth,
+    ),
+    (
+        Key::new(
+            "lag",
+            ValueType::Tables(&LAG),
+            "actuators that follow their commands with a delay",
+        ),
+        lag::add_lag,
+    ),
+    (Key::new("magnet", ValueType::Tables(&MAGNET), "magnets in the bodies"), magnet::add_magnet),
+    (
+        Key::new("dipole", ValueType::Tables(&DIPOLE), "magnets outside of the bodies"),
+        dipole::add_dipole,
+    ),
+    (Key::new("chamber", ValueType::Tables(&CHAMBER), "chambers"), surroundings::add_chamber),
+    (Key::new("gas", ValueType::Tables(&GAS), "gas in chambers"), gas::add_gas),
+    (Key::new("supply", ValueType::Tables(&SUPPLY), "supplies of gas"), gas::add_supply),
+    (
+        Key::new(
+            "orifice",
+            ValueType::Tables(&ORIFICE),
+            "orifices and valves through which gas flows",
+        ),
+        gas::add_orifice,
+    ),
+    (Key::new("liquid", ValueType::Tables(&LIQUID), "liquids in chambers"), liquid::add_liquid),
+    (
+        Key::new("pipe", ValueType::Tables(&PIPE), "pipes between liquids in chambers"),
+        liquid::add_pipe,
+    ),
+    (Key::new("fluid", ValueType::Tables(&FLUID), "fluids around bodies"), fluid::add_fluid),
+    (Key::new("wind", ValueType::Tables(&WIND), "wind over faces"), device::add_wind),
+    (Key::new("obstacle", ValueType::Tables(&OBSTACLE), "obstacles"), obstacle::add_obstacle),
+];
+
+const KEYS: [Key; BEFORE.len() + COMPONENTS.len() + AFTER.len()] = {
+    let mut keys = [BEFORE[0]; BEFORE.len() + COMPONENTS.len() + AFTER.len()];
+    let mut k = 0;
+    while k < keys.len() {
+        keys[k] = if k < BEFORE.len() {
+            BEFORE[k]
+        } else if k < BEFORE.len() + COMPONENTS.len() {
+            COMPONENTS[k - BEFORE.len()].0
+        } else {
+            AFTER[k - BEFORE.len() - COMPONENTS.len()]
+        };
+        k += 1;
+    }
+    keys
+};
+
+pub(super) const TOP: TableKeys = TableKeys::new(
+    "The file",
+    "The keys before the first table.",
+    &KEYS,
+    "title = \"A beam sinks\"\ndimension = 2\ngravity = [0.0, -9.8]",
+);
 
 /// Contents of the file with the top-level table `top`.
 pub(super) fn scene_file(top: &Table, devices: Vec<Arc<dyn Device>>) -> Result<SceneFile, Error> {
@@ -109,28 +164,8 @@ pub(super) fn scene_file(top: &Table, devices: Vec<Arc<dyn Device>>) -> Result<S
         None => None,
     };
     let mut scene = devices.into_iter().fold(scene, Scene::shared_device);
-    let parts: [(&str, Add); 18] = [
-        ("tie", tie::add_tie),
-        ("touch", touch::add_touch),
-        ("spring", surroundings::add_spring),
-        ("cable", surroundings::add_cable),
-        ("muscle", muscle::add_muscle),
-        ("growth", growth::add_growth),
-        ("lag", lag::add_lag),
-        ("magnet", magnet::add_magnet),
-        ("dipole", dipole::add_dipole),
-        ("chamber", surroundings::add_chamber),
-        ("gas", gas::add_gas),
-        ("supply", gas::add_supply),
-        ("orifice", gas::add_orifice),
-        ("liquid", liquid::add_liquid),
-        ("pipe", liquid::add_pipe),
-        ("fluid", fluid::add_fluid),
-        ("wind", device::add_wind),
-        ("obstacle", obstacle::add_obstacle),
-    ];
-    for (key, add) in parts {
-        if let Some(values) = top.get(key) {
+    for (key, add) in COMPONENTS {
+        if let Some(values) = top.get(key.name) {
             scene = values.one_or_more()?.iter().try_fold(scene, add)?;
         }
     }

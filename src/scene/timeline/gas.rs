@@ -15,6 +15,19 @@ use crate::scene::forces::{
 /// Name of an open end of an orifice or a pipe.
 pub(super) const OPEN: &str = "atmosphere";
 
+/// The amounts of a scene, as they stand among its unknowns.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Amounts<'a> {
+    /// Masses (kg).
+    pub(crate) gases: &'a [f64],
+    /// Masses (kg).
+    pub(crate) liquids: &'a [f64],
+    /// States of actuators that lag.
+    pub(crate) lags: &'a [f64],
+    /// Flows (m^3/s).
+    pub(crate) pipes: &'a [f64],
+}
+
 impl Scene {
     /// Adds an amount of gas in a chamber, in place of a pressure that phases give it.
     pub fn gas(mut self, gas: Gas) -> Self {
@@ -97,10 +110,13 @@ impl Scene {
         if self.has_fixed_amounts { 0 } else { self.flowing_count() }
     }
 
-    /// The last unknowns of a state: amounts of gases, then of liquids, states of actuators that lag, and flows of pipes; none where these are constants.
-    pub(crate) fn flowing<'a>(&self, states: &'a [f64]) -> Option<&'a [f64]> {
+    /// The last unknowns of a state by their owners; none where these are constants.
+    pub(crate) fn flowing<'a>(&self, states: &'a [f64]) -> Option<Amounts<'a>> {
         let first = states.len().checked_sub(self.flowing_count())?;
-        Some(&states[first..])
+        let (masses, rest) = states[first..].split_at(self.gases.len() + self.liquids.len());
+        let (gases, liquids) = masses.split_at(self.gases.len());
+        let (lags, pipes) = rest.split_at(self.lags.len());
+        Some(Amounts { gases, liquids, lags, pipes })
     }
 
     fn flowing_count(&self) -> usize {

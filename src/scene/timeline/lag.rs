@@ -117,7 +117,7 @@ impl Scene {
         let number = self.lags().position(|(name, _)| name == actuator);
         match (self.flowing(states), number) {
             (Some(flowing), Some(number)) => {
-                let state = flowing[self.gases.len() + self.liquids.len() + number];
+                let state = flowing.lags[number];
                 [state, lag.rate(sum[0], state, self.size_of_states(actuator))]
             }
             _ => sum,

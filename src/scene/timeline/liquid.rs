@@ -134,7 +134,7 @@ impl Scene {
             // errors were found when the phase began
             let poured = self.poured_in(Some(phase), liquid).ok()?;
             let amount = match flowing {
-                Some(all) => all[self.gases.len() + number],
+                Some(all) => all.liquids[number],
                 None => self.starting_liquid(liquid, &poured),
             };
             Some(poured.waterline(u, amount))

@@ -38,6 +38,7 @@ use std::sync::Arc;
 pub(crate) use contacts::ContactReader;
 pub use device::{Device, DeviceGauge, DeviceSignals, DeviceState, DeviceValue};
 pub use device_rows::{DeviceInput, DeviceOutput};
+pub(crate) use gas::Amounts;
 #[cfg(feature = "scene-file")]
 pub(crate) use input::Row;
 pub(crate) use input::{Input, InputSignal, LoadKind, Quantity, Target};

@@ -24,9 +24,9 @@ pub(super) static PRESSURE: Output = Output {
         let (scene, u) = (view.scene, view.u);
         let chamber = scene.chambers()[number].name();
         let pressure = if let Some(number) = scene.gas_in(chamber) {
-            view.gauges.gases[number].gauge(u, view.amount(number))
+            view.gauges.gases[number].gauge(u, view.gas_mass(number))
         } else if let Some(number) = scene.liquid_in(chamber) {
-            let amount = view.liquid_amount(number);
+            let amount = view.liquid_mass(number);
             match scene.liquids()[number].has_surface() {
                 true => view.with_surface(number)?.gauge(u, amount),
                 false => view.gauges.liquids[number].gauge(u, amount),

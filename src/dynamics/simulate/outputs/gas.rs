@@ -34,7 +34,7 @@ pub(super) static AMOUNT: Output = Output {
     of: FILLED,
     is_vector: false,
     is_of_positions: false,
-    read: |view, number| Ok(Value::Number(view.amount(number))),
+    read: |view, number| Ok(Value::Number(view.gas_mass(number))),
 };
 
 pub(super) static FLOW: Output = Output {
@@ -83,7 +83,7 @@ impl View<'_> {
     }
 
     fn gas_pressure(&self, number: usize) -> f64 {
-        let pressure = self.gauges.gases[number].pressure(self.u, self.amount(number));
+        let pressure = self.gauges.gases[number].pressure(self.u, self.gas_mass(number));
         pressure.map_or(f64::NAN, |[pressure, _]| pressure)
     }
 }

@@ -31,7 +31,7 @@ pub(super) static VOLUME: Output = Output {
     is_of_positions: false,
     read: |view, number| {
         let liquid = &view.gauges.liquids[number];
-        Ok(Value::Number(liquid.natural(view.liquid_amount(number))))
+        Ok(Value::Number(liquid.natural(view.liquid_mass(number))))
     },
 };
 
@@ -56,7 +56,7 @@ pub(super) static LEVEL: Output = Output {
     is_vector: false,
     is_of_positions: false,
     read: |view, number| {
-        let level = view.with_surface(number)?.level(view.u, view.liquid_amount(number));
+        let level = view.with_surface(number)?.level(view.u, view.liquid_mass(number));
         Ok(Value::Number(level))
     },
 };
@@ -70,8 +70,7 @@ pub(super) static PIPE_FLOW: Output = Output {
     is_of_positions: false,
     read: |view, number| {
         let flowing = view.scene.flowing(view.amounts);
-        let first = |all: &[f64]| all.len() - view.scene.pipes().len();
-        Ok(Value::Number(flowing.map_or(0.0, |all| all[first(all) + number])))
+        Ok(Value::Number(flowing.map_or(0.0, |all| all.pipes[number])))
     },
 };
 

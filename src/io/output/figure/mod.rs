@@ -32,7 +32,7 @@ const MARGIN: f64 = 20.0;
 pub(crate) struct Theme {
     pub(crate) paper: &'static str,
     pub(crate) ink: &'static str,
-    /// What matters less.
+    /// Colour of notes and of other axes.
     pub(crate) muted: &'static str,
     /// Lines with a label across a field, and those without.
     pub(crate) grid: [&'static str; 2],

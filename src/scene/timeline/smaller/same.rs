@@ -16,7 +16,7 @@ const TIMES: u32 = 17;
 /// Checks that a scene is the same in its images, and returns which nodes are held along the axis in each phase.
 ///
 /// # Errors
-/// What is not the same, or of which that is not known.
+/// A part of the scene that differs in its image, or whose image is not known.
 pub(super) fn check(same: &Same) -> Result<Vec<Vec<bool>>, InputError> {
     let (scene, map) = (same.scene, same.map);
     let model = if map.is_section() { "a section" } else { "a half" };

@@ -109,7 +109,7 @@ impl Plot<'_> {
         Panel { axes, names, series, ..Panel::default() }
     }
 
-    /// What shows a row, with the row's number and values.
+    /// The series of a row, with the row's number and values.
     fn of_row(&self, (number, row): (usize, &Row), series: Series) -> Series {
         let keys = row.keys.iter().map(|(key, value)| format!("{key} = {value}"));
         let quantity = |(name, value): (&String, &Option<f64>)| {
