@@ -60,7 +60,7 @@ pub(super) fn take_devices(
 
 pub(super) const WIND: TableKeys = TableKeys::new(
     "[[wind]]",
-    "Air that drags faces along with its velocity relative to theirs, as a `[[fluid]]` does, and whose `velocity` phases `set`: 0 where they do not.",
+    "Air that drags faces along with its velocity relative to theirs, as a `[[fluid]]` does, and whose `velocity` phases `steer`: 0 where they do not.",
     &[
         Key::new("name", ValueType::Text, "the name of the wind").default("wind 1, wind 2, ..."),
         Key::number("drag", "the coefficient C_n of drag along the normal", "1")

@@ -7,7 +7,7 @@ use super::keys::TableKeys;
 use super::magnet::magnetic_field;
 use super::phase_keys::{
     ACTUATE, DRIVE, END, FLOW, FOLLOWER, HOLD, HOLD_COMBINATION, LOAD, MOMENT, MOVE, OPEN, PATH,
-    PHASE, PRESSURE, PRESSURE_ON, ROTATE, SET, SYMMETRY, TERMS,
+    PHASE, PRESSURE, PRESSURE_ON, ROTATE, STEER, SYMMETRY, TERMS,
 };
 use super::selection::selection;
 use super::table::Table;
@@ -40,7 +40,7 @@ const PARTS: [(&TableKeys, Add); 16] = [
     (&FLOW, flow),
     (&ACTUATE, actuate),
     (&DRIVE, drive),
-    (&SET, set),
+    (&STEER, steer),
 ];
 
 /// The scene with the phases that `values` describe at its end.
@@ -220,7 +220,7 @@ fn drive(mut phase: Phase, table: &Table, scene: &Scene) -> Result<Phase, Error>
     Ok(phase)
 }
 
-fn set(phase: Phase, table: &Table, scene: &Scene) -> Result<Phase, Error> {
+fn steer(phase: Phase, table: &Table, scene: &Scene) -> Result<Phase, Error> {
     let known: Vec<&str> = scene.devices().iter().map(|device| device.name()).collect();
     let device = table.required("device", |value| named(value, &known))?;
     let word = table.required("input", Value::string)?;

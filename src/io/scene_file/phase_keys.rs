@@ -29,7 +29,7 @@ pub(super) const PHASE: TableKeys = TableKeys::new(
         part(&FLOW, "flows of liquids into chambers"),
         part(&ACTUATE, "forces in springs and cables, stresses of muscles, strains of growth"),
         part(&DRIVE, "where dipoles are, and their moments"),
-        part(&SET, "inputs of devices, such as winds"),
+        part(&STEER, "inputs of devices, such as winds"),
         Key::new("magnetic_field", ValueType::Table(&MAGNETIC_FIELD), "the magnetic field"),
         Key::new(
             "contact",
@@ -368,8 +368,8 @@ pub(super) const DRIVE: TableKeys = TableKeys::new(
 )
 .one_of(&[&["position"], &["moment"], &["times", "positions"], &["times", "moments"]]);
 
-pub(super) const SET: TableKeys = TableKeys::new(
-    "set",
+pub(super) const STEER: TableKeys = TableKeys::new(
+    "steer",
     "An input of a device by its word: the `velocity` of a `[[wind]]`. A number or a vector, as the input is. Values of a table are interpolated linearly, and are \
      constant before and after.",
     &[
@@ -384,7 +384,7 @@ pub(super) const SET: TableKeys = TableKeys::new(
             "its values at these times",
         ),
     ],
-    "set = [{ device = \"gust\", input = \"velocity\", value = [\"5*sin(3*t)\", 0.0] }]",
+    "steer = [{ device = \"gust\", input = \"velocity\", value = [\"5*sin(3*t)\", 0.0] }]",
 )
 .one_of(&[&["value"], &["times", "values"]]);
 

@@ -151,7 +151,7 @@ impl Quantity {
                 row("moment of dipole", ["drive", "dipole"], "moment", "A m^2")
             }
             Self::Device(&DeviceInput { word, unit, absent, is_scaled, .. }) => {
-                Row { absent, scales: is_scaled, ..row(word, ["set", "device"], word, unit) }
+                Row { absent, scales: is_scaled, ..row(word, ["steer", "device"], word, unit) }
             }
         }
     }
