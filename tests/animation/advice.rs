@@ -25,7 +25,7 @@ pub fn advice_is_read_and_both_motions_play(browser: &mut Browser) -> Outcome {
     assert!(answer.starts_with(&enough.choice.to_string()), "{answer}");
 
     let measured = advice.candidates.iter().filter(|one| one.error.is_some()).count();
-    let points = "[...document.querySelectorAll('.points > *')]";
+    let points = "[...document.querySelectorAll('.mark')]";
     assert_eq!(browser.number(&format!("{points}.length"))?, measured as f64);
     let titles = format!("{points}.every((point) => point.querySelector('title').textContent)");
     assert_eq!(browser.evaluate(&titles)?, true);

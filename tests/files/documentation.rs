@@ -63,9 +63,10 @@ fn all_scenes_are_run() {
         tenth,
         curl,
         eleventh,
+        gust,
     ] = blocks("toml")[..]
     else {
-        panic!("fourteen blocks")
+        panic!("fifteen blocks")
     };
     assert_eq!([fourth, fifth, sixth, seventh], [GLUED_ARM, GRIPPER, WHEEL, FINGER]);
     assert_eq!([eighth, ninth, led, tenth, curl], [MUSCLES, MAGNETS, LED, GEL, CURL]);
@@ -85,6 +86,7 @@ fn all_scenes_are_run() {
         tenth,
         curl,
         eleventh,
+        gust,
     ] {
         let file = SceneFile::parse(text, Path::new("scene.toml")).unwrap();
         let motion = file.scene.simulate(&file.settings, &file.output.sampling()).unwrap();

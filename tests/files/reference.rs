@@ -9,12 +9,13 @@ use serde_json::Value;
 const PAGE: &str = include_str!("../../docs/reference.md");
 
 /// A file of these parts, each of which may be replaced.
-const PARTS: [(&str, &str); 12] = [
+const PARTS: [(&str, &str); 13] = [
     ("top", "title = \"base\"\n"),
     ("[body]", "[body]\nthickness = 0.01\n"),
     ("[[spring]]", "[[spring]]\nname = \"down\"\nends = [1, 3]\n"),
     ("[[magnet]]", "[[magnet]]\nremanence = [0.1, 0.0]\n"),
     ("[[dipole]]", "[[dipole]]\nname = \"lead\"\nmoment = [0.0, 1.0]\nposition = [0.05, 0.3]\n"),
+    ("[[wind]]", "[[wind]]\nname = \"gust\"\ndrag = 0.7\n"),
     ("[[chamber]]", "[[chamber]]\nname = \"inside\"\nnodes = [1, 2, 13, 12]\n"),
     ("[[gas]]", "[[gas]]\nchamber = \"inside\"\n"),
     ("[[supply]]", "[[supply]]\nname = \"pump\"\npressure = 2e5\n"),
@@ -60,6 +61,7 @@ fn with(example: &str, mesh: &str) -> String {
             "[[spring]]" => key == "actuate",
             "[[magnet]]" => ["magnetic_field", "[[dipole]]", "drive"].contains(&key),
             "[[dipole]]" => key == "drive",
+            "[[wind]]" => key == "steer",
             _ => true,
         };
         text += if is_whole || !is_needed { "" } else { base };

@@ -18,9 +18,9 @@ use crate::scene::forces::{Signal, Signals};
 
 /// A part of a scene that exerts a force on its body, with inputs and outputs of its own: a jet, a fan, a gyroscope.
 ///
-/// The trait is all that a program implements. A scene that has the device by [`Scene::device`] then takes
+/// The trait is all that a program implements. A scene that has the device by [`Scene::device`](crate::Scene::device) then takes
 /// [inputs](DeviceInput) by [`Phase::device_input`] and [`Simulation::device_input`](crate::Simulation::device_input), gives
-/// [outputs](DeviceOutput) to sensors ([`Reading::device`](crate::Reading::device)), has it in checkpoints and on finer
+/// [outputs](DeviceOutput) to sensors ([`Reading::device`](crate::simulate::Reading::device)), has it in checkpoints and on finer
 /// meshes, and draws it in pictures. Scene files have a table for a device that `serde` can read: see
 /// [`DeviceTable`](crate::DeviceTable). The example `own_device` has all of it.
 pub trait Device: fmt::Debug + Send + Sync {
