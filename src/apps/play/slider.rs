@@ -13,7 +13,7 @@ use crate::dynamics::simulate::Simulation;
 use crate::elements::body::{Body, Part};
 use crate::elements::mesh::Selection;
 use crate::scene::forces::{Chamber, Dipole, DipolePart};
-use crate::scene::timeline::{self, Device, DeviceInput, LoadKind, Phase, Quantity, Row, Scene};
+use crate::scene::timeline::{self, Device, LoadKind, Phase, Quantity, Row, Scene};
 
 /// The input that a slider sets, or a component of it.
 #[derive(Debug, Clone, PartialEq)]
@@ -153,36 +153,36 @@ impl Slider {
             }
         }
         let sliders = targets.into_iter().flat_map(|whole| {
-            let Row { word, unit, .. } = whole.quantity.row();
-            let usual = if unit == "N" { force } else { force * scene.body().size() };
-            let axes = match whole.quantity.rank(scene.body().dimension()) {
-                1 => vec![word.to_owned()],
-                _ => ["x", "y", "z"].map(|axis| format!("{word} {axis}")).into(),
-            };
-            let parts: Vec<Target> = (0..axes.len()).map(|axis| whole.along(axis)).collect();
-            let largest = parts.iter().map(|part| part.largest_in(scene)).fold(0.0, f64::max);
-            let slider = move |(part, what)| Self::new(part, what, [largest, usual], unit);
-            parts.into_iter().zip(axes).map(slider).collect::<Vec<_>>()
+            let is_force = whole.quantity.row().unit == "N";
+            let usual = if is_force { force } else { force * scene.body().size() };
+            Self::of_input(scene, &whole, usual)
         });
         sliders.collect()
     }
 
-    /// One slider per component of the inputs of devices that phases set.
+    /// One slider per component of the inputs of devices.
     fn of_devices(scene: &Scene) -> Vec<Self> {
         let of_device = |device: &Arc<dyn Device>| {
-            let of_input = |input: &'static DeviceInput| {
-                let whole = Target::of(Quantity::Device(input), device.name());
-                let rank = whole.quantity.rank(scene.body().dimension());
-                let parts: Vec<Target> = (0..rank).map(|axis| whole.along(axis)).collect();
-                let largest = parts.iter().map(|part| part.largest_in(scene)).fold(0.0, f64::max);
-                let names = ["x", "y", "z"].map(|axis| format!("{} {axis}", input.word));
-                let names = if rank == 1 { vec![input.word.into()] } else { names.into() };
-                let slider = move |(part, what)| Self::new(part, what, [largest, 1.0], input.unit);
-                parts.into_iter().zip(names).map(slider).collect::<Vec<_>>()
-            };
-            device.inputs().iter().flat_map(of_input).collect::<Vec<_>>()
+            let whole = |input| Target::of(Quantity::Device(input), device.name());
+            let sliders =
+                device.inputs().iter().flat_map(|input| Self::of_input(scene, &whole(input), 1.0));
+            sliders.collect::<Vec<_>>()
         };
         scene.devices().iter().flat_map(of_device).collect()
+    }
+
+    /// One slider per component of an input, all with one range: up to `usual` if the scene has no values.
+    fn of_input(scene: &Scene, whole: &Target, usual: f64) -> Vec<Self> {
+        let Row { word, unit, .. } = whole.quantity.row();
+        let rank = whole.quantity.rank(scene.body().dimension());
+        let names = match rank {
+            1 => vec![word.to_owned()],
+            _ => ["x", "y", "z"].map(|axis| format!("{word} {axis}")).into(),
+        };
+        let parts: Vec<Target> = (0..rank).map(|axis| whole.along(axis)).collect();
+        let largest = parts.iter().map(|part| part.largest_in(scene)).fold(0.0, f64::max);
+        let slider = |(part, what)| Self::new(part, what, [largest, usual], unit);
+        parts.into_iter().zip(names).map(slider).collect()
     }
 
     /// One slider per component of the position and of the moment of a dipole.

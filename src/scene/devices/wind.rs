@@ -12,7 +12,7 @@ use crate::scene::timeline::{
 };
 
 /// Density (kg/m^3) of air at 20 degrees.
-pub(crate) const AIR: f64 = 1.2;
+const AIR: f64 = 1.2;
 
 /// Wind: air that drags faces along with its velocity relative to theirs, as a [`Fluid`] does, and whose velocity
 /// phases and commands set.
@@ -99,7 +99,7 @@ impl Device for Wind {
 
     fn gauge(&self, _number: usize, body: &Body) -> Result<DeviceGauge, InputError> {
         let force = self.fluid().force(body, None)?;
-        Ok(Box::new(move |now| force.in_current(now.input(0), now.u, now.v)))
+        Ok(Box::new(move |now| force.in_current(now.input(0), now.u, now.v, None)))
     }
 
     fn on_finer_mesh(

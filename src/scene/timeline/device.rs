@@ -127,7 +127,7 @@ fn sum<'a>(
     signals: impl Iterator<Item = &'a InputSignal>,
     t: f64,
 ) -> [f64; 3] {
-    let rank = if input.is_vector { dimension } else { 1 };
+    let rank = input.rank(dimension);
     let (mut sum, mut is_set) = ([0.0; 3], false);
     for signal in signals {
         is_set = true;

@@ -36,6 +36,18 @@ impl DeviceInput {
     pub const fn vector(word: &'static str, unit: &'static str) -> Self {
         Self { is_vector: true, ..Self::number(word, unit) }
     }
+
+    /// Number of components on a body of this `dimension`.
+    pub(crate) const fn rank(&self, dimension: usize) -> usize {
+        if self.is_vector { dimension } else { 1 }
+    }
+}
+
+impl DeviceOutput {
+    /// Number of components on a body of this `dimension`.
+    pub(crate) const fn rank(&self, dimension: usize) -> usize {
+        if self.is_vector { dimension } else { 1 }
+    }
 }
 
 impl PartialEq for DeviceInput {

@@ -171,13 +171,7 @@ impl Quantity {
         match self {
             Self::Load(_) | Self::Field | Self::Dipole(_) => dimension,
             Self::Wrench(kind) => kind.rank(dimension),
-            Self::Device(input) => {
-                if input.is_vector {
-                    dimension
-                } else {
-                    1
-                }
-            }
+            Self::Device(input) => input.rank(dimension),
             Self::Actuation | Self::Pressure | Self::Opening | Self::Flow => 1,
             Self::FacePressure => 1,
         }

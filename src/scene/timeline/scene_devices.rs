@@ -88,7 +88,7 @@ impl Scene {
                 signal.validate(&name)
             }
             (_, Quantity::Device(own)) => {
-                let needed = if own.is_vector { dimension } else { 1 };
+                let needed = own.rank(dimension);
                 let help = format!("it needs {needed} component(s) ({})", row.unit);
                 Err(InputError::new(name, "a value of another rank", help))
             }

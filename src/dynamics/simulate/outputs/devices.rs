@@ -14,8 +14,8 @@ impl View<'_> {
     pub fn device(&self, device: &str, output: &str) -> Result<Vec<f64>, InputError> {
         let number = self.scene.device_number(device, "device")?;
         let own = self.scene.output_number(number, output)?;
-        let is_vector = self.scene.devices()[number].outputs()[own].is_vector;
-        let rank = if is_vector { self.body().dimension() } else { 1 };
+        let output = &self.scene.devices()[number].outputs()[own];
+        let rank = output.rank(self.body().dimension());
         Ok(self.device_output(number, own)[..rank].to_vec())
     }
 

@@ -57,7 +57,7 @@ fn index_one_jacobian_is_the_derivative_of_the_residual() {
     let n = equations.system.dofs();
     let state = turned(&equations.system, true);
     let (y, yp) = equations.consistent(0.1, &state).unwrap();
-    let [by_y, by_yp] = residual_derivatives(&mut equations, &y, &yp);
+    let [by_y, by_yp] = residual_derivatives(&mut equations, &y, &yp, 1e-5);
     let cj = 50.0;
     let (offsets, rows) = equations.sparse_pattern();
     let mut values = vec![0.0; rows.len()];
@@ -106,7 +106,7 @@ fn structured_solve_is_that_of_the_index_two_jacobian() {
     let n = equations.system.dofs();
     let state = turned(&equations.system, false);
     let (y, yp) = equations.consistent(0.1, &state).unwrap();
-    let [by_y, by_yp] = residual_derivatives(&mut equations, &y, &yp);
+    let [by_y, by_yp] = residual_derivatives(&mut equations, &y, &yp, 1e-5);
     let lambda = 2 * n + ENERGIES;
     let kept: Vec<usize> = (0..2 * n).chain(lambda..y.len()).collect();
     let [rows, edges] = [equations.system.rows.len(), equations.system.edges.list.len()];

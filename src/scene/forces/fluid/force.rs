@@ -84,20 +84,22 @@ impl FluidForce {
 
     /// The sum of its forces (N), on all nodes or those that `is_read` names.
     pub(crate) fn on(&self, t: f64, u: &[f64], v: &[f64], is_read: Option<&[bool]>) -> [f64; 3] {
+        self.in_current(self.current(t), u, v, is_read)
+    }
+
+    /// That sum in a current of this velocity (m/s).
+    pub(crate) fn in_current(
+        &self,
+        current: [f64; 3],
+        u: &[f64],
+        v: &[f64],
+        is_read: Option<&[bool]>,
+    ) -> [f64; 3] {
         let mut sum = [0.0; 3];
-        self.each(self.current(t), u, v, |_, node, force| {
+        self.each(current, u, v, |_, node, force| {
             if is_read.is_none_or(|is_read| is_read[node]) {
                 sum.iter_mut().zip(force).for_each(|(sum, force)| *sum += force);
             }
-        });
-        sum
-    }
-
-    /// That sum on all nodes, in a current of this velocity (m/s).
-    pub(crate) fn in_current(&self, current: [f64; 3], u: &[f64], v: &[f64]) -> [f64; 3] {
-        let mut sum = [0.0; 3];
-        self.each(current, u, v, |_, _, force| {
-            sum.iter_mut().zip(force).for_each(|(sum, force)| *sum += force);
         });
         sum
     }
