@@ -200,7 +200,8 @@ fn what_does_not_fit_is_an_error() {
     let scene = strip().device(Wind::new("air").drag(0.7, 0.0)).phase(phase);
     let error = scene.validate().unwrap_err().to_string();
     assert!(error.contains("it needs 2 component(s) (m/s)"), "{error}");
-    let two = strip().device(Wind::new("air")).device(Wind::new("air"));
+    let wind = || Wind::new("air").drag(0.7, 0.0);
+    let two = strip().device(wind()).device(wind());
     let error = two.phase(Phase::until(1.0)).validate().unwrap_err().to_string();
-    assert!(error.contains("air"), "{error}");
+    assert!(error.contains("device name = \"air\"") && error.contains("taken"), "{error}");
 }
