@@ -74,6 +74,16 @@ pub trait Integrator {
     /// [`Error::Input`] if `t` is not finite or lies behind the steps already taken.
     fn set_stop_time(&mut self, t: Option<f64>) -> Result<(), Error>;
 
+    /// Makes the integration stop where the equations change at time `t`, without evaluating them at `t` itself.
+    ///
+    /// [`t`](Self::t) is then the number before, and the state that just before the change.
+    ///
+    /// # Errors
+    /// As for [`set_stop_time`](Self::set_stop_time).
+    fn set_stop_before(&mut self, t: f64) -> Result<(), Error> {
+        self.set_stop_time(Some(number_before(t, self.t())))
+    }
+
     /// Starts again at time `t` from `y`, with the same options and allocations.
     ///
     /// For use after a jump of the state or of the system. Counters start at zero; a stop time is removed.
@@ -124,6 +134,11 @@ pub trait Integrator {
     fn into_system(self) -> Self::System
     where
         Self: Sized;
+}
+
+/// The neighbour of time `t` on the way there from `now`.
+pub(crate) fn number_before(t: f64, now: f64) -> f64 {
+    if t > now { t.next_down() } else { t.next_up() }
 }
 
 /// Where an integration call ended.

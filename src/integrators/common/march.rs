@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use super::clock::Clock;
 use super::error::{Callback, Cause, Error, IntegrationError};
 use super::explicit_options::ExplicitOptions;
 use super::roots::Roots;
@@ -18,6 +19,11 @@ pub struct March<S> {
     pub(crate) options: ExplicitOptions,
     /// Weights of the error norm.
     pub(crate) weight: Vec<f64>,
+    /// Counts all times below from the start.
+    pub(crate) clock: Clock,
+    /// Time of the present state, and the stop time, as users know them.
+    pub(crate) now: f64,
+    pub(crate) stop_given: f64,
     pub(crate) stop_time: Option<f64>,
     /// End of the last accepted step, the solution there and f.
     pub(crate) t: f64,
@@ -45,7 +51,7 @@ pub struct March<S> {
 
 impl<S: Ode> March<S> {
     /// Separates failures that a smaller step may remedy from those that end the integration, in a call at
-    /// time `t` on a step of size `step`.
+    /// time `t` from the start on a step of size `step`.
     pub(crate) fn classify(
         &self,
         outcome: Result<(), Failure>,
@@ -56,7 +62,7 @@ impl<S: Ode> March<S> {
         match outcome {
             Ok(()) => Ok(None),
             Err(Failure::Recoverable(message)) => {
-                Ok(Some(Cause::Rejected { callback, t, message }))
+                Ok(Some(Cause::Rejected { callback, t: self.clock.time(t), message }))
             }
             Err(Failure::Fatal(source)) => {
                 let stopped = self.stopped(Cause::Fatal(callback), step);
@@ -67,7 +73,8 @@ impl<S: Ode> March<S> {
 
     /// The error of an integration that stopped in a step.
     pub(crate) fn stopped(&self, cause: Cause, step: f64) -> IntegrationError {
-        let Self { integrator, order, t, .. } = *self;
+        let Self { integrator, order, .. } = *self;
+        let t = self.clock.time(self.t);
         IntegrationError { integrator, cause, t, step, order, message: String::new(), source: None }
     }
 }
@@ -80,7 +87,7 @@ pub(crate) fn not_finite(t: f64, slope: &[f64]) -> Option<Cause> {
 
 /// Formulas of a one-step method for a single step.
 ///
-/// Steps share nothing but their size. Starts, stops, roots and the loop over steps are done by
+/// Steps share nothing but their size. Times are those from the start, of [`March`]. Starts, stops, roots and the loop over steps are done by
 /// [`OneStep`](super::OneStep).
 pub trait StepMethod: fmt::Debug {
     /// Restarts the method.

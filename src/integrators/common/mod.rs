@@ -6,6 +6,7 @@
 //! [`central_difference`](crate::integrators::central_difference); the systems of equations are in
 //! [`ode`](crate::integrators::ode).
 
+mod clock;
 mod error;
 mod explicit_options;
 mod integrator;
@@ -18,9 +19,11 @@ mod roots;
 mod statistics;
 mod tolerances;
 
+pub(crate) use clock::Clock;
 pub use error::{Callback, Cause, Error, IntegrationError};
 pub use explicit_options::ExplicitOptions;
 pub(crate) use explicit_options::{check_stop_time, check_target};
+pub(crate) use integrator::number_before;
 pub use integrator::{Integrator, Reached};
 pub(crate) use jacobian_check::{JacobianCheck, Point, Wanted};
 pub(crate) use march::{March, StepMethod, not_finite};

@@ -6,9 +6,10 @@
 
 use std::mem::{swap, take};
 
+use super::clock::Clock;
 use super::error::{Callback, Cause, Error};
 use super::explicit_options::{ExplicitOptions, check_stop_time, check_target};
-use super::integrator::{Integrator, Reached};
+use super::integrator::{Integrator, Reached, number_before};
 use super::march::{March, StepMethod, not_finite};
 use super::options::{check_finite, check_form, check_length, check_start, check_start_time};
 use super::roots::Roots;
@@ -42,12 +43,15 @@ impl<S: Ode, M: StepMethod> OneStep<S, M> {
             order,
             options: options.clone(),
             weight: zeros(),
+            clock: Clock::starting_at(t),
+            now: t,
+            stop_given: 0.0,
             stop_time: None,
-            t,
+            t: 0.0,
             y: y.to_vec(),
             slope: zeros(),
             slope_known: false,
-            t_old: t,
+            t_old: 0.0,
             y_old: zeros(),
             slope_old: zeros(),
             argument: zeros(),
@@ -85,6 +89,7 @@ impl<S: Ode, M: StepMethod> OneStep<S, M> {
 
     /// Makes `t()` and `y()` the state at a time within the last step.
     fn rest_at(&mut self, t: f64) {
+        self.march.now = self.march.clock.time(t);
         self.march.rest = (t != self.march.t).then_some(t);
         if self.march.rest.is_some() {
             let mut output = take(&mut self.march.output);
@@ -95,9 +100,13 @@ impl<S: Ode, M: StepMethod> OneStep<S, M> {
 
     /// How a call ended that did not stop at a root.
     fn reached(&mut self) -> Reached {
-        let t = self.t();
-        match self.march.stop_time.take_if(|stop| *stop == t) {
-            Some(_) => Reached::StopTime,
+        let elapsed = self.march.rest.unwrap_or(self.march.t);
+        match self.march.stop_time.take_if(|stop| *stop == elapsed) {
+            Some(_) => {
+                self.march.now = self.march.stop_given;
+                self.march.clock.go_on();
+                Reached::StopTime
+            }
             None => Reached::Time,
         }
     }
@@ -106,9 +115,10 @@ impl<S: Ode, M: StepMethod> OneStep<S, M> {
     fn evaluate_slope(&mut self) -> Result<(), Error> {
         let march = &mut self.march;
         march.statistics.evaluations += 1;
-        let outcome = call::rhs(&mut march.system, march.t, &march.y, &mut march.slope);
+        let t = march.clock.time(march.t);
+        let outcome = call::rhs(&mut march.system, t, &march.y, &mut march.slope);
         let setback = march.classify(outcome, Callback::Rhs, march.t, 0.0)?;
-        if let Some(cause) = setback.or_else(|| not_finite(march.t, &march.slope)) {
+        if let Some(cause) = setback.or_else(|| not_finite(t, &march.slope)) {
             return Err(march.stopped(cause, 0.0).into());
         }
         march.slope_known = true;
@@ -138,7 +148,12 @@ impl<S: Ode, M: StepMethod> OneStep<S, M> {
             *argument = y + h * slope;
         }
         march.statistics.evaluations += 1;
-        let outcome = call::rhs(&mut march.system, t_trial, &march.argument, &mut march.slope_old);
+        let outcome = call::rhs(
+            &mut march.system,
+            march.clock.time(t_trial),
+            &march.argument,
+            &mut march.slope_old,
+        );
         if march.classify(outcome, Callback::Rhs, t_trial, h)?.is_some() {
             return Ok(h);
         }
@@ -153,6 +168,16 @@ impl<S: Ode, M: StepMethod> OneStep<S, M> {
         let from_error = time_scale * (0.01 / (slope_size * time_scale)).powf(exponent);
         // NaN or zero if the slopes vanish or are not finite: then h is used.
         Ok(if from_error > 0.0 { from_error.min(100.0 * h) } else { h })
+    }
+
+    /// Takes one step, unless all that a call allows have been taken since the `first`.
+    fn advance_towards(&mut self, target: f64, first: u64) -> Result<(), Error> {
+        let steps = self.march.statistics.steps - first;
+        if steps == u64::from(self.march.options.steps.max_steps) {
+            let cause = Cause::TooManySteps { steps, target, notice: self.notice() };
+            return Err(self.march.stopped(cause, self.march.statistics.last_step).into());
+        }
+        self.advance()
     }
 
     /// Takes one step.
@@ -206,18 +231,21 @@ impl<S: Ode, M: StepMethod> OneStep<S, M> {
             (march.t_old, march.t) = (march.t, t_new);
             swap(&mut march.y, &mut march.y_old);
             swap(&mut march.slope, &mut march.slope_old);
+            march.now = march.clock.time(t_new);
             self.update_weight();
             return Ok(());
         }
     }
 
     /// Sets the state `y` at time `t`, without a last step to interpolate in.
-    fn set_state(&mut self, t: f64, y: &[f64]) -> Result<(), Error> {
+    fn set_state(&mut self, clock: Clock, t: f64, y: &[f64]) -> Result<(), Error> {
         let march = &mut self.march;
         check_length("length of y", y.len(), march.y.len())?;
         check_start_time("t", t)?;
         check_finite("y", y)?;
-        (march.t, march.t_old) = (t, t);
+        let elapsed = clock.elapsed(t);
+        (march.clock, march.now) = (clock, t);
+        (march.t, march.t_old) = (elapsed, elapsed);
         march.y.copy_from_slice(y);
         (march.rest, march.stop_time, march.slope_known) = (None, None, false);
         march.roots.restart();
@@ -231,7 +259,7 @@ impl<S: Ode, M: StepMethod> Integrator for OneStep<S, M> {
     type System = S;
 
     fn t(&self) -> f64 {
-        self.march.rest.unwrap_or(self.march.t)
+        self.march.now
     }
 
     fn y(&self) -> &[f64] {
@@ -239,27 +267,27 @@ impl<S: Ode, M: StepMethod> Integrator for OneStep<S, M> {
     }
 
     fn solve_to(&mut self, t: f64) -> Result<Reached, Error> {
-        check_target(t, "the last step began at", self.march.t_old)?;
+        let clock = self.march.clock;
+        check_target(t, "the last step began at", clock.time(self.march.t_old))?;
         if t == self.t() {
             return Ok(Reached::Time);
         }
+        let target = clock.elapsed(t);
         self.pass_root()?;
         let first = self.march.statistics.steps;
         loop {
-            if let Some(root) = self.find_root(t.min(self.march.t))? {
+            if let Some(root) = self.find_root(target.min(self.march.t))? {
                 self.rest_at(root);
                 return Ok(Reached::Root);
             }
-            if self.march.t >= t || self.march.stop_time == Some(self.march.t) {
-                self.rest_at(t.min(self.march.t));
+            if self.march.t >= target || self.march.stop_time == Some(self.march.t) {
+                self.rest_at(target.min(self.march.t));
+                if self.march.t >= target {
+                    self.march.now = t;
+                }
                 return Ok(self.reached());
             }
-            let steps = self.march.statistics.steps - first;
-            if steps == u64::from(self.march.options.steps.max_steps) {
-                let cause = Cause::TooManySteps { steps, target: t, notice: self.notice() };
-                return Err(self.march.stopped(cause, self.march.statistics.last_step).into());
-            }
-            self.advance()?;
+            self.advance_towards(t, first)?;
         }
     }
 
@@ -269,16 +297,31 @@ impl<S: Ode, M: StepMethod> Integrator for OneStep<S, M> {
             return Ok(Reached::Time);
         }
         self.pass_root()?;
+        let (from, first) = (self.march.now, self.march.statistics.steps);
         if self.march.rest.is_none() {
             self.advance()?;
         }
-        let root = self.find_root(self.march.t)?;
-        self.rest_at(root.unwrap_or(self.march.t));
-        Ok(if root.is_some() { Reached::Root } else { self.reached() })
+        loop {
+            let (clock, end, step) =
+                (self.march.clock, self.march.t, self.march.t - self.march.t_old);
+            if let Some(root) = self.find_root(end)? {
+                self.rest_at(root);
+                return Ok(Reached::Root);
+            }
+            let stops = self.march.stop_time == Some(end);
+            // steps between the same two numbers are one step
+            if stops || clock.passes(from, end, step) {
+                let (_, last) = clock.last_within(end, step);
+                self.rest_at(if stops { end } else { last });
+                return Ok(self.reached());
+            }
+            self.advance_towards(towards, first)?;
+        }
     }
 
     fn last_step(&self) -> (f64, f64) {
-        (self.march.t_old, self.march.t)
+        let March { clock, t_old, t, .. } = self.march;
+        (clock.time(t_old), clock.time(t))
     }
 
     fn last_order(&self) -> u32 {
@@ -291,15 +334,20 @@ impl<S: Ode, M: StepMethod> Integrator for OneStep<S, M> {
 
     /// The state, or, for `derivative` 1, the derivative of the interpolant.
     fn interpolate(&mut self, t: f64, derivative: u32, out: &mut [f64]) -> Result<(), Error> {
-        let March { t: end, t_old: start, y, .. } = &self.march;
-        check_length("length of out", out.len(), y.len())?;
-        if !(start <= &t && &t <= end) {
+        let March { clock, t: end, t_old: start, .. } = self.march;
+        check_length("length of out", out.len(), self.march.y.len())?;
+        let elapsed = match self.march.rest {
+            Some(rest) if t == self.march.now => rest,
+            _ => clock.within(t, (start, end)),
+        };
+        if !(start <= elapsed && elapsed <= end) {
+            let [start, end] = [start, end].map(|at| clock.time(at));
             let help = format!("it lies outside the last step, [{start}, {end}]");
             return Err(Error::input("t", t, help));
         }
         match derivative {
-            0 => self.interpolate_state(t, out),
-            1 if start < end => self.method.interpolate_slope(&self.march, t, out),
+            0 => self.interpolate_state(elapsed, out),
+            1 if start < end => self.method.interpolate_slope(&self.march, elapsed, out),
             1 => return Err(Error::input("derivative", 1, "take a step first")),
             _ => return Err(Error::input("derivative", derivative, "give 0 or 1")),
         }
@@ -308,14 +356,24 @@ impl<S: Ode, M: StepMethod> Integrator for OneStep<S, M> {
 
     fn set_stop_time(&mut self, t: Option<f64>) -> Result<(), Error> {
         if let Some(stop) = t {
-            check_stop_time(stop, self.march.t, self.t())?;
+            check_stop_time(stop, self.march.clock.time(self.march.t), self.t())?;
+            self.march.stop_given = stop;
         }
-        self.march.stop_time = t;
+        self.march.clock.go_on();
+        self.march.stop_time = t.map(|stop| self.march.clock.elapsed(stop));
+        Ok(())
+    }
+
+    fn set_stop_before(&mut self, t: f64) -> Result<(), Error> {
+        let before = number_before(t, self.t());
+        self.set_stop_time(Some(before))?;
+        let March { clock, stop_time, t: now, .. } = &mut self.march;
+        *stop_time = Some(clock.end_before(t, before, *now));
         Ok(())
     }
 
     fn reinit(&mut self, t: f64, y: &[f64]) -> Result<(), Error> {
-        self.set_state(t, y)?;
+        self.set_state(Clock::starting_at(t), t, y)?;
         self.march.next_step = self.march.options.steps.initial_step;
         self.march.setback = None;
         self.march.statistics = Statistics::default();
@@ -324,7 +382,7 @@ impl<S: Ode, M: StepMethod> Integrator for OneStep<S, M> {
     }
 
     fn resume(&mut self, t: f64, y: &[f64]) -> Result<bool, Error> {
-        self.set_state(t, y)?;
+        self.set_state(self.march.clock, t, y)?;
         Ok(true)
     }
 
@@ -337,7 +395,7 @@ impl<S: Ode, M: StepMethod> Integrator for OneStep<S, M> {
             last_order: self.march.order,
             current_order: self.march.order,
             current_step: self.march.next_step.unwrap_or_default(),
-            current_time: self.march.t,
+            current_time: self.march.clock.time(self.march.t),
             ..self.march.statistics.clone()
         }
     }

@@ -71,9 +71,9 @@ impl<S: Ode, M: StepMethod> OneStep<S, M> {
     /// Writes g(t, y) for y = `argument`.
     fn evaluate_roots(&mut self, t: f64, g: &mut [f64]) -> Result<(), Error> {
         let march = &mut self.march;
-        let step = march.t - march.t_old;
+        let (step, time) = (march.t - march.t_old, march.clock.time(t));
         march.statistics.root_evaluations += 1;
-        if let Err(failure) = call::roots(&mut march.system, t, &march.argument, g) {
+        if let Err(failure) = call::roots(&mut march.system, time, &march.argument, g) {
             let mut error = march.stopped(Cause::Fatal(Callback::Roots), step);
             error.source = Some(failure.into_error());
             return Err(error.into());
@@ -82,7 +82,7 @@ impl<S: Ode, M: StepMethod> OneStep<S, M> {
             None => Ok(()),
             Some(component) => {
                 let (callback, value) = (Callback::Roots, g[component]);
-                let cause = Cause::NotFinite { callback, t, component, value };
+                let cause = Cause::NotFinite { callback, t: time, component, value };
                 Err(march.stopped(cause, step).into())
             }
         }

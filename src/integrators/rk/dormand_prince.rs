@@ -67,12 +67,12 @@ impl StepMethod for Pair {
         t_new: f64,
         h: f64,
     ) -> Result<Result<f64, Cause>, Error> {
-        let ([k2, k3, k4, k5, k6], t) = (&mut self.k, march.t);
+        let ([k2, k3, k4, k5, k6], t, clock) = (&mut self.k, march.t, march.clock);
         macro_rules! stage {
             ($k:expr, at $t:expr, $y:ident from $a:ident of $($other:expr),+) => {
                 advance(&mut march.$y, &march.y, h, $a, [$(&*$other),+]);
                 march.statistics.evaluations += 1;
-                let outcome = call::rhs(&mut march.system, $t, &march.$y, $k);
+                let outcome = call::rhs(&mut march.system, clock.time($t), &march.$y, $k);
                 if let Some(setback) = march.classify(outcome, Callback::Rhs, $t, h)? {
                     return Ok(Err(setback));
                 }
@@ -91,13 +91,13 @@ impl StepMethod for Pair {
         }
         // Look for the first culprit only now that there is one.
         let all = [k1, k2, k3, k4, k5, k6, k7];
-        let found = all.into_iter().zip(C).find_map(|(k, c)| not_finite(t + c * h, k));
+        let found = all.into_iter().zip(C).find_map(|(k, c)| not_finite(clock.time(t + c * h), k));
         // Finite stages whose combination overflows: the step is far too long.
         Ok(found.map_or(Ok(f64::MAX), Err))
     }
 
     fn accept<S: Ode>(&mut self, march: &March<S>, t_new: f64, h: f64, error: f64) -> f64 {
-        self.monitor.accepted(t_new, h, self.rate(march));
+        self.monitor.accepted(march.clock.time(t_new), h, self.rate(march));
         self.controller.accept(h, error)
     }
 

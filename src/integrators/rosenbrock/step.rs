@@ -65,7 +65,7 @@ impl LinearlyImplicit {
         if self.still_serves(gamma) {
             return Ok(None);
         }
-        let (t, reuse) = (march.t, is_kept || self.known.jacobian);
+        let (t, reuse) = (march.clock.time(march.t), is_kept || self.known.jacobian);
         let March { system, y, slope, statistics, .. } = march;
         statistics.linear_setups += 1;
         self.factored = None;
@@ -84,7 +84,7 @@ impl LinearlyImplicit {
             if self.matrix.is_some() { Callback::Jacobian } else { Callback::NewtonSetup };
         let is_regular = match outcome {
             Ok(is_regular) => is_regular,
-            Err(failure) => return march.classify(Err(failure), callback, t, h),
+            Err(failure) => return march.classify(Err(failure), callback, march.t, h),
         };
         if let Some((component, value)) = self.matrix.as_ref().and_then(Matrix::not_finite) {
             let cause = Cause::NotFinite { callback, t, component, value };
@@ -113,13 +113,14 @@ impl LinearlyImplicit {
         if !check.is_due() {
             return None;
         }
-        let March { system, t, y, .. } = march;
+        let t = march.clock.time(march.t);
+        let March { system, y, .. } = march;
         check.find(method, Point { y, yp: &[], cj: 0.0 }, &mut |wanted, out| match wanted {
             Wanted::Product(v) => {
                 matrix.multiply(v, out);
                 true
             }
-            Wanted::Equations([y, _]) => call::rhs(system, *t, y, out).is_ok(),
+            Wanted::Equations([y, _]) => call::rhs(system, t, y, out).is_ok(),
         })
     }
 
@@ -129,14 +130,21 @@ impl LinearlyImplicit {
         march: &mut March<S>,
         h: f64,
     ) -> Result<Option<Cause>, Error> {
-        let ahead = march.t + (f64::EPSILON.sqrt() * (march.t.abs() + h)).min(h);
+        let t = march.clock.time(march.t);
+        let ahead = t + (f64::EPSILON.sqrt() * (t.abs() + h)).min(h);
+        if ahead == t {
+            // no number in the step is a later time
+            self.time_slope.fill(0.0);
+            self.known.time_slope = true;
+            return Ok(None);
+        }
         march.statistics.difference_quotient_evaluations += 1;
         let outcome = call::rhs(&mut march.system, ahead, &march.y, &mut self.time_slope);
-        let setback = march.classify(outcome, Callback::Rhs, ahead, h)?;
+        let setback = march.classify(outcome, Callback::Rhs, march.clock.elapsed(ahead), h)?;
         if let Some(cause) = setback.or_else(|| not_finite(ahead, &self.time_slope)) {
             return Ok(Some(cause));
         }
-        let rate = 1.0 / (ahead - march.t);
+        let rate = 1.0 / (ahead - t);
         for (ahead, slope) in self.time_slope.iter_mut().zip(&march.slope) {
             *ahead = rate * (*ahead - slope);
         }
@@ -153,6 +161,7 @@ impl LinearlyImplicit {
     ) -> Result<Option<Cause>, Error> {
         let (tableau, gamma) = (self.tableau, self.tableau.gamma * h);
         let t = march.t + tableau.alpha[i] * h;
+        let time = march.clock.time(t);
         let (before, rest) = self.stages.split_at_mut(i);
         let u = &mut rest[0];
         // what the system leaves out of f in `newton_rhs`, it adds in `newton_solve`
@@ -164,15 +173,15 @@ impl LinearlyImplicit {
             add(&mut march.argument, tableau.a[i], before);
             march.statistics.evaluations += 1;
             let outcome = if self.matrix.is_some() {
-                call::rhs(&mut march.system, t, &march.argument, u)
+                call::rhs(&mut march.system, time, &march.argument, u)
             } else {
                 share = gamma;
-                call::newton_rhs(&mut march.system, t, &march.argument, u)
+                call::newton_rhs(&mut march.system, time, &march.argument, u)
             };
             if let Err(failure) = outcome {
                 return march.classify(Err(failure), Callback::Rhs, t, h);
             }
-            if let Some(cause) = not_finite(t, u) {
+            if let Some(cause) = not_finite(time, u) {
                 return Ok(Some(cause));
             }
         }
@@ -212,9 +221,10 @@ impl LinearlyImplicit {
             add(bend, weights, &self.stages);
         }
         march.statistics.evaluations += 1;
-        let outcome = call::rhs(&mut march.system, t_new, &march.y_old, &mut march.slope_old);
+        let time = march.clock.time(t_new);
+        let outcome = call::rhs(&mut march.system, time, &march.y_old, &mut march.slope_old);
         let setback = march.classify(outcome, Callback::Rhs, t_new, h)?;
-        let setback = setback.or_else(|| not_finite(t_new, &march.slope_old));
+        let setback = setback.or_else(|| not_finite(time, &march.slope_old));
         if setback.is_some() || coupled == march.y.len() {
             return Ok(setback);
         }
@@ -222,7 +232,12 @@ impl LinearlyImplicit {
         let middle = march.t + 0.5 * h;
         interpolate([&march.y, &march.y_old], &self.bends, 0.5, &mut march.argument);
         march.statistics.evaluations += 1;
-        let outcome = call::rhs(&mut march.system, middle, &march.argument, &mut march.output);
+        let outcome = call::rhs(
+            &mut march.system,
+            march.clock.time(middle),
+            &march.argument,
+            &mut march.output,
+        );
         for i in coupled..march.y.len() {
             let [first, last] = [h * march.slope[i], h * march.slope_old[i]];
             let change = (first + 4.0 * h * march.output[i] + last) / 6.0;

@@ -38,7 +38,7 @@ impl<'a> Run<'a> {
     /// stop the step, which are recorded last. `is_last` says that the next step, if any, does not continue
     /// from there, but starts at a break.
     pub(super) fn look_for_events(&mut self, t: f64, is_last: bool) -> Result<Found, Reason> {
-        let tolerance = time_tolerance(t, t - self.t);
+        let tolerance = time_tolerance(t - self.span.0, t - self.t);
         let count = self.counts.len();
         let mut roots = Vec::with_capacity(count);
         // where functions were found undefined

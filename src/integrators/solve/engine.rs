@@ -18,6 +18,7 @@ pub(super) trait Engine {
     fn yp(&self) -> &[f64];
     fn step(&mut self, towards: f64) -> Result<Reached, Error>;
     fn set_stop_time(&mut self, t: f64) -> Result<(), Error>;
+    fn set_stop_before(&mut self, t: f64) -> Result<(), Error>;
     fn interpolate(&mut self, t: f64, derivative: u32, out: &mut [f64]) -> Result<(), Error>;
     fn interpolant_degree(&self) -> u32;
     fn statistics(&self) -> Statistics;
@@ -79,6 +80,7 @@ macro_rules! forward {
             fn t() -> f64;
             fn y() -> &[f64];
             fn step(towards: f64) -> Result<Reached, Error>;
+            fn set_stop_before(t: f64) -> Result<(), Error>;
             fn interpolate(t: f64, derivative: u32, out: &mut [f64]) -> Result<(), Error>;
             fn interpolant_degree() -> u32;
             fn statistics() -> Statistics;

@@ -123,7 +123,11 @@ impl<'a> Run<'a> {
         check_start_time("start of the span", start)?;
         check_time("end of the span", end)?;
         if start == end {
-            return Err(InputError::new("end of the span", end, "it differs from the start").into());
+            let spacing = start.abs().next_up() - start.abs();
+            let help = format!(
+                "it differs from the start; at this time numbers are {spacing:.1e} apart: count shorter times from the start of the span"
+            );
+            return Err(InputError::new("end of the span", format!("{end:?}"), help).into());
         }
         if (end - start).abs() < SHORTEST {
             let help = format!("it lies at least {SHORTEST:e} from the start, {start:?}");
@@ -237,8 +241,11 @@ impl<'a> Run<'a> {
     /// Makes the next steps end just before the next break, or at the end of the span; there may be no room
     /// for a step.
     pub(super) fn set_stop_time(&mut self) -> Result<(), common::Error> {
-        let stop = self.breaks.last().map_or(self.span.1, |next| self.just_before(next.t));
-        if stop == self.t { Ok(()) } else { self.engine.set_stop_time(stop) }
+        match self.breaks.last() {
+            None if self.span.1 != self.t => self.engine.set_stop_time(self.span.1),
+            Some(next) if self.just_before(next.t) != self.t => self.engine.set_stop_before(next.t),
+            _ => Ok(()),
+        }
     }
 
     /// Whether time `t` is the last number before the next break.

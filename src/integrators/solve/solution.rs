@@ -86,15 +86,34 @@ pub(super) struct SavedPoint<'r> {
     pub(super) q: &'r [f64],
 }
 
-/// Inner nodes of a step for a polynomial of this degree, as fractions of the step: the extrema of
-/// Chebyshev's polynomial.
-pub(super) fn nodes(degree: usize) -> impl Iterator<Item = f64> {
-    (1..degree).map(move |k| node(k, degree))
+/// Times of the inner nodes of a step for a polynomial of this degree: the extrema of Chebyshev's polynomial.
+///
+/// In a step of so few numbers that nodes would be the same ones, all numbers between its ends are nodes.
+fn nodes(degree: usize, step: [f64; 2]) -> impl Iterator<Item = f64> {
+    let numbers = numbers(step);
+    // the nodes at the ends are the closest
+    let are_distinct = numbers * extremum(1, degree) >= 1.0;
+    let degree = if are_distinct { degree } else { numbers as usize };
+    (1..degree).map(move |k| step[0] + node(k, degree, numbers) * (step[1] - step[0]))
 }
 
-fn node(k: usize, degree: usize) -> f64 {
+/// Inner node `k` of a polynomial of this degree, as a fraction of a step of so many numbers.
+fn node(k: usize, degree: usize, numbers: f64) -> f64 {
+    if degree as f64 == numbers { k as f64 / numbers } else { extremum(k, degree) }
+}
+
+fn extremum(k: usize, degree: usize) -> f64 {
     0.5 - 0.5 * (std::f64::consts::PI * k as f64 / degree as f64).cos()
 }
+
+/// How many numbers a step has beyond its start.
+fn numbers([from, to]: [f64; 2]) -> f64 {
+    let latest = from.abs().max(to.abs());
+    ((to - from).abs() / (latest.next_up() - latest)).round()
+}
+
+/// Steps of fewer numbers have nodes that are rounded by so much that polynomials show it.
+const FINE: f64 = 1e8;
 
 impl Solution {
     pub(super) fn new(t: f64, row: SavedPoint<'_>, dense: bool) -> Self {
@@ -125,10 +144,10 @@ impl Solution {
         if let Some(inner) = &mut self.inner {
             let (start, last) = (self.nodes.len(), self.t[self.t.len() - 1]);
             inner.push(start);
-            for part in nodes(degree as usize) {
+            for time in nodes(degree as usize, [last, t]) {
                 let place = self.nodes.len();
                 self.nodes.resize(place + self.n, 0.0);
-                if let Err(error) = at(last + part * (t - last), &mut self.nodes[place..]) {
+                if let Err(error) = at(time, &mut self.nodes[place..]) {
                     inner.pop();
                     self.nodes.truncate(start);
                     return Err(error);
@@ -266,13 +285,25 @@ impl Solution {
         };
         // the barycentric formula of Chebyshev's second kind (J.-P. Berrut, L. N. Trefethen, SIAM Review 46
         // (2004) 501-517)
-        let part = (t - self.t[k]) / (self.t[k + 1] - self.t[k]);
+        let [from, to] = [self.t[k], self.t[k + 1]];
+        let part = (t - from) / (to - from);
+        let numbers = numbers([from, to]);
+        let is_fine = numbers >= FINE;
+        let place = |j: usize| match j {
+            0 => 0.0,
+            j if j == degree => 1.0,
+            j if is_fine => extremum(j, degree),
+            j => (from + node(j, degree, numbers) * (to - from) - from) / (to - from),
+        };
         let weight = |j: usize| {
             let half = if j == 0 || j == degree { 0.5 } else { 1.0 };
             let sign = if j.is_multiple_of(2) { 1.0 } else { -1.0 };
-            sign * half / (part - node(j, degree))
+            let known = sign * half;
+            let product =
+                || (0..=degree).filter(|&i| i != j).map(|i| place(j) - place(i)).product::<f64>();
+            (if is_fine { known } else { 1.0 / product() }) / (part - place(j))
         };
-        if let Some(j) = (0..=degree).find(|&j| part == node(j, degree)) {
+        if let Some(j) = (0..=degree).find(|&j| part == place(j)) {
             out.copy_from_slice(state(j));
             return Ok(());
         }

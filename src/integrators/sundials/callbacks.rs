@@ -3,7 +3,8 @@
 /// Defines C functions that SUNDIALS calls, with the [`Host`](super::host::Host) of a solver as their data.
 ///
 /// An argument is a vector, which the body sees as a slice (`read`, or `write` to be filled), `(data S)`, the host of a
-/// system `S`, or, with the name of that argument, `(roots host)` or `(stored host)`, the numbers of a matrix;
+/// system `S`, or, with the name of that argument, `(time host)`, a time that C counts from the start, `(roots host)` or
+/// `(stored host)`, the numbers of a matrix;
 /// `(result T)` is a place for a value. All others are as C has them; `vector` is one that is not used.
 macro_rules! callbacks {
     ($(
@@ -25,6 +26,7 @@ macro_rules! callbacks {
     (@type write) => { $crate::integrators::sundials::ffi::N_Vector };
     (@type vector) => { $crate::integrators::sundials::ffi::N_Vector };
     (@type (data $system:ty)) => { *mut std::ffi::c_void };
+    (@type (time $host:ident)) => { f64 };
     (@type (roots $host:ident)) => { *mut f64 };
     (@type (stored $host:ident)) => { $crate::integrators::sundials::ffi::SUNMatrix };
     (@type (result $type:ty)) => { *mut $type };
@@ -44,6 +46,9 @@ macro_rules! callbacks {
     (@bind $vector:ident write) => {
         // SAFETY: vectors are serial and live, and no other one is the same.
         let $vector = unsafe { $crate::integrators::sundials::serial::slice_mut($vector) };
+    };
+    (@bind $t:ident (time $host:ident)) => {
+        let $t = $host.time_of_call($t);
     };
     (@bind $g:ident (roots $host:ident)) => {
         // SAFETY: there are as many places as root functions were declared.

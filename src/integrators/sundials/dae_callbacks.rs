@@ -8,25 +8,25 @@ use crate::integrators::{
 
 callbacks! {
     /// `IDAResFn`
-    fn residual<S: Dae>(t: f64, y: read, yp: read, residual: write, host: (data S)) {
+    fn residual<S: Dae>(t: (time host), y: read, yp: read, residual: write, host: (data S)) {
         let call = |system: &mut S, residual: &mut [f64]| call::residual(system, t, y, yp, residual);
         host.guard_output(Callback::Residual, t, residual, call)
     }
 
     /// `IDARootFn`
-    fn roots<S: Dae>(t: f64, y: read, yp: read, g: (roots host), host: (data S)) {
+    fn roots<S: Dae>(t: (time host), y: read, yp: read, g: (roots host), host: (data S)) {
         host.guard_output(Callback::Roots, t, g, |system, g| call::dae_roots(system, t, y, yp, g))
     }
 
     /// `IDAQuadRhsFn`
-    fn quadratures<S: Dae>(t: f64, y: read, yp: read, qdot: write, host: (data S)) {
+    fn quadratures<S: Dae>(t: (time host), y: read, yp: read, qdot: write, host: (data S)) {
         let call = |system: &mut S, qdot: &mut [f64]| call::dae_quadratures(system, t, y, yp, qdot);
         host.guard_output(Callback::Quadratures, t, qdot, call)
     }
 
     /// `IDALsJacFn`; for a user-supplied solver it sets up the matrix that the system keeps.
     fn jacobian<S: Dae>(
-        t: f64, cj: f64, y: read, yp: read, residual: read, values: (stored host), host: (data S), _: vector,
+        t: (time host), cj: f64, y: read, yp: read, residual: read, values: (stored host), host: (data S), _: vector,
         _: vector, _: vector
     ) {
         host.setup_time = t;
@@ -41,7 +41,7 @@ callbacks! {
 
     /// `IDALsJacTimesVecFn`
     fn jacobian_times<S: Dae>(
-        t: f64, y: read, yp: read, _: vector, v: read, jv: write, cj: f64, host: (data S), _: vector, _: vector
+        t: (time host), y: read, yp: read, _: vector, v: read, jv: write, cj: f64, host: (data S), _: vector, _: vector
     ) {
         let times = |system: &mut S, v: &[f64], jv: &mut [f64]| {
             call::dae_jacobian_times(system, t, cj, y, yp, v, jv)
@@ -54,7 +54,7 @@ callbacks! {
 
     /// `IDALsPrecSetupFn`
     fn precondition_setup<S: Dae>(
-        t: f64, y: read, yp: read, residual: read, cj: f64, host: (data S)
+        t: (time host), y: read, yp: read, residual: read, cj: f64, host: (data S)
     ) {
         // Taken out of the host, which calls the system meanwhile.
         let Some(mut ilu) = host.ilu.take() else {
@@ -71,7 +71,7 @@ callbacks! {
 
     /// `IDALsPrecSolveFn`
     fn precondition_solve<S: Dae>(
-        t: f64, _: vector, _: vector, _: vector, r: read, z: write, _: f64, _: f64, host: (data S)
+        t: (time host), _: vector, _: vector, _: vector, r: read, z: write, _: f64, _: f64, host: (data S)
     ) {
         host.precondition(t, r, z, Dae::newton_solve)
     }

@@ -24,7 +24,7 @@ use super::{
     signs::Violation,
 };
 use crate::integrators::{
-    common::{Callback, Cause, Error, JacobianCheck, Point, Wanted},
+    common::{Callback, Cause, Clock, Error, JacobianCheck, Point, Wanted},
     ode::{Entries, Failure},
 };
 
@@ -53,6 +53,10 @@ pub(super) struct Host<S> {
     /// Number of unknowns: the length of every vector.
     pub(super) n: usize,
     pub(super) root_count: usize,
+    /// Counts the times of C, from the last start.
+    pub(super) clock: Clock,
+    /// The time of the present callback, as C has it.
+    now: f64,
     pub(super) sensitivity: Option<Box<SensitivityRhs>>,
     /// Determines the form of the Jacobian; none for a fixed-point iteration.
     pub(super) linear_solver: Option<LinearSolver>,
@@ -76,7 +80,7 @@ pub(super) struct Host<S> {
     pub(super) troubles: Troubles,
 }
 
-/// Reports of callbacks and the SUNDIALS error handler since the last call of the integrator.
+/// Reports of callbacks and the SUNDIALS error handler since the last call of the integrator, with times as C has them.
 #[derive(Default)]
 pub(super) struct Troubles {
     panic: Option<Box<dyn Any + Send>>,
@@ -181,6 +185,7 @@ impl<S> Host<S> {
         system: S,
         n: usize,
         root_count: usize,
+        clock: Clock,
         linear_solver: Option<LinearSolver>,
     ) -> Self {
         let troubles = Troubles::default();
@@ -188,6 +193,8 @@ impl<S> Host<S> {
             system,
             n,
             root_count,
+            clock,
+            now: 0.0,
             sensitivity: None,
             linear_solver,
             custom_solve: None,
@@ -209,6 +216,12 @@ impl<S> Host<S> {
     pub(super) unsafe fn of<'a>(data: *mut c_void) -> &'a mut Self {
         // SAFETY: the caller vouches for the pointer.
         unsafe { &mut *data.cast() }
+    }
+
+    /// The time of a callback that C makes at `elapsed` after the start.
+    pub(super) fn time_of_call(&mut self, elapsed: f64) -> f64 {
+        self.now = elapsed;
+        self.clock.time(elapsed)
     }
 
     /// All numbers that a matrix of the linear solver stores; none if it stores none.
@@ -233,7 +246,7 @@ impl<S> Host<S> {
         match catch_unwind(AssertUnwindSafe(|| call(&mut self.system))) {
             Ok(Ok(())) => 0,
             Ok(Err(Failure::Recoverable(message))) => {
-                self.troubles.retry(t, Cause::Rejected { callback, t, message })
+                self.troubles.retry(self.now, Cause::Rejected { callback, t, message })
             }
             Ok(Err(Failure::Fatal(error))) => {
                 self.troubles.fatal = Some((callback, error));
@@ -341,7 +354,7 @@ impl<S> Host<S> {
              pivot in row {row}"
         );
         let callback = Callback::Preconditioner;
-        self.troubles.retry(t, Cause::Rejected { callback, t, message })
+        self.troubles.retry(self.now, Cause::Rejected { callback, t, message })
     }
 
     /// Requests a smaller step if `output` has a NaN or infinity.
@@ -352,7 +365,7 @@ impl<S> Host<S> {
         }
         let component = output.iter().position(|x| !x.is_finite()).unwrap_or_default();
         let value = output[component];
-        self.troubles.retry(t, Cause::NotFinite { callback, t, component, value })
+        self.troubles.retry(self.now, Cause::NotFinite { callback, t, component, value })
     }
 }
 

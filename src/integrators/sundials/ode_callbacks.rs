@@ -8,35 +8,35 @@ use crate::integrators::{
 
 callbacks! {
     /// `CVRhsFn`
-    fn rhs<S: Ode>(t: f64, y: read, ydot: write, host: (data S)) {
+    fn rhs<S: Ode>(t: (time host), y: read, ydot: write, host: (data S)) {
         host.guard_output(Callback::Rhs, t, ydot, |system, ydot| call::rhs(system, t, y, ydot))
     }
 
     /// `ARKRhsFn` of the explicit part.
-    fn explicit_rhs<S: Ode>(t: f64, y: read, ydot: write, host: (data S)) {
+    fn explicit_rhs<S: Ode>(t: (time host), y: read, ydot: write, host: (data S)) {
         let call = |system: &mut S, ydot: &mut [f64]| call::explicit_rhs(system, t, y, ydot);
         host.guard_output(Callback::ExplicitRhs, t, ydot, call)
     }
 
     /// `CVRhsFn`, within the Newton iteration of a user-supplied solver.
-    fn newton_rhs<S: Ode>(t: f64, y: read, ydot: write, host: (data S)) {
+    fn newton_rhs<S: Ode>(t: (time host), y: read, ydot: write, host: (data S)) {
         host.guard_output(Callback::Rhs, t, ydot, |system, ydot| call::newton_rhs(system, t, y, ydot))
     }
 
     /// `CVQuadRhsFn`
-    fn quadratures<S: Ode>(t: f64, y: read, qdot: write, host: (data S)) {
+    fn quadratures<S: Ode>(t: (time host), y: read, qdot: write, host: (data S)) {
         let call = |system: &mut S, qdot: &mut [f64]| call::quadratures(system, t, y, qdot);
         host.guard_output(Callback::Quadratures, t, qdot, call)
     }
 
     /// `CVRootFn`
-    fn roots<S: Ode>(t: f64, y: read, g: (roots host), host: (data S)) {
+    fn roots<S: Ode>(t: (time host), y: read, g: (roots host), host: (data S)) {
         host.guard_output(Callback::Roots, t, g, |system, g| call::roots(system, t, y, g))
     }
 
     /// `CVProjFn`. The vector of the error estimate exists, as the estimate is never switched off.
     fn project<S: Ode>(
-        t: f64, y: read, correction: write, _: f64, error: write, host: (data S)
+        t: (time host), y: read, correction: write, _: f64, error: write, host: (data S)
     ) {
         correction.fill(0.0);
         let call = |system: &mut S, correction: &mut [f64]| system.project(t, y, correction, error);
@@ -48,7 +48,7 @@ callbacks! {
 
     /// `CVLsJacFn`
     fn jacobian<S: Ode>(
-        t: f64, y: read, ydot: read, values: (stored host), host: (data S), _: vector, _: vector, _: vector
+        t: (time host), y: read, ydot: read, values: (stored host), host: (data S), _: vector, _: vector, _: vector
     ) {
         match evaluate_jacobian(host, t, y, ydot, values) {
             0 => check_jacobian(host, t, y, values, |_, _, _| Ok(())),
@@ -70,7 +70,7 @@ callbacks! {
 
     /// `ARKLsMassFn`
     fn mass<S: Ode>(
-        t: f64, values: (stored host), host: (data S), _: vector, _: vector, _: vector
+        t: (time host), values: (stored host), host: (data S), _: vector, _: vector, _: vector
     ) {
         host.guard_entries(Callback::Mass, t, values, |system, entries| entries.mass(system, t))
     }

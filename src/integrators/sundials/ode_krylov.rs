@@ -15,7 +15,7 @@ use crate::integrators::{
 callbacks! {
     /// `CVLsJacTimesVecFn`
     fn jacobian_times<S: Ode>(
-        v: read, jv: write, t: f64, y: read, ydot: read, host: (data S), _: vector
+        v: read, jv: write, t: (time host), y: read, ydot: read, host: (data S), _: vector
     ) {
         let times = |system: &mut S, v: &[f64], jv: &mut [f64]| {
             call::jacobian_times(system, t, y, ydot, v, jv)
@@ -28,7 +28,7 @@ callbacks! {
 
     /// `ARKLsLinSysFn`: as [`newton_setup`], with an argument for the mass matrix; there is none here.
     fn newton_setup_with_mass<S: Ode>(
-        t: f64, y: read, ydot: read, _: (ffi::SUNMatrix), _: (ffi::SUNMatrix), reuse: i32, current: (result i32),
+        t: (time host), y: read, ydot: read, _: (ffi::SUNMatrix), _: (ffi::SUNMatrix), reuse: i32, current: (result i32),
         gamma: f64, host: (data S), _: vector, _: vector, _: vector
     ) {
         set_up(host, t, [y, ydot], (gamma, reuse), current)
@@ -36,7 +36,7 @@ callbacks! {
 
     /// `CVLsLinSysFn`: for a user-supplied solver, which stores I - gamma J itself.
     fn newton_setup<S: Ode>(
-        t: f64, y: read, ydot: read, _: (ffi::SUNMatrix), reuse: i32, current: (result i32), gamma: f64,
+        t: (time host), y: read, ydot: read, _: (ffi::SUNMatrix), reuse: i32, current: (result i32), gamma: f64,
         host: (data S), _: vector, _: vector, _: vector
     ) {
         set_up(host, t, [y, ydot], (gamma, reuse), current)
@@ -44,14 +44,14 @@ callbacks! {
 
     /// `CVLsPrecSetupFn`: by the system, or by an incomplete factorization.
     fn precondition_setup<S: Ode>(
-        t: f64, y: read, ydot: read, reuse: i32, current: (result i32), gamma: f64, host: (data S)
+        t: (time host), y: read, ydot: read, reuse: i32, current: (result i32), gamma: f64, host: (data S)
     ) {
         set_up(host, t, [y, ydot], (gamma, reuse), current)
     }
 
     /// `CVLsPrecSolveFn`
     fn precondition_solve<S: Ode>(
-        t: f64, _: vector, _: vector, r: read, z: write, gamma: f64, _: f64, _: i32, host: (data S)
+        t: (time host), _: vector, _: vector, r: read, z: write, gamma: f64, _: f64, _: i32, host: (data S)
     ) {
         host.precondition(t, r, z, |system, z| system.newton_solve(gamma, z))
     }

@@ -13,12 +13,7 @@ pub(super) struct Progress {
 }
 
 impl Progress {
-    /// Begins at time `t`, without a step.
-    pub(super) fn new(t: f64) -> Self {
-        Self { steps: 0, t, stands: false }
-    }
-
-    /// Notes that `steps` steps have led to time `t`.
+    /// Notes that `steps` steps have led to time `t`, from the start.
     ///
     /// Time stands still if the steps of a stretch were, on average, no longer than a few times the rounding
     /// error of the time.

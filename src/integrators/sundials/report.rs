@@ -37,6 +37,7 @@ impl<K, S> Session<K, S> {
             );
             (functions.get_tolerance_scale.1)(memory, &raw mut s.tolerance_scale);
         }
+        s.current_time = self.clock().time(s.current_time);
         s.nonlinear_iterations = iterations as u64;
         s.nonlinear_failures = nonlinear_fails as u64;
         s.step_failures = count(functions.get_step_failures);
@@ -63,7 +64,7 @@ impl<K, S> Session<K, S> {
         s
     }
 
-    /// The statistics of one call, among them those of the last step: cheap enough to be read at every step.
+    /// The statistics of one call, with the time as C has it, among them those of the last step: cheap enough to be read at every step.
     pub(super) fn step_statistics(&self) -> Statistics {
         let mut s = Statistics::default();
         let [mut steps, mut evaluations, mut setups, mut error_fails] = [0; 4];
@@ -86,9 +87,9 @@ impl<K, S> Session<K, S> {
         }
         if steps == 0 {
             // C still has the last step of the previous run
-            (s.current_time, s.last_step) = (self.t, 0.0);
+            (s.current_time, s.last_step) = (self.elapsed, 0.0);
         } else if self.failed_within {
-            s.current_time = self.t;
+            s.current_time = self.elapsed;
         }
         s.steps = steps as u64;
         s.evaluations = evaluations as u64;

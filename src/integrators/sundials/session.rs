@@ -29,7 +29,7 @@ use super::{
     vector::Vector,
 };
 use crate::integrators::{
-    common::{AbsoluteTolerance, Error, JacobianCheck, Tolerances},
+    common::{AbsoluteTolerance, Clock, Error, JacobianCheck, Tolerances},
     ode::Ode,
 };
 
@@ -63,6 +63,8 @@ pub(super) struct Session<K, S> {
     pub(super) host: HostBox<S>,
     pub(super) context: Context,
     pub(super) t: f64,
+    /// The same as C has it: from the start.
+    pub(super) elapsed: f64,
     pub(super) max_steps: u32,
     pub(super) stop_time: StopTime,
     pub(super) progress: Progress,
@@ -135,7 +137,8 @@ impl<K, S> Session<K, S> {
         let yp = start.yp.map(|yp| Vector::from_slice(yp, &context)).transpose()?;
         let scratch = Vector::from_slice(start.y, &context)?;
         let slope_scratch = start.yp.map(|yp| Vector::from_slice(yp, &context)).transpose()?;
-        let mut host = HostBox::new(Host::new(system, start.y.len(), root_count, solver));
+        let clock = Clock::starting_at(start.t);
+        let mut host = HostBox::new(Host::new(system, start.y.len(), root_count, clock, solver));
         // Locals are dropped in reverse order, so on an error below the memory goes first.
         let memory = Memory { raw: create(y.raw(), context.raw()), functions };
         if memory.raw.is_null() {
@@ -163,9 +166,10 @@ impl<K, S> Session<K, S> {
             host,
             context,
             t: start.t,
+            elapsed: 0.0,
             max_steps: 0,
             stop_time: StopTime::default(),
-            progress: Progress::new(start.t),
+            progress: Progress::default(),
             initial_step: None,
             has_fixed_step: false,
             has_step: false,

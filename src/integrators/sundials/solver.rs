@@ -136,6 +136,7 @@ impl<K: Kind, S> Integrator for Solver<K, S> {
         fn interpolant_degree() -> u32;
         fn interpolate(t: f64, derivative: u32, out: &mut [f64]) -> Result<(), Error>;
         fn set_stop_time(t: Option<f64>) -> Result<(), Error>;
+        fn set_stop_before(t: f64) -> Result<(), Error>;
         fn reinit(t: f64, y: &[f64]) -> Result<(), Error>;
         fn resume(t: f64, y: &[f64]) -> Result<bool, Error>;
         fn roots_found() -> &[i32];

@@ -11,8 +11,8 @@ use super::{
     vector::Vector,
 };
 use crate::integrators::common::{
-    Cause, Error, Integrator, Reached, SHORTEST, Statistics, check_finite, check_length,
-    check_start_time, check_time,
+    Cause, Clock, Error, Integrator, Reached, SHORTEST, Statistics, check_finite, check_length,
+    check_start_time, check_time, number_before,
 };
 
 /// Return code of a call that succeeded.
@@ -38,8 +38,8 @@ impl<K, S> Integrator for Session<K, S> {
     }
 
     fn last_step(&self) -> (f64, f64) {
-        let statistics = self.step_statistics();
-        (statistics.current_time - statistics.last_step, statistics.current_time)
+        let (start, end) = self.reach_of_last_step();
+        (self.clock().time(start), self.clock().time(end))
     }
 
     fn last_order(&self) -> u32 {
@@ -77,12 +77,24 @@ impl<K, S> Integrator for Session<K, S> {
         if let Some(t) = t {
             check_time("stop time", t)?;
             let statistics = self.step_statistics();
-            if (t - statistics.current_time) * statistics.last_step < 0.0 || t == self.t {
-                let help = format!("the steps have reached {} already", statistics.current_time);
+            let elapsed = self.clock().elapsed(t);
+            if (elapsed - statistics.current_time) * statistics.last_step < 0.0 || t == self.t {
+                let reached = self.clock().time(statistics.current_time);
+                let help = format!("the steps have reached {reached} already");
                 return Err(Error::input("stop time", t, help));
             }
         }
-        self.stop_time.set(t);
+        let clock = &mut self.host.get_mut().clock;
+        clock.go_on();
+        self.stop_time.set(t, *clock);
+        Ok(())
+    }
+
+    fn set_stop_before(&mut self, t: f64) -> Result<(), Error> {
+        let before = number_before(t, self.t);
+        self.set_stop_time(Some(before))?;
+        let stop = self.host.get_mut().clock.end_before(t, before, self.elapsed);
+        self.stop_time.keep(Some(stop));
         Ok(())
     }
 
@@ -92,19 +104,20 @@ impl<K, S> Integrator for Session<K, S> {
         check_finite("y", y)?;
         check_state(&self.signs, "y", y)?;
         self.y.as_mut_slice().copy_from_slice(y);
-        self.start_c(t)?;
+        self.start_c(0.0)?;
+        self.host.get_mut().clock = Clock::starting_at(t);
         self.restart_quadratures()?;
         self.restart_sensitivities()?;
-        self.t = t;
-        self.progress = Progress::new(t);
+        (self.t, self.elapsed) = (t, 0.0);
+        self.progress = Progress::default();
         (self.has_step, self.failed_within, self.history_lost) = (false, false, false);
         let host = self.host.get_mut();
         host.troubles.clear();
-        host.step_end = host.step_end.and(Some(t));
+        host.step_end = host.step_end.and(Some(0.0));
         host.differences.iter_mut().for_each(Differences::restart);
         match self.memory.functions.reinit_forgets_stop_time {
             true => self.stop_time.forget(),
-            false => self.stop_time.set(None),
+            false => self.stop_time.keep(None),
         }
         self.roots_found.fill(0);
         Ok(())
@@ -117,12 +130,13 @@ impl<K, S> Integrator for Session<K, S> {
         check_state(&self.signs, "y", y)?;
         let Some(reset) = self.memory.functions.reset else { return Ok(false) };
         self.y.as_mut_slice().copy_from_slice(y);
+        let elapsed = self.clock().elapsed(t);
         // SAFETY: memory and vector are alive; the integrator copies the vector.
-        self.host.call(reset, |reset| unsafe { reset(self.memory.raw, t, self.y.raw()) })?;
-        self.t = t;
+        self.host.call(reset, |reset| unsafe { reset(self.memory.raw, elapsed, self.y.raw()) })?;
+        (self.t, self.elapsed) = (t, elapsed);
         (self.has_step, self.failed_within) = (false, false);
         let step_end = &mut self.host.get_mut().step_end;
-        *step_end = step_end.and(Some(t));
+        *step_end = step_end.and(Some(elapsed));
         self.stop_time.forget();
         self.roots_found.fill(0);
         Ok(true)
@@ -151,56 +165,57 @@ impl<K, S> Integrator for Session<K, S> {
 }
 
 impl<K, S> Session<K, S> {
-    /// Integrates to `target` (`CV_NORMAL`) or by one step (`CV_ONE_STEP`).
-    fn integrate(&mut self, target: f64, task: i32) -> Result<Reached, Error> {
-        check_time("target time", target)?;
-        if target == self.t {
+    /// Integrates to the time `t` (`CV_NORMAL`) or by one step (`CV_ONE_STEP`).
+    fn integrate(&mut self, t: f64, task: i32) -> Result<Reached, Error> {
+        check_time("target time", t)?;
+        if t == self.t {
             return Ok(Reached::Time);
         }
-        self.check_target(target, task)?;
+        let (start, target) = (self.t, self.clock().elapsed(t));
+        self.check_target(t, target, task)?;
         let functions = self.memory.functions;
         if self.history_lost {
-            self.start_c_again(self.t)?;
+            self.start_c_again(self.elapsed)?;
             self.history_lost = false;
         }
-        if let Some(time) = self.stop_time.take_update(self.t, target) {
+        if let Some(time) = self.stop_time.take_update(self.elapsed, target) {
             // SAFETY: the value is a plain number.
             unsafe { self.set(functions.set_stop_time, time)? };
         }
         let steps = self.step_statistics().steps;
-        let far = if steps == 0 { apart(self.t, target) } else { target };
+        let far = if steps == 0 { apart(self.elapsed, target) } else { target };
         // C would refuse a target so close: single steps with a stop time there
         let stops = task == ffi::CV_NORMAL && far != target;
         let mut stop = self.stop_time.time();
         if stops {
-            let ends = stop.filter(|stop| (target - stop) * (far - self.t) >= 0.0);
+            let ends = stop.filter(|stop| (target - stop) * (far - self.elapsed) >= 0.0);
             stop = ends.or(Some(target));
             // SAFETY: the value is a plain number.
             unsafe { self.set(functions.set_stop_time, ends.unwrap_or(target))? };
         }
         // nor does C estimate a first step if it has to stop so soon: it is the whole way to the stop
-        let whole = stop.filter(|stop| steps == 0 && apart(self.t, *stop) != *stop);
+        let whole = stop.filter(|stop| steps == 0 && apart(self.elapsed, *stop) != *stop);
         let whole = whole.filter(|_| self.initial_step.is_none());
         if let Some(stop) = whole {
             // SAFETY: the value is a plain number.
-            unsafe { self.set(functions.set_initial_step, stop - self.t)? };
+            unsafe { self.set(functions.set_initial_step, stop - self.elapsed)? };
         }
         let (name, solve) = self.solve;
         // C writes to other vectors than the present state, which is kept if C fails to give another
-        let (memory, y, before) = (self.memory.raw, self.scratch.raw(), self.t);
+        let (memory, y, before) = (self.memory.raw, self.scratch.raw(), self.elapsed);
         let yp = self.slope_scratch.as_ref().map_or(ptr::null_mut(), Vector::raw);
         self.scratch.as_mut_slice().iter_mut().take(1).for_each(|y| *y = f64::NAN);
-        self.host.get_mut().troubles.begin(self.t);
+        self.host.get_mut().troubles.begin(self.elapsed);
         self.failed_within = false;
         let (single, mut taken) = (if stops { ffi::CV_ONE_STEP } else { task }, 0);
         let (mut shortened, mut is_shortened) = (0, false);
-        let code = loop {
+        let (mut code, falls_short) = loop {
             let most = STRETCH.min(u64::from(self.max_steps) - taken);
             // SAFETY: the value is a plain number.
             unsafe { self.set(functions.set_max_steps, most as i64)? };
             // SAFETY: memory, vectors and everything registered with the memory are alive; `&mut self`
             // keeps others away while callbacks use the host.
-            let code = unsafe { solve(memory, far, &raw mut self.t, y, yp, single) };
+            let code = unsafe { solve(memory, far, &raw mut self.elapsed, y, yp, single) };
             let now = self.step_statistics();
             self.progress.note(now.steps, now.current_time);
             taken = now.steps.saturating_sub(steps);
@@ -215,11 +230,24 @@ impl<K, S> Session<K, S> {
                 is_shortened = true;
                 continue;
             }
-            let goes_on = code == ffi::CV_TOO_MUCH_WORK || stops && code == DONE;
+            // steps between the same two numbers are one step
+            let is_short = single != task
+                || task == ffi::CV_ONE_STEP
+                    && !self.clock().passes(start, self.elapsed, now.last_step);
+            let falls_short = code == DONE && is_short;
+            let goes_on = code == ffi::CV_TOO_MUCH_WORK || falls_short;
             if !goes_on || self.progress.stands || taken >= u64::from(self.max_steps) {
-                break code;
+                break (code, falls_short);
             }
         };
+        if code == DONE && task == ffi::CV_ONE_STEP && !falls_short {
+            let step = self.step_statistics().last_step;
+            let (_, end) = self.clock().last_within(self.elapsed, step);
+            if end != self.elapsed {
+                // SAFETY: as above; C interpolates within the step that it has made.
+                code = unsafe { solve(memory, end, &raw mut self.elapsed, y, yp, ffi::CV_NORMAL) };
+            }
+        }
         if shortened > 0 || whole.is_some() {
             // SAFETY: the value is a plain number, which requests an estimate.
             unsafe { self.set(functions.set_initial_step, 0.0)? };
@@ -230,7 +258,7 @@ impl<K, S> Session<K, S> {
         }
         if stops {
             // C has forgotten the stop time of the caller
-            self.stop_time.set(self.stop_time.time());
+            self.stop_time.keep(self.stop_time.time());
         }
         self.has_step = code >= 0 || self.step_statistics().steps > 0;
         if code < 0 {
@@ -243,14 +271,19 @@ impl<K, S> Session<K, S> {
             // IDA now has y' times the step size in place of y'
             self.history_lost = self.yp.is_some();
         } else if self.host.get().step_end.is_none() && !self.has_finite_history() {
-            self.t = before;
+            self.elapsed = before;
             (self.has_step, self.failed_within, self.history_lost) = (false, true, true);
         }
         if let Some(end) = self.host.get().step_end.filter(|_| code < 0) {
             // the time of `y`; C has that of a stage, and would interpolate as if the step ended there
-            self.t = end;
+            self.elapsed = end;
             (self.has_step, self.failed_within) = (false, true);
         }
+        let stop = self.stop_time.time().map(|stop| (stop, self.stop_time.given()));
+        let known = [Some((before, start)), stop, Some((target, t))].into_iter().flatten();
+        // numbers that users gave come back as they were
+        let known = known.filter(|(elapsed, _)| *elapsed == self.elapsed).map(|(_, t)| t).next();
+        self.t = known.unwrap_or_else(|| self.clock().time(self.elapsed));
         let read = match self.has_step {
             true => self.read_quadratures().and_then(|()| self.read_sensitivities()),
             false => Ok(()),
@@ -270,20 +303,21 @@ impl<K, S> Session<K, S> {
                 Ok(Reached::Root)
             }
             // a step that ended before the target was the last one allowed
-            code if code >= 0 && (self.progress.stands || stops && code == DONE) => {
-                Err(self.stopped(ffi::CV_TOO_MUCH_WORK, target))
+            code if code >= 0 && (self.progress.stands || falls_short) => {
+                Err(self.stopped(ffi::CV_TOO_MUCH_WORK, t))
             }
             code if code >= 0 => {
-                let stopped = self.stop_time.time() == Some(self.t);
+                let stopped = self.stop_time.time() == Some(self.elapsed);
                 if stopped {
-                    self.stop_time.set(None);
+                    self.host.get_mut().clock.go_on();
+                    self.stop_time.keep(None);
                 }
                 Ok(if stopped { Reached::StopTime } else { Reached::Time })
             }
             code if functions.refusals.contains(&code) => {
                 self.host.accept(name, code).map(|()| Reached::Time)
             }
-            code => Err(self.stopped(code, target)),
+            code => Err(self.stopped(code, t)),
         }
     }
 
@@ -306,7 +340,7 @@ impl<K, S> Session<K, S> {
         if statistics.steps > 0 || !moves || self.higher_index(&Cause::ErrorTest).is_some() {
             return Ok(false);
         }
-        self.t = before;
+        self.elapsed = before;
         self.forget_factors();
         self.start_c_again(before)?;
         // SAFETY: the value is a plain number.
@@ -339,7 +373,7 @@ impl<K, S> Session<K, S> {
                 self.set(functions.set_stop_time, stop)?;
             }
         }
-        self.t = end;
+        self.elapsed = end;
         Ok(true)
     }
 
@@ -382,27 +416,29 @@ impl<K, S> Session<K, S> {
         let Memory { raw: memory, functions } = self.memory;
         for (order, vector) in [(0, self.y.raw()), (1, yp)] {
             // SAFETY: memory and vector are alive; IDA calls no callback here.
-            self.host
-                .call(functions.get_dky, |get| unsafe { get(memory, self.t, order, vector) })?;
+            self.host.call(functions.get_dky, |get| unsafe {
+                get(memory, self.elapsed, order, vector)
+            })?;
         }
         Ok(())
     }
 
     /// Refuses targets that C would refuse less clearly: `solve_to` can go back within the last
     /// step, `step` cannot.
-    fn check_target(&self, target: f64, task: i32) -> Result<(), Error> {
+    fn check_target(&self, t: f64, target: f64, task: i32) -> Result<(), Error> {
         let statistics = self.step_statistics();
         let earliest = match task {
-            ffi::CV_ONE_STEP => self.t,
+            ffi::CV_ONE_STEP => self.elapsed,
             _ => statistics.current_time - statistics.last_step,
         };
-        if statistics.steps == 0 && (target - self.t).abs() < SHORTEST {
+        if statistics.steps == 0 && (target - self.elapsed).abs() < SHORTEST {
             let help = format!("it lies at least {SHORTEST:e} from the start, {:?}", self.t);
-            return Err(Error::input("target time", target, help));
+            return Err(Error::input("target time", t, help));
         }
         if (target - earliest) * statistics.last_step < 0.0 {
+            let earliest = self.clock().time(earliest);
             let help = format!("it lies behind {earliest:?}; reinit turns the direction of time");
-            return Err(Error::input("target time", target, help));
+            return Err(Error::input("target time", t, help));
         }
         Ok(())
     }
@@ -417,8 +453,8 @@ impl<K, S> Session<K, S> {
     ) -> Result<(), Error> {
         let order = derivative.min(i32::MAX as u32) as i32;
         let functions = self.memory.functions;
-        self.host.get_mut().troubles.begin(self.t);
-        let code = get_dky(self.memory.raw, t, order);
+        self.host.get_mut().troubles.begin(self.elapsed);
+        let code = get_dky(self.memory.raw, self.within_last_step(t), order);
         self.host.get_mut().troubles.resume_panic();
         if code == functions.bad_time {
             let (start, end) = self.last_step();
@@ -432,6 +468,25 @@ impl<K, S> Session<K, S> {
             return Err(self.stopped(code, t));
         }
         self.host.accept(name, code)
+    }
+
+    /// The clock of C.
+    pub(super) fn clock(&self) -> Clock {
+        self.host.get().clock
+    }
+
+    /// Start and end of the last step, as C has them.
+    fn reach_of_last_step(&self) -> (f64, f64) {
+        let statistics = self.step_statistics();
+        (statistics.current_time - statistics.last_step, statistics.current_time)
+    }
+
+    /// Time `t` of the last step, as C has it.
+    fn within_last_step(&self, t: f64) -> f64 {
+        if t == self.t {
+            return self.elapsed;
+        }
+        self.clock().within(t, self.reach_of_last_step())
     }
 
     /// Checks that only the present values are requested, where there is no step to interpolate in.
@@ -449,7 +504,7 @@ impl<K, S> Session<K, S> {
     }
 }
 
-/// `target`, or, if C would take it for `t`, a time beyond it that C distinguishes from `t`. (C ignores
+/// `target`, or, if C would take it for `t`, a time beyond it that C distinguishes from `t`; all are times of C. (C ignores
 /// differences of 100 units of rounding when it checks for a stop time, and somewhat larger ones in its first
 /// step.)
 pub(super) fn apart(t: f64, target: f64) -> f64 {

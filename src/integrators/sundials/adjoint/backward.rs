@@ -57,7 +57,6 @@ impl<P: BackwardProblem> Session<P::Kind, Borrowed<'_, P>> {
     /// A further run would begin with the first step size of this one, whatever has changed: the backward run
     /// leaves it in C (6.4.1).
     pub(super) fn gradient(mut self, t: f64, options: &AdjointOptions) -> Result<Gradient, Error> {
-        let t0 = self.t;
         let (memory, steps) = (self.memory.raw, i64::from(options.checkpoint_steps));
         // As late as possible: if no run follows, IDAS 6.4.1 frees pointers that it never wrote.
         // SAFETY: the memory is alive and of this integrator; the values are plain numbers.
@@ -73,7 +72,7 @@ impl<P: BackwardProblem> Session<P::Kind, Borrowed<'_, P>> {
         let mut gradient = equations.terminal(integrator, t, self.y.as_slice())?;
         gradient.value += self.quadratures()[0];
         self.start_back(t, &mut gradient, options)?;
-        self.run_back(t0, &mut gradient)?;
+        self.run_back(&mut gradient)?;
         Ok(gradient)
     }
 
@@ -84,7 +83,7 @@ impl<P: BackwardProblem> Session<P::Kind, Borrowed<'_, P>> {
         end: &mut Gradient,
         options: &AdjointOptions,
     ) -> Result<(), Error> {
-        let functions = P::FUNCTIONS;
+        let (functions, elapsed) = (P::FUNCTIONS, self.elapsed);
         let (memory, data, context) = (self.memory.raw, self.host.as_ptr(), &self.context);
         let system = &mut self.host.get_mut().system.0;
         let parameters = system.equations().parameters().to_vec();
@@ -111,7 +110,7 @@ impl<P: BackwardProblem> Session<P::Kind, Borrowed<'_, P>> {
         // SAFETY: the memory is alive and has this problem; it copies vectors, the linear solver lives longer
         // than it, and the host, which the callbacks fit, is their data.
         unsafe {
-            host.call(P::INIT, |init| init(memory, which, t, lambda, slope))?;
+            host.call(P::INIT, |init| init(memory, which, elapsed, lambda, slope))?;
             host.call(functions.vector_tolerances, |set| set(memory, which, *rtol, atol.raw()))?;
             host.call(functions.set_user_data, |set| set(memory, which, data))?;
             host.call(functions.set_max_steps, |set| set(memory, which, max_steps))?;
@@ -129,18 +128,18 @@ impl<P: BackwardProblem> Session<P::Kind, Borrowed<'_, P>> {
         }
     }
 
-    /// Integrates back to `t0`, adds the integrals to dG/dp, and writes dG/dy0.
-    fn run_back(&mut self, t0: f64, gradient: &mut Gradient) -> Result<(), Error> {
+    /// Integrates back to the start, adds the integrals to dG/dp, and writes dG/dy0.
+    fn run_back(&mut self, gradient: &mut Gradient) -> Result<(), Error> {
         let (memory, functions) = (self.memory.raw, P::FUNCTIONS);
         let Some(backward) = &self.backward else { return Ok(()) };
         let which = backward.which;
         self.host.get_mut().troubles.clear();
         // SAFETY: memory and everything registered with it are alive; `&mut self` keeps others away while
         // callbacks use the host.
-        let code = unsafe { (functions.solve.1)(memory, t0, ffi::CV_NORMAL) };
+        let code = unsafe { (functions.solve.1)(memory, 0.0, ffi::CV_NORMAL) };
         self.host.get_mut().troubles.resume_panic();
         if code < 0 {
-            return Err(self.stopped_back(which, code, t0));
+            return Err(self.stopped_back(which, code));
         }
         let mut t = 0.0;
         let (lambda, slope) = (backward.lambda.raw(), backward.raw_slope());
@@ -159,8 +158,8 @@ impl<P: BackwardProblem> Session<P::Kind, Borrowed<'_, P>> {
         Ok(())
     }
 
-    /// The error of a backward run to `t0` that stopped.
-    fn stopped_back(&mut self, which: i32, code: i32, t0: f64) -> Error {
+    /// The error of a backward run that stopped.
+    fn stopped_back(&mut self, which: i32, code: i32) -> Error {
         let functions = P::FUNCTIONS;
         let (mut t, mut step, mut order) = (f64::NAN, f64::NAN, 0);
         // SAFETY: the memory is alive; that of the backward problem belongs to it, and the result pointers
@@ -171,12 +170,12 @@ impl<P: BackwardProblem> Session<P::Kind, Borrowed<'_, P>> {
             (self.memory.functions.get_current_step.1)(memory, &raw mut step);
             (functions.get_current_order.1)(memory, &raw mut order);
         }
-        let (otherwise, blame_retries) = cause_of(code, self.max_steps, t0);
+        let (otherwise, blame_retries) = cause_of(code, self.max_steps, self.clock().time(0.0));
         let troubles = &mut self.host.get_mut().troubles;
         let message = format!("SUNDIALS, code {code}: {}", troubles.message());
         let (cause, source) = troubles.cause((t, step), blame_retries, otherwise);
         let integrator = functions.integrator;
-        let order = order as u32;
+        let (order, t) = (order as u32, self.clock().time(t));
         IntegrationError { integrator, cause, t, step, order, message, source }.into()
     }
 }

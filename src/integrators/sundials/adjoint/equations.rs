@@ -26,8 +26,9 @@ pub(in crate::integrators::sundials) struct Equations<S, F> {
     pub(super) quotients: Quotients,
     /// The linear solver of the backward run.
     pub(super) backward: LinearSolver,
-    /// Time of the Jacobian: in the backward run there is one state at each time.
+    /// Time and state of the Jacobian.
     jacobian_time: Option<f64>,
+    jacobian_state: Vec<f64>,
     /// The derivatives of h with respect to the unknowns and to the parameters.
     pub(super) slopes_y: Vec<f64>,
     pub(super) slopes_p: Vec<f64>,
@@ -59,6 +60,7 @@ impl<S, F: Functional> Equations<S, F> {
             jacobian,
             backward,
             jacobian_time: None,
+            jacobian_state: vec![0.0; n],
             slopes_y: vec![0.0; n],
             slopes_p: vec![0.0; p.len()],
             trial: p.clone(),
@@ -91,7 +93,7 @@ impl<S, F: Functional> Equations<S, F> {
         supplied: impl FnOnce(&mut S, Entries<'_>, &mut [f64]) -> Result<(), Failure>,
         mut evaluate: impl FnMut(&mut S, &[f64], &mut [f64]) -> Result<(), Failure>,
     ) -> Result<bool, Failure> {
-        if self.jacobian_time == Some(t) {
+        if self.jacobian_time == Some(t) && self.jacobian_state == y {
             return Ok(false);
         }
         self.jacobian_time = None;
@@ -103,6 +105,7 @@ impl<S, F: Functional> Equations<S, F> {
             quotients.write(jacobian, y, step, |y, out| evaluate(system, y, out))?;
         }
         self.jacobian_time = Some(t);
+        self.jacobian_state.copy_from_slice(y);
         Ok(true)
     }
 

@@ -103,12 +103,12 @@ impl<S: Ode> Session<ArkodeKind, S> {
         // SAFETY: `create` gets a live context and a vector of its own, the table is that of
         // ARKODE, and the callbacks fit the host that is registered as their data.
         let mut arkode = unsafe {
-            let create = |y, context| ffi::ARKStepCreate(stages[0], stages[1], t0, y, context);
+            let create = |y, context| ffi::ARKStepCreate(stages[0], stages[1], 0.0, y, context);
             let create = ("ARKStepCreate", create);
             Self::create(Functions::ARKODE, create, ArkodeKind, system, &start, solver)?
         };
         arkode.stages = stages;
-        arkode.host.get_mut().step_end = Some(t0);
+        arkode.host.get_mut().step_end = Some(0.0);
         arkode.configure(options)?;
         let (implicit_id, explicit_id) = options.own.table.ids();
         let degree = options.interpolant_degree();

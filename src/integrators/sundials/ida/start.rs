@@ -85,13 +85,14 @@ impl<S: Dae> StartsDae for Session<IdaKind, S> {
             InitialCondition::Algebraic => ffi::IDA_YA_YDP_INIT,
             InitialCondition::State => ffi::IDA_Y_INIT,
         };
-        let (mut towards, mut keeps_jacobians) = (first_output, true);
+        let (mut towards, mut keeps_jacobians) = (self.clock().elapsed(first_output), true);
         let mut retries = if task == ffi::IDA_YA_YDP_INIT { RETRIES } else { 0 };
         let code = loop {
             self.host.get_mut().troubles.clear();
             // SAFETY: the memory and everything registered with it are alive; `&mut self` keeps
             // others away while callbacks use the host.
-            let code = unsafe { ffi::IDACalcIC(self.memory.raw, task, apart(self.t, towards)) };
+            let code =
+                unsafe { ffi::IDACalcIC(self.memory.raw, task, apart(self.elapsed, towards)) };
             self.host.get_mut().troubles.resume_panic();
             let unfound = [ffi::IDA_CONV_FAIL, ffi::IDA_LINESEARCH_FAIL, ffi::IDA_NO_RECOVERY];
             if code == ffi::IDA_CONV_FAIL && keeps_jacobians {
@@ -100,19 +101,19 @@ impl<S: Dae> StartsDae for Session<IdaKind, S> {
                 continue;
             }
             // C refuses shorter times
-            let scale = NEXT * (towards - self.t);
-            let moves = scale.abs() > 8.0 * f64::EPSILON * self.t.abs();
+            let scale = NEXT * (towards - self.elapsed);
+            let moves = scale.abs() > 8.0 * f64::EPSILON * self.elapsed.abs();
             if retries == 0 || !moves || !unfound.contains(&code) {
                 break code;
             }
             if retries == RETRIES && self.higher_index(&Cause::InconsistentStart).is_some() {
                 break code;
             }
-            (towards, retries) = (self.t + scale, retries - 1);
+            (towards, retries) = (self.elapsed + scale, retries - 1);
         };
         if code < 0 {
             let longest = LONGEST_STEP * (first_output - self.t).abs();
-            let shortest = 1e-4 * LONGEST_STEP * (towards - self.t).abs();
+            let shortest = 1e-4 * LONGEST_STEP * (towards - self.elapsed).abs();
             return Err(self.unfound(code, first_output, [longest, shortest]));
         }
         let (memory, y, yp) = (self.memory.raw, self.y.raw(), self.raw_yp());

@@ -15,7 +15,7 @@ use crate::integrators::{
 callbacks! {
     /// `CVSensRhs1Fn`
     fn one_rhs<S: Ode>(
-        _: i32, t: f64, y: read, ydot: read, index: i32, s: read, sdot: write, host: (data S), _: vector, _: vector
+        _: i32, t: (time host), y: read, ydot: read, index: i32, s: read, sdot: write, host: (data S), _: vector, _: vector
     ) {
         let Some(mut rhs) = host.sensitivity.take() else { return STOP };
         let index = index as usize;
@@ -35,7 +35,7 @@ callbacks! {
 
     /// `IDASensResFn`
     fn all_residuals<S: Dae>(
-        count: i32, t: f64, y: read, yp: read, residual: read, s: (*mut ffi::N_Vector), sp: (*mut ffi::N_Vector),
+        count: i32, t: (time host), y: read, yp: read, residual: read, s: (*mut ffi::N_Vector), sp: (*mut ffi::N_Vector),
         residuals: (*mut ffi::N_Vector), host: (data S), _: vector, _: vector, _: vector
     ) {
         let Some(mut rhs) = host.sensitivity.take() else { return STOP };

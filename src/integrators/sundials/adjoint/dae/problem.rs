@@ -24,7 +24,7 @@ use crate::integrators::{
 callbacks! {
     /// `IDAResFnB`
     fn residual<S: Dae, F: Functional>(
-        t: f64, y: read, yp: read, lambda: read, slope: read, out: write,
+        t: (time host), y: read, yp: read, lambda: read, slope: read, out: write,
         host: (data Borrowed<'_, AdjointDae<S, F>>)
     ) {
         host.guard_output(Callback::Adjoint, t, out, |system, out| {
@@ -34,7 +34,7 @@ callbacks! {
 
     /// `IDAQuadRhsFnB`
     fn quadratures<S: Dae, F: Functional>(
-        t: f64, y: read, yp: read, lambda: read, _: vector, out: write,
+        t: (time host), y: read, yp: read, lambda: read, _: vector, out: write,
         host: (data Borrowed<'_, AdjointDae<S, F>>)
     ) {
         host.guard_output(Callback::Adjoint, t, out, |system, out| {
@@ -44,7 +44,7 @@ callbacks! {
 
     /// `IDALsJacFnB`
     fn jacobian<S: Dae, F: Functional>(
-        t: f64, cj: f64, y: read, yp: read, _: vector, _: vector, _: vector, jacobian: (ffi::SUNMatrix),
+        t: (time host), cj: f64, y: read, yp: read, _: vector, _: vector, _: vector, jacobian: (ffi::SUNMatrix),
         host: (data Borrowed<'_, AdjointDae<S, F>>), _: vector, _: vector, _: vector
     ) {
         // SAFETY: SUNDIALS passes the matrix that was made for this linear solver.

@@ -24,7 +24,7 @@ use crate::integrators::{
 callbacks! {
     /// `CVRhsFnB`
     fn rhs<S: Ode, F: Functional>(
-        t: f64, y: read, lambda: read, out: write, host: (data Borrowed<'_, AdjointSystem<S, F>>)
+        t: (time host), y: read, lambda: read, out: write, host: (data Borrowed<'_, AdjointSystem<S, F>>)
     ) {
         host.guard_output(Callback::Adjoint, t, out, |system, out| {
             system.0.backward_rhs(t, y, lambda, out)
@@ -33,7 +33,7 @@ callbacks! {
 
     /// `CVQuadRhsFnB`
     fn quadratures<S: Ode, F: Functional>(
-        t: f64, y: read, lambda: read, out: write, host: (data Borrowed<'_, AdjointSystem<S, F>>)
+        t: (time host), y: read, lambda: read, out: write, host: (data Borrowed<'_, AdjointSystem<S, F>>)
     ) {
         host.guard_output(Callback::Adjoint, t, out, |system, out| {
             system.0.backward_quadratures(t, y, lambda, out)
@@ -42,7 +42,7 @@ callbacks! {
 
     /// `CVLsJacFnB`
     fn jacobian<S: Ode, F: Functional>(
-        t: f64, y: read, _: vector, _: vector, jacobian: (ffi::SUNMatrix),
+        t: (time host), y: read, _: vector, _: vector, jacobian: (ffi::SUNMatrix),
         host: (data Borrowed<'_, AdjointSystem<S, F>>), _: vector, _: vector, _: vector
     ) {
         // SAFETY: SUNDIALS passes the matrix that was made for this linear solver.
