@@ -329,7 +329,7 @@ fn unusable_input_is_named_before_c_sees_it() {
         }
         other => panic!("{other:?} is not an input error"),
     };
-    for rtol in [0.0, -1e-3, f64::NAN, f64::INFINITY] {
+    for rtol in [1.0, -1e-3, f64::NAN, f64::INFINITY] {
         assert_eq!(refused(&[1.0], &CvodeOptions::new(rtol, 1e-9)), "rtol");
     }
     for atol in [-1e-9, f64::NAN, f64::INFINITY] {

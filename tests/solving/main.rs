@@ -18,5 +18,6 @@ mod rosenbrock;
 mod sensitivities;
 mod standstill;
 mod support;
+mod tolerances;
 mod values;
 mod wrong_jacobians;

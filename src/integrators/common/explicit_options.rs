@@ -58,7 +58,7 @@ impl ExplicitOptions {
     /// These tolerances: local errors are kept below `rtol |y_i| + atol_i` in the root mean square, the
     /// norm of CVODE.
     ///
-    /// `rtol` is at least 1e-14: below that rounding errors drown the error estimate. `atol` is positive: the
+    /// `rtol` is at least 1e-14, below which rounding errors drown the error estimate, or 0, where `atol` alone counts. `atol` is positive: the
     /// size below which a value is noise.
     pub fn new(rtol: f64, atol: impl Into<AbsoluteTolerance>) -> Self {
         Self { tolerances: Tolerances::new(rtol, atol), steps: StepOptions::default() }
@@ -68,8 +68,9 @@ impl ExplicitOptions {
 
     pub(crate) fn check(&self, y0: &[f64]) -> Result<(), InputError> {
         self.tolerances.check(y0)?;
-        if self.tolerances.rtol < 1e-14 {
-            let help = "rounding errors allow 1e-14 or more, such as 1e-6";
+        if self.tolerances.rtol != 0.0 && self.tolerances.rtol < 1e-14 {
+            let help =
+                "rounding errors allow 1e-14 or more, such as 1e-6; or 0, where atol alone counts";
             return Err(InputError::new("rtol", self.tolerances.rtol, help));
         }
         if (0..y0.len()).any(|i| self.tolerances.atol_of(i) == 0.0) {

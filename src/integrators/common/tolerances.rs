@@ -38,11 +38,16 @@ impl<const N: usize> From<[f64; N]> for AbsoluteTolerance {
     }
 }
 
+/// Below this an rtol, 0 or next to it, says nothing about sizes of noise: increments of difference quotients, 1.5e-8 of a size at least,
+/// would be more than 150 atol. The usual one is assumed.
+const LEAST_RTOL: f64 = 1e-10;
+const USUAL_RTOL: f64 = 1e-6;
+
 /// Local errors are kept below `rtol |y_i| + atol_i` in the root mean square over the unknowns.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Tolerances {
-    /// Relative tolerance, above 0 and below 1.
+    /// Relative tolerance, below 1; 0 where absolute tolerances alone count.
     pub rtol: f64,
     /// Absolute tolerance: the size below which a value is noise.
     pub atol: AbsoluteTolerance,
@@ -56,8 +61,8 @@ impl Tolerances {
 
     /// Checks that they can be used for an integration that starts from `y0`.
     pub(crate) fn check(&self, y0: &[f64]) -> Result<(), InputError> {
-        if !(self.rtol > 0.0 && self.rtol < 1.0) {
-            let help = "it lies between 0 and 1, such as 1e-6";
+        if !(0.0..1.0).contains(&self.rtol) {
+            let help = "it is at least 0 and below 1, such as 1e-6";
             return Err(InputError::new("rtol", self.rtol, help));
         }
         if let AbsoluteTolerance::Vector(atol) = &self.atol
@@ -73,6 +78,10 @@ impl Tolerances {
             let atol = self.atol_of(i);
             if !(atol >= 0.0 && atol.is_finite()) {
                 return Err(InputError::new("atol", atol, "it is not negative, such as 1e-9"));
+            }
+            if atol == 0.0 && self.rtol == 0.0 {
+                let help = format!("unknown {i} has no rtol either: one of the two is positive");
+                return Err(InputError::new("atol", atol, help));
             }
             if atol == 0.0 && *y == 0.0 {
                 return Err(InputError::new(
@@ -95,7 +104,23 @@ impl Tolerances {
 
     /// The size of an unknown with the value `y`: |y| plus that below which it is noise; 1 if both are 0.
     pub(crate) fn size_of(&self, unknown: usize, y: f64) -> f64 {
-        size_or_one(y.abs() + self.atol_of(unknown) / self.rtol)
+        size_or_one(y.abs() + self.noise_of(unknown))
+    }
+
+    /// The size below which an unknown is noise.
+    pub(crate) fn noise_of(&self, unknown: usize) -> f64 {
+        let rtol = if self.rtol < LEAST_RTOL { USUAL_RTOL } else { self.rtol };
+        self.atol_of(unknown) / rtol
+    }
+
+    /// The distance from the state `y` along `direction` at which the first unknown has changed by what it may be off, but at most
+    /// `longest`.
+    pub(crate) fn error_reach(&self, y: &[f64], direction: &[f64], longest: f64) -> f64 {
+        let allowed = |i: usize| match self.rtol * f64::abs(y[i]) + self.atol_of(i) {
+            0.0 => self.rtol,
+            allowed => allowed,
+        };
+        direction.iter().enumerate().map(|(i, d)| allowed(i) / d.abs()).fold(longest, f64::min)
     }
 
     /// The distance from the state `y` along `direction` at which the first unknown has changed by its size,

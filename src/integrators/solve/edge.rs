@@ -8,7 +8,7 @@ use super::{
     watch::Root,
 };
 use crate::base::root::crosses;
-use crate::integrators::common::{self, Cause, Tolerances};
+use crate::integrators::common::{self, Cause};
 
 impl Run<'_> {
     /// The step in place of one that failed by `error`: to the events that the solution has come to within its tolerances, as where
@@ -44,9 +44,8 @@ impl Run<'_> {
         if self.engine.slope(self.t, &self.y, &mut slope).is_err() {
             return Vec::new();
         }
-        let Tolerances { rtol, .. } = self.tolerances;
-        let longest = (self.span.1 - self.span.0).abs() / rtol;
-        let time = self.sign * rtol * self.tolerances.reach(&self.y, &slope, longest);
+        let longest = (self.span.1 - self.span.0).abs();
+        let time = self.sign * self.tolerances.error_reach(&self.y, &slope, longest);
         let Self { events, watches, scratch, parameters, y, t, .. } = self;
         let mut value = |event: &mut Event<'_>, part: f64| {
             let moved = y.iter().zip(&slope).map(|(y, slope)| y + part * time * slope);

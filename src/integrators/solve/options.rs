@@ -45,7 +45,8 @@ pub struct Options {
 }
 
 impl Options {
-    /// These tolerances: local errors are kept below `rtol |y_i| + atol_i`, in the root mean square.
+    /// These tolerances: local errors are kept below `rtol |y_i| + atol_i`, in the root mean square. One of the two may be 0, `atol` for
+    /// unknowns that stay away from 0.
     pub fn new(rtol: f64, atol: impl Into<AbsoluteTolerance>) -> Self {
         Self {
             tolerances: Tolerances::new(rtol, atol),

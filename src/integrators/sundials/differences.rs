@@ -65,6 +65,8 @@ struct Increments {
     fractions: Vec<f64>,
     /// Change of the function by the last shift of each unknown.
     changes: Vec<Change>,
+    /// Whether they depend on nothing but the point.
+    are_repeatable: bool,
 }
 
 /// The largest change of the function along a column, and the size of the function there.
@@ -115,6 +117,7 @@ impl Differences {
             tolerances: tolerances.clone(),
             fractions: vec![LEAST_FRACTION; n],
             changes: vec![Change::default(); n],
+            are_repeatable: false,
         };
         Some(Self::new(Shape::of(solver)?, n, Some(increments), signs))
     }
@@ -132,6 +135,12 @@ impl Differences {
         if let Some(increments) = &mut self.increments {
             increments.fractions.fill(LEAST_FRACTION);
         }
+    }
+
+    /// Lets no increment depend on earlier points: the adjoint method repeats parts of a run from its checkpoints, and C, which has storage
+    /// for as many steps as before, has to take the same ones.
+    pub(super) fn make_repeatable(&mut self) {
+        self.increments.iter_mut().for_each(|increments| increments.are_repeatable = true);
     }
 
     fn new(shape: Shape, n: usize, increments: Option<Increments>, signs: &[Sign]) -> Self {
@@ -163,9 +172,14 @@ impl Differences {
         evaluate: &mut Evaluate<'_, E>,
     ) -> Result<(), E> {
         let Self { shape, colouring, signs, y: shifted, value, evaluations, .. } = self;
-        let Some(Increments { tolerances, fractions, changes }) = &mut self.increments else {
+        let Some(Increments { tolerances, fractions, changes, are_repeatable }) =
+            &mut self.increments
+        else {
             return Ok(());
         };
+        if *are_repeatable {
+            fractions.fill(LEAST_FRACTION);
+        }
         let (n, stored) = (y.len(), values.len());
         let shift = |j: usize, fraction: f64| {
             let forward = if ydot[j] < 0.0 { -1.0 } else { 1.0 };

@@ -7,6 +7,7 @@ use crate::integrators::{
     sundials::{
         auxiliary::Backward,
         context::Context,
+        differences::Differences,
         ffi,
         functions::{BackwardFunctions, InitBackward, InitBackwardQuadratures, SetBackward},
         linear::Linear,
@@ -64,6 +65,7 @@ impl<P: BackwardProblem> Session<P::Kind, Borrowed<'_, P>> {
             init(memory, steps, ffi::CV_HERMITE)
         })?;
         self.solve = P::FUNCTIONS.solve_forward;
+        self.host.get_mut().differences.iter_mut().for_each(Differences::make_repeatable);
         // steps must not pass `t`: the equations may jump there
         self.set_stop_time(Some(t))?;
         self.solve_to(t)?;

@@ -155,7 +155,7 @@ impl SensitivityRhs {
         let smallness = if central { rtol.max(f64::EPSILON).sqrt() } else { f64::EPSILON.sqrt() };
         let relative = |(i, (y, s)): (usize, (&f64, &f64))| match *s {
             0.0 => 0.0,
-            s => s / (y.abs() + self.tolerances.atol_of(i) / rtol),
+            s => s / (y.abs() + self.tolerances.noise_of(i)),
         };
         let squares: f64 = y.iter().zip(s).enumerate().map(relative).map(|part| part * part).sum();
         let norm = (squares / y.len() as f64).sqrt();
