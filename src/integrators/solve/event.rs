@@ -1,14 +1,25 @@
 //! Events: roots of functions along a solution, and actions at them.
 
-use std::fmt;
+use std::{cell::RefCell, fmt, rc::Rc};
 
 use super::error::Reason;
 use crate::base::input::InputError;
 use crate::base::root::Direction;
 use crate::integrators::common::check_finite;
 
-/// g(t, y, p), whose roots are the events.
-pub(super) type Function<'a> = Box<dyn FnMut(f64, &[f64], &[f64]) -> f64 + 'a>;
+/// g(t, y, p), whose roots are the events: equations that keep to one side of them ask it, too.
+#[derive(Clone)]
+pub(super) struct Function<'a>(Rc<RefCell<dyn FnMut(f64, &[f64], &[f64]) -> f64 + 'a>>);
+
+impl<'a> Function<'a> {
+    pub(super) fn new(g: impl FnMut(f64, &[f64], &[f64]) -> f64 + 'a) -> Self {
+        Self(Rc::new(RefCell::new(g)))
+    }
+
+    pub(super) fn at(&self, t: f64, y: &[f64], p: &[f64]) -> f64 {
+        (self.0.borrow_mut())(t, y, p)
+    }
+}
 
 /// An action at an event or a break: it changes the jump.
 pub(super) type Action<'a> = Box<dyn FnMut(&mut Jump<'_>) + 'a>;
@@ -57,7 +68,7 @@ impl<'a> Event<'a> {
     /// A root of `g(t, y, p)`, with the parameters of the equations.
     pub fn with_parameters(g: impl FnMut(f64, &[f64], &[f64]) -> f64 + 'a) -> Self {
         Self {
-            function: Box::new(g),
+            function: Function::new(g),
             direction: Direction::Either,
             last: None,
             action: None,
@@ -169,9 +180,14 @@ impl<'a> Event<'a> {
 }
 
 impl Event<'_> {
+    /// Whether the run goes on from it.
+    pub(super) fn may_go_on(&self) -> bool {
+        self.action.is_some() || self.last != Some(1)
+    }
+
     /// The value of the function of this event, the one of number `i`.
-    pub(super) fn value(&mut self, i: usize, t: f64, y: &[f64], p: &[f64]) -> Result<f64, Reason> {
-        match (self.function)(t, y, p) {
+    pub(super) fn value(&self, i: usize, t: f64, y: &[f64], p: &[f64]) -> Result<f64, Reason> {
+        match self.function.at(t, y, p) {
             value if value.is_nan() => Err(Reason::Event { event: i, t, value }),
             value => Ok(value),
         }

@@ -44,9 +44,12 @@ mod problem;
 mod run;
 mod saved;
 mod sensitivities;
+mod sides;
+mod snapshot;
 mod solution;
 mod solver;
 mod stepping;
+mod switch;
 mod watch;
 
 pub use ensemble::ensemble;

@@ -17,7 +17,10 @@ use super::{
     problem::{Break, Equations, Observer, Problem},
     saved::Saved,
     sensitivities::Carried,
+    sides::{SharedSides, Surfaces},
+    snapshot::{Log, Snapshot},
     solution::{End, Occurrence, SavedPoint},
+    switch::Caution,
     watch::EventTracker,
 };
 use crate::base::input::InputError;
@@ -67,6 +70,11 @@ pub struct Run<'a> {
     /// Whether the integrator has to restart at `t`.
     pub(super) stale: bool,
     pub(super) carried: Option<Carried>,
+    /// The sides of the events that the equations keep to, where derivatives are computed.
+    pub(super) sides: Option<SharedSides>,
+    /// Steps that may have passed a switch that is no event.
+    pub(super) caution: Caution,
+    pub(super) log: Log,
     /// Integrals since the start of the span, and up to the last start of the integrator.
     pub(super) quadratures: [Vec<f64>; 2],
     pub(super) occurred: Vec<Occurrence>,
@@ -135,8 +143,8 @@ impl<'a> Run<'a> {
         }
         let sign = (end - start).signum();
         options.check(span)?;
-        let Problem { mut equations, mut y, mut events, mut breaks, .. } = problem;
-        let Problem { observer, cancel, saved, initial_sensitivities, .. } = problem;
+        let Problem { mut equations, mut y, events, mut breaks, .. } = problem;
+        let Problem { observer, cancel, saved, initial_sensitivities, mut sides, .. } = problem;
         for (i, event) in events.iter().enumerate() {
             event.check(i)?;
         }
@@ -168,16 +176,25 @@ impl<'a> Run<'a> {
         }
         breaks.sort_by(|a, b| ((b.t - a.t) * sign).total_cmp(&0.0));
         let quadrature_count = equations.quadrature_count();
+        if options.sensitivities.is_some() {
+            equations = method.take(equations, start, y.len(), options)?;
+            let (tolerances, length) = (&options.tolerances, (end - start).abs());
+            let surfaces = Surfaces::of(&events, tolerances, length);
+            equations = surfaces.keep(equations);
+            sides = Some(surfaces.sides().clone());
+        }
         let mut engine = method.engine(equations, (start, sign), &y, options)?;
-        let jumps = events.iter().any(|event| event.action.is_some()) || !breaks.is_empty();
+        let jumps = events.iter().any(Event::may_go_on) || !breaks.is_empty();
         if options.sensitivities.is_some() && jumps && !engine.can_be_consistent() {
-            let help = "to go on across actions and breaks, Problem::differential says which unknowns are differential";
+            let help = "to go on across events and breaks, Problem::differential says which unknowns are differential";
             return Err(InputError::new("sensitivities", "given for a DAE", help).into());
         }
-        let mut carried = options.sensitivities.as_ref().map(|s| Carried::new(s, y.len()));
+        let count = engine.parameters().len();
+        let mut carried = options.sensitivities.as_ref().map(|s| Carried::new(s, y.len(), count));
         let saved_sensitivities = saved.as_ref().map(|saved| &saved.sensitivities);
+        let dp = saved.as_ref().map_or(&[][..], |saved| &saved.parameter_sensitivities);
         match (&mut carried, saved_sensitivities.or(initial_sensitivities.as_ref())) {
-            (Some(carried), Some(s)) => carried.start(s, engine.as_mut())?,
+            (Some(carried), Some(s)) => carried.start(s, dp, engine.as_mut())?,
             (None, Some(_)) if initial_sensitivities.is_some() => {
                 let help = "Options::sensitivities says which parameters they belong to";
                 return Err(InputError::new("initial_sensitivities", "given", help).into());
@@ -191,12 +208,12 @@ impl<'a> Run<'a> {
         }
         let parameters = engine.parameters().to_vec();
         let mut watches = Vec::new();
-        for (i, event) in events.iter_mut().enumerate() {
+        for (i, event) in events.iter().enumerate() {
             let g = match &saved {
                 Some(saved) => saved.event_values[i],
                 None => event.value(i, start, &y, &parameters)?,
             };
-            watches.push(EventTracker::new(event, start, g));
+            watches.push(EventTracker::new(event, (start, g), sides.is_some()));
         }
         let mut quadratures = vec![0.0; quadrature_count];
         if let Some(saved) = &saved {
@@ -228,6 +245,9 @@ impl<'a> Run<'a> {
             before: None,
             stale: false,
             carried,
+            sides,
+            caution: Caution::default(),
+            log: Log::new(),
             quadratures: [quadratures.clone(), quadratures],
             occurred: Vec::new(),
             past: Statistics::default(),
@@ -235,6 +255,8 @@ impl<'a> Run<'a> {
             end: None,
         };
         run.set_stop_time()?;
+        run.choose_sides(&[])?;
+        run.note_flow()?;
         Ok(run)
     }
 
@@ -288,6 +310,12 @@ impl<'a> Run<'a> {
         self.end
     }
 
+    /// Where the run stands.
+    pub(super) fn snapshot(&self) -> Snapshot {
+        let (y, yp, p) = (self.y.clone(), self.yp.clone(), self.parameters.clone());
+        Snapshot { t: self.t, y, yp, p, sides: self.signs() }
+    }
+
     /// Where the run stands, to be continued later or by another program: [`Problem::resume`].
     #[must_use]
     pub fn save(&self) -> Saved {
@@ -298,6 +326,7 @@ impl<'a> Run<'a> {
             parameters: self.parameters.clone(),
             counts: self.counts.clone(),
             sensitivities: self.carried.as_ref().map_or(Vec::new(), |carried| carried.s.clone()),
+            parameter_sensitivities: self.carried.as_ref().map_or(Vec::new(), |c| c.dp.clone()),
             quadratures: self.quadratures().to_vec(),
             event_values: self.watches.iter().map(EventTracker::value).collect(),
         }

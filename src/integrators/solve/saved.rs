@@ -22,6 +22,10 @@ pub struct Saved {
     pub counts: Vec<u32>,
     /// The sensitivities, one column after the other; empty if there are none.
     pub sensitivities: Vec<f64>,
+    /// The derivatives of all parameters, which actions may have set, by those of the sensitivities, one column
+    /// after the other; empty if there are none.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub parameter_sensitivities: Vec<f64>,
     /// The integrals since the start; empty if there are none.
     pub quadratures: Vec<f64>,
     /// Values of the event functions; 0 for one that is about to leave zero.

@@ -28,6 +28,7 @@ impl Run<'_> {
         self.check_limits()?;
         self.restart_if_changed()?;
         self.occurred.clear();
+        self.log.clear();
         self.before = None;
         let (t_old, end) = (self.t, self.span.1);
         // no step from one number to the next, where a break directly follows another one, an event or the
@@ -39,6 +40,7 @@ impl Run<'_> {
         }
         let mut t = self.engine.t();
         let at_break = self.is_before_break(t);
+        self.note_flow_of_step()?;
         let jumps = match self.look_for_events(t, at_break || t == end)? {
             Found::Jumps(jumps) => jumps,
             // the step passes through zero, where the action should have turned the solution back: a jump
@@ -50,6 +52,7 @@ impl Run<'_> {
             }
         };
         let stops_at = jumps.first().map(|(_, root)| root.t);
+        self.check_step(stops_at.unwrap_or(t))?;
         if let Some(at) = stops_at {
             t = at;
             let y = &mut self.scratch;

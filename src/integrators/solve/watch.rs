@@ -16,6 +16,8 @@ pub(super) struct Root {
     pub(super) sign: i32,
     /// Values of the function up to which its sign at the root is noise.
     pub(super) noise: f64,
+    /// Whether it is of the direction that counts as an event.
+    pub(super) counts: bool,
     /// Where to go on looking, and the value there.
     behind: Point,
 }
@@ -26,6 +28,8 @@ pub(super) struct EventTracker {
     direction: Direction,
     samples: u32,
     touching: Option<f64>,
+    /// Whether roots that do not count are found, too.
+    finds_all: bool,
     /// The sign that the function should have next, where an action has turned the solution back from zero,
     /// or brought it to rest there.
     turn: Option<Turn>,
@@ -68,11 +72,11 @@ impl Sight {
 }
 
 impl EventTracker {
-    /// Follows `event` from time `t`, where its function is `g`.
-    pub(super) fn new(event: &Event<'_>, t: f64, g: f64) -> Self {
+    /// Follows `event` from time `t`, where its function is `g`; `finds_all` roots, or those that count.
+    pub(super) fn new(event: &Event<'_>, (t, g): (f64, f64), finds_all: bool) -> Self {
         let Event { direction, samples, touching, .. } = *event;
         let (turn, acted, longest) = (None, None, 0.0);
-        Self { direction, samples, touching, turn, acted, longest, t, g }
+        Self { direction, samples, touching, finds_all, turn, acted, longest, t, g }
     }
 
     /// The function where it was last looked at.
@@ -130,9 +134,10 @@ impl EventTracker {
             self.g = f64::MIN_POSITIVE.copysign(before);
         }
         let sign = if before < 0.0 { 1 } else { -1 };
-        let is_met = crosses(before, self.g) && self.direction.counts(sign.into());
-        let is_met = is_met && !self.g.is_nan();
-        Ok(if is_met { Sight::Root(Root::at(to, self.g, sign)) } else { Sight::Nothing })
+        let counts = self.direction.counts(sign.into());
+        let is_met = crosses(before, self.g) && (counts || self.finds_all) && !self.g.is_nan();
+        let root = Root { counts, ..Root::at(to, self.g, sign) };
+        Ok(if is_met { Sight::Root(root) } else { Sight::Nothing })
     }
 
     /// The next root up to time `to`, to within `tolerance`. The tracker moves there, or to `to`.
@@ -145,12 +150,13 @@ impl EventTracker {
         g: &mut impl FnMut(f64) -> Result<f64, E>,
     ) -> Result<Sight, E> {
         while (to - self.t).abs() > tolerance {
-            let root = match self.any_root((to, is_last), tolerance, g)? {
+            let mut root = match self.any_root((to, is_last), tolerance, g)? {
                 Sight::Root(root) => root,
                 other => return Ok(other),
             };
             (self.t, self.g) = (root.behind.t, root.behind.g);
-            if self.direction.counts(root.sign.into()) {
+            root.counts = self.direction.counts(root.sign.into());
+            if root.counts || self.finds_all {
                 return Ok(Sight::Root(root));
             }
         }
@@ -222,8 +228,8 @@ impl EventTracker {
                     return Root::between(first, lowest, tolerance, &mut at).map(Sight::Root);
                 }
                 if self.touching.is_some_and(|most| lowest.g.abs() <= most) {
-                    let (t, sign, noise) = (lowest.t, 0, 0.0);
-                    return Ok(Sight::Root(Root { t, sign, noise, behind: next }));
+                    let (t, sign, noise, counts) = (lowest.t, 0, 0.0, true);
+                    return Ok(Sight::Root(Root { t, sign, noise, counts, behind: next }));
                 }
             }
             if crosses(last.g, next.g) {
@@ -295,7 +301,7 @@ const ZERO_AT_EDGE: f64 = 1e-3;
 impl Root {
     /// A root at time `t`, where the function is `g`, of which no more is known.
     pub(super) fn at(t: f64, g: f64, sign: i32) -> Self {
-        Self { t, sign, noise: 10.0 * g.abs(), behind: Point { t, g } }
+        Self { t, sign, noise: 10.0 * g.abs(), counts: true, behind: Point { t, g } }
     }
 
     /// The root between `near` and the edge of the domain of the function, before the time `beyond` where it is undefined.
@@ -333,7 +339,8 @@ impl Root {
     ) -> Result<Self, E> {
         let (near, far) = bracket(near, far, tolerance, &mut |t| at(t).map(|p| p.g))?;
         let sign = if near.g < 0.0 { 1 } else { -1 };
-        Ok(Self { t: far.t, sign, noise: 10.0 * (near.g.abs() + far.g.abs()), behind: far })
+        let noise = 10.0 * (near.g.abs() + far.g.abs());
+        Ok(Self { t: far.t, sign, noise, counts: true, behind: far })
     }
 }
 
@@ -343,7 +350,7 @@ mod tests {
 
     /// Follows g over steps of one unit; the roots with their signs.
     fn roots(event: Event<'_>, g: impl Fn(f64) -> f64, steps: u32) -> Vec<(f64, i32)> {
-        let mut watch = EventTracker::new(&event, 0.0, g(0.0));
+        let mut watch = EventTracker::new(&event, (0.0, g(0.0)), false);
         let mut found = Vec::new();
         for step in 1..=steps {
             while let Sight::Root(root) = watch

@@ -1,0 +1,29 @@
+//! Where a run stood, and the actions that it performed there.
+
+/// A time, the state there, its time derivative (of a DAE), the parameters of the equations, and the sides of
+/// the events that the solution is on.
+#[derive(Clone)]
+pub(super) struct Snapshot {
+    pub(super) t: f64,
+    pub(super) y: Vec<f64>,
+    pub(super) yp: Vec<f64>,
+    pub(super) p: Vec<f64>,
+    pub(super) sides: Vec<f64>,
+}
+
+/// The action of an event or of a break, by its number among those that were given.
+#[derive(Clone, Copy)]
+pub(super) enum Act {
+    Event(usize),
+    Break(usize),
+}
+
+impl Act {
+    pub(super) fn is_of_event(self) -> bool {
+        matches!(self, Self::Event(_))
+    }
+}
+
+/// What happened to the state, for the way back: each action, or each passage from one side of an event to the
+/// other, with the state before it.
+pub(super) type Log = Vec<(Act, Snapshot)>;
