@@ -17,5 +17,6 @@ mod rosenbrock;
 mod sensitivities;
 mod standstill;
 mod support;
+mod switches;
 mod values;
 mod wrong_jacobians;

@@ -124,18 +124,7 @@ impl<'a> Run<'a> {
     ///
     /// That is judged over the shortest time in which the function changes by more than noise.
     fn leads_back(&mut self, i: usize, turn: Turn) -> Result<bool, Reason> {
-        // the present y' of a DAE is that of the step's polynomial, or accurate only for a step as short as
-        // the last: consistent values are sought again from zero, on the scale of the span
-        let (mut y, mut slope) = (self.y.clone(), vec![0.0; self.yp.len()]);
-        let start = Start { t: self.t, y: &mut y, yp: &mut slope, s: None };
-        if self.engine.correct(start, self.span.1).is_err() || !self.engine.can_be_consistent() {
-            slope.copy_from_slice(&self.yp);
-        }
-        slope.resize(self.y.len(), 0.0);
-        self.engine.slope(self.t, &self.y, &mut slope).map_err(|failure| {
-            let help = "it is needed to see whether the action of an event turns the solution back";
-            InputError::new("right-hand side behind a jump", failure.into_error(), help)
-        })?;
+        let slope = self.slope_here()?;
         let unit = self.sign * self.unit_of_time(&self.y, &slope);
         let Self { events, scratch, parameters, y, t, .. } = self;
         let mut value = |time: f64| {
@@ -151,6 +140,29 @@ impl<'a> Run<'a> {
             part *= 8.0;
         }
         Ok(false)
+    }
+
+    /// The time derivative of the present state; 0 for algebraic unknowns.
+    pub(super) fn slope_here(&mut self) -> Result<Vec<f64>, Reason> {
+        // the present y' of a DAE is that of the step's polynomial, or accurate only for a step as short as
+        // the last: consistent values are sought again from zero, on the scale of the span
+        let (mut y, mut slope) = (self.y.clone(), vec![0.0; self.yp.len()]);
+        let start = Start { t: self.t, y: &mut y, yp: &mut slope, s: None };
+        if self.engine.correct(start, self.span.1).is_err() || !self.engine.can_be_consistent() {
+            slope.copy_from_slice(&self.yp);
+        }
+        self.slope_at(self.t, &self.y.clone(), slope)
+    }
+
+    /// The time derivative of the state `y`: `yp` of a DAE.
+    pub(super) fn slope_at(&mut self, t: f64, y: &[f64], yp: Vec<f64>) -> Result<Vec<f64>, Reason> {
+        let mut slope = yp;
+        slope.resize(y.len(), 0.0);
+        self.engine.slope(t, y, &mut slope).map_err(|failure| {
+            let help = "it is needed on both sides of an event and of a jump";
+            InputError::new("right-hand side at a jump", failure.into_error(), help)
+        })?;
+        Ok(slope)
     }
 
     /// Handles the accumulation of event `i` at the present time.
@@ -185,6 +197,7 @@ impl<'a> Run<'a> {
             }
         }
         let mut acting = Vec::new();
+        self.sharpen_derivative()?;
         let before = self.snapshot();
         for (i, root) in met.iter().filter(|(_, root)| root.counts) {
             let acts = self.events[*i].action.is_some();
@@ -295,9 +308,12 @@ impl<'a> Run<'a> {
 
     /// Makes the present state of a DAE, and sensitivities, satisfy the equations.
     fn correct(&mut self, s: Option<(&mut [f64], &[f64])>) -> Result<(), Reason> {
+        // a step that became short next to a switch is no measure
+        let scale = (self.t - self.t_old).abs().max(self.caution.until);
         let (t, y, yp) = (self.t, &mut self.y[..], &mut self.yp[..]);
-        match self.engine.correct(Start { t, y, yp, s }, t + (t - self.t_old)) {
-            Err(error) if self.end.is_some() => Err(error.into()),
+        let carries = s.is_some();
+        match self.engine.correct(Start { t, y, yp, s }, t + self.sign * scale) {
+            Err(error) if self.end.is_some() || carries => Err(error.into()),
             // otherwise the next start reports the error
             _ => Ok(()),
         }

@@ -40,7 +40,7 @@ impl Run<'_> {
         }
         let mut t = self.engine.t();
         let at_break = self.is_before_break(t);
-        self.note_flow_of_step()?;
+        self.note_step()?;
         let jumps = match self.look_for_events(t, at_break || t == end)? {
             Found::Jumps(jumps) => jumps,
             // the step passes through zero, where the action should have turned the solution back: a jump
