@@ -3,6 +3,7 @@
 mod accumulation;
 mod bounds;
 mod breaks;
+mod clocks;
 mod difference_quotients;
 mod edges;
 mod ensembles;

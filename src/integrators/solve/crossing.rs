@@ -10,7 +10,6 @@ use super::{
     engine::Start,
     error::Reason,
     event::{Action, Jump, check_crosses},
-    problem::Break,
     run::Run,
     sensitivities::{Carried, Crossing},
     snapshot::{Act, Snapshot},
@@ -75,10 +74,11 @@ impl<'a> Run<'a> {
             let mut stops = false;
             for (i, root) in &mut met {
                 root.t = at;
+                root.counts &= self.armed[*i];
                 if !root.counts {
                     continue;
                 }
-                self.counts[*i] += 1;
+                self.count(*i);
                 let event = &self.events[*i];
                 stops |= event.action.is_some() || event.last == Some(self.counts[*i]);
                 let occurrence = Occurrence { event: *i, t: at, sign: root.sign, y: y.clone() };
@@ -173,11 +173,13 @@ impl<'a> Run<'a> {
             return Err(Reason::Accumulation { event: i, t: self.t, count: self.counts[i] });
         };
         let (y, yp, p) = (&mut self.y, &mut self.yp, &mut self.parameters);
-        let mut jump = Jump { t: self.t, y, yp, p, ends: false };
+        let mut jump = Jump::new(self.t, y, yp, p);
         action(&mut jump);
-        if jump.ends {
+        let Jump { ends, armed, .. } = jump;
+        if ends {
             self.end = Some(End::Event(i));
         }
+        self.arm(armed)?;
         self.land(&before, &[])?;
         self.watches[i].expect_rest(turn);
         Ok(())
@@ -196,7 +198,7 @@ impl<'a> Run<'a> {
                 return self.accumulate(*i, turn);
             }
         }
-        let mut acting = Vec::new();
+        let (mut acting, mut arming) = (Vec::new(), Vec::new());
         self.sharpen_derivative()?;
         let before = self.snapshot();
         for (i, root) in met.iter().filter(|(_, root)| root.counts) {
@@ -212,14 +214,16 @@ impl<'a> Run<'a> {
             if let Some(action) = &mut event.action {
                 acting.push(*i);
                 let (y, yp, p) = (&mut self.y, &mut self.yp, &mut self.parameters);
-                let mut jump = Jump { t: self.t, y, yp, p, ends };
+                let mut jump = Jump::new(self.t, y, yp, p);
                 action(&mut jump);
-                ends = jump.ends;
+                ends |= jump.ends;
+                arming.extend(jump.armed);
             }
             if ends && self.end.is_none() {
                 self.end = Some(End::Event(*i));
             }
         }
+        self.arm(arming)?;
         let crossed = met.iter().filter(|(_, root)| root.sign != 0).map(|(i, _)| *i).next();
         let timed_by = acting.first().copied().or(crossed);
         let Some(timed_by) = timed_by.filter(|_| !acting.is_empty() || self.passes_sides()) else {
@@ -238,7 +242,7 @@ impl<'a> Run<'a> {
     }
 
     /// Notes an action, or a passage, with the state before it.
-    fn note(&mut self, act: Act) {
+    pub(super) fn note(&mut self, act: Act) {
         if self.sides.is_some() {
             self.log.push((act, self.snapshot()));
         }
@@ -266,24 +270,8 @@ impl<'a> Run<'a> {
         outcome
     }
 
-    /// Carries them across the actions of breaks, whose times depend on no parameter.
-    fn carry_across_break(
-        &mut self,
-        before: &Snapshot,
-        actions: &mut [Action<'a>],
-    ) -> Result<(), Reason> {
-        self.carry(before, |carried, at| {
-            if actions.is_empty() {
-                carried.before = Some(carried.s.clone());
-                return Ok(());
-            }
-            let taus = vec![0.0; at.p.len()];
-            carried.cross(at, &taus, |jump| actions.iter_mut().for_each(|action| action(jump)))
-        })
-    }
-
     /// Carries them by `cross` from the state `before` to the present one.
-    fn carry(
+    pub(super) fn carry(
         &mut self,
         before: &Snapshot,
         cross: impl FnOnce(&mut Carried, &Crossing<'_>) -> Result<(), Reason>,
@@ -319,37 +307,8 @@ impl<'a> Run<'a> {
         }
     }
 
-    pub(super) fn jump_at_break(&mut self) -> Result<(), Reason> {
-        let Some(Break { t, .. }) = self.breaks.last() else { return Ok(()) };
-        let t = *t;
-        self.check_break(t)?;
-        self.t = t;
-        self.stale = true;
-        let before = self.snapshot();
-        let mut actions = Vec::new();
-        while let Some(mut next) = self.breaks.pop_if(|next| next.t == self.t) {
-            self.note(Act::Break(next.number));
-            if let Some(action) = &mut next.action {
-                let (y, yp, p) = (&mut self.y, &mut self.yp, &mut self.parameters);
-                let mut jump = Jump { t: self.t, y, yp, p, ends: false };
-                action(&mut jump);
-                if jump.ends {
-                    self.end = Some(End::Break);
-                }
-            }
-            actions.extend(next.action);
-        }
-        // algebraic unknowns jump with the equations
-        let follows = !self.yp.is_empty() && self.engine.can_be_consistent();
-        if actions.is_empty() && !follows {
-            return Ok(());
-        }
-        self.land(&before, &[])?;
-        self.carry_across_break(&before, &mut actions)
-    }
-
     /// Takes over the state, which was `before`, and the parameters as actions have left them.
-    fn land(&mut self, before: &Snapshot, met: &[(usize, Root)]) -> Result<(), Reason> {
+    pub(super) fn land(&mut self, before: &Snapshot, met: &[(usize, Root)]) -> Result<(), Reason> {
         self.stale = true;
         self.before.get_or_insert_with(|| before.y.clone());
         check_finite("state after the jump", &self.y)?;
@@ -373,6 +332,8 @@ impl<'a> Run<'a> {
             let turns = (acts || self.sides.is_some()) && self.leads_back(*i, turn)?;
             if acts {
                 self.watches[*i].acted(root.t, turns.then_some(turn));
+                let band = self.band(*i);
+                self.watches[*i].hold(band, f64::from(root.sign));
             }
             if jumps {
                 self.turn_side(*i, turns);

@@ -318,10 +318,10 @@ impl<F: Functional> BackwardRun<'_, '_, F> {
             // an action that reads these gets NaN: the differences would miss how they change
             place.yp.fill(f64::NAN);
             let Snapshot { t, mut y, mut yp, mut p, .. } = place;
-            let mut jump = Jump { t, y: &mut y, yp: &mut yp, p: &mut p, ends: false };
+            let mut jump = Jump::new(t, &mut y, &mut yp, &mut p);
             for act in &passage.acts {
                 let action = match *act {
-                    Act::Event(i) => &mut events[i].action,
+                    Act::Event(i) | Act::Tick(i) => &mut events[i].action,
                     Act::Break(i) => &mut breaks[i].action,
                 };
                 action.iter_mut().for_each(|action| action(&mut jump));

@@ -50,6 +50,7 @@ mod solution;
 mod solver;
 mod stepping;
 mod switch;
+mod timed;
 mod watch;
 
 pub use ensemble::ensemble;

@@ -11,7 +11,7 @@ use faer::{MatMut, MatRef};
 use super::{
     engine::Engine,
     error::Reason,
-    event::Event,
+    event::{Clock, Event},
     method::Method,
     options::Options,
     problem::{Break, Equations, Observer, Problem},
@@ -51,6 +51,10 @@ pub struct Run<'a> {
     pub(super) events: Vec<Event<'a>>,
     pub(super) watches: Vec<EventTracker>,
     pub(super) counts: Vec<u32>,
+    /// Whether each event may take place.
+    pub(super) armed: Vec<bool>,
+    /// The next times of the clocks of events.
+    pub(super) ticks: Vec<Option<f64>>,
     /// The breaks ahead, the next one last.
     pub(super) breaks: Vec<Break<'a>>,
     pub(super) observer: Option<Observer<'a>>,
@@ -78,6 +82,8 @@ pub struct Run<'a> {
     /// Integrals since the start of the span, and up to the last start of the integrator.
     pub(super) quadratures: [Vec<f64>; 2],
     pub(super) occurred: Vec<Occurrence>,
+    /// How many of them the last step has shown.
+    pub(super) shown: usize,
     pub(super) scratch: Vec<f64>,
     /// Statistics before the last start of the integrator.
     pub(super) past: Statistics,
@@ -140,11 +146,11 @@ impl<'a> Run<'a> {
         let sign = (end - start).signum();
         options.check(span)?;
         let Problem { mut equations, mut y, events, mut breaks, .. } = problem;
-        let Problem { observer, cancel, saved, initial_sensitivities, mut sides, .. } = problem;
+        let Problem { observer, cancel, mut saved, initial_sensitivities, mut sides, .. } = problem;
         for (i, event) in events.iter().enumerate() {
-            event.check(i)?;
+            event.check(i, span)?;
         }
-        if let Some(saved) = &saved {
+        if let Some(saved) = &mut saved {
             let derivatives = match &mut equations {
                 Equations::Dae { yp, .. } => {
                     yp.clone_from(&saved.yp);
@@ -152,6 +158,10 @@ impl<'a> Run<'a> {
                 }
                 Equations::Ode(_) => 0,
             };
+            let armed = events.iter().zip(&saved.counts).map(|(event, n)| !event.once || *n == 0);
+            if saved.armed.is_empty() {
+                saved.armed = armed.collect();
+            }
             saved.check([y.len(), derivatives, events.len(), equations.quadrature_count()])?;
             if start != saved.t {
                 let help = format!("the saved run stands at {:?}", saved.t);
@@ -222,7 +232,9 @@ impl<'a> Run<'a> {
         };
         let mut run = Self {
             engine,
-            counts: saved.map_or(vec![0; events.len()], |saved| saved.counts),
+            armed: saved.as_ref().map_or(vec![true; events.len()], |saved| saved.armed.clone()),
+            ticks: vec![None; events.len()],
+            counts: saved.as_ref().map_or(vec![0; events.len()], |saved| saved.counts.clone()),
             events,
             watches,
             breaks,
@@ -246,13 +258,26 @@ impl<'a> Run<'a> {
             log: Log::new(),
             quadratures: [quadratures.clone(), quadratures],
             occurred: Vec::new(),
+            shown: 0,
             past: Statistics::default(),
             started: Instant::now(),
             end: None,
         };
-        run.set_stop_time()?;
+        for i in 0..run.events.len() {
+            let is_start = saved.is_none() && run.events[i].clock.is_some_and(Clock::may_start);
+            run.plan_tick(i, is_start);
+            if saved.is_some() && run.watches[i].value() == 0.0 {
+                let band = run.band(i);
+                run.watches[i].hold(band, 0.0);
+            }
+        }
         run.choose_sides(&[])?;
         run.note_flow()?;
+        run.record_ticks(start)?;
+        if run.breaks.last().is_some_and(|next| next.t == start) {
+            run.jump_at_break()?;
+        }
+        run.set_stop_time()?;
         Ok(run)
     }
 
@@ -318,6 +343,7 @@ impl<'a> Run<'a> {
             yp: self.yp.clone(),
             parameters: self.parameters.clone(),
             counts: self.counts.clone(),
+            armed: self.armed.clone(),
             sensitivities: self.carried.as_ref().map_or(Vec::new(), |carried| carried.s.clone()),
             parameter_sensitivities: self.carried.as_ref().map_or(Vec::new(), |c| c.dp.clone()),
             quadratures: self.quadratures().to_vec(),

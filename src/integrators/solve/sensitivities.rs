@@ -120,7 +120,7 @@ impl Carried {
             let mut landed = |distance: f64| {
                 let (t, mut y, mut p) = at.moved(&(tau, &direction, dp), distance);
                 unknown.fill(f64::NAN);
-                act(&mut Jump { t, y: &mut y, yp: &mut unknown, p: &mut p, ends: false });
+                act(&mut Jump::new(t, &mut y, &mut unknown, &mut p));
                 (y, p)
             };
             let (ahead, behind) = (landed(distance), landed(-distance));
