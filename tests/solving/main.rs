@@ -4,6 +4,7 @@ mod accumulation;
 mod bounds;
 mod breaks;
 mod clocks;
+mod control;
 mod difference_quotients;
 mod edges;
 mod ensembles;

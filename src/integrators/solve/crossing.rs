@@ -297,7 +297,8 @@ impl<'a> Run<'a> {
     /// Makes the present state of a DAE, and sensitivities, satisfy the equations.
     fn correct(&mut self, s: Option<(&mut [f64], &[f64])>) -> Result<(), Reason> {
         // a step that became short next to a switch is no measure
-        let scale = (self.t - self.t_old).abs().max(self.caution.until);
+        let last = (self.t - self.t_old).abs().max(self.caution.until);
+        let scale = if last > 0.0 { last } else { (self.span.1 - self.t).abs() };
         let (t, y, yp) = (self.t, &mut self.y[..], &mut self.yp[..]);
         let carries = s.is_some();
         match self.engine.correct(Start { t, y, yp, s }, t + self.sign * scale) {

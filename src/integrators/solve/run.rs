@@ -11,7 +11,7 @@ use faer::{MatMut, MatRef};
 use super::{
     engine::Engine,
     error::Reason,
-    event::{Clock, Event},
+    event::Event,
     method::Method,
     options::Options,
     problem::{Break, Equations, Observer, Problem},
@@ -57,6 +57,10 @@ pub struct Run<'a> {
     pub(super) ticks: Vec<Option<f64>>,
     /// The breaks ahead, the next one last.
     pub(super) breaks: Vec<Break<'a>>,
+    /// Those behind, for a run that goes back.
+    pub(super) passed: Vec<Break<'a>>,
+    /// A time at which a step is to end.
+    pub(super) target: Option<f64>,
     pub(super) observer: Option<Observer<'a>>,
     pub(super) cancel: Option<Arc<AtomicBool>>,
     pub(super) limits: Limits,
@@ -200,7 +204,7 @@ impl<'a> Run<'a> {
         let saved_sensitivities = saved.as_ref().map(|saved| &saved.sensitivities);
         let dp = saved.as_ref().map_or(&[][..], |saved| &saved.parameter_sensitivities);
         match (&mut carried, saved_sensitivities.or(initial_sensitivities.as_ref())) {
-            (Some(carried), Some(s)) => carried.start(s, dp, engine.as_mut())?,
+            (Some(carried), Some(s)) => carried.start(s, dp, Some(engine.as_mut()))?,
             (None, Some(_)) if initial_sensitivities.is_some() => {
                 let help = "Options::sensitivities says which parameters they belong to";
                 return Err(InputError::new("initial_sensitivities", "given", help).into());
@@ -238,6 +242,8 @@ impl<'a> Run<'a> {
             events,
             watches,
             breaks,
+            passed: Vec::new(),
+            target: None,
             observer,
             cancel,
             limits,
@@ -263,14 +269,7 @@ impl<'a> Run<'a> {
             started: Instant::now(),
             end: None,
         };
-        for i in 0..run.events.len() {
-            let is_start = saved.is_none() && run.events[i].clock.is_some_and(Clock::may_start);
-            run.plan_tick(i, is_start);
-            if saved.is_some() && run.watches[i].value() == 0.0 {
-                let band = run.band(i);
-                run.watches[i].hold(band, 0.0);
-            }
-        }
+        run.follow_events(saved.is_some());
         run.choose_sides(&[])?;
         run.note_flow()?;
         run.record_ticks(start)?;
@@ -284,7 +283,9 @@ impl<'a> Run<'a> {
     /// Makes the next steps end just before the next break, or at the end of the span; there may be no room
     /// for a step.
     pub(super) fn set_stop_time(&mut self) -> Result<(), common::Error> {
-        let stop = self.breaks.last().map_or(self.span.1, |next| self.just_before(next.t));
+        let end = self.target.unwrap_or(self.span.1);
+        let before_break = self.breaks.last().map(|next| self.just_before(next.t));
+        let stop = before_break.filter(|t| (end - t) * self.sign > 0.0).unwrap_or(end);
         if stop == self.t { Ok(()) } else { self.engine.set_stop_time(stop) }
     }
 

@@ -104,7 +104,7 @@ impl Run<'_> {
     }
 
     /// Restarts the integrator after a change.
-    fn restart_if_changed(&mut self) -> Result<(), Reason> {
+    pub(super) fn restart_if_changed(&mut self) -> Result<(), Reason> {
         if !self.stale {
             return Ok(());
         }

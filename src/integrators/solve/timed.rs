@@ -4,7 +4,7 @@ use std::mem;
 
 use super::{
     error::Reason,
-    event::Jump,
+    event::{Clock, Jump},
     problem::Break,
     run::Run,
     snapshot::Act,
@@ -18,6 +18,18 @@ const DIRECTIONS: usize = 4;
 const MISSED: f64 = 4.0;
 
 impl Run<'_> {
+    /// Follows the events from the present time, which is the start of the span, or where a run `resumes`.
+    pub(super) fn follow_events(&mut self, resumes: bool) {
+        for i in 0..self.events.len() {
+            let may_start = self.events[i].clock.is_some_and(Clock::may_start);
+            self.plan_tick(i, may_start && !resumes);
+            if resumes && self.watches[i].value() == 0.0 {
+                let band = self.band(i);
+                self.watches[i].hold(band, 0.0);
+            }
+        }
+    }
+
     /// Plans the next tick of event `i`; one at the present time counts if that `is_start`.
     pub(super) fn plan_tick(&mut self, i: usize, is_start: bool) {
         let Some(clock) = self.events[i].clock else { return };
@@ -134,6 +146,7 @@ impl Run<'_> {
         };
         let acts = met.iter().any(acts);
         if !acts && !follows {
+            self.passed.append(&mut met);
             return Ok(());
         }
         self.land(&before, &[])?;
@@ -156,6 +169,8 @@ impl Run<'_> {
             })
         });
         self.events = events;
+        met.retain(|at| at.tick.is_none());
+        self.passed.append(&mut met);
         outcome
     }
 }
