@@ -10,7 +10,6 @@ use super::{
     engine::Start,
     error::Reason,
     event::{Action, Jump, check_crosses},
-    problem::Break,
     run::Run,
     sensitivities::{Carried, Crossing},
     snapshot::{Act, Snapshot},
@@ -75,10 +74,11 @@ impl<'a> Run<'a> {
             let mut stops = false;
             for (i, root) in &mut met {
                 root.t = at;
+                root.counts &= self.armed[*i];
                 if !root.counts {
                     continue;
                 }
-                self.counts[*i] += 1;
+                self.count(*i);
                 let event = &self.events[*i];
                 stops |= event.action.is_some() || event.last == Some(self.counts[*i]);
                 let occurrence = Occurrence { event: *i, t: at, sign: root.sign, y: y.clone() };
@@ -124,18 +124,7 @@ impl<'a> Run<'a> {
     ///
     /// That is judged over the shortest time in which the function changes by more than noise.
     fn leads_back(&mut self, i: usize, turn: Turn) -> Result<bool, Reason> {
-        // the present y' of a DAE is that of the step's polynomial, or accurate only for a step as short as
-        // the last: consistent values are sought again from zero, on the scale of the span
-        let (mut y, mut slope) = (self.y.clone(), vec![0.0; self.yp.len()]);
-        let start = Start { t: self.t, y: &mut y, yp: &mut slope, s: None };
-        if self.engine.correct(start, self.span.1).is_err() || !self.engine.can_be_consistent() {
-            slope.copy_from_slice(&self.yp);
-        }
-        slope.resize(self.y.len(), 0.0);
-        self.engine.slope(self.t, &self.y, &mut slope).map_err(|failure| {
-            let help = "it is needed to see whether the action of an event turns the solution back";
-            InputError::new("right-hand side behind a jump", failure.into_error(), help)
-        })?;
+        let slope = self.slope_here()?;
         let unit = self.sign * self.unit_of_time(&self.y, &slope);
         let Self { events, scratch, parameters, y, t, .. } = self;
         let mut value = |time: f64| {
@@ -153,6 +142,29 @@ impl<'a> Run<'a> {
         Ok(false)
     }
 
+    /// The time derivative of the present state; 0 for algebraic unknowns.
+    pub(super) fn slope_here(&mut self) -> Result<Vec<f64>, Reason> {
+        // the present y' of a DAE is that of the step's polynomial, or accurate only for a step as short as
+        // the last: consistent values are sought again from zero, on the scale of the span
+        let (mut y, mut slope) = (self.y.clone(), vec![0.0; self.yp.len()]);
+        let start = Start { t: self.t, y: &mut y, yp: &mut slope, s: None };
+        if self.engine.correct(start, self.span.1).is_err() || !self.engine.can_be_consistent() {
+            slope.copy_from_slice(&self.yp);
+        }
+        self.slope_at(self.t, &self.y.clone(), slope)
+    }
+
+    /// The time derivative of the state `y`: `yp` of a DAE.
+    pub(super) fn slope_at(&mut self, t: f64, y: &[f64], yp: Vec<f64>) -> Result<Vec<f64>, Reason> {
+        let mut slope = yp;
+        slope.resize(y.len(), 0.0);
+        self.engine.slope(t, y, &mut slope).map_err(|failure| {
+            let help = "it is needed on both sides of an event and of a jump";
+            InputError::new("right-hand side at a jump", failure.into_error(), help)
+        })?;
+        Ok(slope)
+    }
+
     /// Handles the accumulation of event `i` at the present time.
     pub(super) fn accumulate(&mut self, i: usize, turn: Turn) -> Result<(), Reason> {
         let before = self.snapshot();
@@ -161,11 +173,13 @@ impl<'a> Run<'a> {
             return Err(Reason::Accumulation { event: i, t: self.t, count: self.counts[i] });
         };
         let (y, yp, p) = (&mut self.y, &mut self.yp, &mut self.parameters);
-        let mut jump = Jump { t: self.t, y, yp, p, ends: false };
+        let mut jump = Jump::new(self.t, y, yp, p);
         action(&mut jump);
-        if jump.ends {
+        let Jump { ends, armed, .. } = jump;
+        if ends {
             self.end = Some(End::Event(i));
         }
+        self.arm(armed)?;
         self.land(&before, &[])?;
         self.watches[i].expect_rest(turn);
         Ok(())
@@ -184,7 +198,8 @@ impl<'a> Run<'a> {
                 return self.accumulate(*i, turn);
             }
         }
-        let mut acting = Vec::new();
+        let (mut acting, mut arming) = (Vec::new(), Vec::new());
+        self.sharpen_derivative()?;
         let before = self.snapshot();
         for (i, root) in met.iter().filter(|(_, root)| root.counts) {
             let acts = self.events[*i].action.is_some();
@@ -199,14 +214,16 @@ impl<'a> Run<'a> {
             if let Some(action) = &mut event.action {
                 acting.push(*i);
                 let (y, yp, p) = (&mut self.y, &mut self.yp, &mut self.parameters);
-                let mut jump = Jump { t: self.t, y, yp, p, ends };
+                let mut jump = Jump::new(self.t, y, yp, p);
                 action(&mut jump);
-                ends = jump.ends;
+                ends |= jump.ends;
+                arming.extend(jump.armed);
             }
             if ends && self.end.is_none() {
                 self.end = Some(End::Event(*i));
             }
         }
+        self.arm(arming)?;
         let crossed = met.iter().filter(|(_, root)| root.sign != 0).map(|(i, _)| *i).next();
         let timed_by = acting.first().copied().or(crossed);
         let Some(timed_by) = timed_by.filter(|_| !acting.is_empty() || self.passes_sides()) else {
@@ -225,7 +242,7 @@ impl<'a> Run<'a> {
     }
 
     /// Notes an action, or a passage, with the state before it.
-    fn note(&mut self, act: Act) {
+    pub(super) fn note(&mut self, act: Act) {
         if self.sides.is_some() {
             self.log.push((act, self.snapshot()));
         }
@@ -253,24 +270,8 @@ impl<'a> Run<'a> {
         outcome
     }
 
-    /// Carries them across the actions of breaks, whose times depend on no parameter.
-    fn carry_across_break(
-        &mut self,
-        before: &Snapshot,
-        actions: &mut [Action<'a>],
-    ) -> Result<(), Reason> {
-        self.carry(before, |carried, at| {
-            if actions.is_empty() {
-                carried.before = Some(carried.s.clone());
-                return Ok(());
-            }
-            let taus = vec![0.0; at.p.len()];
-            carried.cross(at, &taus, |jump| actions.iter_mut().for_each(|action| action(jump)))
-        })
-    }
-
     /// Carries them by `cross` from the state `before` to the present one.
-    fn carry(
+    pub(super) fn carry(
         &mut self,
         before: &Snapshot,
         cross: impl FnOnce(&mut Carried, &Crossing<'_>) -> Result<(), Reason>,
@@ -295,45 +296,20 @@ impl<'a> Run<'a> {
 
     /// Makes the present state of a DAE, and sensitivities, satisfy the equations.
     fn correct(&mut self, s: Option<(&mut [f64], &[f64])>) -> Result<(), Reason> {
+        // a step that became short next to a switch is no measure
+        let last = (self.t - self.t_old).abs().max(self.caution.until);
+        let scale = if last > 0.0 { last } else { (self.span.1 - self.t).abs() };
         let (t, y, yp) = (self.t, &mut self.y[..], &mut self.yp[..]);
-        match self.engine.correct(Start { t, y, yp, s }, t + (t - self.t_old)) {
-            Err(error) if self.end.is_some() => Err(error.into()),
+        let carries = s.is_some();
+        match self.engine.correct(Start { t, y, yp, s }, t + self.sign * scale) {
+            Err(error) if self.end.is_some() || carries => Err(error.into()),
             // otherwise the next start reports the error
             _ => Ok(()),
         }
     }
 
-    pub(super) fn jump_at_break(&mut self) -> Result<(), Reason> {
-        let Some(Break { t, .. }) = self.breaks.last() else { return Ok(()) };
-        let t = *t;
-        self.check_break(t)?;
-        self.t = t;
-        self.stale = true;
-        let before = self.snapshot();
-        let mut actions = Vec::new();
-        while let Some(mut next) = self.breaks.pop_if(|next| next.t == self.t) {
-            self.note(Act::Break(next.number));
-            if let Some(action) = &mut next.action {
-                let (y, yp, p) = (&mut self.y, &mut self.yp, &mut self.parameters);
-                let mut jump = Jump { t: self.t, y, yp, p, ends: false };
-                action(&mut jump);
-                if jump.ends {
-                    self.end = Some(End::Break);
-                }
-            }
-            actions.extend(next.action);
-        }
-        // algebraic unknowns jump with the equations
-        let follows = !self.yp.is_empty() && self.engine.can_be_consistent();
-        if actions.is_empty() && !follows {
-            return Ok(());
-        }
-        self.land(&before, &[])?;
-        self.carry_across_break(&before, &mut actions)
-    }
-
     /// Takes over the state, which was `before`, and the parameters as actions have left them.
-    fn land(&mut self, before: &Snapshot, met: &[(usize, Root)]) -> Result<(), Reason> {
+    pub(super) fn land(&mut self, before: &Snapshot, met: &[(usize, Root)]) -> Result<(), Reason> {
         self.stale = true;
         self.before.get_or_insert_with(|| before.y.clone());
         check_finite("state after the jump", &self.y)?;
@@ -357,6 +333,8 @@ impl<'a> Run<'a> {
             let turns = (acts || self.sides.is_some()) && self.leads_back(*i, turn)?;
             if acts {
                 self.watches[*i].acted(root.t, turns.then_some(turn));
+                let band = self.band(*i);
+                self.watches[*i].hold(band, f64::from(root.sign));
             }
             if jumps {
                 self.turn_side(*i, turns);

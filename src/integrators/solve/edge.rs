@@ -18,7 +18,7 @@ impl Run<'_> {
         let t = self.t;
         let mut stops = false;
         for (i, root) in &met {
-            self.counts[*i] += 1;
+            self.count(*i);
             let event = &self.events[*i];
             stops |= event.action.is_some() || event.last == Some(self.counts[*i]);
             let y = self.y.clone();
@@ -53,7 +53,7 @@ impl Run<'_> {
             event.function.at(*t, scratch, parameters)
         };
         let mut met = Vec::new();
-        for (i, event) in events.iter().enumerate() {
+        for (i, event) in events.iter().enumerate().filter(|(i, _)| self.armed[*i]) {
             let [before, now, mut behind] = [-1.0, 0.0, 1.0].map(|part| value(event, part));
             // along a straight line where the function itself is undefined behind
             if behind.is_nan() {

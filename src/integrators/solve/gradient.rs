@@ -7,7 +7,7 @@ use super::{
     method::Method,
     options::Options,
     problem::{Equations, Problem},
-    sides::Surfaces,
+    sides::{FAR, Surfaces, continued},
     snapshot::{Act, Snapshot},
 };
 use crate::base::{
@@ -27,7 +27,8 @@ use crate::integrators::{
 /// [`Method::Ida`]).
 ///
 /// Where events act, the times of the jumps depend on the parameters, too, and so does the end of a run that
-/// an event ends; all of that is in the gradient.
+/// an event ends; all of that is in the gradient. Equations and functionals that switch by themselves need
+/// events there, as [sensitivities](Options::sensitivities) do.
 ///
 /// With the slopes f- before and f+ after a jump y+ = a(t, y, p) at a root of e(t, y, p),
 ///
@@ -148,8 +149,8 @@ impl<F: Functional> Functional for Piece<'_, '_, F> {
         if shift == 0.0 || has_slopes {
             return Ok(near);
         }
-        let far = self.surfaces.moved(t, y, 2.0 * shift);
-        Ok(2.0 * near - self.functional.running(t + 2.0 * shift, far, p, None)?)
+        let far = self.surfaces.moved(t, y, FAR * shift);
+        Ok(continued(near, self.functional.running(t + FAR * shift, far, p, None)?))
     }
 
     fn terminal(
@@ -282,7 +283,9 @@ impl<F: Functional> BackwardRun<'_, '_, F> {
     /// Gives the equations the parameters and the sides of a state.
     fn enter(&mut self, at: &Snapshot) {
         self.problem.equations.set_parameters(&at.p);
-        self.surfaces.sides().borrow_mut().signs.copy_from_slice(&at.sides);
+        let mut sides = self.surfaces.sides().borrow_mut();
+        sides.signs.copy_from_slice(&at.sides);
+        sides.p.clone_from(&at.p);
     }
 
     /// The time derivative of the state.
@@ -315,10 +318,10 @@ impl<F: Functional> BackwardRun<'_, '_, F> {
             // an action that reads these gets NaN: the differences would miss how they change
             place.yp.fill(f64::NAN);
             let Snapshot { t, mut y, mut yp, mut p, .. } = place;
-            let mut jump = Jump { t, y: &mut y, yp: &mut yp, p: &mut p, ends: false };
+            let mut jump = Jump::new(t, &mut y, &mut yp, &mut p);
             for act in &passage.acts {
                 let action = match *act {
-                    Act::Event(i) => &mut events[i].action,
+                    Act::Event(i) | Act::Tick(i) => &mut events[i].action,
                     Act::Break(i) => &mut breaks[i].action,
                 };
                 action.iter_mut().for_each(|action| action(&mut jump));

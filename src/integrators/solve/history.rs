@@ -4,7 +4,7 @@ use std::mem;
 
 use super::{
     error::Reason,
-    event::{Action, Event, Function},
+    event::{Action, Event},
     method::Method,
     options::Options,
     problem::{Break, Equations, Problem},
@@ -40,22 +40,13 @@ pub(super) struct Passage {
 
 /// The problem lent to a run, which keeps to the sides of its events.
 fn lend<'b>(problem: &'b mut Problem<'_>) -> Problem<'b> {
-    let events = problem.events.iter_mut().map(|event| {
-        let Event { function, direction, last, action, samples, touching, .. } = event;
-        let action =
-            action.as_mut().map(|action| -> Action<'b> { Box::new(move |jump| action(jump)) });
-        let function = function.clone();
-        let function = Function::new(move |t, y, p| function.at(t, y, p));
-        let (direction, last) = (*direction, *last);
-        let (samples, touching) = (*samples, *touching);
-        // no backward run of a gradient can pass infinitely many jumps
-        Event { function, direction, last, action, at_accumulation: None, samples, touching }
-    });
+    // no backward run of a gradient can pass infinitely many jumps
+    let events = problem.events.iter_mut().map(Event::lend);
     let breaks = problem.breaks.iter_mut().map(|at| {
-        let Break { t, number, action } = at;
+        let Break { t, number, tick, action } = at;
         let action =
             action.as_mut().map(|action| -> Action<'b> { Box::new(move |jump| action(jump)) });
-        Break { t: *t, number: *number, action }
+        Break { t: *t, number: *number, tick: *tick, action }
     });
     let (events, breaks) = (events.collect(), breaks.collect());
     let equations = match &mut problem.equations {
@@ -81,33 +72,40 @@ pub(super) fn follow(
     let mut run = Run::new(lend(problem), method, span, options)?;
     let mut parts = Vec::new();
     let mut from = run.snapshot();
-    while let Some(step) = run.advance()? {
-        let touched: Vec<_> =
-            step.events.iter().filter(|at| at.sign == 0).map(|at| at.event).collect();
+    let mut touched = Vec::new();
+    loop {
         let noted = mem::take(&mut run.log);
-        let Some((act, first)) = noted.first() else { continue };
-        let to = if act.is_of_event() { first.t } else { run.just_before(first.t) };
         let here = run.snapshot();
-        parts.push(HistoryPart::Smooth { from, to });
+        if let Some((act, first)) = noted.first()
+            && from.t != first.t
+        {
+            let to = if act.is_at_root() { first.t } else { run.just_before(first.t) };
+            parts.push(HistoryPart::Smooth { from: from.clone(), to });
+        }
+        let jumps = !noted.is_empty();
         let mut groups =
-            noted.chunk_by(|(a, _), (b, _)| a.is_of_event() == b.is_of_event()).peekable();
+            noted.chunk_by(|(a, _), (b, _)| a.is_at_root() == b.is_at_root()).peekable();
         while let Some(group) = groups.next() {
             let after = groups.peek().map_or(&here, |next| &next[0].1).clone();
             let acts: Vec<_> = group.iter().map(|(act, _)| *act).collect();
             let timed_by = match acts[0] {
                 Act::Event(i) => Some(i),
-                Act::Break(_) => None,
+                Act::Tick(_) | Act::Break(_) => None,
             };
             let crosses = timed_by.is_none_or(|i| !touched.contains(&i));
             let before = group[0].1.clone();
             let ends = false;
             parts.push(HistoryPart::Jump(Passage { timed_by, crosses, acts, before, after, ends }));
         }
-        from = here;
+        if jumps {
+            from = here;
+        }
+        let Some(step) = run.advance()? else { break };
+        touched = step.events.iter().filter(|at| at.sign == 0).map(|at| at.event).collect();
     }
     let here = run.snapshot();
     let ending = match run.end() {
-        Some(End::Event(i)) => Some(i),
+        Some(End::Event(i)) if run.events[i].clock.is_none() => Some(i),
         _ => None,
     };
     match (parts.last_mut(), ending) {

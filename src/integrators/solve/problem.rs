@@ -61,6 +61,8 @@ pub(super) struct Break<'a> {
     pub(super) t: f64,
     /// Its number among those that were given.
     pub(super) number: usize,
+    /// The event whose clock ticks, in place of a break.
+    pub(super) tick: Option<usize>,
     pub(super) action: Option<Action<'a>>,
 }
 
@@ -170,7 +172,7 @@ impl<'a> Problem<'a> {
     }
 
     fn push_break(&mut self, t: f64, action: Option<Action<'a>>) {
-        self.breaks.push(Break { t, number: self.breaks.len(), action });
+        self.breaks.push(Break { t, number: self.breaks.len(), tick: None, action });
     }
 
     /// Shows each step to `observer`, which may end the run by [`ControlFlow::Break`].

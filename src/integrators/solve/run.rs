@@ -51,8 +51,16 @@ pub struct Run<'a> {
     pub(super) events: Vec<Event<'a>>,
     pub(super) watches: Vec<EventTracker>,
     pub(super) counts: Vec<u32>,
+    /// Whether each event may take place.
+    pub(super) armed: Vec<bool>,
+    /// The next times of the clocks of events.
+    pub(super) ticks: Vec<Option<f64>>,
     /// The breaks ahead, the next one last.
     pub(super) breaks: Vec<Break<'a>>,
+    /// Those behind, for a run that goes back.
+    pub(super) passed: Vec<Break<'a>>,
+    /// A time at which a step is to end.
+    pub(super) target: Option<f64>,
     pub(super) observer: Option<Observer<'a>>,
     pub(super) cancel: Option<Arc<AtomicBool>>,
     pub(super) limits: Limits,
@@ -78,6 +86,8 @@ pub struct Run<'a> {
     /// Integrals since the start of the span, and up to the last start of the integrator.
     pub(super) quadratures: [Vec<f64>; 2],
     pub(super) occurred: Vec<Occurrence>,
+    /// How many of them the last step has shown.
+    pub(super) shown: usize,
     pub(super) scratch: Vec<f64>,
     /// Statistics before the last start of the integrator.
     pub(super) past: Statistics,
@@ -144,11 +154,11 @@ impl<'a> Run<'a> {
         let sign = (end - start).signum();
         options.check(span)?;
         let Problem { mut equations, mut y, events, mut breaks, .. } = problem;
-        let Problem { observer, cancel, saved, initial_sensitivities, mut sides, .. } = problem;
+        let Problem { observer, cancel, mut saved, initial_sensitivities, mut sides, .. } = problem;
         for (i, event) in events.iter().enumerate() {
-            event.check(i)?;
+            event.check(i, span)?;
         }
-        if let Some(saved) = &saved {
+        if let Some(saved) = &mut saved {
             let derivatives = match &mut equations {
                 Equations::Dae { yp, .. } => {
                     yp.clone_from(&saved.yp);
@@ -156,6 +166,10 @@ impl<'a> Run<'a> {
                 }
                 Equations::Ode(_) => 0,
             };
+            let armed = events.iter().zip(&saved.counts).map(|(event, n)| !event.once || *n == 0);
+            if saved.armed.is_empty() {
+                saved.armed = armed.collect();
+            }
             saved.check([y.len(), derivatives, events.len(), equations.quadrature_count()])?;
             if start != saved.t {
                 let help = format!("the saved run stands at {:?}", saved.t);
@@ -194,7 +208,7 @@ impl<'a> Run<'a> {
         let saved_sensitivities = saved.as_ref().map(|saved| &saved.sensitivities);
         let dp = saved.as_ref().map_or(&[][..], |saved| &saved.parameter_sensitivities);
         match (&mut carried, saved_sensitivities.or(initial_sensitivities.as_ref())) {
-            (Some(carried), Some(s)) => carried.start(s, dp, engine.as_mut())?,
+            (Some(carried), Some(s)) => carried.start(s, dp, Some(engine.as_mut()))?,
             (None, Some(_)) if initial_sensitivities.is_some() => {
                 let help = "Options::sensitivities says which parameters they belong to";
                 return Err(InputError::new("initial_sensitivities", "given", help).into());
@@ -226,10 +240,14 @@ impl<'a> Run<'a> {
         };
         let mut run = Self {
             engine,
-            counts: saved.map_or(vec![0; events.len()], |saved| saved.counts),
+            armed: saved.as_ref().map_or(vec![true; events.len()], |saved| saved.armed.clone()),
+            ticks: vec![None; events.len()],
+            counts: saved.as_ref().map_or(vec![0; events.len()], |saved| saved.counts.clone()),
             events,
             watches,
             breaks,
+            passed: Vec::new(),
+            target: None,
             observer,
             cancel,
             limits,
@@ -250,22 +268,30 @@ impl<'a> Run<'a> {
             log: Log::new(),
             quadratures: [quadratures.clone(), quadratures],
             occurred: Vec::new(),
+            shown: 0,
             past: Statistics::default(),
             started: Instant::now(),
             end: None,
         };
-        run.set_stop_time()?;
+        run.follow_events(saved.is_some());
         run.choose_sides(&[])?;
         run.note_flow()?;
+        run.record_ticks(start)?;
+        if run.breaks.last().is_some_and(|next| next.t == start) {
+            run.jump_at_break()?;
+        }
+        run.set_stop_time()?;
         Ok(run)
     }
 
     /// Makes the next steps end just before the next break, or at the end of the span; there may be no room
     /// for a step.
     pub(super) fn set_stop_time(&mut self) -> Result<(), common::Error> {
-        match self.breaks.last() {
-            None if self.span.1 != self.t => self.engine.set_stop_time(self.span.1),
-            Some(next) if self.just_before(next.t) != self.t => self.engine.set_stop_before(next.t),
+        let end = self.target.unwrap_or(self.span.1);
+        let before_break = self.breaks.last().map(|next| (next.t, self.just_before(next.t)));
+        match before_break.filter(|(_, stop)| (end - stop) * self.sign > 0.0) {
+            Some((next, stop)) if stop != self.t => self.engine.set_stop_before(next),
+            None if end != self.t => self.engine.set_stop_time(end),
             _ => Ok(()),
         }
     }
@@ -325,6 +351,7 @@ impl<'a> Run<'a> {
             yp: self.yp.clone(),
             parameters: self.parameters.clone(),
             counts: self.counts.clone(),
+            armed: self.armed.clone(),
             sensitivities: self.carried.as_ref().map_or(Vec::new(), |carried| carried.s.clone()),
             parameter_sensitivities: self.carried.as_ref().map_or(Vec::new(), |c| c.dp.clone()),
             quadratures: self.quadratures().to_vec(),

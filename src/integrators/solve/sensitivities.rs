@@ -120,7 +120,7 @@ impl Carried {
             let mut landed = |distance: f64| {
                 let (t, mut y, mut p) = at.moved(&(tau, &direction, dp), distance);
                 unknown.fill(f64::NAN);
-                act(&mut Jump { t, y: &mut y, yp: &mut unknown, p: &mut p, ends: false });
+                act(&mut Jump::new(t, &mut y, &mut unknown, &mut p));
                 (y, p)
             };
             let (ahead, behind) = (landed(distance), landed(-distance));
@@ -144,7 +144,7 @@ impl Carried {
         &mut self,
         s: &[f64],
         dp: &[f64],
-        engine: &mut dyn Engine,
+        engine: Option<&mut dyn Engine>,
     ) -> Result<(), Reason> {
         if dp.len() == self.dp.len() {
             self.dp.copy_from_slice(dp);
@@ -155,7 +155,7 @@ impl Carried {
             return Err(InputError::new(input, s.len(), help).into());
         }
         self.s.copy_from_slice(s);
-        self.hand_over(engine)
+        engine.map_or(Ok(()), |engine| self.hand_over(engine))
     }
 
     /// Passes them to the integrator after its restart.

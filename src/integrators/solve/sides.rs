@@ -24,6 +24,8 @@ pub(super) struct Sides {
     pub(super) signs: Vec<f64>,
     /// Slopes of the state at times nearby: surfaces are crossed along them.
     pub(super) flows: Vec<(f64, Vec<f64>)>,
+    /// The parameters; the equations are also asked for others nearby, for differences.
+    pub(super) p: Vec<f64>,
 }
 
 pub(super) type SharedSides = Rc<RefCell<Sides>>;
@@ -40,19 +42,29 @@ pub(super) struct Surfaces<'a> {
     place: Vec<f64>,
 }
 
-/// How far the equations are continued, relative to the time in which the state changes by its size, in parts of
-/// sqrt(rtol): increments of parameters move a surface by 1 such part, and the error of the continuation is its
-/// square.
-const REACH: f64 = 10.0;
+/// How far the equations are continued behind a surface, relative to the time in which the state changes by its
+/// size, in parts of sqrt(rtol): increments of differences are 1 such part, and the error of the continuation is
+/// its square.
+const REACH: f64 = 5.0;
 
 /// The shortest distance from a surface, relative to that time: rounding cannot put a point on the other side.
 const CLEARANCE: f64 = 1e-12;
+
+/// The second point of the line by which equations are continued is so many times as far away as the first, so
+/// that their rounding errors grow little.
+pub(super) const FAR: f64 = 5.0;
+
+/// The value continued from those at the two points.
+pub(super) fn continued(near: f64, far: f64) -> f64 {
+    near + (near - far) / (FAR - 1.0)
+}
 
 impl<'a> Surfaces<'a> {
     /// Those of `events`, for a span of the length `longest`. No side is known yet.
     pub(super) fn of(events: &[Event<'a>], tolerances: &Tolerances, longest: f64) -> Self {
         let functions: Vec<_> = events.iter().map(|event| event.function.clone()).collect();
-        let sides = Sides { signs: vec![0.0; functions.len()], flows: Vec::new() };
+        let signs = vec![0.0; functions.len()];
+        let sides = Sides { signs, flows: Vec::new(), p: Vec::new() };
         let (sides, tolerances) = (Rc::new(RefCell::new(sides)), tolerances.clone());
         Self { functions, sides, tolerances, longest, place: Vec::new() }
     }
@@ -78,7 +90,7 @@ impl<'a> Surfaces<'a> {
     /// right side; 0 if it is there, or far from it.
     pub(super) fn shift(&mut self, t: f64, y: &[f64], p: &[f64]) -> f64 {
         let Self { functions, sides, tolerances, longest, place } = self;
-        let Sides { signs, flows } = &*sides.borrow();
+        let Sides { signs, flows, p: own } = &*sides.borrow();
         let off = |(g, sign): (&Function<'_>, &f64)| *sign != 0.0 && g.at(t, y, p) * sign <= 0.0;
         let Some(i) = functions.iter().zip(signs).position(off) else { return 0.0 };
         let nearest = flows.iter().min_by(|a, b| (a.0 - t).abs().total_cmp(&(b.0 - t).abs()));
@@ -96,14 +108,20 @@ impl<'a> Surfaces<'a> {
         let rate = (value(i, probe) - value(i, -probe)) / (2.0 * probe);
         let ahead = (signs[i] * rate).signum();
         let clearance = CLEARANCE * unit + 8.0 * f64::EPSILON * t.abs();
+        let reach = REACH * tolerances.rtol.sqrt();
         let mut distance = 1.001 * (value(i, 0.0) / rate).abs() + clearance;
-        while distance <= REACH * tolerances.rtol.sqrt() * unit {
+        // a surface that other parameters have moved may be as far as the state changes in a long time
+        let farthest = match -signs[i] * functions[i].at(t, y, own) / rate.abs() <= reach * unit {
+            true => reach * *longest,
+            false => 0.0,
+        };
+        while distance <= farthest {
             let shift = ahead * distance;
             let mut is_clear = |shift: f64| {
                 let mut pairs = signs.iter().enumerate();
                 pairs.all(|(i, sign)| *sign == 0.0 || value(i, shift) * sign > 0.0)
             };
-            if is_clear(shift) && is_clear(2.0 * shift) {
+            if is_clear(shift) && is_clear(FAR * shift) {
                 return shift;
             }
             distance *= 4.0;
@@ -147,8 +165,8 @@ impl<S: ?Sized> Sided<'_, S> {
         }
         evaluate(system, t + shift, surfaces.moved(t, y, shift), out)?;
         far.resize(out.len(), 0.0);
-        evaluate(system, t + 2.0 * shift, surfaces.moved(t, y, 2.0 * shift), far)?;
-        out.iter_mut().zip(far).for_each(|(out, far)| *out = 2.0 * *out - *far);
+        evaluate(system, t + FAR * shift, surfaces.moved(t, y, FAR * shift), far)?;
+        out.iter_mut().zip(far).for_each(|(out, far)| *out = continued(*out, *far));
         Ok(())
     }
 }

@@ -11,15 +11,18 @@ pub(super) struct Snapshot {
     pub(super) sides: Vec<f64>,
 }
 
-/// The action of an event or of a break, by its number among those that were given.
+/// The action of an event, at a root or at a tick of its clock, or of a break, by its number among those that were
+/// given.
 #[derive(Clone, Copy)]
 pub(super) enum Act {
     Event(usize),
+    Tick(usize),
     Break(usize),
 }
 
 impl Act {
-    pub(super) fn is_of_event(self) -> bool {
+    /// Whether the state tells its time.
+    pub(super) fn is_at_root(self) -> bool {
         matches!(self, Self::Event(_))
     }
 }

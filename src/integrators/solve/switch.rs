@@ -16,7 +16,16 @@ pub(super) struct Caution {
     failures: u64,
     /// Size of the last step, and that to which steps have to grow again after a failure.
     last: f64,
-    until: f64,
+    pub(super) until: f64,
+    /// Whether they have not yet.
+    is_on: bool,
+}
+
+impl Caution {
+    /// Whether the last step is so short that its polynomial has no accurate derivatives.
+    fn is_short(&self) -> bool {
+        self.is_on && self.last < 0.01 * self.until
+    }
 }
 
 /// The two sides of a jump of an equation along a step.
@@ -88,27 +97,58 @@ impl Run<'_> {
         Ok(())
     }
 
-    /// Tells the equations how the present state changes.
+    /// Tells the equations how the present state changes, after a start or a jump.
     pub(super) fn note_flow(&mut self) -> Result<(), Reason> {
         if self.sides.is_none() {
             return Ok(());
         }
-        let slope = self.slope_here()?;
+        self.sharpen_derivative()?;
+        let slope = self.slope_at(self.t, &self.y.clone(), self.yp.clone())?;
         if let Some(sides) = &self.sides {
-            sides.borrow_mut().flows = vec![(self.t, slope)];
+            let mut sides = sides.borrow_mut();
+            sides.flows = vec![(self.t, slope)];
+            sides.p.clone_from(&self.parameters);
         }
         Ok(())
     }
 
-    /// Tells the equations how the state changes at the end of the step just made.
-    pub(super) fn note_flow_of_step(&mut self) -> Result<(), Reason> {
+    /// Finds the time derivative of a DAE at the present state, where the polynomial of a short step does not tell it.
+    pub(super) fn sharpen_derivative(&mut self) -> Result<(), Reason> {
+        let Some(sides) = self.sides.clone().filter(|_| !self.yp.is_empty()) else {
+            return Ok(());
+        };
+        let found = self.slope_here()?;
+        // of algebraic unknowns that of the last long step
+        let flow = sides.borrow().flows.first().cloned();
+        let flow =
+            flow.filter(|_| self.caution.is_short()).map_or(self.yp.clone(), |(_, flow)| flow);
+        let pairs = found.into_iter().zip(flow);
+        self.yp = pairs.map(|(found, flow)| if found == 0.0 { flow } else { found }).collect();
+        Ok(())
+    }
+
+    /// Looks at the step just made: whether it may have passed a switch, and how the state changes at its end.
+    pub(super) fn note_step(&mut self) -> Result<(), Reason> {
         let Some(sides) = &self.sides else { return Ok(()) };
+        let (t, statistics) = (self.engine.t(), self.engine.statistics());
+        let failures = statistics.error_test_failures + statistics.step_failures;
+        let Caution { failures: before, last, mut until, .. } = self.caution;
+        if failures > before {
+            until = until.max(last);
+        }
+        let last = (t - self.t).abs();
+        let is_on = failures > before || last < until;
+        self.caution = Caution { failures, last, until: if is_on { until } else { 0.0 }, is_on };
+        // the polynomial of a step that became short next to a switch is no measure
         let flows = &mut sides.borrow_mut().flows;
-        flows.resize(1, (self.t, Vec::new()));
-        let (t, slope) = &mut flows[0];
-        *t = self.engine.t();
+        if self.caution.is_short() && flows.first().is_some_and(|(at, _)| (t - at).abs() < until) {
+            return Ok(());
+        }
+        flows.resize(1, (t, Vec::new()));
+        let (noted, slope) = &mut flows[0];
+        *noted = t;
         slope.resize(self.y.len(), 0.0);
-        Ok(self.engine.interpolate(*t, 1, slope)?)
+        Ok(self.engine.interpolate(t, 1, slope)?)
     }
 
     /// After an action at event `i`: the equations keep to the side that the solution came from if it `turns`.
@@ -120,24 +160,7 @@ impl Run<'_> {
         }
     }
 
-    /// The time derivative of the present state.
-    fn slope_here(&mut self) -> Result<Vec<f64>, Reason> {
-        let y = self.y.clone();
-        self.slope_at(self.t, &y, self.yp.clone())
-    }
-
-    /// The time derivative of the state `y`: `yp` of a DAE.
-    pub(super) fn slope_at(&mut self, t: f64, y: &[f64], yp: Vec<f64>) -> Result<Vec<f64>, Reason> {
-        let mut slope = yp;
-        slope.resize(y.len(), 0.0);
-        self.engine.slope(t, y, &mut slope).map_err(|failure| {
-            let help = "derivatives need it on both sides of an event or a jump";
-            InputError::new("right-hand side at a jump", failure.into_error(), help)
-        })?;
-        Ok(slope)
-    }
-
-    /// Passes to the other sides of these events, at time `t` in the state `y`; returns whether the equations jump there, and then does
+    /// Passes to the other sides of these events, at time `t` in the state `y`; returns whether something may jump there, and then does
     /// not pass.
     pub(super) fn switches(
         &mut self,
@@ -156,8 +179,8 @@ impl Run<'_> {
         if behind == signs {
             return Ok(false);
         }
-        if !self.yp.is_empty() {
-            // a residual has no scale
+        // a residual has no scale, and a functional may switch, too
+        if !self.yp.is_empty() || self.carried.is_none() {
             return Ok(true);
         }
         let left = self.slope_at(t, y, Vec::new())?;
@@ -176,19 +199,7 @@ impl Run<'_> {
 
     /// Refuses a switch of the equations that is no event and moves with unknowns or parameters, in the step just made, up to time `t`.
     pub(super) fn check_step(&mut self, t: f64) -> Result<(), Reason> {
-        if self.sides.is_none() {
-            return Ok(());
-        }
-        let statistics = self.engine.statistics();
-        let failures = statistics.error_test_failures + statistics.step_failures;
-        let size = (self.engine.t() - self.t).abs();
-        let Caution { failures: before, last, until } = self.caution;
-        let fails = failures > before;
-        let until = if fails { until.max(last) } else { until };
-        let is_cautious = fails || size < until;
-        let until = if is_cautious { until } else { 0.0 };
-        self.caution = Caution { failures, last: size, until };
-        if !is_cautious || t == self.t {
+        if self.sides.is_none() || !self.caution.is_on || t == self.t {
             return Ok(());
         }
         match self.find_edge(self.t, t) {

@@ -33,6 +33,8 @@ pub(super) struct EventTracker {
     /// The sign that the function should have next, where an action has turned the solution back from zero,
     /// or brought it to rest there.
     turn: Option<Turn>,
+    /// Where an action has let the solution rest at zero, or pass.
+    held: Option<Held>,
     /// When an action was called last, and the longest time between two calls.
     acted: Option<f64>,
     longest: f64,
@@ -50,6 +52,15 @@ pub(super) struct Turn {
     noise: f64,
     /// Whether the solution is at rest there.
     pub(super) at_rest: bool,
+}
+
+/// A function that is still within the tolerances of zero after an action.
+#[derive(Clone, Copy, Debug)]
+struct Held {
+    /// Values up to which it has not left zero.
+    band: f64,
+    /// The sign on the side that it came to; 0 if that is not known.
+    side: f64,
 }
 
 /// Result of an event tracker.
@@ -75,19 +86,28 @@ impl EventTracker {
     /// Follows `event` from time `t`, where its function is `g`; `finds_all` roots, or those that count.
     pub(super) fn new(event: &Event<'_>, (t, g): (f64, f64), finds_all: bool) -> Self {
         let Event { direction, samples, touching, .. } = *event;
-        let (turn, acted, longest) = (None, None, 0.0);
-        Self { direction, samples, touching, finds_all, turn, acted, longest, t, g }
+        let (turn, held, acted, longest) = (None, None, None, 0.0);
+        Self { direction, samples, touching, finds_all, turn, held, acted, longest, t, g }
     }
 
-    /// The function where it was last looked at.
+    /// Waits until the function leaves zero by more than `band`, from where it is now within that. `side` is the sign
+    /// on the side that it came to.
+    pub(super) fn hold(&mut self, band: f64, side: f64) {
+        if self.g.abs() <= band && self.turn.is_none() && band > 0.0 {
+            self.held = Some(Held { band, side });
+        }
+    }
+
+    /// The function where it was last looked at; 0 where it has not left zero.
     pub(super) fn value(&self) -> f64 {
-        self.g
+        if self.held.is_some() { 0.0 } else { self.g }
     }
 
     /// Continues at time `t`, where the function now is `g` and values up to `noise` count as 0.
     pub(super) fn restart(&mut self, t: f64, g: f64, noise: f64) {
         (self.t, self.g) = (t, if g.abs() <= noise { 0.0 } else { g });
         self.turn = None;
+        self.held = self.held.filter(|held| g.abs() <= held.band);
     }
 
     /// After a new start: an action was called here, at time `t`, and should have turned the solution back as
@@ -125,7 +145,7 @@ impl EventTracker {
         (to, is_last): (f64, bool),
         g: &mut impl FnMut(f64) -> Result<f64, E>,
     ) -> Result<Sight, E> {
-        if self.g == 0.0 || self.t == to {
+        if self.g == 0.0 || self.t == to || self.held.is_some() {
             return Ok(Sight::Nothing);
         }
         let before = self.g;
@@ -170,6 +190,13 @@ impl EventTracker {
         tolerance: f64,
         g: &mut impl FnMut(f64) -> Result<f64, E>,
     ) -> Result<Sight, E> {
+        if let Some(held) = self.held {
+            match self.leave(held, to, tolerance, g)? {
+                Some(root) => return Ok(Sight::Root(root)),
+                None if self.held.is_some() => return Ok(Sight::Nothing),
+                None => {}
+            }
+        }
         let (from, slice) = (self.t, (to - self.t) / f64::from(self.samples));
         let mut at = |t: f64| g(t).map(|g| Point { t, g });
         let mut last = Point { t: from, g: self.g };
@@ -239,6 +266,40 @@ impl EventTracker {
         }
         (self.t, self.g) = (last.t, last.g);
         Ok(Sight::Nothing)
+    }
+}
+
+impl EventTracker {
+    /// Goes to the first sample up to time `to` where the function has left zero, or to the end. It has crossed zero
+    /// only if it leaves to the side that it came from.
+    fn leave<E>(
+        &mut self,
+        held: Held,
+        to: f64,
+        tolerance: f64,
+        g: &mut impl FnMut(f64) -> Result<f64, E>,
+    ) -> Result<Option<Root>, E> {
+        let (from, slice) = (self.t, (to - self.t) / f64::from(self.samples));
+        let mut at = |t: f64| g(t).map(|g| Point { t, g });
+        for k in 0..=self.samples {
+            let t = match k {
+                0 => from + 1e-3 * slice,
+                k if k == self.samples => to,
+                k => from + slice * f64::from(k),
+            };
+            let point = at(t)?;
+            if point.g.abs() > held.band {
+                self.held = None;
+                let near = Point { t: self.t, g: held.side * f64::MIN_POSITIVE };
+                if crosses(near.g, point.g) {
+                    return Root::between(near, point, tolerance, &mut at).map(Some);
+                }
+                (self.t, self.g) = (point.t, point.g);
+                return Ok(None);
+            }
+            self.t = t;
+        }
+        Ok(None)
     }
 }
 
