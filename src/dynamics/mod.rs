@@ -1,6 +1,6 @@
 //! The motion of a scene: its equations, phase by phase, and their solution by an integrator.
 //!
-//! `matrices` has what is constant, `system` the equations of a phase as ODE, DAE and system of second order,
+//! `matrices` has what is constant, `linear` the linear solvers, `system` the equations of a phase as ODE, DAE and system of second order,
 //! [`simulate`] the run, [`statics`] the equilibrium, [`trajectory`] what a run returns, `report` what it
 //! cost and `indicators` what makes it doubtful.
 
@@ -8,6 +8,7 @@ pub mod equations;
 pub(crate) mod equilibrium;
 pub mod error;
 pub(crate) mod indicators;
+pub(crate) mod linear;
 pub(crate) mod matrices;
 pub(crate) mod report;
 pub mod simulate;

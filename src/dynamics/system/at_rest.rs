@@ -26,12 +26,11 @@ mod tests;
 use std::sync::Arc;
 
 use super::System;
-use super::constrained_solver::nodal_multipliers;
 use super::newton_matrix::NewtonMatrix;
-use super::source::EntrySource;
 use crate::base::input::InputError;
 use crate::base::sparse::{BlockMatrix, NodeMatrix};
 use crate::base::vector::{dot, largest};
+use crate::dynamics::linear::{EntrySource, nodal_multipliers};
 use crate::dynamics::system::Energy;
 use crate::elements::force::{Force, NodalForces, Reservoir, Step};
 use crate::integrators::ode::Failure;

@@ -14,11 +14,11 @@
 
 use std::sync::Arc;
 
-use super::constrained_solver::nodal_multipliers;
 use super::{Reduction, System};
 use crate::base::input::InputError;
 use crate::base::simd::add;
 use crate::base::vector::largest;
+use crate::dynamics::linear::nodal_multipliers;
 use crate::dynamics::state::State;
 use crate::elements::body::Body;
 use crate::integrators::ode::Failure;

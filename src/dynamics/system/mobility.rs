@@ -13,10 +13,10 @@
 //! differences between the halves of each step alone, and sees a third of their change.
 
 use super::System;
-use super::constrained_solver::nodal_multipliers;
 use crate::base::simd::{Formula, each};
 use crate::base::tensor::Real;
 use crate::base::vector::dot;
+use crate::dynamics::linear::nodal_multipliers;
 use crate::dynamics::matrices::Matrices;
 use crate::integrators::ode::Kick;
 use crate::scene::constraint::ConstraintRow;

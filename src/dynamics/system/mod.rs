@@ -32,20 +32,13 @@
 //! a - f; in the ODE form they are output.
 
 mod at_rest;
-mod cholesky;
-mod constrained_solver;
 mod dae;
 mod dae_jacobian;
 mod differences;
-mod edge_solver;
-mod edges;
 mod ends;
 mod expected;
-mod flow_matrix;
 mod form;
 mod gas;
-mod general_rows;
-mod gradients;
 mod guide;
 mod imbalance;
 mod mobility;
@@ -60,15 +53,12 @@ mod reduced_form;
 mod reduction;
 pub(crate) mod rigid;
 mod scene;
-mod schur;
 mod second_order;
 mod settled;
 mod shape;
 mod shapes;
-mod source;
 mod spectrum;
 mod summary;
-mod symmetric;
 #[cfg(test)]
 mod tests;
 
@@ -76,9 +66,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 pub(crate) use at_rest::{AtRest, ForceBalance};
-use constrained_solver::{ConstrainedSolver, EXACT, nodal_multipliers};
 pub(crate) use dae::{DaeForm, Index};
-use edges::Edges;
 use ends::Ends;
 pub(crate) use expected::Vibrations;
 pub(crate) use form::Form;
@@ -88,13 +76,13 @@ pub(crate) use reduced_dae::ReducedDae;
 pub(crate) use reduced_form::{Lift, ReducedForm};
 use reduction::Reduction;
 pub(crate) use second_order::SecondOrderForm;
-use source::Coupling;
 pub use spectrum::Spectrum;
 pub use summary::PhaseSummary;
 
 use crate::base::input::InputError;
 use crate::base::sparse::NodeMatrix;
 use crate::base::vector::dot;
+use crate::dynamics::linear::{ConstrainedSolver, Coupling, EXACT, Edges, nodal_multipliers};
 use crate::dynamics::matrices::Matrices;
 use crate::dynamics::state::{Layout, State};
 use crate::elements::body::Branches;

@@ -29,13 +29,10 @@
 use std::sync::Arc;
 
 use super::System;
-use super::cholesky::Indefinite;
-use super::constrained_solver::nodal_multipliers;
-use super::edges::stabilized;
 use super::newton_matrix::{ITERATED, NewtonMatrix, SOLVED_ONCE};
-use super::source::EntrySource;
 use crate::base::sparse::BlockMatrix;
 use crate::base::vector::{dot, largest};
+use crate::dynamics::linear::{EntrySource, Indefinite, nodal_multipliers, stabilized};
 use crate::dynamics::matrices::Matrices;
 use crate::dynamics::state::State;
 use crate::integrators::ode::Failure;

@@ -2,12 +2,9 @@
 
 use std::sync::Arc;
 
-use super::constrained_solver::ConstrainedSolver;
 use super::differences::Differences;
-use super::edges::Edge;
-use super::flow_matrix::FlowMatrix;
-use super::source::Coupling;
 use crate::base::sparse::BlockMatrix;
+use crate::dynamics::linear::{ConstrainedSolver, Coupling, Edge, FlowMatrix};
 use crate::dynamics::matrices::Matrices;
 use crate::scene::constraint::ConstraintRow;
 

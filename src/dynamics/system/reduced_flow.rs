@@ -8,10 +8,10 @@ use std::sync::Arc;
 
 use faer::Mat;
 
-use super::flow_matrix::FlowMatrix;
 use super::shapes::Shapes;
 use crate::base::sparse::BlockMatrix;
 use crate::base::vector::dot;
+use crate::dynamics::linear::FlowMatrix;
 use crate::elements::force::{FlowDerivatives, Force, NodalForces};
 use crate::integrators::ode::Failure;
 

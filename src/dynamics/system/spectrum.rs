@@ -9,13 +9,12 @@ use nalgebra::{DMatrix, SymmetricEigen};
 
 use super::System;
 use super::at_rest::shifted;
-use super::constrained_solver::ConstrainedSolver;
 use super::rigid::{self, Shape};
 use super::shapes::Shapes;
-use super::source::Coupling;
 use crate::base::simd::add_multiple;
 use crate::base::sparse::NodeMatrix;
 use crate::base::vector::{dot, noise};
+use crate::dynamics::linear::{ConstrainedSolver, Coupling};
 use crate::dynamics::matrices::Matrices;
 
 /// How fast a body can move in a phase.

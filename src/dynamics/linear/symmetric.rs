@@ -16,8 +16,8 @@
 use faer::sparse::SymbolicSparseColMat;
 
 use super::cholesky::{Cholesky, Indefinite};
+use super::entry_source::EntrySource;
 use super::gradients::Gradients;
-use super::source::EntrySource;
 
 /// Operations of a factorization, which uses dense blocks, in the time of one operation of an iteration.
 const DENSE_SPEED: f64 = 4.0;
