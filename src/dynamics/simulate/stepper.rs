@@ -373,26 +373,16 @@ fn ida_options(
         },
         _ => LinearSolver::Custom,
     };
-    Ok(ida_options_of(settings, tolerances, differential, linear_solver))
-}
-
-/// The options of IDA, with what takes part in the error test.
-fn ida_options_of(
-    settings: &Settings,
-    tolerances: Vec<f64>,
-    differential: Vec<bool>,
-    linear_solver: LinearSolver,
-) -> IdaOptions {
     let options = IdaOptions::new(settings.rtol, tolerances)
         .newton(linear_solver)
         .check_jacobian(false)
         .differential(differential)
         .suppress_algebraic(true)
         .max_step(settings.max_step.unwrap_or(f64::INFINITY));
-    match settings.max_order {
+    Ok(match settings.max_order {
         Some(order) => options.max_order(order),
         None => options,
-    }
+    })
 }
 
 fn jacobian_pattern(equations: &mut DaeForm) -> Result<Pattern, Failed> {

@@ -131,18 +131,6 @@ fn parts_mut(y: &mut [f64], free: usize) -> [&mut [f64]; 4] {
     [q, p, internal, energies]
 }
 
-/// Form that contains the equations of a reduced model.
-pub(crate) trait Lift: Form {
-    /// The reduced equations.
-    fn reduced(&mut self) -> &mut ReducedForm;
-}
-
-impl Lift for ReducedForm {
-    fn reduced(&mut self) -> &mut ReducedForm {
-        self
-    }
-}
-
 /// Part by which a state may differ from one that the model has.
 const ROUND_OFF: f64 = 1e-9;
 

@@ -1,13 +1,10 @@
 //! The integrator of a phase that is run by a reduced model: it takes the unknowns of that, and shows all others.
 
-use super::{Failed, IntoStepper, Stepper, ida_options_of, ode};
+use super::{Failed, IntoStepper, Stepper, ode};
 use crate::base::input::InputError;
 use crate::dynamics::report::Counts;
-use crate::dynamics::state::ENERGIES;
-use crate::dynamics::system::{Form, Lift, ReducedDae, ReducedForm, System};
+use crate::dynamics::system::{Form, ReducedForm, System};
 use crate::integrators::common::Integrator;
-use crate::integrators::ode::Failure;
-use crate::integrators::sundials::{Ida, LinearSolver};
 use crate::scene::settings::{AbsoluteTolerances, Method, Settings};
 
 /// An integrator of a reduced model.
@@ -29,8 +26,8 @@ pub(super) fn start(
     state: &[f64],
 ) -> Result<Box<dyn Stepper>, Failed> {
     let method = settings.method;
-    if let Method::IdaKlu | Method::IdaIndexTwo | Method::CentralDifference = method {
-        let help = "a reduced model has no constraints left, and a matrix of its own: take cvode-bdf, arkode, rosenbrock, rk or ida";
+    if let Method::Ida | Method::IdaKlu | Method::IdaIndexTwo | Method::CentralDifference = method {
+        let help = "a reduced model is an ODE, without constraints: take cvode-bdf, arkode, rosenbrock or rk";
         return Err(InputError::new("method", method, help).into());
     }
     let (is_linear, mass) = (system.is_linear(), system.mass());
@@ -45,50 +42,33 @@ pub(super) fn start(
     tolerances.extend(equations.branch_tolerances(atol.strain));
     tolerances.extend(of_amounts);
     tolerances.resize(y.len(), atol.energy);
-    if method == Method::Ida {
-        let mut equations = ReducedDae::new(equations);
-        let yp = equations.consistent(t, &y).map_err(Failure::into_error)?;
-        // what is not marked as differential stays out of the error test
-        let motion = y.len() - ENERGIES;
-        let differential = (0..y.len()).map(|i| i < motion).collect();
-        let options = ida_options_of(settings, tolerances, differential, LinearSolver::Custom);
-        return lift(end, Ida::new(equations, t, &y, &yp, &options)?);
-    }
     ode(equations, is_linear, settings, tolerances, [t, end], first, &y)
 }
 
 impl IntoStepper for ReducedForm {
-    fn into_stepper<I>(end: f64, integrator: I) -> Result<Box<dyn Stepper>, Failed>
+    fn into_stepper<I>(end: f64, mut integrator: I) -> Result<Box<dyn Stepper>, Failed>
     where
         I: Integrator<System = Self> + Send + 'static,
     {
-        lift(end, integrator)
+        integrator.set_stop_time(Some(end))?;
+        let seen = integrator.y().to_vec();
+        let state = vec![0.0; integrator.system().system().unknowns()];
+        let mut lifted = Lifted { integrator, state, seen };
+        lifted.follow();
+        Ok(Box::new(lifted))
     }
 }
 
-/// The stepper of an integrator of a reduced model, which stops at `end` (s).
-fn lift<I>(end: f64, mut integrator: I) -> Result<Box<dyn Stepper>, Failed>
-where
-    I: Integrator<System: Lift> + Send + 'static,
-{
-    integrator.set_stop_time(Some(end))?;
-    let seen = integrator.y().to_vec();
-    let state = vec![0.0; integrator.system().system().unknowns()];
-    let mut lifted = Lifted { integrator, state, seen };
-    lifted.follow();
-    Ok(Box::new(lifted))
-}
-
-impl<I: Integrator<System: Lift>> Lifted<I> {
+impl<I: Integrator<System = ReducedForm>> Lifted<I> {
     /// Updates the state to the end of the last step.
     fn follow(&mut self) {
         let t = self.integrator.t();
         self.seen.copy_from_slice(self.integrator.y());
-        self.integrator.system_mut().reduced().lift(t, &self.seen, &mut self.state);
+        self.integrator.system_mut().lift(t, &self.seen, &mut self.state);
     }
 }
 
-impl<I: Integrator<System: Lift> + Send> Stepper for Lifted<I> {
+impl<I: Integrator<System = ReducedForm> + Send> Stepper for Lifted<I> {
     fn step(&mut self, end: f64) -> Result<f64, Failed> {
         let _ = self.integrator.step(end)?;
         self.follow();
@@ -103,7 +83,7 @@ impl<I: Integrator<System: Lift> + Send> Stepper for Lifted<I> {
         // mostly where the last step has led to
         let y = match t == self.integrator.t() && state == self.state {
             true => Some(self.integrator.y().to_vec()),
-            false => self.integrator.system_mut().reduced().unknowns_of(t, state),
+            false => self.integrator.system_mut().unknowns_of(t, state),
         };
         let Some(y) = y else { return Ok(false) };
         let goes_on = self.integrator.resume(t, &y)?;
@@ -115,7 +95,7 @@ impl<I: Integrator<System: Lift> + Send> Stepper for Lifted<I> {
 
     fn interpolate(&mut self, t: f64, state: &mut [f64]) -> Result<(), Failed> {
         self.integrator.interpolate(t, 0, &mut self.seen)?;
-        self.integrator.system_mut().reduced().lift(t, &self.seen, state);
+        self.integrator.system_mut().lift(t, &self.seen, state);
         Ok(())
     }
 
