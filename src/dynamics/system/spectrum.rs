@@ -1,16 +1,13 @@
 //! How fast the motions of a phase are: the numbers by which a method is chosen.
 //!
 //! Power iteration finds the highest frequency and rate of decay, subspace iteration with K + shift M the
-//! lowest vibration and its damping ratio. Rigid motions are recognized by their Rayleigh quotient, and in
-//! reduced models, whose shapes have the motion of a free body with a little strain, by a kinetic energy that
-//! is rigid to 99 %.
+//! lowest vibration and its damping ratio. Rigid motions are recognized by their Rayleigh quotient.
 
 use nalgebra::{DMatrix, SymmetricEigen};
 
 use super::System;
 use super::at_rest::shifted;
 use super::rigid::{self, Shape};
-use super::shapes::Shapes;
 use crate::base::simd::add_multiple;
 use crate::base::sparse::NodeMatrix;
 use crate::base::vector::{dot, noise};
@@ -74,22 +71,10 @@ const SHIFT: f64 = 1e-8;
 /// A shift above the lowest eigenvalue is lowered to this part of it: slender bodies are so soft.
 const LOWER_SHIFT: f64 = 0.1;
 
-/// Part of the highest eigenvalue along shapes below which one is round-off of 0.
-const ROUND_OFF: f64 = 1e-10;
-
-/// Part of the kinetic energy of a shape in rigid motions from which on it is no vibration.
-const NEARLY_RIGID: f64 = 0.99;
-
 impl System {
     /// The spectrum at (t, u, v).
     pub(crate) fn spectrum(&mut self, t: f64, u: &[f64], v: &[f64]) -> Spectrum {
-        let amounts = self.amounts().to_vec();
-        self.update_tangents(t, u, v, false);
-        self.add_branch_tangents(0.0, u, &[]);
-        self.add_flow_tangents(t, [u, v, &amounts]);
-        if let Some(reduction) = &self.reduction {
-            return self.spectrum_along(&reduction.shapes, u);
-        }
+        self.update_stiffest_tangents(t, u, v);
         self.edges.move_to(self.alpha, u, v);
         self.turn_inertia(false);
         let highest = self.highest(Self::add_stiffness);
@@ -114,53 +99,16 @@ impl System {
         spectrum
     }
 
-    /// The spectrum along the shapes of a reduced model, which are orthonormal by M.
-    fn spectrum_along(&self, shapes: &Shapes, u: &[f64]) -> Spectrum {
-        let (count, free) = (shapes.count(), shapes.free());
-        let along = |product: &dyn Fn(&[f64], &mut [f64])| {
-            let all = shapes.products(product);
-            let entry = |i: usize, j: usize| 0.5 * (all[i * count + j] + all[j * count + i]);
-            DMatrix::from_fn(free, free, entry)
-        };
-        let d = self.tangents().1;
-        let stiffness = SymmetricEigen::new(along(&|x, y| self.add_stiffness(x, y)));
-        let damping = along(&|x, y| d.add_product(1.0, x, y));
-        let highest = stiffness.eigenvalues.iter().copied().fold(0.0, f64::max);
-        // shapes hold rigid motions with a little strain
-        let rigid = self.rigid_motions(u, ROUND_OFF * highest);
-        let rigid: Vec<Vec<f64>> = rigid.iter().map(|motion| shapes.coordinates(motion)).collect();
-        let is_vibration = |&i: &usize| {
-            let x = stiffness.eigenvectors.column(i);
-            let part: f64 = rigid.iter().map(|motion| dot(motion, x.as_slice()).powi(2)).sum();
-            stiffness.eigenvalues[i] > ROUND_OFF * highest && part < NEARLY_RIGID
-        };
-        let lowest = (0..free)
-            .filter(is_vibration)
-            .min_by(|&i, &j| stiffness.eigenvalues[i].total_cmp(&stiffness.eigenvalues[j]));
-        let mut spectrum = Spectrum {
-            highest_frequency: highest.sqrt(),
-            lowest_frequency: None,
-            damping_rate: damping.symmetric_eigenvalues().iter().copied().fold(0.0, f64::max),
-            lowest_damping_ratio: 0.0,
-            mass_damping_ratio: 0.0,
-        };
-        if let Some(lowest) = lowest {
-            let omega = stiffness.eigenvalues[lowest].sqrt();
-            let x = stiffness.eigenvectors.column(lowest);
-            let ratio = |matrix: &DMatrix<f64>| (matrix * x).dot(&x) / (2.0 * omega);
-            spectrum.lowest_frequency = Some(omega);
-            spectrum.lowest_damping_ratio = ratio(&damping);
-            if let Some(m) = &self.matrices.mass_damping {
-                let product =
-                    |x: &[f64], y: &mut [f64]| m.add_product(self.matrices.dimension, 1.0, x, y);
-                spectrum.mass_damping_ratio = ratio(&along(&product));
-            }
-        }
-        spectrum
+    /// Updates the tangents to (t, u, v), with those of branches and amounts that have no time to yield.
+    pub(crate) fn update_stiffest_tangents(&mut self, t: f64, u: &[f64], v: &[f64]) {
+        let amounts = self.amounts().to_vec();
+        self.update_tangents(t, u, v, false);
+        self.add_branch_tangents(0.0, u, &[]);
+        self.add_flow_tangents(t, [u, v, &amounts]);
     }
 
     /// Adds Kt `x` to `forces`, with what amounts that flow resist as long as they stay, which is no part of the pattern.
-    fn add_stiffness(&self, x: &[f64], forces: &mut [f64]) {
+    pub(crate) fn add_stiffness(&self, x: &[f64], forces: &mut [f64]) {
         self.tangents().0.add_product(1.0, x, forces);
         if let Some(flow) = &self.newton.flow {
             flow.add_stiffness(x, forces);
@@ -199,7 +147,7 @@ impl System {
 
     /// The rigid motions of the body with displacements `u` that neither rows nor stiffness resist, with eigenvalues below
     /// `round_off`, orthonormal by M.
-    pub(super) fn rigid_motions(&self, u: &[f64], round_off: f64) -> Vec<Vec<f64>> {
+    pub(crate) fn rigid_motions(&self, u: &[f64], round_off: f64) -> Vec<Vec<f64>> {
         let Matrices { positions, size, stiffness, dimension, inertia, .. } = &*self.matrices;
         let mut positions = positions.clone();
         // with linear strain, turns along straight lines cause no strain

@@ -1,11 +1,13 @@
 //! The integrator of a phase that is run by a reduced model: it takes the unknowns of that, and shows all others.
 
-use super::{Failed, IntoStepper, Stepper, ode};
+use super::integrators::{IntoStepper, counts, ode};
+use super::{Failed, Integrable, Start, Stepper};
 use crate::base::input::InputError;
+use crate::dynamics::reduced::ReducedSystem;
 use crate::dynamics::report::Counts;
-use crate::dynamics::system::{Form, ReducedForm, System};
+use crate::dynamics::system::PhaseSystem;
 use crate::integrators::common::Integrator;
-use crate::scene::settings::{AbsoluteTolerances, Method, Settings};
+use crate::scene::settings::Method;
 
 /// An integrator of a reduced model.
 struct Lifted<I> {
@@ -16,50 +18,36 @@ struct Lifted<I> {
     seen: Vec<f64>,
 }
 
-/// Starts the integrator that the settings name, as [`super::start`].
-pub(super) fn start(
-    system: System,
-    settings: &Settings,
-    atol: &AbsoluteTolerances,
-    [t, end]: [f64; 2],
-    first: Option<f64>,
-    state: &[f64],
-) -> Result<Box<dyn Stepper>, Failed> {
-    let method = settings.method;
-    if let Method::Ida | Method::IdaKlu | Method::IdaIndexTwo | Method::CentralDifference = method {
-        let help = "a reduced model is an ODE, without constraints: take cvode-bdf, arkode, rosenbrock or rk";
-        return Err(InputError::new("method", method, help).into());
+impl Integrable for ReducedSystem {
+    fn start(mut self: Box<Self>, start: &Start) -> Result<Box<dyn Stepper>, Failed> {
+        let method = start.settings.method;
+        if let Method::Ida | Method::IdaKlu | Method::IdaIndexTwo | Method::CentralDifference =
+            method
+        {
+            let help = "a reduced model is an ODE, without constraints: take cvode-bdf, arkode, rosenbrock or rk";
+            return Err(InputError::new("method", method, help).into());
+        }
+        let y = self.begin(start.times[0], start.state);
+        let (is_linear, tolerances) = (self.full().is_linear(), self.tolerances(start.atol));
+        ode(*self, is_linear, tolerances, start, &y)
     }
-    let (is_linear, mass) = (system.is_linear(), system.mass());
-    let of_amounts = system.flow_tolerances(atol.strain, atol.velocity);
-    let Ok((equations, y)) = ReducedForm::new(system, t, state) else {
-        return Err("the equations have no reduced model".into());
-    };
-    // shapes are orthonormal in M: a displacement of all nodes counts times the root of the mass
-    let free = equations.free();
-    let mut tolerances = vec![atol.position * mass.sqrt(); free];
-    tolerances.resize(2 * free, atol.velocity * mass.sqrt());
-    tolerances.extend(equations.branch_tolerances(atol.strain));
-    tolerances.extend(of_amounts);
-    tolerances.resize(y.len(), atol.energy);
-    ode(equations, is_linear, settings, tolerances, [t, end], first, &y)
 }
 
-impl IntoStepper for ReducedForm {
+impl IntoStepper for ReducedSystem {
     fn into_stepper<I>(end: f64, mut integrator: I) -> Result<Box<dyn Stepper>, Failed>
     where
         I: Integrator<System = Self> + Send + 'static,
     {
         integrator.set_stop_time(Some(end))?;
         let seen = integrator.y().to_vec();
-        let state = vec![0.0; integrator.system().system().unknowns()];
+        let state = vec![0.0; integrator.system().full().unknowns()];
         let mut lifted = Lifted { integrator, state, seen };
         lifted.follow();
         Ok(Box::new(lifted))
     }
 }
 
-impl<I: Integrator<System = ReducedForm>> Lifted<I> {
+impl<I: Integrator<System = ReducedSystem>> Lifted<I> {
     /// Updates the state to the end of the last step.
     fn follow(&mut self) {
         let t = self.integrator.t();
@@ -68,7 +56,7 @@ impl<I: Integrator<System = ReducedForm>> Lifted<I> {
     }
 }
 
-impl<I: Integrator<System = ReducedForm> + Send> Stepper for Lifted<I> {
+impl<I: Integrator<System = ReducedSystem> + Send> Stepper for Lifted<I> {
     fn step(&mut self, end: f64) -> Result<f64, Failed> {
         let _ = self.integrator.step(end)?;
         self.follow();
@@ -115,19 +103,19 @@ impl<I: Integrator<System = ReducedForm> + Send> Stepper for Lifted<I> {
         self.integrator.y().len()
     }
 
-    fn system(&self) -> &System {
-        self.integrator.system().system()
+    fn system(&self) -> &dyn PhaseSystem {
+        self.integrator.system()
     }
 
-    fn system_mut(&mut self) -> &mut System {
-        self.integrator.system_mut().system_mut()
+    fn system_mut(&mut self) -> &mut dyn PhaseSystem {
+        self.integrator.system_mut()
     }
 
-    fn into_system(self: Box<Self>) -> System {
-        self.integrator.into_system().into_system()
+    fn into_system(self: Box<Self>) -> Box<dyn Integrable> {
+        Box::new(self.integrator.into_system())
     }
 
     fn counts(&self) -> Counts {
-        super::counts(&self.integrator)
+        counts(&self.integrator, self.integrator.system())
     }
 }

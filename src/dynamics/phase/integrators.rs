@@ -1,10 +1,11 @@
-//! The integrator of a phase: created from the settings and used through one interface, whatever form of the
+//! The integrator of a phase in all unknowns: created from the settings and used through one interface, whatever form of the
 //! equations it takes.
 
 use std::mem::take;
 
+use super::{Failed, Integrable, Start, Stepper};
 use crate::dynamics::report::Counts;
-use crate::dynamics::system::{DaeForm, Form, Index, SecondOrderForm, System};
+use crate::dynamics::system::{DaeForm, Form, Index, PhaseSystem, SecondOrderForm, System};
 use crate::integrators::central_difference::CentralDifference;
 use crate::integrators::common::Integrator;
 use crate::integrators::ode::{Failure, Ode};
@@ -14,51 +15,7 @@ use crate::integrators::sundials::{
     Arkode, ArkodeOptions, ButcherTable, Cvode, CvodeOptions, Ida, IdaOptions, Jacobian,
     LinearSolver, Multistep, Pattern,
 };
-use crate::scene::settings::{AbsoluteTolerances, Method, Settings};
-
-mod lifted;
-
-pub(super) type Failed = Box<dyn std::error::Error + Send + Sync>;
-
-/// An integrator at work on the equations of one phase.
-pub(super) trait Stepper: Send {
-    /// Takes one step towards `end` and returns the time reached.
-    fn step(&mut self, end: f64) -> Result<f64, Failed>;
-
-    /// Lets the steps end at time `t` (s), exactly.
-    fn stop_at(&mut self, t: f64) -> Result<(), Failed>;
-
-    /// Continues from `state` at time `t` (s) after a change of the forces; `false` if that needs a new
-    /// integrator.
-    fn resume(&mut self, t: f64, state: &[f64]) -> Result<bool, Failed>;
-
-    /// The state at a time within the last step.
-    fn interpolate(&mut self, t: f64, state: &mut [f64]) -> Result<(), Failed>;
-
-    /// Order of the last step.
-    fn last_order(&self) -> u32;
-
-    /// Size of the next step (s), if it is known.
-    fn next_step(&self) -> f64;
-
-    /// The state at the end of the last step.
-    fn state(&self) -> &[f64];
-
-    /// Number of its unknowns.
-    fn unknowns(&self) -> usize {
-        self.state().len()
-    }
-
-    fn system(&self) -> &System;
-
-    fn system_mut(&mut self) -> &mut System;
-
-    /// Ends the integrator and returns the equations.
-    fn into_system(self: Box<Self>) -> System;
-
-    /// Statistics of the integration so far, with its notice.
-    fn counts(&self) -> Counts;
-}
+use crate::scene::settings::{Method, Settings};
 
 impl<I: Integrator<System: Form> + Send> Stepper for I {
     fn step(&mut self, end: f64) -> Result<f64, Failed> {
@@ -94,20 +51,20 @@ impl<I: Integrator<System: Form> + Send> Stepper for I {
         self.y()
     }
 
-    fn system(&self) -> &System {
+    fn system(&self) -> &dyn PhaseSystem {
         Integrator::system(self).system()
     }
 
-    fn system_mut(&mut self) -> &mut System {
+    fn system_mut(&mut self) -> &mut dyn PhaseSystem {
         Integrator::system_mut(self).system_mut()
     }
 
-    fn into_system(self: Box<Self>) -> System {
-        Integrator::into_system(*self).into_system()
+    fn into_system(self: Box<Self>) -> Box<dyn Integrable> {
+        Box::new(Integrator::into_system(*self).into_system())
     }
 
     fn counts(&self) -> Counts {
-        counts(self)
+        counts(self, Stepper::system(self))
     }
 }
 
@@ -120,14 +77,14 @@ fn keep_end<I: Integrator<System: Form>>(integrator: &mut I) {
 }
 
 /// Statistics of an integrator and its equations.
-fn counts<I: Integrator<System: Form>>(integrator: &I) -> Counts {
-    let (s, system) = (integrator.statistics(), integrator.system().system());
+pub(super) fn counts<I: Integrator>(integrator: &I, equations: &dyn PhaseSystem) -> Counts {
+    let (s, system) = (integrator.statistics(), equations.full());
     let [spared, linear_iterations, indefinite] = system.newton_counts();
     Counts {
         steps: s.steps as usize,
         evaluations: s.evaluations as usize,
-        jacobian_evaluations: system.tangent_evaluations(),
-        difference_evaluations: system.difference_evaluations(),
+        jacobian_evaluations: equations.tangent_evaluations(),
+        difference_evaluations: equations.difference_evaluations(),
         factorizations: (s.linear_setups as usize).saturating_sub(spared),
         linear_iterations,
         error_test_failures: s.error_test_failures as usize,
@@ -161,65 +118,59 @@ fn compression(indefinite: usize) -> Option<String> {
     })
 }
 
-/// Starts the integrator that the settings name at `t` with `state` and, if it is known,
-/// the first step size `first` (s); it will stop at `end`.
-pub(super) fn start(
-    mut system: System,
-    settings: &Settings,
-    atol: &AbsoluteTolerances,
-    [t, end]: [f64; 2],
-    first: Option<f64>,
-    state: &[f64],
-) -> Result<Box<dyn Stepper>, Failed> {
-    if system.is_reduced() {
-        return lifted::start(system, settings, atol, [t, end], first, state);
-    }
-    let layout = system.layout();
-    let mut tolerances = vec![atol.position; layout.dofs];
-    tolerances.resize(layout.motion().end, atol.velocity);
-    tolerances.resize(tolerances.len() + layout.strains, atol.strain);
-    let of_flow = system.flow_tolerances(atol.strain, atol.velocity);
-    system.settle_between(&of_flow);
-    tolerances.extend(of_flow);
-    tolerances.resize(layout.unknowns(), atol.energy);
-    system.expect_iteration(iterates(settings.method, &system));
-    let longest = settings.max_step.unwrap_or(f64::INFINITY);
-    match settings.method {
-        Method::Ida | Method::IdaKlu | Method::IdaIndexTwo => {
-            let index = match settings.method {
-                Method::IdaIndexTwo => Index::Two,
-                _ => Index::One,
-            };
-            let mut equations = DaeForm::new(system, index);
-            tolerances.extend(equations.tolerances([atol.force, atol.momentum]));
-            let (y, yp) = equations.consistent(t, state).map_err(Failure::into_error)?;
-            let options = ida_options(settings, tolerances, &mut equations)?;
-            until(end, Ida::new(equations, t, &y, &yp, &options)?)
-        }
-        Method::CentralDifference => {
-            let options = rk::Options::new(settings.rtol, tolerances).max_step(longest);
-            let options = first.into_iter().fold(options, rk::Options::initial_step);
-            until(end, CentralDifference::new(SecondOrderForm::new(system), t, state, &options)?)
-        }
-        _ => {
-            let is_linear = system.is_linear();
-            ode(system, is_linear, settings, tolerances, [t, end], first, state)
+impl Integrable for System {
+    fn start(self: Box<Self>, start: &Start) -> Result<Box<dyn Stepper>, Failed> {
+        let mut system = *self;
+        let Start { settings, atol, state, times: [t, end], first } = *start;
+        let layout = system.layout();
+        let mut tolerances = vec![atol.position; layout.dofs];
+        tolerances.resize(layout.motion().end, atol.velocity);
+        tolerances.resize(tolerances.len() + layout.strains, atol.strain);
+        let of_flow = system.flow_tolerances(atol.strain, atol.velocity);
+        system.settle_between(&of_flow);
+        tolerances.extend(of_flow);
+        tolerances.resize(layout.unknowns(), atol.energy);
+        system.expect_iteration(iterates(settings.method, &system));
+        let longest = settings.max_step.unwrap_or(f64::INFINITY);
+        match settings.method {
+            Method::Ida | Method::IdaKlu | Method::IdaIndexTwo => {
+                let index = match settings.method {
+                    Method::IdaIndexTwo => Index::Two,
+                    _ => Index::One,
+                };
+                let mut equations = DaeForm::new(system, index);
+                tolerances.extend(equations.tolerances([atol.force, atol.momentum]));
+                let (y, yp) = equations.consistent(t, state).map_err(Failure::into_error)?;
+                let options = ida_options(settings, tolerances, &mut equations)?;
+                until(end, Ida::new(equations, t, &y, &yp, &options)?)
+            }
+            Method::CentralDifference => {
+                let options = rk::Options::new(settings.rtol, tolerances).max_step(longest);
+                let options = first.into_iter().fold(options, rk::Options::initial_step);
+                until(
+                    end,
+                    CentralDifference::new(SecondOrderForm::new(system), t, state, &options)?,
+                )
+            }
+            _ => {
+                let is_linear = system.is_linear();
+                ode(system, is_linear, tolerances, start, state)
+            }
         }
     }
 }
 
 /// Starts an integrator of ordinary differential equations, linear ones or others.
-fn ode<S: IntoStepper>(
+pub(super) fn ode<S: IntoStepper>(
     equations: S,
     is_linear: bool,
-    settings: &Settings,
     tolerances: Vec<f64>,
-    [t, end]: [f64; 2],
-    first: Option<f64>,
+    start: &Start,
     y: &[f64],
 ) -> Result<Box<dyn Stepper>, Failed> {
+    let Start { settings, times: [t, end], first, .. } = *start;
     let longest = settings.max_step.unwrap_or(f64::INFINITY);
-    let holds_liquid = equations.system().holds_liquid();
+    let holds_liquid = equations.full().holds_liquid();
     match settings.method {
         Method::Arkode => {
             let options =
@@ -228,7 +179,7 @@ fn ode<S: IntoStepper>(
             S::into_stepper(end, Arkode::new(equations, t, y, &options)?)
         }
         Method::Rosenbrock => {
-            let options = rosenbrock_options(settings, tolerances, equations.system(), is_linear);
+            let options = rosenbrock_options(settings, tolerances, equations.full(), is_linear);
             let options = options.max_step(longest);
             let options = first.into_iter().fold(options, rosenbrock::Options::initial_step);
             S::into_stepper(end, Rosenbrock::new(equations, t, y, &options)?)
@@ -247,7 +198,7 @@ fn ode<S: IntoStepper>(
 }
 
 /// Equations that are an ODE, with the stepper of their integrators.
-trait IntoStepper: Form + Ode + Send + Sized + 'static {
+pub(super) trait IntoStepper: Integrable + Ode + Sized + 'static {
     /// The stepper of an integrator that stops at `end` (s).
     fn into_stepper<I>(end: f64, integrator: I) -> Result<Box<dyn Stepper>, Failed>
     where
