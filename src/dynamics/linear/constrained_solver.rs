@@ -286,6 +286,27 @@ impl ConstrainedSolver {
         }
     }
 
+    /// As [`solve`](Self::solve), with the multipliers of nodal rows, for the X of which `row_product` is a row times x.
+    pub(crate) fn solve_whole(
+        &mut self,
+        rows: &[ConstraintRow],
+        f: &[f64],
+        d: &[f64],
+        x: &mut [f64],
+        mu: &mut [f64],
+        row_product: impl Fn(usize, &[f64]) -> f64,
+    ) {
+        self.solve(rows, f, d, x, mu);
+        nodal_multipliers(rows, mu, |dof| row_product(dof, x) - f[dof]);
+    }
+
+    /// The x of X x - A mu = f, A^T x = 0.
+    pub(crate) fn solve_free(&mut self, rows: &[ConstraintRow], f: &[f64]) -> Vec<f64> {
+        let (mut x, mut mu) = (vec![0.0; f.len()], vec![0.0; rows.len()]);
+        self.solve(rows, f, &mu.clone(), &mut x, &mut mu);
+        x
+    }
+
     /// Has iterations tried before a factor, up to so many more than solves with the factor would cost,
     /// however small the body is.
     #[cfg(test)]
@@ -300,19 +321,14 @@ impl ConstrainedSolver {
         self
     }
 
-    /// Starts the counts from 0.
-    pub(crate) fn forget_counts(&mut self) {
-        self.symmetric.forget_counts();
-    }
-
-    /// Continues the counts of another solver.
-    pub(crate) fn count_from(&mut self, other: &Self) {
-        self.symmetric.count_from(&other.symmetric);
-    }
-
     /// [What solving has cost](Symmetric::counts).
     pub(crate) fn counts(&self) -> [usize; 3] {
         self.symmetric.counts()
+    }
+
+    /// Has these counts from now on.
+    pub(crate) fn set_counts(&mut self, counts: [usize; 3]) {
+        self.symmetric.set_counts(counts);
     }
 
     /// The general row found to follow from the others (its number in the list of all rows).

@@ -35,7 +35,7 @@ impl<I: Integrator<System: Form> + Send> Stepper for I {
 
     fn interpolate(&mut self, t: f64, state: &mut [f64]) -> Result<(), Failed> {
         Integrator::interpolate(self, t, 0, state)?;
-        Integrator::system_mut(self).system_mut().settle(t, state);
+        Integrator::system_mut(self).full_mut().settle(t, state);
         Ok(())
     }
 
@@ -52,11 +52,11 @@ impl<I: Integrator<System: Form> + Send> Stepper for I {
     }
 
     fn system(&self) -> &dyn PhaseSystem {
-        Integrator::system(self).system()
+        Integrator::system(self)
     }
 
     fn system_mut(&mut self) -> &mut dyn PhaseSystem {
-        Integrator::system_mut(self).system_mut()
+        Integrator::system_mut(self)
     }
 
     fn into_system(self: Box<Self>) -> Box<dyn Integrable> {
@@ -70,10 +70,10 @@ impl<I: Integrator<System: Form> + Send> Stepper for I {
 
 /// Lets the system keep what it needs of the state that is reached, to interpolate.
 fn keep_end<I: Integrator<System: Form>>(integrator: &mut I) {
-    let mut ends = take(Integrator::system_mut(integrator).system_mut().ends_mut());
-    let system = Integrator::system(integrator).system();
+    let mut ends = take(Integrator::system_mut(integrator).full_mut().ends_mut());
+    let system = Integrator::system(integrator).full();
     system.keep_end(&mut ends, integrator.t(), integrator.y());
-    *Integrator::system_mut(integrator).system_mut().ends_mut() = ends;
+    *Integrator::system_mut(integrator).full_mut().ends_mut() = ends;
 }
 
 /// Statistics of an integrator and its equations.

@@ -40,7 +40,7 @@ impl IntoStepper for ReducedSystem {
     {
         integrator.set_stop_time(Some(end))?;
         let seen = integrator.y().to_vec();
-        let state = vec![0.0; integrator.system().full().unknowns()];
+        let state = vec![0.0; integrator.system().full().layout().unknowns()];
         let mut lifted = Lifted { integrator, state, seen };
         lifted.follow();
         Ok(Box::new(lifted))

@@ -111,14 +111,17 @@ impl ReducedSystem {
 
     /// The unknowns of a state of all nodes at time t, if the model has it and a motion has begun.
     pub(crate) fn unknowns_of(&mut self, t: f64, state: &[f64]) -> Option<Vec<f64>> {
-        if !self.projection.has_begun() {
+        if !self.projection.has_begun {
             return None;
         }
         let layout = self.full.layout();
         let State { u, v, internal, dissipated, supplied, .. } = layout.of(state);
         let [q, p] = self.projection.coordinates(self.full.rows(), t, [u, v]);
         let (strains, amounts) = layout.split(internal);
-        let of_branches = self.projection.branch_unknowns_of(strains)?;
+        let of_branches = match &self.projection.branches {
+            Some(own) => own.unknowns_of(strains)?,
+            None => Vec::new(),
+        };
         let y = [&q[..], &p, &of_branches, amounts, &[dissipated, supplied]].concat();
         let mut lifted = vec![0.0; state.len()];
         self.lift(t, &y, &mut lifted);
@@ -133,18 +136,19 @@ impl ReducedSystem {
     /// Absolute tolerances of the unknowns, once a motion has begun, where those of all unknowns are `atol`.
     pub(crate) fn tolerances(&self, atol: &AbsoluteTolerances) -> Vec<f64> {
         let (free, full) = (self.free(), &self.full);
-        let (ones, dimension) = (vec![1.0; full.dofs()], full.dimension());
-        let mass = full.inertia().quadratic_form(dimension, &ones) / dimension as f64;
+        let (ones, matrices) = (vec![1.0; full.dofs()], full.matrices());
+        let mass = matrices.square(&ones) / matrices.dimension as f64;
         // shapes are orthonormal in M: a displacement of all nodes counts times the root of the mass
         let mut tolerances = vec![atol.position * mass.sqrt(); free];
         tolerances.resize(2 * free, atol.velocity * mass.sqrt());
-        tolerances.extend(self.projection.branch_tolerances(atol.strain));
+        let branches = self.projection.branches.iter();
+        tolerances.extend(branches.flat_map(|own| own.tolerances(atol.strain)));
         tolerances.extend(full.flow_tolerances(atol.strain, atol.velocity));
         tolerances.resize(tolerances.len() + ENERGIES, atol.energy);
         tolerances
     }
 
-    fn evaluate(&mut self, t: f64, y: &[f64]) -> Result<(), Failure> {
+    fn evaluate_along(&mut self, t: f64, y: &[f64]) -> Result<(), Failure> {
         let [q, p, internal, _] = parts(y, self.free());
         let evaluated = self.projection.evaluate(self.full.rows(), t, [q, p, internal]);
         self.full.noting_refusal(evaluated)
@@ -200,7 +204,7 @@ impl PhaseSystem for ReducedSystem {
 
     fn forget_counts(&mut self) {
         self.full.forget_counts();
-        self.projection.forget_counts();
+        self.projection.tangents.differences.forget_counts();
         self.tangent_evaluations = 0;
     }
 
@@ -209,7 +213,7 @@ impl PhaseSystem for ReducedSystem {
     }
 
     fn difference_evaluations(&self) -> usize {
-        self.full.difference_evaluations() + self.projection.difference_evaluations()
+        self.full.difference_evaluations() + self.projection.tangents.differences.evaluations()
     }
 
     fn energy(&self, t: f64, state: [&[f64]; 3]) -> Energy {
@@ -217,10 +221,9 @@ impl PhaseSystem for ReducedSystem {
     }
 
     /// Evaluates the forces of all cells, and the constraint forces with the accelerations of the model.
-    fn multipliers(&mut self, t: f64, state: [&[f64]; 3]) -> Result<&[f64], Failure> {
+    fn evaluate(&mut self, t: f64, state: [&[f64]; 3]) -> Result<(), Failure> {
         let accelerations = self.accelerations(t, state)?;
-        self.full.evaluate_with(accelerations, t, state)?;
-        Ok(self.full.computed_multipliers())
+        self.full.evaluate_with(accelerations, t, state)
     }
 
     fn spectrum(&mut self, t: f64, u: &[f64], v: &[f64]) -> Spectrum {
@@ -277,7 +280,7 @@ fn parts_mut(y: &mut [f64], free: usize) -> [&mut [f64]; 4] {
 
 impl Ode for ReducedSystem {
     fn rhs(&mut self, t: f64, y: &[f64], ydot: &mut [f64]) -> Result<(), Failure> {
-        self.evaluate(t, y)?;
+        self.evaluate_along(t, y)?;
         let [_, velocities, ..] = parts(y, self.free());
         let [q, p, internal, energies] = parts_mut(ydot, self.free());
         q.copy_from_slice(velocities);
@@ -301,7 +304,7 @@ impl Ode for ReducedSystem {
     ) -> Result<bool, Failure> {
         let is_old = reuse && self.projection.keeps_tangents();
         if !is_old {
-            self.evaluate(t, y)?;
+            self.evaluate_along(t, y)?;
             self.projection.update_tangents(t);
             self.tangent_evaluations += 1;
         }

@@ -56,7 +56,7 @@ pub(super) struct Projection {
     moved: Vec<(usize, f64)>,
     /// u_0 (m), and whether a motion has begun there.
     origin: Vec<f64>,
-    has_begun: bool,
+    pub(super) has_begun: bool,
     /// All forces, with a sample in place of those of all cells.
     pub(super) forces: Forces,
     /// Those of them that are functions of z, those of cells apart from others, and those that act on nodes: all but the steady
@@ -64,12 +64,12 @@ pub(super) struct Projection {
     generalized: [Vec<Box<dyn GeneralizedForce>>; 2],
     acting: Forces,
     /// Those whose strains are unknowns, and that whose amounts are, if there are any.
-    branches: Option<ReducedBranches>,
+    pub(super) branches: Option<ReducedBranches>,
     flow: Option<ReducedFlow>,
     pattern: Arc<NodePattern>,
     constant: Constant,
     at: LastEvaluation,
-    tangents: Tangents,
+    pub(super) tangents: Tangents,
     factors: Factors,
 }
 
@@ -130,7 +130,7 @@ impl Projection {
         let moved = moved(&model.phases[phase], rows, name)?;
         let (dofs, dimension) = (matrices.dofs(), matrices.dimension);
         let mut shapes = Shapes::new(&model.phases[phase]);
-        shapes.weigh(|x, y| matrices.inertia.add_product(dimension, 1.0, x, y));
+        shapes.weigh(|x, y| matrices.add_momentum(1.0, x, y));
         let s = shapes.count();
 
         // what the forces couple
@@ -161,7 +161,7 @@ impl Projection {
         }
         shapes.activate(seen.into_iter(), dimension);
         let product = |matrix: &dyn Fn(&[f64], &mut [f64])| shapes.products(matrix);
-        let inertia = product(&|x, y| matrices.inertia.add_product(dimension, 1.0, x, y));
+        let inertia = product(&|x, y| matrices.add_momentum(1.0, x, y));
         let off = |(at, mass): (usize, &f64)| {
             let (row, column) = (at / s, at % s);
             let exact = if row == column { 1.0 } else { 0.0 };
@@ -312,11 +312,6 @@ impl Projection {
         [p, begun.unwrap_or_default()]
     }
 
-    /// Whether a motion has begun.
-    pub(super) fn has_begun(&self) -> bool {
-        self.has_begun
-    }
-
     /// q and q' of a state (u, v) at time t.
     pub(super) fn coordinates(
         &self,
@@ -367,16 +362,6 @@ impl Projection {
             (z[free + k], rates[free + k]) = (displacement - start, velocity);
             self.at.pushed[k] = acceleration;
         }
-    }
-
-    /// The unknowns of branches with these internal `strains`, if the model knows them.
-    pub(super) fn branch_unknowns_of(&self, strains: &[f64]) -> Option<Vec<f64>> {
-        self.branches.as_ref().map_or(Some(Vec::new()), |own| own.unknowns_of(strains))
-    }
-
-    /// Absolute tolerances of the unknowns of branches, where that of strains is `strain`.
-    pub(super) fn branch_tolerances(&self, strain: f64) -> Vec<f64> {
-        self.branches.as_ref().map_or(Vec::new(), |own| own.tolerances(strain))
     }
 
     /// Number of unknowns of branches, which come first among the internal ones.

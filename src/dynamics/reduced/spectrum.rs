@@ -39,24 +39,15 @@ impl Projection {
         let lowest = (0..free)
             .filter(is_vibration)
             .min_by(|&i, &j| stiffness.eigenvalues[i].total_cmp(&stiffness.eigenvalues[j]));
-        let mut spectrum = Spectrum {
-            highest_frequency: highest.sqrt(),
-            lowest_frequency: None,
-            damping_rate: damping.symmetric_eigenvalues().iter().copied().fold(0.0, f64::max),
-            lowest_damping_ratio: 0.0,
-            mass_damping_ratio: 0.0,
-        };
-        if let Some(lowest) = lowest {
-            let omega = stiffness.eigenvalues[lowest].sqrt();
+        let lowest = lowest.map(|lowest| {
             let x = stiffness.eigenvectors.column(lowest);
-            let ratio = |matrix: &DMatrix<f64>| (matrix * x).dot(&x) / (2.0 * omega);
-            spectrum.lowest_frequency = Some(omega);
-            spectrum.lowest_damping_ratio = ratio(&damping);
-            if let Some(m) = &full.matrices().mass_damping {
-                let product = |x: &[f64], y: &mut [f64]| m.add_product(full.dimension(), 1.0, x, y);
-                spectrum.mass_damping_ratio = ratio(&along(&product));
-            }
-        }
-        spectrum
+            let form = |matrix: &DMatrix<f64>| (matrix * x).dot(&x);
+            let by_mass = full.matrices().mass_damping.as_ref().map_or(0.0, |m| {
+                form(&along(&|x, y| m.add_product(full.matrices().dimension, 1.0, x, y)))
+            });
+            [stiffness.eigenvalues[lowest], form(&damping), by_mass]
+        });
+        let damping_rate = damping.symmetric_eigenvalues().iter().copied().fold(0.0, f64::max);
+        Spectrum::new([highest, damping_rate], lowest)
     }
 }

@@ -210,7 +210,8 @@ fn reduced(scene: &Scene, most: usize) -> (ReducedSystem, Vec<f64>, Vec<f64>) {
     for (k, y) in y.iter_mut().zip(noise(2 * free, 3)).enumerate() {
         *y.0 = y.1 * if k < free { most } else { 0.1 };
     }
-    let of_branches = form.projection.branch_tolerances(1e-3);
+    let of_branches =
+        form.projection.branches.as_ref().map_or(Vec::new(), |own| own.tolerances(1e-3));
     let relaxing = y[2 * free..].iter_mut().zip(&of_branches);
     relaxing.zip(noise(of_branches.len(), 13)).for_each(|((y, scale), x)| *y += scale * x);
     let mut state = vec![0.0; start.len()];

@@ -154,7 +154,8 @@ impl Plan {
         let n = equations.full().dofs();
         let spectrum = equations.spectrum(t, &state[..n], &state[n..2 * n]);
         let system = equations.full();
-        let (method, creeps, reason) = choose(&spectrum, system.retardation_time(), asked.rtol);
+        let (method, creeps, reason) =
+            choose(&spectrum, system.matrices().retardation_time, asked.rtol);
         let is_damped = spectrum.lowest_damping_ratio >= STRONG_DAMPING;
         let period = spectrum.slowest_period().filter(|_| is_damped);
         let alpha = if system.is_constrained() { asked.alpha } else { 0.0 };
@@ -163,7 +164,7 @@ impl Plan {
             order => (part(method, asked.rtol), order),
         };
         let relaxation = system.relaxation_rate();
-        let is_for_central = system.is_lumped() && system.internal() == 0;
+        let is_for_central = system.is_lumped() && system.layout().internal().is_empty();
         Self {
             settings: given(asked, method, max_order, part),
             asked: asked.clone(),
@@ -292,7 +293,7 @@ impl Plan {
                 .then(|| self.followed_by(Method::Arkode, self.asked.max_order, reason));
         }
         let system = equations.full();
-        let is_solid = system.dimension() == 3 && !system.has_edges();
+        let is_solid = system.matrices().dimension == 3 && !system.has_edges();
         let is_large = is_solid && equations.freedoms() >= LARGE;
         let (order, reason) = match (method, self.settings.max_order) {
             (Method::CvodeBdf | Method::Arkode, _) if is_large => {

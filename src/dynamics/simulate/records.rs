@@ -47,9 +47,9 @@ pub(super) fn sample(
     accelerates: bool,
 ) -> Result<Sample, Failure> {
     let State { u, v, internal, .. } = equations.full().layout().of(state);
-    let multipliers = equations.multipliers(time, [u, v, internal])?.to_vec();
-    let energy = energy(equations, time, state);
-    let system = equations.full();
+    equations.evaluate(time, [u, v, internal])?;
+    let (energy, system) = (energy(equations, time, state), equations.full());
+    let multipliers = system.computed_multipliers().to_vec();
     let accelerations =
         if accelerates { system.computed_accelerations().to_vec() } else { Vec::new() };
     let constraint_drift = system.drift(time, u);

@@ -41,7 +41,7 @@ impl Energy {
 impl System {
     /// (1/2) v.M v (J).
     pub(crate) fn kinetic_energy(&self, v: &[f64]) -> f64 {
-        0.5 * self.matrices.inertia.quadratic_form(self.matrices.dimension, v)
+        0.5 * self.matrices.square(v)
     }
 
     /// Kinetic and potential energies of a state; dissipated and supplied are left at 0. Without `internal` unknowns

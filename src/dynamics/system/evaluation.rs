@@ -3,7 +3,6 @@
 use super::{Evaluation, System};
 use crate::base::vector::dot;
 use crate::dynamics::linear::nodal_multipliers;
-use crate::dynamics::matrices::Matrices;
 use crate::elements::force::Force;
 use crate::integrators::ode::Failure;
 use crate::scene::constraint::{ConstraintRow, Prescribed};
@@ -11,7 +10,7 @@ use crate::scene::constraint::{ConstraintRow, Prescribed};
 impl System {
     /// Evaluates forces, accelerations and multipliers. Without `internal` unknowns Maxwell branches have relaxed, and
     /// there is no gas that flows.
-    pub(super) fn evaluate(
+    pub(crate) fn evaluate(
         &mut self,
         t: f64,
         u: &[f64],
@@ -22,11 +21,14 @@ impl System {
         self.evaluate_rows(t, u, v)?;
         self.turn_inertia(true);
         let Evaluation { total, demands, acceleration, multipliers, .. } = &mut self.at;
-        self.inertia.solve(&self.rows, total, demands, acceleration, multipliers);
-        let Matrices { inertia, dimension, .. } = &*self.matrices;
-        nodal_multipliers(&self.rows, multipliers, |dof| {
-            inertia.row_product(*dimension, dof, acceleration) - total[dof]
-        });
+        self.inertia.solve_whole(
+            &self.rows,
+            total,
+            demands,
+            acceleration,
+            multipliers,
+            |dof, a| self.matrices.momentum_of(dof, a),
+        );
         if let Some(solver) = &self.inertia.edges {
             self.edges.multipliers.copy_from_slice(&solver.multipliers);
             self.edges.accelerate(&self.at.acceleration);
@@ -45,7 +47,7 @@ impl System {
         let Self { matrices, rows, inertia, at, .. } = self;
         at.acceleration = accelerations;
         let mut left_over = at.total.clone();
-        matrices.inertia.add_product(matrices.dimension, -1.0, &at.acceleration, &mut left_over);
+        matrices.add_momentum(-1.0, &at.acceleration, &mut left_over);
         if rows.iter().any(|row| row.nodal().is_none()) {
             let (mut x, demands) = (vec![0.0; left_over.len()], vec![0.0; rows.len()]);
             inertia.solve(rows, &left_over, &demands, &mut x, &mut at.multipliers);

@@ -16,7 +16,6 @@ use super::System;
 use crate::base::simd::{Formula, each};
 use crate::base::tensor::Real;
 use crate::base::vector::dot;
-use crate::dynamics::linear::nodal_multipliers;
 use crate::dynamics::matrices::Matrices;
 use crate::integrators::ode::Kick;
 use crate::scene::constraint::ConstraintRow;
@@ -159,10 +158,7 @@ impl System {
 
     /// Accelerations a and multipliers lambda with M a - A lambda = f, A^T a = d.
     fn accelerations(&mut self, f: &[f64], d: &[f64], a: &mut [f64], multipliers: &mut [f64]) {
-        self.inertia.solve(&self.rows, f, d, a, multipliers);
-        let Matrices { inertia, dimension, .. } = &*self.matrices;
-        nodal_multipliers(&self.rows, multipliers, |dof| {
-            inertia.row_product(*dimension, dof, a) - f[dof]
-        });
+        let of = |dof: usize, a: &[f64]| self.matrices.momentum_of(dof, a);
+        self.inertia.solve_whole(&self.rows, f, d, a, multipliers, of);
     }
 }

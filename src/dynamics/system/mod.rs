@@ -75,13 +75,11 @@ pub(crate) use second_order::SecondOrderForm;
 pub use spectrum::Spectrum;
 
 use crate::base::input::InputError;
-use crate::base::sparse::NodeMatrix;
-use crate::dynamics::linear::{ConstrainedSolver, Coupling, EXACT, Edges};
+use crate::dynamics::linear::{ConstrainedSolver, Coupling, EXACT, Edges, FlowMatrix};
 use crate::dynamics::matrices::Matrices;
 use crate::dynamics::state::Layout;
 use crate::elements::body::Branches;
 use crate::elements::force::{Flow, Force, Forces, NodalForces};
-use crate::integrators::ode::Failure;
 use crate::scene::constraint::ConstraintRow;
 
 /// Equations of one phase, with everything that evaluating and solving them needs.
@@ -176,7 +174,8 @@ impl System {
                 ),
             });
         }
-        let newton = NewtonMatrix::new(&matrices, &rows, &edges.list, follows(&matrices, &forces));
+        let mut newton =
+            NewtonMatrix::new(&matrices, &rows, &edges.list, follows(&matrices, &forces));
         let (of_rigid, flow, forces) = parted(forces);
         let amounts = flow_of(&flow).map_or(0, |flow| flow.start().len());
         let strains = matrices.branches.as_ref().map_or(0, Branches::unknowns);
@@ -193,9 +192,8 @@ impl System {
             flowing: [vec![0.0; amounts], vec![0.0; amounts]],
             brought: 0.0,
         };
-        let mut newton = newton;
         let rooms = flow_of(&flow).map_or(0, |flow| flow.reservoirs());
-        newton.hold_amounts([rooms, amounts], dofs);
+        newton.flow = (rooms > 0).then(|| FlowMatrix::new([rooms, amounts], dofs));
         let (base, refusal) = (matrices.clone(), String::new());
         let linear_edges = edges.clone();
         Ok(Self {
@@ -228,11 +226,6 @@ impl System {
         self.matrices.dofs()
     }
 
-    /// Dimension of space.
-    pub(crate) fn dimension(&self) -> usize {
-        self.matrices.dimension
-    }
-
     /// Replaces the forces, if the Newton matrix has room for their tangents; all else is unchanged. Returns
     /// whether it has.
     pub(crate) fn change_forces(&mut self, forces: Forces) -> bool {
@@ -259,11 +252,6 @@ impl System {
         &self.matrices
     }
 
-    /// The inertia matrix.
-    pub(crate) fn inertia(&self) -> &NodeMatrix {
-        &self.matrices.inertia
-    }
-
     /// The constraints, row by row.
     pub(crate) fn rows(&self) -> &[ConstraintRow] {
         &self.rows
@@ -276,7 +264,7 @@ impl System {
 
     /// Number of evaluations of the tangents so far; 0 where they are constant.
     pub(crate) fn tangent_evaluations(&self) -> usize {
-        self.newton.tangent_evaluations()
+        self.newton.tangent_evaluations
     }
 
     /// Counts so far: Newton matrices that were never factorized, iterations for them and others, and Newton
@@ -292,27 +280,15 @@ impl System {
 
     /// Number of evaluations for the tangents of forces that do not compute them.
     pub(crate) fn difference_evaluations(&self) -> usize {
-        self.newton.difference_evaluations()
+        self.newton.differences.evaluations()
     }
 
-    /// The constraint forces lambda (N) at (t, u, v) and the internal strains, row by row.
-    pub(crate) fn multipliers(
-        &mut self,
-        t: f64,
-        u: &[f64],
-        v: &[f64],
-        internal: &[f64],
-    ) -> Result<&[f64], Failure> {
-        self.evaluate(t, u, v, internal)?;
-        Ok(self.computed_multipliers())
-    }
-
-    /// The constraint forces (N) where they were computed last.
+    /// The constraint forces lambda (N) at the last [evaluation](Self::evaluate), row by row.
     pub(crate) fn computed_multipliers(&self) -> &[f64] {
         &self.at.multipliers
     }
 
-    /// The accelerations (m/s^2) where [`multipliers`](Self::multipliers) were computed last.
+    /// The accelerations (m/s^2) there.
     pub(crate) fn computed_accelerations(&self) -> &[f64] {
         &self.at.acceleration
     }
@@ -322,14 +298,9 @@ impl System {
     pub(crate) fn project(&mut self, t: f64, u: &[f64], v: &mut [f64]) {
         self.edges.move_to(self.alpha, u, v);
         self.turn_inertia(false);
-        self.at.total.fill(0.0);
-        let Matrices { inertia, dimension, .. } = &*self.matrices;
-        inertia.add_product(*dimension, 1.0, v, &mut self.at.total);
-        for (demand, row) in self.at.demands.iter_mut().zip(&self.rows) {
-            *demand = row.prescribed(t).velocity;
-        }
-        let Evaluation { total, demands, multipliers, .. } = &mut self.at;
-        self.inertia.solve(&self.rows, total, demands, v, multipliers);
+        let momentum = self.matrices.momentum(v);
+        let demands: Vec<f64> = self.rows.iter().map(|row| row.prescribed(t).velocity).collect();
+        self.inertia.solve(&self.rows, &momentum, &demands, v, &mut vec![0.0; demands.len()]);
     }
 
     /// Why a force was undefined at a trial point, the last time that one was; empty if none ever was.
@@ -341,16 +312,6 @@ impl System {
     pub(crate) fn drift(&self, t: f64, u: &[f64]) -> f64 {
         let drift = |row: &ConstraintRow| (row.apply(u) - row.prescribed(t).displacement).abs();
         self.rows.iter().map(drift).fold(self.all_edges.drift(u), f64::max)
-    }
-
-    /// Number of unknowns of the ODE form.
-    pub(crate) fn unknowns(&self) -> usize {
-        self.layout.unknowns()
-    }
-
-    /// Number of internal unknowns: strains of Maxwell branches, and behind them amounts of gas and states of actuators that lag.
-    pub(crate) fn internal(&self) -> usize {
-        self.layout.internal().len()
     }
 
     /// The internal unknowns of a start: strains with which Maxwell branches are free of stress at the displacements
@@ -367,11 +328,6 @@ impl System {
     /// Largest rate (1/s) at which Maxwell branches relax; 0 without any.
     pub(crate) fn relaxation_rate(&self) -> f64 {
         self.matrices.branches.as_ref().map_or(0.0, Branches::fastest)
-    }
-
-    /// The longest time (s) that the viscosity of a soft material is over its modulus; infinite without soft materials.
-    pub(crate) fn retardation_time(&self) -> f64 {
-        self.matrices.retardation_time
     }
 }
 

@@ -33,10 +33,9 @@ pub(crate) trait PhaseSystem: Send {
         self.full().energy(t, u, v, internal)
     }
 
-    /// The constraint forces lambda (N) in a state (u, v, internal unknowns), row by row, and the accelerations, which
-    /// [`full`](Self::full) has from then on.
-    fn multipliers(&mut self, t: f64, [u, v, internal]: [&[f64]; 3]) -> Result<&[f64], Failure> {
-        self.full_mut().multipliers(t, u, v, internal)
+    /// Evaluates accelerations (m/s^2) and constraint forces (N) in a state (u, v, internal unknowns): [`full`](Self::full) has them.
+    fn evaluate(&mut self, t: f64, [u, v, internal]: [&[f64]; 3]) -> Result<(), Failure> {
+        self.full_mut().evaluate(t, u, v, internal)
     }
 
     /// The spectrum at (t, u, v).
@@ -67,15 +66,5 @@ pub(crate) trait PhaseSystem: Send {
     /// Number of evaluations for the tangents of forces that do not compute them.
     fn difference_evaluations(&self) -> usize {
         self.full().difference_evaluations()
-    }
-}
-
-impl PhaseSystem for System {
-    fn full(&self) -> &System {
-        self
-    }
-
-    fn full_mut(&mut self) -> &mut System {
-        self
     }
 }

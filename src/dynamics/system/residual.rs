@@ -95,7 +95,7 @@ impl System {
         let Self { at, matrices, .. } = self;
         at.nodal.add_up(&mut at.total);
         add(forces, &mut at.total);
-        matrices.inertia.add_product(matrices.dimension, -1.0, a, &mut at.total);
+        matrices.add_momentum(-1.0, a, &mut at.total);
         Ok(at.total.clone())
     }
 
@@ -146,12 +146,8 @@ impl System {
 
     /// The displacement nearest to `x`, in the sense of kinetic energy, that constraints at rest allow.
     pub(crate) fn constrain(&mut self, x: &mut [f64]) {
-        let none = vec![0.0; self.rows.len()];
-        let mut mu = none.clone();
-        let mut momentum = vec![0.0; x.len()];
-        let dimension = self.matrices.dimension;
-        self.matrices.inertia.add_product(dimension, 1.0, x, &mut momentum);
-        self.inertia.solve(&self.rows, &momentum, &none, x, &mut mu);
+        let momentum = self.matrices.momentum(x);
+        x.copy_from_slice(&self.inertia.solve_free(&self.rows, &momentum));
     }
 
     /// For each row that moves the displacements in equilibrium, in the undeformed shape at time `t`, where it moves by 1
@@ -163,10 +159,8 @@ impl System {
             return Ok(Vec::new());
         }
         let rest = vec![0.0; self.dofs()];
-        self.newton.is_set = false;
-        self.update_tangents(t, &rest, &rest, false);
-        let [size, speed] = self.matrices.scales;
-        self.factorize_newton(STATIC * size / speed)?;
+        self.update_tangents_at_rest(t);
+        self.factorize_at_rest()?;
         let lift = |row: &usize| {
             let mut demands = vec![0.0; self.rows.len()];
             demands[*row] = 1.0;
@@ -175,6 +169,12 @@ impl System {
             x
         };
         Ok(moved.iter().map(lift).collect())
+    }
+
+    /// Sets the Newton matrix of a step in which all shapes reach equilibrium.
+    pub(super) fn factorize_at_rest(&mut self) -> Result<(), Failure> {
+        let [size, speed] = self.matrices.scales;
+        self.factorize_newton(STATIC * size / speed)
     }
 }
 

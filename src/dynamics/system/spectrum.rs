@@ -36,6 +36,19 @@ pub struct Spectrum {
 }
 
 impl Spectrum {
+    /// From the highest eigenvalues of Kt and of D, and of the lowest vibration x that of Kt, x.D x, and the part of that which is
+    /// mass damping.
+    pub(crate) fn new([highest, damping_rate]: [f64; 2], lowest: Option<[f64; 3]>) -> Self {
+        let ratio = |k: usize| lowest.map_or(0.0, |own| own[k] / (2.0 * own[0].sqrt()));
+        Self {
+            highest_frequency: highest.sqrt(),
+            lowest_frequency: lowest.map(|[eigenvalue, ..]| eigenvalue.sqrt()),
+            damping_rate,
+            lowest_damping_ratio: ratio(1),
+            mass_damping_ratio: ratio(2),
+        }
+    }
+
     /// Period of the slowest vibration (s).
     pub fn slowest_period(&self) -> Option<f64> {
         self.lowest_frequency.map(|omega| std::f64::consts::TAU / omega)
@@ -80,23 +93,13 @@ impl System {
         let highest = self.highest(Self::add_stiffness);
         let damping_rate =
             self.highest(|system, x, image| system.tangents().1.add_product(1.0, x, image));
-        let mut spectrum = Spectrum {
-            highest_frequency: highest.sqrt(),
-            lowest_frequency: None,
-            damping_rate,
-            lowest_damping_ratio: 0.0,
-            mass_damping_ratio: 0.0,
-        };
         let rigid = self.rigid_motions(u, RIGID * highest);
-        if let Some((eigenvalue, x)) = self.lowest(highest, &rigid, 1).pop() {
-            let omega = eigenvalue.sqrt();
-            spectrum.lowest_frequency = Some(omega);
-            spectrum.lowest_damping_ratio = self.tangents().1.quadratic_form(&x) / (2.0 * omega);
+        let lowest = self.lowest(highest, &rigid, 1).pop().map(|(eigenvalue, x)| {
             let by_mass = |m: &NodeMatrix| m.quadratic_form(self.matrices.dimension, &x);
-            spectrum.mass_damping_ratio =
-                self.matrices.mass_damping.as_deref().map_or(0.0, by_mass) / (2.0 * omega);
-        }
-        spectrum
+            let by_mass = self.matrices.mass_damping.as_deref().map_or(0.0, by_mass);
+            [eigenvalue, self.tangents().1.quadratic_form(&x), by_mass]
+        });
+        Spectrum::new([highest, damping_rate], lowest)
     }
 
     /// Updates the tangents to (t, u, v), with those of branches and amounts that have no time to yield.
@@ -118,24 +121,21 @@ impl System {
     /// Largest eigenvalue of X x = eigenvalue M x, X symmetric, whose product is added by `add_product`, by power iteration; 0 if
     /// nothing can move.
     pub(super) fn highest(&mut self, add_product: impl Fn(&Self, &[f64], &mut [f64])) -> f64 {
-        let (dofs, count) = (self.dofs(), self.rows.len());
+        let dofs = self.dofs();
         let (mut x, mut image) = (noise(dofs, 0), vec![0.0; dofs]);
-        let (nowhere, mut mu) = (vec![0.0; count], vec![0.0; count]);
         let mut highest = 0.0;
         for iteration in 0..=POWER_ITERATIONS {
             // the constraints are applied to the first guess as to all others
             image.fill(0.0);
             match iteration {
-                0 => {
-                    self.matrices.inertia.add_product(self.matrices.dimension, 1.0, &x, &mut image)
-                }
+                0 => self.matrices.add_momentum(1.0, &x, &mut image),
                 _ => add_product(self, &x, &mut image),
             }
             if iteration > 0 {
                 // x has length 1 in the norm of M
                 highest = f64::max(highest, dot(&x, &image));
             }
-            self.inertia.solve(&self.rows, &image, &nowhere, &mut x, &mut mu);
+            x = self.inertia.solve_free(&self.rows, &image);
             let length = self.length(&x);
             if length == 0.0 {
                 break;
@@ -194,15 +194,12 @@ impl System {
         }
         let mut block = (d * (d + 1) / 2 + 2 * count).min(dofs);
         let mut basis: Vec<Vec<f64>> = (0..block).map(|k| noise(dofs, k)).collect();
-        let (nowhere, mut mu) = (vec![0.0; self.rows.len()], vec![0.0; self.rows.len()]);
         let mut found: Vec<(f64, Vec<f64>)> = Vec::new();
         let mut can_be_lower = shift <= SHIFT * highest;
         let mut iterations = 0;
         while iterations < SUBSPACE_ITERATIONS {
             for x in &mut basis {
-                let mut image = vec![0.0; dofs];
-                self.matrices.inertia.add_product(d, 1.0, x, &mut image);
-                solver.solve(&self.rows, &image, &nowhere, x, &mut mu);
+                *x = solver.solve_free(&self.rows, &self.matrices.momentum(x));
             }
             self.orthonormalize(rigid, &mut basis);
             if basis.is_empty() {
@@ -257,10 +254,8 @@ impl System {
     /// Makes `basis` orthonormal by M, one vector after the other, and orthogonal to `others`, which are
     /// orthonormal; vectors that depend linearly on others are dropped.
     fn orthonormalize(&self, others: &[Vec<f64>], basis: &mut Vec<Vec<f64>>) {
-        let Self { matrices, .. } = self;
         let with_image = |x: Vec<f64>| {
-            let mut image = vec![0.0; x.len()];
-            matrices.inertia.add_product(matrices.dimension, 1.0, &x, &mut image);
+            let image = self.matrices.momentum(&x);
             (x, image)
         };
         let mut done: Vec<(Vec<f64>, Vec<f64>)> = others.iter().cloned().map(with_image).collect();
@@ -312,6 +307,6 @@ impl System {
 
     /// sqrt(x.M x)
     fn length(&self, x: &[f64]) -> f64 {
-        self.matrices.inertia.quadratic_form(self.matrices.dimension, x).sqrt()
+        self.matrices.square(x).sqrt()
     }
 }

@@ -44,16 +44,6 @@ impl Projection {
         self.tangents.is_set && self.branches.as_ref().is_none_or(ReducedBranches::keep_tangents)
     }
 
-    /// Evaluations for the tangents of forces that do not compute them.
-    pub(crate) fn difference_evaluations(&self) -> usize {
-        self.tangents.differences.evaluations()
-    }
-
-    /// Starts their count from 0.
-    pub(crate) fn forget_counts(&mut self) {
-        self.tangents.differences.forget_counts();
-    }
-
     /// Factorizes the Newton matrix for steps of the parameter `gamma`.
     pub(crate) fn factorize(&mut self, gamma: f64) {
         let (s, free) = (self.shapes.count(), self.shapes.free());
