@@ -121,7 +121,7 @@ fn compression(indefinite: usize) -> Option<String> {
 impl Integrable for System {
     fn start(self: Box<Self>, start: &Start) -> Result<Box<dyn Stepper>, Failed> {
         let mut system = *self;
-        let Start { settings, atol, state, times: [t, end], first } = *start;
+        let Start { settings, atol, state, time: t, first } = *start;
         let layout = system.layout();
         let mut tolerances = vec![atol.position; layout.dofs];
         tolerances.resize(layout.motion().end, atol.velocity);
@@ -142,75 +142,68 @@ impl Integrable for System {
                 tolerances.extend(equations.tolerances([atol.force, atol.momentum]));
                 let (y, yp) = equations.consistent(t, state).map_err(Failure::into_error)?;
                 let options = ida_options(settings, tolerances, &mut equations)?;
-                until(end, Ida::new(equations, t, &y, &yp, &options)?)
+                Ok(Box::new(Ida::new(equations, t, &y, &yp, &options)?))
             }
             Method::CentralDifference => {
                 let options = rk::Options::new(settings.rtol, tolerances).max_step(longest);
                 let options = first.into_iter().fold(options, rk::Options::initial_step);
-                until(
-                    end,
-                    CentralDifference::new(SecondOrderForm::new(system), t, state, &options)?,
-                )
+                let equations = SecondOrderForm::new(system);
+                Ok(Box::new(CentralDifference::new(equations, t, state, &options)?))
             }
-            _ => {
-                let is_linear = system.is_linear();
-                ode(system, is_linear, tolerances, start, state)
-            }
+            _ => ode(system, tolerances, start, state),
         }
     }
 }
 
-/// Starts an integrator of ordinary differential equations, linear ones or others.
+/// Starts an integrator of ordinary differential equations, with the unknowns `y`.
 pub(super) fn ode<S: IntoStepper>(
     equations: S,
-    is_linear: bool,
     tolerances: Vec<f64>,
     start: &Start,
     y: &[f64],
 ) -> Result<Box<dyn Stepper>, Failed> {
-    let Start { settings, times: [t, end], first, .. } = *start;
+    let Start { settings, time: t, first, .. } = *start;
+    let is_linear = equations.full().is_linear();
     let longest = settings.max_step.unwrap_or(f64::INFINITY);
     let holds_liquid = equations.full().holds_liquid();
-    match settings.method {
+    Ok(match settings.method {
         Method::Arkode => {
             let options =
                 arkode_options(settings, tolerances, is_linear, holds_liquid)?.max_step(longest);
             let options = first.into_iter().fold(options, ArkodeOptions::initial_step);
-            S::into_stepper(end, Arkode::new(equations, t, y, &options)?)
+            S::into_stepper(Arkode::new(equations, t, y, &options)?)
         }
         Method::Rosenbrock => {
             let options = rosenbrock_options(settings, tolerances, equations.full(), is_linear);
             let options = options.max_step(longest);
             let options = first.into_iter().fold(options, rosenbrock::Options::initial_step);
-            S::into_stepper(end, Rosenbrock::new(equations, t, y, &options)?)
+            S::into_stepper(Rosenbrock::new(equations, t, y, &options)?)
         }
         Method::Rk => {
             let options = rk::Options::new(settings.rtol, tolerances).max_step(longest);
             let options = first.into_iter().fold(options, rk::Options::initial_step);
-            S::into_stepper(end, DormandPrince::new(equations, t, y, &options)?)
+            S::into_stepper(DormandPrince::new(equations, t, y, &options)?)
         }
         // a plan never has `Auto`, and other methods take other equations
         _ => {
             let options = cvode_options(settings, tolerances, holds_liquid).max_step(longest);
-            S::into_stepper(end, Cvode::new(equations, t, y, &options)?)
+            S::into_stepper(Cvode::new(equations, t, y, &options)?)
         }
-    }
+    })
 }
 
 /// Equations that are an ODE, with the stepper of their integrators.
 pub(super) trait IntoStepper: Integrable + Ode + Sized + 'static {
-    /// The stepper of an integrator that stops at `end` (s).
-    fn into_stepper<I>(end: f64, integrator: I) -> Result<Box<dyn Stepper>, Failed>
-    where
-        I: Integrator<System = Self> + Send + 'static;
+    fn into_stepper(
+        integrator: impl Integrator<System = Self> + Send + 'static,
+    ) -> Box<dyn Stepper>;
 }
 
 impl IntoStepper for System {
-    fn into_stepper<I>(end: f64, integrator: I) -> Result<Box<dyn Stepper>, Failed>
-    where
-        I: Integrator<System = Self> + Send + 'static,
-    {
-        until(end, integrator)
+    fn into_stepper(
+        integrator: impl Integrator<System = Self> + Send + 'static,
+    ) -> Box<dyn Stepper> {
+        Box::new(integrator)
     }
 }
 
@@ -221,15 +214,6 @@ fn iterates(method: Method, system: &System) -> bool {
         Method::Rosenbrock | Method::Rk | Method::CentralDifference => false,
         _ => true,
     }
-}
-
-/// Sets the stop time of an integrator.
-fn until<I: Integrator<System: Form> + Send + 'static>(
-    end: f64,
-    mut integrator: I,
-) -> Result<Box<dyn Stepper>, Failed> {
-    integrator.set_stop_time(Some(end))?;
-    Ok(Box::new(integrator))
 }
 
 /// The part of tolerances that errors of Newton's iteration may have (the default of `CVodeSetNonlinConvCoef` and

@@ -27,23 +27,21 @@ impl Integrable for ReducedSystem {
             let help = "a reduced model is an ODE, without constraints: take cvode-bdf, arkode, rosenbrock or rk";
             return Err(InputError::new("method", method, help).into());
         }
-        let y = self.begin(start.times[0], start.state);
-        let (is_linear, tolerances) = (self.full().is_linear(), self.tolerances(start.atol));
-        ode(*self, is_linear, tolerances, start, &y)
+        let y = self.begin(start.time, start.state);
+        let tolerances = self.tolerances(start.atol);
+        ode(*self, tolerances, start, &y)
     }
 }
 
 impl IntoStepper for ReducedSystem {
-    fn into_stepper<I>(end: f64, mut integrator: I) -> Result<Box<dyn Stepper>, Failed>
-    where
-        I: Integrator<System = Self> + Send + 'static,
-    {
-        integrator.set_stop_time(Some(end))?;
+    fn into_stepper(
+        integrator: impl Integrator<System = Self> + Send + 'static,
+    ) -> Box<dyn Stepper> {
         let seen = integrator.y().to_vec();
         let state = vec![0.0; integrator.system().full().layout().unknowns()];
         let mut lifted = Lifted { integrator, state, seen };
         lifted.follow();
-        Ok(Box::new(lifted))
+        Box::new(lifted)
     }
 }
 

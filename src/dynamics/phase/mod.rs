@@ -27,13 +27,12 @@ pub(crate) trait Integrable: PhaseSystem {
     fn start(self: Box<Self>, start: &Start) -> Result<Box<dyn Stepper>, Failed>;
 }
 
-/// Where an integrator starts, and how.
+/// Where an integrator starts (s), and how.
 pub(crate) struct Start<'a> {
     pub(crate) settings: &'a Settings,
     pub(crate) atol: &'a AbsoluteTolerances,
     pub(crate) state: &'a [f64],
-    /// From when, and where it will stop (s).
-    pub(crate) times: [f64; 2],
+    pub(crate) time: f64,
     /// Size of the first step (s), if it is known.
     pub(crate) first: Option<f64>,
 }

@@ -1,4 +1,4 @@
-//! A phase by a reduced model (`scene/reduced_model.rs`): lifting of its unknowns to displacements of all nodes, projection of
+//! The equations of a phase along the shapes of a reduced model (`scene/reduced_model.rs`): lifting of its unknowns to displacements of all nodes, projection of
 //! forces onto its shapes, and the small matrices of Newton's method.
 //!
 //! With Psi = [Phi E], z = (q, b - b_0) and the forces f, the equations are
@@ -46,7 +46,7 @@ use crate::elements::force::{Force, Forces, GeneralizedForce, NodalForces};
 use crate::scene::constraint::{ConstraintRow, Prescribed};
 use crate::scene::reduced_model::{ReducedModel, ReducedPhase};
 
-/// A phase by a reduced model.
+/// The equations of a phase, projected onto the shapes of a reduced model.
 pub(super) struct Projection {
     pub(super) model: Arc<ReducedModel>,
     /// Number of the phase in the model.

@@ -292,15 +292,15 @@ impl Run {
             settings,
             atol: &settings.tolerances_by(&self.scales),
             state: &self.state,
-            times: [self.time, end],
+            time: self.time,
             first,
         };
-        match system.start(&start) {
-            Ok(stepper) => {
-                self.integration = Integration::Running(Running::new(stepper, self.time, end))
-            }
-            Err(source) => return Err(self.failure(source, 0.0)),
-        }
+        let started = system.start(&start).and_then(|mut stepper| {
+            stepper.stop_at(end)?;
+            Ok(Running::new(stepper, self.time, end))
+        });
+        self.integration =
+            Integration::Running(started.map_err(|source| self.failure(source, 0.0))?);
         Ok(true)
     }
 
