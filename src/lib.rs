@@ -56,13 +56,14 @@ pub use dynamics::{
     equations::Equations,
     equilibrium::{Equilibrium, MeshEstimate, NoEquilibrium, Stability},
     error::{Error, Panicked},
+    phase::PhaseSummary,
     report::{
         Achieved, Counts, Indicator, PhaseReport, ReducedReport, Report, SlipEvent, ToldReading,
         Verdict,
     },
     simulate::{Checkpoint, Sampling, Simulation, View},
     statics::Statics,
-    system::{Energy, PhaseSummary, Spectrum},
+    system::{Energy, Spectrum},
     trajectory::{IntegrationFailure, Interrupted, Sample, Trajectory},
 };
 #[cfg(feature = "bodies")]

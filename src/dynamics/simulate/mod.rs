@@ -36,7 +36,6 @@ mod smaller_reading;
 mod spot;
 mod spot_gauge;
 mod stalled;
-mod stepper;
 mod steps;
 mod view;
 mod watch;

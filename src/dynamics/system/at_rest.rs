@@ -26,12 +26,11 @@ mod tests;
 use std::sync::Arc;
 
 use super::System;
-use super::constrained_solver::nodal_multipliers;
 use super::newton_matrix::NewtonMatrix;
-use super::source::EntrySource;
 use crate::base::input::InputError;
 use crate::base::sparse::{BlockMatrix, NodeMatrix};
 use crate::base::vector::{dot, largest};
+use crate::dynamics::linear::{EntrySource, nodal_multipliers};
 use crate::dynamics::system::Energy;
 use crate::elements::force::{Force, NodalForces, Reservoir, Step};
 use crate::integrators::ode::Failure;
@@ -186,8 +185,7 @@ impl AtRest {
     /// M x
     pub(crate) fn weigh(&self, x: &[f64], product: &mut [f64]) {
         product.fill(0.0);
-        let matrices = &self.system.matrices;
-        matrices.inertia.add_product(matrices.dimension, 1.0, x, product);
+        self.system.matrices.add_momentum(1.0, x, product);
     }
 
     /// Number of factorizations so far.
@@ -380,8 +378,7 @@ impl AtRest {
     /// The change x, which the constraints allow, by the last factorization.
     pub(crate) fn solve_other(&mut self, right: &[f64], x: &mut [f64]) {
         let System { rows, newton, .. } = &mut self.system;
-        let nowhere = vec![0.0; rows.len()];
-        newton.solver.solve(rows, right, &nowhere, x, &mut nowhere.clone());
+        x.copy_from_slice(&newton.solver.solve_free(rows, right));
     }
 
     /// Largest component of f + A mu (N).
@@ -398,18 +395,13 @@ impl AtRest {
     /// inverse iteration with the last factorization, that of K + `shift` M. It converges from above, so that
     /// a value below zero is a proof. Infinite if nothing can move.
     pub(crate) fn lowest_eigenvalue(&mut self, shift: f64) -> f64 {
-        let (dofs, count) = (self.system.dofs(), self.system.rows.len());
         let noise = |i: usize| (12.9898 * (i as f64 + 1.0)).sin().mul_add(43.758, 0.3).sin();
-        let mut right: Vec<f64> = (0..dofs).map(noise).collect();
-        let (mut x, mut mu) = (vec![0.0; dofs], vec![0.0; count]);
-        let nowhere = vec![0.0; count];
+        let mut right: Vec<f64> = (0..self.system.dofs()).map(noise).collect();
         let mut lowest = f64::INFINITY;
         for _ in 0..ITERATIONS {
-            let System { rows, newton, .. } = &mut self.system;
-            newton.solver.solve(rows, &right, &nowhere, &mut x, &mut mu);
-            let System { matrices, newton, .. } = &self.system;
-            right.fill(0.0);
-            matrices.inertia.add_product(matrices.dimension, 1.0, &x, &mut right);
+            let System { matrices, rows, newton, .. } = &mut self.system;
+            let x = newton.solver.solve_free(rows, &right);
+            right = matrices.momentum(&x);
             let square = dot(&x, &right);
             if square == 0.0 {
                 break;

@@ -9,7 +9,7 @@
 //!
 //! M is constant with them (natural coordinates). The only motion besides the rigid one is a uniform
 //! strain. The edges of the frame keep it at 0, as constraints of the motion
-//! (`dynamics/system/edges.rs`), and in equilibria the elasticity of the piece keeps it small.
+//! (`dynamics/linear/edges.rs`), and in equilibria the elasticity of the piece keeps it small.
 //!
 //! The frame spans a large simplex, each node the farthest from what those before it span, so that no weight
 //! is large. Dependent nodes stay in the state with their own u and v: forces, contact, sensors, samples and

@@ -51,7 +51,7 @@ const WORTH_THREADS: usize = 400;
 
 /// The matrix is not positive definite, or singular.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Indefinite;
+pub(crate) struct Indefinite;
 
 impl Cholesky {
     /// Analyses the pattern of a lower triangle (columns sorted, full diagonal). Unknowns are

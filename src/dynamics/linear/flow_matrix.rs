@@ -1,7 +1,7 @@
 //! Amounts of gas and liquids, and states of actuators that lag, in the Newton system, eliminated, and with them the flows of pipes.
 //!
 //! With the volumes V(u) of the chambers, their gradients G = dV/du (a column each), the pressures p(m, V) and the flows
-//! q(t, m, V), a step of the parameter gamma has, beside the system of `newton.rs`,
+//! q(t, m, V), a step of the parameter gamma has, beside the system of `system/newton.rs`,
 //!
 //! ```text
 //! (I - gamma Qm) xm - gamma Qv w = rm,       w = G^T xu
@@ -30,11 +30,11 @@ use crate::base::vector::dot;
 use crate::elements::force::FlowDerivatives;
 
 /// Contribution of gas, liquids, lag states and pipe flows to the Newton system; matrices row by row.
-pub(super) struct FlowMatrix {
+pub(crate) struct FlowMatrix {
     /// Rooms, and unknowns: the amounts in them, and flows of pipes.
-    pub(super) rooms: usize,
+    pub(crate) rooms: usize,
     unknowns: usize,
-    pub(super) derivatives: FlowDerivatives,
+    pub(crate) derivatives: FlowDerivatives,
     /// S, and its product with gamma Qv.
     response: Vec<f64>,
     following: Vec<f64>,
@@ -42,18 +42,18 @@ pub(super) struct FlowMatrix {
     stiffness: Vec<f64>,
     resistance: Vec<f64>,
     /// H.
-    pub(super) compliance: Vec<f64>,
+    pub(crate) compliance: Vec<f64>,
     work: Vec<f64>,
     /// Changes of the volumes, and what follows from them.
     volumes: Vec<f64>,
     changes: Vec<f64>,
     /// A column of N^-1 G.
-    pub(super) column: Vec<f64>,
+    pub(crate) column: Vec<f64>,
 }
 
 impl FlowMatrix {
     /// For so many rooms and unknowns of a body with `dofs` displacement components.
-    pub(super) fn new([rooms, unknowns]: [usize; 2], dofs: usize) -> Self {
+    pub(crate) fn new([rooms, unknowns]: [usize; 2], dofs: usize) -> Self {
         let square = vec![0.0; rooms * rooms];
         Self {
             rooms,
@@ -72,7 +72,7 @@ impl FlowMatrix {
     }
 
     /// Sets S, S gamma Qv and C for a step of the parameter `gamma`.
-    pub(super) fn condense(&mut self, gamma: f64) {
+    pub(crate) fn condense(&mut self, gamma: f64) {
         let Self { rooms, unknowns, derivatives, response, following, stiffness, work, .. } = self;
         let (k, n) = (*rooms, *unknowns);
         let FlowDerivatives { pressures: [stiff, pressing], rates, .. } = &*derivatives;
@@ -90,17 +90,17 @@ impl FlowMatrix {
     }
 
     /// Whether that room resists: a column of H matters only where C has one.
-    pub(super) fn is_stiff(&self, room: usize) -> bool {
+    pub(crate) fn is_stiff(&self, room: usize) -> bool {
         self.stiffness.chunks(self.rooms).any(|row| row[room] != 0.0)
     }
 
     /// The rows of C.
-    pub(super) fn stiffness(&self) -> impl Iterator<Item = &[f64]> {
+    pub(crate) fn stiffness(&self) -> impl Iterator<Item = &[f64]> {
         self.stiffness.chunks(self.rooms)
     }
 
     /// Sets gamma^2 C (I + gamma^2 H C)^-1.
-    pub(super) fn resist_by(&mut self, gamma: f64) {
+    pub(crate) fn resist_by(&mut self, gamma: f64) {
         let Self { rooms, stiffness, resistance, compliance, work, .. } = self;
         let (k, square) = (*rooms, gamma * gamma);
         let work = &mut work[..k * k];
@@ -114,7 +114,7 @@ impl FlowMatrix {
     }
 
     /// Takes from the right-hand side the pressures that resist its solution `xv` without them.
-    pub(super) fn resist(&mut self, xv: &[f64], right: &mut [f64]) {
+    pub(crate) fn resist(&mut self, xv: &[f64], right: &mut [f64]) {
         self.swell(xv);
         let Self { derivatives, resistance, volumes, changes, .. } = self;
         apply(resistance, volumes, changes);
@@ -122,7 +122,7 @@ impl FlowMatrix {
     }
 
     /// Adds gamma G Pm S rm - gamma G C G^T ru to the right-hand side, of the residuals `ru` and `amounts`.
-    pub(super) fn add_residuals(
+    pub(crate) fn add_residuals(
         &mut self,
         gamma: f64,
         ru: &[f64],
@@ -141,7 +141,7 @@ impl FlowMatrix {
 
     /// Turns the residuals `x` of the unknowns of the flow into their changes, by those of the displacements, `xu`. Returns the changes
     /// of the power (W) that becomes heat and of that which is supplied with them.
-    pub(super) fn solve(&mut self, xu: &[f64], x: &mut [f64]) -> [f64; 2] {
+    pub(crate) fn solve(&mut self, xu: &[f64], x: &mut [f64]) -> [f64; 2] {
         self.swell(xu);
         let Self { derivatives, response, following, volumes, changes, .. } = self;
         apply(response, x, changes);
@@ -153,7 +153,7 @@ impl FlowMatrix {
     }
 
     /// Adds G Pv G^T `x`: the forces (N) of amounts that stay against the displacements `x` (m).
-    pub(super) fn add_stiffness(&self, x: &[f64], forces: &mut [f64]) {
+    pub(crate) fn add_stiffness(&self, x: &[f64], forces: &mut [f64]) {
         let FlowDerivatives { gradients, pressures: [stiff, _], .. } = &self.derivatives;
         for (gradient, stiff) in gradients.chunks(x.len()).zip(stiff) {
             add_multiple(stiff * dot(gradient, x), gradient, forces);
@@ -161,7 +161,7 @@ impl FlowMatrix {
     }
 
     /// Changes of the pressures (Pa) of the rooms, after those of the unknowns of the flow were [solved](Self::solve) for, `x`.
-    pub(super) fn pressure_changes(&self, x: &[f64]) -> impl Iterator<Item = f64> {
+    pub(crate) fn pressure_changes(&self, x: &[f64]) -> impl Iterator<Item = f64> {
         let [stiff, pressing] = &self.derivatives.pressures;
         let by_volumes = stiff.iter().zip(&self.volumes).map(|(stiff, volume)| stiff * volume);
         let by_amounts = pressing.iter().zip(x).map(|(pressing, x)| pressing * x);

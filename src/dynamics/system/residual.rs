@@ -1,10 +1,9 @@
-//! Residual of a reduced model, evaluated at some times with all unknowns: the forces on the other nodes and cells, and
+//! What a state of a reduced model leaves over in the equations with all unknowns: the forces on the other nodes and cells, and
 //! the displacements that would balance them.
 //!
-//! A state is kept six times in a phase, three times in its first eighth, where loads have just changed. The
-//! residual f - M u'' along all directions is divided by K + D/gamma + M/gamma^2, with gamma 30 times the
+//! The residual f - M u'' along all directions is divided by K + D/gamma + M/gamma^2, with gamma 30 times the
 //! time of a wave across the body, or the time since the start of the phase if that is shorter. Tangents are
-//! those of the first or the last of these states, whichever resist more, as a body that is about to buckle
+//! those of the first or the last of the states of a phase, whichever resist more, as a body that is about to buckle
 //! would move far under any force; indefinite ones are factorized only where the others report more than was
 //! wanted, or nothing. The ratio to the largest displacement, times the largest ratio of error to it in the
 //! runs that the model was checked with, is the error estimate of a run. Sensors read the state with and
@@ -12,30 +11,23 @@
 //! residual (R. Becker, R. Rannacher, *Acta Numerica* 10 (2001) 1-102), as s'.(A^-1 r) = (A^-T s').r, and
 //! nonlinear sensors keep their nonlinearity.
 
-use std::sync::Arc;
-
-use super::constrained_solver::nodal_multipliers;
-use super::{Reduction, System};
-use crate::base::input::InputError;
+use super::System;
 use crate::base::simd::add;
 use crate::base::vector::largest;
-use crate::dynamics::state::State;
-use crate::elements::body::Body;
 use crate::integrators::ode::Failure;
-use crate::scene::reduced_model::ReducedModel;
 
 /// A state of a reduced model, with what all unknowns would feel in it except the forces of cells, which depend on nothing else.
 #[derive(Debug, Clone)]
 pub(crate) struct ResidualSnapshot {
     /// Time (s), and how long the phase has lasted then (s).
     pub(crate) time: f64,
-    age: f64,
+    pub(crate) age: f64,
     /// Displacements (m), velocities (m/s) and accelerations (m/s^2) of all nodes.
     pub(crate) state: [Vec<f64>; 3],
     /// Strains of Maxwell branches, and amounts of what flows.
-    internal: Vec<f64>,
+    pub(crate) internal: Vec<f64>,
     /// The nodal forces (N) of all but the cells and their branches.
-    forces: Vec<f64>,
+    pub(crate) forces: Vec<f64>,
     /// Extrapolation: distance of the state outside the training range, relative to the largest modal range.
     pub(crate) outside: f64,
 }
@@ -47,127 +39,19 @@ pub(crate) struct MissingDisplacement {
     pub(crate) displacement: Vec<f64>,
 }
 
-/// Parts of a phase after which states are looked at: often at first, where what acts has just changed.
-const CHECKS: [f64; 6] = [0.02, 0.05, 0.12, 0.25, 0.5, 0.8];
-
 impl System {
-    /// Has the phase `name` be run by a reduced model.
-    ///
-    /// # Errors
-    /// Features that such models do not support, and constraints that this one has not learned.
-    pub(crate) fn reduce(
-        &mut self,
-        body: &Body,
-        model: &Arc<ReducedModel>,
-        name: &str,
-    ) -> Result<(), InputError> {
-        self.check_reducible()?;
-        let forces = self.forces.iter().chain(&self.flow).cloned().collect();
-        let own = Reduction::new(body, &self.matrices, &forces, &self.rows, model, name)?;
-        self.reduction = Some(Box::new(own));
-        Ok(())
-    }
-
-    /// # Errors
-    /// Features that reduced models do not support.
-    pub(crate) fn check_reducible(&self) -> Result<(), InputError> {
-        if self.matrices.rigid.is_none() {
-            return Ok(());
-        }
-        let help = "a scene with rigid pieces cannot be reduced yet: run it unreduced";
-        Err(InputError::new("reduced model", "of a scene with rigid pieces", help))
-    }
-
-    /// Mass (kg) that moves along one axis.
-    pub(crate) fn mass(&self) -> f64 {
-        let ones = vec![1.0; self.dofs()];
-        let dimension = self.matrices.dimension;
-        self.matrices.inertia.quadratic_form(dimension, &ones) / dimension as f64
-    }
-
-    /// Whether it is run by a reduced model.
-    pub(crate) fn is_reduced(&self) -> bool {
-        self.reduction.is_some()
-    }
-
-    /// Evaluations for tangents by differences in the reduced model.
-    pub(super) fn reduced_differences(&self) -> usize {
-        self.reduction.as_ref().map_or(0, |reduction| reduction.difference_evaluations())
-    }
-
-    /// Residual snapshot of the `state` of a reduced model at time `t`, if a check is due: at some
-    /// fractions of the phase from `start` to `end` (s).
-    pub(crate) fn left_over(
+    /// The nodal forces (N) of all but the cells and their branches.
+    pub(crate) fn forces_without_cells(
         &mut self,
         t: f64,
-        state: &[f64],
-        [start, end]: [f64; 2],
-    ) -> Result<Option<ResidualSnapshot>, Failure> {
-        let age = t - start;
-        let part = age / (end - start);
-        match &mut self.reduction {
-            Some(reduction) if part >= reduction.next_check.unwrap_or(CHECKS[0]) => {
-                let next = CHECKS.into_iter().find(|check| *check > part);
-                reduction.next_check = Some(next.unwrap_or(f64::INFINITY));
-            }
-            _ => return Ok(None),
-        }
-        let State { u, v, internal, .. } = self.layout.of(state);
+        [u, v, internal]: [&[f64]; 3],
+    ) -> Result<Vec<f64>, Failure> {
         self.at.nodal.clear();
         self.set_lagging(t, internal);
         self.add_forces_where(|force| !force.is_by_cells(), t, u, v)?;
         self.add_flow_forces(t, u, self.layout.split(internal).1)?;
         self.at.nodal.add_up(&mut self.at.total);
-        let forces = self.at.total.clone();
-        let a = self.reduced_accelerations(t, [u, v, internal])?;
-        let outside = self.reduction.as_ref().map_or(0.0, |own| own.outside(u));
-        let state = [u.to_vec(), v.to_vec(), a];
-        Ok(Some(ResidualSnapshot {
-            time: t,
-            age,
-            state,
-            internal: internal.to_vec(),
-            forces,
-            outside,
-        }))
-    }
-
-    /// Accelerations (m/s^2) of all nodes as a reduced model has them.
-    fn reduced_accelerations(
-        &mut self,
-        t: f64,
-        [u, v, internal]: [&[f64]; 3],
-    ) -> Result<Vec<f64>, Failure> {
-        let (strains, amounts) = self.layout.split(internal);
-        let Some(reduction) = &mut self.reduction else { return Ok(vec![0.0; u.len()]) };
-        let [q, p] = reduction.coordinates(&self.rows, t, [u, v]);
-        // the strains of all cells are known here
-        reduction.evaluate_parts(&self.rows, t, [&q, &p, &[], amounts])?;
-        if let (Some(branches), [_, ..]) = (&self.matrices.branches, strains) {
-            let mut forces = vec![0.0; u.len()];
-            branches.add_forces(u, strains, &mut forces, &mut self.at.relaxing);
-            reduction.push(&forces);
-        }
-        Ok(reduction.accelerations())
-    }
-
-    /// Evaluates forces, accelerations and multipliers, with the accelerations that a reduced model has.
-    pub(super) fn evaluate_reduced(
-        &mut self,
-        t: f64,
-        [u, v, internal]: [&[f64]; 3],
-    ) -> Result<(), Failure> {
-        self.evaluate_forces(t, u, v, internal)?;
-        self.at.acceleration = self.reduced_accelerations(t, [u, v, internal])?;
-        let Self { matrices, rows, inertia, at, .. } = self;
-        let mut left_over = at.total.clone();
-        matrices.inertia.add_product(matrices.dimension, -1.0, &at.acceleration, &mut left_over);
-        if rows.iter().any(|row| row.nodal().is_none()) {
-            let (mut x, demands) = (vec![0.0; left_over.len()], vec![0.0; rows.len()]);
-            inertia.solve(rows, &left_over, &demands, &mut x, &mut at.multipliers);
-        }
-        nodal_multipliers(rows, &mut at.multipliers, |dof| -left_over[dof]);
-        Ok(())
+        Ok(self.at.total.clone())
     }
 
     /// For each of some states of a phase the displacements (m) by which what a reduced model leaves over would be balanced; none
@@ -211,7 +95,7 @@ impl System {
         let Self { at, matrices, .. } = self;
         at.nodal.add_up(&mut at.total);
         add(forces, &mut at.total);
-        matrices.inertia.add_product(matrices.dimension, -1.0, a, &mut at.total);
+        matrices.add_momentum(-1.0, a, &mut at.total);
         Ok(at.total.clone())
     }
 
@@ -262,12 +146,8 @@ impl System {
 
     /// The displacement nearest to `x`, in the sense of kinetic energy, that constraints at rest allow.
     pub(crate) fn constrain(&mut self, x: &mut [f64]) {
-        let none = vec![0.0; self.rows.len()];
-        let mut mu = none.clone();
-        let mut momentum = vec![0.0; x.len()];
-        let dimension = self.matrices.dimension;
-        self.matrices.inertia.add_product(dimension, 1.0, x, &mut momentum);
-        self.inertia.solve(&self.rows, &momentum, &none, x, &mut mu);
+        let momentum = self.matrices.momentum(x);
+        x.copy_from_slice(&self.inertia.solve_free(&self.rows, &momentum));
     }
 
     /// For each row that moves the displacements in equilibrium, in the undeformed shape at time `t`, where it moves by 1
@@ -279,10 +159,8 @@ impl System {
             return Ok(Vec::new());
         }
         let rest = vec![0.0; self.dofs()];
-        self.newton.is_set = false;
-        self.update_tangents(t, &rest, &rest, false);
-        let [size, speed] = self.matrices.scales;
-        self.factorize_newton(STATIC * size / speed)?;
+        self.update_tangents_at_rest(t);
+        self.factorize_at_rest()?;
         let lift = |row: &usize| {
             let mut demands = vec![0.0; self.rows.len()];
             demands[*row] = 1.0;
@@ -291,6 +169,12 @@ impl System {
             x
         };
         Ok(moved.iter().map(lift).collect())
+    }
+
+    /// Sets the Newton matrix of a step in which all shapes reach equilibrium.
+    pub(super) fn factorize_at_rest(&mut self) -> Result<(), Failure> {
+        let [size, speed] = self.matrices.scales;
+        self.factorize_newton(STATIC * size / speed)
     }
 }
 

@@ -23,8 +23,8 @@ use crate::elements::body::RigidPieces;
 
 /// An edge of a frame between two nodes.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Edge {
-    pub(super) nodes: [usize; 2],
+pub(crate) struct Edge {
+    pub(crate) nodes: [usize; 2],
     /// Itself in the undeformed body (m).
     natural: [f64; 3],
 }
@@ -37,12 +37,12 @@ impl Edge {
     }
 
     /// The difference of a vector, `dimension` components per node, at its nodes.
-    pub(super) fn apart(&self, values: &[f64], dimension: usize) -> [f64; 3] {
+    pub(crate) fn apart(&self, values: &[f64], dimension: usize) -> [f64; 3] {
         difference_at(self.nodes, dimension, values)
     }
 
     /// L^2/2 (m^2).
-    pub(super) fn half_square(&self) -> f64 {
+    pub(crate) fn half_square(&self) -> f64 {
         0.5 * dot(&self.natural, &self.natural)
     }
 }
@@ -54,28 +54,28 @@ fn difference_at([a, b]: [usize; 2], dimension: usize, values: &[f64]) -> [f64; 
 }
 
 /// The factors of x, x' and x'' in R, in a step of the parameter `gamma` (s) with the stabilization rate `alpha` (1/s).
-pub(super) fn stabilized(gamma: f64, alpha: f64) -> [f64; 3] {
+pub(crate) fn stabilized(gamma: f64, alpha: f64) -> [f64; 3] {
     let decay = 1.0 + alpha * gamma;
     [decay * decay, 2.0 * gamma * decay, gamma * gamma]
 }
 
 /// All edges in a state, with what the stabilization requires of them.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Edges {
-    pub(super) list: Vec<Edge>,
+pub(crate) struct Edges {
+    pub(crate) list: Vec<Edge>,
     dimension: usize,
     /// x, x', x'' of each.
-    pub(super) arms: Vec<[f64; 3]>,
+    pub(crate) arms: Vec<[f64; 3]>,
     rates: Vec<[f64; 3]>,
     accelerations: Vec<[f64; 3]>,
     /// x.x'' of each.
-    pub(super) demands: Vec<f64>,
+    pub(crate) demands: Vec<f64>,
     /// Force over length of each (N/m), above 0 where it presses.
-    pub(super) multipliers: Vec<f64>,
+    pub(crate) multipliers: Vec<f64>,
 }
 
 impl Edges {
-    pub(super) fn new(rigid: Option<&RigidPieces>, positions: &[f64], dimension: usize) -> Self {
+    pub(crate) fn new(rigid: Option<&RigidPieces>, positions: &[f64], dimension: usize) -> Self {
         let Some(rigid) = rigid else { return Self::default() };
         let mut list = Vec::new();
         for frame in rigid.frames() {
@@ -103,13 +103,13 @@ impl Edges {
     }
 
     /// The edges of which `is_kept` is true.
-    pub(super) fn retained(&self, is_kept: &[bool]) -> Self {
+    pub(crate) fn retained(&self, is_kept: &[bool]) -> Self {
         let list = self.list.iter().zip(is_kept).filter(|(_, is_kept)| **is_kept);
         Self::of(list.map(|(edge, _)| *edge).collect(), self.dimension)
     }
 
     /// Becomes the same as the `other` ones of the same list.
-    pub(super) fn copy_from(&mut self, other: &Self) {
+    pub(crate) fn copy_from(&mut self, other: &Self) {
         self.arms.copy_from_slice(&other.arms);
         self.rates.copy_from_slice(&other.rates);
         self.accelerations.copy_from_slice(&other.accelerations);
@@ -117,7 +117,7 @@ impl Edges {
     }
 
     /// Moves on to displacements `u` (m) and velocities `v` (m/s), with the stabilization rate `alpha` (1/s).
-    pub(super) fn move_to(&mut self, alpha: f64, u: &[f64], v: &[f64]) {
+    pub(crate) fn move_to(&mut self, alpha: f64, u: &[f64], v: &[f64]) {
         for (k, edge) in self.list.iter().enumerate() {
             let (x, rate) =
                 (edge.at(u, self.dimension), difference_at(edge.nodes, self.dimension, v));
@@ -129,14 +129,14 @@ impl Edges {
     }
 
     /// Moves the edges on to displacements `u` (m), without their rates.
-    pub(super) fn place(&mut self, u: &[f64]) {
+    pub(crate) fn place(&mut self, u: &[f64]) {
         for (arm, edge) in self.arms.iter_mut().zip(&self.list) {
             *arm = edge.at(u, self.dimension);
         }
     }
 
     /// g and its rate at the displacements `u` (m) and velocities `v` (m/s), edge by edge.
-    pub(super) fn remainders(&self, u: &[f64], v: &[f64]) -> impl Iterator<Item = [f64; 2]> {
+    pub(crate) fn remainders(&self, u: &[f64], v: &[f64]) -> impl Iterator<Item = [f64; 2]> {
         self.list.iter().map(move |edge| {
             let x = edge.at(u, self.dimension);
             let off = 0.5 * dot(&x, &x) - edge.half_square();
@@ -145,20 +145,20 @@ impl Edges {
     }
 
     /// Whether one of them changes its length faster than by `least` (m/s).
-    pub(super) fn stretches(&self, least: f64) -> bool {
+    pub(crate) fn stretches(&self, least: f64) -> bool {
         let along = |(x, rate): (&[f64; 3], &[f64; 3])| dot(x, rate).abs() > least * norm(x);
         self.arms.iter().zip(&self.rates).any(along)
     }
 
     /// Takes the accelerations `a` (m/s^2).
-    pub(super) fn accelerate(&mut self, a: &[f64]) {
+    pub(crate) fn accelerate(&mut self, a: &[f64]) {
         for (k, Edge { nodes, .. }) in self.list.iter().enumerate() {
             self.accelerations[k] = difference_at(*nodes, self.dimension, a);
         }
     }
 
     /// The rows R of a step, with the `factors` of x, x' and x''.
-    pub(super) fn rows(&self, factors: [f64; 3], rows: &mut Vec<[f64; 3]>) {
+    pub(crate) fn rows(&self, factors: [f64; 3], rows: &mut Vec<[f64; 3]>) {
         rows.clear();
         let all = self.arms.iter().zip(&self.rates).zip(&self.accelerations);
         rows.extend(all.map(|((x, rate), acceleration)| {
@@ -170,7 +170,7 @@ impl Edges {
 
     /// Right-hand side of R xv in a Newton step, given the residuals `ru`, `rv` and that of the demands: G rv - gamma
     /// (x'' + 2 alpha x' + alpha^2 x) ru + `share` demands.
-    pub(super) fn newton_demands(
+    pub(crate) fn newton_demands(
         &self,
         [gamma, alpha, share]: [f64; 3],
         [ru, rv]: [&[f64]; 2],
@@ -191,7 +191,7 @@ impl Edges {
 
     /// Right-hand side of R xv in a Newton step of the DAE form of index 1, given `ru`, the residuals of displacements
     /// times gamma, and the residuals of the edges.
-    pub(super) fn index_one_demands(
+    pub(crate) fn index_one_demands(
         &self,
         [gamma, alpha]: [f64; 2],
         ru: &[f64],
@@ -205,19 +205,19 @@ impl Edges {
     }
 
     /// x'.s of each edge.
-    pub(super) fn turned(&self, s: &[f64]) -> impl Iterator<Item = f64> {
+    pub(crate) fn turned(&self, s: &[f64]) -> impl Iterator<Item = f64> {
         let all = self.list.iter().zip(&self.rates);
         all.map(move |(edge, rate)| dot(rate, &edge.apart(s, self.dimension)))
     }
 
     /// x.x'' less what the stabilization requires of it, edge by edge (m^2/s^2).
-    pub(super) fn imbalances(&self) -> impl Iterator<Item = f64> {
+    pub(crate) fn imbalances(&self) -> impl Iterator<Item = f64> {
         let all = self.arms.iter().zip(&self.accelerations).zip(&self.demands);
         all.map(|((x, acceleration), demand)| dot(x, acceleration) - demand)
     }
 
     /// Subtracts G^T `multipliers` from nodal `forces`.
-    pub(super) fn subtract_pull(&self, multipliers: &[f64], forces: &mut [f64]) {
+    pub(crate) fn subtract_pull(&self, multipliers: &[f64], forces: &mut [f64]) {
         let d = self.dimension;
         for ((Edge { nodes: [a, b], .. }, x), multiplier) in
             self.list.iter().zip(&self.arms).zip(multipliers)
@@ -231,7 +231,7 @@ impl Edges {
 
     /// The derivatives of what [`imbalances`](Self::imbalances) has of the edge `k` by the displacements, and by the
     /// velocities in a step in which x'' changes by `cj` times as much as x'.
-    pub(super) fn slopes(&self, k: usize, alpha: f64, cj: f64) -> [[f64; 3]; 2] {
+    pub(crate) fn slopes(&self, k: usize, alpha: f64, cj: f64) -> [[f64; 3]; 2] {
         let (x, rate, acceleration) = (&self.arms[k], &self.rates[k], &self.accelerations[k]);
         [
             std::array::from_fn(|i| acceleration[i] + 2.0 * alpha * rate[i] + alpha * alpha * x[i]),
@@ -240,7 +240,7 @@ impl Edges {
     }
 
     /// Adds -df/du of the forces of the multipliers to `stiffness`.
-    pub(super) fn add_tangents(&self, stiffness: &mut BlockMatrix) {
+    pub(crate) fn add_tangents(&self, stiffness: &mut BlockMatrix) {
         let d = self.dimension;
         for (Edge { nodes: [a, b], .. }, multiplier) in self.list.iter().zip(&self.multipliers) {
             for (row, column, sign) in [(a, a, -1.0), (b, b, -1.0), (a, b, 1.0), (b, a, 1.0)] {
@@ -251,7 +251,7 @@ impl Edges {
     }
 
     /// Largest difference of the length of an edge from what it was (m).
-    pub(super) fn drift(&self, u: &[f64]) -> f64 {
+    pub(crate) fn drift(&self, u: &[f64]) -> f64 {
         let drift = |edge: &Edge| (norm(&edge.at(u, self.dimension)) - norm(&edge.natural)).abs();
         self.list.iter().map(drift).fold(0.0, f64::max)
     }

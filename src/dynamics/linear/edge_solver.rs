@@ -38,38 +38,38 @@ use super::edges::{Edge, Edges};
 use crate::base::vector::dot;
 
 /// Solver of systems with X under the constraints of edges.
-pub(super) struct EdgeSolver {
+pub(crate) struct EdgeSolver {
     dimension: usize,
     /// For each edge the first columns of Z of its nodes, and its degrees of freedom among the free ones.
     ends: Vec<[usize; 2]>,
     places: Vec<[usize; 2]>,
     /// Z, one column per degree of freedom of a frame, and its part that the general rows hold.
-    pub(super) frames: Vec<usize>,
-    pub(super) z: Mat<f64>,
-    pub(super) of_rows: Mat<f64>,
+    pub(crate) frames: Vec<usize>,
+    pub(crate) z: Mat<f64>,
+    pub(crate) of_rows: Mat<f64>,
     /// The diagonal of X^-1 at the frames, as it is without the general rows.
-    pub(super) inverse_diagonal: Vec<f64>,
+    pub(crate) inverse_diagonal: Vec<f64>,
     pieces: Vec<Piece>,
     rows: Vec<[f64; 3]>,
     columns: Vec<[f64; 3]>,
     /// Right-hand side of R x, and the multipliers that enforce it.
-    pub(super) demands: Vec<f64>,
-    pub(super) multipliers: Vec<f64>,
+    pub(crate) demands: Vec<f64>,
+    pub(crate) multipliers: Vec<f64>,
     /// Prescribed lengths instead, in the first half of a step of central differences.
-    pub(super) arrival: Arrival,
+    pub(crate) arrival: Arrival,
     /// G^T multipliers at the frames.
     pull: Vec<f64>,
 }
 
 /// Where edges are to be at the end of a step.
-pub(super) struct Arrival {
+pub(crate) struct Arrival {
     /// The part of accelerations in displacements at the end of the step (s^2), if lengths are asked for.
-    pub(super) weight: Option<f64>,
+    pub(crate) weight: Option<f64>,
     /// The edges there without accelerations (m), and what half of the squares of their lengths is to be (m^2).
-    pub(super) starts: Vec<[f64; 3]>,
-    pub(super) halves: Vec<f64>,
+    pub(crate) starts: Vec<[f64; 3]>,
+    pub(crate) halves: Vec<f64>,
     /// Whether no multipliers were found, the last time.
-    pub(super) is_missed: bool,
+    pub(crate) is_missed: bool,
 }
 
 /// Edges that feel each other through X, with their factorized small matrix.
@@ -159,7 +159,7 @@ impl Piece {
 impl EdgeSolver {
     /// For edges between nodes whose degrees of freedom are at the given `position` among the free ones; `general` is
     /// the number of general rows.
-    pub(super) fn new(
+    pub(crate) fn new(
         edges: &[Edge],
         dimension: usize,
         position: impl Fn(usize) -> Option<usize>,
@@ -200,7 +200,7 @@ impl EdgeSolver {
     }
 
     /// Finds which edges feel each other, once Z is set.
-    pub(super) fn divide(&mut self) {
+    pub(crate) fn divide(&mut self) {
         let feels = |a: usize, b: usize| {
             self.ends[a].into_iter().any(|a| {
                 let row = self.frames[a];
@@ -233,7 +233,7 @@ impl EdgeSolver {
     }
 
     /// Asks for an arrival from where the edges are, instead of rates.
-    pub(super) fn aim(&mut self, edges: &Edges) {
+    pub(crate) fn aim(&mut self, edges: &Edges) {
         self.columns.copy_from_slice(&edges.arms);
         let mut pieces = std::mem::take(&mut self.pieces);
         for Piece { edges, blocks, .. } in &mut pieces {
@@ -272,7 +272,7 @@ impl EdgeSolver {
     }
 
     /// Sets G, and R: G itself, or with the factors of x, x' and x'' in a `step`.
-    pub(super) fn turn(&mut self, edges: &Edges, step: Option<[f64; 3]>) {
+    pub(crate) fn turn(&mut self, edges: &Edges, step: Option<[f64; 3]>) {
         self.arrival.weight = None;
         self.columns.copy_from_slice(&edges.arms);
         match step {
@@ -292,7 +292,7 @@ impl EdgeSolver {
     }
 
     /// Which edges do not follow from the constraints of the general rows and the edges before them.
-    pub(super) fn independent(&mut self, edges: &Edges) -> Vec<bool> {
+    pub(crate) fn independent(&mut self, edges: &Edges) -> Vec<bool> {
         self.columns.copy_from_slice(&edges.arms);
         self.rows.copy_from_slice(&edges.arms);
         let mut is_kept = vec![false; self.ends.len()];
@@ -328,7 +328,7 @@ impl EdgeSolver {
 
     /// Corrects the solution `x` = X^-1 f, and the multipliers `mu` of the general rows `numbers`, by the multipliers that
     /// the demands require.
-    pub(super) fn correct(
+    pub(crate) fn correct(
         &mut self,
         x: &mut [f64],
         numbers: impl Iterator<Item = usize>,

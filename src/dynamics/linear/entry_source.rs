@@ -3,7 +3,7 @@
 /// Which entry of the matrices of the body an entry of X comes from. There is one for each entry of X, so it
 /// is kept small.
 #[derive(Clone, Copy)]
-pub(super) struct EntrySource {
+pub(crate) struct EntrySource {
     entry: u32,
     transposed: u32,
     axes: [u8; 2],
@@ -11,30 +11,30 @@ pub(super) struct EntrySource {
 
 impl EntrySource {
     /// The entry at two axes, of the row and of the column, in the block `entry` of the [`NodePattern`].
-    pub(super) fn new(entry: usize, transposed: usize, axes: [usize; 2]) -> Self {
+    pub(crate) fn new(entry: usize, transposed: usize, axes: [usize; 2]) -> Self {
         let [entry, transposed] = [entry, transposed].map(|entry| entry as u32);
         Self { entry, transposed, axes: axes.map(|axis| axis as u8) }
     }
 
     /// Index of the pair of nodes in the [`NodePattern`].
-    pub(super) fn entry(self) -> usize {
+    pub(crate) fn entry(self) -> usize {
         self.entry as usize
     }
 
     /// Index of the same pair the other way round.
-    pub(super) fn transposed(self) -> usize {
+    pub(crate) fn transposed(self) -> usize {
         self.transposed as usize
     }
 
     /// Axis of the row and of the column, in the block of `entry`.
-    pub(super) fn axes(self) -> [usize; 2] {
+    pub(crate) fn axes(self) -> [usize; 2] {
         self.axes.map(usize::from)
     }
 }
 
 /// Which entries X has.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Coupling {
+pub(crate) enum Coupling {
     /// The diagonal only, as for lumped inertia.
     Diagonal,
     /// Equal axes only, as for the inertia matrix.

@@ -1,4 +1,4 @@
-//! A phase by a reduced model (`scene/reduced_model.rs`): lifting of its unknowns to displacements of all nodes, projection of
+//! The equations of a phase along the shapes of a reduced model (`scene/reduced_model.rs`): lifting of its unknowns to displacements of all nodes, projection of
 //! forces onto its shapes, and the small matrices of Newton's method.
 //!
 //! With Psi = [Phi E], z = (q, b - b_0) and the forces f, the equations are
@@ -26,31 +26,28 @@
 //! needed, which would make M depend on q. In space that would be nine shapes for each one, so only the
 //! linear ones are added.
 
+mod evaluation;
+mod newton;
+
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-use faer::dyn_stack::{MemBuffer, MemStack};
-use faer::linalg::lu::partial_pivoting::{factor, solve};
-use faer::perm::PermRef;
-use faer::{Mat, MatMut, Par, Spec};
-
-use super::differences::Differences;
-use super::reduced_branches::ReducedBranches;
-use super::reduced_flow::ReducedFlow;
+use super::branches::ReducedBranches;
+use super::factors::{Factors, Tangents};
+use super::flow::ReducedFlow;
 use super::shapes::Shapes;
 use crate::base::input::InputError;
-use crate::base::simd::add;
 use crate::base::sparse::{BlockMatrix, NodePattern};
-use crate::base::vector::{dot, largest};
+use crate::base::vector::largest;
 use crate::dynamics::matrices::Matrices;
+use crate::dynamics::system::Differences;
 use crate::elements::body::Body;
 use crate::elements::force::{Force, Forces, GeneralizedForce, NodalForces};
-use crate::integrators::ode::Failure;
 use crate::scene::constraint::{ConstraintRow, Prescribed};
 use crate::scene::reduced_model::{ReducedModel, ReducedPhase};
 
-/// A phase by a reduced model.
-pub(super) struct Reduction {
+/// The equations of a phase, projected onto the shapes of a reduced model.
+pub(super) struct Projection {
     pub(super) model: Arc<ReducedModel>,
     /// Number of the phase in the model.
     phase: usize,
@@ -59,7 +56,7 @@ pub(super) struct Reduction {
     moved: Vec<(usize, f64)>,
     /// u_0 (m), and whether a motion has begun there.
     origin: Vec<f64>,
-    has_begun: bool,
+    pub(super) has_begun: bool,
     /// All forces, with a sample in place of those of all cells.
     pub(super) forces: Forces,
     /// Those of them that are functions of z, those of cells apart from others, and those that act on nodes: all but the steady
@@ -67,15 +64,13 @@ pub(super) struct Reduction {
     generalized: [Vec<Box<dyn GeneralizedForce>>; 2],
     acting: Forces,
     /// Those whose strains are unknowns, and that whose amounts are, if there are any.
-    branches: Option<ReducedBranches>,
+    pub(super) branches: Option<ReducedBranches>,
     flow: Option<ReducedFlow>,
     pattern: Arc<NodePattern>,
     constant: Constant,
-    at: Place,
-    tangents: Tangents,
+    at: LastEvaluation,
+    pub(super) tangents: Tangents,
     factors: Factors,
-    /// Part of the phase after which the equations are to be checked next, once they have been.
-    pub(super) next_check: Option<f64>,
 }
 
 /// Constant terms of the equations, along Psi.
@@ -90,7 +85,7 @@ struct Constant {
 }
 
 /// The last state that was evaluated, and the forces there.
-struct Place {
+struct LastEvaluation {
     /// z, z' and b''.
     z: [Vec<f64>; 2],
     pushed: Vec<f64>,
@@ -111,34 +106,13 @@ struct Place {
     reactions: Vec<f64>,
 }
 
-/// -df/du and -df/dv: at the nodes, and along Psi, row by row.
-struct Tangents {
-    nodal: [BlockMatrix; 2],
-    projected: [Vec<f64>; 2],
-    differences: Differences,
-    is_set: bool,
-}
-
-/// I + gamma D + gamma^2 K, factorized.
-struct Factors {
-    matrix: Mat<f64>,
-    /// K, with what branches do in such a step.
-    stiffness: Vec<f64>,
-    forward: Vec<usize>,
-    inverse: Vec<usize>,
-    memory: MemBuffer,
-    gamma: f64,
-    right: Vec<f64>,
-    xv: Vec<f64>,
-}
-
 /// Part by which Phi^T M Phi may differ from the unit matrix: round-off.
 const ORTHONORMAL: f64 = 1e-6;
 
 /// Part of a shape that a constraint may see: round-off.
 const HELD: f64 = 1e-8;
 
-impl Reduction {
+impl Projection {
     /// The phase `name` by a `model`, under `forces`, that of amounts among them, and `rows`.
     pub(super) fn new(
         body: &Body,
@@ -156,7 +130,7 @@ impl Reduction {
         let moved = moved(&model.phases[phase], rows, name)?;
         let (dofs, dimension) = (matrices.dofs(), matrices.dimension);
         let mut shapes = Shapes::new(&model.phases[phase]);
-        shapes.weigh(|x, y| matrices.inertia.add_product(dimension, 1.0, x, y));
+        shapes.weigh(|x, y| matrices.add_momentum(1.0, x, y));
         let s = shapes.count();
 
         // what the forces couple
@@ -187,7 +161,7 @@ impl Reduction {
         }
         shapes.activate(seen.into_iter(), dimension);
         let product = |matrix: &dyn Fn(&[f64], &mut [f64])| shapes.products(matrix);
-        let inertia = product(&|x, y| matrices.inertia.add_product(dimension, 1.0, x, y));
+        let inertia = product(&|x, y| matrices.add_momentum(1.0, x, y));
         let off = |(at, mass): (usize, &f64)| {
             let (row, column) = (at / s, at % s);
             let exact = if row == column { 1.0 } else { 0.0 };
@@ -202,7 +176,7 @@ impl Reduction {
             None => vec![0.0; s * s],
         };
         let tangent = || BlockMatrix::zeros(&pattern, dimension);
-        let mut reduction = Self {
+        let mut projection = Self {
             phase,
             moved,
             origin: vec![0.0; dofs],
@@ -219,7 +193,7 @@ impl Reduction {
                 rest: vec![0.0; s],
                 steady: [vec![0.0; s], vec![0.0; s]],
             },
-            at: Place {
+            at: LastEvaluation {
                 z: [vec![0.0; s], vec![0.0; s]],
                 pushed: vec![0.0; s - shapes.free()],
                 u: vec![0.0; dofs],
@@ -240,13 +214,12 @@ impl Reduction {
                 is_set: false,
             },
             factors: Factors::new(shapes.free(), s),
-            next_check: None,
             model: model.clone(),
             pattern,
             shapes,
         };
-        reduction.take(forces);
-        Ok(reduction)
+        projection.take(forces);
+        Ok(projection)
     }
 
     /// Whether forces see only nodes that are active.
@@ -339,11 +312,6 @@ impl Reduction {
         [p, begun.unwrap_or_default()]
     }
 
-    /// Whether a motion has begun.
-    pub(super) fn has_begun(&self) -> bool {
-        self.has_begun
-    }
-
     /// q and q' of a state (u, v) at time t.
     pub(super) fn coordinates(
         &self,
@@ -396,264 +364,9 @@ impl Reduction {
         }
     }
 
-    /// The unknowns of branches with these internal `strains`, if the model knows them.
-    pub(super) fn branch_unknowns_of(&self, strains: &[f64]) -> Option<Vec<f64>> {
-        self.branches.as_ref().map_or(Some(Vec::new()), |own| own.unknowns_of(strains))
-    }
-
-    /// Absolute tolerances of the unknowns of branches, where that of strains is `strain`.
-    pub(super) fn branch_tolerances(&self, strain: f64) -> Vec<f64> {
-        self.branches.as_ref().map_or(Vec::new(), |own| own.tolerances(strain))
-    }
-
     /// Number of unknowns of branches, which come first among the internal ones.
     fn branch_unknowns(&self) -> usize {
         self.branches.as_ref().map_or(0, ReducedBranches::unknowns)
-    }
-
-    /// Evaluates the forces and q'' at (q, q', internal unknowns).
-    pub(super) fn evaluate(
-        &mut self,
-        rows: &[ConstraintRow],
-        t: f64,
-        [q, p, internal]: [&[f64]; 3],
-    ) -> Result<(), Failure> {
-        let (of_branches, amounts) = internal.split_at(self.branch_unknowns());
-        self.evaluate_parts(rows, t, [q, p, of_branches, amounts])
-    }
-
-    /// The same, without branches if there are no unknowns of these.
-    pub(super) fn evaluate_parts(
-        &mut self,
-        rows: &[ConstraintRow],
-        t: f64,
-        [q, p, of_branches, amounts]: [&[f64]; 4],
-    ) -> Result<(), Failure> {
-        self.place(rows, t, [q, p]);
-        let Self { at, shapes, origin, generalized, acting, branches, flow, constant, .. } = self;
-        let (s, free) = (shapes.count(), shapes.free());
-        let Place { z: [z, rates], pushed, u, v, nodal, generalized: along, .. } = at;
-        nodal.clear();
-        along.clear();
-        let are_seen = branches.as_ref().is_some_and(ReducedBranches::see_all);
-        if !acting.is_empty() || are_seen || flow.is_some() {
-            shapes.lift_active([z, rates], [u, v], origin);
-        }
-        let (mut relaxed, mut brought) = (0.0, 0.0);
-        if let (Some(branches), [_, ..]) = (branches, of_branches) {
-            relaxed = branches.add_forces([u, z, of_branches], nodal, along);
-        }
-        if let Some(flow) = flow {
-            brought = flow.add_forces(t, u, amounts, nodal)?;
-        }
-        for force in &*acting {
-            force.add_forces(t, u, v, nodal)?;
-        }
-        for force in generalized.iter_mut().flatten() {
-            force.add_forces(t, [z, rates], along)?;
-        }
-        at.carried = [nodal.carried_heat + relaxed, nodal.carried_power + brought];
-
-        // what constant matrices do, and what is steady
-        at.applied.copy_from_slice(&constant.steady[1]);
-        times(&constant.damping, rates, |i, sum| at.dissipative[i] = -sum);
-        times(&constant.stiffness, z, |i, sum| {
-            at.force[i] = constant.rest[i] + constant.steady[0][i] - sum;
-        });
-        // each part of its own only where there is one, for the powers
-        for (part, along, sum) in [
-            (&nodal.dissipative, &along.dissipative, &mut at.dissipative),
-            (&nodal.applied, &along.applied, &mut at.applied),
-            (&nodal.conservative, &along.conservative, &mut at.force),
-        ] {
-            if !part.is_zero() {
-                shapes.add_projected_active(part, sum);
-            }
-            if !along.is_zero() {
-                sum.iter_mut().zip(&along[..]).for_each(|(sum, along)| *sum += along);
-            }
-        }
-        for i in 0..s {
-            at.force[i] += at.dissipative[i] + at.applied[i];
-        }
-
-        at.acceleration.copy_from_slice(&at.force[..free]);
-        for (k, push) in pushed.iter().enumerate() {
-            for i in 0..free {
-                at.acceleration[i] -= constant.inertia[i * s + free + k] * push;
-            }
-        }
-        for k in 0..pushed.len() {
-            let row = &constant.inertia[(free + k) * s..][..s];
-            let inertia = dot(&row[..free], &at.acceleration) + dot(&row[free..], pushed);
-            at.reactions[k] = inertia - at.force[free + k];
-        }
-        Ok(())
-    }
-
-    /// q'' at the last evaluation.
-    pub(super) fn acceleration(&self) -> &[f64] {
-        &self.at.acceleration
-    }
-
-    /// Writes the rates of the internal unknowns at the last evaluation.
-    pub(super) fn copy_internal_rates(&self, rates: &mut [f64]) {
-        let (strains, amounts) = rates.split_at_mut(self.branch_unknowns());
-        if let Some(branches) = &self.branches {
-            strains.copy_from_slice(branches.rates());
-        }
-        if let Some(flow) = &self.flow {
-            amounts.copy_from_slice(flow.rates());
-        }
-    }
-
-    /// Adds to q'' what `forces` (N) on all nodes do along the shapes.
-    pub(super) fn push(&mut self, forces: &[f64]) {
-        let mut along = vec![0.0; self.shapes.count()];
-        self.shapes.add_projected(forces, &mut along);
-        add(&along[..self.shapes.free()], &mut self.at.acceleration);
-    }
-
-    /// u'' of all nodes at the last evaluation.
-    pub(super) fn accelerations(&self) -> Vec<f64> {
-        let all = [&self.at.acceleration[..], &self.at.pushed].concat();
-        let mut of_nodes = vec![0.0; self.origin.len()];
-        self.shapes.add_lifted(&all, &mut of_nodes);
-        of_nodes
-    }
-
-    /// Power dissipated and supplied (W) at the last evaluation.
-    pub(super) fn powers(&self) -> [f64; 2] {
-        let Place { z: [_, rates], dissipative, applied, carried, reactions, .. } = &self.at;
-        let pushed = dot(reactions, &rates[self.shapes.free()..]);
-        [carried[0] - dot(dissipative, rates), carried[1] + dot(applied, rates) + pushed]
-    }
-
-    /// Updates the tangents to the state last evaluated.
-    pub(super) fn update_tangents(&mut self, t: f64) {
-        let Self { at, shapes, generalized, acting, branches, flow, constant, tangents, .. } = self;
-        let Tangents { nodal: [stiffness, damping], projected, differences, is_set } = tangents;
-        stiffness.values.fill(0.0);
-        damping.values.fill(0.0);
-        for force in &*acting {
-            differences.add_tangents(force, t, [&at.u, &at.v], [stiffness, damping]);
-        }
-        if let Some(flow) = flow {
-            flow.linearize(t, [&at.u, &at.v], stiffness, shapes);
-        }
-        let constants = [&constant.stiffness, &constant.damping];
-        for ((projected, constant), matrix) in
-            projected.iter_mut().zip(constants).zip([&*stiffness, &*damping])
-        {
-            projected.copy_from_slice(constant);
-            if matrix.values.iter().any(|&value| value != 0.0) {
-                shapes.add_projected_matrix(matrix, projected);
-            }
-        }
-        let [z, rates] = &at.z;
-        let [stiffness, damping] = projected;
-        for force in generalized.iter_mut().flatten() {
-            force.add_tangents(t, [z, rates], stiffness, damping);
-        }
-        if let Some(branches) = branches {
-            branches.update_tangents();
-        }
-        *is_set = true;
-    }
-
-    /// Whether tangents that were evaluated since the forces changed serve for another step: those of branches do not.
-    pub(super) fn keeps_tangents(&self) -> bool {
-        self.tangents.is_set && self.branches.as_ref().is_none_or(ReducedBranches::keep_tangents)
-    }
-
-    /// Evaluations for the tangents of forces that do not compute them.
-    pub(super) fn difference_evaluations(&self) -> usize {
-        self.tangents.differences.evaluations()
-    }
-
-    /// Factorizes the Newton matrix for steps of the parameter `gamma`.
-    pub(super) fn factorize(&mut self, gamma: f64) {
-        let (s, free) = (self.shapes.count(), self.shapes.free());
-        let Self { tangents, factors, branches, flow, shapes, at, .. } = self;
-        let [stiffness, damping] = &tangents.projected;
-        factors.gamma = gamma;
-        factors.stiffness.copy_from_slice(stiffness);
-        if let Some(branches) = branches {
-            branches.add_stiffness(gamma, &at.u, shapes, &mut factors.stiffness);
-        }
-        let stiffness = &factors.stiffness;
-        for j in 0..free {
-            for i in 0..free {
-                let entry = gamma * (damping[i * s + j] + gamma * stiffness[i * s + j]);
-                factors.matrix[(i, j)] = entry + if i == j { 1.0 } else { 0.0 };
-            }
-        }
-        if let Some(flow) = flow {
-            flow.add_stiffness(gamma, &mut factors.matrix);
-        }
-        let memory = MemStack::new(&mut factors.memory);
-        let (forward, inverse) = (&mut factors.forward, &mut factors.inverse);
-        let matrix = factors.matrix.as_mut();
-        factor::lu_in_place(matrix, forward, inverse, Par::Seq, memory, Spec::default());
-    }
-
-    /// Solves (I - gamma J) x = r for the residuals `ru`, `rv` and those of `internal` unknowns, which become x. Returns the
-    /// changes of the powers dissipated and supplied (W) along x.
-    pub(super) fn solve(&mut self, [ru, rv, internal]: [&mut [f64]; 3]) -> [f64; 2] {
-        let (s, free) = (self.shapes.count(), self.shapes.free());
-        let (strains, amounts) = internal.split_at_mut(self.branch_unknowns());
-        let [_, damping] = &self.tangents.projected;
-        let Factors { matrix, stiffness, forward, inverse, memory, gamma, right, xv } =
-            &mut self.factors;
-        let gamma = *gamma;
-        for i in 0..free {
-            xv[i] = rv[i] - gamma * dot(&stiffness[i * s..][..free], ru);
-        }
-        // gamma times the forces on the shapes that constraints move
-        let mut on_moved: &[f64] = &[];
-        if let Some(branches) = &mut self.branches {
-            let along = branches.of_residuals(strains, &mut self.shapes);
-            add(&along[..free], xv);
-            on_moved = &along[free..];
-        }
-        if let Some(flow) = &mut self.flow {
-            flow.add_residuals(gamma, ru, amounts, xv);
-        }
-        solve::solve_in_place(
-            matrix.as_ref(),
-            matrix.as_ref(),
-            PermRef::new_checked(forward, inverse, free),
-            MatMut::from_column_major_slice_mut(xv, free, 1),
-            Par::Seq,
-            MemStack::new(memory),
-        );
-        ru.iter_mut().zip(&*xv).for_each(|(x, xv)| *x += gamma * xv);
-        let Place { z: [_, rates], dissipative, applied, .. } = &self.at;
-        // damping forces are proportional to velocity
-        let mut dissipated = -2.0 * dot(&dissipative[..free], xv);
-        for i in 0..free {
-            dissipated += xv[i] * dot(&damping[i * s..][..free], xv);
-        }
-        // the change of q'', which moves what moves the constraints
-        let change = rv.iter().zip(&*xv).map(|(r, x)| (x - r) / gamma);
-        right.iter_mut().zip(change).for_each(|(right, change)| *right = change);
-        let mut supplied = dot(&applied[..free], xv);
-        for row in free..s {
-            let of = |matrix: &[f64], x: &[f64]| dot(&matrix[row * s..][..free], x);
-            let change = of(&self.constant.inertia, right) + of(damping, xv) + of(stiffness, ru);
-            let passed = on_moved.get(row - free).map_or(0.0, |force| force / gamma);
-            supplied += rates[row] * (change - passed);
-        }
-        if let Some(branches) = &mut self.branches {
-            dissipated += branches.solve(ru, strains, &self.shapes);
-        }
-        if let Some(flow) = &mut self.flow {
-            let [heated, brought] = flow.solve(ru, amounts, &rates[free..]);
-            dissipated += heated;
-            supplied += brought;
-        }
-        rv.copy_from_slice(xv);
-        [dissipated, supplied]
     }
 
     /// Extrapolation: distance of the displacements `u` (m) outside the training range, relative to the largest modal
@@ -665,24 +378,6 @@ impl Reduction {
         let beyond = |(x, [low, high]): (&f64, &[f64; 2])| (low - x).max(x - high).max(0.0);
         let most = self.shapes.coordinates(u).iter().zip(range).map(beyond).fold(0.0, f64::max);
         if widest > 0.0 { most / widest } else { 0.0 }
-    }
-}
-
-impl Factors {
-    /// Of `n` unknowns, along so many shapes.
-    fn new(n: usize, shapes: usize) -> Self {
-        let scratch = factor::lu_in_place_scratch::<usize, f64>(n, n, Par::Seq, Spec::default())
-            .or(solve::solve_in_place_scratch::<usize, f64>(n, 1, Par::Seq));
-        Self {
-            matrix: Mat::zeros(n, n),
-            stiffness: vec![0.0; shapes * shapes],
-            forward: vec![0; n],
-            inverse: vec![0; n],
-            memory: MemBuffer::new(scratch),
-            gamma: 0.0,
-            right: vec![0.0; n],
-            xv: vec![0.0; n],
-        }
     }
 }
 
@@ -724,10 +419,4 @@ fn moved(
             phase.lifts.len()
         ),
     ))
-}
-
-/// Calls `each` with every component of A x, A square and row by row.
-fn times(matrix: &[f64], x: &[f64], mut each: impl FnMut(usize, f64)) {
-    let rows = matrix.chunks_exact(x.len().max(1)).enumerate();
-    rows.for_each(|(i, row)| each(i, dot(row, x)));
 }

@@ -1,10 +1,11 @@
-//! The integrator of a phase: created from the settings and used through one interface, whatever form of the
+//! The integrator of a phase in all unknowns: created from the settings and used through one interface, whatever form of the
 //! equations it takes.
 
 use std::mem::take;
 
+use super::{Failed, Integrable, Start, Stepper};
 use crate::dynamics::report::Counts;
-use crate::dynamics::system::{DaeForm, Form, Index, SecondOrderForm, System};
+use crate::dynamics::system::{DaeForm, Form, Index, PhaseSystem, SecondOrderForm, System};
 use crate::integrators::central_difference::CentralDifference;
 use crate::integrators::common::Integrator;
 use crate::integrators::ode::{Failure, Ode};
@@ -14,51 +15,7 @@ use crate::integrators::sundials::{
     Arkode, ArkodeOptions, ButcherTable, Cvode, CvodeOptions, Ida, IdaOptions, Jacobian,
     LinearSolver, Multistep, Pattern,
 };
-use crate::scene::settings::{AbsoluteTolerances, Method, Settings};
-
-mod lifted;
-
-pub(super) type Failed = Box<dyn std::error::Error + Send + Sync>;
-
-/// An integrator at work on the equations of one phase.
-pub(super) trait Stepper: Send {
-    /// Takes one step towards `end` and returns the time reached.
-    fn step(&mut self, end: f64) -> Result<f64, Failed>;
-
-    /// Lets the steps end at time `t` (s), exactly.
-    fn stop_at(&mut self, t: f64) -> Result<(), Failed>;
-
-    /// Continues from `state` at time `t` (s) after a change of the forces; `false` if that needs a new
-    /// integrator.
-    fn resume(&mut self, t: f64, state: &[f64]) -> Result<bool, Failed>;
-
-    /// The state at a time within the last step.
-    fn interpolate(&mut self, t: f64, state: &mut [f64]) -> Result<(), Failed>;
-
-    /// Order of the last step.
-    fn last_order(&self) -> u32;
-
-    /// Size of the next step (s), if it is known.
-    fn next_step(&self) -> f64;
-
-    /// The state at the end of the last step.
-    fn state(&self) -> &[f64];
-
-    /// Number of its unknowns.
-    fn unknowns(&self) -> usize {
-        self.state().len()
-    }
-
-    fn system(&self) -> &System;
-
-    fn system_mut(&mut self) -> &mut System;
-
-    /// Ends the integrator and returns the equations.
-    fn into_system(self: Box<Self>) -> System;
-
-    /// Statistics of the integration so far, with its notice.
-    fn counts(&self) -> Counts;
-}
+use crate::scene::settings::{Method, Settings};
 
 impl<I: Integrator<System: Form> + Send> Stepper for I {
     fn step(&mut self, end: f64) -> Result<f64, Failed> {
@@ -78,7 +35,7 @@ impl<I: Integrator<System: Form> + Send> Stepper for I {
 
     fn interpolate(&mut self, t: f64, state: &mut [f64]) -> Result<(), Failed> {
         Integrator::interpolate(self, t, 0, state)?;
-        Integrator::system_mut(self).system_mut().settle(t, state);
+        Integrator::system_mut(self).full_mut().settle(t, state);
         Ok(())
     }
 
@@ -94,40 +51,40 @@ impl<I: Integrator<System: Form> + Send> Stepper for I {
         self.y()
     }
 
-    fn system(&self) -> &System {
-        Integrator::system(self).system()
+    fn system(&self) -> &dyn PhaseSystem {
+        Integrator::system(self)
     }
 
-    fn system_mut(&mut self) -> &mut System {
-        Integrator::system_mut(self).system_mut()
+    fn system_mut(&mut self) -> &mut dyn PhaseSystem {
+        Integrator::system_mut(self)
     }
 
-    fn into_system(self: Box<Self>) -> System {
-        Integrator::into_system(*self).into_system()
+    fn into_system(self: Box<Self>) -> Box<dyn Integrable> {
+        Box::new(Integrator::into_system(*self).into_system())
     }
 
     fn counts(&self) -> Counts {
-        counts(self)
+        counts(self, Stepper::system(self))
     }
 }
 
 /// Lets the system keep what it needs of the state that is reached, to interpolate.
 fn keep_end<I: Integrator<System: Form>>(integrator: &mut I) {
-    let mut ends = take(Integrator::system_mut(integrator).system_mut().ends_mut());
-    let system = Integrator::system(integrator).system();
+    let mut ends = take(Integrator::system_mut(integrator).full_mut().ends_mut());
+    let system = Integrator::system(integrator).full();
     system.keep_end(&mut ends, integrator.t(), integrator.y());
-    *Integrator::system_mut(integrator).system_mut().ends_mut() = ends;
+    *Integrator::system_mut(integrator).full_mut().ends_mut() = ends;
 }
 
 /// Statistics of an integrator and its equations.
-fn counts<I: Integrator<System: Form>>(integrator: &I) -> Counts {
-    let (s, system) = (integrator.statistics(), integrator.system().system());
+pub(super) fn counts<I: Integrator>(integrator: &I, equations: &dyn PhaseSystem) -> Counts {
+    let (s, system) = (integrator.statistics(), equations.full());
     let [spared, linear_iterations, indefinite] = system.newton_counts();
     Counts {
         steps: s.steps as usize,
         evaluations: s.evaluations as usize,
-        jacobian_evaluations: system.tangent_evaluations(),
-        difference_evaluations: system.difference_evaluations(),
+        jacobian_evaluations: equations.tangent_evaluations(),
+        difference_evaluations: equations.difference_evaluations(),
         factorizations: (s.linear_setups as usize).saturating_sub(spared),
         linear_iterations,
         error_test_failures: s.error_test_failures as usize,
@@ -161,105 +118,92 @@ fn compression(indefinite: usize) -> Option<String> {
     })
 }
 
-/// Starts the integrator that the settings name at `t` with `state` and, if it is known,
-/// the first step size `first` (s); it will stop at `end`.
-pub(super) fn start(
-    mut system: System,
-    settings: &Settings,
-    atol: &AbsoluteTolerances,
-    [t, end]: [f64; 2],
-    first: Option<f64>,
-    state: &[f64],
-) -> Result<Box<dyn Stepper>, Failed> {
-    if system.is_reduced() {
-        return lifted::start(system, settings, atol, [t, end], first, state);
-    }
-    let layout = system.layout();
-    let mut tolerances = vec![atol.position; layout.dofs];
-    tolerances.resize(layout.motion().end, atol.velocity);
-    tolerances.resize(tolerances.len() + layout.strains, atol.strain);
-    let of_flow = system.flow_tolerances(atol.strain, atol.velocity);
-    system.settle_between(&of_flow);
-    tolerances.extend(of_flow);
-    tolerances.resize(layout.unknowns(), atol.energy);
-    system.expect_iteration(iterates(settings.method, &system));
-    let longest = settings.max_step.unwrap_or(f64::INFINITY);
-    match settings.method {
-        Method::Ida | Method::IdaKlu | Method::IdaIndexTwo => {
-            let index = match settings.method {
-                Method::IdaIndexTwo => Index::Two,
-                _ => Index::One,
-            };
-            let mut equations = DaeForm::new(system, index);
-            tolerances.extend(equations.tolerances([atol.force, atol.momentum]));
-            let (y, yp) = equations.consistent(t, state).map_err(Failure::into_error)?;
-            let options = ida_options(settings, tolerances, &mut equations)?;
-            until(end, Ida::new(equations, t, &y, &yp, &options)?)
-        }
-        Method::CentralDifference => {
-            let options = rk::Options::new(settings.rtol, tolerances).max_step(longest);
-            let options = first.into_iter().fold(options, rk::Options::initial_step);
-            until(end, CentralDifference::new(SecondOrderForm::new(system), t, state, &options)?)
-        }
-        _ => {
-            let is_linear = system.is_linear();
-            ode(system, is_linear, settings, tolerances, [t, end], first, state)
+impl Integrable for System {
+    fn start(self: Box<Self>, start: &Start) -> Result<Box<dyn Stepper>, Failed> {
+        let mut system = *self;
+        let Start { settings, atol, state, time: t, first } = *start;
+        let layout = system.layout();
+        let mut tolerances = vec![atol.position; layout.dofs];
+        tolerances.resize(layout.motion().end, atol.velocity);
+        tolerances.resize(tolerances.len() + layout.strains, atol.strain);
+        let of_flow = system.flow_tolerances(atol.strain, atol.velocity);
+        system.settle_between(&of_flow);
+        tolerances.extend(of_flow);
+        tolerances.resize(layout.unknowns(), atol.energy);
+        system.expect_iteration(iterates(settings.method, &system));
+        let longest = settings.max_step.unwrap_or(f64::INFINITY);
+        match settings.method {
+            Method::Ida | Method::IdaKlu | Method::IdaIndexTwo => {
+                let index = match settings.method {
+                    Method::IdaIndexTwo => Index::Two,
+                    _ => Index::One,
+                };
+                let mut equations = DaeForm::new(system, index);
+                tolerances.extend(equations.tolerances([atol.force, atol.momentum]));
+                let (y, yp) = equations.consistent(t, state).map_err(Failure::into_error)?;
+                let options = ida_options(settings, tolerances, &mut equations)?;
+                Ok(Box::new(Ida::new(equations, t, &y, &yp, &options)?))
+            }
+            Method::CentralDifference => {
+                let options = rk::Options::new(settings.rtol, tolerances).max_step(longest);
+                let options = first.into_iter().fold(options, rk::Options::initial_step);
+                let equations = SecondOrderForm::new(system);
+                Ok(Box::new(CentralDifference::new(equations, t, state, &options)?))
+            }
+            _ => ode(system, tolerances, start, state),
         }
     }
 }
 
-/// Starts an integrator of ordinary differential equations, linear ones or others.
-fn ode<S: IntoStepper>(
+/// Starts an integrator of ordinary differential equations, with the unknowns `y`.
+pub(super) fn ode<S: IntoStepper>(
     equations: S,
-    is_linear: bool,
-    settings: &Settings,
     tolerances: Vec<f64>,
-    [t, end]: [f64; 2],
-    first: Option<f64>,
+    start: &Start,
     y: &[f64],
 ) -> Result<Box<dyn Stepper>, Failed> {
+    let Start { settings, time: t, first, .. } = *start;
+    let is_linear = equations.full().is_linear();
     let longest = settings.max_step.unwrap_or(f64::INFINITY);
-    let holds_liquid = equations.system().holds_liquid();
-    match settings.method {
+    let holds_liquid = equations.full().holds_liquid();
+    Ok(match settings.method {
         Method::Arkode => {
             let options =
                 arkode_options(settings, tolerances, is_linear, holds_liquid)?.max_step(longest);
             let options = first.into_iter().fold(options, ArkodeOptions::initial_step);
-            S::into_stepper(end, Arkode::new(equations, t, y, &options)?)
+            S::into_stepper(Arkode::new(equations, t, y, &options)?)
         }
         Method::Rosenbrock => {
-            let options = rosenbrock_options(settings, tolerances, equations.system(), is_linear);
+            let options = rosenbrock_options(settings, tolerances, equations.full(), is_linear);
             let options = options.max_step(longest);
             let options = first.into_iter().fold(options, rosenbrock::Options::initial_step);
-            S::into_stepper(end, Rosenbrock::new(equations, t, y, &options)?)
+            S::into_stepper(Rosenbrock::new(equations, t, y, &options)?)
         }
         Method::Rk => {
             let options = rk::Options::new(settings.rtol, tolerances).max_step(longest);
             let options = first.into_iter().fold(options, rk::Options::initial_step);
-            S::into_stepper(end, DormandPrince::new(equations, t, y, &options)?)
+            S::into_stepper(DormandPrince::new(equations, t, y, &options)?)
         }
         // a plan never has `Auto`, and other methods take other equations
         _ => {
             let options = cvode_options(settings, tolerances, holds_liquid).max_step(longest);
-            S::into_stepper(end, Cvode::new(equations, t, y, &options)?)
+            S::into_stepper(Cvode::new(equations, t, y, &options)?)
         }
-    }
+    })
 }
 
 /// Equations that are an ODE, with the stepper of their integrators.
-trait IntoStepper: Form + Ode + Send + Sized + 'static {
-    /// The stepper of an integrator that stops at `end` (s).
-    fn into_stepper<I>(end: f64, integrator: I) -> Result<Box<dyn Stepper>, Failed>
-    where
-        I: Integrator<System = Self> + Send + 'static;
+pub(super) trait IntoStepper: Integrable + Ode + Sized + 'static {
+    fn into_stepper(
+        integrator: impl Integrator<System = Self> + Send + 'static,
+    ) -> Box<dyn Stepper>;
 }
 
 impl IntoStepper for System {
-    fn into_stepper<I>(end: f64, integrator: I) -> Result<Box<dyn Stepper>, Failed>
-    where
-        I: Integrator<System = Self> + Send + 'static,
-    {
-        until(end, integrator)
+    fn into_stepper(
+        integrator: impl Integrator<System = Self> + Send + 'static,
+    ) -> Box<dyn Stepper> {
+        Box::new(integrator)
     }
 }
 
@@ -270,15 +214,6 @@ fn iterates(method: Method, system: &System) -> bool {
         Method::Rosenbrock | Method::Rk | Method::CentralDifference => false,
         _ => true,
     }
-}
-
-/// Sets the stop time of an integrator.
-fn until<I: Integrator<System: Form> + Send + 'static>(
-    end: f64,
-    mut integrator: I,
-) -> Result<Box<dyn Stepper>, Failed> {
-    integrator.set_stop_time(Some(end))?;
-    Ok(Box::new(integrator))
 }
 
 /// The part of tolerances that errors of Newton's iteration may have (the default of `CVodeSetNonlinConvCoef` and
@@ -373,26 +308,16 @@ fn ida_options(
         },
         _ => LinearSolver::Custom,
     };
-    Ok(ida_options_of(settings, tolerances, differential, linear_solver))
-}
-
-/// The options of IDA, with what takes part in the error test.
-fn ida_options_of(
-    settings: &Settings,
-    tolerances: Vec<f64>,
-    differential: Vec<bool>,
-    linear_solver: LinearSolver,
-) -> IdaOptions {
     let options = IdaOptions::new(settings.rtol, tolerances)
         .newton(linear_solver)
         .check_jacobian(false)
         .differential(differential)
         .suppress_algebraic(true)
         .max_step(settings.max_step.unwrap_or(f64::INFINITY));
-    match settings.max_order {
+    Ok(match settings.max_order {
         Some(order) => options.max_order(order),
         None => options,
-    }
+    })
 }
 
 fn jacobian_pattern(equations: &mut DaeForm) -> Result<Pattern, Failed> {

@@ -16,8 +16,8 @@
 use faer::sparse::SymbolicSparseColMat;
 
 use super::cholesky::{Cholesky, Indefinite};
+use super::entry_source::EntrySource;
 use super::gradients::Gradients;
-use super::source::EntrySource;
 
 /// Operations of a factorization, which uses dense blocks, in the time of one operation of an iteration.
 const DENSE_SPEED: f64 = 4.0;
@@ -156,28 +156,20 @@ impl Symmetric {
         &self.free
     }
 
-    /// Continues the counts of another solver.
-    pub(super) fn count_from(&mut self, other: &Self) {
-        if let (Some(own), Some(other)) = (&mut self.rented, &other.rented) {
-            (own.matrices, own.iterations) = (other.matrices, other.iterations);
-        }
-        self.cholesky.indefinite = other.cholesky.indefinite;
-    }
-
-    /// Starts the counts from 0.
-    pub(super) fn forget_counts(&mut self) {
-        if let Some(rented) = &mut self.rented {
-            (rented.matrices, rented.iterations) = (0, 0);
-        }
-        self.cholesky.indefinite = 0;
-    }
-
     /// Matrices that were never factorized, iterations for them and others, and factorizations of matrices that were not positive
     /// definite.
     pub(super) fn counts(&self) -> [usize; 3] {
         let [matrices, iterations] =
             self.rented.as_ref().map_or([0; 2], |rented| [rented.matrices, rented.iterations]);
         [matrices, iterations, self.cholesky.indefinite]
+    }
+
+    /// Has these counts from now on.
+    pub(super) fn set_counts(&mut self, [matrices, iterations, indefinite]: [usize; 3]) {
+        if let Some(rented) = &mut self.rented {
+            (rented.matrices, rented.iterations) = (matrices, iterations);
+        }
+        self.cholesky.indefinite = indefinite;
     }
 }
 

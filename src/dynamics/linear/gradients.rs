@@ -3,7 +3,7 @@
 //! The matrix is stored in full, as blocks on the pattern of nodes, so that each row of a product is summed
 //! up by one thread: results are the same to the last bit on any number of threads.
 
-use super::source::{Coupling, EntrySource};
+use super::entry_source::{Coupling, EntrySource};
 use crate::base::simd::{Formula, each};
 use crate::base::sparse::{BlockMatrix, NodeMatrix};
 use crate::base::tensor::Real;

@@ -1,17 +1,17 @@
 //! Gas and liquids that flow, and actuators that lag, in a reduced model: their amounts are unknowns beside q, all of them,
 //! and what they do at the nodes is seen along the shapes.
 //!
-//! It is the Newton system of `flow_matrix.rs` with Phi^T G in place of G. As the matrix is dense, gamma^2 C of the amounts, eliminated, is
+//! It is the Newton system of `dynamics/linear/flow_matrix.rs` with Phi^T G in place of G. As the matrix is dense, gamma^2 C of the amounts, eliminated, is
 //! added to it.
 
 use std::sync::Arc;
 
 use faer::Mat;
 
-use super::flow_matrix::FlowMatrix;
 use super::shapes::Shapes;
 use crate::base::sparse::BlockMatrix;
 use crate::base::vector::dot;
+use crate::dynamics::linear::FlowMatrix;
 use crate::elements::force::{FlowDerivatives, Force, NodalForces};
 use crate::integrators::ode::Failure;
 

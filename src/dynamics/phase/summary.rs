@@ -1,7 +1,7 @@
-//! Summary of a scene, phase by phase.
+//! Summary of a scene, phase by phase, and how fast the body can move in each.
 
-use super::Spectrum;
 use crate::base::input::InputError;
+use crate::dynamics::system::Spectrum;
 use crate::scene::constraint::PhaseStart;
 use crate::scene::forces::Obstacle;
 use crate::scene::timeline::{Phase, Quantity, Scene};
@@ -36,6 +36,36 @@ pub struct PhaseSummary {
 }
 
 impl Scene {
+    /// How fast the body can move in each phase, in its undeformed shape and at rest.
+    ///
+    /// It shows what makes a scene stiff, and which method is suitable for it. Orifices count as shut.
+    ///
+    /// ```
+    /// let scene = pliant::samples::square_jump(4)?;
+    /// let free = scene.spectrum()?[2];
+    /// assert!(free.highest_frequency > 4e3 && free.slowest_period().unwrap() > 0.01);
+    /// # Ok::<(), pliant::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`validate`](Self::validate).
+    pub fn spectrum(&self) -> Result<Vec<Spectrum>, InputError> {
+        let shut = self.with_fixed_amounts();
+        let forces = shut.forces()?;
+        let matrices = self.matrices(&forces);
+        let rest = vec![0.0; self.body().dofs()];
+        let mut time = 0.0;
+        let spectra = self.phases().iter().zip(forces).map(|(phase, forces)| {
+            let start = PhaseStart { time, u: &rest };
+            let full = self.system(&matrices, phase, forces, &start, 0.0)?;
+            let mut system = self.phase_system(full, phase.name())?;
+            let spectrum = system.spectrum(time, &rest, &rest);
+            time = phase.until;
+            Ok(spectrum)
+        });
+        spectra.collect()
+    }
+
     /// Summary of each phase.
     ///
     /// # Errors

@@ -3,12 +3,11 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use super::super::ReducedDae;
 use super::*;
 use crate::base::pod::orthonormal;
 use crate::base::vector::{noise, norm};
 use crate::dynamics::state::ENERGIES;
-use crate::integrators::ode::{Dae, Ode};
+use crate::integrators::ode::Ode;
 use crate::scene::constraint::{Axis, PhaseStart, Prescribed};
 use crate::scene::reduced_model::{ReducedModel, ReducedPhase};
 use crate::studies::samples::SQUARE_MATERIAL;
@@ -194,10 +193,9 @@ fn model(scene: &Scene, most: usize) -> ReducedModel {
 }
 
 /// The reduced equations in a state without a pattern, with that state in all unknowns.
-fn reduced(scene: &Scene, most: usize) -> (ReducedForm, Vec<f64>, Vec<f64>) {
+fn reduced(scene: &Scene, most: usize) -> (ReducedSystem, Vec<f64>, Vec<f64>) {
     let model = Arc::new(model(scene, most));
-    let mut own = system(scene);
-    own.reduce(scene.body(), &model, "p").unwrap();
+    let own = system(scene);
     let layout = own.layout();
     let mut start = vec![0.0; layout.unknowns()];
     let (strains, amounts) = layout.split_mut(layout.of_mut(&mut start).internal);
@@ -205,14 +203,15 @@ fn reduced(scene: &Scene, most: usize) -> (ReducedForm, Vec<f64>, Vec<f64>) {
     // states that lag and flows are 0 at the start
     let filled = |x: &f64| if *x == 0.0 { 0.02 } else { 1.1 * x };
     amounts.iter_mut().zip(own.amounts()).for_each(|(m, x)| *m = filled(x));
-    let (mut form, mut y) = ReducedForm::new(own, 0.0, &start).ok().unwrap();
-    let free = form.free;
+    let mut form = ReducedSystem::new(own, scene.body(), &model, "p").unwrap();
+    let (mut y, free) = (form.begin(0.0, &start), form.free());
     // cells keep far from turning inside out
     let most = 2e-3 * 12.0 / scene.body().mesh().node_count() as f64;
     for (k, y) in y.iter_mut().zip(noise(2 * free, 3)).enumerate() {
         *y.0 = y.1 * if k < free { most } else { 0.1 };
     }
-    let of_branches = form.branch_tolerances(1e-3);
+    let of_branches =
+        form.projection.branches.as_ref().map_or(Vec::new(), |own| own.tolerances(1e-3));
     let relaxing = y[2 * free..].iter_mut().zip(&of_branches);
     relaxing.zip(noise(of_branches.len(), 13)).for_each(|((y, scale), x)| *y += scale * x);
     let mut state = vec![0.0; start.len()];
@@ -236,20 +235,20 @@ fn with_all_shapes_and_cells_it_is_the_body() {
         assert!(drift < 1e-15, "{drift:e} m");
         let exact = rhs(&mut full, &state);
         let own = rhs(&mut form, &y);
-        let accelerations = form.system.reduction.as_ref().unwrap().accelerations();
+        let accelerations = form.projection.accelerations();
         let exactly = exact[n..2 * n].iter();
         let off: Vec<f64> = exactly.zip(&accelerations).map(|(a, b)| a - b).collect();
         // a solve with M, and 20 projections
         let off = norm(&off) / norm(&accelerations);
         assert!(off < 1e-12, "{off:e}");
         // powers, and rates of amounts
-        let [own, of_body] = [(&own, 2 * form.free), (&exact, 2 * n)].map(|(x, at)| &x[at..]);
+        let [own, of_body] = [(&own, 2 * form.free()), (&exact, 2 * n)].map(|(x, at)| &x[at..]);
         for (k, (own, exact)) in own.iter().zip(of_body).enumerate() {
             assert!((own / exact - 1.0).abs() < 1e-10, "rate {k}: {own}, {exact}");
         }
         // nothing is left over, and the state is one of its own
-        let left_over = form.system.left_over(T, &state, [0.0, 1.0]).unwrap().unwrap();
-        let imbalance = largest(form.system.imbalances(&[left_over], 0.0)[0].as_ref().unwrap());
+        let left_over = form.left_over(T, &state, [0.0, 1.0]).unwrap().unwrap();
+        let imbalance = largest(form.full.imbalances(&[left_over], 0.0)[0].as_ref().unwrap());
         assert!(imbalance < 1e-13, "{imbalance:e} m");
         let again = form.unknowns_of(T, &state).unwrap();
         let off: Vec<f64> = again.iter().zip(&y).map(|(a, b)| a - b).collect();
@@ -264,7 +263,7 @@ fn newton_systems_are_derivatives() {
     // what growth supplies is not among what is differentiated
     for scene in [scene(), with_amounts(), growing(0.0), relaxing(), relaxing_by_modes()] {
         let (mut form, y, _) = reduced(&scene, 9);
-        let (free, gamma) = (form.free, 2e-3);
+        let (free, gamma) = (form.free(), 2e-3);
         let ydot = rhs(&mut form, &y);
         assert!(form.newton_setup(T, &y, &ydot, gamma, false).unwrap());
         // of what is dissipated the solution has the part of second order, too
@@ -283,16 +282,6 @@ fn newton_systems_are_derivatives() {
             let scale = x[i].abs() + gamma * slope.abs();
             assert!(off.abs() < 1e-5 * scale, "row {i} of {free}: {off:e} of {scale:e}");
         }
-        // what IDA takes: cj y' - J y
-        let mut equations = ReducedDae::new(form);
-        equations.newton_setup(T, 1.0 / gamma, &y, &ydot).unwrap();
-        let mut by_ida: Vec<f64> = residual.iter().map(|r| r / gamma).collect();
-        equations.newton_solve(&mut by_ida).unwrap();
-        let off: Vec<f64> = by_ida.iter().zip(&x).map(|(a, b)| a - b).collect();
-        assert!(norm(&off) < 1e-12 * norm(&x), "{:e}", norm(&off));
-        let mut left = vec![0.0; y.len()];
-        equations.residual(T, &y, &ydot, &mut left).unwrap();
-        assert_eq!(largest(&left), 0.0);
     }
 }
 
@@ -302,12 +291,12 @@ fn a_state_that_the_model_does_not_have_is_none_of_its_own() {
         let (mut form, _, mut state) = reduced(&scene, 9);
         assert!(form.unknowns_of(T, &state).is_some());
         let other = noise(state.len(), 7);
-        let motion = 2 * form.system.dofs();
+        let motion = 2 * form.full.dofs();
         state[..motion].iter_mut().zip(other).for_each(|(x, other)| *x += 1e-6 * other);
         assert!(form.unknowns_of(T, &state).is_none());
         // what is left out is told
-        let left_over = form.system.left_over(T, &state, [0.0, 1.0]).unwrap().unwrap();
-        let found = largest(form.system.imbalances(&[left_over], 0.0)[0].as_ref().unwrap());
+        let left_over = form.left_over(T, &state, [0.0, 1.0]).unwrap().unwrap();
+        let found = largest(form.full.imbalances(&[left_over], 0.0)[0].as_ref().unwrap());
         assert!(found > 1e-6, "{found:e} m");
     }
 }

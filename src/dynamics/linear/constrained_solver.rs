@@ -21,9 +21,9 @@ use faer::sparse::SymbolicSparseColMat;
 use super::cholesky::Indefinite;
 use super::edge_solver::EdgeSolver;
 use super::edges::Edge;
+use super::entry_source::{Coupling, EntrySource};
 use super::general_rows::{GeneralRow, GeneralRows};
 use super::gradients::Gradients;
-use super::source::{Coupling, EntrySource};
 use super::symmetric::Symmetric;
 use crate::base::sparse::NodePattern;
 use crate::dynamics::matrices::Matrices;
@@ -31,10 +31,10 @@ use crate::elements::body::RigidPieces;
 use crate::scene::constraint::ConstraintRow;
 
 /// Residual, relative to the right-hand side, that is round-off.
-pub(super) const EXACT: f64 = 1e-13;
+pub(crate) const EXACT: f64 = 1e-13;
 
 /// Solver for one X and one set of constraints.
-pub(super) struct ConstrainedSolver {
+pub(crate) struct ConstrainedSolver {
     /// The free part of X.
     symmetric: Symmetric,
     /// Entries of X between a free row (position in `free`) and a fixed column (dof), with their share.
@@ -42,7 +42,7 @@ pub(super) struct ConstrainedSolver {
     border_values: Vec<f64>,
     rigid: Option<Arc<RigidPieces>>,
     /// The edges of frames, where they are constraints.
-    pub(super) edges: Option<EdgeSolver>,
+    pub(crate) edges: Option<EdgeSolver>,
     general: GeneralRows,
     springs: Vec<Spring>,
     /// Entries of the free part, and what the springs add to them.
@@ -64,7 +64,7 @@ struct Spring {
 }
 
 impl ConstrainedSolver {
-    pub(super) fn new(
+    pub(crate) fn new(
         matrices: &Matrices,
         rows: &[ConstraintRow],
         edges: &[Edge],
@@ -186,7 +186,7 @@ impl ConstrainedSolver {
     /// Sets X, positive definite, whose entries `value` returns. That it is not positive definite may be
     /// found only later; on large solids systems are solved to an `accuracy` relative to their right-hand
     /// sides.
-    pub(super) fn begin(
+    pub(crate) fn begin(
         &mut self,
         accuracy: f64,
         value: impl Fn(EntrySource) -> f64,
@@ -201,7 +201,7 @@ impl ConstrainedSolver {
 
     /// Factorizes X, positive definite where the general rows of single nodes hold, whose entries `value`
     /// returns.
-    pub(super) fn factorize(
+    pub(crate) fn factorize(
         &mut self,
         value: impl Fn(EntrySource) -> f64,
     ) -> Result<(), Indefinite> {
@@ -217,7 +217,7 @@ impl ConstrainedSolver {
     }
 
     /// Factorizes the X last given, which has turned out not to be positive definite.
-    pub(super) fn factorize_indefinite(&mut self) -> Result<(), Indefinite> {
+    pub(crate) fn factorize_indefinite(&mut self) -> Result<(), Indefinite> {
         self.symmetric.factorize_indefinite()?;
         self.eliminate(false)
     }
@@ -250,7 +250,7 @@ impl ConstrainedSolver {
     /// Solves X x - A mu = f, A^T x = d. `d` has one number per row of the constraints. `mu` gets
     /// the multipliers of the general rows; those of nodal rows are left to the caller, who knows
     /// X x - f at the fixed components.
-    pub(super) fn solve(
+    pub(crate) fn solve(
         &mut self,
         rows: &[ConstraintRow],
         f: &[f64],
@@ -286,6 +286,27 @@ impl ConstrainedSolver {
         }
     }
 
+    /// As [`solve`](Self::solve), with the multipliers of nodal rows, for the X of which `row_product` is a row times x.
+    pub(crate) fn solve_whole(
+        &mut self,
+        rows: &[ConstraintRow],
+        f: &[f64],
+        d: &[f64],
+        x: &mut [f64],
+        mu: &mut [f64],
+        row_product: impl Fn(usize, &[f64]) -> f64,
+    ) {
+        self.solve(rows, f, d, x, mu);
+        nodal_multipliers(rows, mu, |dof| row_product(dof, x) - f[dof]);
+    }
+
+    /// The x of X x - A mu = f, A^T x = 0.
+    pub(crate) fn solve_free(&mut self, rows: &[ConstraintRow], f: &[f64]) -> Vec<f64> {
+        let (mut x, mut mu) = (vec![0.0; f.len()], vec![0.0; rows.len()]);
+        self.solve(rows, f, &mu.clone(), &mut x, &mut mu);
+        x
+    }
+
     /// Has iterations tried before a factor, up to so many more than solves with the factor would cost,
     /// however small the body is.
     #[cfg(test)]
@@ -300,23 +321,18 @@ impl ConstrainedSolver {
         self
     }
 
-    /// Starts the counts from 0.
-    pub(super) fn forget_counts(&mut self) {
-        self.symmetric.forget_counts();
-    }
-
-    /// Continues the counts of another solver.
-    pub(super) fn count_from(&mut self, other: &Self) {
-        self.symmetric.count_from(&other.symmetric);
-    }
-
     /// [What solving has cost](Symmetric::counts).
-    pub(super) fn counts(&self) -> [usize; 3] {
+    pub(crate) fn counts(&self) -> [usize; 3] {
         self.symmetric.counts()
     }
 
+    /// Has these counts from now on.
+    pub(crate) fn set_counts(&mut self, counts: [usize; 3]) {
+        self.symmetric.set_counts(counts);
+    }
+
     /// The general row found to follow from the others (its number in the list of all rows).
-    pub(super) fn dependent_row(&self) -> Option<usize> {
+    pub(crate) fn dependent_row(&self) -> Option<usize> {
         self.general.dependent
     }
 }
@@ -349,7 +365,7 @@ fn each_source(
 
 /// Completes the multipliers by those of nodal rows: `residual` is X x - f at a fixed component,
 /// where X x - f = A mu.
-pub(super) fn nodal_multipliers(
+pub(crate) fn nodal_multipliers(
     rows: &[ConstraintRow],
     multipliers: &mut [f64],
     residual: impl Fn(usize) -> f64,
