@@ -98,7 +98,7 @@ use crate::base::vector::dot;
 use crate::dynamics::matrices::Matrices;
 use crate::dynamics::state::{Layout, State};
 use crate::elements::body::Branches;
-use crate::elements::force::{Flow, Force, Forces, NodalForces, Reservoir, Step};
+use crate::elements::force::{Capabilities, Flow, Force, Forces, NodalForces, Reservoir, Step};
 use crate::integrators::ode::Failure;
 use crate::scene::constraint::{ConstraintRow, Prescribed};
 
@@ -391,7 +391,8 @@ impl System {
     pub(crate) fn check_step(&self, t: f64, before: &[f64], after: &[f64]) -> Result<(), Failure> {
         let State { u, internal, .. } = self.layout.of(after);
         let all = self.forces.iter().chain(&self.flow);
-        all.into_iter().try_for_each(|force| force.check_step(t, before, u))?;
+        let mut all = all.filter_map(|force| force.capabilities().step_check);
+        all.try_for_each(|force| force.check_step(t, before, u))?;
         let (_, amounts) = self.layout.split(internal);
         match flow_of(&self.flow) {
             Some(flow) if !amounts.is_empty() => flow.check(t, u, amounts),
@@ -401,7 +402,7 @@ impl System {
 
     /// Number of switches of all forces.
     pub(crate) fn switches(&self) -> usize {
-        self.forces.iter().map(|force| force.switches()).sum()
+        self.forces.iter().map(switches).sum()
     }
 
     /// Writes the values of the switches of each force of which `is_wanted` says so by their numbers.
@@ -415,6 +416,7 @@ impl System {
     ) {
         let mut start = 0;
         for force in &self.forces {
+            let Some(force) = force.capabilities().switches else { continue };
             let own = start..start + force.switches();
             start = own.end;
             if is_wanted(own.clone()) {
@@ -425,7 +427,8 @@ impl System {
 
     /// Whether [`passage`](Self::passage) is to be asked after each step.
     pub(crate) fn can_be_passed(&self) -> bool {
-        self.forces.iter().any(|force| force.can_be_passed())
+        let mut contacts = self.forces.iter().filter_map(|force| force.capabilities().contact);
+        contacts.any(|contact| contact.can_be_passed())
     }
 
     /// A time (s) within a step at which a force acts that is not seen at the ends of the step, if any.
@@ -437,9 +440,10 @@ impl System {
     ) -> Option<f64> {
         let mut first: Option<f64> = None;
         for force in &self.forces {
-            let (own, rest) = clearances.split_at_mut(force.switches());
+            let (own, rest) = clearances.split_at_mut(switches(force));
             clearances = rest;
-            if let Some(t) = force.passage(step, tolerance, own) {
+            let contact = force.capabilities().contact;
+            if let Some(t) = contact.and_then(|contact| contact.passage(step, tolerance, own)) {
                 first = Some(first.map_or(t, |first| first.min(t)));
             }
         }
@@ -450,6 +454,7 @@ impl System {
     pub(crate) fn hold_switches(&self, on: Option<&[bool]>) {
         let mut start = 0;
         for force in &self.forces {
+            let Some(force) = force.capabilities().switches else { continue };
             let end = start + force.switches();
             force.hold_switches(on.map(|on| &on[start..end]));
             start = end;
@@ -457,9 +462,9 @@ impl System {
     }
 
     /// For each force, what the body rubs against, and [whether it
-    /// slides](crate::elements::force::Force::slides) there.
+    /// slides](crate::elements::force::Switches::slides) there.
     pub(crate) fn slides(&self) -> impl Iterator<Item = Option<(&str, Option<bool>)>> {
-        self.forces.iter().map(|force| force.slides())
+        self.forces.iter().map(|force| force.capabilities().switches?.slides())
     }
 
     /// Largest |A^T u - b| (m).
@@ -575,12 +580,12 @@ impl System {
     /// Adds the forces that have no constant matrix, if they are `among` those that are asked for.
     fn add_forces_where(
         &mut self,
-        among: impl Fn(&dyn Force) -> bool,
+        among: impl Fn(Capabilities<'_>) -> bool,
         t: f64,
         u: &[f64],
         v: &[f64],
     ) -> Result<(), Failure> {
-        for force in self.forces.iter().filter(|force| among(&***force)) {
+        for force in self.forces.iter().filter(|force| among(force.capabilities())) {
             let added = force.add_forces(t, u, v, &mut self.at.nodal);
             if let Err(Failure::Recoverable(reason)) = &added {
                 self.refusal.clone_from(reason);
@@ -671,15 +676,20 @@ impl System {
 /// The forces that only keep rigid pieces in their shape, that of gas that flows, and all others.
 fn parted(forces: Forces) -> (Forces, Option<Arc<dyn Force>>, Forces) {
     let (of_rigid, others): (Forces, Forces) =
-        forces.into_iter().partition(|force| force.keeps_rigid());
+        forces.into_iter().partition(|force| force.capabilities().keeps_rigid);
     let (flows, others): (Forces, Forces) =
-        others.into_iter().partition(|force| force.flow().is_some());
+        others.into_iter().partition(|force| force.capabilities().flow.is_some());
     (of_rigid, flows.into_iter().next(), others)
+}
+
+/// Number of switches of a force.
+fn switches(force: &Arc<dyn Force>) -> usize {
+    force.capabilities().switches.map_or(0, |force| force.switches())
 }
 
 /// Flow of a force, if it has one.
 fn flow_of(force: &Option<Arc<dyn Force>>) -> Option<&dyn Flow> {
-    force.as_ref().and_then(|force| force.flow())
+    force.as_ref().and_then(|force| force.capabilities().flow)
 }
 
 /// Whether the Newton matrix depends on more than M, K and B: on the state, or on the step in another way.
