@@ -1,5 +1,5 @@
 //! Sliders for pressures of chambers, flows of liquids, openings of orifices, actuation of springs, cables, muscles and growths,
-//! loads, magnetic fields, positions and moments of dipoles.
+//! loads, magnetic fields, inputs of devices.
 //!
 //! A slider changes its value along a straight line and not by a jump, so that the table in the saved file is
 //! exactly the signal that acted (`io/scene_file/rewrite.rs`). A load has a slider for each component, each
@@ -12,8 +12,8 @@ use serde_json::{Value, json};
 use crate::dynamics::simulate::Simulation;
 use crate::elements::body::{Body, Part};
 use crate::elements::mesh::Selection;
-use crate::scene::forces::{Chamber, Dipole, DipolePart};
-use crate::scene::timeline::{self, Device, LoadKind, Phase, Quantity, Row, Scene};
+use crate::scene::forces::Chamber;
+use crate::scene::timeline::{self, Device, DeviceInput, LoadKind, Phase, Quantity, Row, Scene};
 
 /// The input that a slider sets, or a component of it.
 #[derive(Debug, Clone, PartialEq)]
@@ -43,8 +43,6 @@ const USUAL_WARMTH: f64 = 50.0;
 const USUAL: f64 = 0.05;
 /// A usual magnetic field (T).
 const USUAL_FIELD: f64 = 0.05;
-/// A usual moment of a dipole (A m^2).
-const USUAL_MOMENT: f64 = 1.0;
 /// Times of a phase at which its values are looked at.
 const LOOKS: u32 = 20;
 /// Most node numbers in the name of a slider.
@@ -135,10 +133,9 @@ impl Slider {
             .chain(growths)
             .chain(heaters)
             .chain(fields)
-            .chain(scene.dipoles().iter().flat_map(|dipole| Self::of_dipole(scene, dipole)))
+            .chain(Self::of_devices(scene))
             .chain(loads)
             .chain(Self::on_nodes(scene, force))
-            .chain(Self::of_devices(scene))
             .collect()
     }
 
@@ -164,8 +161,11 @@ impl Slider {
     fn of_devices(scene: &Scene) -> Vec<Self> {
         let of_device = |device: &Arc<dyn Device>| {
             let whole = |input| Target::of(Quantity::Device(input), device.name());
+            let usual =
+                |input: &DeviceInput| if input.unit == "m" { scene.body().size() } else { 1.0 };
+            let inputs = device.inputs().iter();
             let sliders =
-                device.inputs().iter().flat_map(|input| Self::of_input(scene, &whole(input), 1.0));
+                inputs.flat_map(|input| Self::of_input(scene, &whole(input), usual(input)));
             sliders.collect::<Vec<_>>()
         };
         scene.devices().iter().flat_map(of_device).collect()
@@ -183,26 +183,6 @@ impl Slider {
         let largest = parts.iter().map(|part| part.largest_in(scene)).fold(0.0, f64::max);
         let slider = |(part, what)| Self::new(part, what, [largest, usual], unit);
         parts.into_iter().zip(names).map(slider).collect()
-    }
-
-    /// One slider per component of the position and of the moment of a dipole.
-    fn of_dipole(scene: &Scene, dipole: &Dipole) -> Vec<Self> {
-        let axes = 0..scene.body().dimension();
-        let usual = |part| match part {
-            DipolePart::Position => scene.body().size(),
-            DipolePart::Moment => USUAL_MOMENT,
-        };
-        let sliders = DipolePart::ALL.into_iter().flat_map(|part| {
-            let whole = Target::of(Quantity::Dipole(part), dipole.name());
-            let targets = axes.clone().map(move |axis| whole.along(axis));
-            let largest =
-                targets.clone().map(|target| target.largest_in(scene)).fold(0.0, f64::max);
-            targets.zip(["x", "y", "z"]).map(move |(target, axis)| {
-                let what = format!("{part} {axis}");
-                Self::new(target, what, [largest, usual(part)], part.unit())
-            })
-        });
-        sliders.collect()
     }
 
     /// One slider per component of the loads on a selection. The loads are of the kind that the scene always

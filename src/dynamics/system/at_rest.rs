@@ -23,7 +23,6 @@ mod dual;
 #[cfg(test)]
 mod tests;
 
-
 use super::System;
 use super::constrained_solver::nodal_multipliers;
 use super::newton_matrix::NewtonMatrix;

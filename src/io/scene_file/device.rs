@@ -79,7 +79,7 @@ pub(super) const WIND: TableKeys = TableKeys::new(
 pub(super) fn add_wind(scene: Scene, value: &Value) -> Result<Scene, Error> {
     let table = &value.table(&WIND)?;
     let name = table.optional("name", Value::string)?;
-    let name = name.map_or_else(|| format!("wind {}", scene.devices().len() + 1), Into::into);
+    let name = name.map_or_else(|| scene.next_device("device", "wind"), Into::into);
     unique(table, &name, scene.devices().iter().map(|device| device.name()))?;
     let tangential = table.optional("skin_drag", Value::number)?.unwrap_or_default();
     let mut wind = Wind::new(name).drag(table.required("drag", Value::number)?, tangential);

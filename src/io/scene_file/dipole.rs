@@ -1,14 +1,15 @@
-//! `[[dipole]]`.
+//! `[[dipole]]`, and `drive` in phases.
 
-use super::course::vectors;
-use super::keys::{Key, TableKeys, ValueType};
+use super::course::{vectors, vectors_until};
+use super::keys::{Key, PERIOD, TIMES, TableKeys, ValueType};
 use super::surroundings::unique;
 use super::table::Table;
-use super::value::Value;
+use super::value::{Value, named};
 use crate::base::input::InputError;
 use crate::dynamics::error::Error;
-use crate::scene::forces::{Dipole, DipolePart, Signals, VectorSignal};
-use crate::scene::timeline::Scene;
+use crate::scene::devices::Dipole;
+use crate::scene::forces::Signals;
+use crate::scene::timeline::{DeviceInput, Input, Phase, Quantity, Scene, Target};
 
 pub(super) const DIPOLE: TableKeys = TableKeys::new(
     "[[dipole]]",
@@ -29,34 +30,55 @@ pub(super) const DIPOLE: TableKeys = TableKeys::new(
 )
 .one_of(&[&["position"], &["times", "positions"]]);
 
+pub(super) const DRIVE: TableKeys = TableKeys::new(
+    "drive",
+    "Where a `[[dipole]]` is in this phase, or its moment, in place of what the scene says; a moment of 0 switches it off. Those of tables are interpolated linearly, \
+     and constant before and after.",
+    &[
+        Key::new("dipole", ValueType::Text, "the name of the dipole").required(),
+        Key::new("position", ValueType::ChangingVector, "its position").in_unit("m"),
+        Key::new("moment", ValueType::ChangingVector, "its moment").in_unit("A m^2"),
+        TIMES,
+        PERIOD,
+        Key::new("positions", ValueType::List(&ValueType::Vector), "its positions at these times").in_unit("m"),
+        Key::new("moments", ValueType::List(&ValueType::Vector), "its moments at these times").in_unit("A m^2"),
+    ],
+    "drive = [{ dipole = \"lead\", times = [0.0, 0.1], positions = [[0.05, 0.3], [0.1, 0.3]] }]",
+)
+.one_of(&[&["position"], &["moment"], &["times", "positions"], &["times", "moments"]]);
+
 /// The scene with the dipole that `value` describes.
 pub(super) fn add_dipole(scene: Scene, value: &Value) -> Result<Scene, Error> {
     let table = &value.table(&DIPOLE)?;
     let dimension = scene.body().dimension();
-    let part = |part: DipolePart| -> Result<Signals, Error> {
-        let missing = || table.missing(part.word(), "a dipole needs it");
-        let vector = vectors(table, part.word(), dimension)?.ok_or_else(missing)?;
-        check(table, part, &vector, dimension)?;
+    let vector = |input: &DeviceInput| -> Result<Signals, Error> {
+        let missing = || table.missing(input.word, "a dipole needs it");
+        let vector = vectors(table, input.word, dimension)?.ok_or_else(missing)?;
+        let checked = vector.validate(input.word, dimension, input.unit);
+        checked.map_err(|error| table.blame(error))?;
         Ok(Signals(vector))
     };
-    let dipole = Dipole::new(part(DipolePart::Moment)?, part(DipolePart::Position)?);
-    let dipole = table.added(dipole, "name", Value::string, Dipole::named)?;
-    let dipole = dipole.or_named(format!("dipole {}", scene.dipoles().len() + 1));
-    unique(table, dipole.name(), scene.dipoles().iter().map(Dipole::name))?;
+    let dipole = Dipole::new(vector(&Dipole::MOMENT)?, vector(&Dipole::POSITION)?);
+    let name = table.optional("name", Value::string)?;
+    let name = name.map_or_else(|| scene.next_device("dipole", "dipole"), Into::into);
+    unique(table, &name, scene.devices().iter().map(|device| device.name()))?;
     if scene.magnets().is_empty() {
         let help = "the scene has no magnet that feels it: add a [[magnet]]";
-        let name = format!("\"{}\"", dipole.name());
-        return Err(table.blame(InputError::new("dipole", name, help)));
+        return Err(table.blame(InputError::new("dipole", format!("\"{name}\""), help)));
     }
-    Ok(scene.dipole(dipole))
+    Ok(scene.dipole(dipole.named(name)))
 }
 
-fn check(
-    table: &Table,
-    part: DipolePart,
-    vector: &VectorSignal,
-    dimension: usize,
-) -> Result<(), Error> {
-    let checked = vector.validate(part.word(), dimension, part.unit());
-    checked.map_err(|error| table.blame(error))
+/// The phase with a place or a moment of a dipole.
+pub(super) fn drive(mut phase: Phase, table: &Table, scene: &Scene) -> Result<Phase, Error> {
+    let dipoles = scene.devices().iter().filter(|device| device.kind() == "dipole");
+    let known: Vec<&str> = dipoles.map(|device| device.name()).collect();
+    let name = table.required("dipole", |value| named(value, &known))?;
+    for input in [&Dipole::POSITION, &Dipole::MOMENT] {
+        let value = vectors_until(table, phase.end(), input.word, scene.body().dimension())?;
+        if let Some(value) = value {
+            phase.set(Input::new(Quantity::Device(input), Target::one(&*name), value));
+        }
+    }
+    Ok(phase)
 }
