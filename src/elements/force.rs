@@ -209,11 +209,6 @@ pub trait ContactForce {
     /// change of that switch. 0 is always right; the search updates it.
     fn passage(&self, step: &Step, tolerance: f64, clearances: &mut [f64]) -> Option<f64>;
 
-    /// Whether [`passage`](Self::passage) is to be asked after each step.
-    fn can_be_passed(&self) -> bool {
-        true
-    }
-
     /// Adds, node by node, bounds on how much -df/du (to `stiffness`, N/m) and -df/dv (to `damping`, N s/m)
     /// may suddenly grow: by points that do not touch yet, and by points that slide and may stick.
     fn add_reserves(

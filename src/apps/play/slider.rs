@@ -13,7 +13,7 @@ use crate::dynamics::simulate::Simulation;
 use crate::elements::body::{Body, Part};
 use crate::elements::mesh::Selection;
 use crate::scene::forces::Chamber;
-use crate::scene::timeline::{self, Device, DeviceInput, LoadKind, Phase, Quantity, Row, Scene};
+use crate::scene::timeline::{self, Device, DeviceInput, LoadKind, Phase, Quantity, Scene};
 
 /// The input that a slider sets, or a component of it.
 #[derive(Debug, Clone, PartialEq)]
@@ -118,13 +118,12 @@ impl Slider {
             let range = [target.largest_in(scene), USUAL];
             Self::new(target, "growth".into(), range, "1")
         });
-        let axes = if scene.magnets().is_empty() { 0 } else { scene.body().dimension() };
-        // all components have one range: a field in another direction may be as strong
-        let largest = (0..axes).map(|axis| Target::field(axis).largest_in(scene));
-        let largest = largest.fold(0.0, f64::max);
-        let fields = (0..axes).zip(["x", "y", "z"]).map(|(axis, name)| {
-            Self::new(Target::field(axis), name.into(), [largest, USUAL_FIELD], "T")
-        });
+        let of = timeline::Target::Everything;
+        let field = Target { quantity: Quantity::Field, of, axis: None };
+        let field = Some(field).filter(|_| !scene.magnets().is_empty());
+        let fields = field
+            .iter()
+            .flat_map(|field| Self::of_input(scene, field, USUAL_FIELD, |axis| axis.into()));
         chambers
             .chain(orifices)
             .chain(flows)
@@ -152,7 +151,7 @@ impl Slider {
         let sliders = targets.into_iter().flat_map(|whole| {
             let is_force = whole.quantity.row().unit == "N";
             let usual = if is_force { force } else { force * scene.body().size() };
-            Self::of_input(scene, &whole, usual)
+            Self::by_word(scene, &whole, usual)
         });
         sliders.collect()
     }
@@ -165,24 +164,36 @@ impl Slider {
                 |input: &DeviceInput| if input.unit == "m" { scene.body().size() } else { 1.0 };
             let inputs = device.inputs().iter();
             let sliders =
-                inputs.flat_map(|input| Self::of_input(scene, &whole(input), usual(input)));
+                inputs.flat_map(|input| Self::by_word(scene, &whole(input), usual(input)));
             sliders.collect::<Vec<_>>()
         };
         scene.devices().iter().flat_map(of_device).collect()
     }
 
-    /// One slider per component of an input, all with one range: up to `usual` if the scene has no values.
-    fn of_input(scene: &Scene, whole: &Target, usual: f64) -> Vec<Self> {
-        let Row { word, unit, .. } = whole.quantity.row();
+    /// One slider per component of an input, by its word.
+    fn by_word(scene: &Scene, whole: &Target, usual: f64) -> Vec<Self> {
+        let (word, rank) =
+            (whole.quantity.row().word, whole.quantity.rank(scene.body().dimension()));
+        Self::of_input(scene, whole, usual, |axis| match rank {
+            1 => word.into(),
+            _ => format!("{word} {axis}"),
+        })
+    }
+
+    /// One slider per component of an input, with a `name` by its axis: up to `usual` if the scene has no values. All have one range, as
+    /// an input in another direction may be as strong.
+    fn of_input(
+        scene: &Scene,
+        whole: &Target,
+        usual: f64,
+        name: impl Fn(&str) -> String,
+    ) -> Vec<Self> {
         let rank = whole.quantity.rank(scene.body().dimension());
-        let names = match rank {
-            1 => vec![word.to_owned()],
-            _ => ["x", "y", "z"].map(|axis| format!("{word} {axis}")).into(),
-        };
         let parts: Vec<Target> = (0..rank).map(|axis| whole.along(axis)).collect();
         let largest = parts.iter().map(|part| part.largest_in(scene)).fold(0.0, f64::max);
-        let slider = |(part, what)| Self::new(part, what, [largest, usual], unit);
-        parts.into_iter().zip(names).map(slider).collect()
+        let unit = whole.quantity.row().unit;
+        let slider = |(part, axis)| Self::new(part, name(axis), [largest, usual], unit);
+        parts.into_iter().zip(["x", "y", "z"]).map(slider).collect()
     }
 
     /// One slider per component of the loads on a selection. The loads are of the kind that the scene always
@@ -199,17 +210,9 @@ impl Slider {
             LoadKind::Each => ("load", ", each node", force),
             LoadKind::Total => ("load", ", in total", force),
         };
-        // all components have one range: a load in another direction may be as strong
-        let axes = 0..scene.body().dimension();
         let of = timeline::Target::Nodes(nodes.clone());
         let whole = Target { quantity: Quantity::Load(kind), of, axis: None };
-        let targets = axes.map(|axis| whole.along(axis));
-        let largest = targets.clone().map(|target| target.largest_in(scene)).fold(0.0, f64::max);
-        let slider = |(target, axis)| {
-            let what = format!("{name} {axis}{of_what}");
-            Self::new(target, what, [largest, usual], Quantity::Load(kind).row().unit)
-        };
-        targets.zip(["x", "y", "z"]).map(slider).collect()
+        Self::of_input(scene, &whole, usual, |axis| format!("{name} {axis}{of_what}"))
     }
 
     /// A slider up to twice the largest value of the scene, or up to `usual` if the scene has none.
@@ -240,11 +243,6 @@ impl Target {
     /// A quantity of a component.
     pub(super) fn of(quantity: Quantity, name: &str) -> Self {
         Self { quantity, of: timeline::Target::one(name), axis: None }
-    }
-
-    /// A component of the magnetic field.
-    fn field(axis: usize) -> Self {
-        Self { quantity: Quantity::Field, of: timeline::Target::Everything, axis: Some(axis) }
     }
 
     /// A component of it.

@@ -425,10 +425,12 @@ impl System {
         }
     }
 
-    /// Whether [`passage`](Self::passage) is to be asked after each step.
+    /// Whether switches and [`passage`](Self::passage) are to be asked after each step.
     pub(crate) fn can_be_passed(&self) -> bool {
-        let mut contacts = self.forces.iter().filter_map(|force| force.capabilities().contact);
-        contacts.any(|contact| contact.can_be_passed())
+        self.forces.iter().any(|force| {
+            let Capabilities { switches, contact, .. } = force.capabilities();
+            switches.is_some() || contact.is_some()
+        })
     }
 
     /// A time (s) within a step at which a force acts that is not seen at the ends of the step, if any.

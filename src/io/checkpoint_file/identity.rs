@@ -1,5 +1,6 @@
 //! Identity of a scene in a file: numbers and names, and hashes of its parts.
 
+use std::collections::BTreeMap;
 use std::fmt::{self, Debug};
 use std::hash::Hasher;
 
@@ -73,8 +74,11 @@ impl Identity {
             ("lags", of_list(&lags)),
             ("magnets", of_list(scene.magnets())),
         ];
-        let devices = scene.devices_by_kind().into_iter();
-        let devices = devices.map(|(kind, own)| (format!("{kind}s"), of_list(&own)));
+        let mut devices: BTreeMap<&str, Vec<_>> = BTreeMap::new();
+        for device in scene.devices() {
+            devices.entry(device.kind()).or_default().push(device);
+        }
+        let devices = devices.into_iter().map(|(kind, own)| (format!("{kind}s"), of_list(&own)));
         let last = [("fluids", of_list(scene.fluids())), ("touches", of_list(scene.touches()))];
         let named = |(name, hash): (&str, _)| (name.to_owned(), hash);
         let others = others.map(named).into_iter().chain(devices).chain(last.map(named));
@@ -174,16 +178,12 @@ impl fmt::Debug for Text<'_> {
             text.field("magnetic_field", &Some(field));
         }
         // inputs of devices with a list of their own, list by list
-        let mut lists: Vec<(&str, Vec<_>)> = Vec::new();
+        let mut lists: BTreeMap<&str, Vec<_>> = BTreeMap::new();
         for Input { quantity, target, signal } in &phase.inputs {
             if let (Quantity::Device(own), Some(name)) = (quantity, target.names().first())
                 && own.keys != STEER
             {
-                let entry = (name, Capital(own.word), signal);
-                match lists.iter_mut().find(|(of, _)| *of == own.keys[1]) {
-                    Some((_, list)) => list.push(entry),
-                    None => lists.push((own.keys[1], vec![entry])),
-                }
+                lists.entry(own.keys[1]).or_default().push((name, Capital(own.word), signal));
             }
         }
         for (of, list) in &lists {

@@ -3,7 +3,7 @@
 use toml::de::DeValue;
 
 use super::course::{course, vectors_until};
-use super::dipole::{DRIVE, drive};
+use super::device::{DRIVE, drive};
 use super::keys::TableKeys;
 use super::magnet::magnetic_field;
 use super::phase_keys::{

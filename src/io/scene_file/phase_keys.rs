@@ -1,6 +1,6 @@
 //! The keys of `[[phase]]` and of the tables in it.
 
-use super::dipole::DRIVE;
+use super::device::DRIVE;
 use super::keys::{Key, PERIOD, TIMES, TableKeys, ValueType};
 
 pub(super) const PHASE: TableKeys = TableKeys::new(
@@ -29,7 +29,7 @@ pub(super) const PHASE: TableKeys = TableKeys::new(
         part(&OPEN, "openings of orifices"),
         part(&FLOW, "flows of liquids into chambers"),
         part(&ACTUATE, "forces in springs and cables, stresses of muscles, strains of growth"),
-        part(&DRIVE, "where dipoles are, and their moments"),
+        part(&DRIVE, "positions and moments of external magnets"),
         part(&STEER, "inputs of devices, such as winds"),
         Key::new("magnetic_field", ValueType::Table(&MAGNETIC_FIELD), "the magnetic field"),
         Key::new(

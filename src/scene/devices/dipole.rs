@@ -9,7 +9,7 @@ use crate::elements::body::{MagnetizedPoints, PointDipole, TooNear};
 use crate::elements::force::{Force, NodalForces, Tangents};
 use crate::elements::mesh::Selection;
 use crate::integrators::ode::Failure;
-use crate::scene::forces::{Signals, VectorSignal, finite_at};
+use crate::scene::forces::{Signals, finite_at};
 use crate::scene::timeline::{
     Device, DeviceGauge, DeviceInput, DeviceOutput, DeviceSignals, DeviceSite, DeviceState,
     DeviceValue, Input, InputLimit, Phase, Quantity, Scene, Target,
@@ -51,8 +51,8 @@ use crate::scene::timeline::{
 #[derive(Debug, Clone)]
 pub struct Dipole {
     name: String,
-    moment: VectorSignal,
-    position: VectorSignal,
+    moment: DeviceValue,
+    position: DeviceValue,
 }
 
 /// Largest moment (A m^2): that of a cube of neodymium of 20 cm.
@@ -85,7 +85,7 @@ impl Dipole {
     /// A dipole of a `moment` (A m^2) at a `position` (m), one component per dimension, both of them constant or changing with time: vectors
     /// or other [`Signals`].
     pub fn new(moment: impl Into<Signals>, position: impl Into<Signals>) -> Self {
-        Self { name: String::new(), moment: moment.into().0, position: position.into().0 }
+        Self { name: String::new(), moment: moment.into().into(), position: position.into().into() }
     }
 
     /// Name of the dipole (default: "dipole 1", "dipole 2", ... in the order of the scene).
@@ -140,9 +140,8 @@ impl Device for Dipole {
         &[Self::POSITION, Self::MOMENT]
     }
 
-    fn preset(&self, number: usize) -> Option<DeviceValue> {
-        let own = if number == POSITION { &self.position } else { &self.moment };
-        Some(Signals(own.clone()).into())
+    fn preset(&self, number: usize) -> Option<&DeviceValue> {
+        Some(if number == POSITION { &self.position } else { &self.moment })
     }
 
     fn outputs(&self) -> &'static [DeviceOutput] {

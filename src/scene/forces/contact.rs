@@ -480,10 +480,6 @@ impl ContactForce for Contact {
         first
     }
 
-    fn can_be_passed(&self) -> bool {
-        self.switches.count() > 0
-    }
-
     /// A point distributes K_p n n^T among its nodes by shares that add up to 1, so that no row sum is larger
     /// than its node's share.
     fn add_reserves(

@@ -39,7 +39,7 @@ pub trait Device: fmt::Debug + Send + Sync {
     }
 
     /// Value of the input of a number (from 0) in phases that do not set it. Default: that of its [row](DeviceInput::absent).
-    fn preset(&self, number: usize) -> Option<DeviceValue> {
+    fn preset(&self, number: usize) -> Option<&DeviceValue> {
         let _ = number;
         None
     }
@@ -157,7 +157,7 @@ impl DeviceSignals {
     /// are 0, and so is an input that the device does not have.
     pub fn at(&self, number: usize, t: f64) -> [f64; 3] {
         match (self.inputs.get(number), self.signals.get(number)) {
-            (Some(input), Some(signals)) => sum(input, self.dimension, signals, t),
+            (Some(input), Some(signals)) => sum(input, self.dimension, signals.iter(), t),
             _ => [0.0; 3],
         }
     }
@@ -183,34 +183,39 @@ impl DeviceState<'_> {
     pub fn input(&self, number: usize) -> [f64; 3] {
         let Some(input) = self.device.inputs().get(number) else { return [0.0; 3] };
         let signals = self.phase.device_signals(self.device, number);
-        sum(input, self.body.dimension(), &signals, self.time)
+        sum(input, self.body.dimension(), signals, self.time)
     }
 }
 
 /// The sum of the `signals` of an input at time `t` (s).
-fn sum(input: &DeviceInput, dimension: usize, signals: &[InputSignal], t: f64) -> [f64; 3] {
+fn sum<'a>(
+    input: &DeviceInput,
+    dimension: usize,
+    signals: impl Iterator<Item = &'a InputSignal>,
+    t: f64,
+) -> [f64; 3] {
     let rank = input.rank(dimension);
-    let mut sum = [0.0; 3];
-    if signals.is_empty() {
-        sum[..rank].fill(input.absent);
-    }
-    for (number, signal) in signals.iter().enumerate() {
+    let values = signals.map(|signal| {
         let mut own = [0.0; 3];
         match signal {
             InputSignal::Number(signal) => own[0] = signal.at(t),
             InputSignal::Vector(signal) => signal.at(t, &mut own[..rank]),
         }
-        match number {
-            0 => sum = own,
-            _ => sum.iter_mut().zip(own).for_each(|(sum, own)| *sum += own),
-        }
-    }
-    sum
+        own
+    });
+    let sum = values.reduce(|a, b| std::array::from_fn(|i| a[i] + b[i]));
+    sum.unwrap_or_else(|| std::array::from_fn(|i| if i < rank { input.absent } else { 0.0 }))
 }
 
 /// A value for an input of a device: a number or any other [`Signal`], or [`Signals`] for a vector.
-#[derive(Debug, Clone)]
+#[derive(Clone)]
 pub struct DeviceValue(pub(super) InputSignal);
+
+impl fmt::Debug for DeviceValue {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.0.fmt(f)
+    }
+}
 
 impl From<f64> for DeviceValue {
     fn from(value: f64) -> Self {

@@ -1,7 +1,5 @@
 //! Devices in a scene: their inputs in phases, their forces, their outputs and lines.
 
-#[cfg(feature = "checkpoint")]
-use std::collections::BTreeMap;
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
@@ -38,14 +36,6 @@ impl Scene {
         let device = &self.devices[device];
         let words = device.outputs().iter().map(|output| output.word);
         find(word, words, &format!("output of device \"{}\"", device.name()), "outputs")
-    }
-
-    /// The devices of each kind.
-    #[cfg(feature = "checkpoint")]
-    pub(crate) fn devices_by_kind(&self) -> BTreeMap<&'static str, Vec<&Arc<dyn Device>>> {
-        let mut kinds: BTreeMap<_, Vec<_>> = BTreeMap::new();
-        self.devices.iter().for_each(|device| kinds.entry(device.kind()).or_default().push(device));
-        kinds
     }
 
     /// The name of one more device of a kind, where it is given none.
@@ -176,7 +166,7 @@ impl Scene {
                 let (quantity, target) = (Quantity::Device(row), Target::one(device.name()));
                 let is_set = phase.inputs_on(quantity, &target).next().is_some();
                 let preset = device.preset(number).filter(|_| !is_set)?;
-                Some(Input::new(quantity, target, preset.0))
+                Some(Input::new(quantity, target, preset.0.clone()))
             });
             own.collect::<Vec<_>>()
         };
@@ -206,7 +196,8 @@ impl Scene {
         let (site, dimension) = (self.device_site(), self.body.dimension());
         let force = |device: &Arc<dyn Device>| {
             let inputs = device.inputs();
-            let signals = (0..inputs.len()).map(|number| phase.device_signals(&**device, number));
+            let own = |number| phase.device_signals(&**device, number).cloned().collect();
+            let signals = (0..inputs.len()).map(own);
             device.force(&site, DeviceSignals { inputs, dimension, signals: signals.collect() })
         };
         self.devices.iter().map(force).collect()
@@ -225,15 +216,17 @@ impl Phase {
     }
 
     /// The signals of the input of a number of a `device`, or else its preset.
-    pub(super) fn device_signals(&self, device: &dyn Device, number: usize) -> Vec<InputSignal> {
-        let Some(input) = device.inputs().get(number) else { return Vec::new() };
-        let target = Target::one(device.name());
-        let own = self.inputs_on(Quantity::Device(input), &target);
-        let own: Vec<InputSignal> = own.map(|input| input.signal.clone()).collect();
-        if own.is_empty() {
-            device.preset(number).map(|preset| preset.0).into_iter().collect()
-        } else {
-            own
-        }
+    pub(super) fn device_signals<'a>(
+        &'a self,
+        device: &'a dyn Device,
+        number: usize,
+    ) -> impl Iterator<Item = &'a InputSignal> {
+        let row = device.inputs().get(number);
+        let own = self.inputs.iter().filter(move |input| {
+            matches!(input.quantity, Quantity::Device(own) if row == Some(own))
+                && input.target.names().iter().any(|name| name == device.name())
+        });
+        let preset = device.preset(number).filter(|_| own.clone().next().is_none());
+        own.map(|input| &input.signal).chain(preset.map(|preset| &preset.0))
     }
 }
