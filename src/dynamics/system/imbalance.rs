@@ -115,7 +115,7 @@ impl System {
         let State { u, v, internal, .. } = self.layout.of(state);
         self.at.nodal.clear();
         self.set_lagging(t, internal);
-        self.add_forces_where(|force| force.by_cells.is_none(), t, u, v)?;
+        self.add_forces_where(|force| force.capabilities().by_cells.is_none(), t, u, v)?;
         self.add_flow_forces(t, u, self.layout.split(internal).1)?;
         self.at.nodal.add_up(&mut self.at.total);
         let forces = self.at.total.clone();
@@ -206,7 +206,7 @@ impl System {
         let ResidualSnapshot { time, state: [u, v, a], internal, forces, .. } = state;
         self.at.nodal.clear();
         self.add_forces_of_matrices(u, v)?;
-        self.add_forces_where(|force| force.by_cells.is_some(), *time, u, v)?;
+        self.add_forces_where(|force| force.capabilities().by_cells.is_some(), *time, u, v)?;
         self.add_branch_forces(u, internal);
         let Self { at, matrices, .. } = self;
         at.nodal.add_up(&mut at.total);

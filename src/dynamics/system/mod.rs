@@ -582,12 +582,12 @@ impl System {
     /// Adds the forces that have no constant matrix, if they are `among` those that are asked for.
     fn add_forces_where(
         &mut self,
-        among: impl Fn(Capabilities<'_>) -> bool,
+        among: impl Fn(&dyn Force) -> bool,
         t: f64,
         u: &[f64],
         v: &[f64],
     ) -> Result<(), Failure> {
-        for force in self.forces.iter().filter(|force| among(force.capabilities())) {
+        for force in self.forces.iter().filter(|force| among(&***force)) {
             let added = force.add_forces(t, u, v, &mut self.at.nodal);
             if let Err(Failure::Recoverable(reason)) = &added {
                 self.refusal.clone_from(reason);

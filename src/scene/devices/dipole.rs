@@ -76,11 +76,8 @@ impl Dipole {
         }),
         ..DeviceInput::vector("moment", "A m^2")
     };
-    const OUTPUTS: [DeviceOutput; 3] = [
-        DeviceOutput { word: "force", unit: "N", is_vector: true },
-        DeviceOutput { word: "position", unit: "m", is_vector: true },
-        DeviceOutput { word: "moment", unit: "A m^2", is_vector: true },
-    ];
+    /// The force (N) on all magnets; that on the dipole is minus this.
+    pub const FORCE: DeviceOutput = DeviceOutput { word: "force", unit: "N", is_vector: true };
 
     /// A dipole of a `moment` (A m^2) at a `position` (m), one component per dimension, both of them constant or changing with time: vectors
     /// or other [`Signals`].
@@ -145,7 +142,11 @@ impl Device for Dipole {
     }
 
     fn outputs(&self) -> &'static [DeviceOutput] {
-        &Self::OUTPUTS
+        &[
+            Self::FORCE,
+            DeviceOutput { word: "position", unit: "m", is_vector: true },
+            DeviceOutput { word: "moment", unit: "A m^2", is_vector: true },
+        ]
     }
 
     fn force(

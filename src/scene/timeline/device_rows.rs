@@ -18,7 +18,8 @@ pub struct DeviceInput {
     /// Limit beyond which the units of a value are warned of, if any.
     pub limit: Option<InputLimit>,
     /// Keys of its list in a phase of a scene file, and of the device in it.
-    pub(crate) keys: [&'static str; 2],
+    #[doc(hidden)]
+    pub keys: [&'static str; 2],
 }
 
 /// The largest usual size of an input: a larger one is an [indicator](crate::Scene::indicators) that warns.
