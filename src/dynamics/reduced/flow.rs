@@ -33,7 +33,7 @@ pub(super) struct ReducedFlow {
 impl ReducedFlow {
     /// That of a `force` with amounts.
     pub(super) fn new(force: &Arc<dyn Force>, shapes: &Shapes) -> Self {
-        let flow = force.flow();
+        let flow = force.capabilities().flow;
         let unknowns = flow.map_or(0, |flow| flow.start().len());
         let rooms = flow.map_or(0, |flow| flow.reservoirs());
         let (count, free) = (shapes.count(), shapes.free());
@@ -60,7 +60,7 @@ impl ReducedFlow {
         amounts: &[f64],
         forces: &mut NodalForces,
     ) -> Result<f64, Failure> {
-        let Some(flow) = self.force.flow() else { return Ok(0.0) };
+        let Some(flow) = self.force.capabilities().flow else { return Ok(0.0) };
         self.amounts.copy_from_slice(amounts);
         flow.set(t, amounts);
         flow.add_forces_of(
@@ -86,7 +86,7 @@ impl ReducedFlow {
         shapes: &mut Shapes,
     ) {
         let Self { force, amounts, nodal, matrix, moved, along, .. } = self;
-        let Some(flow) = force.flow() else { return };
+        let Some(flow) = force.capabilities().flow else { return };
         flow.linearize(t, [u, v, amounts], stiffness, nodal);
         let own = &mut matrix.derivatives;
         own.pressures.clone_from(&nodal.pressures);

@@ -42,7 +42,7 @@ use crate::base::vector::largest;
 use crate::dynamics::matrices::Matrices;
 use crate::dynamics::system::Differences;
 use crate::elements::body::Body;
-use crate::elements::force::{Force, Forces, GeneralizedForce, NodalForces};
+use crate::elements::force::{Capabilities, Force, Forces, GeneralizedForce, NodalForces};
 use crate::scene::constraint::{ConstraintRow, Prescribed};
 use crate::scene::reduced_model::{ReducedModel, ReducedPhase};
 
@@ -237,23 +237,23 @@ impl Projection {
     /// Continues with other forces, which it [has room](Self::has_room) for.
     pub(super) fn take(&mut self, forces: &Forces) {
         let (weights, count) = (&self.model.cells, self.shapes.count());
-        let sample =
-            |force: &Arc<dyn Force>| match weights.is_empty() || force.is_exact_along(count) {
-                true => None,
-                false => force.sample(weights, &self.pattern),
-            };
+        let sample = |force: &Arc<dyn Force>| {
+            let cells = force.capabilities().by_cells?;
+            let is_whole = weights.is_empty() || is_exact_along(force, count);
+            (!is_whole).then(|| cells.sample(weights, &self.pattern))
+        };
         let (flows, others): (Vec<_>, Vec<_>) =
-            forces.iter().partition(|force| force.flow().is_some());
+            forces.iter().partition(|force| force.capabilities().flow.is_some());
         self.forces =
             others.iter().map(|force| sample(force).unwrap_or_else(|| (*force).clone())).collect();
         self.flow = flows.first().map(|flow| ReducedFlow::new(flow, &self.shapes));
         let mut steady = NodalForces::zeros(self.origin.len());
         self.acting.clear();
         for force in &self.forces {
-            if force.is_steady() {
+            if force.capabilities().is_steady {
                 // it has no meaning nowhere
                 force.add_forces(0.0, &self.origin, &self.origin, &mut steady).unwrap_or(());
-            } else if !force.is_exact_along(count) {
+            } else if !is_exact_along(force, count) {
                 self.acting.push(force.clone());
             }
         }
@@ -270,11 +270,13 @@ impl Projection {
     /// Sets the forces that are functions of z, from u_0 on: those of cells, or all others.
     fn generalize(&mut self, are_by_cells: bool) {
         let (shapes, origin) = (self.shapes.all(), &self.origin);
-        let are_asked =
-            |force: &&Arc<dyn Force>| !force.is_steady() && force.is_by_cells() == are_by_cells;
-        let forces = self.forces.iter().filter(are_asked);
+        let generalized = |force: &Arc<dyn Force>| {
+            let Capabilities { by_cells, along_shapes, .. } = force.capabilities();
+            let along = along_shapes.filter(|_| by_cells.is_some() == are_by_cells)?;
+            along.generalized(origin, &shapes)
+        };
         self.generalized[usize::from(are_by_cells)] =
-            forces.filter_map(|force| force.generalized(origin, &shapes)).collect();
+            self.forces.iter().filter_map(generalized).collect();
     }
 
     /// Marks the tangents as out of date.
@@ -381,10 +383,16 @@ impl Projection {
     }
 }
 
+/// Whether a force has a generalized form along so many shapes that is exact, and less work.
+fn is_exact_along(force: &Arc<dyn Force>, shapes: usize) -> bool {
+    force.capabilities().along_shapes.is_some_and(|along| along.is_exact_along(shapes))
+}
+
 /// The forces on nodes other than those of sampled cells: neither steady nor functions of the coordinates of so many shapes.
 fn on_nodes(forces: &Forces, shapes: usize) -> impl Iterator<Item = &Arc<dyn Force>> {
     let are_on_nodes = move |force: &&Arc<dyn Force>| {
-        !force.is_steady() && !force.is_exact_along(shapes) && !force.is_by_cells()
+        let Capabilities { is_steady, by_cells, .. } = force.capabilities();
+        !is_steady && !is_exact_along(force, shapes) && by_cells.is_none()
     };
     forces.iter().filter(are_on_nodes)
 }

@@ -34,7 +34,7 @@ pub(super) enum Met {
     Passage(f64),
 }
 
-/// The switches of the forces (see [`crate::elements::force::Force::switches`]) in a phase, as they are held
+/// The switches of the forces (see [`crate::elements::force::Switches::switches`]) in a phase, as they are held
 /// from one event to the next, if events are located.
 ///
 /// While they are held, the force is smooth within a step: a node that leaves an obstacle is still pulled by
@@ -48,7 +48,7 @@ pub(super) struct Events {
     /// Of each switch that changes in a step, |value| at its start; 0 of the others.
     scales: Vec<f64>,
     /// How far the body can move before a switch can change (see
-    /// [`crate::elements::force::Force::passage`]).
+    /// [`crate::elements::force::ContactForce::passage`]).
     clearances: Vec<f64>,
     /// Events found, and those in a row that did not advance time.
     pub(super) count: usize,

@@ -12,7 +12,6 @@ mod component;
 mod contact_gauge;
 #[cfg(feature = "study")]
 mod derivative;
-mod dipole;
 mod events;
 mod failure;
 mod gauge;

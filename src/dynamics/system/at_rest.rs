@@ -23,8 +23,6 @@ mod dual;
 #[cfg(test)]
 mod tests;
 
-use std::sync::Arc;
-
 use super::System;
 use super::newton_matrix::NewtonMatrix;
 use crate::base::input::InputError;
@@ -32,7 +30,7 @@ use crate::base::sparse::{BlockMatrix, NodeMatrix};
 use crate::base::vector::{dot, largest};
 use crate::dynamics::linear::{EntrySource, nodal_multipliers};
 use crate::dynamics::system::Energy;
-use crate::elements::force::{Force, NodalForces, Reservoir, Step};
+use crate::elements::force::{Capabilities, Force, NodalForces, Reservoir, Step};
 use crate::integrators::ode::Failure;
 use crate::scene::constraint::{ConstraintRow, Prescribed};
 
@@ -179,7 +177,9 @@ impl AtRest {
 
     /// Whether obstacles move.
     pub(crate) fn is_driven(&self) -> bool {
-        self.system.forces.iter().any(|force| force.velocity(self.time).is_some())
+        let mut contacts =
+            self.system.forces.iter().filter_map(|force| force.capabilities().contact);
+        contacts.any(|contact| contact.velocity(self.time).is_some())
     }
 
     /// M x
@@ -263,8 +263,11 @@ impl AtRest {
     /// other than at both of its ends, if they do: they would pass through each other.
     pub(crate) fn passage(&self, u: &[f64], to: &[f64]) -> Option<f64> {
         // obstacles, which have switches, push back from any depth
-        let is_surface = |force: &&Arc<dyn Force>| force.can_be_passed() && force.switches() == 0;
-        let mut surfaces = self.system.forces.iter().filter(is_surface).peekable();
+        let surfaces = self.system.forces.iter().filter_map(|force| {
+            let Capabilities { switches, contact, .. } = force.capabilities();
+            contact.filter(|_| switches.is_none())
+        });
+        let mut surfaces = surfaces.peekable();
         surfaces.peek()?;
         let way: Vec<f64> = u.iter().zip(to).map(|(u, to)| to - u).collect();
         let step = Step { times: [0.0, 1.0], u: [u, to], v: [&way, &way] };
@@ -276,7 +279,9 @@ impl AtRest {
         let dimension = self.system.matrices.dimension;
         let is_given = self.unbalanced.is_some();
         for (force, v) in self.system.forces.iter().zip(&mut self.velocities) {
-            if let Some(w) = force.velocity(when(&**force, is_given, fraction, self.time)) {
+            let contact = force.capabilities().contact;
+            let at = when(&**force, is_given, fraction, self.time);
+            if let Some(w) = contact.and_then(|contact| contact.velocity(at)) {
                 v.resize(self.still.len(), 0.0);
                 v.iter_mut().enumerate().for_each(|(dof, v)| *v = w[dof % dimension]);
             }

@@ -142,7 +142,7 @@ impl System {
     fn load_at_rest(&mut self, t: f64) -> Result<Vec<f64>, Failure> {
         let rest = vec![0.0; self.dofs()];
         self.at.nodal.clear();
-        self.add_forces_where(|force| !force.is_by_cells(), t, &rest, &rest)?;
+        self.add_forces_where(|force| force.capabilities().by_cells.is_none(), t, &rest, &rest)?;
         let mut load = rest;
         self.at.nodal.add_up(&mut load);
         Ok(load)
@@ -166,7 +166,7 @@ impl System {
             add_multiple(signs[0] * steps[0], one, &mut u);
             add_multiple(signs[1] * steps[1], other, &mut u);
             self.at.nodal.clear();
-            self.add_forces_where(|force| force.is_by_cells(), t, &u, &rest)?;
+            self.add_forces_where(|force| force.capabilities().by_cells.is_some(), t, &u, &rest)?;
             self.at.nodal.add_up(&mut total);
             add_multiple(signs[0] * signs[1] / (4.0 * steps[0] * steps[1]), &total, &mut sum);
         }

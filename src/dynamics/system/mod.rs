@@ -334,15 +334,15 @@ impl System {
 /// The forces that only keep rigid pieces in their shape, that of gas that flows, and all others.
 fn parted(forces: Forces) -> (Forces, Option<Arc<dyn Force>>, Forces) {
     let (of_rigid, others): (Forces, Forces) =
-        forces.into_iter().partition(|force| force.keeps_rigid());
+        forces.into_iter().partition(|force| force.capabilities().keeps_rigid);
     let (flows, others): (Forces, Forces) =
-        others.into_iter().partition(|force| force.flow().is_some());
+        others.into_iter().partition(|force| force.capabilities().flow.is_some());
     (of_rigid, flows.into_iter().next(), others)
 }
 
 /// Flow of a force, if it has one.
 fn flow_of(force: &Option<Arc<dyn Force>>) -> Option<&dyn Flow> {
-    force.as_ref().and_then(|force| force.flow())
+    force.as_ref().and_then(|force| force.capabilities().flow)
 }
 
 /// Whether the Newton matrix depends on more than M, K and B: on the state, or on the step in another way.

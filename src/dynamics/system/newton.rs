@@ -121,7 +121,8 @@ impl System {
     /// keep theirs, unless there are many more of them than are near now.
     pub(super) fn make_room(&mut self, u: &[f64]) {
         let pattern = self.matrices.pattern();
-        let near = self.forces.iter().flat_map(|force| force.couplings_near(u, pattern));
+        let contacts = self.forces.iter().filter_map(|force| force.capabilities().contact);
+        let near = contacts.flat_map(|contact| contact.couplings_near(u, pattern));
         let mut pairs: Vec<[usize; 2]> = near.collect();
         if pairs.is_empty() {
             return;

@@ -102,7 +102,7 @@ impl System {
         let RatesBound { masses, free, stiffness, damping } = bound;
         stiffness.reserve.fill(0.0);
         damping.reserve.fill(0.0);
-        for force in &self.forces {
+        for force in self.forces.iter().filter_map(|force| force.capabilities().contact) {
             force.add_reserves(t, u, v, &mut stiffness.reserve, &mut damping.reserve);
         }
         let rigid = self.matrices.rigid.as_deref();

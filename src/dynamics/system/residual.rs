@@ -48,7 +48,7 @@ impl System {
     ) -> Result<Vec<f64>, Failure> {
         self.at.nodal.clear();
         self.set_lagging(t, internal);
-        self.add_forces_where(|force| !force.is_by_cells(), t, u, v)?;
+        self.add_forces_where(|force| force.capabilities().by_cells.is_none(), t, u, v)?;
         self.add_flow_forces(t, u, self.layout.split(internal).1)?;
         self.at.nodal.add_up(&mut self.at.total);
         Ok(self.at.total.clone())
@@ -90,7 +90,7 @@ impl System {
         let ResidualSnapshot { time, state: [u, v, a], internal, forces, .. } = state;
         self.at.nodal.clear();
         self.add_forces_of_matrices(u, v)?;
-        self.add_forces_where(|force| force.is_by_cells(), *time, u, v)?;
+        self.add_forces_where(|force| force.capabilities().by_cells.is_some(), *time, u, v)?;
         self.add_branch_forces(u, internal);
         let Self { at, matrices, .. } = self;
         at.nodal.add_up(&mut at.total);

@@ -15,7 +15,7 @@ impl Scene {
         let all = forces.iter().flatten().map(|force| &**force);
         let mut matrices = Matrices::new(self.body(), all);
         let of_first_phase = forces.first().into_iter().flatten();
-        of_first_phase.for_each(|force| matrices.carry(force.carried()));
+        of_first_phase.for_each(|force| matrices.carry(force.capabilities().carried));
         Arc::new(matrices)
     }
 

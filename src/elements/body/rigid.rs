@@ -16,7 +16,7 @@
 //! checkpoints find them where they find those of any node. Only the algebra knows of pieces: `shares` are
 //! the weights, `carry` moves dependent nodes along, `gather` moves nodal forces to the frames, where they do
 //! the same work. The elasticity of a piece in equilibria is a force that motions leave out
-//! (`Force::keeps_rigid`). `docs/decisions/0012-rigid-pieces.md` has the alternatives.
+//! (`Capabilities::keeps_rigid`). `docs/decisions/0012-rigid-pieces.md` has the alternatives.
 
 use std::collections::BTreeSet;
 

@@ -1,16 +1,18 @@
-// Dipoles: bars along their moments, with a north pole and a south pole.
+// Needles of devices: bars of one size, with a north pole and a south pole.
 
 /** Half the length of a bar (px). */
 const POLE = 12;
 
-function drawDipoles(context, place, direct, moment) {
-  for (const dipole of dipoles) {
-    const [at, along] = dipoleAt(moment, dipole);
+function drawNeedles(context, place, direct, moment) {
+  const needles = needlesAt(moment);
+  for (let start = 0; start < needles.length; start += 2 * axes) {
+    const at = needles.slice(start, start + axes);
+    const along = Array.from(needles.slice(start + axes, start + 2 * axes));
     const size = Math.hypot(...along);
     const [x, y] = place(at);
     context.lineWidth = 7;
     context.lineCap = "butt";
-    // one that is off is a dot alone
+    // one without direction is a dot alone
     for (const [end, colour] of size > 0 ? [[POLE, "push"], [-POLE, "pull"]] : []) {
       const [dx, dy] = direct(along).map((part) => (end * part) / size);
       context.beginPath();
