@@ -133,6 +133,8 @@ struct Piece<'f, 'a, F> {
     surfaces: &'f mut Surfaces<'a>,
     functional: &'f mut F,
     lambda: &'f [f64],
+    /// The state at the end, where the adjoint of the later pieces takes over.
+    end: Vec<f64>,
 }
 
 impl<F: Functional> Functional for Piece<'_, '_, F> {
@@ -156,21 +158,28 @@ impl<F: Functional> Functional for Piece<'_, '_, F> {
     fn terminal(
         &mut self,
         _t: f64,
-        _y: &[f64],
+        y: &[f64],
         _p: &[f64],
         slopes: Option<Slopes<'_>>,
     ) -> Result<f64, Failure> {
         if let Some(slopes) = slopes {
             slopes.y.copy_from_slice(self.lambda);
+            self.end = y.to_vec();
         }
-        Ok(0.0)
+        let moved = y.iter().zip(&self.end).zip(self.lambda);
+        Ok(moved.map(|((y, end), lambda)| lambda * (y - end)).sum())
     }
 }
 
 impl<F: Functional> BackwardRun<'_, '_, F> {
     /// From the end to the start.
     fn gradient(&mut self, parts: &[HistoryPart], end: &Snapshot) -> Result<Gradient, Reason> {
-        let start = Gradient::at_end(&mut self.functional, end.t, &end.y, &end.p);
+        let start = Gradient::at_end(
+            &mut self.functional,
+            end.t,
+            [&end.y, &end.p],
+            &self.options.tolerances,
+        );
         let start = start.map_err(|failure| unknown("terminal functional", failure))?;
         let mut gradient = start.check()?;
         for part in parts.iter().rev() {
@@ -195,7 +204,8 @@ impl<F: Functional> BackwardRun<'_, '_, F> {
         let slope = self.slope(from)?;
         self.surfaces.sides().borrow_mut().flows.push((from.t, slope));
         let Self { problem, surfaces, functional, method, span, options, back, .. } = self;
-        let piece = Piece { surfaces, functional, lambda: &gradient.initial_state };
+        let lambda = &gradient.initial_state;
+        let piece = Piece { surfaces, functional, lambda, end: Vec::new() };
         let sign = (span.1 - span.0).signum();
         let Snapshot { t, y, yp, .. } = from;
         let max_steps = u32::try_from(options.max_steps).unwrap_or(u32::MAX);
@@ -276,7 +286,8 @@ impl<F: Functional> BackwardRun<'_, '_, F> {
     fn running(&mut self, at: &Snapshot) -> Result<f64, Reason> {
         self.enter(at);
         let Self { surfaces, functional, .. } = self;
-        let h = Piece { surfaces, functional, lambda: &[] }.running(at.t, &at.y, &at.p, None);
+        let h = Piece { surfaces, functional, lambda: &[], end: Vec::new() }
+            .running(at.t, &at.y, &at.p, None);
         Ok(h.map_err(|failure| unknown("functional at a jump", failure))?)
     }
 
