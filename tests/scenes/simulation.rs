@@ -188,6 +188,37 @@ fn a_simulation_goes_back_to_a_checkpoint() {
     }
 }
 
+/// The report after a restore is that of the checkpoint, and later that of a run which never went elsewhere: nothing is left of the future that
+/// was given up, such as the notice of an explicit method that stability limits there.
+#[test]
+fn a_report_goes_back_to_a_checkpoint() {
+    let scene = beam().phase(Phase::until(0.03).hold("left")).phase(Phase::until(0.1).hold("left"));
+    let told = |beam: &Simulation| {
+        let report = beam.report();
+        let phases: Vec<_> = report
+            .phases
+            .iter()
+            .map(|phase| format!("{} {} {:?}", phase.name, phase.method, phase.counts))
+            .collect();
+        (phases, report.constraint_drift, report.warnings())
+    };
+    for method in [Method::Rk, Method::CvodeBdf, Method::Auto] {
+        let settings = settings(method, 1e-4);
+        let mut beam = scene.start(&settings).unwrap();
+        beam.advance_to(0.002).unwrap();
+        for (back, away) in [(0.002, 0.02), (0.02, 0.08)] {
+            beam.advance_to(back).unwrap();
+            let (kept, before) = (beam.checkpoint(), told(&beam));
+            beam.advance_to(away).unwrap();
+            assert_ne!(told(&beam), before, "{method}");
+            beam.restore(&kept).unwrap();
+            let after = told(&beam);
+            println!("{method}: {after:?}");
+            assert_eq!(after, before, "{method}");
+        }
+    }
+}
+
 /// An episode that begins with a checkpoint is the same, bit by bit, whatever the simulation did before, and in
 /// a fork: the automatic choice looks at the energy balance at the same steps.
 #[test]

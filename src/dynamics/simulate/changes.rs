@@ -14,7 +14,7 @@ use std::mem::{replace, take};
 use std::sync::Arc;
 
 use super::auto::Plan;
-use super::checkpoint::{Checkpoint, Kept};
+use super::checkpoint::{Checkpoint, Kept, Record};
 use super::interval::Ending;
 use super::phase_run::{Integration, MeanSteps, PhaseRun};
 use super::records::{self, energy, project};
@@ -249,6 +249,7 @@ impl Run {
             scene: self.scene.clone(),
             constraints: self.constraints.clone(),
             plan: self.phase_run.plan.clone(),
+            record: Record::of(self),
             kept: Kept {
                 time,
                 state: state.to_vec(),
@@ -268,7 +269,7 @@ impl Run {
 
     /// Returns to a state.
     pub(super) fn restore(&mut self, checkpoint: &Checkpoint) -> Result<(), Error> {
-        let Checkpoint { scene, constraints, plan, kept } = checkpoint;
+        let Checkpoint { scene, constraints, plan, record, kept } = checkpoint;
         let Kept { time, ref state, ref phase, number, balance, steps, .. } = *kept;
         if !Arc::ptr_eq(&self.scene, scene) {
             let help = "it belongs to another simulation: restore it there, or in a fork of that";
@@ -291,16 +292,19 @@ impl Run {
             self.number = number;
             self.reduced.iter().for_each(|checks| locked(checks).go_back(number));
             self.phase_run = self.new_phase_run(plan.clone());
-            let before = number.checked_sub(1).map_or(0.0, |last| self.scene.phases()[last].until);
-            self.trajectory.report.phases.retain(|phase| phase.end <= before);
         }
         self.sample_from(time);
-        self.phase_run.plan = plan.clone();
+        self.phase_run.follow(plan.clone());
+        self.phase_run.go_back(&record.phase);
         (self.phase_run.first_step, self.phase_run.commands) = (kept.first_step, kept.commands);
         self.phase_run.interval.steps = self.settings.max_steps;
         (self.balance, self.standing, self.steps) = (balance, 0, steps);
         let samples = self.trajectory.samples().partition_point(|sample| sample.time <= time);
-        self.trajectory.go_back(samples.max(1), kept.energies);
+        let trajectory = &mut self.trajectory;
+        trajectory.report = record.report.clone();
+        trajectory.penetrations.clone_from(&record.penetrations);
+        trajectory.leaps.clone_from(&record.leaps);
+        trajectory.go_back(samples.max(1), kept.energies);
         self.resume(system);
         Ok(())
     }

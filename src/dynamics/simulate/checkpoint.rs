@@ -8,6 +8,8 @@ use super::auto::Plan;
 use super::run::Run;
 use crate::base::input::InputError;
 use crate::dynamics::phase::Integrable;
+use crate::dynamics::report::{Counts, PhaseReport, Report};
+use crate::dynamics::trajectory::{Leap, Penetration, Trajectory};
 use crate::scene::constraint::PhaseStart;
 use crate::scene::timeline::{Phase, Scene};
 
@@ -19,7 +21,41 @@ pub struct Checkpoint {
     /// Identity of the constraints in force.
     pub(super) constraints: Arc<()>,
     pub(super) plan: Plan,
+    pub(super) record: Record,
     pub(super) kept: Kept,
+}
+
+/// How the motion was computed up to a checkpoint.
+#[derive(Clone)]
+pub(super) struct Record {
+    /// On the phases before, and on the one in force.
+    pub(super) report: Report,
+    pub(super) phase: PhaseReport,
+    pub(super) penetrations: Vec<Penetration>,
+    pub(super) leaps: Vec<Leap>,
+}
+
+impl Record {
+    /// The record of `run`.
+    pub(super) fn of(run: &Run) -> Self {
+        let Trajectory { report, penetrations, leaps, .. } = &run.trajectory;
+        Self {
+            report: report.clone(),
+            phase: run.phase_report(),
+            penetrations: penetrations.clone(),
+            leaps: leaps.clone(),
+        }
+    }
+
+    /// That of a motion that another simulation has computed.
+    pub(super) fn without_past(run: &Run) -> Self {
+        let Self { report, phase, penetrations, .. } = Self::of(run);
+        let report = Report { phases: Vec::new(), constraint_drift: 0.0, ..report };
+        let phase = PhaseReport { counts: Counts::default(), slips: Vec::new(), ..phase };
+        let penetrations =
+            penetrations.iter().map(|known| Penetration::none(&known.obstacle)).collect();
+        Self { report, phase, penetrations, leaps: Vec::new() }
+    }
 }
 
 /// The part from which another simulation of the same scene can continue, too.

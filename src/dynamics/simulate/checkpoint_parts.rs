@@ -5,7 +5,7 @@ use std::sync::Arc;
 use serde::{Deserialize, Deserializer, Serialize, Serializer, de};
 
 use super::auto::Plan;
-use super::checkpoint::{Checkpoint, Kept};
+use super::checkpoint::{Checkpoint, Kept, Record};
 use super::records;
 use super::simulation::Simulation;
 use crate::base::input::{InputError, not_negative, positive};
@@ -169,6 +169,7 @@ impl Simulation {
         };
         let longest = asked.max_step.unwrap_or(f64::INFINITY);
         let kept = Kept { first_step: kept.first_step.map(|step| step.min(longest)), ..kept };
-        Ok(Checkpoint { scene: run.scene.clone(), constraints: Arc::new(()), plan, kept })
+        let (scene, record) = (run.scene.clone(), Record::without_past(run));
+        Ok(Checkpoint { scene, constraints: Arc::new(()), plan, record, kept })
     }
 }

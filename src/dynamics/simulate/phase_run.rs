@@ -140,6 +140,13 @@ impl PhaseRun {
         work.stepper.into_system()
     }
 
+    /// Continues from where a report on the phase was made.
+    pub(super) fn go_back(&mut self, report: &PhaseReport) {
+        (self.counts, self.states) = (report.counts.clone(), report.states);
+        self.interval.events.count = report.counts.contact_events;
+        self.interval.events.slips.clone_from(&report.slips);
+    }
+
     /// The report on `phase` up to time `end` (s), with the present integration `at`.
     pub(super) fn report(&self, phase: &Phase, end: f64, at: &Integration) -> PhaseReport {
         let (mut counts, mut states) = (self.counts.clone(), self.states);

@@ -27,7 +27,7 @@ use crate::dynamics::error::Error;
 use crate::dynamics::indicators::{self, Follower};
 use crate::dynamics::matrices::Matrices;
 use crate::dynamics::phase::{Failed, Integrable, Start};
-use crate::dynamics::report::{Report, ToldReading, creation};
+use crate::dynamics::report::{PhaseReport, Report, ToldReading, creation};
 use crate::dynamics::state::{Layout, State};
 use crate::dynamics::system::{PhaseSystem, ResidualSnapshot, System};
 use crate::dynamics::trajectory::{IntegrationFailure, Interrupted, Leap, Sample, Trajectory};
@@ -475,10 +475,15 @@ impl Run {
         self.settled_report()
     }
 
+    /// How the phase in force was computed so far.
+    pub(super) fn phase_report(&self) -> PhaseReport {
+        self.phase_run.report(&self.phase, self.time, &self.integration)
+    }
+
     /// The same, with what is known already of the error of a reduced model: the rest takes factorizations with all unknowns.
     pub(super) fn settled_report(&self) -> Report {
         let mut report = self.trajectory.report.clone();
-        let phase = self.phase_run.report(&self.phase, self.time, &self.integration);
+        let phase = self.phase_report();
         report.wall_seconds = self.clock.elapsed().as_secs_f64();
         report.states = phase.states;
         report.phases.push(phase);
