@@ -511,8 +511,8 @@ fn switches_of_other_crates_are_held() {
     let worst = trajectory.samples().iter().map(error).fold(0.0, f64::max);
     let held = ever.lock().unwrap();
     println!("off by {worst:e} m, held {held:?}");
-    // three times what was found
-    assert!(worst < 1e-6 * a, "{worst:e}");
+    // three times what was found, by the tolerance of the steps
+    assert!(worst < 2e-7 * a, "{worst:e}");
     assert!(held.windows(2).filter(|pair| pair[0] != pair[1]).count() >= 3, "{held:?}");
     assert_eq!(trajectory.report().phases[0].counts.contact_events, 4);
 }

@@ -193,7 +193,7 @@ impl fmt::Debug for Text<'_> {
         let is_later = |input: &&Input| match input.quantity {
             Actuation | Pressure | Opening | Flow | FacePressure | Load(_) | Field => false,
             Device(own) => own.keys == STEER,
-            Wrench(_) => true,
+            _ => true,
         };
         let later: Vec<_> = phase.inputs.iter().filter(is_later).collect();
         if !later.is_empty() {
