@@ -6,7 +6,6 @@
 
 use super::{error::Reason, run::Run, watch::Root};
 use crate::base::{
-    input::InputError,
     vector::{noise, size_or_one},
 };
 
