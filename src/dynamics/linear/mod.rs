@@ -1,7 +1,7 @@
 //! The linear systems of a phase.
 //!
-//! Of the inertia matrix and of the Newton matrix, half as large as the state, the free part is factorized, or large solids iterate
-//! with it ([`symmetric`]); constraints ([`ConstrainedSolver`]), edges of rigid pieces ([`EdgeSolver`]) and what flows
+//! The free part of a matrix of half the size of the state, the inertia or the Newton matrix, is factorized, or large solids iterate
+//! with it ([`symmetric`]). Constraints ([`ConstrainedSolver`]), edges of rigid pieces ([`edge_solver`]) and what flows
 //! ([`FlowMatrix`]) add systems of the size of their number.
 
 mod cholesky;

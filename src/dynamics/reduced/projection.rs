@@ -1,5 +1,5 @@
-//! The equations of a phase along the shapes of a reduced model (`scene/reduced_model.rs`): lifting of its unknowns to displacements of all nodes, projection of
-//! forces onto its shapes, and the small matrices of Newton's method.
+//! The equations of a phase along the shapes of a reduced model (`scene/reduced_model.rs`): lifting of its unknowns to
+//! displacements of all nodes, projection of forces onto its shapes, and the small matrices of Newton's method.
 //!
 //! With Psi = [Phi E], z = (q, b - b_0) and the forces f, the equations are
 //!

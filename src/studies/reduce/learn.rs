@@ -216,7 +216,7 @@ impl Undeformed {
         let rest = vec![0.0; scene.body().dofs()];
         let at = PhaseStart { time: start, u: &rest };
         let own = forces.into_iter().nth(number).unwrap_or_default();
-        let system = scene.clone().unreduced().system(&matrices, phase, own, &at, 0.0)?;
+        let system = scene.system(&matrices, phase, own, &at, 0.0)?;
         Ok(Self { system, matrices, start })
     }
 }
