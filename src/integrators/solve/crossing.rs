@@ -9,7 +9,7 @@ use std::mem;
 use super::{
     engine::Start,
     error::Reason,
-    event::{Action, Jump, check_crosses},
+    event::{Jump, check_crosses},
     run::Run,
     sensitivities::{Carried, Crossing},
     snapshot::{Act, Snapshot},
