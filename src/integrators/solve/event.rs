@@ -9,7 +9,9 @@ use crate::integrators::common::check_finite;
 
 /// g(t, y, p), whose roots are the events: equations that keep to one side of them ask it, too.
 #[derive(Clone)]
-pub(super) struct Function<'a>(Rc<RefCell<dyn FnMut(f64, &[f64], &[f64]) -> f64 + 'a>>);
+pub(super) struct Function<'a>(Rc<RefCell<Closure<'a>>>);
+
+type Closure<'a> = dyn FnMut(f64, &[f64], &[f64]) -> f64 + 'a;
 
 impl<'a> Function<'a> {
     pub(super) fn new(g: impl FnMut(f64, &[f64], &[f64]) -> f64 + 'a) -> Self {

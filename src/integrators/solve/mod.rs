@@ -27,6 +27,7 @@
 //! [`Run`] does the same step by step, under the caller's control, and [`ensemble`] solves many problems on
 //! all cores. Features that a method lacks are errors before the first step, and are never replaced by others.
 
+mod caution;
 mod control;
 mod crossing;
 mod edge;

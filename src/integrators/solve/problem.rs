@@ -12,7 +12,7 @@ use std::{
 use super::{
     event::{Action, Event, Jump},
     saved::Saved,
-    sides::SharedSides,
+    snapshot::SharedSides,
 };
 use crate::base::input::InputError;
 use crate::integrators::ode::{Dae, Ode};

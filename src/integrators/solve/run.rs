@@ -9,6 +9,7 @@ use std::{
 use faer::{MatMut, MatRef};
 
 use super::{
+    caution::Caution,
     engine::Engine,
     error::Reason,
     event::Event,
@@ -17,10 +18,9 @@ use super::{
     problem::{Break, Equations, Observer, Problem},
     saved::Saved,
     sensitivities::Carried,
-    sides::{SharedSides, Surfaces},
-    snapshot::{Log, Snapshot},
+    sides::Surfaces,
+    snapshot::{Log, SharedSides, Snapshot},
     solution::{End, Occurrence, SavedPoint},
-    switch::Caution,
     watch::EventTracker,
 };
 use crate::base::input::InputError;

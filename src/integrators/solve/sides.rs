@@ -12,23 +12,12 @@ use faer::MatMut;
 use super::{
     event::{Event, Function},
     problem::Equations,
+    snapshot::{SharedSides, Sides},
 };
 use crate::integrators::{
     common::Tolerances,
     ode::{BandMut, Dae, Failure, MassKind, Ode, call, delegate::delegate},
 };
-
-/// The sides that the solution is on, as a run or its way back tells them to the equations.
-pub(super) struct Sides {
-    /// The signs of the functions of all events there; 0 where the equations are used as they are.
-    pub(super) signs: Vec<f64>,
-    /// Slopes of the state at times nearby: surfaces are crossed along them.
-    pub(super) flows: Vec<(f64, Vec<f64>)>,
-    /// The parameters; the equations are also asked for others nearby, for differences.
-    pub(super) p: Vec<f64>,
-}
-
-pub(super) type SharedSides = Rc<RefCell<Sides>>;
 
 /// The surfaces of all events.
 #[derive(Clone)]
@@ -202,12 +191,12 @@ impl<'a> Ode for Sided<'a, dyn Ode + 'a> {
 
     fn rhs(&mut self, t: f64, y: &[f64], ydot: &mut [f64]) -> Result<(), Failure> {
         let shift = self.surfaces.shift(t, y, self.system.parameters());
-        self.continued((t, y), shift, ydot, |system, t, y, out| call::rhs(system, t, y, out))
+        self.continued((t, y), shift, ydot, call::rhs)
     }
 
     fn newton_rhs(&mut self, t: f64, y: &[f64], ydot: &mut [f64]) -> Result<(), Failure> {
         let shift = self.surfaces.shift(t, y, self.system.parameters());
-        self.continued((t, y), shift, ydot, |system, t, y, out| call::newton_rhs(system, t, y, out))
+        self.continued((t, y), shift, ydot, call::newton_rhs)
     }
 
     fn quadratures(&mut self, t: f64, y: &[f64], qdot: &mut [f64]) -> Result<(), Failure> {

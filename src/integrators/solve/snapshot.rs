@@ -1,4 +1,6 @@
-//! Where a run stood, and the actions that it performed there.
+//! Where a run stood, the actions that it performed there, and the sides of its events.
+
+use std::{cell::RefCell, rc::Rc};
 
 /// A time, the state there, its time derivative (of a DAE), the parameters of the equations, and the sides of
 /// the events that the solution is on.
@@ -30,3 +32,15 @@ impl Act {
 /// What happened to the state, for the way back: each action, or each passage from one side of an event to the
 /// other, with the state before it.
 pub(super) type Log = Vec<(Act, Snapshot)>;
+
+/// The sides that the solution is on, as a run or its way back tells them to the equations.
+pub(super) struct Sides {
+    /// The signs of the functions of all events there; 0 where the equations are used as they are.
+    pub(super) signs: Vec<f64>,
+    /// Slopes of the state at times nearby: surfaces are crossed along them.
+    pub(super) flows: Vec<(f64, Vec<f64>)>,
+    /// The parameters; the equations are also asked for others nearby, for differences.
+    pub(super) p: Vec<f64>,
+}
+
+pub(super) type SharedSides = Rc<RefCell<Sides>>;

@@ -4,28 +4,8 @@
 //! that is known. Elsewhere it shows in steps that fail and become short: the equations are then evaluated along
 //! the step, and a jump remains one however closely it is enclosed.
 
-use super::{error::Reason, run::Run, watch::Root};
-use crate::base::{
-    vector::{noise, size_or_one},
-};
-
-/// Steps that may have passed a switch.
-#[derive(Debug, Default)]
-pub(super) struct Caution {
-    failures: u64,
-    /// Size of the last step, and that to which steps have to grow again after a failure.
-    last: f64,
-    pub(super) until: f64,
-    /// Whether they have not yet.
-    is_on: bool,
-}
-
-impl Caution {
-    /// Whether the last step is so short that its polynomial has no accurate derivatives.
-    fn is_short(&self) -> bool {
-        self.is_on && self.last < 0.01 * self.until
-    }
-}
+use super::{caution::Caution, error::Reason, run::Run, watch::Root};
+use crate::base::vector::{noise, size_or_one};
 
 /// The two sides of a jump of an equation along a step.
 struct Edge {
