@@ -93,7 +93,8 @@ def solve_ivp(
         (``"esdirk"``, ``"Radau"``, tables of ARKODE) take a regular one.
     sensitivities : True, or sequence of int, optional
         Also computes the derivatives of y by the numbers in `args`, all or those at these places (from 0; arrays in `args` count
-        with each of their numbers), by ``"bdf"``, ``"adams"`` or ``"ida"``.
+        with each of their numbers), by ``"bdf"``, ``"adams"`` or ``"ida"``. Conditions that `fun` switches by belong into `events`:
+        the derivatives are right across these, and a switch that is none ends the run.
     initial_sensitivities : array, optional
         Those of `y0` [unknown, parameter]; zeros by default.
 

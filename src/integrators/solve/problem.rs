@@ -158,6 +158,8 @@ impl<'a> Problem<'a> {
     ///
     /// A step ends just before each, at the last floating-point number before it, and the integration
     /// restarts there. Equations that test `t < break` see the side that they are on.
+    ///
+    /// Derivatives take these times as fixed; a time that is a parameter is an [`Event`] of `t - p`.
     pub fn breaks(mut self, times: impl IntoIterator<Item = f64>) -> Self {
         for t in times {
             self.push_break(t, None);
