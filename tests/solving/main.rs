@@ -21,3 +21,4 @@ mod support;
 mod tolerances;
 mod values;
 mod wrong_jacobians;
+mod wrong_solvers;

@@ -16,6 +16,7 @@ mod one_step;
 mod options;
 mod rootfinding;
 mod roots;
+mod solver_check;
 mod statistics;
 mod tolerances;
 
@@ -33,5 +34,6 @@ pub(crate) use options::{
     check_start_time, check_step, check_time, check_whole, step_options,
 };
 pub(crate) use roots::time_tolerance;
+pub(crate) use solver_check::{Asked, SolverCheck};
 pub use statistics::Statistics;
 pub use tolerances::{AbsoluteTolerance, Tolerances};

@@ -5,11 +5,13 @@ use std::{error, fmt, time::Duration};
 use thiserror::Error;
 
 use super::solution::Solution;
-use crate::base::input::InputError;
+use crate::base::input::{InputError, debug_in_words};
 use crate::integrators::common;
 
-/// An error of [`solve`](super::solve).
-#[derive(Debug, Error)]
+debug_in_words!(Error, Stopped, Reason);
+
+/// An error of [`solve`](super::solve). It is shown in words, also by [`Debug`](std::fmt::Debug).
+#[derive(Error)]
 #[non_exhaustive]
 pub enum Error {
     /// A value that was handed in cannot be used; nothing was computed.
@@ -22,16 +24,16 @@ pub enum Error {
 }
 
 /// A run that stopped: the reason, and the solution until then.
-#[derive(Debug)]
 pub struct Stopped {
     /// Why.
     pub reason: Reason,
     /// The solution so far.
     pub solution: Solution,
+    /// Why there are so many steps, if that is known: [`Run::notice`](super::Run::notice).
+    pub notice: Option<String>,
 }
 
-/// Why a run stopped, or did not begin.
-#[derive(Debug)]
+/// Why a run stopped, or did not begin. It is shown in words, also by [`Debug`](std::fmt::Debug).
 #[non_exhaustive]
 pub enum Reason {
     /// A value that was handed in cannot be used.
@@ -123,9 +125,12 @@ impl From<common::Error> for Reason {
 impl fmt::Display for Stopped {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let t = self.solution.t().last().copied().unwrap_or(f64::NAN);
-        match &self.reason {
-            Reason::Failed(error) => error.fmt(f),
-            reason => write!(f, "the run stopped at t = {t:?}: {reason}"),
+        match (&self.reason, &self.notice) {
+            (Reason::Failed(error), _) => error.fmt(f),
+            (Reason::Steps(steps), Some(notice)) => {
+                write!(f, "the run stopped at t = {t:?}: {steps} steps taken; {notice}")
+            }
+            (reason, _) => write!(f, "the run stopped at t = {t:?}: {reason}"),
         }
     }
 }

@@ -24,7 +24,7 @@ use super::{
     signs::Violation,
 };
 use crate::integrators::{
-    common::{Callback, Cause, Clock, Error, JacobianCheck, Point, Wanted},
+    common::{Asked, Callback, Cause, Clock, Error, JacobianCheck, Point, SolverCheck, Wanted},
     ode::{Entries, Failure},
 };
 
@@ -68,6 +68,8 @@ pub(super) struct Host<S> {
     pub(super) scales: Option<Scales>,
     /// Checks the Jacobian that the system supplies, with its shape if it is a matrix.
     pub(super) check: Option<(JacobianCheck, Option<Shape>)>,
+    /// Checks the system's own linear solver or preconditioner.
+    pub(super) solver_check: Option<SolverCheck>,
     /// Finds out whether a DAE failed because of its index; none if the user knows that.
     pub(super) find_index: Option<FindIndex<S>>,
     /// The preconditioner of a Krylov method, if it is not the system's own.
@@ -85,7 +87,7 @@ pub(super) struct Host<S> {
 pub(super) struct Troubles {
     panic: Option<Box<dyn Any + Send>>,
     fatal: Option<(Callback, Box<dyn error::Error + Send + Sync>)>,
-    /// Error in a supplied Jacobian.
+    /// Error in a supplied Jacobian or linear solver.
     wrong: Option<Cause>,
     /// Time and reason of the last request for a smaller step.
     retry: Option<(f64, Cause)>,
@@ -201,6 +203,7 @@ impl<S> Host<S> {
             differences: None,
             scales: None,
             check: None,
+            solver_check: None,
             find_index: None,
             ilu: None,
             setup_time: f64::NAN,
@@ -320,6 +323,29 @@ impl<S> Host<S> {
             });
         }
         self.check = Some((check, shape));
+        if wrong.is_none() {
+            return outcome;
+        }
+        self.troubles.wrong = wrong;
+        STOP
+    }
+
+    /// Checks the linear solver or the preconditioner that the system has just set up, if a check is due.
+    pub(super) fn check_solver(
+        &mut self,
+        t: f64,
+        gamma: Option<f64>,
+        point: Point<'_>,
+        mut ask: impl FnMut(&mut S, Asked<'_>, &mut [f64]) -> Result<(), Failure>,
+    ) -> i32 {
+        // Taken out of the host, which calls the system meanwhile.
+        let Some(mut check) = self.solver_check.take() else { return 0 };
+        let mut wrong = None;
+        let outcome = self.guard(Callback::NewtonSolve, t, |system| {
+            wrong = check.find(gamma, point, &mut |asked, out| ask(system, asked, out))?;
+            Ok(())
+        });
+        self.solver_check = Some(check);
         if wrong.is_none() {
             return outcome;
         }
