@@ -59,13 +59,14 @@ pub use dynamics::{
     equations::Equations,
     equilibrium::{Equilibrium, MeshEstimate, NoEquilibrium, Stability},
     error::{Error, Panicked},
+    phase::PhaseSummary,
     report::{
         Achieved, Counts, Indicator, PhaseReport, ReducedReport, Report, SlipEvent, ToldReading,
         Verdict,
     },
     simulate::{Checkpoint, Sampling, Simulation, View},
     statics::Statics,
-    system::{Energy, PhaseSummary, Spectrum},
+    system::{Energy, Spectrum},
     trajectory::{IntegrationFailure, Interrupted, Sample, Trajectory},
 };
 #[cfg(feature = "bodies")]
@@ -85,8 +86,8 @@ pub use integrators::common::Integrator;
 pub use io::scene_file::{DeviceTable, OutputRequest, SceneFile};
 #[cfg(feature = "bodies")]
 pub use scene::{
-    BodyState, Device, DeviceGauge, DeviceInput, DeviceOutput, DeviceSignals, DeviceState,
-    DeviceValue, Phase, ReducedModel, Scene, SceneState, Smaller, Term,
+    BodyState, Device, DeviceGauge, DeviceInput, DeviceOutput, DeviceSignals, DeviceSite,
+    DeviceState, DeviceValue, InputLimit, Phase, ReducedModel, Scene, SceneState, Smaller, Term,
     constraint::{Axis, Prescribed},
     devices::*,
     forces::*,

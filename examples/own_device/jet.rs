@@ -6,8 +6,8 @@ use pliant::force::{Force, NodalForces, Tangents};
 use pliant::ode::Failure;
 use pliant::sparse::BlockMatrix;
 use pliant::{
-    Body, Device, DeviceGauge, DeviceInput, DeviceOutput, DeviceSignals, DeviceState, InputError,
-    Selection,
+    Body, Device, DeviceGauge, DeviceInput, DeviceOutput, DeviceSignals, DeviceSite, DeviceState,
+    InputError, Selection,
 };
 use serde::Deserialize;
 
@@ -55,7 +55,11 @@ impl Device for Jet {
         &[Self::POWER]
     }
 
-    fn force(&self, body: &Body, inputs: DeviceSignals) -> Result<Arc<dyn Force>, InputError> {
+    fn force(
+        &self,
+        DeviceSite { body, .. }: &DeviceSite<'_>,
+        inputs: DeviceSignals,
+    ) -> Result<Arc<dyn Force>, InputError> {
         if body.dimension() != 2 {
             let help = "a jet steers in the plane: take a body in the plane";
             return Err(InputError::new("dimension of the body", body.dimension(), help));
@@ -63,8 +67,8 @@ impl Device for Jet {
         Ok(Arc::new(Push { nodes: self.nodes(body)?, inputs }))
     }
 
-    fn gauge(&self, _number: usize, body: &Body) -> Result<DeviceGauge, InputError> {
-        let nodes = self.nodes(body)?;
+    fn gauge(&self, _number: usize, site: &DeviceSite<'_>) -> Result<DeviceGauge, InputError> {
+        let nodes = self.nodes(site.body)?;
         Ok(Box::new(move |now| {
             let thrust = thrust(now.input(THRUST)[0], now.input(ANGLE)[0]);
             let of_node = |n: &usize| (0..2).map(|i| thrust[i] * now.v[2 * n + i]).sum::<f64>();

@@ -99,7 +99,7 @@ impl fmt::Debug for Equations {
 impl Equations {
     /// M = m (x) I; this is m (kg).
     pub fn inertia(&self) -> &NodeMatrix {
-        self.system.inertia()
+        &self.system.matrices().inertia
     }
 
     /// Displacement components that are prescribed at time `t` (s), with b, b' and b''.

@@ -6,6 +6,7 @@ use pliant::{
     Body, Cells, Dipole, Error, Magnet, Material, Mesh, Method, Phase, Plane, Sampling, Scene,
     Settings, Signals, SolidCells, Statics, simulate::Reading,
 };
+use serde_json::{Value, json};
 
 /// mu_0 (T m/A)
 const VACUUM: f64 = 1.256_637_062_12e-6;
@@ -206,6 +207,73 @@ fn dipoles_are_driven() {
     driven.dipole_position("lead", [0.01, 0.0012]).unwrap();
     let error = driven.advance_to(0.02).unwrap_err().to_string();
     assert!(error.contains("dipole \"lead\"") && error.contains("of a magnet"), "{error}");
+}
+
+/// A dipole is a device: inputs and outputs by their words are those of its own words, and sums where there are two.
+#[test]
+fn dipoles_are_devices() {
+    let start = |moment: [f64; 2]| {
+        let dipole = Dipole::new(moment, [5.0, 0.0]).named("lead");
+        Scene::new(strip()).magnet(Magnet::new([0.1, 0.0])).dipole(dipole)
+    };
+    let phase = || Phase::until(0.02).hold("left");
+    let (near, settings) = ([0.02, 0.03], Settings::default());
+    let sampling = Sampling::every(0.005).read("pull", Reading::dipole_force("lead"));
+    let own = phase().dipole_position("lead", near).dipole_moment("lead", [0.0, 0.1 + 0.2]);
+    let own = start([1.0, 0.0]).phase(own).simulate(&settings, &sampling).unwrap();
+    let sampling = Sampling::every(0.005).read("pull", Reading::device("lead", &Dipole::FORCE));
+    let device = phase()
+        .device_input("lead", &Dipole::POSITION, near)
+        .device_input("lead", &Dipole::MOMENT, [0.0, 0.1])
+        .device_input("lead", &Dipole::MOMENT, [0.0, 0.2]);
+    let device = start([1.0, 0.0]).phase(device).simulate(&settings, &sampling).unwrap();
+    for (own, device) in own.samples().iter().zip(device.samples()) {
+        assert_eq!(own.sensors, device.sensors);
+    }
+    let mut driven = start([0.0, 0.3]).phase(phase()).start(&settings).unwrap();
+    driven.device_input("lead", "position", near).unwrap();
+    driven.advance_to(0.02).unwrap();
+    assert_eq!(driven.view().device("lead", "position").unwrap(), near);
+    assert_eq!(driven.view().device("lead", "moment").unwrap(), [0.0, 0.3]);
+    let view = driven.view();
+    assert_eq!(view.device("lead", "force").unwrap(), view.dipole_force("lead").unwrap());
+}
+
+/// Files of checkpoints from before dipoles were devices: with quantities of their own, and, before that, in a list of their own.
+#[test]
+fn files_from_before_are_read() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("checkpoint.json");
+    let dipole = Dipole::new([0.0, 0.3], [0.02, 0.05]).named("lead");
+    let scene = Scene::new(strip()).magnet(Magnet::new([0.1, 0.0])).dipole(dipole);
+    let scene = scene.phase(Phase::until(0.02).hold("left"));
+    let mut driven = scene.start(&Settings::default()).unwrap();
+    driven.advance_to(0.005).unwrap();
+    driven.dipole_position("lead", [0.02, 0.03]).unwrap();
+    driven.dipole_moment("lead", [0.1, 0.3]).unwrap();
+    let kept = driven.checkpoint();
+    kept.write(&path).unwrap();
+    driven.restore(&kept).unwrap();
+    driven.advance_to(0.02).unwrap();
+    let now: Value = serde_json::from_slice(&std::fs::read(&path).unwrap()).unwrap();
+    let words = |input: &Value| input[0]["input"].as_str().unwrap().to_owned();
+    let inputs = now["in_force"]["inputs"].as_array().unwrap();
+    let mut quantities = now.clone();
+    let old = |i: &Value| json!([{ "dipole": words(i) }, i[1], i[2]]);
+    quantities["in_force"]["inputs"] = inputs.iter().map(old).collect();
+    let mut list = now.clone();
+    let old = |i: &Value| json!(["lead", words(i), i[2]["vector"]]);
+    list["format"] = json!(5);
+    list["in_force"]["dipoles"] = inputs.iter().map(old).collect();
+    list["in_force"].as_object_mut().unwrap().remove("inputs");
+    for file in [now, quantities, list] {
+        std::fs::write(&path, serde_json::to_vec(&file).unwrap()).unwrap();
+        let mut other = scene.start(&Settings::default()).unwrap();
+        let read = other.read_checkpoint(&path).unwrap();
+        other.restore(&read).unwrap();
+        other.advance_to(0.02).unwrap();
+        assert_eq!(other.sample().unwrap().u, driven.sample().unwrap().u);
+    }
 }
 
 #[test]

@@ -111,14 +111,8 @@ fn methods_agree_on_a_reduced_model() {
     let model = learned(vec![scene.clone()], 1e-6, 0.02);
     let reduced = scene.reduced(model).unwrap();
     let exact = run(&reduced, 1e-10);
-    let methods = [
-        Method::CvodeBdf,
-        Method::CvodeAdams,
-        Method::Arkode,
-        Method::Rosenbrock,
-        Method::Rk,
-        Method::Ida,
-    ];
+    let methods =
+        [Method::CvodeBdf, Method::CvodeAdams, Method::Arkode, Method::Rosenbrock, Method::Rk];
     for method in methods {
         let settings = Settings { method, ..settings(1e-7) };
         let own = reduced.simulate(&settings, &Sampling::every(0.01)).unwrap();

@@ -381,3 +381,80 @@ fn what_has_no_gradient_is_refused() {
     let text = refused(problem, Method::Ida, &tight());
     assert!(text.contains("not yp"), "{text}");
 }
+
+/// y0^2 p0 at the end, or its integral, whose slopes are off by the factor `by_y` or `by_p`.
+struct Wrong {
+    at_end: bool,
+    by_y: f64,
+    by_p: f64,
+}
+
+impl Wrong {
+    fn value(&self, y: &[f64], p: &[f64], slopes: Option<Slopes<'_>>) -> f64 {
+        if let Some(slopes) = slopes {
+            slopes.y[0] = self.by_y * 2.0 * y[0] * p[0];
+            slopes.p[0] = self.by_p * y[0] * y[0];
+        }
+        y[0] * y[0] * p[0]
+    }
+}
+
+impl Functional for Wrong {
+    fn running(
+        &mut self,
+        _t: f64,
+        y: &[f64],
+        p: &[f64],
+        slopes: Option<Slopes<'_>>,
+    ) -> Result<f64, Failure> {
+        Ok(if self.at_end { 0.0 } else { self.value(y, p, slopes) })
+    }
+
+    fn terminal(
+        &mut self,
+        _t: f64,
+        y: &[f64],
+        p: &[f64],
+        slopes: Option<Slopes<'_>>,
+    ) -> Result<f64, Failure> {
+        Ok(if self.at_end { self.value(y, p, slopes) } else { 0.0 })
+    }
+}
+
+/// Wrong slopes of a functional are refused with their place and both values; by an ODE and by a DAE.
+#[test]
+fn wrong_slopes_of_a_functional_are_found() {
+    let p = [9.81, 0.8];
+    let dae = || {
+        let fall = dae_with_parameters(
+            |_t, y, yp, p, r| {
+                r[0] = yp[0] - y[1];
+                r[1] = yp[1] + p[0];
+                Ok(())
+            },
+            p,
+        );
+        Problem::dae(fall, [10.0, 0.5], [0.5, -p[0]]).differential([true, true])
+    };
+    let ode = || ball(p, [10.0, 0.5]);
+    let problems: [(&dyn Fn() -> Problem<'static>, Method); 2] =
+        [(&ode, Method::Bdf), (&dae, Method::Ida)];
+    for (problem, method) in problems {
+        for at_end in [false, true] {
+            let find = |by_y: f64, by_p: f64| {
+                let functional = Wrong { at_end, by_y, by_p };
+                gradient(problem(), functional, method, (0.0, 1.0), &tight(), &back())
+            };
+            find(1.0, 1.0).unwrap();
+            let name = if at_end { "terminal" } else { "running" };
+            for (by_y, by_p, place) in [(1.5, 1.0, "y[0]"), (1.0, -1.0, "p[0]"), (0.0, 1.0, "y[0]")]
+            {
+                let error = find(by_y, by_p).unwrap_err();
+                let source = std::error::Error::source(&error);
+                let text = source.map_or(error.to_string(), ToString::to_string);
+                let expected = format!("{name} of the functional is wrong: its slope by {place}");
+                assert!(text.contains(&expected), "{method:?} {text}");
+            }
+        }
+    }
+}

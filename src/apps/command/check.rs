@@ -1,6 +1,6 @@
 //! `pliant check`
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use clap::Args;
 use pliant::scene_file::Format;
@@ -151,31 +151,34 @@ fn surroundings(scene: &Scene) -> Result<(), Failure> {
     let lags = scene.lags().map(|(name, _)| name).collect();
     let magnets = scene.magnets().iter().map(|magnet| format!("{:?} T", magnet.remanence()));
     let magnets: Vec<String> = magnets.collect();
-    let dipoles = scene.dipoles().iter().map(|dipole| dipole.name()).collect();
     let chambers = scene.chambers().iter().map(|chamber| chamber.name()).collect();
     let orifices = scene.orifices().iter().map(|orifice| orifice.name()).collect();
     let liquids = scene.liquids().iter().map(|liquid| liquid.chamber()).collect();
     let pipes = scene.pipes().iter().map(|pipe| pipe.name()).collect();
     let fluids = scene.fluids().iter().map(|fluid| fluid.name()).collect();
-    let devices = scene.devices().iter().map(|device| device.name()).collect();
+    let mut devices: BTreeMap<String, Vec<&str>> = BTreeMap::new();
+    for device in scene.devices() {
+        devices.entry(format!("{}s", device.kind())).or_default().push(device.name());
+    }
     let obstacles = scene.obstacles().iter().map(|obstacle| obstacle.name()).collect();
-    for (label, names) in [
+    let of_bodies = [
         ("springs", springs),
         ("cables", cables),
         ("muscles", muscles),
         ("growths", growths),
         ("lags of", lags),
         ("magnets", magnets.iter().map(String::as_str).collect()),
-        ("dipoles", dipoles),
+    ];
+    let others = [
         ("chambers", chambers),
         ("orifices", orifices),
         ("liquids", liquids),
         ("pipes", pipes),
         ("fluids", fluids),
-        ("devices", devices),
         ("obstacles", obstacles),
-    ] {
-        let names: Vec<&str> = names;
+    ];
+    let devices = devices.iter().map(|(label, names)| (label.as_str(), names.clone()));
+    for (label, names) in of_bodies.into_iter().chain(devices).chain(others) {
         if !names.is_empty() {
             line(label, &names.join(", "))?;
         }

@@ -48,7 +48,7 @@ pub(super) fn of(present: &Present, colours: Option<usize>, since: Option<f64>) 
         "colours": colours.and_then(|quantity| picture.colours(&view, quantity)),
         "past": past.after(since),
         "sliders": values.collect::<Vec<_>>(),
-        "dipoles": picture.dipoles(&view),
+        "needles": picture.needles(&view),
         "everywhere": Picture::everywhere(&view),
         "remanence": picture.remanence(&view),
         "lines": picture.lines(&view),

@@ -1,5 +1,5 @@
 //! Sliders for pressures of chambers, flows of liquids, openings of orifices, actuation of springs, cables, muscles and growths,
-//! loads, magnetic fields, positions and moments of dipoles.
+//! loads, magnetic fields, inputs of devices.
 //!
 //! A slider changes its value along a straight line and not by a jump, so that the table in the saved file is
 //! exactly the signal that acted (`io/scene_file/rewrite.rs`). A load has a slider for each component, each
@@ -12,8 +12,8 @@ use serde_json::{Value, json};
 use crate::dynamics::simulate::Simulation;
 use crate::elements::body::{Body, Part};
 use crate::elements::mesh::Selection;
-use crate::scene::forces::{Chamber, Dipole, DipolePart};
-use crate::scene::timeline::{self, Device, LoadKind, Phase, Quantity, Row, Scene};
+use crate::scene::forces::Chamber;
+use crate::scene::timeline::{self, Device, DeviceInput, LoadKind, Phase, Quantity, Scene};
 
 /// The input that a slider sets, or a component of it.
 #[derive(Debug, Clone, PartialEq)]
@@ -43,8 +43,6 @@ const USUAL_WARMTH: f64 = 50.0;
 const USUAL: f64 = 0.05;
 /// A usual magnetic field (T).
 const USUAL_FIELD: f64 = 0.05;
-/// A usual moment of a dipole (A m^2).
-const USUAL_MOMENT: f64 = 1.0;
 /// Times of a phase at which its values are looked at.
 const LOOKS: u32 = 20;
 /// Most node numbers in the name of a slider.
@@ -120,13 +118,12 @@ impl Slider {
             let range = [target.largest_in(scene), USUAL];
             Self::new(target, "growth".into(), range, "1")
         });
-        let axes = if scene.magnets().is_empty() { 0 } else { scene.body().dimension() };
-        // all components have one range: a field in another direction may be as strong
-        let largest = (0..axes).map(|axis| Target::field(axis).largest_in(scene));
-        let largest = largest.fold(0.0, f64::max);
-        let fields = (0..axes).zip(["x", "y", "z"]).map(|(axis, name)| {
-            Self::new(Target::field(axis), name.into(), [largest, USUAL_FIELD], "T")
-        });
+        let of = timeline::Target::Everything;
+        let field = Target { quantity: Quantity::Field, of, axis: None };
+        let field = Some(field).filter(|_| !scene.magnets().is_empty());
+        let fields = field
+            .iter()
+            .flat_map(|field| Self::of_input(scene, field, USUAL_FIELD, |axis| axis.into()));
         chambers
             .chain(orifices)
             .chain(flows)
@@ -135,10 +132,9 @@ impl Slider {
             .chain(growths)
             .chain(heaters)
             .chain(fields)
-            .chain(scene.dipoles().iter().flat_map(|dipole| Self::of_dipole(scene, dipole)))
+            .chain(Self::of_devices(scene))
             .chain(loads)
             .chain(Self::on_nodes(scene, force))
-            .chain(Self::of_devices(scene))
             .collect()
     }
 
@@ -155,7 +151,7 @@ impl Slider {
         let sliders = targets.into_iter().flat_map(|whole| {
             let is_force = whole.quantity.row().unit == "N";
             let usual = if is_force { force } else { force * scene.body().size() };
-            Self::of_input(scene, &whole, usual)
+            Self::by_word(scene, &whole, usual)
         });
         sliders.collect()
     }
@@ -164,45 +160,40 @@ impl Slider {
     fn of_devices(scene: &Scene) -> Vec<Self> {
         let of_device = |device: &Arc<dyn Device>| {
             let whole = |input| Target::of(Quantity::Device(input), device.name());
+            let usual =
+                |input: &DeviceInput| if input.unit == "m" { scene.body().size() } else { 1.0 };
+            let inputs = device.inputs().iter();
             let sliders =
-                device.inputs().iter().flat_map(|input| Self::of_input(scene, &whole(input), 1.0));
+                inputs.flat_map(|input| Self::by_word(scene, &whole(input), usual(input)));
             sliders.collect::<Vec<_>>()
         };
         scene.devices().iter().flat_map(of_device).collect()
     }
 
-    /// One slider per component of an input, all with one range: up to `usual` if the scene has no values.
-    fn of_input(scene: &Scene, whole: &Target, usual: f64) -> Vec<Self> {
-        let Row { word, unit, .. } = whole.quantity.row();
-        let rank = whole.quantity.rank(scene.body().dimension());
-        let names = match rank {
-            1 => vec![word.to_owned()],
-            _ => ["x", "y", "z"].map(|axis| format!("{word} {axis}")).into(),
-        };
-        let parts: Vec<Target> = (0..rank).map(|axis| whole.along(axis)).collect();
-        let largest = parts.iter().map(|part| part.largest_in(scene)).fold(0.0, f64::max);
-        let slider = |(part, what)| Self::new(part, what, [largest, usual], unit);
-        parts.into_iter().zip(names).map(slider).collect()
+    /// One slider per component of an input, by its word.
+    fn by_word(scene: &Scene, whole: &Target, usual: f64) -> Vec<Self> {
+        let (word, rank) =
+            (whole.quantity.row().word, whole.quantity.rank(scene.body().dimension()));
+        Self::of_input(scene, whole, usual, |axis| match rank {
+            1 => word.into(),
+            _ => format!("{word} {axis}"),
+        })
     }
 
-    /// One slider per component of the position and of the moment of a dipole.
-    fn of_dipole(scene: &Scene, dipole: &Dipole) -> Vec<Self> {
-        let axes = 0..scene.body().dimension();
-        let usual = |part| match part {
-            DipolePart::Position => scene.body().size(),
-            DipolePart::Moment => USUAL_MOMENT,
-        };
-        let sliders = DipolePart::ALL.into_iter().flat_map(|part| {
-            let whole = Target::of(Quantity::Dipole(part), dipole.name());
-            let targets = axes.clone().map(move |axis| whole.along(axis));
-            let largest =
-                targets.clone().map(|target| target.largest_in(scene)).fold(0.0, f64::max);
-            targets.zip(["x", "y", "z"]).map(move |(target, axis)| {
-                let what = format!("{part} {axis}");
-                Self::new(target, what, [largest, usual(part)], part.unit())
-            })
-        });
-        sliders.collect()
+    /// One slider per component of an input, with a `name` by its axis: up to `usual` if the scene has no values. All have one range, as
+    /// an input in another direction may be as strong.
+    fn of_input(
+        scene: &Scene,
+        whole: &Target,
+        usual: f64,
+        name: impl Fn(&str) -> String,
+    ) -> Vec<Self> {
+        let rank = whole.quantity.rank(scene.body().dimension());
+        let parts: Vec<Target> = (0..rank).map(|axis| whole.along(axis)).collect();
+        let largest = parts.iter().map(|part| part.largest_in(scene)).fold(0.0, f64::max);
+        let unit = whole.quantity.row().unit;
+        let slider = |(part, axis)| Self::new(part, name(axis), [largest, usual], unit);
+        parts.into_iter().zip(["x", "y", "z"]).map(slider).collect()
     }
 
     /// One slider per component of the loads on a selection. The loads are of the kind that the scene always
@@ -219,17 +210,9 @@ impl Slider {
             LoadKind::Each => ("load", ", each node", force),
             LoadKind::Total => ("load", ", in total", force),
         };
-        // all components have one range: a load in another direction may be as strong
-        let axes = 0..scene.body().dimension();
         let of = timeline::Target::Nodes(nodes.clone());
         let whole = Target { quantity: Quantity::Load(kind), of, axis: None };
-        let targets = axes.map(|axis| whole.along(axis));
-        let largest = targets.clone().map(|target| target.largest_in(scene)).fold(0.0, f64::max);
-        let slider = |(target, axis)| {
-            let what = format!("{name} {axis}{of_what}");
-            Self::new(target, what, [largest, usual], Quantity::Load(kind).row().unit)
-        };
-        targets.zip(["x", "y", "z"]).map(slider).collect()
+        Self::of_input(scene, &whole, usual, |axis| format!("{name} {axis}{of_what}"))
     }
 
     /// A slider up to twice the largest value of the scene, or up to `usual` if the scene has none.
@@ -260,11 +243,6 @@ impl Target {
     /// A quantity of a component.
     pub(super) fn of(quantity: Quantity, name: &str) -> Self {
         Self { quantity, of: timeline::Target::one(name), axis: None }
-    }
-
-    /// A component of the magnetic field.
-    fn field(axis: usize) -> Self {
-        Self { quantity: Quantity::Field, of: timeline::Target::Everything, axis: Some(axis) }
     }
 
     /// A component of it.

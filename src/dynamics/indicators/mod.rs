@@ -7,7 +7,7 @@
 //! | [`units`]: size and mass of the body, speed of waves in it | 10 m, 10 t, 0.1 to 10,000 m/s |
 //! | [`units`]: density, modulus (of rubber) | 5 to 25,000 kg/m^3, 2e12 Pa (1e8 Pa) |
 //! | [`units`]: thickness over size; strain of a column under its own weight | 20; 100 % |
-//! | [`units`]: remanence of magnets, magnetic field, moment of dipoles | 2 T, 10 T, 1e4 A m^2 |
+//! | [`units`]: remanence of magnets, magnetic field, limits of inputs of devices | 2 T, 10 T, 1e4 A m^2 |
 //! | [`gas`]: least absolute pressure; orifices beside their chambers | 5e4 Pa; a face of a cube as large |
 //! | [`mesh`]: Poisson's ratio of linear cells | 0.45 |
 //! | [`mesh`]: pieces that nothing joins | one piece |

@@ -5,8 +5,8 @@ use crate::base::vector::{dot, norm};
 use crate::dynamics::report::{Indicator, Verdict};
 use crate::elements::body::Body;
 use crate::elements::material::{Law, Material, Plane};
-use crate::scene::forces::{DipolePart, VectorSignal};
-use crate::scene::timeline::{Phase, Scene};
+use crate::scene::forces::VectorSignal;
+use crate::scene::timeline::{DeviceInput, InputLimit, Phase, Quantity, Scene, Target};
 
 /// Largest size (m) and mass (kg) of a soft body.
 const LARGEST: f64 = 10.0;
@@ -29,43 +29,28 @@ const HEAVIEST_STRAIN: f64 = 1.0;
 /// Largest remanence (T): magnets of neodymium have up to 1.5 T. Largest magnetic field (T): superconducting coils have more.
 const STRONGEST: f64 = 2.0;
 const STRONGEST_FIELD: f64 = 10.0;
-/// Largest moment of a dipole (A m^2): that of a cube of neodymium of 20 cm.
-const STRONGEST_DIPOLE: f64 = 1e4;
-/// Times of a phase at which fields and dipoles are looked at.
+/// Times of a phase at which fields and inputs of devices are looked at.
 const LOOKS: u32 = 20;
 
 /// The indicators of the whole scene.
 pub(super) fn of_scene(scene: &Scene) -> Vec<Indicator> {
-    if scene.magnets().is_empty() {
-        return Vec::new();
-    }
+    let mut all = if scene.magnets().is_empty() { Vec::new() } else { magnets(scene) };
+    all.extend(devices(scene));
+    as_meant(scene, all)
+}
+
+/// Those of magnets and their field.
+fn magnets(scene: &Scene) -> Vec<Indicator> {
     let largest = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, f64::max);
     let remanence = largest(&mut scene.magnets().iter().map(|magnet| norm(magnet.remanence())));
-    let starts = [0.0].into_iter().chain(scene.phases().iter().map(Phase::end));
-    let phases = scene.phases().iter().zip(starts);
-    let most = |phase: &Phase, start: f64, vector: &VectorSignal| {
-        let part = |look| start + (phase.end() - start) * f64::from(look) / f64::from(LOOKS);
-        let times = (0..=LOOKS).map(part).chain(vector.breaks().iter().copied());
-        times.map(|t| norm(&vector.components(t, scene.body().dimension()))).fold(0.0, f64::max)
+    let most = |phase: &Phase, start: f64, field: &VectorSignal| {
+        let size = |t| norm(&field.components(t, scene.body().dimension()));
+        looks(phase, start, field.breaks()).map(size).fold(0.0, f64::max)
     };
     let field =
-        largest(&mut phases.clone().filter_map(|(phase, start)| {
+        largest(&mut phases(scene).filter_map(|(phase, start)| {
             phase.uniform_field().map(|field| most(phase, start, field))
         }));
-    let moment = largest(&mut phases.flat_map(|(phase, start)| {
-        scene.dipoles().iter().map(move |dipole| {
-            most(phase, start, phase.with_dipole(dipole).part(DipolePart::Moment))
-        })
-    }));
-    let dipoles = (!scene.dipoles().is_empty()).then(|| {
-        let said =
-            format!("the moment of a dipole is {} A m^2 (limit: {STRONGEST_DIPOLE} A m^2)", four_digits(moment));
-        let beyond = || {
-            format!("{said}: is it in emu (0.001 A m^2) or A mm^2 (1e-6 A m^2)? A cube of neodymium of 1 cm has 1 A m^2")
-        };
-        let range = [0.0, STRONGEST_DIPOLE];
-        Indicator::trusted("dipole-moment", (moment, "A m^2"), range, || said.clone(), beyond)
-    });
     let measured = [
         ("remanence", remanence, STRONGEST, "a remanence", "magnets of neodymium have 1.3 T"),
         (
@@ -81,7 +66,47 @@ pub(super) fn of_scene(scene: &Scene) -> Vec<Indicator> {
         let beyond = || format!("{said}: is it in mT (0.001 T) or gauss (0.0001 T)? {known}");
         Indicator::trusted(name, (value, "T"), [0.0, most], || said.clone(), beyond)
     });
-    as_meant(scene, all.into_iter().chain(dipoles).collect())
+    all.into()
+}
+
+/// The phases, and when they begin (s).
+fn phases(scene: &Scene) -> impl Iterator<Item = (&Phase, f64)> {
+    let starts = [0.0].into_iter().chain(scene.phases().iter().map(Phase::end));
+    scene.phases().iter().zip(starts)
+}
+
+/// The times (s) of a phase at which a signal with these breaks is looked at.
+fn looks(phase: &Phase, start: f64, breaks: &[f64]) -> impl Iterator<Item = f64> {
+    let part = move |look| start + (phase.end() - start) * f64::from(look) / f64::from(LOOKS);
+    (0..=LOOKS).map(part).chain(breaks.iter().copied())
+}
+
+/// Inputs of devices that have a limit: the largest of all devices for each.
+fn devices(scene: &Scene) -> Vec<Indicator> {
+    let mut largest: Vec<(&DeviceInput, InputLimit, f64)> = Vec::new();
+    for device in scene.devices() {
+        for input in device.inputs() {
+            let Some(limit) = input.limit else { continue };
+            let (quantity, target) = (Quantity::Device(input), Target::one(device.name()));
+            let size = |phase, t| norm(&scene.input_at(phase, quantity, &target, t));
+            let value = phases(scene).fold(0.0, |most: f64, (phase, start)| {
+                let breaks = scene.input_breaks(phase, quantity, &target);
+                looks(phase, start, &breaks).map(|t| size(phase, t)).fold(most, f64::max)
+            });
+            match largest.iter_mut().find(|(_, other, _)| other.name == limit.name) {
+                Some((.., most)) => *most = most.max(value),
+                None => largest.push((input, limit, value)),
+            }
+        }
+    }
+    let indicator = |(input, limit, value): (&DeviceInput, InputLimit, f64)| {
+        let InputLimit { name, about, most, help } = limit;
+        let unit = input.unit;
+        let said = format!("{about} is {} {unit} (limit: {most} {unit})", four_digits(value));
+        let beyond = || format!("{said}: {help}");
+        Indicator::trusted(name, (value, unit), [0.0, most], || said.clone(), beyond)
+    };
+    largest.into_iter().map(indicator).collect()
 }
 
 /// The indicators of a body; those that the scene declares as [meant](Scene::unusual) count as within their limits.
@@ -243,7 +268,8 @@ mod tests {
     use crate::dynamics::indicators::gas::gas;
     use crate::dynamics::indicators::pressed::pressed;
     use crate::dynamics::indicators::pressed::tests::touching;
-    use crate::scene::forces::{Chamber, Dipole, Gas, Magnet, Orifice};
+    use crate::scene::devices::Dipole;
+    use crate::scene::forces::{Chamber, Gas, Magnet, Orifice};
     use crate::scene::timeline::UNITS;
     use crate::studies::samples::square_jump;
 

@@ -104,6 +104,28 @@ impl Matrices {
         }
     }
 
+    /// y += factor M x
+    pub(crate) fn add_momentum(&self, factor: f64, x: &[f64], y: &mut [f64]) {
+        self.inertia.add_product(self.dimension, factor, x, y);
+    }
+
+    /// M x
+    pub(crate) fn momentum(&self, x: &[f64]) -> Vec<f64> {
+        let mut momentum = vec![0.0; x.len()];
+        self.add_momentum(1.0, x, &mut momentum);
+        momentum
+    }
+
+    /// Component `dof` of M x.
+    pub(crate) fn momentum_of(&self, dof: usize, x: &[f64]) -> f64 {
+        self.inertia.row_product(self.dimension, dof, x)
+    }
+
+    /// x.M x
+    pub(crate) fn square(&self, x: &[f64]) -> f64 {
+        self.inertia.quadratic_form(self.dimension, x)
+    }
+
     /// Adds the mass of the surroundings that moves along with pairs of nodes (kg).
     pub(crate) fn carry(&mut self, masses: &[([usize; 2], f64)]) {
         if masses.is_empty() {

@@ -10,7 +10,7 @@
 //! fifth of the tolerance. Without commands, where steps change their size, that gains nothing. Measurements
 //! of the choices are in `docs/notes/automatic-choices.md` and `docs/notes/commands.md`.
 
-use crate::dynamics::system::{Spectrum, System};
+use crate::dynamics::system::{PhaseSystem, Spectrum};
 use crate::integrators::central_difference;
 use crate::integrators::ode::Rates;
 use crate::scene::settings::{ContactEvents, Method, Settings};
@@ -129,8 +129,13 @@ pub(super) const PATIENCE: usize = 1024;
 const FAR_TOO_SHORT: f64 = 1.0 / 8000.0;
 
 impl Plan {
-    /// The plan for a phase whose equations are `system`, from time `t` and `state`.
-    pub(super) fn new(asked: &Settings, system: &mut System, t: f64, state: &[f64]) -> Self {
+    /// The plan for a phase with these `equations`, from time `t` and `state`.
+    pub(super) fn new(
+        asked: &Settings,
+        equations: &mut dyn PhaseSystem,
+        t: f64,
+        state: &[f64],
+    ) -> Self {
         if asked.method != Method::Auto {
             return Self {
                 settings: asked.clone(),
@@ -146,9 +151,11 @@ impl Plan {
                 probe: None,
             };
         }
-        let n = system.dofs();
-        let spectrum = system.spectrum(t, &state[..n], &state[n..2 * n]);
-        let (method, creeps, reason) = choose(&spectrum, system.retardation_time(), asked.rtol);
+        let n = equations.full().dofs();
+        let spectrum = equations.spectrum(t, &state[..n], &state[n..2 * n]);
+        let system = equations.full();
+        let (method, creeps, reason) =
+            choose(&spectrum, system.matrices().retardation_time, asked.rtol);
         let is_damped = spectrum.lowest_damping_ratio >= STRONG_DAMPING;
         let period = spectrum.slowest_period().filter(|_| is_damped);
         let alpha = if system.is_constrained() { asked.alpha } else { 0.0 };
@@ -157,7 +164,7 @@ impl Plan {
             order => (part(method, asked.rtol), order),
         };
         let relaxation = system.relaxation_rate();
-        let is_for_central = system.is_lumped() && system.internal() == 0;
+        let is_for_central = system.is_lumped() && system.layout().internal().is_empty();
         Self {
             settings: given(asked, method, max_order, part),
             asked: asked.clone(),
@@ -269,12 +276,12 @@ impl Plan {
         })
     }
 
-    /// The plan to continue with where commands change the forces of `system` again and again, as each change would restart
+    /// The plan to continue with where commands change the forces of the `equations` again and again, as each change would restart
     /// BDF; the step that is planned is this `part` of the time between two commands.
     ///
     /// A Rosenbrock method of order 4, which has no iteration to begin anew; of order 3 for large bodies in space, where one
     /// factorization serves many commands, as long as a step lasts from one to the next.
-    pub(super) fn under_commands(&self, system: &System, part: f64) -> Option<Self> {
+    pub(super) fn under_commands(&self, equations: &dyn PhaseSystem, part: f64) -> Option<Self> {
         let method = self.settings.method;
         if !self.is_on_trial() {
             return None;
@@ -285,8 +292,9 @@ impl Plan {
             return starts_anew
                 .then(|| self.followed_by(Method::Arkode, self.asked.max_order, reason));
         }
-        let is_solid = system.dimension() == 3 && !system.is_reduced();
-        let is_large = is_solid && system.dofs() >= LARGE && !system.has_edges();
+        let system = equations.full();
+        let is_solid = system.matrices().dimension == 3 && !system.has_edges();
+        let is_large = is_solid && equations.freedoms() >= LARGE;
         let (order, reason) = match (method, self.settings.max_order) {
             (Method::CvodeBdf | Method::Arkode, _) if is_large => {
                 (3, "commands change forces, and factorizations are most of the work")

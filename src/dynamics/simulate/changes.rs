@@ -24,7 +24,8 @@ use super::sampling::Sampling;
 use super::sensor::Sensors;
 use crate::base::input::InputError;
 use crate::dynamics::error::Error;
-use crate::dynamics::system::{Energy, System};
+use crate::dynamics::phase::Integrable;
+use crate::dynamics::system::{Energy, PhaseSystem};
 use crate::dynamics::trajectory::Sample;
 use crate::elements::force::Forces;
 use crate::scene::constraint::ConstraintRow;
@@ -46,22 +47,22 @@ pub(super) enum Change {
 const NEW_STARTS: usize = 3;
 
 impl Run {
-    fn system(&self) -> Option<&System> {
+    fn system(&self) -> Option<&dyn PhaseSystem> {
         match &self.integration {
             Integration::Running(work) => Some(work.stepper.system()),
-            Integration::Idle(system) => Some(system),
+            Integration::Idle(system) => Some(&**system),
             Integration::Absent => None,
         }
     }
 
     /// The equations in force.
-    pub(super) fn system_mut(&mut self) -> Result<&mut System, Error> {
+    pub(super) fn system_mut(&mut self) -> Result<&mut dyn PhaseSystem, Error> {
         if let Integration::Absent = self.integration {
             self.integration = Integration::Idle(self.equations(&self.phase, &self.state)?);
         }
         match &mut self.integration {
             Integration::Running(work) => Ok(work.stepper.system_mut()),
-            Integration::Idle(system) => Ok(system),
+            Integration::Idle(system) => Ok(&mut **system),
             Integration::Absent => {
                 Err(InputError::new("simulation", "without equations", "start it anew").into())
             }
@@ -90,7 +91,7 @@ impl Run {
             // lost in a panic, or with an integrator that could not be made
             None => self
                 .equations(&self.phase, &self.state)
-                .map_or_else(|_| Energy::default(), |system| energy(&system, t, state)),
+                .map_or_else(|_| Energy::default(), |system| energy(&*system, t, state)),
         }
     }
 
@@ -154,11 +155,11 @@ impl Run {
         let mut system = self.rest()?;
         let constrains = change == Change::Constraints;
         let before = match change {
-            Change::Stores => energy(&system, self.time, &self.state).balance(),
+            Change::Stores => energy(&*system, self.time, &self.state).balance(),
             _ => 0.0,
         };
         if constrains || !system.change_forces(forces) {
-            match self.followed_by(&phase, &system) {
+            match self.followed_by(&phase, &*system) {
                 Ok(next) => system = next,
                 Err(error) => {
                     self.resume(system);
@@ -166,12 +167,12 @@ impl Run {
                 }
             }
         } else if change == Change::Stores {
-            self.supply(energy(&system, self.time, &self.state).balance() - before);
+            self.supply(energy(&*system, self.time, &self.state).balance() - before);
         }
         if constrains {
-            project(&self.settings, &phase, &mut system, self.time, &mut self.state);
+            project(&self.settings, &phase, system.full_mut(), self.time, &mut self.state);
             self.constraints = Arc::new(());
-            self.phase_run.follow(Plan::new(&self.settings, &mut system, self.time, &self.state));
+            self.phase_run.follow(Plan::new(&self.settings, &mut *system, self.time, &self.state));
         }
         (self.phase, self.is_commanded) = (Arc::new(phase), true);
         self.resume(system);
@@ -229,7 +230,8 @@ impl Run {
         match work.stepper.resume(self.time, &self.state) {
             Ok(true) => {
                 work.stop = f64::NAN;
-                let (system, located) = (work.stepper.system(), self.phase_run.plan.locates());
+                let (system, located) =
+                    (work.stepper.system().full(), self.phase_run.plan.locates());
                 self.phase_run.interval.events.begin(system, self.time, &self.state, located);
                 self.follower.begin(&self.scene, &self.phase);
                 self.remember();
@@ -242,7 +244,7 @@ impl Run {
 
     /// A state to return to.
     pub(super) fn checkpoint(&self, time: f64, state: &[f64]) -> Checkpoint {
-        let rows = self.system().map_or(&[][..], System::rows);
+        let rows = self.system().map_or(&[][..], |system| system.full().rows());
         Checkpoint {
             scene: self.scene.clone(),
             constraints: self.constraints.clone(),
@@ -310,13 +312,12 @@ impl Run {
     /// An independent run from `state` at time `t` (s) on.
     pub(super) fn fork(&self, t: f64, state: &[f64]) -> Result<Self, Error> {
         let rows = match self.system() {
-            Some(system) => system.rows().to_vec(),
-            None => self.equations(&self.phase, &self.state)?.rows().to_vec(),
+            Some(system) => system.full().rows().to_vec(),
+            None => self.equations(&self.phase, &self.state)?.full().rows().to_vec(),
         };
         let phase = self.phase.snapshot();
         let forces = self.scene.forces_in(&phase)?;
-        let (alpha, name) = (self.settings.alpha, &phase.name);
-        let system = self.scene.system_by(&self.matrices, forces, rows, alpha, name)?;
+        let system = self.equations_by(&phase, forces, rows)?;
         let mut run = self.twin();
         run.phase = phase;
         run.time = t;
@@ -336,7 +337,7 @@ impl Run {
     }
 
     /// Ends the integrator and returns its equations; its step size is kept for the next one.
-    fn rest(&mut self) -> Result<System, Error> {
+    fn rest(&mut self) -> Result<Box<dyn Integrable>, Error> {
         self.phase_run.first_step = self.next_step();
         if let Some(Ending::Doubtful { instead: plan } | Ending::Better(plan)) =
             self.phase_run.ended.take()
@@ -351,11 +352,11 @@ impl Run {
     }
 
     /// Continues from the present state with the equations `system` of the phase in force.
-    fn resume(&mut self, system: System) {
+    fn resume(&mut self, system: Box<dyn Integrable>) {
         self.find_stops();
         (self.phase_run.ended, self.phase_run.mean_steps) =
             (Some(Ending::Reached), MeanSteps::default());
-        self.begin_events(&system);
+        self.begin_events(system.full());
         self.integration = Integration::Idle(system);
         self.follow_angles();
         self.remember();

@@ -7,8 +7,8 @@ use super::angles::Angles;
 use super::auto::Plan;
 use super::run::Run;
 use crate::base::input::InputError;
+use crate::dynamics::phase::Integrable;
 use crate::dynamics::report::{Counts, PhaseReport, Report};
-use crate::dynamics::system::System;
 use crate::dynamics::trajectory::{Leap, Penetration, Trajectory};
 use crate::scene::constraint::PhaseStart;
 use crate::scene::timeline::{Phase, Scene};
@@ -105,12 +105,11 @@ impl Checkpoint {
 
 impl Kept {
     /// The equations in force: nodes that are held or moved continue as before.
-    pub(super) fn equations(&self, run: &Run) -> Result<System, InputError> {
+    pub(super) fn equations(&self, run: &Run) -> Result<Box<dyn Integrable>, InputError> {
         let start = PhaseStart { time: self.time, u: &self.state[..run.scene.body().dofs()] };
         let mut rows = run.scene.rows(&self.phase, &start)?;
         rows.iter_mut().zip(&self.origins).for_each(|(row, origin)| row.set_origin(*origin));
         let forces = run.scene.forces_in(&self.phase)?;
-        let (alpha, name) = (run.settings.alpha, &self.phase.name);
-        run.scene.system_by(&run.matrices, forces, rows, alpha, name)
+        run.equations_by(&self.phase, forces, rows)
     }
 }

@@ -150,11 +150,11 @@ impl Simulation {
         let run = &self.run;
         let Kept { number, time, ref state, .. } = kept;
         let mut system = kept.equations(run)?;
-        if ![0, system.rows().len()].contains(&kept.origins.len()) {
-            let help = format!("the phase has {} rows of constraints", system.rows().len());
+        if ![0, system.full().rows().len()].contains(&kept.origins.len()) {
+            let help = format!("the phase has {} rows of constraints", system.full().rows().len());
             return Err(InputError::new("number of origins", kept.origins.len(), help).into());
         }
-        let reason = match records::sample(number, &mut system, time, state, false) {
+        let reason = match records::sample(number, &mut *system, time, state, false) {
             Ok(sample) if sample.energy.balance().is_finite() => None,
             Ok(_) => Some("the energies are beyond the range of double precision".into()),
             Err(failure) => Some(failure.into_error().to_string()),
@@ -165,7 +165,7 @@ impl Simulation {
         let asked = &run.settings;
         let plan = match choice.filter(|_| asked.method == Method::Auto) {
             Some(choice) => choice.plan(asked)?,
-            None => Plan::new(asked, &mut system, time, state),
+            None => Plan::new(asked, &mut *system, time, state),
         };
         let longest = asked.max_step.unwrap_or(f64::INFINITY);
         let kept = Kept { first_step: kept.first_step.map(|step| step.min(longest)), ..kept };

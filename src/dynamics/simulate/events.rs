@@ -18,8 +18,8 @@
 
 use std::ops::Range;
 
-use super::stepper::{Failed, Stepper};
 use crate::base::root::{Point, bracket};
+use crate::dynamics::phase::{Failed, Stepper};
 use crate::dynamics::report::SlipEvent;
 use crate::dynamics::state::State;
 use crate::dynamics::system::System;
@@ -34,7 +34,7 @@ pub(super) enum Met {
     Passage(f64),
 }
 
-/// The switches of the forces (see [`crate::elements::force::Force::switches`]) in a phase, as they are held
+/// The switches of the forces (see [`crate::elements::force::Switches::switches`]) in a phase, as they are held
 /// from one event to the next, if events are located.
 ///
 /// While they are held, the force is smooth within a step: a node that leaves an obstacle is still pulled by
@@ -48,7 +48,7 @@ pub(super) struct Events {
     /// Of each switch that changes in a step, |value| at its start; 0 of the others.
     scales: Vec<f64>,
     /// How far the body can move before a switch can change (see
-    /// [`crate::elements::force::Force::passage`]).
+    /// [`crate::elements::force::ContactForce::passage`]).
     clearances: Vec<f64>,
     /// Events found, and those in a row that did not advance time.
     pub(super) count: usize,
@@ -97,10 +97,10 @@ impl Events {
         tolerance: f64,
         work: &mut [f64],
     ) -> Result<Met, Failed> {
-        if !stepper.system().can_be_passed() {
+        if !stepper.system().full().can_be_passed() {
             return Ok(Met::Nothing);
         }
-        let (system, after) = (stepper.system(), stepper.state());
+        let (system, after) = (stepper.system().full(), stepper.state());
         let ends = [before, after].map(|state| system.layout().of(state));
         let step = Step { times: [start, end], u: ends.map(|at| at.u), v: ends.map(|at| at.v) };
         let passage = system.passage(&step, tolerance, &mut self.clearances);
@@ -109,7 +109,7 @@ impl Events {
             // the step will not be taken as it is
             self.clearances.fill(0.0);
             stepper.interpolate(t, work)?;
-            match (self.change(stepper.system(), t, work), event) {
+            match (self.change(stepper.system().full(), t, work), event) {
                 (true, _) => event = Some(t),
                 (false, None) => return Ok(Met::Passage(t)),
                 (false, Some(_)) => {}
@@ -130,7 +130,7 @@ impl Events {
         [start, end]: [f64; 2],
         work: &mut [f64],
     ) -> Result<f64, Failed> {
-        self.evaluate(stepper.system(), start, before, |_| true);
+        self.evaluate(stepper.system().full(), start, before, |_| true);
         for (k, scale) in self.scales.iter_mut().enumerate() {
             let changes = self.on[k] != is_on(self.changed[k]);
             *scale = if changes { self.values[k].abs().max(f64::MIN_POSITIVE) } else { 0.0 };
@@ -141,7 +141,7 @@ impl Events {
         let met = bracket(near, far, PRECISION * (end - start), &mut |t| {
             stepper.interpolate(t, work)?;
             let changes = |own: Range<usize>| scales[own].iter().any(|&scale| scale > 0.0);
-            self.evaluate(stepper.system(), t, work, changes);
+            self.evaluate(stepper.system().full(), t, work, changes);
             Ok::<_, Failed>(self.advance(&scales, &self.values))
         });
         self.scales = scales;

@@ -1,7 +1,7 @@
 //! Error messages of runs that do not reach their end.
 
-use super::stepper::Failed;
 use crate::base::input::four_digits;
+use crate::dynamics::phase::Failed;
 use crate::dynamics::report::Counts;
 use crate::dynamics::trajectory::Interrupted;
 use crate::integrators::common::{self, Cause};

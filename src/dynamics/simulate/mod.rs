@@ -12,7 +12,6 @@ mod component;
 mod contact_gauge;
 #[cfg(feature = "study")]
 mod derivative;
-mod dipole;
 mod events;
 mod failure;
 mod gauge;
@@ -36,7 +35,6 @@ mod smaller_reading;
 mod spot;
 mod spot_gauge;
 mod stalled;
-mod stepper;
 mod steps;
 mod view;
 mod watch;

@@ -56,16 +56,6 @@ impl Output {
         let value = (self.read)(view, self.find(view.scene, name)?)?;
         Ok(value.part(Component::X))
     }
-
-    /// A vector of the component with a `name`, one component per dimension.
-    ///
-    /// # Errors
-    /// As [`number`](Self::number).
-    pub(super) fn vector(&self, view: &View, name: &str) -> Result<Vec<f64>, InputError> {
-        let value = (self.read)(view, self.find(view.scene, name)?)?;
-        let axes = [Component::X, Component::Y, Component::Z];
-        Ok(axes[..view.body().dimension()].iter().map(|axis| value.part(*axis)).collect())
-    }
 }
 
 impl PartialEq for Output {

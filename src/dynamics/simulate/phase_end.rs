@@ -3,9 +3,9 @@
 use super::interval::Interval;
 use super::run::Run;
 use super::sensor::Sensors;
-use super::stepper::{Failed, Stepper};
 use crate::base::input::{InputError, unknown_among};
 use crate::base::root::{Point, bracket};
+use crate::dynamics::phase::{Failed, Stepper};
 use crate::scene::timeline::Phase;
 
 /// Times within a step at which the reading is compared with the level.

@@ -6,9 +6,8 @@ use super::auto::{LONG, Plan, TRIALS};
 use super::events::Events;
 use super::interval::{Ending, Interval};
 use super::sampling::Schedule;
-use super::stepper::Stepper;
+use crate::dynamics::phase::{Integrable, Stepper};
 use crate::dynamics::report::{Counts, PhaseReport};
-use crate::dynamics::system::System;
 use crate::scene::settings::Method;
 use crate::scene::timeline::Phase;
 
@@ -36,15 +35,14 @@ pub(super) struct PhaseRun {
     states: usize,
 }
 
-/// The equations in force, and what integrates them. There is only one per run, so its size does not matter.
+/// The equations in force, and what integrates them.
 #[derive(Default)]
-#[expect(clippy::large_enum_variant)]
 pub(super) enum Integration {
     /// An integrator could not be made.
     #[default]
     Absent,
     /// No integrator, between two intervals.
-    Idle(System),
+    Idle(Box<dyn Integrable>),
     Running(Running),
 }
 
@@ -136,7 +134,7 @@ impl PhaseRun {
     }
 
     /// Ends an integrator and returns its equations.
-    pub(super) fn rest(&mut self, work: Running) -> System {
+    pub(super) fn rest(&mut self, work: Running) -> Box<dyn Integrable> {
         self.counts.add(work.stepper.counts());
         self.states = work.stepper.unknowns();
         work.stepper.into_system()

@@ -8,7 +8,7 @@ use super::sensor::Sensors;
 use super::view::{Gauges, View};
 use crate::base::vector::largest;
 use crate::dynamics::state::{State, StateMut};
-use crate::dynamics::system::{Energy, System};
+use crate::dynamics::system::{Energy, PhaseSystem, System};
 use crate::dynamics::trajectory::{Commanded, Sample};
 use crate::integrators::ode::Failure;
 use crate::scene::constraint::ConstraintRow;
@@ -41,16 +41,17 @@ pub(super) fn of_state(phase: usize, system: &System, time: f64, state: &[f64]) 
 /// sensors that read them, and kept until then.
 pub(super) fn sample(
     phase: usize,
-    system: &mut System,
+    equations: &mut dyn PhaseSystem,
     time: f64,
     state: &[f64],
     accelerates: bool,
 ) -> Result<Sample, Failure> {
-    let State { u, v, internal, .. } = system.layout().of(state);
-    let multipliers = system.multipliers(time, u, v, internal)?.to_vec();
+    let State { u, v, internal, .. } = equations.full().layout().of(state);
+    equations.evaluate(time, [u, v, internal])?;
+    let (energy, system) = (energy(equations, time, state), equations.full());
+    let multipliers = system.computed_multipliers().to_vec();
     let accelerations =
         if accelerates { system.computed_accelerations().to_vec() } else { Vec::new() };
-    let energy = energy(system, time, state);
     let constraint_drift = system.drift(time, u);
     let sample = of_state(phase, system, time, state);
     Ok(Sample { multipliers, energy, constraint_drift, accelerations, ..sample })
@@ -75,9 +76,10 @@ pub(super) fn complete(
 }
 
 /// Energies of `state` at `time`.
-pub(super) fn energy(system: &System, time: f64, state: &[f64]) -> Energy {
-    let State { u, v, internal, dissipated, supplied, .. } = system.layout().of(state);
-    let energy = system.energy(time, u, v, internal);
+pub(super) fn energy(equations: &dyn PhaseSystem, time: f64, state: &[f64]) -> Energy {
+    let layout = equations.full().layout();
+    let State { u, v, internal, dissipated, supplied, .. } = layout.of(state);
+    let energy = equations.energy(time, [u, v, internal]);
     Energy { dissipated, supplied, ..energy }
 }
 
@@ -115,7 +117,7 @@ pub(super) fn begin_to_move(
 
 fn project_now(system: &mut System, time: f64, state: &mut [f64]) {
     let StateMut { u, v, supplied, .. } = system.layout().of_mut(state);
-    let before = system.energy(time, u, v, &[]).kinetic;
+    let before = system.kinetic_energy(v);
     system.project(time, u, v);
-    *supplied += system.energy(time, u, v, &[]).kinetic - before;
+    *supplied += system.kinetic_energy(v) - before;
 }

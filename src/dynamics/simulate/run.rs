@@ -21,20 +21,20 @@ use super::reduced_checks::{ReducedChecks, locked};
 use super::resolution::Resolution;
 use super::sampling::Sampling;
 use super::sensor::Sensors;
-use super::stepper::{self, Failed};
 use super::view::{Gauges, View};
 use crate::base::input::InputError;
 use crate::dynamics::error::Error;
 use crate::dynamics::indicators::{self, Follower};
 use crate::dynamics::matrices::Matrices;
+use crate::dynamics::phase::{Failed, Integrable, Start};
 use crate::dynamics::report::{PhaseReport, Report, ToldReading, creation};
 use crate::dynamics::state::{Layout, State};
-use crate::dynamics::system::{ResidualSnapshot, System};
+use crate::dynamics::system::{PhaseSystem, ResidualSnapshot, System};
 use crate::dynamics::trajectory::{IntegrationFailure, Interrupted, Leap, Sample, Trajectory};
 use crate::elements::body::{Body, Part};
 use crate::elements::force::Forces;
 use crate::integrators::ode::Failure;
-use crate::scene::constraint::{PhaseStart, check_rigid_holds, prescribe};
+use crate::scene::constraint::{ConstraintRow, PhaseStart, check_rigid_holds, prescribe};
 use crate::scene::settings::{Method, Scales, Settings};
 use crate::scene::timeline::{Phase, Scene};
 
@@ -116,7 +116,9 @@ impl Run {
         scene.check_ends()?;
         let (u, v) = (scene.initial_displacements(), scene.initial_velocities()?);
         let start = PhaseStart { time: 0.0, u };
-        let mut system = scene.system(&matrices, phase, forces, &start, settings.alpha)?;
+        let full = scene.system(&matrices, phase, forces, &start, settings.alpha)?;
+        let mut equations = scene.phase_system(full, &phase.name)?;
+        let system = equations.full();
         if system.relaxation_rate() > 0.0 && !settings.method.takes_branches() {
             let takes = Method::ALL.into_iter().filter(|method| method.takes_branches());
             let takes: Vec<&str> = takes.map(Method::name).collect();
@@ -133,8 +135,9 @@ impl Run {
         }
         let layout = system.layout();
         let mut state = layout.state(u, &v, &internal);
-        begin_to_move(settings, phase, &mut system, &mut state);
-        let mut first = records::sample(0, &mut system, 0.0, &state, sensors.need_accelerations())
+        begin_to_move(settings, phase, equations.full_mut(), &mut state);
+        let accelerates = sensors.need_accelerations();
+        let mut first = records::sample(0, &mut *equations, 0.0, &state, accelerates)
             .map_err(|failure| scene.bad_start(failure))?;
         if !first.energy.balance().is_finite() {
             let reason = "the energies are beyond the range of double precision";
@@ -150,7 +153,7 @@ impl Run {
             plane: scene.body().planes(),
             ..Report::default()
         };
-        let plan = Plan::new(settings, &mut system, 0.0, &state);
+        let plan = Plan::new(settings, &mut *equations, 0.0, &state);
         let times = sampling.within(0.0, phase.until);
         let (phase, balance) = (Arc::new(phase.clone()), first.energy.balance());
         let mut angles = Angles::default();
@@ -195,9 +198,9 @@ impl Run {
         };
         run.follow_angles();
         let phase = run.phase.clone();
-        run.note_leap(&system, &phase, u);
-        run.begin(&system);
-        run.integration = Integration::Idle(system);
+        run.note_leap(equations.full(), &phase, u);
+        run.begin(&*equations);
+        run.integration = Integration::Idle(equations);
         Ok(run)
     }
 
@@ -232,7 +235,7 @@ impl Run {
                 Integration::Idle(system) => system,
                 Integration::Absent => {
                     let system = self.equations(&self.phase, &self.state)?;
-                    self.begin_events(&system);
+                    self.begin_events(system.full());
                     system
                 }
             };
@@ -243,7 +246,7 @@ impl Run {
     }
 
     /// Begins the next interval, if necessary that of the next phase; `false` at the end of the scene.
-    pub(super) fn go_on(&mut self, mut system: System) -> Result<bool, Error> {
+    pub(super) fn go_on(&mut self, mut system: Box<dyn Integrable>) -> Result<bool, Error> {
         loop {
             match self.phase_run.ended.take() {
                 Some(Ending::Reached) if self.phase_run.interval.inside.take().is_some() => {}
@@ -261,13 +264,13 @@ impl Run {
                 Some(Ending::Passage(t)) => self.phase_run.interval.inside = Some(t),
                 Some(Ending::Better(other)) => {
                     self.phase_run.follow(other);
-                    self.begin_events(&system);
+                    self.begin_events(system.full());
                 }
                 Some(Ending::Doubtful { instead }) => {
                     self.go_back();
                     self.find_interval();
                     self.phase_run.follow(instead);
-                    self.begin_events(&system);
+                    self.begin_events(system.full());
                 }
                 None => {}
             }
@@ -283,15 +286,21 @@ impl Run {
             self.phase_run.ended = Some(Ending::Reached);
         }
         system.forget_counts();
-        let (settings, end) = (&self.phase_run.plan.settings, self.stop());
-        let atol = settings.tolerances_by(&self.scales);
-        let first = self.phase_run.first_step.take();
-        match stepper::start(system, settings, &atol, [self.time, end], first, &self.state) {
-            Ok(stepper) => {
-                self.integration = Integration::Running(Running::new(stepper, self.time, end))
-            }
-            Err(source) => return Err(self.failure(source, 0.0)),
-        }
+        let (end, first) = (self.stop(), self.phase_run.first_step.take());
+        let settings = &self.phase_run.plan.settings;
+        let start = Start {
+            settings,
+            atol: &settings.tolerances_by(&self.scales),
+            state: &self.state,
+            time: self.time,
+            first,
+        };
+        let started = system.start(&start).and_then(|mut stepper| {
+            stepper.stop_at(end)?;
+            Ok(Running::new(stepper, self.time, end))
+        });
+        self.integration =
+            Integration::Running(started.map_err(|source| self.failure(source, 0.0))?);
         Ok(true)
     }
 
@@ -328,18 +337,21 @@ impl Run {
     }
 
     /// Begins the phase after that of `system`.
-    pub(super) fn next_phase(&mut self, system: System) -> Result<System, Error> {
+    pub(super) fn next_phase(
+        &mut self,
+        system: Box<dyn Integrable>,
+    ) -> Result<Box<dyn Integrable>, Error> {
         self.trajectory.report = self.report();
         let scene = self.scene.clone();
         let phase = scene.phases()[self.number + 1].clone();
         let phase = Arc::new(phase.after(&self.phase, scene.obstacles(), self.time));
-        let mut next = self.followed_by(&phase, &system)?;
+        let mut next = self.followed_by(&phase, &*system)?;
         (self.number, self.phase, self.is_commanded) =
             (self.number + 1, phase.clone(), phase.is_redirected());
-        project(&self.settings, &phase, &mut next, self.time, &mut self.state);
-        let plan = Plan::new(&self.settings, &mut next, self.time, &self.state);
+        project(&self.settings, &phase, next.full_mut(), self.time, &mut self.state);
+        let plan = Plan::new(&self.settings, &mut *next, self.time, &self.state);
         (self.phase_run, self.constraints) = (self.new_phase_run(plan), Arc::new(()));
-        self.begin(&next);
+        self.begin(&*next);
         Ok(next)
     }
 
@@ -347,17 +359,17 @@ impl Run {
     pub(super) fn followed_by(
         &mut self,
         phase: &Phase,
-        system: &System,
-    ) -> Result<System, InputError> {
+        system: &dyn PhaseSystem,
+    ) -> Result<Box<dyn Integrable>, InputError> {
         let n = self.scene.body().dofs();
         let mut u = self.state[..n].to_vec();
-        prescribe(system.rows(), self.time, &mut u);
+        prescribe(system.full().rows(), self.time, &mut u);
         let next = self.equations(phase, &u)?;
-        self.note_leap(&next, phase, &u);
+        self.note_leap(next.full(), phase, &u);
         // an obstacle that begins or ceases to act with nodes inside it changes the stored energy: the
         // difference is supplied from outside
         let [before, after] =
-            [system, &next].map(|system| energy(system, self.time, &self.state).balance());
+            [system, &*next].map(|system| energy(system, self.time, &self.state).balance());
         self.supply(after - before);
         Ok(next)
     }
@@ -370,7 +382,16 @@ impl Run {
     }
 
     /// The equations of a phase that begins with the displacements at the beginning of `u`.
-    pub(super) fn equations(&self, phase: &Phase, u: &[f64]) -> Result<System, InputError> {
+    pub(super) fn equations(
+        &self,
+        phase: &Phase,
+        u: &[f64],
+    ) -> Result<Box<dyn Integrable>, InputError> {
+        self.scene.phase_system(self.full_equations(phase, u)?, phase.name())
+    }
+
+    /// As [`equations`](Self::equations), in all unknowns.
+    fn full_equations(&self, phase: &Phase, u: &[f64]) -> Result<System, InputError> {
         let start = PhaseStart { time: self.time, u };
         let forces = self.scene.forces_in(phase)?;
         let alpha = self.settings.alpha;
@@ -379,9 +400,21 @@ impl Run {
         Ok(system)
     }
 
+    /// The equations of a phase under `forces` and the `rows` of its constraints.
+    pub(super) fn equations_by(
+        &self,
+        phase: &Phase,
+        forces: Forces,
+        rows: Vec<ConstraintRow>,
+    ) -> Result<Box<dyn Integrable>, InputError> {
+        let (matrices, alpha) = (self.matrices.clone(), self.settings.alpha);
+        let full = System::new(matrices, forces, rows, alpha, phase.name())?;
+        self.scene.phase_system(full, phase.name())
+    }
+
     /// Begins the phase in force, whose equations are `system`.
-    fn begin(&mut self, system: &System) {
-        self.begin_events(system);
+    fn begin(&mut self, system: &dyn PhaseSystem) {
+        self.begin_events(system.full());
         let balance = energy(system, self.time, &self.state).balance();
         let (created, scale) = self.created(balance);
         if creation(created, scale).is_some() {
@@ -436,7 +469,7 @@ impl Run {
     /// How the motion was computed so far, with what a reduced model tells of its error.
     pub(super) fn report(&self) -> Report {
         if let Some(checks) = &self.reduced {
-            let equations = || self.equations(&self.phase, &self.state).ok();
+            let equations = || self.full_equations(&self.phase, &self.state).ok();
             locked(checks).settle(self.number, equations, |state, x| self.changes_by(state, x));
         }
         self.settled_report()
@@ -506,7 +539,7 @@ impl Run {
         if self.time > self.trajectory.last().time {
             let accelerates = self.sensors.need_accelerations();
             let last =
-                records::sample(self.number, &mut system, self.time, &self.state, accelerates);
+                records::sample(self.number, &mut *system, self.time, &self.state, accelerates);
             if let Ok(mut last) = last {
                 self.complete(&mut last);
                 self.trajectory.push(last);

@@ -6,7 +6,7 @@
 //! II*, section V.2), which bounds its steps by the fastest of them, however small they are.
 
 use super::auto::{Plan, Probe, TRIAL};
-use super::stepper::Failed;
+use crate::dynamics::phase::Failed;
 use crate::integrators::common::{self, Cause};
 use crate::scene::settings::Method;
 

@@ -16,9 +16,9 @@ use super::progress::{Observer, Progress};
 use super::records::{self, energy};
 use super::reduced_checks::locked;
 use super::run::Run;
-use super::stepper::{Failed, Stepper};
+use crate::dynamics::phase::{Failed, Stepper};
 use crate::dynamics::report::creation;
-use crate::dynamics::system::System;
+use crate::dynamics::system::PhaseSystem;
 use crate::dynamics::trajectory::{Interrupted, Sample};
 use crate::elements::force::Step;
 use crate::integrators::ode::Failure;
@@ -83,7 +83,7 @@ impl Run {
             return Ok(Some(Ending::Better(before)));
         }
         if let Some(mean) = led {
-            let refusal = work.stepper.system().refusal();
+            let refusal = work.stepper.system().full().refusal();
             if let Some(failed) = crawling(LONG, mean, self.time, refusal) {
                 return Err(failed);
             }
@@ -173,12 +173,12 @@ impl Run {
         let time = if is_at_jump { stop } else { event.or(cut).unwrap_or(reached) };
         self.standing = if time > self.time { 0 } else { self.standing + 1 };
         if self.standing == STANDING {
-            return Err(standing_still(stepper.system().refusal()));
+            return Err(standing_still(stepper.system().full().refusal()));
         }
         // a step that is refused leaves no samples
         let (system, arrived) = arrival(stepper, event.or(cut), sample)?;
         let before = &self.state[..n];
-        system.check_step(time, before, arrived).map_err(Failure::into_error)?;
+        system.full().check_step(time, before, arrived).map_err(Failure::into_error)?;
         if let Some(end) = cut {
             self.phase_run.cut = cut;
             self.phase_run.stops.clear();
@@ -212,9 +212,9 @@ impl Run {
         self.steps += 1;
         self.state.copy_from_slice(&arrived[..length]);
         if event.is_some() {
-            self.phase_run.interval.events.pass(system, time, &self.state, step);
+            self.phase_run.interval.events.pass(system.full(), time, &self.state, step);
         }
-        let drift = system.drift(time, &self.state[..n]);
+        let drift = system.full().drift(time, &self.state[..n]);
         let worst = &mut self.trajectory.report.constraint_drift;
         *worst = worst.max(drift);
         self.follow_angles();
@@ -225,7 +225,7 @@ impl Run {
     }
 
     /// Keeps now and then what a reduced model leaves over.
-    fn check_reduced(&mut self, system: &mut System) -> Result<(), Failure> {
+    fn check_reduced(&mut self, system: &mut dyn PhaseSystem) -> Result<(), Failure> {
         let start = self.number.checked_sub(1).map_or(0.0, |k| self.scene.phases()[k].end());
         let phase = [start, self.phase.until];
         let left_over = system.left_over(self.time, &self.state, phase)?;
@@ -269,7 +269,7 @@ impl Run {
         let mut seen = match self.sensors.need_forces() {
             true => records::sample(self.number, stepper.system_mut(), t, state, accelerates)
                 .map_err(Failure::into_error)?,
-            false => records::of_state(self.number, stepper.system(), t, state),
+            false => records::of_state(self.number, stepper.system().full(), t, state),
         };
         self.complete(&mut seen);
         Ok(seen)
@@ -291,7 +291,7 @@ fn arrival<'s>(
     stepper: &'s mut dyn Stepper,
     event: Option<f64>,
     sample: &'s mut [f64],
-) -> Result<(&'s System, &'s [f64]), Failed> {
+) -> Result<(&'s dyn PhaseSystem, &'s [f64]), Failed> {
     let Some(t) = event else { return Ok((stepper.system(), stepper.state())) };
     stepper.interpolate(t, sample)?;
     Ok((stepper.system(), sample))

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use crate::base::input::InputError;
 use crate::dynamics::trajectory::Sample;
-use crate::elements::body::{Body, CellField, Grown, MagnetizedPoints, Strands};
+use crate::elements::body::{Body, CellField, Grown, Strands};
 use crate::elements::force::{Force, Forces, NodalForces};
 use crate::elements::mesh::Selection;
 use crate::scene::forces::{ChamberForce, Contact, GasInChamber, LiquidInChamber, SpringGauge};
@@ -38,8 +38,6 @@ pub(super) struct Gauges {
     pub(super) muscles: Vec<Strands>,
     /// By which the positions of nodes make the magnetic moment (A m); empty without magnets.
     poles: Vec<f64>,
-    /// On which dipoles act; empty without dipoles.
-    pub(super) magnetized: Arc<[Box<dyn MagnetizedPoints>]>,
     /// The functions that read the outputs of each device.
     pub(super) devices: Vec<Vec<DeviceGauge>>,
 }
@@ -60,7 +58,6 @@ impl Gauges {
             liquids,
             muscles: muscles.collect::<Result<_, _>>()?,
             poles: scene.magnetization()?.map_or_else(Vec::new, |magnets| magnets.poles),
-            magnetized: scene.magnetized_points()?,
             devices: scene.device_gauges()?,
         })
     }

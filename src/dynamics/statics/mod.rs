@@ -267,8 +267,8 @@ impl Scene {
         };
         let sample = |(number, point): (usize, &Point)| -> Result<Sample, InputError> {
             let load = search.rest.acting(point.fraction);
-            let commanded =
-                acting.at_rest([load, point.fraction], (self.obstacles(), self.dipoles()), d);
+            let others = (self.obstacles(), self.presets_in(acting));
+            let commanded = acting.at_rest([load, point.fraction], others, d);
             let mut energy = search.rest.energy(point.fraction, &point.u);
             energy.supplied = energy.balance() - unloaded.balance();
             Ok(Sample {

@@ -23,17 +23,14 @@ mod dual;
 #[cfg(test)]
 mod tests;
 
-use std::sync::Arc;
-
 use super::System;
-use super::constrained_solver::nodal_multipliers;
 use super::newton_matrix::NewtonMatrix;
-use super::source::EntrySource;
 use crate::base::input::InputError;
 use crate::base::sparse::{BlockMatrix, NodeMatrix};
 use crate::base::vector::{dot, largest};
+use crate::dynamics::linear::{EntrySource, nodal_multipliers};
 use crate::dynamics::system::Energy;
-use crate::elements::force::{Force, NodalForces, Reservoir, Step};
+use crate::elements::force::{Capabilities, Force, NodalForces, Reservoir, Step};
 use crate::integrators::ode::Failure;
 use crate::scene::constraint::{ConstraintRow, Prescribed};
 
@@ -180,14 +177,15 @@ impl AtRest {
 
     /// Whether obstacles move.
     pub(crate) fn is_driven(&self) -> bool {
-        self.system.forces.iter().any(|force| force.velocity(self.time).is_some())
+        let mut contacts =
+            self.system.forces.iter().filter_map(|force| force.capabilities().contact);
+        contacts.any(|contact| contact.velocity(self.time).is_some())
     }
 
     /// M x
     pub(crate) fn weigh(&self, x: &[f64], product: &mut [f64]) {
         product.fill(0.0);
-        let matrices = &self.system.matrices;
-        matrices.inertia.add_product(matrices.dimension, 1.0, x, product);
+        self.system.matrices.add_momentum(1.0, x, product);
     }
 
     /// Number of factorizations so far.
@@ -265,8 +263,11 @@ impl AtRest {
     /// other than at both of its ends, if they do: they would pass through each other.
     pub(crate) fn passage(&self, u: &[f64], to: &[f64]) -> Option<f64> {
         // obstacles, which have switches, push back from any depth
-        let is_surface = |force: &&Arc<dyn Force>| force.can_be_passed() && force.switches() == 0;
-        let mut surfaces = self.system.forces.iter().filter(is_surface).peekable();
+        let surfaces = self.system.forces.iter().filter_map(|force| {
+            let Capabilities { switches, contact, .. } = force.capabilities();
+            contact.filter(|_| switches.is_none())
+        });
+        let mut surfaces = surfaces.peekable();
         surfaces.peek()?;
         let way: Vec<f64> = u.iter().zip(to).map(|(u, to)| to - u).collect();
         let step = Step { times: [0.0, 1.0], u: [u, to], v: [&way, &way] };
@@ -278,7 +279,9 @@ impl AtRest {
         let dimension = self.system.matrices.dimension;
         let is_given = self.unbalanced.is_some();
         for (force, v) in self.system.forces.iter().zip(&mut self.velocities) {
-            if let Some(w) = force.velocity(when(&**force, is_given, fraction, self.time)) {
+            let contact = force.capabilities().contact;
+            let at = when(&**force, is_given, fraction, self.time);
+            if let Some(w) = contact.and_then(|contact| contact.velocity(at)) {
                 v.resize(self.still.len(), 0.0);
                 v.iter_mut().enumerate().for_each(|(dof, v)| *v = w[dof % dimension]);
             }
@@ -380,8 +383,7 @@ impl AtRest {
     /// The change x, which the constraints allow, by the last factorization.
     pub(crate) fn solve_other(&mut self, right: &[f64], x: &mut [f64]) {
         let System { rows, newton, .. } = &mut self.system;
-        let nowhere = vec![0.0; rows.len()];
-        newton.solver.solve(rows, right, &nowhere, x, &mut nowhere.clone());
+        x.copy_from_slice(&newton.solver.solve_free(rows, right));
     }
 
     /// Largest component of f + A mu (N).
@@ -398,18 +400,13 @@ impl AtRest {
     /// inverse iteration with the last factorization, that of K + `shift` M. It converges from above, so that
     /// a value below zero is a proof. Infinite if nothing can move.
     pub(crate) fn lowest_eigenvalue(&mut self, shift: f64) -> f64 {
-        let (dofs, count) = (self.system.dofs(), self.system.rows.len());
         let noise = |i: usize| (12.9898 * (i as f64 + 1.0)).sin().mul_add(43.758, 0.3).sin();
-        let mut right: Vec<f64> = (0..dofs).map(noise).collect();
-        let (mut x, mut mu) = (vec![0.0; dofs], vec![0.0; count]);
-        let nowhere = vec![0.0; count];
+        let mut right: Vec<f64> = (0..self.system.dofs()).map(noise).collect();
         let mut lowest = f64::INFINITY;
         for _ in 0..ITERATIONS {
-            let System { rows, newton, .. } = &mut self.system;
-            newton.solver.solve(rows, &right, &nowhere, &mut x, &mut mu);
-            let System { matrices, newton, .. } = &self.system;
-            right.fill(0.0);
-            matrices.inertia.add_product(matrices.dimension, 1.0, &x, &mut right);
+            let System { matrices, rows, newton, .. } = &mut self.system;
+            let x = newton.solver.solve_free(rows, &right);
+            right = matrices.momentum(&x);
             let square = dot(&x, &right);
             if square == 0.0 {
                 break;

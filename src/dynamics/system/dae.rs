@@ -77,7 +77,7 @@ impl DaeForm {
             Index::One => self.constraints(),
             Index::Two => 2 * self.constraints(),
         };
-        self.system.unknowns() + multipliers
+        self.system.layout.unknowns() + multipliers
     }
 
     /// Absolute tolerances of the multipliers, those of `force` (N) and, in the form of index 2, of `momentum` (N s): what
@@ -163,12 +163,12 @@ impl Dae for DaeForm {
             kinematic[i] = rates.u[i] - v[i];
             dynamic[i] = -at.total[i];
         }
-        matrices.inertia.add_product(matrices.dimension, 1.0, rates.v, dynamic);
+        matrices.add_momentum(1.0, rates.v, dynamic);
         subtract_pull(multipliers, dynamic);
         if self.index == Index::Two {
             self.mismatch.copy_from_slice(kinematic);
             kinematic.fill(0.0);
-            matrices.inertia.add_product(matrices.dimension, 1.0, &self.mismatch, kinematic);
+            matrices.add_momentum(1.0, &self.mismatch, kinematic);
             subtract_pull(slips, kinematic);
         }
         if let Some(rigid) = &matrices.rigid {

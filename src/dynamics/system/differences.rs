@@ -25,7 +25,7 @@ use crate::base::vector::{largest, noise};
 use crate::elements::force::{Force, NodalForces, Tangents};
 
 /// Tangents by differences, for the forces of a phase that need them.
-pub(super) struct Differences {
+pub(crate) struct Differences {
     /// Shifts of displacements (m) and of velocities (m/s).
     shifts: [f64; 2],
     forces: Vec<Own>,
@@ -72,13 +72,13 @@ const UNEXPLAINED: f64 = 1e-3;
 
 impl Differences {
     /// For displacements and velocities of these `scales` (m, m/s).
-    pub(super) fn new(scales: [f64; 2]) -> Self {
+    pub(crate) fn new(scales: [f64; 2]) -> Self {
         let shifts = scales.map(|scale| f64::EPSILON.sqrt() * scale);
         Self { shifts, forces: Vec::new(), room: None }
     }
 
     /// Adds the tangents of `force` at (t, u, v) to `stiffness` and `damping`: its own, or else differences.
-    pub(super) fn add_tangents(
+    pub(crate) fn add_tangents(
         &mut self,
         force: &Arc<dyn Force>,
         t: f64,
@@ -106,17 +106,17 @@ impl Differences {
     }
 
     /// Has the columns of forces be sought anew, on a matrix of another pattern.
-    pub(super) fn forget_patterns(&mut self) {
+    pub(crate) fn forget_patterns(&mut self) {
         self.forces.clear();
     }
 
     /// Evaluations of forces so far.
-    pub(super) fn evaluations(&self) -> usize {
+    pub(crate) fn evaluations(&self) -> usize {
         self.room.as_ref().map_or(0, |room| room.evaluations)
     }
 
     /// Starts the count from 0.
-    pub(super) fn forget_counts(&mut self) {
+    pub(crate) fn forget_counts(&mut self) {
         self.room.iter_mut().for_each(|room| room.evaluations = 0);
     }
 }

@@ -9,7 +9,6 @@ use super::System;
 use super::spectrum::RIGID;
 use crate::base::simd::add_multiple;
 use crate::base::vector::{dot, largest};
-use crate::dynamics::matrices::Matrices;
 use crate::integrators::ode::Failure;
 use crate::scene::constraint::ConstraintRow;
 
@@ -29,9 +28,6 @@ const UNKNOWN: f64 = 0.01;
 /// Largest displacement for differences, relative to the size of the body: they are of second order, so round-off is 1e-9 of
 /// the forces, and what they leave out 1e-6.
 const STEP: f64 = 1e-3;
-
-/// Times that a wave takes across the body, in which shapes reach equilibrium.
-const STATIC: f64 = 1e3;
 
 /// Motions at rest of a body with some constraints.
 pub(crate) struct Vibrations {
@@ -62,8 +58,8 @@ impl System {
             _ => self.vibrations(VIBRATIONS),
         };
         let Vibrations { rigid, lowest: vibrations, .. } = &*known.insert(found);
-        let [size, speed] = self.matrices.scales;
-        self.factorize_newton(STATIC * size / speed)?;
+        let [size, _] = self.matrices.scales;
+        self.factorize_at_rest()?;
 
         let largest_of = |all: &[Vec<f64>]| all.iter().map(|x| largest(x)).fold(0.0, f64::max);
         let moved = self.lifted(lifts, times);
@@ -73,7 +69,7 @@ impl System {
             // what is left when the body moves as a whole
             for motion in rigid {
                 let part = -dot(motion, &load);
-                self.add_momentum(part, motion, &mut load);
+                self.matrices.add_momentum(part, motion, &mut load);
             }
             motions.push(self.response(&load));
             loads.push(load);
@@ -87,8 +83,7 @@ impl System {
             _ => UNKNOWN * size,
         };
         let slowest = vibrations.first().map_or(0.0, |(value, _)| *value);
-        let mut momentum = vec![0.0; self.dofs()];
-        self.add_momentum(1.0, velocities, &mut momentum);
+        let momentum = self.matrices.momentum(velocities);
         for (value, shape) in vibrations {
             // how far it swings by each load that comes at once, and by the velocities
             let by_loads = loads.iter().map(|load| dot(load, shape).abs() / value);
@@ -100,8 +95,7 @@ impl System {
         motions.retain(|motion| largest(motion) > 0.0);
 
         let mut curved = [&moved[..], &motions].concat();
-        let length =
-            |x: &Vec<f64>| self.matrices.inertia.quadratic_form(self.matrices.dimension, x);
+        let length = |x: &Vec<f64>| self.matrices.square(x);
         curved.retain(|motion| length(motion) > 0.0);
         curved.sort_by(|a, b| length(b).total_cmp(&length(a)));
         curved.truncate(CURVED);
@@ -115,7 +109,7 @@ impl System {
     }
 
     /// Sets the tangents to those at rest.
-    fn update_tangents_at_rest(&mut self, t: f64) {
+    pub(super) fn update_tangents_at_rest(&mut self, t: f64) {
         let rest = vec![0.0; self.dofs()];
         self.newton.is_set = false;
         self.update_tangents(t, &rest, &rest, false);
@@ -148,26 +142,17 @@ impl System {
     fn load_at_rest(&mut self, t: f64) -> Result<Vec<f64>, Failure> {
         let rest = vec![0.0; self.dofs()];
         self.at.nodal.clear();
-        self.add_forces_where(|force| !force.is_by_cells(), t, &rest, &rest)?;
+        self.add_forces_where(|force| force.capabilities().by_cells.is_none(), t, &rest, &rest)?;
         let mut load = rest;
         self.at.nodal.add_up(&mut load);
         Ok(load)
-    }
-
-    /// y += factor M x
-    fn add_momentum(&self, factor: f64, x: &[f64], y: &mut [f64]) {
-        let Matrices { inertia, dimension, .. } = &*self.matrices;
-        inertia.add_product(*dimension, factor, x, y);
     }
 
     /// Displacements (m) in equilibrium with a load (N), by the tangents that are factorized.
     fn response(&mut self, load: &[f64]) -> Vec<f64> {
         let gamma = self.newton.gamma;
         let right: Vec<f64> = load.iter().map(|force| force * (gamma * gamma)).collect();
-        let (mut x, mut mu) = (vec![0.0; load.len()], vec![0.0; self.rows.len()]);
-        let none = mu.clone();
-        self.newton.solver.solve(&self.rows, &right, &none, &mut x, &mut mu);
-        x
+        self.newton.solver.solve_free(&self.rows, &right)
     }
 
     /// Second derivative at rest of the forces of cells (N) along two displacements, by differences.
@@ -181,7 +166,7 @@ impl System {
             add_multiple(signs[0] * steps[0], one, &mut u);
             add_multiple(signs[1] * steps[1], other, &mut u);
             self.at.nodal.clear();
-            self.add_forces_where(|force| force.is_by_cells(), t, &u, &rest)?;
+            self.add_forces_where(|force| force.capabilities().by_cells.is_some(), t, &u, &rest)?;
             self.at.nodal.add_up(&mut total);
             add_multiple(signs[0] * signs[1] / (4.0 * steps[0] * steps[1]), &total, &mut sum);
         }

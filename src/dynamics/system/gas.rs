@@ -5,6 +5,16 @@ use crate::base::vector::dot;
 use crate::integrators::ode::Failure;
 
 impl System {
+    /// Absolute tolerances of the amounts and flows, where those of strains (1) and velocities (m/s) are these.
+    pub(crate) fn flow_tolerances(&self, strain: f64, velocity: f64) -> Vec<f64> {
+        flow_of(&self.flow).map_or_else(Vec::new, |flow| flow.tolerances(strain, velocity))
+    }
+
+    /// The amounts of gas (kg) the states of actuators that lag and the flows of pipes (m^3/s) at the start of the scene; none without any.
+    pub(crate) fn amounts(&self) -> &[f64] {
+        flow_of(&self.flow).map_or(&[], |flow| flow.start())
+    }
+
     /// Writes the rates of the internal unknowns.
     pub(super) fn copy_internal_rates(&self, rates: &mut [f64]) {
         let (strains, amounts) = self.layout.split_mut(rates);
@@ -28,14 +38,11 @@ impl System {
         u: &[f64],
         amounts: &[f64],
     ) -> Result<(), Failure> {
-        let Evaluation { nodal, flowing, brought, .. } = &mut self.at;
+        let Evaluation { nodal, flowing, .. } = &mut self.at;
         if let (Some(flow), [_, ..]) = (flow_of(&self.flow), amounts) {
             let rates = flowing.each_mut().map(|rates| &mut rates[..]);
             let added = flow.add_forces_of(t, [u, amounts], nodal, rates);
-            if let Err(Failure::Recoverable(reason)) = &added {
-                self.refusal.clone_from(reason);
-            }
-            *brought = added?;
+            self.at.brought = self.noting_refusal(added)?;
         }
         Ok(())
     }

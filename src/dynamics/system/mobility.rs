@@ -13,7 +13,6 @@
 //! differences between the halves of each step alone, and sees a third of their change.
 
 use super::System;
-use super::constrained_solver::nodal_multipliers;
 use crate::base::simd::{Formula, each};
 use crate::base::tensor::Real;
 use crate::base::vector::dot;
@@ -159,10 +158,7 @@ impl System {
 
     /// Accelerations a and multipliers lambda with M a - A lambda = f, A^T a = d.
     fn accelerations(&mut self, f: &[f64], d: &[f64], a: &mut [f64], multipliers: &mut [f64]) {
-        self.inertia.solve(&self.rows, f, d, a, multipliers);
-        let Matrices { inertia, dimension, .. } = &*self.matrices;
-        nodal_multipliers(&self.rows, multipliers, |dof| {
-            inertia.row_product(*dimension, dof, a) - f[dof]
-        });
+        let of = |dof: usize, a: &[f64]| self.matrices.momentum_of(dof, a);
+        self.inertia.solve_whole(&self.rows, f, d, a, multipliers, of);
     }
 }

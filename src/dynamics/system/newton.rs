@@ -29,13 +29,10 @@
 use std::sync::Arc;
 
 use super::System;
-use super::cholesky::Indefinite;
-use super::constrained_solver::nodal_multipliers;
-use super::edges::stabilized;
 use super::newton_matrix::{ITERATED, NewtonMatrix, SOLVED_ONCE};
-use super::source::EntrySource;
 use crate::base::sparse::BlockMatrix;
 use crate::base::vector::{dot, largest};
+use crate::dynamics::linear::{EntrySource, Indefinite, nodal_multipliers, stabilized};
 use crate::dynamics::matrices::Matrices;
 use crate::dynamics::state::State;
 use crate::integrators::ode::Failure;
@@ -124,7 +121,8 @@ impl System {
     /// keep theirs, unless there are many more of them than are near now.
     pub(super) fn make_room(&mut self, u: &[f64]) {
         let pattern = self.matrices.pattern();
-        let near = self.forces.iter().flat_map(|force| force.couplings_near(u, pattern));
+        let contacts = self.forces.iter().filter_map(|force| force.capabilities().contact);
+        let near = contacts.flat_map(|contact| contact.couplings_near(u, pattern));
         let mut pairs: Vec<[usize; 2]> = near.collect();
         if pairs.is_empty() {
             return;
@@ -208,10 +206,9 @@ impl System {
         self.solve_resisted();
         let NewtonMatrix { stiffness, damping, right, xv, mu, stray, .. } = &mut self.newton;
         let (stiffness, damping) = (stiffness.get(), damping.get());
-        let (inertia, dimension) = (&self.matrices.inertia, self.matrices.dimension);
         nodal_multipliers(&self.rows, mu, |dof| {
             let damped = damping.row_product(dof, xv) + gamma * stiffness.row_product(dof, xv);
-            inertia.row_product(dimension, dof, xv) + gamma * damped - right[dof]
+            self.matrices.momentum_of(dof, xv) + gamma * damped - right[dof]
         });
         xv.iter_mut().zip(stray).for_each(|(x, stray)| *x += *stray);
         ru.iter_mut().zip(&*xv).for_each(|(x, xv)| *x += gamma * xv);
@@ -251,7 +248,7 @@ impl System {
         right.zip(&self.at.total).for_each(|(right, f)| *right = share * f);
         self.add_internal_residuals(ru, internal);
         let NewtonMatrix { stiffness, right, demands, gamma, .. } = &mut self.newton;
-        self.matrices.inertia.add_product(self.matrices.dimension, 1.0, rv, right);
+        self.matrices.add_momentum(1.0, rv, right);
         for ((demand, row), of_forces) in demands.iter_mut().zip(&self.rows).zip(&self.at.demands) {
             *demand = row.apply(rv) + share * of_forces;
         }
@@ -367,11 +364,8 @@ impl System {
             of_edges.for_each(|(d, of_slip)| *d = of_slip);
             solver.turn(&self.edges, None);
         }
-        self.inertia.solve(&self.rows, right, demands, r1, r4);
-        let Matrices { inertia, dimension, .. } = &*self.matrices;
-        nodal_multipliers(&self.rows, &mut r4[..rows], |dof| {
-            inertia.row_product(*dimension, dof, r1) - right[dof]
-        });
+        let of = |dof: usize, x: &[f64]| self.matrices.momentum_of(dof, x);
+        self.inertia.solve_whole(&self.rows, right, demands, r1, &mut r4[..rows], of);
         if let Some(solver) = &self.inertia.edges {
             r4[rows..].copy_from_slice(&solver.multipliers);
         }

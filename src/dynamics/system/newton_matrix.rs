@@ -2,12 +2,9 @@
 
 use std::sync::Arc;
 
-use super::constrained_solver::ConstrainedSolver;
 use super::differences::Differences;
-use super::edges::Edge;
-use super::flow_matrix::FlowMatrix;
-use super::source::Coupling;
 use crate::base::sparse::BlockMatrix;
+use crate::dynamics::linear::{ConstrainedSolver, Coupling, Edge, FlowMatrix};
 use crate::dynamics::matrices::Matrices;
 use crate::scene::constraint::ConstraintRow;
 
@@ -124,15 +121,10 @@ impl NewtonMatrix {
         }
     }
 
-    /// Makes room for what so many rooms of gas and liquids with so many unknowns add.
-    pub(super) fn hold_amounts(&mut self, [rooms, unknowns]: [usize; 2], dofs: usize) {
-        self.flow = (rooms > 0).then(|| FlowMatrix::new([rooms, unknowns], dofs));
-    }
-
     /// Continues with matrices on another pattern, without tangents yet.
     pub(super) fn move_to(&mut self, matrices: &Matrices, rows: &[ConstraintRow], edges: &[Edge]) {
         let mut solver = ConstrainedSolver::new(matrices, rows, edges, Coupling::AllAxes);
-        solver.count_from(&self.solver);
+        solver.set_counts(self.solver.counts());
         self.solver = solver;
         self.stiffness = Tangent::new(matrices, &matrices.stiffness, self.follows);
         self.damping = Tangent::new(matrices, &matrices.damping, self.follows);
@@ -149,15 +141,7 @@ impl NewtonMatrix {
     /// Starts all counts from 0.
     pub(super) fn forget_counts(&mut self) {
         (self.tangent_evaluations, self.patterns) = (0, 0);
-        self.solver.forget_counts();
+        self.solver.set_counts([0; 3]);
         self.differences.forget_counts();
-    }
-
-    pub(super) fn tangent_evaluations(&self) -> usize {
-        self.tangent_evaluations
-    }
-
-    pub(super) fn difference_evaluations(&self) -> usize {
-        self.differences.evaluations()
     }
 }

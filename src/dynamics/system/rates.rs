@@ -102,7 +102,7 @@ impl System {
         let RatesBound { masses, free, stiffness, damping } = bound;
         stiffness.reserve.fill(0.0);
         damping.reserve.fill(0.0);
-        for force in &self.forces {
+        for force in self.forces.iter().filter_map(|force| force.capabilities().contact) {
             force.add_reserves(t, u, v, &mut stiffness.reserve, &mut damping.reserve);
         }
         let rigid = self.matrices.rigid.as_deref();
@@ -117,8 +117,7 @@ impl System {
     /// with each other, and without edges; by the power method.
     fn inertia_factor(&mut self, masses: &[f64], among: &[bool]) -> f64 {
         let edges = self.inertia.edges.take();
-        let (dofs, rows) = (self.dofs(), self.rows.len());
-        let (nowhere, mut multipliers) = (vec![0.0; rows], vec![0.0; rows]);
+        let dofs = self.dofs();
         let mut x: Vec<f64> = (0..dofs).map(|i| (12.9898 * (i as f64 + 1.0)).sin()).collect();
         let (mut image, mut factor) = (vec![0.0; dofs], f64::NAN);
         for _ in 0..FIRST {
@@ -128,7 +127,7 @@ impl System {
                 *image = mass * x / scale;
             }
             let before: f64 = x.iter().map(|x| (x / scale).powi(2)).sum();
-            self.inertia.solve(&self.rows, &image, &nowhere, &mut x, &mut multipliers);
+            x = self.inertia.solve_free(&self.rows, &image);
             let after: f64 = x.iter().zip(among).filter(|(_, is)| **is).map(|(x, _)| x * x).sum();
             factor = (after / before).sqrt();
         }

@@ -1,12 +1,12 @@
-//! How a phase keeps its rigid pieces in shape: by their [edges](super::edges), or in equilibria by their elasticity.
+//! How a phase keeps its rigid pieces in shape: by their [edges](crate::dynamics::linear::Edges), or in equilibria by their elasticity.
 //!
 //! In equilibria nothing turns fast and the search needs an energy, so edges are released and the elasticity
 //! of the pieces acts. With rigid pieces Newton matrices are always factorized, as conjugate gradients would
 //! need W^T X W.
 
 use super::System;
-use super::edges::Edges;
 use crate::base::vector::largest;
+use crate::dynamics::linear::Edges;
 use crate::integrators::ode::Failure;
 
 /// Round-off tolerance for the velocities of a rigid piece, relative to the largest.

@@ -1,21 +1,17 @@
 //! How fast the motions of a phase are: the numbers by which a method is chosen.
 //!
 //! Power iteration finds the highest frequency and rate of decay, subspace iteration with K + shift M the
-//! lowest vibration and its damping ratio. Rigid motions are recognized by their Rayleigh quotient, and in
-//! reduced models, whose shapes have the motion of a free body with a little strain, by a kinetic energy that
-//! is rigid to 99 %.
+//! lowest vibration and its damping ratio. Rigid motions are recognized by their Rayleigh quotient.
 
 use nalgebra::{DMatrix, SymmetricEigen};
 
 use super::System;
 use super::at_rest::shifted;
-use super::constrained_solver::ConstrainedSolver;
 use super::rigid::{self, Shape};
-use super::shapes::Shapes;
-use super::source::Coupling;
 use crate::base::simd::add_multiple;
 use crate::base::sparse::NodeMatrix;
 use crate::base::vector::{dot, noise};
+use crate::dynamics::linear::{ConstrainedSolver, Coupling};
 use crate::dynamics::matrices::Matrices;
 
 /// How fast a body can move in a phase.
@@ -40,6 +36,19 @@ pub struct Spectrum {
 }
 
 impl Spectrum {
+    /// From the highest eigenvalues of Kt and of D, and of the lowest vibration x that of Kt, x.D x, and the part of that which is
+    /// mass damping.
+    pub(crate) fn new([highest, damping_rate]: [f64; 2], lowest: Option<[f64; 3]>) -> Self {
+        let ratio = |k: usize| lowest.map_or(0.0, |own| own[k] / (2.0 * own[0].sqrt()));
+        Self {
+            highest_frequency: highest.sqrt(),
+            lowest_frequency: lowest.map(|[eigenvalue, ..]| eigenvalue.sqrt()),
+            damping_rate,
+            lowest_damping_ratio: ratio(1),
+            mass_damping_ratio: ratio(2),
+        }
+    }
+
     /// Period of the slowest vibration (s).
     pub fn slowest_period(&self) -> Option<f64> {
         self.lowest_frequency.map(|omega| std::f64::consts::TAU / omega)
@@ -75,93 +84,34 @@ const SHIFT: f64 = 1e-8;
 /// A shift above the lowest eigenvalue is lowered to this part of it: slender bodies are so soft.
 const LOWER_SHIFT: f64 = 0.1;
 
-/// Part of the highest eigenvalue along shapes below which one is round-off of 0.
-const ROUND_OFF: f64 = 1e-10;
-
-/// Part of the kinetic energy of a shape in rigid motions from which on it is no vibration.
-const NEARLY_RIGID: f64 = 0.99;
-
 impl System {
     /// The spectrum at (t, u, v).
     pub(crate) fn spectrum(&mut self, t: f64, u: &[f64], v: &[f64]) -> Spectrum {
-        let amounts = self.amounts().to_vec();
-        self.update_tangents(t, u, v, false);
-        self.add_branch_tangents(0.0, u, &[]);
-        self.add_flow_tangents(t, [u, v, &amounts]);
-        if let Some(reduction) = &self.reduction {
-            return self.spectrum_along(&reduction.shapes, u);
-        }
+        self.update_stiffest_tangents(t, u, v);
         self.edges.move_to(self.alpha, u, v);
         self.turn_inertia(false);
         let highest = self.highest(Self::add_stiffness);
         let damping_rate =
             self.highest(|system, x, image| system.tangents().1.add_product(1.0, x, image));
-        let mut spectrum = Spectrum {
-            highest_frequency: highest.sqrt(),
-            lowest_frequency: None,
-            damping_rate,
-            lowest_damping_ratio: 0.0,
-            mass_damping_ratio: 0.0,
-        };
         let rigid = self.rigid_motions(u, RIGID * highest);
-        if let Some((eigenvalue, x)) = self.lowest(highest, &rigid, 1).pop() {
-            let omega = eigenvalue.sqrt();
-            spectrum.lowest_frequency = Some(omega);
-            spectrum.lowest_damping_ratio = self.tangents().1.quadratic_form(&x) / (2.0 * omega);
+        let lowest = self.lowest(highest, &rigid, 1).pop().map(|(eigenvalue, x)| {
             let by_mass = |m: &NodeMatrix| m.quadratic_form(self.matrices.dimension, &x);
-            spectrum.mass_damping_ratio =
-                self.matrices.mass_damping.as_deref().map_or(0.0, by_mass) / (2.0 * omega);
-        }
-        spectrum
+            let by_mass = self.matrices.mass_damping.as_deref().map_or(0.0, by_mass);
+            [eigenvalue, self.tangents().1.quadratic_form(&x), by_mass]
+        });
+        Spectrum::new([highest, damping_rate], lowest)
     }
 
-    /// The spectrum along the shapes of a reduced model, which are orthonormal by M.
-    fn spectrum_along(&self, shapes: &Shapes, u: &[f64]) -> Spectrum {
-        let (count, free) = (shapes.count(), shapes.free());
-        let along = |product: &dyn Fn(&[f64], &mut [f64])| {
-            let all = shapes.products(product);
-            let entry = |i: usize, j: usize| 0.5 * (all[i * count + j] + all[j * count + i]);
-            DMatrix::from_fn(free, free, entry)
-        };
-        let d = self.tangents().1;
-        let stiffness = SymmetricEigen::new(along(&|x, y| self.add_stiffness(x, y)));
-        let damping = along(&|x, y| d.add_product(1.0, x, y));
-        let highest = stiffness.eigenvalues.iter().copied().fold(0.0, f64::max);
-        // shapes hold rigid motions with a little strain
-        let rigid = self.rigid_motions(u, ROUND_OFF * highest);
-        let rigid: Vec<Vec<f64>> = rigid.iter().map(|motion| shapes.coordinates(motion)).collect();
-        let is_vibration = |&i: &usize| {
-            let x = stiffness.eigenvectors.column(i);
-            let part: f64 = rigid.iter().map(|motion| dot(motion, x.as_slice()).powi(2)).sum();
-            stiffness.eigenvalues[i] > ROUND_OFF * highest && part < NEARLY_RIGID
-        };
-        let lowest = (0..free)
-            .filter(is_vibration)
-            .min_by(|&i, &j| stiffness.eigenvalues[i].total_cmp(&stiffness.eigenvalues[j]));
-        let mut spectrum = Spectrum {
-            highest_frequency: highest.sqrt(),
-            lowest_frequency: None,
-            damping_rate: damping.symmetric_eigenvalues().iter().copied().fold(0.0, f64::max),
-            lowest_damping_ratio: 0.0,
-            mass_damping_ratio: 0.0,
-        };
-        if let Some(lowest) = lowest {
-            let omega = stiffness.eigenvalues[lowest].sqrt();
-            let x = stiffness.eigenvectors.column(lowest);
-            let ratio = |matrix: &DMatrix<f64>| (matrix * x).dot(&x) / (2.0 * omega);
-            spectrum.lowest_frequency = Some(omega);
-            spectrum.lowest_damping_ratio = ratio(&damping);
-            if let Some(m) = &self.matrices.mass_damping {
-                let product =
-                    |x: &[f64], y: &mut [f64]| m.add_product(self.matrices.dimension, 1.0, x, y);
-                spectrum.mass_damping_ratio = ratio(&along(&product));
-            }
-        }
-        spectrum
+    /// Updates the tangents to (t, u, v), with those of branches and amounts that have no time to yield.
+    pub(crate) fn update_stiffest_tangents(&mut self, t: f64, u: &[f64], v: &[f64]) {
+        let amounts = self.amounts().to_vec();
+        self.update_tangents(t, u, v, false);
+        self.add_branch_tangents(0.0, u, &[]);
+        self.add_flow_tangents(t, [u, v, &amounts]);
     }
 
     /// Adds Kt `x` to `forces`, with what amounts that flow resist as long as they stay, which is no part of the pattern.
-    fn add_stiffness(&self, x: &[f64], forces: &mut [f64]) {
+    pub(crate) fn add_stiffness(&self, x: &[f64], forces: &mut [f64]) {
         self.tangents().0.add_product(1.0, x, forces);
         if let Some(flow) = &self.newton.flow {
             flow.add_stiffness(x, forces);
@@ -171,24 +121,21 @@ impl System {
     /// Largest eigenvalue of X x = eigenvalue M x, X symmetric, whose product is added by `add_product`, by power iteration; 0 if
     /// nothing can move.
     pub(super) fn highest(&mut self, add_product: impl Fn(&Self, &[f64], &mut [f64])) -> f64 {
-        let (dofs, count) = (self.dofs(), self.rows.len());
+        let dofs = self.dofs();
         let (mut x, mut image) = (noise(dofs, 0), vec![0.0; dofs]);
-        let (nowhere, mut mu) = (vec![0.0; count], vec![0.0; count]);
         let mut highest = 0.0;
         for iteration in 0..=POWER_ITERATIONS {
             // the constraints are applied to the first guess as to all others
             image.fill(0.0);
             match iteration {
-                0 => {
-                    self.matrices.inertia.add_product(self.matrices.dimension, 1.0, &x, &mut image)
-                }
+                0 => self.matrices.add_momentum(1.0, &x, &mut image),
                 _ => add_product(self, &x, &mut image),
             }
             if iteration > 0 {
                 // x has length 1 in the norm of M
                 highest = f64::max(highest, dot(&x, &image));
             }
-            self.inertia.solve(&self.rows, &image, &nowhere, &mut x, &mut mu);
+            x = self.inertia.solve_free(&self.rows, &image);
             let length = self.length(&x);
             if length == 0.0 {
                 break;
@@ -200,7 +147,7 @@ impl System {
 
     /// The rigid motions of the body with displacements `u` that neither rows nor stiffness resist, with eigenvalues below
     /// `round_off`, orthonormal by M.
-    pub(super) fn rigid_motions(&self, u: &[f64], round_off: f64) -> Vec<Vec<f64>> {
+    pub(crate) fn rigid_motions(&self, u: &[f64], round_off: f64) -> Vec<Vec<f64>> {
         let Matrices { positions, size, stiffness, dimension, inertia, .. } = &*self.matrices;
         let mut positions = positions.clone();
         // with linear strain, turns along straight lines cause no strain
@@ -247,15 +194,12 @@ impl System {
         }
         let mut block = (d * (d + 1) / 2 + 2 * count).min(dofs);
         let mut basis: Vec<Vec<f64>> = (0..block).map(|k| noise(dofs, k)).collect();
-        let (nowhere, mut mu) = (vec![0.0; self.rows.len()], vec![0.0; self.rows.len()]);
         let mut found: Vec<(f64, Vec<f64>)> = Vec::new();
         let mut can_be_lower = shift <= SHIFT * highest;
         let mut iterations = 0;
         while iterations < SUBSPACE_ITERATIONS {
             for x in &mut basis {
-                let mut image = vec![0.0; dofs];
-                self.matrices.inertia.add_product(d, 1.0, x, &mut image);
-                solver.solve(&self.rows, &image, &nowhere, x, &mut mu);
+                *x = solver.solve_free(&self.rows, &self.matrices.momentum(x));
             }
             self.orthonormalize(rigid, &mut basis);
             if basis.is_empty() {
@@ -310,10 +254,8 @@ impl System {
     /// Makes `basis` orthonormal by M, one vector after the other, and orthogonal to `others`, which are
     /// orthonormal; vectors that depend linearly on others are dropped.
     fn orthonormalize(&self, others: &[Vec<f64>], basis: &mut Vec<Vec<f64>>) {
-        let Self { matrices, .. } = self;
         let with_image = |x: Vec<f64>| {
-            let mut image = vec![0.0; x.len()];
-            matrices.inertia.add_product(matrices.dimension, 1.0, &x, &mut image);
+            let image = self.matrices.momentum(&x);
             (x, image)
         };
         let mut done: Vec<(Vec<f64>, Vec<f64>)> = others.iter().cloned().map(with_image).collect();
@@ -365,6 +307,6 @@ impl System {
 
     /// sqrt(x.M x)
     fn length(&self, x: &[f64]) -> f64 {
-        self.matrices.inertia.quadratic_form(self.matrices.dimension, x).sqrt()
+        self.matrices.square(x).sqrt()
     }
 }

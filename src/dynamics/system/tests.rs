@@ -60,7 +60,7 @@ fn state_with(system: &System, internal: &[f64]) -> Vec<f64> {
     let mut y = noise(2 * n + ENERGIES, 1);
     y[..n].iter_mut().for_each(|u| *u *= 0.01);
     y.splice(2 * n..2 * n, internal.iter().copied());
-    assert_eq!(y.len(), system.unknowns());
+    assert_eq!(y.len(), system.layout.unknowns());
     y
 }
 

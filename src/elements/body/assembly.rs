@@ -10,7 +10,7 @@ use super::fibres::Reinforced;
 use super::fields::{BranchFields, Fields, GrownFields};
 use super::forces::Forces;
 use super::inertia::Masses;
-use super::magnetized_points::InDipoleField;
+use super::magnetized_points::MagnetizableElements;
 use super::magnets::Magnetized;
 use super::offset::Offset;
 use super::oriented::Orientable;
@@ -32,7 +32,7 @@ pub(super) trait Elements:
     + Reinforced
     + Orientable
     + Magnetized
-    + InDipoleField
+    + MagnetizableElements
     + Tangents
     + Turning
     + Fields

@@ -10,7 +10,9 @@ use super::continuum::Continuum;
 use super::forces::Terms;
 use super::strain_modes::{self, StrainModes};
 use crate::base::sparse::{BlockMatrix, NodePattern};
-use crate::elements::force::{Force, GeneralizedForce, NodalForces, Reservoir, Tangents};
+use crate::elements::force::{
+    AlongShapes, ByCells, Capabilities, Force, GeneralizedForce, NodalForces, Reservoir, Tangents,
+};
 use crate::elements::mesh::CellKind;
 use crate::integrators::ode::Failure;
 
@@ -58,26 +60,27 @@ impl Force for Elastic {
         Reservoir::Strain
     }
 
-    fn keeps_rigid(&self) -> bool {
-        self.is_of_rigid
-    }
-
-    fn is_by_cells(&self) -> bool {
-        true
-    }
-
-    fn sample(
-        &self,
-        weights: &BTreeMap<usize, f64>,
-        pattern: &NodePattern,
-    ) -> Option<Arc<dyn Force>> {
-        Some(Arc::new(self.sampled(weights, pattern)))
-    }
-
     fn nodes(&self) -> Option<Vec<usize>> {
         self.nodes.clone()
     }
 
+    fn capabilities(&self) -> Capabilities<'_> {
+        Capabilities {
+            by_cells: Some(self),
+            along_shapes: Some(self),
+            keeps_rigid: self.is_of_rigid,
+            ..Capabilities::default()
+        }
+    }
+}
+
+impl ByCells for Elastic {
+    fn sample(&self, weights: &BTreeMap<usize, f64>, pattern: &NodePattern) -> Arc<dyn Force> {
+        Arc::new(self.sampled(weights, pattern))
+    }
+}
+
+impl AlongShapes for Elastic {
     fn is_exact_along(&self, shapes: usize) -> bool {
         self.has_strain_modes(shapes)
     }

@@ -232,8 +232,8 @@ impl<const N: usize, const D: usize, const Q: usize> MagnetizedPoints for Magnet
     }
 }
 
-/// Elements that a dipole can act on.
-pub(super) trait InDipoleField {
+/// Elements of which some can be magnetized.
+pub(super) trait MagnetizableElements {
     /// Some `cells` with a `remanence` (T) on nodes of `mesh`; their numbers in it begin at `first`.
     fn magnetized_points(
         &self,
@@ -244,7 +244,7 @@ pub(super) trait InDipoleField {
     ) -> Box<dyn MagnetizedPoints>;
 }
 
-impl<const N: usize, const M: usize, const D: usize, const Q: usize> InDipoleField
+impl<const N: usize, const M: usize, const D: usize, const Q: usize> MagnetizableElements
     for ElementsOf<N, M, D, Q>
 {
     fn magnetized_points(

@@ -9,14 +9,14 @@
 //!
 //! M is constant with them (natural coordinates). The only motion besides the rigid one is a uniform
 //! strain. The edges of the frame keep it at 0, as constraints of the motion
-//! (`dynamics/system/edges.rs`), and in equilibria the elasticity of the piece keeps it small.
+//! (`dynamics/linear/edges.rs`), and in equilibria the elasticity of the piece keeps it small.
 //!
 //! The frame spans a large simplex, each node the farthest from what those before it span, so that no weight
 //! is large. Dependent nodes stay in the state with their own u and v: forces, contact, sensors, samples and
 //! checkpoints find them where they find those of any node. Only the algebra knows of pieces: `shares` are
 //! the weights, `carry` moves dependent nodes along, `gather` moves nodal forces to the frames, where they do
 //! the same work. The elasticity of a piece in equilibria is a force that motions leave out
-//! (`Force::keeps_rigid`). `docs/decisions/0012-rigid-pieces.md` has the alternatives.
+//! (`Capabilities::keeps_rigid`). `docs/decisions/0012-rigid-pieces.md` has the alternatives.
 
 use std::collections::BTreeSet;
 

@@ -71,20 +71,25 @@ const MOST_UNKNOWNS: usize = 1000;
 impl JacobianCheck {
     /// For the integration of `n` equations within these tolerances.
     pub(crate) fn new(n: usize, tolerances: &Tolerances) -> Self {
-        let zeros = || vec![0.0; n];
+        Self::of_rows(n, n, tolerances)
+    }
+
+    /// For so many functions of `n` unknowns, within these tolerances of the unknowns.
+    pub(crate) fn of_rows(rows: usize, n: usize, tolerances: &Tolerances) -> Self {
+        let zeros = || vec![0.0; rows];
         Self {
             tolerances: tolerances.clone(),
             seen: 0,
             next: 1,
             random: 1,
-            direction: zeros(),
-            moved: [zeros(), Vec::new()],
+            direction: vec![0.0; n],
+            moved: [vec![0.0; n], Vec::new()],
             products: [zeros(), zeros()],
             terms: zeros(),
             base: zeros(),
             ahead: zeros(),
             behind: zeros(),
-            rows: vec![RowState::Open; n],
+            rows: vec![RowState::Open; rows],
         }
     }
 

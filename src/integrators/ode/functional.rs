@@ -4,6 +4,8 @@ use super::failure::Failure;
 
 /// The functional G = g(T, y(T), p) + integral of h(t, y, p) from the start to T, of a solution y and
 /// the parameters p of its equations.
+///
+/// Slopes are compared with differences while they are used; wrong ones end the backward run.
 pub trait Functional {
     /// h(t, y, p). If `slopes` are given, it also writes dh/dy and dh/dp (zero on entry). Default: 0.
     fn running(

@@ -9,21 +9,15 @@ use std::mem;
 use super::{
     engine::Start,
     error::Reason,
-    event::{Action, Jump, check_crosses},
-    problem::Break,
+    event::{Jump, check_crosses},
     run::Run,
     sensitivities::{Carried, Crossing},
+    snapshot::{Act, Snapshot},
     solution::{End, Occurrence},
     watch::{Root, Sight, Turn},
 };
 use crate::base::input::InputError;
 use crate::integrators::common::{check_finite, time_tolerance};
-
-/// A state and, for a DAE, its time derivative.
-struct State {
-    y: Vec<f64>,
-    yp: Vec<f64>,
-}
 
 /// Events within a step.
 pub(super) enum Found {
@@ -80,13 +74,17 @@ impl<'a> Run<'a> {
             let mut stops = false;
             for (i, root) in &mut met {
                 root.t = at;
-                self.counts[*i] += 1;
+                root.counts &= self.armed[*i];
+                if !root.counts {
+                    continue;
+                }
+                self.count(*i);
                 let event = &self.events[*i];
                 stops |= event.action.is_some() || event.last == Some(self.counts[*i]);
                 let occurrence = Occurrence { event: *i, t: at, sign: root.sign, y: y.clone() };
                 self.occurred.push(occurrence);
             }
-            if stops {
+            if stops || self.switches(&met, at, &y)? {
                 return Ok(Found::Jumps(met));
             }
             for (i, _) in met {
@@ -109,7 +107,7 @@ impl<'a> Run<'a> {
         let is_short = (up_to.0 - *t).abs() <= tolerance;
         let mut value = |at: f64| {
             engine.interpolate(at, 0, scratch)?;
-            let value = (event.function)(at, scratch, parameters);
+            let value = event.function.at(at, scratch, parameters);
             if value.is_nan() && undefined.is_none_or(|first| at * *sign < first * *sign) {
                 *undefined = Some(at);
             }
@@ -126,24 +124,13 @@ impl<'a> Run<'a> {
     ///
     /// That is judged over the shortest time in which the function changes by more than noise.
     fn leads_back(&mut self, i: usize, turn: Turn) -> Result<bool, Reason> {
-        // the present y' of a DAE is that of the step's polynomial, or accurate only for a step as short as
-        // the last: consistent values are sought again from zero, on the scale of the span
-        let (mut y, mut slope) = (self.y.clone(), vec![0.0; self.yp.len()]);
-        let start = Start { t: self.t, y: &mut y, yp: &mut slope, s: None };
-        if self.engine.correct(start, self.span.1).is_err() || !self.engine.can_be_consistent() {
-            slope.copy_from_slice(&self.yp);
-        }
-        slope.resize(self.y.len(), 0.0);
-        self.engine.slope(self.t, &self.y, &mut slope).map_err(|failure| {
-            let help = "it is needed to see whether the action of an event turns the solution back";
-            InputError::new("right-hand side behind a jump", failure.into_error(), help)
-        })?;
+        let slope = self.slope_here()?;
         let unit = self.sign * self.unit_of_time(&self.y, &slope);
         let Self { events, scratch, parameters, y, t, .. } = self;
         let mut value = |time: f64| {
             let moved = y.iter().zip(&slope).map(|(y, slope)| y + time * slope);
             scratch.iter_mut().zip(moved).for_each(|(scratch, y)| *scratch = y);
-            (events[i].function)(*t + time, scratch, parameters)
+            events[i].function.at(*t + time, scratch, parameters)
         };
         let mut part = f64::EPSILON.cbrt();
         while part < 1.0 {
@@ -155,19 +142,44 @@ impl<'a> Run<'a> {
         Ok(false)
     }
 
+    /// The time derivative of the present state; 0 for algebraic unknowns.
+    pub(super) fn slope_here(&mut self) -> Result<Vec<f64>, Reason> {
+        // the present y' of a DAE is that of the step's polynomial, or accurate only for a step as short as
+        // the last: consistent values are sought again from zero, on the scale of the span
+        let (mut y, mut slope) = (self.y.clone(), vec![0.0; self.yp.len()]);
+        let start = Start { t: self.t, y: &mut y, yp: &mut slope, s: None };
+        if self.engine.correct(start, self.span.1).is_err() || !self.engine.can_be_consistent() {
+            slope.copy_from_slice(&self.yp);
+        }
+        self.slope_at(self.t, &self.y.clone(), slope)
+    }
+
+    /// The time derivative of the state `y`: `yp` of a DAE.
+    pub(super) fn slope_at(&mut self, t: f64, y: &[f64], yp: Vec<f64>) -> Result<Vec<f64>, Reason> {
+        let mut slope = yp;
+        slope.resize(y.len(), 0.0);
+        self.engine.slope(t, y, &mut slope).map_err(|failure| {
+            let help = "it is needed on both sides of an event and of a jump";
+            InputError::new("right-hand side at a jump", failure.into_error(), help)
+        })?;
+        Ok(slope)
+    }
+
     /// Handles the accumulation of event `i` at the present time.
     pub(super) fn accumulate(&mut self, i: usize, turn: Turn) -> Result<(), Reason> {
+        let before = self.snapshot();
         let action = self.events[i].at_accumulation.as_mut();
         let Some(action) = action.filter(|_| self.carried.is_none() && !turn.at_rest) else {
             return Err(Reason::Accumulation { event: i, t: self.t, count: self.counts[i] });
         };
-        let before = State { y: self.y.clone(), yp: self.yp.clone() };
         let (y, yp, p) = (&mut self.y, &mut self.yp, &mut self.parameters);
-        let mut jump = Jump { t: self.t, y, yp, p, ends: false };
+        let mut jump = Jump::new(self.t, y, yp, p);
         action(&mut jump);
-        if jump.ends {
+        let Jump { ends, armed, .. } = jump;
+        if ends {
             self.end = Some(End::Event(i));
         }
+        self.arm(armed)?;
         self.land(&before, &[])?;
         self.watches[i].expect_rest(turn);
         Ok(())
@@ -175,7 +187,7 @@ impl<'a> Run<'a> {
 
     /// Performs the actions of the events at the present time.
     pub(super) fn jump_at_events(&mut self, met: &[(usize, Root)]) -> Result<(), Reason> {
-        for (i, root) in met.iter().filter(|(_, root)| root.sign != 0) {
+        for (i, root) in met.iter().filter(|(_, root)| root.sign != 0 && root.counts) {
             // the function crossed zero by less than the error of the solution, whose slope leads the other
             // way
             let turn = Turn::at(root);
@@ -186,45 +198,68 @@ impl<'a> Run<'a> {
                 return self.accumulate(*i, turn);
             }
         }
-        let mut acting = Vec::new();
-        let before = self.state();
-        for (i, root) in met {
-            let event = &mut self.events[*i];
-            if self.carried.is_some() && event.action.is_some() {
+        let (mut acting, mut arming) = (Vec::new(), Vec::new());
+        self.sharpen_derivative()?;
+        let before = self.snapshot();
+        for (i, root) in met.iter().filter(|(_, root)| root.counts) {
+            let acts = self.events[*i].action.is_some();
+            if self.carried.is_some() && acts {
                 check_crosses(*i, self.t, root.sign != 0)?;
             }
+            if acts {
+                self.note(Act::Event(*i));
+            }
+            let event = &mut self.events[*i];
             let mut ends = event.last == Some(self.counts[*i]);
             if let Some(action) = &mut event.action {
                 acting.push(*i);
                 let (y, yp, p) = (&mut self.y, &mut self.yp, &mut self.parameters);
-                let mut jump = Jump { t: self.t, y, yp, p, ends };
+                let mut jump = Jump::new(self.t, y, yp, p);
                 action(&mut jump);
-                ends = jump.ends;
+                ends |= jump.ends;
+                arming.extend(jump.armed);
             }
             if ends && self.end.is_none() {
                 self.end = Some(End::Event(*i));
             }
         }
-        if !acting.is_empty() {
-            self.land(&before, met)?;
-            self.carry_across_event(&before, &acting)?;
+        self.arm(arming)?;
+        let crossed = met.iter().filter(|(_, root)| root.sign != 0).map(|(i, _)| *i).next();
+        let timed_by = acting.first().copied().or(crossed);
+        let Some(timed_by) = timed_by.filter(|_| !acting.is_empty() || self.passes_sides()) else {
+            return Ok(());
+        };
+        if acting.is_empty() {
+            self.note(Act::Event(timed_by));
         }
-        Ok(())
+        self.land(&before, met)?;
+        self.carry_across_event(&before, timed_by, &acting)
     }
 
-    /// State and time derivative.
-    fn state(&self) -> State {
-        State { y: self.y.clone(), yp: self.yp.clone() }
+    /// Whether the solution goes on with the equations behind an event without an action.
+    fn passes_sides(&self) -> bool {
+        self.sides.is_some() && self.end.is_none()
     }
 
-    /// Carries the sensitivities across the actions of these events, from the state `before` to the present
-    /// one.
-    fn carry_across_event(&mut self, before: &State, acting: &[usize]) -> Result<(), Reason> {
-        let function = acting[0];
+    /// Notes an action, or a passage, with the state before it.
+    pub(super) fn note(&mut self, act: Act) {
+        if self.sides.is_some() {
+            self.log.push((act, self.snapshot()));
+        }
+    }
+
+    /// Carries the sensitivities across the actions of these events at the time that the event `timed_by`
+    /// determines, from the state `before` to the present one.
+    fn carry_across_event(
+        &mut self,
+        before: &Snapshot,
+        timed_by: usize,
+        acting: &[usize],
+    ) -> Result<(), Reason> {
         let mut events = mem::take(&mut self.events);
         let outcome = self.carry(before, |carried, at| {
-            let function = &mut events[function].function;
-            let taus = carried.of_time(at, |t, y, p| function(t, y, p));
+            let function = &events[timed_by].function;
+            let taus = carried.of_time(at, |t, y, p| function.at(t, y, p));
             carried.cross(at, &taus, |jump| {
                 for &i in acting {
                     events[i].action.iter_mut().for_each(|action| action(jump));
@@ -235,93 +270,52 @@ impl<'a> Run<'a> {
         outcome
     }
 
-    /// Carries them across the actions of breaks, whose times depend on no parameter.
-    fn carry_across_break(
-        &mut self,
-        before: &State,
-        actions: &mut [Action<'a>],
-    ) -> Result<(), Reason> {
-        self.carry(before, |carried, at| {
-            if actions.is_empty() {
-                carried.before = Some(carried.s.clone());
-                return Ok(());
-            }
-            let taus = vec![0.0; at.p.len()];
-            carried.cross(at, &taus, |jump| actions.iter_mut().for_each(|action| action(jump)))
-        })
-    }
-
     /// Carries them by `cross` from the state `before` to the present one.
-    fn carry(
+    pub(super) fn carry(
         &mut self,
-        before: &State,
+        before: &Snapshot,
         cross: impl FnOnce(&mut Carried, &Crossing<'_>) -> Result<(), Reason>,
     ) -> Result<(), Reason> {
         let Some(mut carried) = self.carried.take() else { return Ok(()) };
-        let [mut left, mut right] = [before.yp.clone(), self.yp.clone()];
-        let of_dae = !left.is_empty();
-        for (slope, y) in [(&mut left, &before.y), (&mut right, &self.y)] {
-            slope.resize(y.len(), 0.0);
-            self.engine.slope(self.t, y, slope).map_err(|failure| {
-                let help = "sensitivities need it on both sides of a jump";
-                InputError::new("right-hand side at a jump", failure.into_error(), help)
-            })?;
+        let (of_dae, here) = (!self.yp.is_empty(), self.snapshot());
+        let mut slopes = Vec::new();
+        for side in [before, &here] {
+            self.engine.set_parameters(&side.p);
+            self.set_signs(&side.sides);
+            slopes.push(self.slope_at(self.t, &side.y, side.yp.clone())?);
         }
-        let (t, slopes, p) = (self.t, [&left[..], &right], &self.parameters);
-        let unit_of_time = self.unit_of_time(&before.y, &left);
+        let [left, right] = [&slopes[0][..], &slopes[1]];
+        let (t, slopes, p) = (self.t, [left, right], &before.p);
+        let unit_of_time = self.unit_of_time(&before.y, left);
         let at = Crossing { t, unit_of_time, before: &before.y, slopes, of_dae, p };
         cross(&mut carried, &at)?;
-        self.correct(Some(&mut carried.s))?;
+        self.correct(Some((&mut carried.s, &carried.dp)))?;
         self.carried = Some(carried);
         Ok(())
     }
 
     /// Makes the present state of a DAE, and sensitivities, satisfy the equations.
-    fn correct(&mut self, s: Option<&mut [f64]>) -> Result<(), Reason> {
+    fn correct(&mut self, s: Option<(&mut [f64], &[f64])>) -> Result<(), Reason> {
+        // a step that became short next to a switch is no measure
+        let last = (self.t - self.t_old).abs().max(self.caution.until);
+        let scale = if last > 0.0 { last } else { (self.span.1 - self.t).abs() };
         let (t, y, yp) = (self.t, &mut self.y[..], &mut self.yp[..]);
-        match self.engine.correct(Start { t, y, yp, s }, t + (t - self.t_old)) {
-            Err(error) if self.end.is_some() => Err(error.into()),
+        let carries = s.is_some();
+        match self.engine.correct(Start { t, y, yp, s }, t + self.sign * scale) {
+            Err(error) if self.end.is_some() || carries => Err(error.into()),
             // otherwise the next start reports the error
             _ => Ok(()),
         }
     }
 
-    pub(super) fn jump_at_break(&mut self) -> Result<(), Reason> {
-        let Some(Break { t, .. }) = self.breaks.last() else { return Ok(()) };
-        self.t = *t;
-        self.stale = true;
-        let before = self.state();
-        let mut actions = Vec::new();
-        while let Some(mut next) = self.breaks.pop_if(|next| next.t == self.t) {
-            if let Some(action) = &mut next.action {
-                let (y, yp, p) = (&mut self.y, &mut self.yp, &mut self.parameters);
-                let mut jump = Jump { t: self.t, y, yp, p, ends: false };
-                action(&mut jump);
-                if jump.ends {
-                    self.end = Some(End::Break);
-                }
-            }
-            actions.extend(next.action);
-        }
-        // algebraic unknowns jump with the equations
-        let follows = !self.yp.is_empty() && self.engine.can_be_consistent();
-        if actions.is_empty() && !follows {
-            return Ok(());
-        }
-        self.land(&before, &[])?;
-        self.carry_across_break(&before, &mut actions)
-    }
-
     /// Takes over the state, which was `before`, and the parameters as actions have left them.
-    fn land(&mut self, before: &State, met: &[(usize, Root)]) -> Result<(), Reason> {
+    pub(super) fn land(&mut self, before: &Snapshot, met: &[(usize, Root)]) -> Result<(), Reason> {
         self.stale = true;
         self.before.get_or_insert_with(|| before.y.clone());
         check_finite("state after the jump", &self.y)?;
         check_finite("parameters after the jump", &self.parameters)?;
-        if self.carried.is_some() {
-            check_unchanged(self.engine.parameters(), &self.parameters)?;
-        }
         self.engine.set_parameters(&self.parameters);
+        self.choose_sides(met)?;
         self.correct(None)?;
         for (i, watch) in self.watches.iter_mut().enumerate() {
             let g = self.events[i].value(i, self.t, &self.y, &self.parameters)?;
@@ -329,24 +323,31 @@ impl<'a> Run<'a> {
                 met.iter().find(|(event, _)| *event == i).map_or(0.0, |(_, root)| root.noise);
             watch.restart(self.t, g, noise);
         }
+        let acts = |(i, root): &(usize, Root)| root.counts && self.events[*i].action.is_some();
+        let jumps = met.iter().any(acts);
         for (i, root) in met {
-            if self.events[*i].action.is_some() && root.sign != 0 {
-                let turn = Turn::at(root);
-                let turns = self.leads_back(*i, turn)?;
+            if root.sign == 0 {
+                continue;
+            }
+            let (turn, acts) = (Turn::at(root), root.counts && self.events[*i].action.is_some());
+            let turns = (acts || self.sides.is_some()) && self.leads_back(*i, turn)?;
+            if acts {
                 self.watches[*i].acted(root.t, turns.then_some(turn));
+                let band = self.band(*i);
+                self.watches[*i].hold(band, f64::from(root.sign));
+            }
+            if jumps {
+                self.turn_side(*i, turns);
+            } else if turns {
+                let help = "the equations behind it lead back to it: derivatives do not exist where a solution slides along a switch";
+                return Err(InputError::new(
+                    format!("event {i} at t = {:?}", self.t),
+                    "left to where it came from",
+                    help,
+                )
+                .into());
             }
         }
-        Ok(())
-    }
-}
-
-/// Refuses changes of parameters, which sensitivities cannot follow.
-fn check_unchanged(before: &[f64], after: &[f64]) -> Result<(), InputError> {
-    match before.iter().zip(after).position(|(before, after)| before != after) {
-        None => Ok(()),
-        Some(i) => {
-            let help = "with sensitivities an action changes the state alone";
-            Err(InputError::new(format!("parameter {i} after the jump"), after[i], help))
-        }
+        self.note_flow()
     }
 }

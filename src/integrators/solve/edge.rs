@@ -18,7 +18,7 @@ impl Run<'_> {
         let t = self.t;
         let mut stops = false;
         for (i, root) in &met {
-            self.counts[*i] += 1;
+            self.count(*i);
             let event = &self.events[*i];
             stops |= event.action.is_some() || event.last == Some(self.counts[*i]);
             let y = self.y.clone();
@@ -47,13 +47,13 @@ impl Run<'_> {
         let longest = (self.span.1 - self.span.0).abs();
         let time = self.sign * self.tolerances.error_reach(&self.y, &slope, longest);
         let Self { events, watches, scratch, parameters, y, t, .. } = self;
-        let mut value = |event: &mut Event<'_>, part: f64| {
+        let mut value = |event: &Event<'_>, part: f64| {
             let moved = y.iter().zip(&slope).map(|(y, slope)| y + part * time * slope);
             scratch.iter_mut().zip(moved).for_each(|(scratch, y)| *scratch = y);
-            (event.function)(*t, scratch, parameters)
+            event.function.at(*t, scratch, parameters)
         };
         let mut met = Vec::new();
-        for (i, event) in events.iter_mut().enumerate() {
+        for (i, event) in events.iter().enumerate().filter(|(i, _)| self.armed[*i]) {
             let [before, now, mut behind] = [-1.0, 0.0, 1.0].map(|part| value(event, part));
             // along a straight line where the function itself is undefined behind
             if behind.is_nan() {

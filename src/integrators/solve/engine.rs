@@ -29,12 +29,15 @@ pub(super) trait Engine {
     fn set_parameters(&mut self, values: &[f64]);
     /// Writes the right-hand side of an ODE; does nothing for a DAE, whose slope is known already.
     fn slope(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<(), Failure>;
+    /// Writes the right-hand side of an ODE, or the residual of a DAE.
+    fn equations(&mut self, t: f64, y: &[f64], yp: &[f64], out: &mut [f64]) -> Result<(), Failure>;
     /// Writes the sensitivities at `t`, within the last step.
     fn sensitivities_at(&mut self, t: f64, out: MatMut<'_, f64>) -> Result<(), Error>;
     /// Writes the integrals from the last start to `t`, within the last step.
     fn quadratures_at(&mut self, t: f64, out: &mut [f64]) -> Result<(), Error>;
-    /// Sets the initial sensitivities to `s`, after a new start.
-    fn start_sensitivities(&mut self, s: MatRef<'_, f64>) -> Result<(), Error>;
+    /// Sets the initial sensitivities to `s`, after a new start, and the derivatives of all parameters by those
+    /// of the sensitivities to `dp`, column by column.
+    fn start_sensitivities(&mut self, s: MatRef<'_, f64>, dp: &[f64]) -> Result<(), Error>;
     /// Corrects the start before the first step, as far as that is allowed, so that it and its sensitivities
     /// satisfy the equations.
     fn make_consistent(&mut self, _towards: f64) -> Result<(), Error> {
@@ -59,8 +62,9 @@ pub(super) struct Start<'s> {
     pub(super) t: f64,
     pub(super) y: &'s mut [f64],
     pub(super) yp: &'s mut [f64],
-    /// Sensitivities, one column after the other, if they are wanted.
-    pub(super) s: Option<&'s mut [f64]>,
+    /// Sensitivities, and the derivatives of the parameters by those of the sensitivities, one column after
+    /// the other, if they are wanted.
+    pub(super) s: Option<(&'s mut [f64], &'s [f64])>,
 }
 
 /// An integrator of ODEs.
@@ -87,7 +91,7 @@ macro_rules! forward {
             fn statistics() -> Statistics;
             fn notice() -> Option<String>;
             fn sensitivities_at(t: f64, out: MatMut<'_, f64>) -> Result<(), Error>;
-            fn start_sensitivities(s: MatRef<'_, f64>) -> Result<(), Error>;
+            fn start_sensitivities(s: MatRef<'_, f64>, dp: &[f64]) -> Result<(), Error>;
             fn quadratures_at(t: f64, out: &mut [f64]) -> Result<(), Error>;
         }
 
@@ -111,7 +115,7 @@ pub(super) trait Extras {
         Ok(())
     }
 
-    fn start_sensitivities(&mut self, _: MatRef<'_, f64>) -> Result<(), Error> {
+    fn start_sensitivities(&mut self, _: MatRef<'_, f64>, _: &[f64]) -> Result<(), Error> {
         Ok(())
     }
 
@@ -129,7 +133,8 @@ impl<K: WithSensitivities, S> Extras for Solver<K, S> {
         self.interpolate_sensitivities(t, 0, out)
     }
 
-    fn start_sensitivities(&mut self, s: MatRef<'_, f64>) -> Result<(), Error> {
+    fn start_sensitivities(&mut self, s: MatRef<'_, f64>, dp: &[f64]) -> Result<(), Error> {
+        self.set_parameter_directions(dp)?;
         self.set_sensitivities(s)
     }
 
@@ -149,6 +154,10 @@ impl<I: Integrator<System: Ode> + Extras> Engine for OdeEngine<I> {
         call::rhs(self.integrator.system_mut(), t, y, out)
     }
 
+    fn equations(&mut self, t: f64, y: &[f64], _: &[f64], out: &mut [f64]) -> Result<(), Failure> {
+        call::rhs(self.integrator.system_mut(), t, y, out)
+    }
+
     fn restart(&mut self, t: f64, y: &[f64], _: &[f64]) -> Result<(), Error> {
         self.integrator.reinit(t, y)
     }
@@ -163,6 +172,10 @@ impl<S: Dae> Engine for DaeEngine<S> {
 
     fn slope(&mut self, _: f64, _: &[f64], _: &mut [f64]) -> Result<(), Failure> {
         Ok(())
+    }
+
+    fn equations(&mut self, t: f64, y: &[f64], yp: &[f64], out: &mut [f64]) -> Result<(), Failure> {
+        call::residual(self.integrator.system_mut(), t, y, yp, out)
     }
 
     fn restart(&mut self, t: f64, y: &[f64], yp: &[f64]) -> Result<(), Error> {
@@ -191,13 +204,14 @@ impl<S: Dae> Engine for DaeEngine<S> {
         let Start { t, y, yp, s } = start;
         let mut fresh = Ida::new(Borrowed(self.integrator.system_mut()), t, y, yp, &self.options)?;
         let shape = (y.len(), fresh.sensitivities().ncols());
-        if let Some(s) = &s {
+        if let Some((s, dp)) = &s {
+            fresh.set_parameter_directions(dp)?;
             fresh.set_sensitivities(MatRef::from_column_major_slice(s, shape.0, shape.1))?;
         }
         fresh.consistent_start(InitialCondition::Algebraic, towards)?;
         y.copy_from_slice(fresh.y());
         yp.copy_from_slice(fresh.yp());
-        if let Some(s) = s {
+        if let Some((s, _)) = s {
             MatMut::from_column_major_slice_mut(s, shape.0, shape.1)
                 .copy_from(fresh.sensitivities());
         }

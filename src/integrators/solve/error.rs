@@ -58,6 +58,17 @@ pub enum Reason {
         /// Its value.
         value: f64,
     },
+    /// The equations switch where no event is, and derivatives across that are wrong.
+    Switch {
+        /// Time.
+        t: f64,
+        /// Which equation jumps.
+        equation: usize,
+        /// Its right-hand side, or its residual, before.
+        before: f64,
+        /// And after.
+        after: f64,
+    },
     /// An event accumulates: its action turns the solution back ever faster.
     Accumulation {
         /// Which event, in the order of [`Problem::event`](super::Problem::event).
@@ -88,6 +99,12 @@ impl fmt::Display for Reason {
                     "the function of event {event} is {value} at t = {t:?}; it has to be a number"
                 )
             }
+            Self::Switch { t, equation, before, after } => write!(
+                f,
+                "equation {equation} jumps at t = {t:?} from {before:.4e} to {after:.4e} where no event is, at a time that \
+                 depends on unknowns or parameters: derivatives need the condition that it switches by as the \
+                 function of an Event"
+            ),
             Self::Accumulation { event, t, count } => write!(
                 f,
                 "event {event} accumulates at t = {t:?}: it was met {count} times, ever faster, until errors hide how \

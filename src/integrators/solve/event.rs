@@ -1,14 +1,25 @@
 //! Events: roots of functions along a solution, and actions at them.
 
-use std::fmt;
+use std::{cell::RefCell, fmt, rc::Rc};
 
 use super::error::Reason;
 use crate::base::input::InputError;
 use crate::base::root::Direction;
 use crate::integrators::common::check_finite;
 
-/// g(t, y, p), whose roots are the events.
-pub(super) type Function<'a> = Box<dyn FnMut(f64, &[f64], &[f64]) -> f64 + 'a>;
+/// g(t, y, p), whose roots are the events: equations that keep to one side of them ask it, too.
+#[derive(Clone)]
+pub(super) struct Function<'a>(Rc<RefCell<dyn FnMut(f64, &[f64], &[f64]) -> f64 + 'a>>);
+
+impl<'a> Function<'a> {
+    pub(super) fn new(g: impl FnMut(f64, &[f64], &[f64]) -> f64 + 'a) -> Self {
+        Self(Rc::new(RefCell::new(g)))
+    }
+
+    pub(super) fn at(&self, t: f64, y: &[f64], p: &[f64]) -> f64 {
+        (self.0.borrow_mut())(t, y, p)
+    }
+}
 
 /// An action at an event or a break: it changes the jump.
 pub(super) type Action<'a> = Box<dyn FnMut(&mut Jump<'_>) + 'a>;
@@ -26,6 +37,10 @@ pub(super) type Action<'a> = Box<dyn FnMut(&mut Jump<'_>) + 'a>;
 ///   ([`Reason::Event`](super::Reason::Event)). Where the equations are not defined behind an event that ends the run or has
 ///   an action, it takes place where the state has come to it within the tolerances.
 /// * When an action makes g jump across zero, that is no event.
+/// * Where an action lets the solution rest at g = 0, as by equations that hold it there, rounding is no event: the
+///   next one is met after g has left zero by more than the tolerances of the state make of it.
+/// * Times are events, too: [`every`](Self::every) period, or [`at`](Self::at) one time. A sine of time as
+///   the function loses ticks where steps pass several periods.
 /// * An action that turns the solution back, as at a floor, may be called at ever shorter intervals (Zeno's
 ///   paradox): such events [accumulate](Self::at_accumulation).
 pub struct Event<'a> {
@@ -36,6 +51,35 @@ pub struct Event<'a> {
     pub(super) at_accumulation: Option<Action<'a>>,
     pub(super) samples: u32,
     pub(super) touching: Option<f64>,
+    pub(super) once: bool,
+    pub(super) clock: Option<Clock>,
+}
+
+/// The times of an event that has no function.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Clock {
+    /// The first one; `None`: all multiples of the period after the start of the span.
+    start: Option<f64>,
+    /// `None`: there is one.
+    period: Option<f64>,
+}
+
+impl Clock {
+    /// The next of its times after `t` in the direction `sign` of time; one at `t` counts if it `includes` that.
+    pub(super) fn next(self, t: f64, sign: f64, includes: bool) -> Option<f64> {
+        let first = self.start.unwrap_or(0.0);
+        let is_ahead = |time: &f64| (time - t) * sign > 0.0 || (includes && *time == t);
+        let Some(period) = self.period else { return Some(first).filter(is_ahead) };
+        let passed = ((t - first) * sign / period).floor() - 1.0;
+        let passed = if self.start.is_some() { passed.max(0.0) } else { passed };
+        let mut times = (0..4).map(|k| first + sign * (passed + f64::from(k)) * period);
+        times.find(is_ahead)
+    }
+
+    /// Whether it may tick at the start of the span.
+    pub(super) fn may_start(self) -> bool {
+        self.start.is_some()
+    }
 }
 
 impl fmt::Debug for Event<'_> {
@@ -57,14 +101,73 @@ impl<'a> Event<'a> {
     /// A root of `g(t, y, p)`, with the parameters of the equations.
     pub fn with_parameters(g: impl FnMut(f64, &[f64], &[f64]) -> f64 + 'a) -> Self {
         Self {
-            function: Box::new(g),
+            function: Function::new(g),
             direction: Direction::Either,
             last: None,
             action: None,
             at_accumulation: None,
             samples: 4,
             touching: None,
+            once: false,
+            clock: None,
         }
+    }
+
+    /// A clock: the event takes place at the multiples of `period` within the span, after its start.
+    ///
+    /// Its times are exact, k `period` to rounding, and none is lost. With an [action](Self::action) a step ends just
+    /// before each, as at a [break](super::Problem::breaks), and equations may switch there; without one it is recorded.
+    ///
+    /// ```
+    /// use pliant::{
+    ///     ode::with_parameters,
+    ///     solve::{Event, Method, Options, Problem, solve},
+    /// };
+    ///
+    /// // y' = u, where a controller sets u = (1 - y) / 2 every second from the start on
+    /// let plant = with_parameters(
+    ///     |_t, _y, u, ydot| {
+    ///         ydot[0] = u[0];
+    ///         Ok(())
+    ///     },
+    ///     [0.0],
+    /// );
+    /// let control = Event::every(1.0).starting_at(0.0).action(|jump| jump.p[0] = 0.5 * (1.0 - jump.y[0]));
+    /// let problem = Problem::ode(plant, [0.0]).event(control);
+    /// let solution = solve(problem, Method::Bdf, (0.0, 3.0), &Options::new(1e-8, 1e-10))?;
+    /// assert!((solution.last()[0] - 0.875).abs() < 1e-9);
+    /// assert_eq!(solution.events().len(), 4);
+    /// # Ok::<(), pliant::solve::Error>(())
+    /// ```
+    pub fn every(period: f64) -> Self {
+        Self::clock(Clock { start: None, period: Some(period) })
+    }
+
+    /// An event at the time `t`, which may be the start or the end of the span.
+    pub fn at(t: f64) -> Self {
+        Self::clock(Clock { start: Some(t), period: None })
+    }
+
+    fn clock(clock: Clock) -> Self {
+        Self { clock: Some(clock), ..Self::new(|_, _| 1.0) }
+    }
+
+    /// The time of the first tick of [`every`](Self::every), which may be the start of the span; the others follow in
+    /// the direction of time.
+    #[must_use]
+    pub fn starting_at(mut self, t: f64) -> Self {
+        // without a period it is refused before the run
+        let period = self.clock.map_or(Some(f64::NAN), |clock| clock.period);
+        self.clock = Some(Clock { start: Some(t), period });
+        self
+    }
+
+    /// The event takes place once, and then no more until an action [arms](Jump::arm) it again. (One that is
+    /// [terminal](Self::terminal) ends the run.)
+    #[must_use]
+    pub fn once(mut self) -> Self {
+        self.once = true;
+        self
     }
 
     /// Counts only roots where g becomes positive.
@@ -169,16 +272,46 @@ impl<'a> Event<'a> {
 }
 
 impl Event<'_> {
+    /// Whether the run goes on from it.
+    pub(super) fn may_go_on(&self) -> bool {
+        self.action.is_some() || (self.clock.is_none() && self.last != Some(1))
+    }
+
+    /// Whether it does something to the run.
+    pub(super) fn acts(&self) -> bool {
+        self.action.is_some() || self.last.is_some()
+    }
+
+    /// The event lent to a run, without what it does where it accumulates.
+    pub(super) fn lend(&mut self) -> Event<'_> {
+        let Self { direction, last, samples, touching, once, clock, .. } = *self;
+        let function = self.function.clone();
+        let function = Function::new(move |t, y, p| function.at(t, y, p));
+        let action =
+            self.action.as_mut().map(|action| -> Action<'_> { Box::new(move |jump| action(jump)) });
+        Event {
+            function,
+            direction,
+            last,
+            action,
+            at_accumulation: None,
+            samples,
+            touching,
+            once,
+            clock,
+        }
+    }
+
     /// The value of the function of this event, the one of number `i`.
-    pub(super) fn value(&mut self, i: usize, t: f64, y: &[f64], p: &[f64]) -> Result<f64, Reason> {
-        match (self.function)(t, y, p) {
+    pub(super) fn value(&self, i: usize, t: f64, y: &[f64], p: &[f64]) -> Result<f64, Reason> {
+        match self.function.at(t, y, p) {
             value if value.is_nan() => Err(Reason::Event { event: i, t, value }),
             value => Ok(value),
         }
     }
 
-    /// Checks the event of number `i`.
-    pub(super) fn check(&self, i: usize) -> Result<(), InputError> {
+    /// Checks the event of number `i` of a run over `span`.
+    pub(super) fn check(&self, i: usize, span: (f64, f64)) -> Result<(), InputError> {
         if !(1..=10_000).contains(&self.samples) {
             let help = "it lies between 1 and 10,000";
             return Err(InputError::new(format!("samples of event {i}"), self.samples, help));
@@ -192,6 +325,26 @@ impl Event<'_> {
         if self.at_accumulation.is_some() && self.action.is_none() {
             let help = "it belongs to an action, which turns the solution back";
             return Err(InputError::new(format!("at_accumulation of event {i}"), "given", help));
+        }
+        if let Some(Clock { start, period }) = self.clock {
+            let longest = span.0.abs().max(span.1.abs());
+            if let Some(start) = start.filter(|start| !start.is_finite()) {
+                return Err(InputError::new(format!("time of event {i}"), start, "it is finite"));
+            }
+            let shortest = 8.0 * f64::EPSILON * longest;
+            if let Some(period) = period.filter(|p| !(p.is_finite() && *p > shortest)) {
+                let help = "it is positive and longer than rounding of the times of the span; starting_at belongs to Event::every";
+                return Err(InputError::new(format!("period of event {i}"), period, help));
+            }
+            if self.direction != Direction::Either || self.touching.is_some() {
+                let help =
+                    "it belongs to an event with a function, and not to Event::every or Event::at";
+                return Err(InputError::new(
+                    format!("direction or touching of event {i}"),
+                    "given",
+                    help,
+                ));
+            }
         }
         if self.last == Some(0) {
             let help = "events are counted from 1";
@@ -213,9 +366,27 @@ pub struct Jump<'j> {
     /// Parameters of the equations; values written here apply from now on.
     pub p: &'j mut [f64],
     pub(super) ends: bool,
+    /// Events to be armed or disarmed.
+    pub(super) armed: Vec<(usize, bool)>,
 }
 
-impl Jump<'_> {
+impl<'j> Jump<'j> {
+    pub(super) fn new(t: f64, y: &'j mut [f64], yp: &'j mut [f64], p: &'j mut [f64]) -> Self {
+        Self { t, y, yp, p, ends: false, armed: Vec::new() }
+    }
+
+    /// Lets the event of this number, in the order of [`Problem::event`](super::Problem::event), take place
+    /// again after it was [disarmed](Self::disarm) or happened [once](Event::once).
+    pub fn arm(&mut self, event: usize) {
+        self.armed.push((event, true));
+    }
+
+    /// Lets the event of this number take place no more until it is armed: nothing is recorded, no action
+    /// called.
+    pub fn disarm(&mut self, event: usize) {
+        self.armed.push((event, false));
+    }
+
     /// Ends the run here.
     pub fn end(&mut self) {
         self.ends = true;

@@ -3,10 +3,12 @@
 use super::{
     error::Reason,
     event::{Jump, check_crosses, check_landed},
-    history::{Act, HistoryPart, Passage, Snapshot, follow},
+    history::{HistoryPart, Passage, follow},
     method::Method,
     options::Options,
     problem::{Equations, Problem},
+    sides::{FAR, Surfaces, continued},
+    snapshot::{Act, Snapshot},
 };
 use crate::base::{
     input::InputError,
@@ -25,7 +27,8 @@ use crate::integrators::{
 /// [`Method::Ida`]).
 ///
 /// Where events act, the times of the jumps depend on the parameters, too, and so does the end of a run that
-/// an event ends; all of that is in the gradient.
+/// an event ends; all of that is in the gradient. Equations and functionals that switch by themselves need
+/// events there, as [sensitivities](Options::sensitivities) do.
 ///
 /// With the slopes f- before and f+ after a jump y+ = a(t, y, p) at a root of e(t, y, p),
 ///
@@ -101,9 +104,13 @@ pub fn gradient(
     let mut problem = problem;
     let (start, n) = (span.0, problem.y.len());
     problem.equations = method.take(problem.equations, start, n, options)?;
+    let length = (span.1 - start).abs();
+    let surfaces = Surfaces::of(&problem.events, &options.tolerances, length);
+    problem.equations = surfaces.keep(problem.equations);
+    problem.sides = Some(surfaces.sides().clone());
     let original = problem.equations.parameters().to_vec();
     let (parts, end) = follow(&mut problem, method, span, options)?;
-    let mut back = BackwardRun { problem, functional, method, span, options, back };
+    let mut back = BackwardRun { problem, surfaces, functional, method, span, options, back };
     let outcome = back.gradient(&parts, &end);
     back.problem.equations.set_parameters(&original);
     outcome
@@ -112,6 +119,8 @@ pub fn gradient(
 /// Problem and options of the backward run.
 struct BackwardRun<'a, 'o, F> {
     problem: Problem<'a>,
+    /// The surfaces of its events, whose sides the equations keep to.
+    surfaces: Surfaces<'a>,
     functional: F,
     method: Method,
     span: (f64, f64),
@@ -120,12 +129,15 @@ struct BackwardRun<'a, 'o, F> {
 }
 
 /// The functional of one piece: the same integral, and at the end the adjoint of the later pieces.
-struct Piece<'f, F> {
+struct Piece<'f, 'a, F> {
+    surfaces: &'f mut Surfaces<'a>,
     functional: &'f mut F,
     lambda: &'f [f64],
+    /// The state at the end, where the adjoint of the later pieces takes over.
+    end: Vec<f64>,
 }
 
-impl<F: Functional> Functional for Piece<'_, F> {
+impl<F: Functional> Functional for Piece<'_, '_, F> {
     fn running(
         &mut self,
         t: f64,
@@ -133,27 +145,41 @@ impl<F: Functional> Functional for Piece<'_, F> {
         p: &[f64],
         slopes: Option<Slopes<'_>>,
     ) -> Result<f64, Failure> {
-        self.functional.running(t, y, p, slopes)
+        let (shift, has_slopes) = (self.surfaces.shift(t, y, p), slopes.is_some());
+        let near =
+            self.functional.running(t + shift, self.surfaces.moved(t, y, shift), p, slopes)?;
+        if shift == 0.0 || has_slopes {
+            return Ok(near);
+        }
+        let far = self.surfaces.moved(t, y, FAR * shift);
+        Ok(continued(near, self.functional.running(t + FAR * shift, far, p, None)?))
     }
 
     fn terminal(
         &mut self,
         _t: f64,
-        _y: &[f64],
+        y: &[f64],
         _p: &[f64],
         slopes: Option<Slopes<'_>>,
     ) -> Result<f64, Failure> {
         if let Some(slopes) = slopes {
             slopes.y.copy_from_slice(self.lambda);
+            self.end = y.to_vec();
         }
-        Ok(0.0)
+        let moved = y.iter().zip(&self.end).zip(self.lambda);
+        Ok(moved.map(|((y, end), lambda)| lambda * (y - end)).sum())
     }
 }
 
 impl<F: Functional> BackwardRun<'_, '_, F> {
     /// From the end to the start.
     fn gradient(&mut self, parts: &[HistoryPart], end: &Snapshot) -> Result<Gradient, Reason> {
-        let start = Gradient::at_end(&mut self.functional, end.t, &end.y, &end.p);
+        let start = Gradient::at_end(
+            &mut self.functional,
+            end.t,
+            [&end.y, &end.p],
+            &self.options.tolerances,
+        );
         let start = start.map_err(|failure| unknown("terminal functional", failure))?;
         let mut gradient = start.check()?;
         for part in parts.iter().rev() {
@@ -175,11 +201,13 @@ impl<F: Functional> BackwardRun<'_, '_, F> {
         if from.t == to {
             return Ok(());
         }
-        let Self { problem, functional, method, span, options, back } = self;
-        let piece = Piece { functional, lambda: &gradient.initial_state };
+        let slope = self.slope(from)?;
+        self.surfaces.sides().borrow_mut().flows.push((from.t, slope));
+        let Self { problem, surfaces, functional, method, span, options, back, .. } = self;
+        let lambda = &gradient.initial_state;
+        let piece = Piece { surfaces, functional, lambda, end: Vec::new() };
         let sign = (span.1 - span.0).signum();
-        let Snapshot { t, y, yp, p } = from;
-        problem.equations.set_parameters(p);
+        let Snapshot { t, y, yp, .. } = from;
         let max_steps = u32::try_from(options.max_steps).unwrap_or(u32::MAX);
         let part = match &mut problem.equations {
             Equations::Ode(system) => {
@@ -203,12 +231,13 @@ impl<F: Functional> BackwardRun<'_, '_, F> {
     /// Goes backward across a jump.
     fn cross(&mut self, passage: &Passage, gradient: &mut Gradient) -> Result<(), Reason> {
         let at = &passage.before;
+        let left = self.slope(at)?;
+        self.surfaces.sides().borrow_mut().flows = vec![(at.t, left.clone())];
         // derivatives of what follows by the state and the parameters after the jump, and by e, which shifts
         // the time of the jump: -J / rate
         let mut weights = [&gradient.initial_state[..], &gradient.parameters, &[0.0]].concat();
         if let Some(event) = passage.timed_by {
             check_crosses(event, at.t, passage.crosses)?;
-            let left = self.slope(at)?;
             let along = self.derivative(passage, self.unit_of_time(at, &left), |place, d| {
                 place.t += d;
                 place.y.iter_mut().zip(&left).for_each(|(y, slope)| *y += d * slope);
@@ -237,13 +266,9 @@ impl<F: Functional> BackwardRun<'_, '_, F> {
     /// the jump.
     fn gain_of_time(&mut self, passage: &Passage, gradient: &Gradient) -> Result<f64, Reason> {
         let Passage { before, after, ends, .. } = passage;
-        let mut running = |at: &Snapshot| {
-            let h = self.functional.running(at.t, &at.y, &at.p, None);
-            h.map_err(|failure| unknown("functional at a jump", failure))
-        };
-        let before_it = running(before)?;
+        let before_it = self.running(before)?;
         if !ends {
-            let behind = running(after)?;
+            let behind = self.running(after)?;
             let right = self.slope(after)?;
             return Ok(before_it - behind - dot(&gradient.initial_state, &right));
         }
@@ -257,12 +282,29 @@ impl<F: Functional> BackwardRun<'_, '_, F> {
         Ok(before_it + (ahead - behind) / (2.0 * distance))
     }
 
+    /// The integrand of the functional on the sides of a state.
+    fn running(&mut self, at: &Snapshot) -> Result<f64, Reason> {
+        self.enter(at);
+        let Self { surfaces, functional, .. } = self;
+        let h = Piece { surfaces, functional, lambda: &[], end: Vec::new() }
+            .running(at.t, &at.y, &at.p, None);
+        Ok(h.map_err(|failure| unknown("functional at a jump", failure))?)
+    }
+
+    /// Gives the equations the parameters and the sides of a state.
+    fn enter(&mut self, at: &Snapshot) {
+        self.problem.equations.set_parameters(&at.p);
+        let mut sides = self.surfaces.sides().borrow_mut();
+        sides.signs.copy_from_slice(&at.sides);
+        sides.p.clone_from(&at.p);
+    }
+
     /// The time derivative of the state.
     fn slope(&mut self, at: &Snapshot) -> Result<Vec<f64>, Reason> {
+        self.enter(at);
         let mut slope = at.yp.clone();
         if let Equations::Ode(system) = &mut self.problem.equations {
             slope.resize(at.y.len(), 0.0);
-            system.set_parameters(&at.p);
             let outcome = call::rhs(system.as_mut(), at.t, &at.y, &mut slope);
             outcome.map_err(|failure| unknown("right-hand side at a jump", failure))?;
         }
@@ -282,15 +324,15 @@ impl<F: Functional> BackwardRun<'_, '_, F> {
             let mut place = passage.before.clone();
             shift(&mut place, distance);
             let Problem { events, breaks, .. } = &mut self.problem;
-            let function = passage.timed_by.map(|i| &mut events[i].function);
-            let g = function.map_or(0.0, |g| g(place.t, &place.y, &place.p));
+            let function = passage.timed_by.map(|i| &events[i].function);
+            let g = function.map_or(0.0, |g| g.at(place.t, &place.y, &place.p));
             // an action that reads these gets NaN: the differences would miss how they change
             place.yp.fill(f64::NAN);
-            let Snapshot { t, mut y, mut yp, mut p } = place;
-            let mut jump = Jump { t, y: &mut y, yp: &mut yp, p: &mut p, ends: false };
+            let Snapshot { t, mut y, mut yp, mut p, .. } = place;
+            let mut jump = Jump::new(t, &mut y, &mut yp, &mut p);
             for act in &passage.acts {
                 let action = match *act {
-                    Act::Event(i) => &mut events[i].action,
+                    Act::Event(i) | Act::Tick(i) => &mut events[i].action,
                     Act::Break(i) => &mut breaks[i].action,
                 };
                 action.iter_mut().for_each(|action| action(&mut jump));

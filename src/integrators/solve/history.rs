@@ -1,26 +1,18 @@
 //! The history of a solution, for the backward run: its smooth pieces, and the jumps between them.
 
-use std::cell::RefCell;
+use std::mem;
 
 use super::{
     error::Reason,
-    event::{Action, Event, Jump},
+    event::{Action, Event},
     method::Method,
     options::Options,
     problem::{Break, Equations, Problem},
     run::Run,
+    snapshot::{Act, Snapshot},
     solution::End,
 };
 use crate::integrators::ode::Borrowed;
-
-/// A time, the state there, its time derivative (of a DAE), and the parameters of the equations.
-#[derive(Clone)]
-pub(super) struct Snapshot {
-    pub(super) t: f64,
-    pub(super) y: Vec<f64>,
-    pub(super) yp: Vec<f64>,
-    pub(super) p: Vec<f64>,
-}
 
 /// One part of a solution.
 pub(super) enum HistoryPart {
@@ -46,53 +38,15 @@ pub(super) struct Passage {
     pub(super) ends: bool,
 }
 
-/// The action of an event or of a break, by its number.
-#[derive(Clone, Copy)]
-pub(super) enum Act {
-    Event(usize),
-    Break(usize),
-}
-
-impl Act {
-    fn is_of_event(self) -> bool {
-        matches!(self, Self::Event(_))
-    }
-}
-
-impl Snapshot {
-    fn of(run: &Run<'_>) -> Self {
-        let (y, yp) = (run.y().to_vec(), run.yp().to_vec());
-        Self { t: run.t(), y, yp, p: run.parameters().to_vec() }
-    }
-}
-
-/// The problem lent to a run, with actions that record where they are called.
-fn lend<'b>(problem: &'b mut Problem<'_>, log: &'b RefCell<Vec<(Act, Snapshot)>>) -> Problem<'b> {
-    let note = move |act: Act, jump: &Jump<'_>| {
-        let (y, yp, p) = (jump.y.to_vec(), jump.yp.to_vec(), jump.p.to_vec());
-        log.borrow_mut().push((act, Snapshot { t: jump.t, y, yp, p }));
-    };
-    let events = problem.events.iter_mut().enumerate().map(|(i, event)| {
-        let Event { function, direction, last, action, samples, touching, .. } = event;
-        let action = action.as_mut().map(|action| -> Action<'b> {
-            Box::new(move |jump| {
-                note(Act::Event(i), jump);
-                action(jump);
-            })
-        });
-        let function = Box::new(|t: f64, y: &[f64], p: &[f64]| function(t, y, p));
-        let (direction, last) = (*direction, *last);
-        let (samples, touching) = (*samples, *touching);
-        // no backward run of a gradient can pass infinitely many jumps
-        Event { function, direction, last, action, at_accumulation: None, samples, touching }
-    });
-    let breaks = problem.breaks.iter_mut().enumerate().map(|(i, at)| {
-        let Break { t, action } = at;
-        let action: Action<'b> = Box::new(move |jump| {
-            note(Act::Break(i), jump);
-            action.iter_mut().for_each(|action| action(jump));
-        });
-        Break { t: *t, action: Some(action) }
+/// The problem lent to a run, which keeps to the sides of its events.
+fn lend<'b>(problem: &'b mut Problem<'_>) -> Problem<'b> {
+    // no backward run of a gradient can pass infinitely many jumps
+    let events = problem.events.iter_mut().map(Event::lend);
+    let breaks = problem.breaks.iter_mut().map(|at| {
+        let Break { t, number, tick, action } = at;
+        let action =
+            action.as_mut().map(|action| -> Action<'b> { Box::new(move |jump| action(jump)) });
+        Break { t: *t, number: *number, tick: *tick, action }
     });
     let (events, breaks) = (events.collect(), breaks.collect());
     let equations = match &mut problem.equations {
@@ -104,8 +58,8 @@ fn lend<'b>(problem: &'b mut Problem<'_>, log: &'b RefCell<Vec<(Act, Snapshot)>>
     };
     let observer = problem.observer.take();
     let (y, cancel, saved) = (problem.y.clone(), problem.cancel.clone(), problem.saved.clone());
-    let initial_sensitivities = None;
-    Problem { equations, y, events, breaks, observer, cancel, saved, initial_sensitivities }
+    let (initial_sensitivities, sides) = (None, problem.sides.clone());
+    Problem { equations, y, events, breaks, observer, cancel, saved, initial_sensitivities, sides }
 }
 
 /// Solves `problem`. Returns its history, and where it ends.
@@ -115,37 +69,43 @@ pub(super) fn follow(
     span: (f64, f64),
     options: &Options,
 ) -> Result<(Vec<HistoryPart>, Snapshot), Reason> {
-    let log = RefCell::new(Vec::new());
-    let mut run = Run::new(lend(problem, &log), method, span, options)?;
+    let mut run = Run::new(lend(problem), method, span, options)?;
     let mut parts = Vec::new();
-    let mut from = Snapshot::of(&run);
-    while let Some(step) = run.advance()? {
-        let touched: Vec<_> =
-            step.events.iter().filter(|at| at.sign == 0).map(|at| at.event).collect();
-        let noted = log.take();
-        let Some((act, first)) = noted.first() else { continue };
-        let to = if act.is_of_event() { first.t } else { run.just_before(first.t) };
-        let here = Snapshot::of(&run);
-        parts.push(HistoryPart::Smooth { from, to });
+    let mut from = run.snapshot();
+    let mut touched = Vec::new();
+    loop {
+        let noted = mem::take(&mut run.log);
+        let here = run.snapshot();
+        if let Some((act, first)) = noted.first()
+            && from.t != first.t
+        {
+            let to = if act.is_at_root() { first.t } else { run.just_before(first.t) };
+            parts.push(HistoryPart::Smooth { from: from.clone(), to });
+        }
+        let jumps = !noted.is_empty();
         let mut groups =
-            noted.chunk_by(|(a, _), (b, _)| a.is_of_event() == b.is_of_event()).peekable();
+            noted.chunk_by(|(a, _), (b, _)| a.is_at_root() == b.is_at_root()).peekable();
         while let Some(group) = groups.next() {
             let after = groups.peek().map_or(&here, |next| &next[0].1).clone();
             let acts: Vec<_> = group.iter().map(|(act, _)| *act).collect();
             let timed_by = match acts[0] {
                 Act::Event(i) => Some(i),
-                Act::Break(_) => None,
+                Act::Tick(_) | Act::Break(_) => None,
             };
             let crosses = timed_by.is_none_or(|i| !touched.contains(&i));
             let before = group[0].1.clone();
             let ends = false;
             parts.push(HistoryPart::Jump(Passage { timed_by, crosses, acts, before, after, ends }));
         }
-        from = here;
+        if jumps {
+            from = here;
+        }
+        let Some(step) = run.advance()? else { break };
+        touched = step.events.iter().filter(|at| at.sign == 0).map(|at| at.event).collect();
     }
-    let here = Snapshot::of(&run);
+    let here = run.snapshot();
     let ending = match run.end() {
-        Some(End::Event(i)) => Some(i),
+        Some(End::Event(i)) if run.events[i].clock.is_none() => Some(i),
         _ => None,
     };
     match (parts.last_mut(), ending) {

@@ -27,6 +27,7 @@
 //! [`Run`] does the same step by step, under the caller's control, and [`ensemble`] solves many problems on
 //! all cores. Features that a method lacks are errors before the first step, and are never replaced by others.
 
+mod control;
 mod crossing;
 mod edge;
 mod engine;
@@ -44,9 +45,13 @@ mod problem;
 mod run;
 mod saved;
 mod sensitivities;
+mod sides;
+mod snapshot;
 mod solution;
 mod solver;
 mod stepping;
+mod switch;
+mod timed;
 mod watch;
 
 pub use ensemble::ensemble;

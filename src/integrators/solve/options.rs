@@ -126,9 +126,14 @@ impl Options {
     /// Also computes the derivatives dy/dp with respect to some parameters of the equations, by CVODE and
     /// IDA: [`Solution::sensitivities`](super::Solution::sensitivities).
     ///
-    /// They are continued across actions at events and breaks, those of a DAE if its [differential
+    /// They are continued across events and breaks, those of a DAE if its [differential
     /// unknowns](super::Problem::differential) are known. An action is then called some more times, at states
-    /// nearby, for its derivatives; it may not change the parameters.
+    /// nearby, for its derivatives, also for those of parameters that it sets.
+    ///
+    /// Equations that switch by themselves, as by `if y[0] < 0.3`, need the condition as the function of an
+    /// [`Event`](super::Event), with or without an action: the integrator then restarts where they jump. A
+    /// jump elsewhere, unless its time is fixed, ends the run by [`Reason::Switch`](super::Reason::Switch)
+    /// if steps become short there.
     pub fn sensitivities(mut self, sensitivities: Sensitivities) -> Self {
         self.sensitivities = Some(sensitivities);
         self

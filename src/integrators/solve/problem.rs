@@ -12,6 +12,7 @@ use std::{
 use super::{
     event::{Action, Event, Jump},
     saved::Saved,
+    sides::SharedSides,
 };
 use crate::base::input::InputError;
 use crate::integrators::ode::{Dae, Ode};
@@ -58,6 +59,10 @@ impl Equations<'_> {
 /// A time at which the equations change, and the action then.
 pub(super) struct Break<'a> {
     pub(super) t: f64,
+    /// Its number among those that were given.
+    pub(super) number: usize,
+    /// The event whose clock ticks, in place of a break.
+    pub(super) tick: Option<usize>,
     pub(super) action: Option<Action<'a>>,
 }
 
@@ -91,6 +96,8 @@ pub struct Problem<'a> {
     pub(super) cancel: Option<Arc<AtomicBool>>,
     pub(super) saved: Option<Saved>,
     pub(super) initial_sensitivities: Option<Vec<f64>>,
+    /// The sides of the events, if the equations keep to them already.
+    pub(super) sides: Option<SharedSides>,
 }
 
 impl fmt::Debug for Problem<'_> {
@@ -117,8 +124,9 @@ impl<'a> Problem<'a> {
 
     fn new(equations: Equations<'a>, y: Vec<f64>) -> Self {
         let (events, breaks) = (Vec::new(), Vec::new());
-        let (observer, cancel, saved, initial_sensitivities) = (None, None, None, None);
-        Self { equations, y, events, breaks, observer, cancel, saved, initial_sensitivities }
+        let (observer, cancel, saved, initial_sensitivities, sides) =
+            (None, None, None, None, None);
+        Self { equations, y, events, breaks, observer, cancel, saved, initial_sensitivities, sides }
     }
 
     /// For each unknown of a DAE, whether its derivative occurs in the equations (`true`) or it is algebraic
@@ -151,14 +159,20 @@ impl<'a> Problem<'a> {
     /// A step ends just before each, at the last floating-point number before it, and the integration
     /// restarts there. Equations that test `t < break` see the side that they are on.
     pub fn breaks(mut self, times: impl IntoIterator<Item = f64>) -> Self {
-        self.breaks.extend(times.into_iter().map(|t| Break { t, action: None }));
+        for t in times {
+            self.push_break(t, None);
+        }
         self
     }
 
     /// A [break](Self::breaks) at which the state or the parameters change.
     pub fn break_with(mut self, t: f64, action: impl FnMut(&mut Jump<'_>) + 'a) -> Self {
-        self.breaks.push(Break { t, action: Some(Box::new(action)) });
+        self.push_break(t, Some(Box::new(action)));
         self
+    }
+
+    fn push_break(&mut self, t: f64, action: Option<Action<'a>>) {
+        self.breaks.push(Break { t, number: self.breaks.len(), tick: None, action });
     }
 
     /// Shows each step to `observer`, which may end the run by [`ControlFlow::Break`].

@@ -17,7 +17,10 @@ use super::{
     problem::{Break, Equations, Observer, Problem},
     saved::Saved,
     sensitivities::Carried,
+    sides::{SharedSides, Surfaces},
+    snapshot::{Log, Snapshot},
     solution::{End, Occurrence, SavedPoint},
+    switch::Caution,
     watch::EventTracker,
 };
 use crate::base::input::InputError;
@@ -48,8 +51,16 @@ pub struct Run<'a> {
     pub(super) events: Vec<Event<'a>>,
     pub(super) watches: Vec<EventTracker>,
     pub(super) counts: Vec<u32>,
+    /// Whether each event may take place.
+    pub(super) armed: Vec<bool>,
+    /// The next times of the clocks of events.
+    pub(super) ticks: Vec<Option<f64>>,
     /// The breaks ahead, the next one last.
     pub(super) breaks: Vec<Break<'a>>,
+    /// Those behind, for a run that goes back.
+    pub(super) passed: Vec<Break<'a>>,
+    /// A time at which a step is to end.
+    pub(super) target: Option<f64>,
     pub(super) observer: Option<Observer<'a>>,
     pub(super) cancel: Option<Arc<AtomicBool>>,
     pub(super) limits: Limits,
@@ -67,9 +78,16 @@ pub struct Run<'a> {
     /// Whether the integrator has to restart at `t`.
     pub(super) stale: bool,
     pub(super) carried: Option<Carried>,
+    /// The sides of the events that the equations keep to, where derivatives are computed.
+    pub(super) sides: Option<SharedSides>,
+    /// Steps that may have passed a switch that is no event.
+    pub(super) caution: Caution,
+    pub(super) log: Log,
     /// Integrals since the start of the span, and up to the last start of the integrator.
     pub(super) quadratures: [Vec<f64>; 2],
     pub(super) occurred: Vec<Occurrence>,
+    /// How many of them the last step has shown.
+    pub(super) shown: usize,
     pub(super) scratch: Vec<f64>,
     /// Statistics before the last start of the integrator.
     pub(super) past: Statistics,
@@ -139,12 +157,12 @@ impl<'a> Run<'a> {
         }
         let sign = (end - start).signum();
         options.check(span)?;
-        let Problem { mut equations, mut y, mut events, mut breaks, .. } = problem;
-        let Problem { observer, cancel, saved, initial_sensitivities, .. } = problem;
+        let Problem { mut equations, mut y, events, mut breaks, .. } = problem;
+        let Problem { observer, cancel, mut saved, initial_sensitivities, mut sides, .. } = problem;
         for (i, event) in events.iter().enumerate() {
-            event.check(i)?;
+            event.check(i, span)?;
         }
-        if let Some(saved) = &saved {
+        if let Some(saved) = &mut saved {
             let derivatives = match &mut equations {
                 Equations::Dae { yp, .. } => {
                     yp.clone_from(&saved.yp);
@@ -152,6 +170,10 @@ impl<'a> Run<'a> {
                 }
                 Equations::Ode(_) => 0,
             };
+            let armed = events.iter().zip(&saved.counts).map(|(event, n)| !event.once || *n == 0);
+            if saved.armed.is_empty() {
+                saved.armed = armed.collect();
+            }
             saved.check([y.len(), derivatives, events.len(), equations.quadrature_count()])?;
             if start != saved.t {
                 let help = format!("the saved run stands at {:?}", saved.t);
@@ -172,16 +194,25 @@ impl<'a> Run<'a> {
         }
         breaks.sort_by(|a, b| ((b.t - a.t) * sign).total_cmp(&0.0));
         let quadrature_count = equations.quadrature_count();
+        if options.sensitivities.is_some() {
+            equations = method.take(equations, start, y.len(), options)?;
+            let (tolerances, length) = (&options.tolerances, (end - start).abs());
+            let surfaces = Surfaces::of(&events, tolerances, length);
+            equations = surfaces.keep(equations);
+            sides = Some(surfaces.sides().clone());
+        }
         let mut engine = method.engine(equations, (start, sign), &y, options)?;
-        let jumps = events.iter().any(|event| event.action.is_some()) || !breaks.is_empty();
+        let jumps = events.iter().any(Event::may_go_on) || !breaks.is_empty();
         if options.sensitivities.is_some() && jumps && !engine.can_be_consistent() {
-            let help = "to go on across actions and breaks, Problem::differential says which unknowns are differential";
+            let help = "to go on across events and breaks, Problem::differential says which unknowns are differential";
             return Err(InputError::new("sensitivities", "given for a DAE", help).into());
         }
-        let mut carried = options.sensitivities.as_ref().map(|s| Carried::new(s, y.len()));
+        let count = engine.parameters().len();
+        let mut carried = options.sensitivities.as_ref().map(|s| Carried::new(s, y.len(), count));
         let saved_sensitivities = saved.as_ref().map(|saved| &saved.sensitivities);
+        let dp = saved.as_ref().map_or(&[][..], |saved| &saved.parameter_sensitivities);
         match (&mut carried, saved_sensitivities.or(initial_sensitivities.as_ref())) {
-            (Some(carried), Some(s)) => carried.start(s, engine.as_mut())?,
+            (Some(carried), Some(s)) => carried.start(s, dp, Some(engine.as_mut()))?,
             (None, Some(_)) if initial_sensitivities.is_some() => {
                 let help = "Options::sensitivities says which parameters they belong to";
                 return Err(InputError::new("initial_sensitivities", "given", help).into());
@@ -195,12 +226,12 @@ impl<'a> Run<'a> {
         }
         let parameters = engine.parameters().to_vec();
         let mut watches = Vec::new();
-        for (i, event) in events.iter_mut().enumerate() {
+        for (i, event) in events.iter().enumerate() {
             let g = match &saved {
                 Some(saved) => saved.event_values[i],
                 None => event.value(i, start, &y, &parameters)?,
             };
-            watches.push(EventTracker::new(event, start, g));
+            watches.push(EventTracker::new(event, (start, g), sides.is_some()));
         }
         let mut quadratures = vec![0.0; quadrature_count];
         if let Some(saved) = &saved {
@@ -213,10 +244,14 @@ impl<'a> Run<'a> {
         };
         let mut run = Self {
             engine,
-            counts: saved.map_or(vec![0; events.len()], |saved| saved.counts),
+            armed: saved.as_ref().map_or(vec![true; events.len()], |saved| saved.armed.clone()),
+            ticks: vec![None; events.len()],
+            counts: saved.as_ref().map_or(vec![0; events.len()], |saved| saved.counts.clone()),
             events,
             watches,
             breaks,
+            passed: Vec::new(),
+            target: None,
             observer,
             cancel,
             limits,
@@ -232,12 +267,23 @@ impl<'a> Run<'a> {
             before: None,
             stale: false,
             carried,
+            sides,
+            caution: Caution::default(),
+            log: Log::new(),
             quadratures: [quadratures.clone(), quadratures],
             occurred: Vec::new(),
+            shown: 0,
             past: Statistics::default(),
             started: Instant::now(),
             end: None,
         };
+        run.follow_events(saved.is_some());
+        run.choose_sides(&[])?;
+        run.note_flow()?;
+        run.record_ticks(start)?;
+        if run.breaks.last().is_some_and(|next| next.t == start) {
+            run.jump_at_break()?;
+        }
         run.set_stop_time()?;
         Ok(run)
     }
@@ -245,9 +291,11 @@ impl<'a> Run<'a> {
     /// Makes the next steps end just before the next break, or at the end of the span; there may be no room
     /// for a step.
     pub(super) fn set_stop_time(&mut self) -> Result<(), common::Error> {
-        match self.breaks.last() {
-            None if self.span.1 != self.t => self.engine.set_stop_time(self.span.1),
-            Some(next) if self.just_before(next.t) != self.t => self.engine.set_stop_before(next.t),
+        let end = self.target.unwrap_or(self.span.1);
+        let before_break = self.breaks.last().map(|next| (next.t, self.just_before(next.t)));
+        match before_break.filter(|(_, stop)| (end - stop) * self.sign > 0.0) {
+            Some((next, stop)) if stop != self.t => self.engine.set_stop_before(next),
+            None if end != self.t => self.engine.set_stop_time(end),
             _ => Ok(()),
         }
     }
@@ -292,6 +340,12 @@ impl<'a> Run<'a> {
         self.end
     }
 
+    /// Where the run stands.
+    pub(super) fn snapshot(&self) -> Snapshot {
+        let (y, yp, p) = (self.y.clone(), self.yp.clone(), self.parameters.clone());
+        Snapshot { t: self.t, y, yp, p, sides: self.signs() }
+    }
+
     /// Where the run stands, to be continued later or by another program: [`Problem::resume`].
     #[must_use]
     pub fn save(&self) -> Saved {
@@ -301,7 +355,9 @@ impl<'a> Run<'a> {
             yp: self.yp.clone(),
             parameters: self.parameters.clone(),
             counts: self.counts.clone(),
+            armed: self.armed.clone(),
             sensitivities: self.carried.as_ref().map_or(Vec::new(), |carried| carried.s.clone()),
+            parameter_sensitivities: self.carried.as_ref().map_or(Vec::new(), |c| c.dp.clone()),
             quadratures: self.quadratures().to_vec(),
             event_values: self.watches.iter().map(EventTracker::value).collect(),
         }

@@ -20,8 +20,16 @@ pub struct Saved {
     pub parameters: Vec<f64>,
     /// How often each event was met.
     pub counts: Vec<u32>,
+    /// Whether each event may take place: none that happened [once](super::Event::once), or was
+    /// [disarmed](super::Jump::disarm). Empty: all.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub armed: Vec<bool>,
     /// The sensitivities, one column after the other; empty if there are none.
     pub sensitivities: Vec<f64>,
+    /// The derivatives of all parameters, which actions may have set, by those of the sensitivities, one column
+    /// after the other; empty if there are none.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub parameter_sensitivities: Vec<f64>,
     /// The integrals since the start; empty if there are none.
     pub quadratures: Vec<f64>,
     /// Values of the event functions; 0 for one that is about to leave zero.
@@ -48,9 +56,13 @@ impl Saved {
             let help = "a DAE has as many as unknowns, an ODE none";
             return Err(InputError::new("length of yp in the saved run", self.yp.len(), help));
         }
-        for (what, count) in
-            [("counts", self.counts.len()), ("event_values", self.event_values.len())]
-        {
+        let armed = if self.armed.is_empty() { events } else { self.armed.len() };
+        let lengths = [
+            ("counts", self.counts.len()),
+            ("event_values", self.event_values.len()),
+            ("armed", armed),
+        ];
+        for (what, count) in lengths {
             if count != events {
                 let help = format!("the problem has {events} events");
                 return Err(InputError::new(

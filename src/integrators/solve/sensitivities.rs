@@ -16,6 +16,8 @@ pub(super) struct Carried {
     parameters: Vec<usize>,
     /// The sensitivities, one column for each of these parameters.
     pub(super) s: Vec<f64>,
+    /// The derivatives of all parameters by these, which actions may set: one column for each.
+    pub(super) dp: Vec<f64>,
     /// Those before the jump at the present time, if there was one.
     pub(super) before: Option<Vec<f64>>,
 }
@@ -30,28 +32,31 @@ pub(super) struct Crossing<'c> {
     /// Its time derivatives before and after.
     pub(super) slopes: [&'c [f64]; 2],
     pub(super) of_dae: bool,
+    /// The parameters before.
     pub(super) p: &'c [f64],
 }
 
-/// A direction in time, in the state, and in one of the parameters.
-type Direction<'d> = (f64, &'d [f64], Option<usize>);
+/// Largest rounding error of a difference quotient of a parameter that stays as it is.
+const ROUNDING: f64 = 1e-9;
+
+/// A direction in time, in the state, and in the parameters.
+type Direction<'d> = (f64, &'d [f64], &'d [f64]);
 
 impl Crossing<'_> {
     /// Time, state and parameters at a distance from those before the jump.
-    fn moved(&self, (dt, dy, k): &Direction<'_>, distance: f64) -> (f64, Vec<f64>, Vec<f64>) {
-        let mut p = self.p.to_vec();
-        if let Some(k) = k {
-            p[*k] += distance;
-        }
-        let y = self.before.iter().zip(*dy).map(|(y, d)| y + distance * d).collect();
-        (self.t + distance * dt, y, p)
+    fn moved(&self, (dt, dy, dp): &Direction<'_>, distance: f64) -> (f64, Vec<f64>, Vec<f64>) {
+        let along = |from: &[f64], direction: &[f64]| {
+            from.iter().zip(direction).map(|(from, d)| from + distance * d).collect()
+        };
+        (self.t + distance * dt, along(self.before, dy), along(self.p, dp))
     }
 }
 
 impl Carried {
-    pub(super) fn new(options: &Sensitivities, n: usize) -> Self {
-        let parameters = options.parameters().to_vec();
-        Self { s: vec![0.0; n * parameters.len()], parameters, before: None }
+    /// Those of `n` unknowns, in equations with `count` parameters.
+    pub(super) fn new(options: &Sensitivities, n: usize, count: usize) -> Self {
+        let (parameters, dp) = (options.parameters().to_vec(), options.directions(count));
+        Self { s: vec![0.0; n * parameters.len()], dp, parameters, before: None }
     }
 
     /// Reads them at time `t` within the last step.
@@ -68,9 +73,9 @@ impl Carried {
     pub(super) fn of_time(
         &self,
         at: &Crossing<'_>,
-        mut g: impl FnMut(f64, &[f64], &[f64]) -> f64,
+        g: impl Fn(f64, &[f64], &[f64]) -> f64,
     ) -> Vec<f64> {
-        let mut along = |direction: Direction<'_>, size: f64| {
+        let along = |direction: Direction<'_>, size: f64| {
             let distance = f64::EPSILON.cbrt() * size;
             let [ahead, behind] = [distance, -distance].map(|distance| {
                 let (t, y, p) = at.moved(&direction, distance);
@@ -78,17 +83,21 @@ impl Carried {
             });
             (ahead - behind) / (2.0 * distance)
         };
-        let rate = along((1.0, at.slopes[0], None), at.unit_of_time);
-        let columns = self.parameters.iter().zip(self.s.chunks(at.before.len()));
-        columns.map(|(&k, s)| -along((0.0, s, Some(k)), size_or_one(at.p[k])) / rate).collect()
+        let still = vec![0.0; at.p.len()];
+        let rate = along((1.0, at.slopes[0], &still), at.unit_of_time);
+        let columns = self.s.chunks(at.before.len()).zip(self.dp.chunks(at.p.len()));
+        let columns = self.parameters.iter().zip(columns);
+        columns.map(|(&k, (s, dp))| -along((0.0, s, dp), size_or_one(at.p[k])) / rate).collect()
     }
 
-    /// Carries them across a jump y+ = a(t, y, p) by `act`, at a time with the derivatives `taus`.
+    /// Carries them across a jump y+ = a(t, y, p), p+ = b(t, y, p) by `act`, at a time with the derivatives
+    /// `taus`.
     ///
     /// With the slopes f- before and f+ after it, they are
     ///
     /// ```text
-    /// s+ = a_y (s + f- tau) + a_t tau + a_p - f+ tau
+    /// s+ = a_y (s + f- tau) + a_t tau + a_p dp - f+ tau
+    /// dp+ = b_y (s + f- tau) + b_t tau + b_p dp
     /// ```
     ///
     /// (W. A. Rozenvasser, Automation and Remote Control 28 (1967) 1043-1049). Derivatives are central
@@ -99,43 +108,60 @@ impl Carried {
         taus: &[f64],
         mut act: impl FnMut(&mut Jump<'_>),
     ) -> Result<(), Reason> {
-        let n = at.before.len();
+        let (n, count) = (at.before.len(), at.p.len());
         let [left, right] = at.slopes;
         // an action that reads derivatives gets NaN: these differences would miss how they change
         let mut unknown = vec![f64::NAN; if at.of_dae { n } else { 0 }];
         self.before = Some(self.s.clone());
-        for ((&tau, &k), s) in taus.iter().zip(&self.parameters).zip(self.s.chunks_mut(n)) {
+        let columns = self.s.chunks_mut(n).zip(self.dp.chunks_mut(count));
+        for ((&tau, &k), (s, dp)) in taus.iter().zip(&self.parameters).zip(columns) {
             let direction: Vec<f64> = s.iter().zip(left).map(|(s, f)| s + f * tau).collect();
             let distance = f64::EPSILON.cbrt() * size_or_one(at.p[k]);
             let mut landed = |distance: f64| {
-                let (t, mut y, mut p) = at.moved(&(tau, &direction, Some(k)), distance);
+                let (t, mut y, mut p) = at.moved(&(tau, &direction, dp), distance);
                 unknown.fill(f64::NAN);
-                act(&mut Jump { t, y: &mut y, yp: &mut unknown, p: &mut p, ends: false });
-                y
+                act(&mut Jump::new(t, &mut y, &mut unknown, &mut p));
+                (y, p)
             };
             let (ahead, behind) = (landed(distance), landed(-distance));
             for i in 0..n {
-                s[i] = (ahead[i] - behind[i]) / (2.0 * distance) - right[i] * tau;
+                s[i] = (ahead.0[i] - behind.0[i]) / (2.0 * distance) - right[i] * tau;
+            }
+            for (i, dp) in dp.iter_mut().enumerate() {
+                let slope = (ahead.1[i] - behind.1[i]) / (2.0 * distance);
+                // parameters that the action does not set keep theirs to the last bit
+                if (slope - *dp).abs() > ROUNDING * dp.abs().max(1.0) {
+                    *dp = slope;
+                }
             }
         }
-        Ok(check_landed("sensitivities after the jump", &self.s, at.of_dae)?)
+        check_landed("sensitivities after the jump", &self.s, at.of_dae)?;
+        Ok(check_landed("sensitivities of parameters after the jump", &self.dp, at.of_dae)?)
     }
 
-    /// Starts from sensitivities other than zero.
-    pub(super) fn start(&mut self, s: &[f64], engine: &mut dyn Engine) -> Result<(), Reason> {
+    /// Starts from sensitivities other than zero, and those of the parameters, if there are any.
+    pub(super) fn start(
+        &mut self,
+        s: &[f64],
+        dp: &[f64],
+        engine: Option<&mut dyn Engine>,
+    ) -> Result<(), Reason> {
+        if dp.len() == self.dp.len() {
+            self.dp.copy_from_slice(dp);
+        }
         if s.len() != self.s.len() {
             let help = format!("there are {} of them, n for each parameter", self.s.len());
             let input = "length of the sensitivities at the start";
             return Err(InputError::new(input, s.len(), help).into());
         }
         self.s.copy_from_slice(s);
-        self.hand_over(engine)
+        engine.map_or(Ok(()), |engine| self.hand_over(engine))
     }
 
     /// Passes them to the integrator after its restart.
     pub(super) fn hand_over(&self, engine: &mut dyn Engine) -> Result<(), Reason> {
         let columns = self.parameters.len();
         let s = MatRef::from_column_major_slice(&self.s, self.s.len() / columns, columns);
-        Ok(engine.start_sensitivities(s)?)
+        Ok(engine.start_sensitivities(s, &self.dp)?)
     }
 }

@@ -1,6 +1,7 @@
 //! A run at work: one step after the other.
 
 use std::{
+    mem,
     ops::ControlFlow,
     sync::{Arc, atomic::Ordering::Relaxed},
 };
@@ -28,7 +29,9 @@ impl Run<'_> {
         }
         self.check_limits()?;
         self.restart_if_changed()?;
-        self.occurred.clear();
+        // those of the start are shown with the first step
+        self.occurred.drain(..mem::take(&mut self.shown));
+        self.log.clear();
         self.before = None;
         let (t_old, end) = (self.t, self.span.1);
         // no step from one number to the next, where a break directly follows another one, an event or the
@@ -40,6 +43,7 @@ impl Run<'_> {
         }
         let mut t = self.engine.t();
         let at_break = self.is_before_break(t);
+        self.note_step()?;
         let jumps = match self.look_for_events(t, at_break || t == end)? {
             Found::Jumps(jumps) => jumps,
             // the step passes through zero, where the action should have turned the solution back: a jump
@@ -51,6 +55,7 @@ impl Run<'_> {
             }
         };
         let stops_at = jumps.first().map(|(_, root)| root.t);
+        self.check_step(stops_at.unwrap_or(t))?;
         if let Some(at) = stops_at {
             t = at;
             let y = &mut self.scratch;
@@ -72,13 +77,15 @@ impl Run<'_> {
         self.engine.quadratures_at(t, q)?;
         q.iter_mut().zip(past).for_each(|(q, past)| *q += *past);
         let at_break = at_break && stops_at.is_none_or(|at| at == self.engine.t());
+        let reached = self.breaks.last().filter(|_| at_break).map_or(t, |next| next.t);
+        self.record_ticks(reached)?;
         if stops_at.is_some() {
             self.jump_at_events(&jumps)?;
         }
         if at_break {
             self.jump_at_break()?;
         }
-        if t == end && self.end.is_none() {
+        if self.t == end && self.end.is_none() {
             self.end = Some(End::Span);
         }
         Ok(Some(self.made_step()))
@@ -87,6 +94,7 @@ impl Run<'_> {
     /// Shows the step to the observer, and to the caller.
     pub(super) fn made_step(&mut self) -> Step<'_> {
         self.report();
+        self.shown = self.occurred.len();
         Step {
             t_old: self.t_old,
             t: self.t,
@@ -97,7 +105,7 @@ impl Run<'_> {
     }
 
     /// Restarts the integrator after a change.
-    fn restart_if_changed(&mut self) -> Result<(), Reason> {
+    pub(super) fn restart_if_changed(&mut self) -> Result<(), Reason> {
         if !self.stale {
             return Ok(());
         }

@@ -16,6 +16,8 @@ pub(super) struct Root {
     pub(super) sign: i32,
     /// Values of the function up to which its sign at the root is noise.
     pub(super) noise: f64,
+    /// Whether it is of the direction that counts as an event.
+    pub(super) counts: bool,
     /// Where to go on looking, and the value there.
     behind: Point,
 }
@@ -26,9 +28,13 @@ pub(super) struct EventTracker {
     direction: Direction,
     samples: u32,
     touching: Option<f64>,
+    /// Whether roots that do not count are found, too.
+    finds_all: bool,
     /// The sign that the function should have next, where an action has turned the solution back from zero,
     /// or brought it to rest there.
     turn: Option<Turn>,
+    /// Where an action has let the solution rest at zero, or pass.
+    held: Option<Held>,
     /// When an action was called last, and the longest time between two calls.
     acted: Option<f64>,
     longest: f64,
@@ -46,6 +52,15 @@ pub(super) struct Turn {
     noise: f64,
     /// Whether the solution is at rest there.
     pub(super) at_rest: bool,
+}
+
+/// A function that is still within the tolerances of zero after an action.
+#[derive(Clone, Copy, Debug)]
+struct Held {
+    /// Values up to which it has not left zero.
+    band: f64,
+    /// The sign on the side that it came to; 0 if that is not known.
+    side: f64,
 }
 
 /// Result of an event tracker.
@@ -68,22 +83,31 @@ impl Sight {
 }
 
 impl EventTracker {
-    /// Follows `event` from time `t`, where its function is `g`.
-    pub(super) fn new(event: &Event<'_>, t: f64, g: f64) -> Self {
+    /// Follows `event` from time `t`, where its function is `g`; `finds_all` roots, or those that count.
+    pub(super) fn new(event: &Event<'_>, (t, g): (f64, f64), finds_all: bool) -> Self {
         let Event { direction, samples, touching, .. } = *event;
-        let (turn, acted, longest) = (None, None, 0.0);
-        Self { direction, samples, touching, turn, acted, longest, t, g }
+        let (turn, held, acted, longest) = (None, None, None, 0.0);
+        Self { direction, samples, touching, finds_all, turn, held, acted, longest, t, g }
     }
 
-    /// The function where it was last looked at.
+    /// Waits until the function leaves zero by more than `band`, from where it is now within that. `side` is the sign
+    /// on the side that it came to.
+    pub(super) fn hold(&mut self, band: f64, side: f64) {
+        if self.g.abs() <= band && self.turn.is_none() && band > 0.0 {
+            self.held = Some(Held { band, side });
+        }
+    }
+
+    /// The function where it was last looked at; 0 where it has not left zero.
     pub(super) fn value(&self) -> f64 {
-        self.g
+        if self.held.is_some() { 0.0 } else { self.g }
     }
 
     /// Continues at time `t`, where the function now is `g` and values up to `noise` count as 0.
     pub(super) fn restart(&mut self, t: f64, g: f64, noise: f64) {
         (self.t, self.g) = (t, if g.abs() <= noise { 0.0 } else { g });
         self.turn = None;
+        self.held = self.held.filter(|held| g.abs() <= held.band);
     }
 
     /// After a new start: an action was called here, at time `t`, and should have turned the solution back as
@@ -121,7 +145,7 @@ impl EventTracker {
         (to, is_last): (f64, bool),
         g: &mut impl FnMut(f64) -> Result<f64, E>,
     ) -> Result<Sight, E> {
-        if self.g == 0.0 || self.t == to {
+        if self.g == 0.0 || self.t == to || self.held.is_some() {
             return Ok(Sight::Nothing);
         }
         let before = self.g;
@@ -130,9 +154,10 @@ impl EventTracker {
             self.g = f64::MIN_POSITIVE.copysign(before);
         }
         let sign = if before < 0.0 { 1 } else { -1 };
-        let is_met = crosses(before, self.g) && self.direction.counts(sign.into());
-        let is_met = is_met && !self.g.is_nan();
-        Ok(if is_met { Sight::Root(Root::at(to, self.g, sign)) } else { Sight::Nothing })
+        let counts = self.direction.counts(sign.into());
+        let is_met = crosses(before, self.g) && (counts || self.finds_all) && !self.g.is_nan();
+        let root = Root { counts, ..Root::at(to, self.g, sign) };
+        Ok(if is_met { Sight::Root(root) } else { Sight::Nothing })
     }
 
     /// The next root up to time `to`, to within `tolerance`. The tracker moves there, or to `to`.
@@ -145,12 +170,13 @@ impl EventTracker {
         g: &mut impl FnMut(f64) -> Result<f64, E>,
     ) -> Result<Sight, E> {
         while (to - self.t).abs() > tolerance {
-            let root = match self.any_root((to, is_last), tolerance, g)? {
+            let mut root = match self.any_root((to, is_last), tolerance, g)? {
                 Sight::Root(root) => root,
                 other => return Ok(other),
             };
             (self.t, self.g) = (root.behind.t, root.behind.g);
-            if self.direction.counts(root.sign.into()) {
+            root.counts = self.direction.counts(root.sign.into());
+            if root.counts || self.finds_all {
                 return Ok(Sight::Root(root));
             }
         }
@@ -164,6 +190,13 @@ impl EventTracker {
         tolerance: f64,
         g: &mut impl FnMut(f64) -> Result<f64, E>,
     ) -> Result<Sight, E> {
+        if let Some(held) = self.held {
+            match self.leave(held, to, tolerance, g)? {
+                Some(root) => return Ok(Sight::Root(root)),
+                None if self.held.is_some() => return Ok(Sight::Nothing),
+                None => {}
+            }
+        }
         let (from, slice) = (self.t, (to - self.t) / f64::from(self.samples));
         let mut at = |t: f64| g(t).map(|g| Point { t, g });
         let mut last = Point { t: from, g: self.g };
@@ -222,8 +255,8 @@ impl EventTracker {
                     return Root::between(first, lowest, tolerance, &mut at).map(Sight::Root);
                 }
                 if self.touching.is_some_and(|most| lowest.g.abs() <= most) {
-                    let (t, sign, noise) = (lowest.t, 0, 0.0);
-                    return Ok(Sight::Root(Root { t, sign, noise, behind: next }));
+                    let (t, sign, noise, counts) = (lowest.t, 0, 0.0, true);
+                    return Ok(Sight::Root(Root { t, sign, noise, counts, behind: next }));
                 }
             }
             if crosses(last.g, next.g) {
@@ -233,6 +266,40 @@ impl EventTracker {
         }
         (self.t, self.g) = (last.t, last.g);
         Ok(Sight::Nothing)
+    }
+}
+
+impl EventTracker {
+    /// Goes to the first sample up to time `to` where the function has left zero, or to the end. It has crossed zero
+    /// only if it leaves to the side that it came from.
+    fn leave<E>(
+        &mut self,
+        held: Held,
+        to: f64,
+        tolerance: f64,
+        g: &mut impl FnMut(f64) -> Result<f64, E>,
+    ) -> Result<Option<Root>, E> {
+        let (from, slice) = (self.t, (to - self.t) / f64::from(self.samples));
+        let mut at = |t: f64| g(t).map(|g| Point { t, g });
+        for k in 0..=self.samples {
+            let t = match k {
+                0 => from + 1e-3 * slice,
+                k if k == self.samples => to,
+                k => from + slice * f64::from(k),
+            };
+            let point = at(t)?;
+            if point.g.abs() > held.band {
+                self.held = None;
+                let near = Point { t: self.t, g: held.side * f64::MIN_POSITIVE };
+                if crosses(near.g, point.g) {
+                    return Root::between(near, point, tolerance, &mut at).map(Some);
+                }
+                (self.t, self.g) = (point.t, point.g);
+                return Ok(None);
+            }
+            self.t = t;
+        }
+        Ok(None)
     }
 }
 
@@ -295,7 +362,7 @@ const ZERO_AT_EDGE: f64 = 1e-3;
 impl Root {
     /// A root at time `t`, where the function is `g`, of which no more is known.
     pub(super) fn at(t: f64, g: f64, sign: i32) -> Self {
-        Self { t, sign, noise: 10.0 * g.abs(), behind: Point { t, g } }
+        Self { t, sign, noise: 10.0 * g.abs(), counts: true, behind: Point { t, g } }
     }
 
     /// The root between `near` and the edge of the domain of the function, before the time `beyond` where it is undefined.
@@ -333,7 +400,8 @@ impl Root {
     ) -> Result<Self, E> {
         let (near, far) = bracket(near, far, tolerance, &mut |t| at(t).map(|p| p.g))?;
         let sign = if near.g < 0.0 { 1 } else { -1 };
-        Ok(Self { t: far.t, sign, noise: 10.0 * (near.g.abs() + far.g.abs()), behind: far })
+        let noise = 10.0 * (near.g.abs() + far.g.abs());
+        Ok(Self { t: far.t, sign, noise, counts: true, behind: far })
     }
 }
 
@@ -343,7 +411,7 @@ mod tests {
 
     /// Follows g over steps of one unit; the roots with their signs.
     fn roots(event: Event<'_>, g: impl Fn(f64) -> f64, steps: u32) -> Vec<(f64, i32)> {
-        let mut watch = EventTracker::new(&event, 0.0, g(0.0));
+        let mut watch = EventTracker::new(&event, (0.0, g(0.0)), false);
         let mut found = Vec::new();
         for step in 1..=steps {
             while let Sight::Root(root) = watch

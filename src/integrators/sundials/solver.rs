@@ -217,4 +217,10 @@ impl<K: WithSensitivities, S> Solver<K, S> {
     pub fn set_sensitivities(&mut self, s: MatRef<'_, f64>) -> Result<(), Error> {
         self.session.set_sensitivities(s)
     }
+
+    /// Sets how the parameters of the system change with each parameter of the sensitivities: columns, one
+    /// after the other.
+    pub(crate) fn set_parameter_directions(&mut self, directions: &[f64]) -> Result<(), Error> {
+        self.session.set_parameter_directions(directions)
+    }
 }

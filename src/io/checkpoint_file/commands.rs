@@ -1,6 +1,7 @@
 //! The phase in force, as commands have changed it: numbers and names as they are, and functions by their
 //! place in the scene.
 
+use std::collections::BTreeMap;
 use std::mem::take;
 use std::sync::Arc;
 
@@ -9,7 +10,7 @@ use serde::{Deserialize, Serialize};
 use crate::base::input::InputError;
 use crate::elements::mesh::Selection;
 use crate::scene::constraint::{Constrained, Constraint, Motion};
-use crate::scene::forces::{DipolePart, Signal, SignalKind, VectorSignal};
+use crate::scene::forces::{Signal, SignalKind, VectorSignal};
 use crate::scene::timeline::{
     ContactWith, Input, InputSignal, LoadKind, Phase, Quantity, Scene, Target,
 };
@@ -40,15 +41,19 @@ pub(super) struct PhaseOverrides {
     #[serde(default, skip_serializing)]
     magnetic_field: Option<Stored<VectorSignal>>,
     #[serde(default, skip_serializing)]
-    dipoles: Vec<(String, DipolePart, Stored<VectorSignal>)>,
+    dipoles: Vec<(String, String, Stored<VectorSignal>)>,
 }
 
 /// A quantity; of a device the word of its input.
 #[derive(Serialize, Deserialize)]
 #[serde(untagged)]
 enum StoredQuantity {
-    Device { input: String },
+    Device {
+        input: String,
+    },
     Known(Quantity),
+    /// The word of the input by the kind of the device, in files of earlier versions.
+    OfKind(BTreeMap<String, String>),
 }
 
 impl StoredQuantity {
@@ -65,9 +70,14 @@ impl StoredQuantity {
         let input = match self {
             Self::Known(quantity) => return Ok(quantity),
             Self::Device { input } => input,
+            Self::OfKind(words) => words.into_values().collect(),
         };
+        Self::of_device(&input, target, scene)
+    }
+
+    fn of_device(input: &str, target: &Target, scene: &Scene) -> Result<Quantity, String> {
         let device = target.names().first().map_or("", |name| name);
-        let row = scene.device_row(device, &input).map_err(|error| error.to_string())?;
+        let row = scene.device_row(device, input).map_err(|error| error.to_string())?;
         Ok(Quantity::Device(row))
     }
 }
@@ -248,7 +258,7 @@ impl PhaseOverrides {
                 };
                 inputs.into_iter().map(read).collect::<Result<_, String>>()?
             }
-            None => self.inputs_by_quantity(own)?,
+            None => self.inputs_by_quantity(own, scene)?,
         };
         let constraints = self
             .constraints
@@ -274,7 +284,7 @@ impl PhaseOverrides {
     }
 
     /// Inputs of a file in which each quantity has a list; a function has a number among those of its list.
-    fn inputs_by_quantity(&mut self, own: &Phase) -> Result<Vec<Input>, String> {
+    fn inputs_by_quantity(&mut self, own: &Phase, scene: &Scene) -> Result<Vec<Input>, String> {
         let mut inputs = Vec::new();
         let mut add = |quantity, target, signal: InputSignal| {
             inputs.push(Input { quantity, target, signal });
@@ -301,9 +311,11 @@ impl PhaseOverrides {
             let own = vectors(own, |other| matches!(other, Quantity::Load(_)));
             add(Quantity::Load(kind), Target::Nodes(nodes), value.read("load", own)?.into());
         }
-        for (name, part, value) in take(&mut self.dipoles) {
-            let own = vectors(own, |other| matches!(other, Quantity::Dipole(_)));
-            add(Quantity::Dipole(part), Target::one(name), value.read("dipole", own)?.into());
+        for (name, word, value) in take(&mut self.dipoles) {
+            let own = vectors(own, |other| matches!(other, Quantity::Device(_)));
+            let target = Target::one(name);
+            let quantity = StoredQuantity::of_device(&word, &target, scene)?;
+            add(quantity, target, value.read("dipole", own)?.into());
         }
         let fields = || vectors(own, |other| other == Quantity::Field);
         let field = self.magnetic_field.take();

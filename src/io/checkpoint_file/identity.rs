@@ -1,5 +1,6 @@
 //! Identity of a scene in a file: numbers and names, and hashes of its parts.
 
+use std::collections::BTreeMap;
 use std::fmt::{self, Debug};
 use std::hash::Hasher;
 
@@ -7,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use siphasher::sip::SipHasher13;
 
 use crate::scene::forces::VectorSignal;
-use crate::scene::timeline::{Input, LoadKind, Phase, Quantity, Scene};
+use crate::scene::timeline::{Input, LoadKind, Phase, Quantity, STEER, Scene};
 
 /// Identity of a scene.
 ///
@@ -72,13 +73,16 @@ impl Identity {
             ("growths", of_list(scene.growths())),
             ("lags", of_list(&lags)),
             ("magnets", of_list(scene.magnets())),
-            ("dipoles", of_list(scene.dipoles())),
-            ("fluids", of_list(scene.fluids())),
-            ("devices", of_list(scene.devices())),
-            ("touches", of_list(scene.touches())),
         ];
-        let others = others.into_iter().filter_map(|(name, hash)| Some((name.into(), text(hash?))));
-        parts.extend(others);
+        let mut devices: BTreeMap<&str, Vec<_>> = BTreeMap::new();
+        for device in scene.devices() {
+            devices.entry(device.kind()).or_default().push(device);
+        }
+        let devices = devices.into_iter().map(|(kind, own)| (format!("{kind}s"), of_list(&own)));
+        let last = [("fluids", of_list(scene.fluids())), ("touches", of_list(scene.touches()))];
+        let named = |(name, hash): (&str, _)| (name.to_owned(), hash);
+        let others = others.map(named).into_iter().chain(devices).chain(last.map(named));
+        parts.extend(others.filter_map(|(name, hash)| Some((name, text(hash?)))));
         Self {
             nodes: mesh.node_count(),
             cells: mesh.cell_count(),
@@ -173,26 +177,39 @@ impl fmt::Debug for Text<'_> {
         if let Some(field) = phase.field() {
             text.field("magnetic_field", &Some(field));
         }
-        let dipoles = phase.inputs.iter().filter_map(|input| match input.quantity {
-            Quantity::Dipole(part) => Some((input.target.names().first()?, part, &input.signal)),
-            _ => None,
-        });
-        let dipoles: Vec<_> = dipoles.collect();
-        if !dipoles.is_empty() {
-            text.field("dipoles", &dipoles);
+        // inputs of devices with a list of their own, list by list
+        let mut lists: BTreeMap<&str, Vec<_>> = BTreeMap::new();
+        for Input { quantity, target, signal } in &phase.inputs {
+            if let (Quantity::Device(own), Some(name)) = (quantity, target.names().first())
+                && own.keys != STEER
+            {
+                lists.entry(own.keys[1]).or_default().push((name, Capital(own.word), signal));
+            }
+        }
+        for (of, list) in &lists {
+            text.field(&format!("{of}s"), list);
         }
         use Quantity::*;
-        let is_later = |input: &&Input| {
-            !matches!(
-                input.quantity,
-                Actuation | Pressure | Opening | Flow | FacePressure | Load(_) | Field | Dipole(_)
-            )
+        let is_later = |input: &&Input| match input.quantity {
+            Actuation | Pressure | Opening | Flow | FacePressure | Load(_) | Field => false,
+            Device(own) => own.keys == STEER,
+            _ => true,
         };
         let later: Vec<_> = phase.inputs.iter().filter(is_later).collect();
         if !later.is_empty() {
             text.field("inputs", &later);
         }
         text.finish()
+    }
+}
+
+/// A word with a capital.
+struct Capital<'a>(&'a str);
+
+impl fmt::Debug for Capital<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (first, rest) = self.0.split_at(1);
+        write!(f, "{}{rest}", first.to_uppercase())
     }
 }
 

@@ -1,18 +1,22 @@
-//! Tables of devices: `[[wind]]`, and those of other crates.
+//! Tables of devices: `[[wind]]`, `[[dipole]]` and `drive` in phases, and those of other crates.
 
 use std::sync::Arc;
 
 use serde::de::DeserializeOwned;
 use toml::de::{DeTable, DeValue, ValueDeserializer};
 
-use super::keys::{Key, TableKeys, ValueType};
+use super::course::{vectors, vectors_until};
+use super::keys::{Key, PERIOD, TIMES, TableKeys, ValueType};
 use super::selection::selection;
 use super::source::SourceText;
 use super::surroundings::unique;
-use super::value::Value;
+use super::table::Table;
+use super::value::{Value, named};
+use crate::base::input::InputError;
 use crate::dynamics::error::Error;
-use crate::scene::devices::Wind;
-use crate::scene::timeline::{Device, Scene};
+use crate::scene::devices::{Dipole, Wind};
+use crate::scene::forces::Signals;
+use crate::scene::timeline::{Device, DeviceInput, Input, Phase, Quantity, Scene, Target};
 
 /// A table of scene files for devices of one kind, which another crate defines.
 ///
@@ -78,13 +82,89 @@ pub(super) const WIND: TableKeys = TableKeys::new(
 /// The scene with the wind that `value` describes.
 pub(super) fn add_wind(scene: Scene, value: &Value) -> Result<Scene, Error> {
     let table = &value.table(&WIND)?;
-    let name = table.optional("name", Value::string)?;
-    let name = name.map_or_else(|| format!("wind {}", scene.devices().len() + 1), Into::into);
-    unique(table, &name, scene.devices().iter().map(|device| device.name()))?;
+    let name = device_name(table, &scene, "device", "wind")?;
     let tangential = table.optional("skin_drag", Value::number)?.unwrap_or_default();
     let mut wind = Wind::new(name).drag(table.required("drag", Value::number)?, tangential);
     wind = table.added(wind, "density", Value::number, Wind::density)?;
     let nodes = |value: &Value| selection(value, scene.body().mesh());
     wind = table.added(wind, "nodes", nodes, Wind::on)?;
     Ok(scene.device(wind))
+}
+
+/// The name of a device that the table describes, which no other one has.
+fn device_name(table: &Table, scene: &Scene, kind: &str, word: &str) -> Result<String, Error> {
+    let name = table.optional("name", Value::string)?;
+    let name = name.map_or_else(|| scene.next_device(kind, word), Into::into);
+    unique(table, &name, scene.devices().iter().map(|device| device.name()))?;
+    Ok(name)
+}
+
+pub(super) const DIPOLE: TableKeys = TableKeys::new(
+    "[[dipole]]",
+    "An external magnet with prescribed motion: a point dipole of the moment m at p, whose field mu_0/(4 pi) (3 (m . r) r/|r|^5 - m/|r|^3), r = x - p, acts on \
+     each `[[magnet]]` at its deformed place. In the plane it is that of a dipole in space which lies in the plane of the body, as its moment does. It acts in all phases; \
+     `drive` in a phase moves it and changes its moment.",
+    &[
+        Key::new("name", ValueType::Text, "the name of the dipole").default("dipole 1, dipole 2, ..."),
+        Key::new("moment", ValueType::ChangingVector, "the moment m")
+            .in_unit("A m^2")
+            .note("Of a magnet of the remanence b and the volume V it is b V/mu_0: 1.03 for 1 cm^3 of neodymium of 1.3 T.")
+            .required(),
+        Key::new("position", ValueType::ChangingVector, "the position p").in_unit("m"),
+        Key::new("times", ValueType::List(&ValueType::Number), "times in ascending order").in_unit("s"),
+        Key::new("positions", ValueType::List(&ValueType::Vector), "the positions at these times").in_unit("m"),
+    ],
+    "[[dipole]]\nname = \"lead\"\nmoment = [0.0, 1.0]\nposition = [\"0.05 + 0.01*t\", 0.3]",
+)
+.one_of(&[&["position"], &["times", "positions"]]);
+
+pub(super) const DRIVE: TableKeys = TableKeys::new(
+    "drive",
+    "Where a `[[dipole]]` is in this phase, or its moment, in place of what the scene says; a moment of 0 switches it off. Those of tables are interpolated linearly, \
+     and constant before and after.",
+    &[
+        Key::new("dipole", ValueType::Text, "the name of the dipole").required(),
+        Key::new("position", ValueType::ChangingVector, "its position").in_unit("m"),
+        Key::new("moment", ValueType::ChangingVector, "its moment").in_unit("A m^2"),
+        TIMES,
+        PERIOD,
+        Key::new("positions", ValueType::List(&ValueType::Vector), "its positions at these times").in_unit("m"),
+        Key::new("moments", ValueType::List(&ValueType::Vector), "its moments at these times").in_unit("A m^2"),
+    ],
+    "drive = [{ dipole = \"lead\", times = [0.0, 0.1], positions = [[0.05, 0.3], [0.1, 0.3]] }]",
+)
+.one_of(&[&["position"], &["moment"], &["times", "positions"], &["times", "moments"]]);
+
+/// The scene with the dipole that `value` describes.
+pub(super) fn add_dipole(scene: Scene, value: &Value) -> Result<Scene, Error> {
+    let table = &value.table(&DIPOLE)?;
+    let dimension = scene.body().dimension();
+    let vector = |input: &DeviceInput| -> Result<Signals, Error> {
+        let missing = || table.missing(input.word, "a dipole needs it");
+        let vector = vectors(table, input.word, dimension)?.ok_or_else(missing)?;
+        let checked = vector.validate(input.word, dimension, input.unit);
+        checked.map_err(|error| table.blame(error))?;
+        Ok(Signals(vector))
+    };
+    let dipole = Dipole::new(vector(&Dipole::MOMENT)?, vector(&Dipole::POSITION)?);
+    let name = device_name(table, &scene, "dipole", "dipole")?;
+    if scene.magnets().is_empty() {
+        let help = "the scene has no magnet that feels it: add a [[magnet]]";
+        return Err(table.blame(InputError::new("dipole", format!("\"{name}\""), help)));
+    }
+    Ok(scene.dipole(dipole.named(name)))
+}
+
+/// The phase with a place or a moment of a dipole.
+pub(super) fn drive(mut phase: Phase, table: &Table, scene: &Scene) -> Result<Phase, Error> {
+    let dipoles = scene.devices().iter().filter(|device| device.kind() == "dipole");
+    let known: Vec<&str> = dipoles.map(|device| device.name()).collect();
+    let name = table.required("dipole", |value| named(value, &known))?;
+    for input in [&Dipole::POSITION, &Dipole::MOMENT] {
+        let value = vectors_until(table, phase.end(), input.word, scene.body().dimension())?;
+        if let Some(value) = value {
+            phase.set(Input::new(Quantity::Device(input), Target::one(&*name), value));
+        }
+    }
+    Ok(phase)
 }

@@ -220,3 +220,16 @@ impl fmt::Display for Meaning {
         }
     }
 }
+
+/// Times of a table.
+pub(super) const TIMES: Key =
+    Key::new("times", ValueType::List(&ValueType::Number), "times in ascending order").in_unit("s");
+/// Its period.
+pub(super) const PERIOD: Key = Key::new(
+    "period",
+    ValueType::Number,
+    "the time after which the table is repeated, up to the end of the phase",
+)
+.in_unit("s")
+.note("From its last time a line leads to the first value, a period after the first time.")
+.default("once");

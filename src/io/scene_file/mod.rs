@@ -43,7 +43,6 @@ mod cells;
 mod contents;
 mod course;
 mod device;
-mod dipole;
 mod fluid;
 mod friction;
 mod gas;

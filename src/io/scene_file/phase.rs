@@ -3,21 +3,22 @@
 use toml::de::DeValue;
 
 use super::course::{course, vectors_until};
+use super::device::{DRIVE, drive};
 use super::keys::TableKeys;
 use super::magnet::magnetic_field;
 use super::phase_keys::{
-    ACTUATE, DRIVE, END, FLOW, FOLLOWER, HOLD, HOLD_COMBINATION, LOAD, MOMENT, MOVE, OPEN, PATH,
-    PHASE, PRESSURE, PRESSURE_ON, ROTATE, STEER, SYMMETRY, TERMS,
+    ACTUATE, END, FLOW, FOLLOWER, HOLD, HOLD_COMBINATION, LOAD, MOMENT, MOVE, OPEN, PATH, PHASE,
+    PRESSURE, PRESSURE_ON, ROTATE, STEER, SYMMETRY, TERMS,
 };
 use super::selection::selection;
 use super::table::Table;
-use super::value::{Value, number_of};
+use super::value::{Value, named, number_of};
 use crate::base::input::InputError;
 use crate::base::vector::norm;
 use crate::dynamics::error::Error;
 use crate::elements::mesh::Selection;
 use crate::scene::constraint::Axis;
-use crate::scene::forces::{Dipole, DipolePart, Signals};
+use crate::scene::forces::Signals;
 use crate::scene::timeline::{Input, Phase, Quantity, Row, Scene, Target};
 
 /// Adds a table inside of a phase.
@@ -208,18 +209,6 @@ fn on_nodes(phase: Phase, table: &Table, scene: &Scene) -> Result<Phase, Error> 
     Ok(phase) // one of them is there: the table's groups say so
 }
 
-fn drive(mut phase: Phase, table: &Table, scene: &Scene) -> Result<Phase, Error> {
-    let known: Vec<&str> = scene.dipoles().iter().map(Dipole::name).collect();
-    let dipole = table.required("dipole", |value| named(value, &known))?;
-    for part in DipolePart::ALL {
-        let value = vectors_until(table, phase.end(), part.word(), scene.body().dimension())?;
-        if let Some(value) = value {
-            phase.set_dipole(&dipole, part, value);
-        }
-    }
-    Ok(phase)
-}
-
 fn steer(phase: Phase, table: &Table, scene: &Scene) -> Result<Phase, Error> {
     let known: Vec<&str> = scene.devices().iter().map(|device| device.name()).collect();
     let device = table.required("device", |value| named(value, &known))?;
@@ -351,14 +340,6 @@ fn along(value: &Value, axes: &[Axis], scene: &Scene) -> Result<Vec<f64>, Error>
     }
     let per = if axes.len() == dimension { "dimension" } else { "named axis" };
     Err(value.unexpected(format!("{}, one per {per}", number_of(axes.len(), "number"))))
-}
-
-fn named(value: &Value, known: &[&str]) -> Result<String, Error> {
-    let name = value.string()?;
-    match known.contains(&name) {
-        true => Ok(name.into()),
-        false => Err(value.unknown(name, known)),
-    }
 }
 
 pub(super) fn names(value: &Value, known: &[&str]) -> Result<Vec<String>, Error> {

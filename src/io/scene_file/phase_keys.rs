@@ -1,6 +1,7 @@
 //! The keys of `[[phase]]` and of the tables in it.
 
-use super::keys::{Key, TableKeys, ValueType};
+use super::device::DRIVE;
+use super::keys::{Key, PERIOD, TIMES, TableKeys, ValueType};
 
 pub(super) const PHASE: TableKeys = TableKeys::new(
     "[[phase]]",
@@ -28,7 +29,7 @@ pub(super) const PHASE: TableKeys = TableKeys::new(
         part(&OPEN, "openings of orifices"),
         part(&FLOW, "flows of liquids into chambers"),
         part(&ACTUATE, "forces in springs and cables, stresses of muscles, strains of growth"),
-        part(&DRIVE, "where dipoles are, and their moments"),
+        part(&DRIVE, "positions and moments of external magnets"),
         part(&STEER, "inputs of devices, such as winds"),
         Key::new("magnetic_field", ValueType::Table(&MAGNETIC_FIELD), "the magnetic field"),
         Key::new(
@@ -72,17 +73,6 @@ const fn part(keys: &'static TableKeys, meaning: &'static str) -> Key {
 const NODES: Key = Key::new("nodes", ValueType::Nodes, "nodes").required();
 const AXES: Key =
     Key::new("axes", ValueType::Axes, "the axes that are prescribed").default("all of them");
-const TIMES: Key =
-    Key::new("times", ValueType::List(&ValueType::Number), "times in ascending order").in_unit("s");
-const PERIOD: Key = Key::new(
-    "period",
-    ValueType::Number,
-    "the time after which the table is repeated, up to the end of the phase",
-)
-.in_unit("s")
-.note("From its last time a line leads to the first value, a period after the first time.")
-.default("once");
-
 pub(super) const HOLD: TableKeys = TableKeys::new(
     "hold",
     "Nodes stay where they are when the phase begins.",
@@ -350,23 +340,6 @@ pub(super) const ACTUATE: TableKeys = TableKeys::new(
     &["heated", "power"],
     &["heated", "times", "powers"],
 ]);
-
-pub(super) const DRIVE: TableKeys = TableKeys::new(
-    "drive",
-    "Where a `[[dipole]]` is in this phase, or its moment, in place of what the scene says; a moment of 0 switches it off. Those of tables are interpolated linearly, \
-     and constant before and after.",
-    &[
-        Key::new("dipole", ValueType::Text, "the name of the dipole").required(),
-        Key::new("position", ValueType::ChangingVector, "its position").in_unit("m"),
-        Key::new("moment", ValueType::ChangingVector, "its moment").in_unit("A m^2"),
-        TIMES,
-        PERIOD,
-        Key::new("positions", ValueType::List(&ValueType::Vector), "its positions at these times").in_unit("m"),
-        Key::new("moments", ValueType::List(&ValueType::Vector), "its moments at these times").in_unit("A m^2"),
-    ],
-    "drive = [{ dipole = \"lead\", times = [0.0, 0.1], positions = [[0.05, 0.3], [0.1, 0.3]] }]",
-)
-.one_of(&[&["position"], &["moment"], &["times", "positions"], &["times", "moments"]]);
 
 pub(super) const STEER: TableKeys = TableKeys::new(
     "steer",

@@ -1,4 +1,4 @@
-//! Writes changed ends of phases, pressures, forces of actuators, loads, magnetic fields and dipoles into the text of a scene file; all
+//! Writes changed ends of phases, pressures, forces of actuators, loads, magnetic fields and inputs of devices into the text of a scene file; all
 //! else stays as it was written.
 
 use std::collections::BTreeSet;
@@ -10,7 +10,7 @@ use super::set_value::quoted;
 use super::written::insertion;
 use crate::elements::mesh::Selection;
 use crate::scene::forces::{Lag, Signal, SignalKind, VectorSignal};
-use crate::scene::timeline::{Input, InputSignal, Phase, Quantity, Row, Scene, Target};
+use crate::scene::timeline::{Input, InputSignal, Phase, Quantity, Row, STEER, Scene, Target};
 
 /// A phase whose signals differ from those in the file.
 pub(crate) struct Rewritten {
@@ -93,7 +93,7 @@ fn inputs(phase: &Phase, key: &str, scene: &Scene) -> String {
         let (of, word) = match target {
             Target::Named(names) if *quantity == Quantity::Actuation => actuator(names, scene),
             // the word is that of the input, which stands beside its value
-            _ if matches!(quantity, Quantity::Device(_)) => (of, "value"),
+            _ if quantity.row().keys == STEER => (of, "value"),
             _ => (of, word),
         };
         let target = match target {
@@ -103,7 +103,9 @@ fn inputs(phase: &Phase, key: &str, scene: &Scene) -> String {
             }
             Target::Named(names) => {
                 let input = match quantity {
-                    Quantity::Device(input) => format!("input = {}, ", quoted(input.word)),
+                    Quantity::Device(input) if input.keys == STEER => {
+                        format!("input = {}, ", quoted(input.word))
+                    }
                     _ => String::new(),
                 };
                 format!("{of} = {}, {input}", quoted(&names.join(", ")))

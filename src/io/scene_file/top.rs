@@ -4,8 +4,7 @@ use std::sync::Arc;
 
 use super::body::{self, BODY, POINT};
 use super::contents::{OutputRequest, SceneFile};
-use super::device::{self, WIND};
-use super::dipole::{self, DIPOLE};
+use super::device::{self, DIPOLE, WIND};
 use super::fluid::{self, FLUID};
 use super::gas::{self, GAS, ORIFICE, SUPPLY};
 use super::growth::{self, GROWTH};
@@ -87,7 +86,7 @@ const COMPONENTS: [(Key, Add); 18] = [
     (Key::new("magnet", ValueType::Tables(&MAGNET), "magnets in the bodies"), magnet::add_magnet),
     (
         Key::new("dipole", ValueType::Tables(&DIPOLE), "magnets outside of the bodies"),
-        dipole::add_dipole,
+        device::add_dipole,
     ),
     (Key::new("chamber", ValueType::Tables(&CHAMBER), "chambers"), surroundings::add_chamber),
     (Key::new("gas", ValueType::Tables(&GAS), "gas in chambers"), gas::add_gas),

@@ -250,3 +250,15 @@ impl<'a> Value<'a> {
 pub(super) fn number_of(count: usize, what: &str) -> String {
     format!("{count} {what}{}", if count == 1 { "" } else { "s" })
 }
+
+/// A name, which is one of those known.
+///
+/// # Errors
+/// Any other one.
+pub(super) fn named(value: &Value, known: &[&str]) -> Result<String, Error> {
+    let name = value.string()?;
+    match known.contains(&name) {
+        true => Ok(name.into()),
+        false => Err(value.unknown(name, known)),
+    }
+}

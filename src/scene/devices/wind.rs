@@ -3,12 +3,11 @@
 use std::sync::Arc;
 
 use crate::base::input::InputError;
-use crate::elements::body::Body;
 use crate::elements::force::Force;
 use crate::elements::mesh::Selection;
 use crate::scene::forces::{Fluid, VectorSignal};
 use crate::scene::timeline::{
-    Device, DeviceGauge, DeviceInput, DeviceOutput, DeviceSignals, DeviceState,
+    Device, DeviceGauge, DeviceInput, DeviceOutput, DeviceSignals, DeviceSite, DeviceState,
 };
 
 /// Density (kg/m^3) of air at 20 degrees.
@@ -88,17 +87,21 @@ impl Device for Wind {
         &[Self::FORCE]
     }
 
-    fn force(&self, body: &Body, inputs: DeviceSignals) -> Result<Arc<dyn Force>, InputError> {
-        let dimension = body.dimension();
+    fn force(
+        &self,
+        site: &DeviceSite<'_>,
+        inputs: DeviceSignals,
+    ) -> Result<Arc<dyn Force>, InputError> {
+        let dimension = site.body.dimension();
         let write = Arc::new(move |t, velocity: &mut [f64]| {
             velocity.copy_from_slice(&inputs.at(0, t)[..dimension]);
         });
         let fluid = self.fluid().flowing(VectorSignal::Function { dimension, write });
-        Ok(Arc::new(fluid.force(body, None)?))
+        Ok(Arc::new(fluid.force(site.body, None)?))
     }
 
-    fn gauge(&self, _number: usize, body: &Body) -> Result<DeviceGauge, InputError> {
-        let force = self.fluid().force(body, None)?;
+    fn gauge(&self, _number: usize, site: &DeviceSite<'_>) -> Result<DeviceGauge, InputError> {
+        let force = self.fluid().force(site.body, None)?;
         Ok(Box::new(move |now| force.in_current(now.input(0), now.u, now.v, None)))
     }
 

@@ -12,7 +12,7 @@ mod switches;
 #[cfg(test)]
 mod tests;
 
-use switches::Switches;
+use switches::SwitchStates;
 
 use super::friction::{Backward, Coulomb, Drag};
 use super::obstacle::{Law, Obstacle};
@@ -25,7 +25,9 @@ use crate::base::input::InputError;
 use crate::base::sparse::BlockMatrix;
 use crate::base::vector::{difference, distinct, dot, norm};
 use crate::elements::body::Body;
-use crate::elements::force::{Force, NodalForces, Reservoir, Step, Tangents};
+use crate::elements::force::{
+    Capabilities, ContactForce, Force, NodalForces, Reservoir, Step, Switches, Tangents,
+};
 use crate::integrators::ode::Failure;
 
 /// The forces of one obstacle on the boundary of a body.
@@ -38,7 +40,7 @@ pub(crate) struct Contact {
     coulomb: Option<Coulomb>,
     backward: Option<Backward>,
     points: Vec<ContactPoint>,
-    switches: Switches,
+    switches: SwitchStates,
 }
 
 struct ContactPoint {
@@ -141,7 +143,7 @@ impl Contact {
         let coulomb = obstacle.coulomb(body.size());
         let backward = obstacle.backward();
         let pressing = coulomb.is_some() || !obstacle.has_adhesion();
-        let switches = Switches::new(points.len(), pressing, obstacle.has_friction());
+        let switches = SwitchStates::new(points.len(), pressing, obstacle.has_friction());
         Ok(Self { obstacle, dimension, fastest, is_custom, coulomb, backward, points, switches })
     }
 
@@ -385,35 +387,6 @@ impl Force for Contact {
         Tangents::Added
     }
 
-    /// A point distributes K_p n n^T among its nodes by shares that add up to 1, so that no row sum is larger
-    /// than its node's share.
-    fn add_reserves(
-        &self,
-        t: f64,
-        u: &[f64],
-        v: &[f64],
-        stiffness: &mut [f64],
-        damping: &mut [f64],
-    ) {
-        let moved = self.obstacle.displacement(t);
-        let apart = |point: &&ContactPoint| self.nearest(&moved, point, u).distance > 0.0;
-        for point in self.points.iter().filter(apart) {
-            for (node, share) in point.on.nodes() {
-                stiffness[node] += share * point.law.stiffness;
-                damping[node] += share * f64::max(point.law.damping, point.law.tangential_damping);
-            }
-        }
-        let Some(coulomb) = &self.coulomb else { return };
-        for touch in self.touches(t, u, v) {
-            let Some(Slip { pressing, drag, .. }) = touch.slip else { continue };
-            let steepest = coulomb.steepest() * self.backward.map_or(1.0, |b| b.steepest());
-            let lacking = pressing.max(0.0) * (steepest - drag.along.max(0.0));
-            for (node, share) in touch.point.on.nodes() {
-                damping[node] += share * lacking;
-            }
-        }
-    }
-
     fn potential(&self, t: f64, u: &[f64]) -> f64 {
         let moved = self.obstacle.displacement(t);
         let energy = |(k, point): (usize, &ContactPoint)| {
@@ -428,10 +401,16 @@ impl Force for Contact {
         Some(distinct(self.points.iter().flat_map(|point| point.on.nodes().map(|(node, _)| node))))
     }
 
-    fn velocity(&self, t: f64) -> Option<[f64; 3]> {
-        (self.fastest != Some(0.0)).then(|| self.obstacle.velocity_at(t))
+    fn reservoir(&self) -> Reservoir {
+        Reservoir::Contact
     }
 
+    fn capabilities(&self) -> Capabilities<'_> {
+        Capabilities { switches: Some(self), contact: Some(self), ..Capabilities::default() }
+    }
+}
+
+impl Switches for Contact {
     /// The distances of all points, then the pulls of all normal forces (if their sign matters), then how
     /// much faster than v0 all points under friction slide. Pulls of points that do not touch, and excess
     /// speeds of points that do not press, stay off.
@@ -467,7 +446,9 @@ impl Force for Contact {
     fn slides(&self) -> Option<(&str, Option<bool>)> {
         self.switches.all_slide().map(|slides| (self.obstacle.name(), slides))
     }
+}
 
+impl ContactForce for Contact {
     fn passage(&self, step: &Step, tolerance: f64, clearances: &mut [f64]) -> Option<f64> {
         let (d, [start, end]) = (self.dimension, step.times);
         let Cubics { parts, fastest } = match self.fastest {
@@ -499,8 +480,37 @@ impl Force for Contact {
         first
     }
 
-    fn reservoir(&self) -> Reservoir {
-        Reservoir::Contact
+    /// A point distributes K_p n n^T among its nodes by shares that add up to 1, so that no row sum is larger
+    /// than its node's share.
+    fn add_reserves(
+        &self,
+        t: f64,
+        u: &[f64],
+        v: &[f64],
+        stiffness: &mut [f64],
+        damping: &mut [f64],
+    ) {
+        let moved = self.obstacle.displacement(t);
+        let apart = |point: &&ContactPoint| self.nearest(&moved, point, u).distance > 0.0;
+        for point in self.points.iter().filter(apart) {
+            for (node, share) in point.on.nodes() {
+                stiffness[node] += share * point.law.stiffness;
+                damping[node] += share * f64::max(point.law.damping, point.law.tangential_damping);
+            }
+        }
+        let Some(coulomb) = &self.coulomb else { return };
+        for touch in self.touches(t, u, v) {
+            let Some(Slip { pressing, drag, .. }) = touch.slip else { continue };
+            let steepest = coulomb.steepest() * self.backward.map_or(1.0, |b| b.steepest());
+            let lacking = pressing.max(0.0) * (steepest - drag.along.max(0.0));
+            for (node, share) in touch.point.on.nodes() {
+                damping[node] += share * lacking;
+            }
+        }
+    }
+
+    fn velocity(&self, t: f64) -> Option<[f64; 3]> {
+        (self.fastest != Some(0.0)).then(|| self.obstacle.velocity_at(t))
     }
 }
 

@@ -5,7 +5,7 @@ use std::sync::{Mutex, PoisonError};
 
 use super::chamber_fluid::{ChamberFluid, Fill};
 use crate::base::sparse::BlockMatrix;
-use crate::elements::force::{Force, NodalForces, Reservoir, Tangents};
+use crate::elements::force::{Capabilities, Force, NodalForces, Reservoir, StepCheck, Tangents};
 use crate::integrators::ode::Failure;
 
 /// The force of an amount that stays. The pressure on one wall depends on where all others are: its tangent is full over the
@@ -56,10 +56,6 @@ impl<C: ChamberFluid> Force for FixedAmount<C> {
         self.content.press(u, self.at(t), forces)
     }
 
-    fn check_step(&self, t: f64, _before: &[f64], after: &[f64]) -> Result<(), Failure> {
-        self.content.check(t, after, self.at(t).amount)
-    }
-
     fn add_tangents(
         &self,
         t: f64,
@@ -104,5 +100,15 @@ impl<C: ChamberFluid> Force for FixedAmount<C> {
             self.nodes[..k].iter().map(move |&other| [other, node]).collect::<Vec<_>>()
         };
         self.nodes.iter().enumerate().flat_map(before).collect()
+    }
+
+    fn capabilities(&self) -> Capabilities<'_> {
+        Capabilities { step_check: Some(self), ..Capabilities::default() }
+    }
+}
+
+impl<C: ChamberFluid> StepCheck for FixedAmount<C> {
+    fn check_step(&self, t: f64, _before: &[f64], after: &[f64]) -> Result<(), Failure> {
+        self.content.check(t, after, self.at(t).amount)
     }
 }

@@ -8,7 +8,7 @@
 //! gravity that pushes a floating body on for ever. Surfaces with a rim, recognized by the derivatives of the
 //! vector area, have no such potential and get p n.
 //!
-//! Added mass is integrated over the undeformed faces once and added to M = m (x) I (`Force::carried`,
+//! Added mass is integrated over the undeformed faces once and added to M = m (x) I (`Capabilities::carried`,
 //! `Matrices::carry`). It acts in all directions alike, because along normals alone it would turn with the
 //! faces, and M would not be constant. The body's own mass (weight, momentum, mass damping) is not changed.
 

@@ -30,7 +30,7 @@
 //! positive definite with the inertia (measured in `docs/notes/contact.md`). Friction that falls with the
 //! speed is negative damping, so that a matrix is factorized by LU now and then. Where the normal force stops
 //! pressing there is a switch, like the cut-off of damping without adhesion. Explicit steps are bounded as if
-//! all sliding points stuck (`Force::add_reserves`): a sticking point is a damper of the rate 3 mu_s N/(2 v0
+//! all sliding points stuck (`ContactForce::add_reserves`): a sticking point is a damper of the rate 3 mu_s N/(2 v0
 //! m).
 
 use crate::base::input::{InputError, not_negative, positive};

@@ -14,7 +14,7 @@
 //! Jacobian of `ida-klu` need no code of their own (`Scene::with_fixed_amounts`, `fixed_amount.rs`, `chamber_fluid.rs`). Its
 //! tangent -(p - p_a) V'' + (n p/V) V' V'^T is full over the nodes of the walls, and so is the pattern. As unknowns,
 //! for all other methods, amounts stand behind the strains of Maxwell branches, y = (u, v, G, m, E_d, E_s),
-//! in a `Flow` (`elements/force.rs`) that `dynamics/system/flow_matrix.rs` eliminates.
+//! in a `Flow` (`elements/force.rs`) that `dynamics/linear/flow_matrix.rs` eliminates.
 
 mod flow;
 mod orifice;

@@ -3,7 +3,7 @@
 use crate::base::simd::add;
 use crate::base::vector::dot;
 use crate::elements::body::Body;
-use crate::elements::force::{Force, NodalForces, Reservoir};
+use crate::elements::force::{Capabilities, Force, NodalForces, Reservoir};
 use crate::integrators::ode::Failure;
 
 /// Weight of a body.
@@ -39,15 +39,15 @@ impl Force for Gravity {
         false
     }
 
-    fn is_steady(&self) -> bool {
-        true
-    }
-
     fn potential(&self, _t: f64, u: &[f64]) -> f64 {
         self.natural_potential - dot(&self.weight, u)
     }
 
     fn reservoir(&self) -> Reservoir {
         Reservoir::Gravity
+    }
+
+    fn capabilities(&self) -> Capabilities<'_> {
+        Capabilities { is_steady: true, ..Capabilities::default() }
     }
 }

@@ -2,7 +2,7 @@
 
 use super::signal::{VectorSignal, finite_at};
 use crate::base::vector::distinct;
-use crate::elements::force::{Force, NodalForces};
+use crate::elements::force::{Capabilities, Force, NodalForces};
 use crate::integrators::ode::Failure;
 
 /// Constant forces on some degrees of freedom.
@@ -35,8 +35,8 @@ impl Force for Load {
         Some(distinct(self.forces.iter().map(|(dof, _)| dof / self.dimension)))
     }
 
-    fn is_steady(&self) -> bool {
-        true
+    fn capabilities(&self) -> Capabilities<'_> {
+        Capabilities { is_steady: true, ..Capabilities::default() }
     }
 }
 

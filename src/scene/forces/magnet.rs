@@ -83,7 +83,7 @@ impl Magnet {
         body.magnetize(&cells, &self.remanence, magnets).map_err(blamed)
     }
 
-    /// Adds its strain points to those on which dipoles act; its remanence has been [checked](Self::add_to).
+    /// Adds its strain points to those of a body; its remanence has been [checked](Self::add_to).
     ///
     /// # Errors
     /// Cells that the body does not have.

@@ -279,7 +279,7 @@ pub(super) fn sum(signals: &[Signal], t: f64) -> f64 {
 }
 
 /// Returns a `value` that a function of time gave, if it is finite.
-pub(super) fn finite_at(t: f64, what: fmt::Arguments<'_>, value: f64) -> Result<f64, Failure> {
+pub(crate) fn finite_at(t: f64, what: fmt::Arguments<'_>, value: f64) -> Result<f64, Failure> {
     if value.is_finite() {
         return Ok(value);
     }

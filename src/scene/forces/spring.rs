@@ -4,7 +4,7 @@
 //! A spring couples nodes that may share no cell: `Force::couplings` widens the pattern for all phases at
 //! once. Its direction is undefined at length 0. A force must not refuse trial points near such a state, as
 //! integrators would approach it with ever smaller steps; instead each accepted step is checked
-//! (`Force::check_step`), and a spring shorter than a hundredth of its natural length, or turned by more than
+//! (`StepCheck::check_step`), and a spring shorter than a hundredth of its natural length, or turned by more than
 //! a right angle, ends the run by name.
 
 mod bend;

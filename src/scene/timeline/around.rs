@@ -36,19 +36,18 @@ impl Scene {
         let muscle = self.muscles.first().map(|muscle| muscle.name());
         let growth = self.growths.first().map(|growth| growth.name());
         let magnet = self.magnets.first().map(|_| "magnet 1");
-        let dipole = self.dipoles.first().map(|dipole| dipole.name());
         let fluid = self.fluids.first().map(Fluid::name);
         let touch = self.touches.first().map(Touch::name);
-        let device = self.devices.first().map(|device| device.name());
+        let device = self.devices.first();
+        let kind = device.map_or("device", |device| device.kind());
         for (what, name) in [
             ("cable", cable),
             ("muscle", muscle),
             ("growth", growth),
             ("magnet", magnet),
-            ("dipole", dipole),
             ("fluid", fluid),
             ("touch", touch),
-            ("device", device),
+            (kind, device.map(|device| device.name())),
         ] {
             name.map_or(Ok(()), |name| refuse(what, name))?;
         }

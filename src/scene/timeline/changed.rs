@@ -2,11 +2,12 @@
 
 use std::sync::Arc;
 
+use super::input::Input;
 use super::phase::{ContactWith, Phase};
 use crate::base::input::InputError;
 use crate::elements::mesh::{Mesh, Selection};
 use crate::scene::constraint::{Constrained, Constraint};
-use crate::scene::forces::{Dipole, DipolePart, Obstacle, VectorSignal};
+use crate::scene::forces::Obstacle;
 
 impl Phase {
     /// Lets an obstacle of the scene move on with `velocity` (m/s) from where it is at time `t` (s).
@@ -41,24 +42,18 @@ impl Phase {
     }
 
     /// The phase at rest under a `fraction` of its load: loads, pressures and the forces of actuators are
-    /// constant, this fraction of those at the end, as the magnetic field and the moments of `dipoles` are, and `obstacles` stand where they are at the fraction `path`
+    /// constant, this fraction of those at the end, as the magnetic field and the `presets` of devices are that statics scale, and `obstacles` stand where they are at the fraction `path`
     /// of the end time.
     pub(crate) fn at_rest(
         &self,
         [fraction, path]: [f64; 2],
-        (obstacles, dipoles): (&[Obstacle], &[Dipole]),
+        (obstacles, presets): (&[Obstacle], Vec<Input>),
         dimension: usize,
     ) -> Self {
         let (mut rest, end) = (self.clone(), self.until);
+        rest.inputs.extend(presets);
         rest.scale_inputs(fraction, dimension);
         rest.gradient = self.gradient.as_ref().map(|gradient| gradient.times(fraction));
-        for dipole in dipoles.iter().map(|dipole| self.with_dipole(dipole)) {
-            for (part, factor) in [(DipolePart::Position, 1.0), (DipolePart::Moment, fraction)] {
-                let vector = dipole.part(part).components(end, dimension);
-                let vector = vector.iter().map(|x| factor * x).collect();
-                rest.set_dipole(dipole.name(), part, VectorSignal::Constant(vector));
-            }
-        }
         let reached = path * end;
         for obstacle in obstacles {
             if self.moving(obstacle).velocity_at(reached) != [0.0; 3] {

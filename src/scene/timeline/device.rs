@@ -1,9 +1,10 @@
 //! Devices: parts of a scene that are defined in one place, by this crate or by another one.
 //!
 //! A [`Device`] says all that the scene has to know of it: its inputs, its outputs, its force, what it is on a finer mesh, the lines
-//! by which it is drawn. Inputs are quantities as all others are (`input.rs`): phases and commands set them, tables and formulas of
+//! and needles by which it is drawn. Inputs are quantities as all others are (`input.rs`): phases and commands set them, tables and formulas of
 //! time end steps at their breaks, statics scale them, checkpoints hold them. Nothing else in the crate knows of a single device.
 
+use std::cell::OnceCell;
 use std::fmt;
 use std::sync::Arc;
 
@@ -11,10 +12,10 @@ use super::device_rows::{DeviceInput, DeviceOutput};
 use super::input::InputSignal;
 use super::phase::Phase;
 use crate::base::input::InputError;
-use crate::elements::body::Body;
+use crate::elements::body::{Body, MagnetizedPoints};
 use crate::elements::force::Force;
 use crate::elements::mesh::Selection;
-use crate::scene::forces::{Signal, Signals};
+use crate::scene::forces::{Magnet, Signal, Signals};
 
 /// A part of a scene that exerts a force on its body, with inputs and outputs of its own: a jet, a fan, a gyroscope.
 ///
@@ -27,9 +28,20 @@ pub trait Device: fmt::Debug + Send + Sync {
     /// The name by which phases, commands and sensors know it.
     fn name(&self) -> &str;
 
+    /// Noun for devices of its kind in messages and lists. Default: "device".
+    fn kind(&self) -> &'static str {
+        "device"
+    }
+
     /// The inputs that phases and commands set. Default: none.
     fn inputs(&self) -> &'static [DeviceInput] {
         &[]
+    }
+
+    /// Value of the input of a number (from 0) in phases that do not set it. Default: that of its [row](DeviceInput::absent).
+    fn preset(&self, number: usize) -> Option<&DeviceValue> {
+        let _ = number;
+        None
     }
 
     /// The outputs that sensors read. Default: none.
@@ -37,19 +49,32 @@ pub trait Device: fmt::Debug + Send + Sync {
         &[]
     }
 
-    /// The force on `body`, driven by the values of the `inputs` in one phase.
+    /// The force on the body at a `site`, driven by the values of the `inputs` in one phase.
     ///
     /// # Errors
     /// Nodes that do not exist, numbers out of range.
-    fn force(&self, body: &Body, inputs: DeviceSignals) -> Result<Arc<dyn Force>, InputError>;
+    fn force(
+        &self,
+        site: &DeviceSite<'_>,
+        inputs: DeviceSignals,
+    ) -> Result<Arc<dyn Force>, InputError>;
 
-    /// The function that reads the output of a number (from 0), in the order of [`outputs`](Self::outputs), of `body` in motion.
+    /// Checks the device at the start of a scene, `now`, before its force is evaluated. Default: nothing.
+    ///
+    /// # Errors
+    /// Inputs by which the force has no meaning there.
+    fn check_start(&self, site: &DeviceSite<'_>, now: &DeviceState<'_>) -> Result<(), InputError> {
+        let _ = (site, now);
+        Ok(())
+    }
+
+    /// The function that reads the output of a number (from 0), in the order of [`outputs`](Self::outputs), of the body in motion.
     /// Components beyond the dimension, or beyond the first one of a number, are not read. Default: 0.
     ///
     /// # Errors
     /// Nodes that do not exist.
-    fn gauge(&self, number: usize, body: &Body) -> Result<DeviceGauge, InputError> {
-        let _ = (number, body);
+    fn gauge(&self, number: usize, site: &DeviceSite<'_>) -> Result<DeviceGauge, InputError> {
+        let _ = (number, site);
         Ok(Box::new(|_| [0.0; 3]))
     }
 
@@ -70,6 +95,48 @@ pub trait Device: fmt::Debug + Send + Sync {
     fn lines(&self, now: &DeviceState<'_>) -> Vec<[[f64; 3]; 2]> {
         let _ = now;
         Vec::new()
+    }
+
+    /// The needles by which they show it: bars of one size with two poles, by their middles (m) and directions; a dot without direction.
+    /// As many at all times. Default: none.
+    fn needles(&self, now: &DeviceState<'_>) -> Vec<[[f64; 3]; 2]> {
+        let _ = now;
+        Vec::new()
+    }
+}
+
+/// The surroundings of a device in its scene.
+pub struct DeviceSite<'a> {
+    /// The body; all of them, joined into one, where there are several.
+    pub body: &'a Body,
+    magnets: &'a [Magnet],
+    magnetized: OnceCell<Arc<[Box<dyn MagnetizedPoints>]>>,
+}
+
+impl<'a> DeviceSite<'a> {
+    pub(super) fn new(body: &'a Body, magnets: &'a [Magnet]) -> Self {
+        Self { body, magnets, magnetized: OnceCell::new() }
+    }
+
+    /// The magnetized points of the body; none without magnets.
+    ///
+    /// # Errors
+    /// Cells that the body does not have.
+    pub(crate) fn magnetized_points(&self) -> Result<Arc<[Box<dyn MagnetizedPoints>]>, InputError> {
+        if let Some(known) = self.magnetized.get() {
+            return Ok(known.clone());
+        }
+        let mut points = Vec::new();
+        for (number, magnet) in (1..).zip(self.magnets) {
+            magnet.add_points_to(self.body, number, &mut points)?;
+        }
+        Ok(self.magnetized.get_or_init(|| points.into()).clone())
+    }
+}
+
+impl fmt::Debug for DeviceSite<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("DeviceSite").field("body", &self.body).finish_non_exhaustive()
     }
 }
 
@@ -115,7 +182,7 @@ impl DeviceState<'_> {
     /// The value of the input of a number (from 0), as of [`DeviceSignals::at`].
     pub fn input(&self, number: usize) -> [f64; 3] {
         let Some(input) = self.device.inputs().get(number) else { return [0.0; 3] };
-        let signals = self.phase.device_signals(self.device.name(), input);
+        let signals = self.phase.device_signals(self.device, number);
         sum(input, self.body.dimension(), signals, self.time)
     }
 }
@@ -128,25 +195,27 @@ fn sum<'a>(
     t: f64,
 ) -> [f64; 3] {
     let rank = input.rank(dimension);
-    let (mut sum, mut is_set) = ([0.0; 3], false);
-    for signal in signals {
-        is_set = true;
+    let values = signals.map(|signal| {
         let mut own = [0.0; 3];
         match signal {
             InputSignal::Number(signal) => own[0] = signal.at(t),
             InputSignal::Vector(signal) => signal.at(t, &mut own[..rank]),
         }
-        (0..rank).for_each(|i| sum[i] += own[i]);
-    }
-    if !is_set {
-        sum[..rank].fill(input.absent);
-    }
-    sum
+        own
+    });
+    let sum = values.reduce(|a, b| std::array::from_fn(|i| a[i] + b[i]));
+    sum.unwrap_or_else(|| std::array::from_fn(|i| if i < rank { input.absent } else { 0.0 }))
 }
 
 /// A value for an input of a device: a number or any other [`Signal`], or [`Signals`] for a vector.
-#[derive(Debug, Clone)]
+#[derive(Clone)]
 pub struct DeviceValue(pub(super) InputSignal);
+
+impl fmt::Debug for DeviceValue {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.0.fmt(f)
+    }
+}
 
 impl From<f64> for DeviceValue {
     fn from(value: f64) -> Self {

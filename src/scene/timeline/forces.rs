@@ -48,7 +48,7 @@ impl Scene {
             };
             forces.push(Arc::new(field.force(&self.body, magnets, input)?));
         }
-        self.add_dipoles(phase, &mut forces)?;
+        forces.extend(self.device_forces(phase)?);
         self.add_chambers(phase, &mut forces)?;
         self.add_amounts(phase, lagging, &mut forces)?;
         for (nodes, pressure) in phase.face_pressures() {
@@ -60,7 +60,6 @@ impl Scene {
             }
         }
         self.add_fluids(phase, &mut forces)?;
-        self.add_devices(phase, &mut forces)?;
         for contact in self.contacts(phase)? {
             forces.push(Arc::new(contact));
         }

@@ -8,7 +8,7 @@ use super::{Phase, Scene, unique};
 use crate::base::input::{InputError, find, not_negative, unknown_among};
 use crate::elements::force::{Force, Forces};
 use crate::scene::forces::{
-    AmountFlow, Chamber, ChamberFluid, DipolePart, End, FixedAmount, Gas, GasInChamber, Lagging,
+    AmountFlow, Chamber, ChamberFluid, End, FixedAmount, Gas, GasInChamber, Lagging,
     LiquidInChamber, Orifice, OrificeFlow, Signal, Supply,
 };
 
@@ -317,15 +317,13 @@ impl Scene {
         }
     }
 
-    /// Times (s, ascending) at which what `phase` prescribes, the pressure of a supply, the velocity of a fluid and dipoles change their laws.
+    /// Times (s, ascending) at which what `phase` prescribes, the pressure of a supply, the velocity of a fluid and the presets of devices change their laws.
     pub(crate) fn breaks_in(&self, phase: &Phase) -> Vec<f64> {
         let mut breaks = phase.breaks(&self.obstacles);
         let supplies = self.supplies.iter().flat_map(|supply| supply.pressure.breaks());
         breaks.extend(supplies);
         breaks.extend(self.fluids.iter().flat_map(|fluid| fluid.breaks()));
-        for dipole in self.dipoles.iter().map(|dipole| phase.with_dipole(dipole)) {
-            breaks.extend(DipolePart::ALL.iter().flat_map(|part| dipole.part(*part).breaks()));
-        }
+        breaks.extend(self.presets_in(phase).iter().flat_map(|preset| preset.signal.breaks()));
         breaks.sort_by(f64::total_cmp);
         breaks.dedup();
         breaks

@@ -13,7 +13,7 @@ use crate::elements::body::Body;
 use crate::elements::force::Force;
 use crate::elements::mesh::Selection;
 use crate::scene::forces::{
-    DipolePart, SharedValue, Signal, SignalKind, VectorSignal, WrenchForce, WrenchKind,
+    SharedValue, Signal, SignalKind, VectorSignal, WrenchForce, WrenchKind,
 };
 
 /// A quantity that phases prescribe.
@@ -37,8 +37,6 @@ pub(crate) enum Quantity {
     Wrench(WrenchKind),
     /// The uniform part of the magnetic field.
     Field,
-    /// Of a dipole, in place of the scene's.
-    Dipole(DipolePart),
     /// Of a device, which has the row.
     #[cfg_attr(feature = "checkpoint", serde(skip))]
     Device(&'static DeviceInput),
@@ -143,15 +141,8 @@ impl Quantity {
                 ..row("follower moment on", ["follower", "nodes"], "moment", "N m")
             },
             Self::Field => row("magnetic field", ["magnetic_field", ""], "field", "T"),
-            Self::Dipole(DipolePart::Position) => Row {
-                scales: false,
-                ..row("position of dipole", ["drive", "dipole"], "position", "m")
-            },
-            Self::Dipole(DipolePart::Moment) => {
-                row("moment of dipole", ["drive", "dipole"], "moment", "A m^2")
-            }
-            Self::Device(&DeviceInput { word, unit, absent, is_scaled, .. }) => {
-                Row { absent, scales: is_scaled, ..row(word, ["steer", "device"], word, unit) }
+            Self::Device(&DeviceInput { word, unit, absent, is_scaled, keys, .. }) => {
+                Row { absent, scales: is_scaled, ..row(word, keys, word, unit) }
             }
         }
     }
@@ -160,7 +151,13 @@ impl Quantity {
     pub(crate) fn of(self, target: &Target) -> String {
         let name = self.row().name;
         match target {
-            Target::Named(names) => format!("{name} \"{}\"", names.join("\", \"")),
+            Target::Named(names) => {
+                let names = names.join("\", \"");
+                match self {
+                    Self::Device(input) => format!("{name} of {} \"{names}\"", input.keys[1]),
+                    _ => format!("{name} \"{names}\""),
+                }
+            }
             Target::Nodes(nodes) => format!("{name} {nodes}"),
             Target::Everything => name.into(),
         }
@@ -169,7 +166,7 @@ impl Quantity {
     /// Number of components of its value in space of a `dimension`.
     pub(crate) fn rank(self, dimension: usize) -> usize {
         match self {
-            Self::Load(_) | Self::Field | Self::Dipole(_) => dimension,
+            Self::Load(_) | Self::Field => dimension,
             Self::Wrench(kind) => kind.rank(dimension),
             Self::Device(input) => input.rank(dimension),
             Self::Actuation | Self::Pressure | Self::Opening | Self::Flow => 1,

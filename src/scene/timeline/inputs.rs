@@ -3,7 +3,7 @@
 use super::input::{Input, InputSignal, LoadKind, Quantity, Target};
 use super::{Phase, Scene};
 use crate::elements::mesh::Selection;
-use crate::scene::forces::{Dipole, SharedValue, Signal, VectorSignal};
+use crate::scene::forces::{SharedValue, Signal, VectorSignal};
 
 impl Phase {
     pub(crate) fn with(mut self, input: Input) -> Self {
@@ -128,18 +128,22 @@ impl Phase {
         self.inputs.iter_mut().for_each(|input| input.signal = input.signal.snapshot());
     }
 
-    /// Replaces what statics scale by this `fraction` of its value at the end of the phase.
+    /// Replaces what statics scale by this `fraction` of its value at the end of the phase, and other inputs of devices by that value.
     pub(super) fn scale_inputs(&mut self, fraction: f64, dimension: usize) {
         let end = self.until;
-        for input in self.inputs.iter_mut().filter(|input| input.quantity.row().scales) {
-            let rank = input.quantity.rank(dimension);
-            input.signal = input.signal.at_rest(fraction, end, rank);
+        for input in &mut self.inputs {
+            let scales = input.quantity.row().scales;
+            if scales || matches!(input.quantity, Quantity::Device(_)) {
+                let (part, rank) =
+                    (if scales { fraction } else { 1.0 }, input.quantity.rank(dimension));
+                input.signal = input.signal.at_rest(part, end, rank);
+            }
         }
     }
 }
 
 impl Scene {
-    /// Components of a quantity on a target in `phase` at time `t` (s): the sum of its signals there; of a dipole without one the scene's.
+    /// Components of a quantity on a target in `phase` at time `t` (s): the sum of its signals there, or else the preset of a device.
     pub(crate) fn input_at(
         &self,
         phase: &Phase,
@@ -154,13 +158,11 @@ impl Scene {
             (Quantity::Load(kind), Target::Nodes(nodes)) => {
                 self.load_on(phase, nodes, kind, t).unwrap_or_else(|_| absent())
             }
-            (Quantity::Dipole(part), _) => {
-                let own = |dipole: &&Dipole| target.names() == [dipole.name()];
-                let dipole = self.dipoles.iter().find(own);
-                dipole.map_or_else(absent, |d| phase.part_of(d, part).components(t, dimension))
-            }
             _ => {
-                let all = phase.inputs_on(quantity, target);
+                let presets = self.presets_in(phase);
+                let preset =
+                    presets.iter().filter(|i| i.quantity == quantity && i.target == *target);
+                let all = phase.inputs_on(quantity, target).chain(preset);
                 let all = all.map(|input| input.signal.components(t, rank));
                 let sum = |sum: Vec<f64>, more: Vec<f64>| {
                     sum.into_iter().zip(more).map(|(sum, more)| sum + more).collect()
@@ -171,19 +173,16 @@ impl Scene {
     }
 
     /// Times (s, ascending) at which its signals there change their laws.
-    #[cfg(feature = "play")]
     pub(crate) fn input_breaks(
         &self,
         phase: &Phase,
         quantity: Quantity,
         target: &Target,
     ) -> Vec<f64> {
-        let own = phase.inputs_on(quantity, target).flat_map(|input| input.signal.breaks());
-        let mut breaks: Vec<f64> = own.copied().collect();
-        if let (true, Quantity::Dipole(part)) = (breaks.is_empty(), quantity) {
-            let dipoles = self.dipoles.iter().filter(|d| target.names() == [d.name()]);
-            breaks.extend(dipoles.flat_map(|dipole| phase.part_of(dipole, part).breaks()));
-        }
+        let presets = self.presets_in(phase);
+        let preset = presets.iter().filter(|i| i.quantity == quantity && i.target == *target);
+        let all = phase.inputs_on(quantity, target).chain(preset);
+        let mut breaks: Vec<f64> = all.flat_map(|input| input.signal.breaks()).copied().collect();
         breaks.sort_by(f64::total_cmp);
         breaks.dedup();
         breaks

@@ -5,7 +5,6 @@ mod changed;
 mod contacts;
 mod device;
 mod device_rows;
-mod dipole;
 mod early;
 mod finer;
 mod fluid;
@@ -36,8 +35,9 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 
 pub(crate) use contacts::ContactReader;
-pub use device::{Device, DeviceGauge, DeviceSignals, DeviceState, DeviceValue};
-pub use device_rows::{DeviceInput, DeviceOutput};
+pub use device::{Device, DeviceGauge, DeviceSignals, DeviceSite, DeviceState, DeviceValue};
+pub(crate) use device_rows::STEER;
+pub use device_rows::{DeviceInput, DeviceOutput, InputLimit};
 pub(crate) use gas::Amounts;
 #[cfg(feature = "scene-file")]
 pub(crate) use input::Row;
@@ -65,8 +65,8 @@ use crate::scene::constraint::{
     Constrained, Constraint, ConstraintRow, PhaseStart, check_rigid_holds, prescribe, rows,
 };
 use crate::scene::forces::{
-    ATMOSPHERE, Chamber, Contact, Dipole, Fluid, Gas, Growth, Lag, Liquid, Magnet, Muscle,
-    Obstacle, Orifice, Pipe, Spring, Supply, Touch, TouchDistance, TouchForce,
+    ATMOSPHERE, Chamber, Contact, Fluid, Gas, Growth, Lag, Liquid, Magnet, Muscle, Obstacle,
+    Orifice, Pipe, Spring, Supply, Touch, TouchDistance, TouchForce,
 };
 use crate::scene::reduced_model::ReducedModel;
 
@@ -93,7 +93,6 @@ pub struct Scene {
     springs: Vec<Spring>,
     muscles: Vec<Muscle>,
     magnets: Vec<Magnet>,
-    dipoles: Vec<Dipole>,
     growths: Vec<Growth>,
     /// By the names of actuators.
     lags: Vec<(String, Lag)>,
@@ -152,7 +151,6 @@ impl Scene {
             springs: Vec::new(),
             muscles: Vec::new(),
             magnets: Vec::new(),
-            dipoles: Vec::new(),
             growths: Vec::new(),
             lags: Vec::new(),
             fluids: Vec::new(),
@@ -393,9 +391,7 @@ impl Scene {
         let (u, v) = (self.initial_displacements(), self.initial_velocities()?);
         let (phase, start) = (self.first_phase()?, PhaseStart { time: 0.0, u });
         check_rigid_holds(&self.rows(phase, &start)?, &self.body, &phase.name, &start)?;
-        for force in self.dipole_forces(self.first_phase()?)? {
-            force.check(0.0, u)?;
-        }
+        self.check_devices_at_start(phase, [u, &v])?;
         let mut nodal = NodalForces::zeros(self.body.dofs());
         let mut first = forces.iter().take(1).flatten();
         match first.try_for_each(|force| force.add_forces(0.0, u, &v, &mut nodal)) {
@@ -544,13 +540,14 @@ fn unique<'a>(what: &str, names: impl Iterator<Item = &'a str>) -> Result<(), In
     let mut seen = BTreeSet::new();
     for name in names {
         if !seen.insert(name) {
-            let value = format!("\"{name}\"");
-            return Err(InputError::new(
-                format!("{what} name"),
-                value,
-                "it is taken: name it otherwise",
-            ));
+            return Err(taken(what, name));
         }
     }
     Ok(())
+}
+
+/// The error for a name that two of a kind have.
+fn taken(what: &str, name: &str) -> InputError {
+    let help = "it is taken: name it otherwise";
+    InputError::new(format!("{what} name"), format!("\"{name}\""), help)
 }

@@ -1,11 +1,12 @@
 //! Devices in a scene: their inputs in phases, their forces, their outputs and lines.
 
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
-use super::device::{Device, DeviceGauge, DeviceSignals, DeviceState, DeviceValue};
+use super::device::{Device, DeviceGauge, DeviceSignals, DeviceSite, DeviceState, DeviceValue};
 use super::device_rows::DeviceInput;
 use super::input::{Input, InputSignal, Quantity, Target};
-use super::{Phase, Scene, unique};
+use super::{Phase, Scene, taken};
 use crate::base::input::{InputError, find};
 use crate::elements::force::Forces;
 
@@ -37,11 +38,34 @@ impl Scene {
         find(word, words, &format!("output of device \"{}\"", device.name()), "outputs")
     }
 
+    /// The name of one more device of a kind, where it is given none.
+    pub(crate) fn next_device(&self, kind: &str, word: &str) -> String {
+        let own = self.devices.iter().filter(|device| device.kind() == kind);
+        format!("{word} {}", own.count() + 1)
+    }
+
+    pub(super) fn device_site(&self) -> DeviceSite<'_> {
+        DeviceSite::new(&self.body, &self.magnets)
+    }
+
+    /// Checks the devices at the start, under these displacements and velocities.
+    pub(super) fn check_devices_at_start(
+        &self,
+        phase: &Phase,
+        motion: [&[f64]; 2],
+    ) -> Result<(), InputError> {
+        let site = self.device_site();
+        self.devices.iter().try_for_each(|device| {
+            device.check_start(&site, &self.device_state(&**device, phase, 0.0, motion))
+        })
+    }
+
     /// The functions that read the outputs of each device.
     pub(crate) fn device_gauges(&self) -> Result<Vec<Vec<DeviceGauge>>, InputError> {
+        let site = self.device_site();
         let of_device = |device: &Arc<dyn Device>| {
             let outputs = 0..device.outputs().len();
-            outputs.map(|number| device.gauge(number, &self.body)).collect()
+            outputs.map(|number| device.gauge(number, &site)).collect()
         };
         self.devices.iter().map(of_device).collect()
     }
@@ -121,28 +145,62 @@ impl Scene {
         self.devices.iter().flat_map(lines).collect()
     }
 
-    /// Adds the forces of all devices.
+    /// The needles by which devices are drawn: their middles (m) and directions.
+    #[cfg(feature = "output")]
+    pub(crate) fn device_needles(
+        &self,
+        phase: &Phase,
+        time: f64,
+        [u, v]: [&[f64]; 2],
+    ) -> Vec<[[f64; 3]; 2]> {
+        let needles = |device: &Arc<dyn Device>| {
+            device.needles(&self.device_state(&**device, phase, time, [u, v]))
+        };
+        self.devices.iter().flat_map(needles).collect()
+    }
+
+    /// The presets of devices that are in force in `phase`.
+    pub(crate) fn presets_in(&self, phase: &Phase) -> Vec<Input> {
+        let of_device = |device: &Arc<dyn Device>| {
+            let own = device.inputs().iter().enumerate().filter_map(|(number, row)| {
+                let (quantity, target) = (Quantity::Device(row), Target::one(device.name()));
+                let is_set = phase.inputs_on(quantity, &target).next().is_some();
+                let preset = device.preset(number).filter(|_| !is_set)?;
+                Some(Input::new(quantity, target, preset.0.clone()))
+            });
+            own.collect::<Vec<_>>()
+        };
+        self.devices.iter().flat_map(of_device).collect()
+    }
+
+    /// The forces of all devices.
     ///
     /// # Errors
     /// Names that are taken; inputs that no device has, or that do not fit.
-    pub(super) fn add_devices(&self, phase: &Phase, forces: &mut Forces) -> Result<(), InputError> {
-        unique("device", self.devices.iter().map(|device| device.name()))?;
+    pub(crate) fn device_forces(&self, phase: &Phase) -> Result<Forces, InputError> {
+        let mut names = BTreeSet::new();
+        if let Some(device) = self.devices.iter().find(|device| !names.insert(device.name())) {
+            return Err(taken(device.kind(), device.name()));
+        }
         for input in &phase.inputs {
-            if let Quantity::Device(own) = input.quantity {
-                for name in input.target.names() {
-                    self.device_row(name, own.word)?;
-                }
-                self.check_device_input(input)?;
+            let Quantity::Device(own) = input.quantity else { continue };
+            let names = || self.devices.iter().map(|device| device.name());
+            for name in input.target.names() {
+                let [_, of] = own.keys;
+                find(name, names(), &format!("{of} of phase \"{}\"", phase.name), "devices")?;
+                self.device_row(name, own.word)?;
             }
+            self.check_device_input(input)?;
         }
-        for device in &self.devices {
+        self.presets_in(phase).iter().try_for_each(|preset| self.check_device_input(preset))?;
+        let (site, dimension) = (self.device_site(), self.body.dimension());
+        let force = |device: &Arc<dyn Device>| {
             let inputs = device.inputs();
-            let own = |input| phase.device_signals(device.name(), input).cloned().collect();
-            let (signals, dimension) = (inputs.iter().map(own).collect(), self.body.dimension());
-            let signals = DeviceSignals { inputs, dimension, signals };
-            forces.push(device.force(&self.body, signals)?);
-        }
-        Ok(())
+            let own = |number| phase.device_signals(&**device, number).cloned().collect();
+            let signals = (0..inputs.len()).map(own);
+            device.force(&site, DeviceSignals { inputs, dimension, signals: signals.collect() })
+        };
+        self.devices.iter().map(force).collect()
     }
 }
 
@@ -157,16 +215,18 @@ impl Phase {
         self.with(Input::new(Quantity::Device(input), Target::one(device), value.into().0))
     }
 
-    /// The signals of an input of the device with a `name`.
+    /// The signals of the input of a number of a `device`, or else its preset.
     pub(super) fn device_signals<'a>(
         &'a self,
-        name: &'a str,
-        input: &'a DeviceInput,
+        device: &'a dyn Device,
+        number: usize,
     ) -> impl Iterator<Item = &'a InputSignal> {
-        let own = self.inputs.iter().filter(move |other| {
-            matches!(other.quantity, Quantity::Device(row) if row == input)
-                && other.target.names().iter().any(|own| own == name)
+        let row = device.inputs().get(number);
+        let own = self.inputs.iter().filter(move |input| {
+            matches!(input.quantity, Quantity::Device(own) if row == Some(own))
+                && input.target.names().iter().any(|name| name == device.name())
         });
-        own.map(|input| &input.signal)
+        let preset = device.preset(number).filter(|_| own.clone().next().is_none());
+        own.map(|input| &input.signal).chain(preset.map(|preset| &preset.0))
     }
 }

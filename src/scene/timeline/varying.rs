@@ -2,11 +2,11 @@
 
 use std::sync::Arc;
 
-use super::input::{InputSignal, Quantity};
+use super::input::InputSignal;
 use super::{Phase, Scene};
 use crate::base::formula::{Bounds, Formula};
 use crate::scene::constraint::Motion;
-use crate::scene::forces::{DipolePart, Obstacle, Signal, SignalKind, VectorSignal};
+use crate::scene::forces::{Obstacle, Signal, SignalKind, VectorSignal};
 
 /// A number that changes with time (s).
 #[derive(Clone)]
@@ -97,9 +97,8 @@ impl Scene {
     pub(crate) fn varying_in(&self, phase: &Phase) -> Vec<Varying> {
         let mut list = List::default();
         phase.constraints.iter().for_each(|constraint| list.motion(&constraint.how));
-        // a dipole's own signal takes the place of the scene's below
-        let own = phase.inputs.iter().filter(|i| !matches!(i.quantity, Quantity::Dipole(_)));
-        own.for_each(|input| match &input.signal {
+        let presets = self.presets_in(phase);
+        phase.inputs.iter().chain(&presets).for_each(|input| match &input.signal {
             InputSignal::Number(signal) => list.signal(signal),
             InputSignal::Vector(vector) => list.vector(vector),
         });
@@ -107,9 +106,6 @@ impl Scene {
         acting.into_iter().flat_map(Obstacle::formulas).for_each(|formula| list.formula(formula));
         self.supplies.iter().for_each(|supply| list.signal(&supply.pressure));
         self.fluids.iter().filter_map(|fluid| fluid.flow()).for_each(|v| list.vector(v));
-        for dipole in self.dipoles.iter().map(|dipole| phase.with_dipole(dipole)) {
-            DipolePart::ALL.iter().for_each(|part| list.vector(dipole.part(*part)));
-        }
         list.0
     }
 

@@ -48,7 +48,7 @@ fn add_accelerations(hasher: &mut DefaultHasher, scene: &Scene) -> Result<(), Er
     for (phase, forces) in scene.phases().iter().zip(forces) {
         let start = PhaseStart { time, u: &rest };
         let mut system = scene.system(&matrices, phase, forces, &start, 1.0)?;
-        let state = vec![0.0; system.unknowns()];
+        let state = vec![0.0; system.layout().unknowns()];
         let mut change = state.clone();
         for k in 0..=4 {
             let t = time + 0.25 * f64::from(k) * (phase.end() - time);

@@ -4,10 +4,10 @@ const data = JSON.parse(document.getElementById("data").textContent);
 const { body, phases, axes } = data;
 let places = singles(data.start);
 const nodeCount = places.length / axes;
-/** Position (m) and moment (A m^2) of each dipole. */
-let magnets = data.dipoles;
+/** Places (m) and directions of the needles of devices, one after the other. */
+let needles = singles(data.needles);
 
-/** From the least to the largest coordinate of the drawn nodes, and of dipoles less than two sizes of the body away, axis by axis (m). */
+/** From the least to the largest coordinate of the drawn nodes, and of needles less than two sizes of the body away, axis by axis (m). */
 function extent() {
   const ranges = Array.from({ length: axes }, () => [Infinity, -Infinity]);
   places.forEach((x, k) => {
@@ -17,7 +17,8 @@ function extent() {
   });
   const centre = ranges.map(([least, largest]) => (least + largest) / 2);
   const far = 2 * Math.hypot(...ranges.map(([least, largest]) => largest - least));
-  for (const [at] of magnets) {
+  for (let start = 0; start < needles.length; start += 2 * axes) {
+    const at = Array.from(needles.slice(start, start + axes));
     if (Math.hypot(...at.map((x, axis) => x - centre[axis])) > far) continue;
     at.forEach((x, axis) => {
       ranges[axis] = [Math.min(ranges[axis][0], x), Math.max(ranges[axis][1], x)];
@@ -72,8 +73,6 @@ const sensors = data.sensors.map((sensor, number) => ({ ...sensor, number, times
 const quantities = data.quantities.map((quantity) => ({ ...quantity, scale: 0, peak: 0 }));
 // marks are explained as soon as an actuator can act
 const springs = data.springs.map((spring) => ({ ...spring, forces: [-1, 1] }));
-/** Their numbers. */
-const dipoles = magnets.map((_, number) => number);
 /** Gravity and the magnetic field, with the largest size of each that was seen. */
 const everywhere = data.everywhere.map((name) => ({ name, largest: 0 }));
 /** The number of arrows on magnets: the key asks whether there are any. */
@@ -90,7 +89,7 @@ function take(next) {
   if (next.time < last) forget();
   frame = next;
   places = singles(next.places);
-  magnets = next.dipoles;
+  needles = singles(next.needles);
   for (const vector of everywhere) vector.largest = Math.max(vector.largest, Math.hypot(...everywhereAt(null, vector)));
   if (next.colours) {
     colouring = bytes(next.colours.values);
@@ -136,9 +135,8 @@ function actuationAt(_, spring) {
   return frame.actuations[springs.indexOf(spring)];
 }
 
-/** Where a dipole is (m), and its moment (A m^2). */
-function dipoleAt(_, number) {
-  return magnets[number];
+function needlesAt() {
+  return needles;
 }
 
 /** Gravity (m/s^2) or the magnetic field (T). */

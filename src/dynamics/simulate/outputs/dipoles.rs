@@ -1,15 +1,17 @@
-//! Outputs of dipoles.
+//! Dipoles by their own words: sensors, readings and commands, which are those of a device.
 
 use super::super::output::{Kind, Output, Value};
 use super::super::reading::{Reading, ReadingKind};
+use super::super::simulation::Simulation;
 use super::super::view::View;
 use crate::base::input::InputError;
-use crate::scene::forces::{DipolePart, VectorSignal, point_dipole};
+use crate::dynamics::error::Error;
+use crate::scene::forces::Signals;
 
 const DIPOLE: Kind = Kind {
     key: "dipole",
     about: "the name of the dipole",
-    find: |scene, name, input| scene.dipole_number(name, input),
+    find: |scene, name, input| scene.device_number(name, input),
 };
 
 pub(super) static FORCE: Output = Output {
@@ -19,14 +21,7 @@ pub(super) static FORCE: Output = Output {
     of: DIPOLE,
     is_vector: true,
     is_of_positions: false,
-    read: |view, number| {
-        let mut force = [0.0; 3];
-        let parts = DipolePart::ALL.map(|part| view.dipole_part(number, part));
-        let now = point_dipole(parts, view.time, view.body().dimension());
-        let magnets = view.gauges.magnetized.iter();
-        magnets.for_each(|magnet| magnet.add_force(&now, view.u, &mut force));
-        Ok(Value::Vector(force))
-    },
+    read: |view, number| read(view, number, "force"),
 };
 
 pub(super) static POSITION: Output = Output {
@@ -36,8 +31,12 @@ pub(super) static POSITION: Output = Output {
     of: DIPOLE,
     is_vector: true,
     is_of_positions: false,
-    read: |view, number| Ok(view.dipole_value(number, DipolePart::Position)),
+    read: |view, number| read(view, number, "position"),
 };
+
+fn read(view: &View<'_>, number: usize, word: &str) -> Result<Value, InputError> {
+    Ok(view.device_value(number, view.scene.output_number(number, word)?, true))
+}
 
 impl View<'_> {
     /// Position (m) of a dipole.
@@ -45,7 +44,7 @@ impl View<'_> {
     /// # Errors
     /// A name that no dipole has.
     pub fn dipole_position(&self, dipole: &str) -> Result<Vec<f64>, InputError> {
-        POSITION.vector(self, dipole)
+        self.device(dipole, "position")
     }
 
     /// The moment of a dipole (A m^2).
@@ -53,9 +52,7 @@ impl View<'_> {
     /// # Errors
     /// A name that no dipole has.
     pub fn dipole_moment(&self, dipole: &str) -> Result<Vec<f64>, InputError> {
-        let number = self.scene.dipole_number(dipole, "dipole")?;
-        let moment = self.dipole_part(number, DipolePart::Moment);
-        Ok(moment.components(self.time, self.body().dimension()))
+        self.device(dipole, "moment")
     }
 
     /// The force (N) of a dipole on all magnets together, one component per dimension; that on the dipole is minus this.
@@ -63,24 +60,7 @@ impl View<'_> {
     /// # Errors
     /// A name that no dipole has.
     pub fn dipole_force(&self, dipole: &str) -> Result<Vec<f64>, InputError> {
-        FORCE.vector(self, dipole)
-    }
-
-    /// The position (m) and the moment (A m^2) of each dipole.
-    #[cfg(feature = "play")]
-    pub(crate) fn dipoles(&self) -> Vec<[Vec<f64>; 2]> {
-        self.scene.dipoles_at(self.phase, self.time)
-    }
-
-    fn dipole_part(&self, number: usize, part: DipolePart) -> &VectorSignal {
-        self.phase.part_of(&self.scene.dipoles()[number], part)
-    }
-
-    fn dipole_value(&self, number: usize, part: DipolePart) -> Value {
-        let mut vector = [0.0; 3];
-        let components = &mut vector[..self.body().dimension()];
-        self.dipole_part(number, part).at(self.time, components);
-        Value::Vector(vector)
+        self.device(dipole, "force")
     }
 }
 
@@ -93,5 +73,27 @@ impl Reading {
     /// Position (m) of a [dipole](crate::Dipole).
     pub fn dipole_position(dipole: impl Into<String>) -> Self {
         ReadingKind::Of(&POSITION, dipole.into()).into()
+    }
+}
+
+impl Simulation {
+    /// Sets the position (m) of a dipole, in place of the present one: where it is at once, if it is a vector.
+    ///
+    /// # Errors
+    /// A name that no dipole has, a wrong number of components, numbers that are not finite.
+    pub fn dipole_position(
+        &mut self,
+        dipole: &str,
+        position: impl Into<Signals>,
+    ) -> Result<(), Error> {
+        self.device_input(dipole, "position", position.into())
+    }
+
+    /// Sets the moment (A m^2) of a dipole, in place of the present one.
+    ///
+    /// # Errors
+    /// As [`dipole_position`](Self::dipole_position).
+    pub fn dipole_moment(&mut self, dipole: &str, moment: impl Into<Signals>) -> Result<(), Error> {
+        self.device_input(dipole, "moment", moment.into())
     }
 }

@@ -246,7 +246,7 @@ fn a_free_top_keeps_its_invariants() {
         let (system, y) = (&central.system().system, central.y());
         let (n, positions) = (system.dofs(), scene.body().mesh().positions());
         let mut momenta = vec![0.0; n];
-        system.inertia().add_product(3, 1.0, &y[n..2 * n], &mut momenta);
+        system.matrices().add_momentum(1.0, &y[n..2 * n], &mut momenta);
         let x: Vec<f64> = positions.iter().zip(y).map(|(x, u)| x + u).collect();
         std::array::from_fn(|axis| {
             let [i, j] = [(axis + 1) % 3, (axis + 2) % 3];

@@ -2,7 +2,7 @@
 
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 
-use super::gradient::Gradient;
+use super::{gradient::Gradient, slopes::SlopesCheck};
 use crate::base::{input::InputError, vector::size_or_one};
 use crate::integrators::{
     common::{Callback, Cause, Error, IntegrationError, Tolerances},
@@ -29,6 +29,7 @@ pub(in crate::integrators::sundials) struct Equations<S, F> {
     /// Time and state of the Jacobian.
     jacobian_time: Option<f64>,
     jacobian_state: Vec<f64>,
+    check: SlopesCheck,
     /// The derivatives of h with respect to the unknowns and to the parameters.
     pub(super) slopes_y: Vec<f64>,
     pub(super) slopes_p: Vec<f64>,
@@ -61,6 +62,7 @@ impl<S, F: Functional> Equations<S, F> {
             backward,
             jacobian_time: None,
             jacobian_state: vec![0.0; n],
+            check: SlopesCheck::new((n, tolerances), p.len()),
             slopes_y: vec![0.0; n],
             slopes_p: vec![0.0; p.len()],
             trial: p.clone(),
@@ -118,9 +120,15 @@ impl<S, F: Functional> Equations<S, F> {
     pub(super) fn evaluate_slopes(&mut self, t: f64, y: &[f64]) -> Result<(), Failure> {
         self.slopes_y.fill(0.0);
         self.slopes_p.fill(0.0);
-        let slopes = Slopes { y: &mut self.slopes_y, p: &mut self.slopes_p };
-        self.functional.running(t, y, (self.access.get)(&self.system), Some(slopes))?;
-        Ok(())
+        let Self { functional, check, slopes_y, slopes_p, .. } = self;
+        let p = (self.access.get)(&self.system);
+        functional.running(t, y, p, Some(Slopes { y: slopes_y, p: slopes_p }))?;
+        if !check.is_due() {
+            return Ok(());
+        }
+        check.check("running", [y, p], [slopes_y, slopes_p], |y, p| {
+            functional.running(t, y, p, None)
+        })
     }
 
     /// g(T, y, p), and its derivatives with respect to p and y at the end of a run of `integrator`.
@@ -131,7 +139,7 @@ impl<S, F: Functional> Equations<S, F> {
         y: &[f64],
     ) -> Result<Gradient, Error> {
         let p = (self.access.get)(&self.system);
-        let end = Gradient::at_end(&mut self.functional, t, y, p);
+        let end = Gradient::at_end(&mut self.functional, t, [y, p], &self.tolerances);
         Ok(end.map_err(|failure| refused(integrator, t, failure))?.check()?)
     }
 

@@ -1,8 +1,9 @@
 //! The result of an adjoint problem.
 
+use super::slopes::SlopesCheck;
 use crate::base::input::InputError;
 use crate::integrators::{
-    common::check_finite,
+    common::{Tolerances, check_finite},
     ode::{Failure, Functional, Slopes},
 };
 
@@ -25,12 +26,16 @@ impl Gradient {
     pub(crate) fn at_end(
         functional: &mut impl Functional,
         t: f64,
-        y: &[f64],
-        p: &[f64],
+        [y, p]: [&[f64]; 2],
+        tolerances: &Tolerances,
     ) -> Result<Self, Failure> {
         let (mut initial_state, mut parameters) = (vec![0.0; y.len()], vec![0.0; p.len()]);
         let slopes = Slopes { y: &mut initial_state, p: &mut parameters };
         let value = functional.terminal(t, y, p, Some(slopes))?;
+        let mut check = SlopesCheck::new((y.len(), tolerances), p.len());
+        check.check("terminal", [y, p], [&initial_state, &parameters], |y, p| {
+            functional.terminal(t, y, p, None)
+        })?;
         Ok(Self { value, parameters, initial_state })
     }
 

@@ -7,6 +7,7 @@ mod gradient;
 mod ode;
 mod options;
 mod setup;
+mod slopes;
 
 pub use dae::DaeAdjoint;
 pub use gradient::Gradient;

@@ -114,6 +114,12 @@ impl Sensitivities {
         &self.parameters
     }
 
+    /// How `count` parameters change with each of these at first: that one by itself.
+    pub(crate) fn directions(&self, count: usize) -> Vec<f64> {
+        let column = |&place: &usize| (0..count).map(move |k| if k == place { 1.0 } else { 0.0 });
+        self.parameters.iter().flat_map(column).collect()
+    }
+
     /// Rejects methods that IDAS does not have.
     pub(in crate::integrators::sundials) fn check_for_dae(&self) -> Result<(), InputError> {
         if self.method == SensitivityMethod::StaggeredOneByOne {

@@ -15,6 +15,8 @@ pub(in crate::integrators::sundials) struct Access<S> {
 /// Which parameters the sensitivities are to, and scratch space for differences.
 pub(in crate::integrators::sundials) struct SensitivityRhs {
     parameters: Vec<usize>,
+    /// How the parameters of the system change with each of these: one column after the other.
+    directions: Vec<f64>,
     source: SensitivitySource,
     scales: Vec<f64>,
     tolerances: Tolerances,
@@ -44,6 +46,7 @@ impl SensitivityRhs {
         let p = (access.get)(system).to_vec();
         let scales = options.check(&p)?;
         let mut rhs = Self {
+            directions: options.directions(p.len()),
             parameters: options.parameters.clone(),
             source: options.source,
             scales,
@@ -74,6 +77,17 @@ impl SensitivityRhs {
         let help = "set_parameters has to change what parameters gives, or the equations of the \
                     sensitivities have to be supplied";
         Err(InputError::new("parameters of the system", format!("{:?}", self.p), help))
+    }
+
+    /// Sets how the parameters of the system change with those that the sensitivities are to, where a jump has
+    /// set some of them.
+    pub(super) fn set_directions(&mut self, directions: &[f64]) -> Result<(), InputError> {
+        if self.is_supplied() && self.directions != directions {
+            let help = "a jump has made parameters depend on others: take SensitivitySource::CentralDifferences";
+            return Err(InputError::new("source of the sensitivities", "Supplied", help));
+        }
+        self.directions.copy_from_slice(directions);
+        Ok(())
     }
 
     pub(super) fn scales(&self) -> &[f64] {
@@ -125,8 +139,8 @@ impl SensitivityRhs {
         let central = self.source == SensitivitySource::CentralDifferences;
         let increment = self.increment(index, central, line.y);
         let mut at = |rhs: &mut Self, step: f64, out: &mut [f64]| {
-            rhs.trial.copy_from_slice(&rhs.p);
-            rhs.trial[rhs.parameters[index]] += step;
+            let direction = &rhs.directions[index * rhs.p.len()..];
+            move_along(&mut rhs.trial, (&rhs.p, direction), step);
             (access.set)(system, &rhs.trial);
             move_along(&mut rhs.y, line.y, step);
             move_along(&mut rhs.yp, line.yp, step);

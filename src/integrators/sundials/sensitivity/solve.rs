@@ -29,6 +29,7 @@ pub trait CarriesSensitivities: CarriesIntegrals {
         out: MatMut<'_, f64>,
     ) -> Result<(), Error>;
     fn set_sensitivities(&mut self, s: MatRef<'_, f64>) -> Result<(), Error>;
+    fn set_parameter_directions(&mut self, directions: &[f64]) -> Result<(), Error>;
 }
 
 impl<K, S> CarriesSensitivities for Session<K, S> {
@@ -70,6 +71,13 @@ impl<K, S> CarriesSensitivities for Session<K, S> {
 
     fn set_sensitivities(&mut self, s: MatRef<'_, f64>) -> Result<(), Error> {
         self.start_sensitivities(s, None)
+    }
+
+    fn set_parameter_directions(&mut self, directions: &[f64]) -> Result<(), Error> {
+        match &mut self.host.get_mut().sensitivity {
+            Some(rhs) => Ok(rhs.set_directions(directions)?),
+            None => Ok(()),
+        }
     }
 }
 

@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 
 use super::colours::{Fields, Quantity};
 use super::geometry::{Geometry, in_view};
-use super::{acting, contacts, dipoles, lines, pack};
+use super::{acting, contacts, lines, pack};
 use crate::base::input::InputError;
 use crate::dynamics::error::Error;
 use crate::dynamics::system::Energy;
@@ -52,7 +52,7 @@ pub(super) fn gather(trajectory: &Trajectory, name: &str) -> Result<Value, Error
         "energies": energies(&frames),
         "sensors": sensors(trajectory, &frames),
         "contacts": contacts::resultants(trajectory, &frames)?,
-        "dipoles": dipoles::tracks(trajectory, &frames)?,
+        "needles": lines::needles(trajectory, &frames)?,
         "everywhere": acting::everywhere(trajectory, &frames)?,
         "remanence": acting::arrows(trajectory, &frames, &remanence),
         "lines": lines::tracks(trajectory, &frames)?,
@@ -75,7 +75,13 @@ fn bytes_per_frame(trajectory: &Trajectory, geometry: &Geometry, remanence: &Rem
     let sensors = trajectory.sensors().len();
     // a place and a force, a moment or an arrow of each
     let scene = trajectory.scene();
-    let contacts = 2 * axes * (scene.obstacles().len() + scene.dipoles().len() + remanence.count());
+    let start = trajectory.samples().first();
+    let needles = start.and_then(|sample| {
+        let phase = trajectory.phase_of(sample).ok()?;
+        Some(scene.device_needles(phase, sample.time, [&sample.u, &sample.v]).len())
+    });
+    let needles = needles.unwrap_or(0);
+    let contacts = 2 * axes * (scene.obstacles().len() + needles + remanence.count());
     let singles = size_of::<f32>() * (sensors + contacts);
     let quantities = Quantity::of(trajectory.scene()).len();
     2 * axes * geometry.count() + quantities * geometry.cells.len() + singles

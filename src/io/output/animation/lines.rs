@@ -1,4 +1,4 @@
-//! Lines that are drawn beside the bodies: where surfaces of liquids meet the walls, and devices.
+//! What is drawn beside the bodies: lines where surfaces of liquids meet the walls, lines and needles of devices.
 
 use serde_json::{Value, json};
 
@@ -34,4 +34,25 @@ pub(super) fn at(
     let lines = scene.waterlines(phase, u, amounts).into_iter();
     let ends = lines.chain(scene.device_lines(phase, t, [u, v])).flatten();
     pack::singles(ends.flat_map(|end| in_view(&end[..d])))
+}
+
+/// Places (m) and directions of all needles, one after the other, sample by sample.
+pub(super) fn needles(trajectory: &Trajectory, frames: &[&Sample]) -> Result<Value, Error> {
+    let mut all = Vec::new();
+    for sample in frames {
+        let (phase, motion) = (trajectory.phase_of(sample)?, [&sample.u[..], &sample.v]);
+        all.extend(needles_at(trajectory.scene(), phase, sample.time, motion));
+    }
+    Ok(pack::singles(all))
+}
+
+/// Places (m) and directions of all needles, one after the other, as they are drawn at time `t` (s).
+pub(super) fn needles_at(
+    scene: &Scene,
+    phase: &Phase,
+    t: f64,
+    motion: [&[f64]; 2],
+) -> impl Iterator<Item = f64> {
+    let (d, needles) = (scene.body().dimension(), scene.device_needles(phase, t, motion));
+    needles.into_iter().flatten().flat_map(move |x| in_view(&x[..d]))
 }

@@ -4,7 +4,7 @@ use serde_json::{Value, json};
 
 use super::colours::{Fields, Quantity};
 use super::geometry::Geometry;
-use super::{STYLE, acting, data, dipoles, filled, lines, pack};
+use super::{STYLE, acting, data, filled, lines, pack};
 use crate::dynamics::error::Error;
 use crate::dynamics::simulate::View;
 use crate::dynamics::system::Energy;
@@ -21,7 +21,7 @@ const DRAWING: &str = concat!(
     include_str!("page/colour.js"),
     include_str!("page/plane.js"),
     include_str!("page/space.js"),
-    include_str!("page/dipoles.js"),
+    include_str!("page/needles.js"),
     include_str!("page/arrow.js"),
     include_str!("page/acting.js"),
     include_str!("page/lines.js"),
@@ -55,6 +55,7 @@ impl Picture {
         let springs = springs
             .map(|(spring, ends)| json!({ "name": spring.name(), "ends": geometry.ends(ends), "isCable": spring.is_cable() }));
         let remanence = Remanence::of(scene)?;
+        let start = [scene.initial_displacements(), &scene.initial_velocities()?];
         let fixed = json!({
             "axes": axes(mesh),
             "phases": data::phases(scene, &geometry)?,
@@ -62,7 +63,7 @@ impl Picture {
             "quantities": told.collect::<Vec<_>>(),
             "energies": data::ENERGIES,
             "absent": absent(scene),
-            "dipoles": dipoles::at(scene, scene.first_phase()?, 0.0),
+            "needles": pack::singles(lines::needles_at(scene, scene.first_phase()?, 0.0, start)),
             "everywhere": acting::names(scene),
             "arrows": remanence.count(),
             "obstacles": data::obstacles(scene),
@@ -112,9 +113,11 @@ impl Picture {
         })
     }
 
-    /// The positions (m) and the moments (A m^2) of all dipoles.
-    pub(crate) fn dipoles(&self, view: &View) -> Value {
-        json!(dipoles::drawn(view.dipoles()))
+    /// Places (m) and directions of the needles of devices, one after the other.
+    pub(crate) fn needles(&self, view: &View) -> Value {
+        view.with_states(|scene, phase, motion, _| {
+            pack::singles(lines::needles_at(scene, phase, view.time(), motion))
+        })
     }
 
     /// Gravity (m/s^2) and the magnetic field (T).

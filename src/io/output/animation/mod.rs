@@ -22,7 +22,6 @@ mod acting;
 mod colours;
 mod contacts;
 mod data;
-mod dipoles;
 mod geometry;
 mod lines;
 #[cfg(feature = "play")]
@@ -76,7 +75,7 @@ const OF_EACH: &str = concat!(
     include_str!("page/space.js"),
     include_str!("page/stage.js"),
     include_str!("page/contacts.js"),
-    include_str!("page/dipoles.js"),
+    include_str!("page/needles.js"),
     include_str!("page/acting.js"),
     include_str!("page/lines.js"),
 );
@@ -86,7 +85,7 @@ const DATA: [&str; 2] = ["<script type=\"application/json\" id=\"data\">", "</sc
 /// Writes the motion as one HTML file that a web browser plays, without a network.
 ///
 /// It shows the body coloured by stress, strain energy density, stretch, contact pressure or what sticks, obstacles, springs (coloured while an
-/// actuator pulls or pushes), point masses, held and moved nodes, dipoles as bars along their moments, gravity, the magnetic field and remanences as arrows, forces of obstacles
+/// actuator pulls or pushes), point masses, held and moved nodes, devices, gravity, the magnetic field and remanences as arrows, forces of obstacles
 /// likewise; below it the
 /// energies and what sensors have read over time, and how the motion was computed, with the warnings of the
 /// report. The shown frame can be saved as PNG or SVG. `title` is its heading. Obstacles that are given by a

@@ -28,21 +28,21 @@ pub(in crate::io::output) struct View {
     tops: Vec<f64>,
     /// The obstacles of each panel.
     pub(super) obstacles: Vec<Vec<Outline>>,
-    /// Places and moments of the dipoles of each panel.
-    pub(super) dipoles: Vec<Vec<[Point; 2]>>,
+    /// Places and directions of the needles of devices in each panel.
+    pub(super) needles: Vec<Vec<[Point; 2]>>,
     /// Surfaces of liquids and devices in each panel.
     pub(super) lines: Vec<Vec<[Point; 2]>>,
 }
 
 impl View {
-    /// All that `samples` show of the body, and the obstacles and dipoles that are near.
+    /// All that `samples` show of the body, and the obstacles and needles that are near.
     pub(in crate::io::output) fn of(trajectory: &Trajectory, samples: &[&Sample]) -> Self {
         let mut view = Self {
             low: [f64::INFINITY; 2],
             high: [f64::NEG_INFINITY; 2],
             tops: Vec::new(),
             obstacles: samples.iter().map(|sample| outlines(trajectory, sample)).collect(),
-            dipoles: samples.iter().map(|sample| dipoles(trajectory, sample)).collect(),
+            needles: samples.iter().map(|sample| needles(trajectory, sample)).collect(),
             lines: samples.iter().map(|sample| lines(trajectory, sample)).collect(),
         };
         for sample in samples {
@@ -63,10 +63,10 @@ impl View {
         };
         let is_near = |x: &Point| (x[0] - centre[0]).hypot(x[1] - centre[1]) < 2.0 * size;
         let places =
-            |dipoles: &Vec<[Point; 2]>| dipoles.iter().map(|[x, _]| *x).filter(is_near).collect();
+            |needles: &Vec<[Point; 2]>| needles.iter().map(|[x, _]| *x).filter(is_near).collect();
         let mut near: Vec<Vec<Point>> = view.obstacles.iter().map(near).collect();
-        for (near, dipoles) in near.iter_mut().zip(&view.dipoles) {
-            let places: Vec<Point> = places(dipoles);
+        for (near, needles) in near.iter_mut().zip(&view.needles) {
+            let places: Vec<Point> = places(needles);
             near.extend(places);
         }
         for (number, points) in near.into_iter().enumerate() {
@@ -120,26 +120,26 @@ impl View {
     }
 }
 
-/// Where dipoles are at a sample (m), and their moments.
-fn dipoles(trajectory: &Trajectory, sample: &Sample) -> Vec<[Point; 2]> {
-    let all = trajectory.phase_of(sample).map(|phase| {
-        let dipoles = trajectory.scene().dipoles_at(phase, sample.time).into_iter();
-        dipoles.map(|vectors| vectors.map(|vector| drawn(&vector))).collect()
-    });
-    all.unwrap_or_default()
-}
-
 /// Lines along which surfaces of liquids meet walls at a sample (m), and those of devices.
 fn lines(trajectory: &Trajectory, sample: &Sample) -> Vec<[Point; 2]> {
+    let Ok(phase) = trajectory.phase_of(sample) else { return Vec::new() };
+    let (scene, Sample { time, u, v, amounts, .. }) = (trajectory.scene(), sample);
+    let mut lines = scene.waterlines(phase, u, amounts);
+    lines.extend(scene.device_lines(phase, *time, [u, v]));
+    pairs(trajectory, lines)
+}
+
+/// Places of the needles of devices at a sample (m), and their directions.
+fn needles(trajectory: &Trajectory, sample: &Sample) -> Vec<[Point; 2]> {
+    let Ok(phase) = trajectory.phase_of(sample) else { return Vec::new() };
+    let motion = [&sample.u[..], &sample.v];
+    pairs(trajectory, trajectory.scene().device_needles(phase, sample.time, motion))
+}
+
+/// Pairs of points or vectors of space as they are drawn.
+fn pairs(trajectory: &Trajectory, pairs: Vec<[[f64; 3]; 2]>) -> Vec<[Point; 2]> {
     let d = trajectory.body().dimension();
-    let all = trajectory.phase_of(sample).map(|phase| {
-        let Sample { time, u, v, amounts, .. } = sample;
-        let scene = trajectory.scene();
-        let devices = scene.device_lines(phase, *time, [u, v]);
-        let lines = scene.waterlines(phase, u, amounts).into_iter().chain(devices);
-        lines.map(|line| line.map(|end| drawn(&end[..d]))).collect()
-    });
-    all.unwrap_or_default()
+    pairs.into_iter().map(|pair| pair.map(|x| drawn(&x[..d]))).collect()
 }
 
 /// The points of space (m) that springs are joined to, dimension coordinates each.

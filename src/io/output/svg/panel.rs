@@ -25,7 +25,7 @@ const PAINTS: [Paint; 6] = [
 ];
 /// Thickness of the hatched band along the surface of a half-plane (px).
 const BAND: f64 = 14.0;
-/// Half the length of the bar that is a dipole (px).
+/// Half the length of a needle (px).
 const POLE: f64 = 8.0;
 
 /// The colours of a body.
@@ -95,8 +95,8 @@ impl Panel<'_> {
         for (&node, mark) in self.marks.iter().filter(|(node, _)| !hidden.contains(*node)) {
             panel = panel.add(mark.draw(points[node][0], points[node][1]));
         }
-        for dipole in &self.view.dipoles[self.number] {
-            panel = panel.add(self.dipole(*dipole));
+        for needle in &self.view.needles[self.number] {
+            panel = panel.add(self.needle(*needle));
         }
         if let Some(arrows) = self.acting.on_body(self.layout, self.number) {
             panel = panel.add(arrows);
@@ -152,18 +152,18 @@ impl Panel<'_> {
         points.iter().map(|&x| self.layout.place(self.number, x)).collect()
     }
 
-    /// A dipole within the view: a bar along its moment, with a north pole and a south pole, or a dot if it is off.
-    fn dipole(&self, [place, moment]: [Point; 2]) -> Group {
-        let mut group = Group::new().set("class", "dipole");
+    /// A needle of a device within the view: a bar along it, with a north pole and a south pole, or a dot without direction.
+    fn needle(&self, [place, along]: [Point; 2]) -> Group {
+        let mut group = Group::new().set("class", "needle");
         if self.view.clip(&[place, place], self.layout.top(self.number)).is_empty() {
             return group;
         }
         let [x, y] = self.layout.place(self.number, place);
-        let size = moment[0].hypot(moment[1]);
+        let size = along[0].hypot(along[1]);
         let poles = [(POLE, "#d55e00"), (-POLE, "#0072b2")];
         for (end, colour) in poles.into_iter().filter(|_| size > 0.0) {
             let mut data = Data::default();
-            let [dx, dy] = moment.map(|part| end * part / size);
+            let [dx, dy] = along.map(|part| end * part / size);
             data.polyline(&[[x, y], [x + dx, y - dy]], false);
             let path = Path::new().set("d", data.0).set("fill", "none");
             group = group.add(path.set("stroke", colour).set("stroke-width", 5));

@@ -1,12 +1,14 @@
 //! The force of a chamber under a given pressure, and what bursts.
 //!
-//! A chamber that bursts is checked after each step, as springs that turn are (`Force::check_step`,
+//! A chamber that bursts is checked after each step, as springs that turn are (`StepCheck::check_step`,
 //! `Flow::check`): the run ends with what it has computed, and the step is not searched for the moment.
 
 use super::{ChamberForce, Geometry, TURNED};
 use crate::base::sparse::BlockMatrix;
 use crate::base::vector::distinct;
-use crate::elements::force::{Force, GeneralizedForce, NodalForces, Tangents};
+use crate::elements::force::{
+    AlongShapes, Capabilities, Force, GeneralizedForce, NodalForces, StepCheck, Tangents,
+};
 use crate::integrators::ode::Failure;
 use crate::scene::forces::signal::{self, finite_at};
 
@@ -58,24 +60,6 @@ impl Force for ChamberForce {
         Ok(())
     }
 
-    /// Pressure in a volume below 0 is refused: it would pull the walls further through each other instead of
-    /// pushing them apart.
-    fn check_step(&self, t: f64, _before: &[f64], after: &[f64]) -> Result<(), Failure> {
-        let pressure = signal::sum(&self.pressure, t);
-        if pressure == 0.0 {
-            return Ok(());
-        }
-        self.check_burst(t, pressure)?;
-        let volume = self.volume(after);
-        if !self.has_room || volume >= 0.0 {
-            return Ok(());
-        }
-        Err(Failure::Recoverable(format!(
-            "chamber \"{}\" encloses {volume:.1e} m^3 at t = {t} s under {pressure} Pa: {TURNED}",
-            self.name
-        )))
-    }
-
     fn add_tangents(
         &self,
         t: f64,
@@ -100,6 +84,32 @@ impl Force for ChamberForce {
         Some(distinct(self.couplings().into_iter().flatten()))
     }
 
+    fn capabilities(&self) -> Capabilities<'_> {
+        Capabilities { step_check: Some(self), along_shapes: Some(self), ..Capabilities::default() }
+    }
+}
+
+impl StepCheck for ChamberForce {
+    /// Pressure in a volume below 0 is refused: it would pull the walls further through each other instead of
+    /// pushing them apart.
+    fn check_step(&self, t: f64, _before: &[f64], after: &[f64]) -> Result<(), Failure> {
+        let pressure = signal::sum(&self.pressure, t);
+        if pressure == 0.0 {
+            return Ok(());
+        }
+        self.check_burst(t, pressure)?;
+        let volume = self.volume(after);
+        if !self.has_room || volume >= 0.0 {
+            return Ok(());
+        }
+        Err(Failure::Recoverable(format!(
+            "chamber \"{}\" encloses {volume:.1e} m^3 at t = {t} s under {pressure} Pa: {TURNED}",
+            self.name
+        )))
+    }
+}
+
+impl AlongShapes for ChamberForce {
     fn is_exact_along(&self, shapes: usize) -> bool {
         self.is_larger_than(shapes)
     }

@@ -4,7 +4,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Which points touch, and which of their normal forces press: by the sign of the present values, or as held
 /// from one contact event to the next. In the latter case also which of these stick.
-pub(super) struct Switches {
+pub(super) struct SwitchStates {
     are_held: AtomicBool,
     touch: Vec<AtomicBool>,
     /// Empty where nothing depends on it: with adhesion and without Coulomb's friction.
@@ -13,7 +13,7 @@ pub(super) struct Switches {
     stick: Vec<AtomicBool>,
 }
 
-impl Switches {
+impl SwitchStates {
     pub(super) fn new(points: usize, pressing: bool, sticking: bool) -> Self {
         let off = |are_there| {
             let count = if are_there { points } else { 0 };

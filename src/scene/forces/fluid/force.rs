@@ -14,7 +14,7 @@
 use super::traction::{Depth, Drag, Matrix};
 use crate::base::sparse::BlockMatrix;
 use crate::base::vector::{cross, dot};
-use crate::elements::force::{Force, NodalForces, Reservoir, Tangents};
+use crate::elements::force::{Capabilities, Force, NodalForces, Reservoir, Tangents};
 use crate::integrators::ode::Failure;
 use crate::scene::forces::followed::{Followed, FollowedFaces, add_block, cross_with};
 use crate::scene::forces::signal::{VectorSignal, finite_at};
@@ -227,8 +227,8 @@ impl Force for FluidForce {
         }
     }
 
-    fn carried(&self) -> &[([usize; 2], f64)] {
-        &self.carried
+    fn capabilities(&self) -> Capabilities<'_> {
+        Capabilities { carried: &self.carried, ..Capabilities::default() }
     }
 }
 

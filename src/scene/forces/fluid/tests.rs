@@ -132,7 +132,7 @@ fn added_mass_is_that_of_the_area() {
             let body = body.to_builder().inertia(inertia).build().unwrap();
             let force = Fluid::new(WATER).added_mass(3.0).force(&body, None).unwrap();
             let mut added = NodeMatrix::zeros(body.inertia().pattern());
-            force.carried().iter().for_each(|&([a, b], mass)| added.add(a, b, mass));
+            force.capabilities().carried.iter().for_each(|&([a, b], mass)| added.add(a, b, mass));
             let sum: f64 = added.values().iter().sum();
             assert!((sum / (3.0 * area) - 1.0).abs() < 1e-14, "{sum} {area}");
             assert_eq!(added.is_diagonal(), inertia == Inertia::Lumped);

@@ -6,7 +6,7 @@ use super::GasInChamber;
 use super::orifice::{End, OrificeFlow};
 use crate::base::sparse::BlockMatrix;
 use crate::base::vector::distinct;
-use crate::elements::force::{Flow, FlowDerivatives, Force, NodalForces, Tangents};
+use crate::elements::force::{Capabilities, Flow, FlowDerivatives, Force, NodalForces, Tangents};
 use crate::integrators::ode::Failure;
 use crate::scene::forces::chamber_fluid::{ChamberFluid, Fill};
 use crate::scene::forces::lag::Lagging;
@@ -259,7 +259,7 @@ impl Force for AmountFlow {
         Some(distinct(nodes))
     }
 
-    fn flow(&self) -> Option<&dyn Flow> {
-        Some(self)
+    fn capabilities(&self) -> Capabilities<'_> {
+        Capabilities { flow: Some(self), ..Capabilities::default() }
     }
 }

@@ -26,7 +26,7 @@
 
 use super::path::Path;
 use crate::base::sparse::BlockMatrix;
-use crate::elements::force::{Force, NodalForces, Reservoir, Tangents};
+use crate::elements::force::{Capabilities, Force, NodalForces, Reservoir, StepCheck, Tangents};
 use crate::integrators::ode::Failure;
 use crate::scene::forces::friction::Coulomb;
 use crate::scene::forces::signal::{self, Signal, finite_at};
@@ -132,10 +132,6 @@ impl Force for CableForce {
         Ok(())
     }
 
-    fn check_step(&self, t: f64, before: &[f64], after: &[f64]) -> Result<(), Failure> {
-        self.cable.path.check_step(t, before, after)
-    }
-
     fn add_tangents(
         &self,
         t: f64,
@@ -171,5 +167,15 @@ impl Force for CableForce {
 
     fn nodes(&self) -> Option<Vec<usize>> {
         Some(self.cable.path.nodes())
+    }
+
+    fn capabilities(&self) -> Capabilities<'_> {
+        Capabilities { step_check: Some(self), ..Capabilities::default() }
+    }
+}
+
+impl StepCheck for CableForce {
+    fn check_step(&self, t: f64, before: &[f64], after: &[f64]) -> Result<(), Failure> {
+        self.cable.path.check_step(t, before, after)
     }
 }

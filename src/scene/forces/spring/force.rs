@@ -2,7 +2,7 @@
 
 use super::path::Path;
 use crate::base::sparse::BlockMatrix;
-use crate::elements::force::{Force, NodalForces, Reservoir, Tangents};
+use crate::elements::force::{Capabilities, Force, NodalForces, Reservoir, StepCheck, Tangents};
 use crate::integrators::ode::Failure;
 use crate::scene::forces::signal::{self, Signal, finite_at};
 
@@ -44,10 +44,6 @@ impl Force for Elastic {
         Ok(())
     }
 
-    fn check_step(&self, t: f64, before: &[f64], after: &[f64]) -> Result<(), Failure> {
-        self.path.check_step(t, before, after)
-    }
-
     fn add_tangents(
         &self,
         _t: f64,
@@ -75,6 +71,16 @@ impl Force for Elastic {
 
     fn nodes(&self) -> Option<Vec<usize>> {
         Some(self.path.nodes())
+    }
+
+    fn capabilities(&self) -> Capabilities<'_> {
+        Capabilities { step_check: Some(self), ..Capabilities::default() }
+    }
+}
+
+impl StepCheck for Elastic {
+    fn check_step(&self, t: f64, before: &[f64], after: &[f64]) -> Result<(), Failure> {
+        self.path.check_step(t, before, after)
     }
 }
 

@@ -1,11 +1,12 @@
 //! Forces within the material: magnets, dipoles beside them, and growth.
 
 use super::{bar, check, nodal_forces, noise};
-use crate::elements::body::{Body, BodyBuilder, Dilatation};
+use crate::elements::body::{Body, BodyBuilder, Dilatation, PointDipole};
 use crate::elements::force::Force;
 use crate::elements::material::{Law, Plane};
 use crate::elements::mesh::{Cells, Mesh, SolidCells};
-use crate::scene::forces::{Dipole, Growth, Magnet, MagneticField, Signal};
+use crate::scene::devices::Dipole;
+use crate::scene::forces::{Growth, Magnet, MagneticField, Signal};
 use crate::scene::timeline::{Phase, Scene};
 use crate::studies::samples::SQUARE_MATERIAL;
 
@@ -190,19 +191,25 @@ fn dipoles() {
         let body = Body::new(mesh, SQUARE_MATERIAL);
         let body = if is_solid && d == 3 { body } else { body.thickness(0.01) }.build().unwrap();
         let (p, m) = ([0.7, 0.5, -0.4], [2e6, 9e6, -6e6]);
-        let force = |m: [f64; 3], p: [f64; 3]| {
-            let scene = Scene::new(body.clone()).magnet(Magnet::new(b.clone()));
-            let scene = scene.dipole(Dipole::new(m[..d].to_vec(), p[..d].to_vec()));
-            scene.dipole_forces(&Phase::until(1.0)).unwrap().remove(0)
-        };
+        let magnet = Magnet::new(b.clone());
+        let scene = Scene::new(body.clone()).magnet(magnet.clone());
+        let scene = scene.dipole(Dipole::new(m[..d].to_vec(), p[..d].to_vec()));
+        let force = scene.device_forces(&Phase::until(1.0)).unwrap().remove(0);
+        let mut magnets = Vec::new();
+        magnet.add_points_to(&body, 1, &mut magnets).unwrap();
         let cells: Vec<&[usize]> = body.mesh().cells().collect();
         let (u, v) = (noise(body.dofs(), 0.02, 1.0), noise(body.dofs(), 1.0, 2.0));
         // differences over 1e-5 m, where the field changes over 0.5 m
-        assert!(check(&force(m, p), (d, &cells), 0.3, &u, &v, 3e-9) > 1.0);
-        let applied = nodal_forces(&force(m, p), 0.3, &u, &v).applied;
+        assert!(check(&*force, (d, &cells), 0.3, &u, &v, 3e-9) > 1.0);
+        let applied = nodal_forces(&*force, 0.3, &u, &v).applied;
         let largest = applied.iter().fold(0.0_f64, |largest, f| largest.max(f.abs()));
         let h = 1e-5;
-        let energy = |m, p, u: &[f64]| force(m, p).energy(0.3, u);
+        let energy = |m: [f64; 3], p: [f64; 3], u: &[f64]| -> f64 {
+            let within = |i: usize, x: f64| if i < d { x } else { 0.0 };
+            let [moment, position] = [m, p].map(|x| std::array::from_fn(|i| within(i, x[i])));
+            let dipole = PointDipole { moment, position };
+            magnets.iter().map(|magnet| magnet.energy(&dipole, u)).sum()
+        };
         for (j, f) in applied.iter().enumerate() {
             let by = |h: f64| {
                 let mut u = u.clone();

@@ -10,7 +10,9 @@ use super::pair::Pair;
 use super::surfaces::Surfaces;
 use crate::base::sparse::{BlockMatrix, NodePattern};
 use crate::base::vector::norm;
-use crate::elements::force::{Force, NodalForces, Reservoir, Step, Tangents};
+use crate::elements::force::{
+    Capabilities, ContactForce, Force, NodalForces, Reservoir, Step, Tangents,
+};
 use crate::integrators::ode::Failure;
 use crate::scene::forces::friction::Coulomb;
 
@@ -251,6 +253,26 @@ impl Force for TouchForce {
         Tangents::Added
     }
 
+    fn potential(&self, _t: f64, u: &[f64]) -> f64 {
+        let mut energy = 0.0;
+        self.each(u, |pair, share| energy += share * self.law(pair).energy(pair.distance));
+        energy
+    }
+
+    fn reservoir(&self) -> Reservoir {
+        Reservoir::Contact
+    }
+
+    fn capabilities(&self) -> Capabilities<'_> {
+        Capabilities { contact: Some(self), ..Capabilities::default() }
+    }
+}
+
+impl ContactForce for TouchForce {
+    fn passage(&self, step: &Step, _tolerance: f64, _clearances: &mut [f64]) -> Option<f64> {
+        self.first_passage(step)
+    }
+
     /// Pairs that do not act yet, as if their distance were where they do.
     fn add_reserves(
         &self,
@@ -286,24 +308,6 @@ impl Force for TouchForce {
                 add(node, share.abs() * window.value * of_edges.reserve());
             }
         }
-    }
-
-    fn potential(&self, _t: f64, u: &[f64]) -> f64 {
-        let mut energy = 0.0;
-        self.each(u, |pair, share| energy += share * self.law(pair).energy(pair.distance));
-        energy
-    }
-
-    fn reservoir(&self) -> Reservoir {
-        Reservoir::Contact
-    }
-
-    fn can_be_passed(&self) -> bool {
-        true
-    }
-
-    fn passage(&self, step: &Step, _tolerance: f64, _clearances: &mut [f64]) -> Option<f64> {
-        self.first_passage(step)
     }
 
     fn couplings_near(&self, u: &[f64], pattern: &NodePattern) -> Vec<[usize; 2]> {

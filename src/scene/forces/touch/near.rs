@@ -6,7 +6,7 @@
 //! only within these. A body's own points leave out the facets around them and everything nearer than 2 D in
 //! the undeformed shape; weights of edges and corners are those of the rest.
 //!
-//! The pattern of the Newton matrix follows (`System::make_room`, `Force::couplings_near`): before tangents
+//! The pattern of the Newton matrix follows (`System::make_room`, `ContactForce::couplings_near`): before tangents
 //! are evaluated, the force reports whether a pair that acts lacks entries, and then all near pairs get some.
 //! Earlier ones keep theirs, unless they are many more.
 

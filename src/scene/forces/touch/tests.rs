@@ -6,7 +6,7 @@ use super::surfaces::Surfaces;
 use crate::base::sparse::BlockMatrix;
 use crate::base::vector::{cross, dot, largest, noise, norm};
 use crate::elements::body::Body;
-use crate::elements::force::{Force, NodalForces, Step};
+use crate::elements::force::{ContactForce, Force, NodalForces, Step};
 use crate::elements::material::Material;
 use crate::elements::mesh::{Cells, Mesh, SolidCells};
 

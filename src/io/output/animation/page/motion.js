@@ -12,7 +12,7 @@ const overTime = (series) => ({ ...series, times, values: singles(series.values)
 const energies = data.energies.map(overTime);
 const sensors = data.sensors.map(overTime);
 const contacts = data.contacts.map(({ at, forces }) => ({ at: singles(at), forces: singles(forces) }));
-const dipoles = data.dipoles.map(({ at, along }) => ({ at: singles(at), along: singles(along) }));
+const needles = singles(data.needles);
 const everywhere = data.everywhere.map(({ name, along: numbers }) => {
   const along = singles(numbers);
   const sizes = Array.from(times, (_, k) => Math.hypot(...along.subarray(k * axes, (k + 1) * axes)));
@@ -52,10 +52,9 @@ function actuationAt({ before, after, share }, { forces }) {
   return forces[share > 0 ? after : before];
 }
 
-/** Where a dipole is (m), and its moment (A m^2). */
-function dipoleAt({ before, after, share }, { at, along }) {
-  return [at, along].map((values) => Array.from({ length: axes }, (_, axis) =>
-    between(values, before * axes + axis, after * axes + axis, share)));
+/** Places (m) and directions of the needles of devices, one after the other. */
+function needlesAt(moment) {
+  return arrayAt(needles, moment);
 }
 
 /** Gravity (m/s^2) or the magnetic field (T): between two samples from one to the next if both are in the same phase. */
@@ -65,9 +64,14 @@ function everywhereAt({ before, after, share, time }, { along }) {
 }
 
 /** The middle of each arrow on magnets, and the arrow (m), one after the other. */
-function remanenceAt({ before, after, share }) {
-  const count = remanence.length / times.length;
-  return Array.from({ length: count }, (_, k) => between(remanence, before * count + k, after * count + k, share));
+function remanenceAt(moment) {
+  return arrayAt(remanence, moment);
+}
+
+/** Numbers of which each sample has as many, one after the other. */
+function arrayAt(values, { before, after, share }) {
+  const count = values.length / times.length;
+  return Array.from({ length: count }, (_, k) => between(values, before * count + k, after * count + k, share));
 }
 
 /** The ends of the lines along which surfaces of liquids meet walls (m), at the sample at hand or, between two, at the next. */

@@ -61,7 +61,7 @@ function drawPlane(sheet, moment, quantity) {
   const place = ([x, y]) => [layout.x(x), layout.y(y)];
   const direct = ([x, y]) => [x, -y];
   drawRemanence(context, place, moment);
-  drawDipoles(context, place, direct, moment);
+  drawNeedles(context, place, direct, moment);
   drawEverywhere(context, direct, moment, [MARGIN.left + layout.room[0], MARGIN.top]);
   context.restore();
 }

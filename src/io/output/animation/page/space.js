@@ -57,7 +57,7 @@ function drawSpace(sheet, moment, quantity) {
   for (const obstacle of obstacles) if (obstacle.depth < depth) obstacle.draw(context, 0.45);
   const direct = (m) => [dot(eye.right, m), -dot(eye.up, m)];
   drawRemanence(context, eye.place, moment);
-  drawDipoles(context, eye.place, direct, moment);
+  drawNeedles(context, eye.place, direct, moment);
   drawEverywhere(context, direct, moment, [sheet.width - 8, 8]);
   drawTriad(sheet, eye);
 }

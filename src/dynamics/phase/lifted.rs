@@ -1,0 +1,119 @@
+//! The integrator of a phase that is run by a reduced model: it takes the unknowns of that, and shows all others.
+
+use super::integrators::{IntoStepper, counts, ode};
+use super::{Failed, Integrable, Start, Stepper};
+use crate::base::input::InputError;
+use crate::dynamics::reduced::ReducedSystem;
+use crate::dynamics::report::Counts;
+use crate::dynamics::system::PhaseSystem;
+use crate::integrators::common::Integrator;
+use crate::scene::settings::Method;
+
+/// An integrator of a reduced model.
+struct Lifted<I> {
+    integrator: I,
+    /// The state at the end of the last step.
+    state: Vec<f64>,
+    /// Room for the unknowns of the model.
+    seen: Vec<f64>,
+}
+
+impl Integrable for ReducedSystem {
+    fn start(mut self: Box<Self>, start: &Start) -> Result<Box<dyn Stepper>, Failed> {
+        let method = start.settings.method;
+        if let Method::Ida | Method::IdaKlu | Method::IdaIndexTwo | Method::CentralDifference =
+            method
+        {
+            let help = "a reduced model is an ODE, without constraints: take cvode-bdf, arkode, rosenbrock or rk";
+            return Err(InputError::new("method", method, help).into());
+        }
+        let y = self.begin(start.time, start.state);
+        let tolerances = self.tolerances(start.atol);
+        ode(*self, tolerances, start, &y)
+    }
+}
+
+impl IntoStepper for ReducedSystem {
+    fn into_stepper(
+        integrator: impl Integrator<System = Self> + Send + 'static,
+    ) -> Box<dyn Stepper> {
+        let seen = integrator.y().to_vec();
+        let state = vec![0.0; integrator.system().full().layout().unknowns()];
+        let mut lifted = Lifted { integrator, state, seen };
+        lifted.follow();
+        Box::new(lifted)
+    }
+}
+
+impl<I: Integrator<System = ReducedSystem>> Lifted<I> {
+    /// Updates the state to the end of the last step.
+    fn follow(&mut self) {
+        let t = self.integrator.t();
+        self.seen.copy_from_slice(self.integrator.y());
+        self.integrator.system_mut().lift(t, &self.seen, &mut self.state);
+    }
+}
+
+impl<I: Integrator<System = ReducedSystem> + Send> Stepper for Lifted<I> {
+    fn step(&mut self, end: f64) -> Result<f64, Failed> {
+        let _ = self.integrator.step(end)?;
+        self.follow();
+        Ok(self.integrator.t())
+    }
+
+    fn stop_at(&mut self, t: f64) -> Result<(), Failed> {
+        Ok(self.integrator.set_stop_time(Some(t))?)
+    }
+
+    fn resume(&mut self, t: f64, state: &[f64]) -> Result<bool, Failed> {
+        // mostly where the last step has led to
+        let y = match t == self.integrator.t() && state == self.state {
+            true => Some(self.integrator.y().to_vec()),
+            false => self.integrator.system_mut().unknowns_of(t, state),
+        };
+        let Some(y) = y else { return Ok(false) };
+        let goes_on = self.integrator.resume(t, &y)?;
+        if goes_on {
+            self.state.copy_from_slice(state);
+        }
+        Ok(goes_on)
+    }
+
+    fn interpolate(&mut self, t: f64, state: &mut [f64]) -> Result<(), Failed> {
+        self.integrator.interpolate(t, 0, &mut self.seen)?;
+        self.integrator.system_mut().lift(t, &self.seen, state);
+        Ok(())
+    }
+
+    fn last_order(&self) -> u32 {
+        self.integrator.last_order()
+    }
+
+    fn next_step(&self) -> f64 {
+        self.integrator.statistics().current_step
+    }
+
+    fn state(&self) -> &[f64] {
+        &self.state
+    }
+
+    fn unknowns(&self) -> usize {
+        self.integrator.y().len()
+    }
+
+    fn system(&self) -> &dyn PhaseSystem {
+        self.integrator.system()
+    }
+
+    fn system_mut(&mut self) -> &mut dyn PhaseSystem {
+        self.integrator.system_mut()
+    }
+
+    fn into_system(self: Box<Self>) -> Box<dyn Integrable> {
+        Box::new(self.integrator.into_system())
+    }
+
+    fn counts(&self) -> Counts {
+        counts(&self.integrator, self.integrator.system())
+    }
+}
