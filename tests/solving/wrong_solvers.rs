@@ -1,4 +1,4 @@
-//! Linear solvers and preconditioners of a system's own that answer zero, or off by a factor: errors instead of smooth wrong solutions.
+//! Linear solvers and preconditioners of a system's own that answer zero: errors instead of smooth wrong solutions.
 
 use pliant::{
     integrate::{Cause, Error},
@@ -11,13 +11,12 @@ use pliant::{
 struct Pulled {
     factor: f64,
     gamma: f64,
-    solutions: u32,
 }
 
 const RATES: [f64; 2] = [100.0, 300.0];
 
 fn pulled(factor: f64) -> Pulled {
-    Pulled { factor, gamma: 0.0, solutions: 0 }
+    Pulled { factor, gamma: 0.0 }
 }
 
 impl Ode for Pulled {
@@ -39,7 +38,6 @@ impl Ode for Pulled {
     }
 
     fn newton_solve(&mut self, _gamma: f64, r: &mut [f64]) -> Result<(), Failure> {
-        self.solutions += 1;
         (0..2).for_each(|i| r[i] *= self.factor / (1.0 + self.gamma * RATES[i]));
         Ok(())
     }
@@ -94,43 +92,28 @@ fn solved(method: Method, solver: LinearSolver, factor: f64) -> Result<Solution,
     solve(problem(method, factor), method, (0.0, 1.0), &options)
 }
 
-/// The factor that an error tells, of a run that ended at its start.
-fn found(outcome: Result<Solution, solve::Error>) -> f64 {
+/// The run ends near its start, with an error that says why.
+fn is_told(outcome: Result<Solution, solve::Error>) {
     let error = outcome.unwrap_err();
-    println!("{error}");
+    assert!(error.to_string().contains("newton_solve is wrong"), "{error}");
     let solve::Error::Stopped(stopped) = error else { panic!("{error}") };
-    assert!(stopped.to_string().contains("newton_solve is wrong"), "{stopped}");
-    assert_eq!(stopped.solution.t(), [0.0]);
-    match stopped.reason {
-        Reason::Failed(Error::Integration(error)) => match error.cause {
-            Cause::WrongSolver { factor } => factor,
-            cause => panic!("{cause:?}"),
-        },
-        reason => panic!("{reason}"),
-    }
+    // the first steps may need no solution
+    assert!(stopped.solution.t().last().is_some_and(|t| *t < 1e-6));
+    let Reason::Failed(Error::Integration(error)) = stopped.reason else { panic!() };
+    assert_eq!(error.cause, Cause::WrongSolver);
 }
 
-/// Factors with which Newton's method cannot converge are told; one that is right is not, nor one that only slows it down.
+/// By every implicit method; a solver that is right is not.
 #[test]
-fn a_factor_that_is_off_is_told() {
+fn a_solver_that_is_zero_is_told() {
     for method in implicit() {
-        for factor in [0.0, 1e-3, -1.0, 3.0, 1e6] {
-            let told = found(solved(method, LinearSolver::Custom, factor));
-            assert!((told - factor).abs() <= 1e-4 * factor.abs(), "{method:?}: {told} {factor}");
-        }
-        for factor in [1.0, 0.9] {
-            let solution = solved(method, LinearSolver::Custom, factor);
-            // the linear solution is the whole answer of a Rosenbrock method, and whatever it is off by stays
-            if method == Method::Rosenbrock && factor != 1.0 {
-                continue;
-            }
-            let last = solution.unwrap().last().to_vec();
-            assert!(last.iter().all(|y| (y - 1.0).abs() < 1e-5), "{method:?} {factor}: {last:?}");
-        }
+        is_told(solved(method, LinearSolver::Custom, 0.0));
+        let last = solved(method, LinearSolver::Custom, 1.0).unwrap().last().to_vec();
+        assert!(last.iter().all(|y| (y - 1.0).abs() < 1e-5), "{method:?}: {last:?}");
     }
 }
 
-/// Preconditioners may be off by any factor, but for zero.
+/// Preconditioners may be off by any other factor.
 #[test]
 fn a_preconditioner_that_is_zero_is_told() {
     for (method, side) in [
@@ -139,30 +122,10 @@ fn a_preconditioner_that_is_zero_is_told() {
         (Method::RungeKutta(ButcherTable::implicit(5).unwrap()), Side::Left),
         (Method::Ida, Side::Left),
     ] {
-        assert_eq!(found(solved(method, preconditioned(side), 0.0)), 0.0);
+        is_told(solved(method, preconditioned(side), 0.0));
         for factor in [1.0, 0.1, -3.0] {
             let last = solved(method, preconditioned(side), factor).unwrap().last().to_vec();
             assert!(last.iter().all(|y| (y - 1.0).abs() < 1e-5), "{method:?} {factor}: {last:?}");
         }
     }
-}
-
-/// The check can be switched off; it takes two solutions at the first set-up, the second, the fourth and so on.
-#[test]
-fn the_check_is_rare_and_can_be_switched_off() {
-    let options = Options::new(1e-6, 1e-9).linear_solver(LinearSolver::Custom);
-    let count = |options: &Options| {
-        let mut system = pulled(1.0);
-        let lent = pliant::ode::Borrowed(&mut system);
-        let solution =
-            solve(Problem::ode(lent, [0.0; 2]), Method::Bdf, (0.0, 1.0), options).unwrap();
-        let setups = solution.statistics().linear_setups;
-        (system.solutions, setups, solution.last().to_vec())
-    };
-    let (checked, setups, last) = count(&options);
-    let (trusted, _, same) = count(&options.clone().check_jacobian(false));
-    assert_eq!(last, same);
-    assert_eq!(u64::from(checked - trusted), 2 * (1 + u64::from(setups.ilog2())));
-    let unchecked = options.check_jacobian(false);
-    solve(problem(Method::Bdf, 0.0), Method::Bdf, (0.0, 1.0), &unchecked).unwrap();
 }

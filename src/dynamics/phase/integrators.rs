@@ -238,7 +238,6 @@ fn cvode_options(settings: &Settings, tolerances: Vec<f64>, holds_liquid: bool) 
         _ => Multistep::Bdf,
     };
     let options = CvodeOptions::new(settings.rtol, tolerances)
-        .check_jacobian(false)
         .method(method)
         .newton(LinearSolver::Custom)
         .convergence_coefficient(newton(holds_liquid))
@@ -263,7 +262,6 @@ fn arkode_options(
 ) -> Result<ArkodeOptions, Failed> {
     let table = settings.max_order.map_or(Ok(ButcherTable::default()), ButcherTable::implicit)?;
     let options = ArkodeOptions::new(settings.rtol, tolerances)
-        .check_jacobian(false)
         .table(table)
         .newton(LinearSolver::Custom)
         .convergence_coefficient(newton(holds_liquid));
@@ -285,9 +283,7 @@ fn rosenbrock_options(
     system: &System,
     is_linear: bool,
 ) -> rosenbrock::Options {
-    let options = rosenbrock::Options::new(settings.rtol, tolerances)
-        .newton(LinearSolver::Custom)
-        .check_jacobian(false);
+    let options = rosenbrock::Options::new(settings.rtol, tolerances).newton(LinearSolver::Custom);
     let options = settings.max_order.into_iter().fold(options, rosenbrock::Options::order);
     match settings.max_order {
         _ if is_linear => options.linear(),

@@ -172,11 +172,9 @@ pub enum Cause {
         /// The same by difference quotients of the equations.
         difference: f64,
     },
-    /// The system's own `newton_solve` does not solve its linear systems, or is zero as a preconditioner.
-    WrongSolver {
-        /// What it answers to the product of the Newton matrix with a direction, as a multiple of that direction: 1 would be right.
-        factor: f64,
-    },
+    /// The system's own `newton_solve`, as linear solver or preconditioner, answered zero to a right-hand side that is not: Newton's iteration
+    /// would take its first guess for the solution.
+    WrongSolver,
     /// The Newton matrix could not be factorized.
     LinearSolver,
     /// The mass matrix could not be factorized.
@@ -233,13 +231,9 @@ impl Cause {
                     "{method} is wrong: {what} is {supplied:e}, but {difference:e} by differences of the equations"
                 )
             }
-            Self::WrongSolver { factor: 0.0 } => {
-                "newton_solve is wrong: it answers zero where the right-hand side is not".into()
+            Self::WrongSolver => {
+                "newton_solve is wrong: it answers zero to a right-hand side that is not".into()
             }
-            Self::WrongSolver { factor } => format!(
-                "newton_solve is wrong: to the product of the Newton matrix with a direction, by differences of the equations, it answers \
-                 {factor:.3e} times that direction"
-            ),
             Self::LinearSolver => "the Newton matrix cannot be factorized".into(),
             Self::MassMatrix => "the mass matrix cannot be factorized".into(),
             Self::LinearConvergence => {
@@ -292,9 +286,8 @@ impl Cause {
                 "correct this derivative (ode::check looks at all of them), or let difference quotients take its place; \
                  if it is meant to be an approximation, switch this check off by check_jacobian(false)"
             }
-            Self::WrongSolver { .. } => {
-                "look for a factor or a sign that newton_setup or newton_solve forgets (gamma, the identity), for a division by infinity, and for \
-                 a result that is not written into r; check_jacobian(false) switches this check off"
+            Self::WrongSolver => {
+                "look for a factor that it forgets, a division by infinity, or a result that is not written into r"
             }
             Self::LinearSolver => {
                 "look for a zero row or column of the Jacobian; a DAE has to be of index 1"

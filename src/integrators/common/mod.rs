@@ -16,7 +16,6 @@ mod one_step;
 mod options;
 mod rootfinding;
 mod roots;
-mod solver_check;
 mod statistics;
 mod tolerances;
 
@@ -34,6 +33,5 @@ pub(crate) use options::{
     check_start_time, check_step, check_time, check_whole, step_options,
 };
 pub(crate) use roots::time_tolerance;
-pub(crate) use solver_check::{Asked, SolverCheck};
 pub use statistics::Statistics;
 pub use tolerances::{AbsoluteTolerance, Tolerances};

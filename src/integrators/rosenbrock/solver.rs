@@ -4,9 +4,7 @@ use super::control::Controller;
 use super::matrix::Matrix;
 use super::options::Options;
 use super::tableau::{MOST_STAGES, Tableau};
-use crate::integrators::common::{
-    Cause, Error, JacobianCheck, March, OneStep, SolverCheck, StepMethod,
-};
+use crate::integrators::common::{Cause, Error, JacobianCheck, March, OneStep, StepMethod};
 use crate::integrators::ode::Ode;
 
 /// Integrates y' = f(t, y) forward in time by a Rosenbrock method.
@@ -22,8 +20,6 @@ pub struct LinearlyImplicit {
     pub(super) tableau: &'static Tableau,
     /// Checks the Jacobian that the system supplies by the method of this name.
     pub(super) check: Option<(&'static str, JacobianCheck)>,
-    /// Checks the system's own linear solver.
-    pub(super) solver_check: Option<SolverCheck>,
     /// Whether the Jacobian never changes.
     pub(super) is_linear: bool,
     /// The matrix, unless the system has its own linear solver.
@@ -88,11 +84,6 @@ impl<S: Ode> Rosenbrock<S> {
                 .supplied()
                 .filter(|_| !options.trusts_jacobian)
                 .map(|method| (method, JacobianCheck::new(n, &options.forward.tolerances))),
-            solver_check: options
-                .solver
-                .asks_system()
-                .filter(|_| !options.trusts_jacobian)
-                .map(|_| SolverCheck::new(n, &options.forward.tolerances, false)),
             is_linear: options.linear,
             matrix,
             coupled: n.saturating_sub(system.integrals()),

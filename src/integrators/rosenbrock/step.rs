@@ -12,9 +12,9 @@
 use super::matrix::Matrix;
 use super::solver::{LinearlyImplicit, Service, interpolate};
 use crate::integrators::common::{
-    Asked, Callback, Cause, Error, March, Point, StepMethod, Wanted, not_finite,
+    Callback, Cause, Error, March, Point, StepMethod, Wanted, not_finite,
 };
-use crate::integrators::ode::{Failure, Ode, call};
+use crate::integrators::ode::{Ode, call};
 
 /// Relative difference of step sizes that one factorization may serve: that by which a step stretches to end at a time.
 const SAME_SIZE: f64 = 0.01;
@@ -93,13 +93,6 @@ impl LinearlyImplicit {
         if !reuse && let Some(cause) = self.wrong_jacobian(march) {
             return Err(march.stopped(cause, h).into());
         }
-        match self.wrong_solver(march, gamma) {
-            Ok(None) => {}
-            Ok(Some(cause)) => return Err(march.stopped(cause, h).into()),
-            Err(failure) => {
-                return march.classify(Err(failure), Callback::NewtonSolve, march.t, h);
-            }
-        }
         self.known.jacobian = true;
         self.service.steps = 0;
         self.factored = is_regular.then_some(gamma);
@@ -128,21 +121,6 @@ impl LinearlyImplicit {
                 true
             }
             Wanted::Equations([y, _]) => call::rhs(system, t, y, out).is_ok(),
-        })
-    }
-
-    /// The error in the answers of the system's own solver, which was just set up, if its check is due.
-    fn wrong_solver<S: Ode>(
-        &mut self,
-        march: &mut March<S>,
-        gamma: f64,
-    ) -> Result<Option<Cause>, Failure> {
-        let Some(check) = &mut self.solver_check else { return Ok(None) };
-        let t = march.clock.time(march.t);
-        let March { system, y, .. } = march;
-        check.find(Some(gamma), Point { y, yp: &[], cj: 0.0 }, &mut |asked, out| match asked {
-            Asked::Equations([y, _]) => call::rhs(system, t, y, out),
-            Asked::Solution => system.newton_solve(gamma, out),
         })
     }
 
@@ -222,7 +200,14 @@ impl LinearlyImplicit {
                 }
                 Ok(())
             }
-            None => march.system.newton_solve(share, u),
+            None => {
+                let is_zero = u.iter().all(|u| *u == 0.0);
+                let outcome = march.system.newton_solve(share, u);
+                if outcome.is_ok() && !is_zero && u.iter().all(|u| *u == 0.0) {
+                    return Err(march.stopped(Cause::WrongSolver, h).into());
+                }
+                outcome
+            }
         };
         u[self.coupled..].fill(0.0);
         march.classify(outcome, Callback::NewtonSolve, t, h)

@@ -98,6 +98,8 @@ pub struct Run<'a> {
 /// Steps after which a run may lead nowhere, and how many times as many would then be left.
 const MANY: u64 = 1000;
 const HOPELESS: f64 = 1e3;
+/// Part of the mean step that the last one is then, at most.
+const SHRUNK: f64 = 1e-2;
 
 /// Limits of the whole run.
 pub(super) struct Limits {
@@ -447,7 +449,8 @@ impl<'a> Run<'a> {
         let steps = self.statistics().steps;
         let h = self.engine.statistics().last_step.abs();
         let left = (self.span.1 - self.t).abs() / h;
-        let is_hopeless = steps >= MANY && left.is_finite() && left > HOPELESS * steps as f64;
+        let usual = (self.t - self.span.0).abs() / steps.max(1) as f64;
+        let is_hopeless = steps >= MANY && h < SHRUNK * usual && left > HOPELESS * steps as f64;
         self.engine.notice().or_else(|| {
             is_hopeless.then(|| {
                 format!(

@@ -2,7 +2,7 @@
 
 use super::{callbacks::callbacks, host::Host, linear_solver::LinearSolver};
 use crate::integrators::{
-    common::{Asked, Callback, Point},
+    common::{Callback, Point},
     ode::{Dae, Failure, call},
 };
 
@@ -31,7 +31,7 @@ callbacks! {
     ) {
         host.setup_time = t;
         if matches!(host.linear_solver, Some(LinearSolver::Custom)) {
-            return set_up(host, t, Point { y, yp, cj });
+            return host.guard(Callback::NewtonSetup, t, |system| system.newton_setup(t, cj, y, yp));
         }
         match evaluate_jacobian(host, t, (cj, y, yp), residual, values) {
             0 => check_jacobian(host, t, (cj, y, yp), values, |_, _, _| Ok(())),
@@ -58,7 +58,7 @@ callbacks! {
     ) {
         // Taken out of the host, which calls the system meanwhile.
         let Some(mut ilu) = host.ilu.take() else {
-            return set_up(host, t, Point { y, yp, cj });
+            return host.guard(Callback::NewtonSetup, t, |system| system.newton_setup(t, cj, y, yp));
         };
         let mut outcome =
             ilu.update_jacobian(|values| evaluate_jacobian(host, t, (cj, y, yp), residual, values));
@@ -74,18 +74,6 @@ callbacks! {
         t: (time host), _: vector, _: vector, _: vector, r: read, z: write, _: f64, _: f64, host: (data S)
     ) {
         host.precondition(t, r, z, Dae::newton_solve)
-    }
-}
-
-/// Lets the system set up its own linear solver or preconditioner.
-fn set_up<S: Dae>(host: &mut Host<S>, t: f64, point: Point<'_>) -> i32 {
-    let Point { y, yp, cj } = point;
-    match host.guard(Callback::NewtonSetup, t, |system| system.newton_setup(t, cj, y, yp)) {
-        0 => host.check_solver(t, None, point, |system, asked, out| match asked {
-            Asked::Equations([y, yp]) => call::residual(system, t, y, yp, out),
-            Asked::Solution => system.newton_solve(out),
-        }),
-        failed => failed,
     }
 }
 

@@ -24,7 +24,7 @@ use super::{
     signs::Violation,
 };
 use crate::integrators::{
-    common::{Asked, Callback, Cause, Clock, Error, JacobianCheck, Point, SolverCheck, Wanted},
+    common::{Callback, Cause, Clock, Error, JacobianCheck, Point, Wanted},
     ode::{Entries, Failure},
 };
 
@@ -68,8 +68,6 @@ pub(super) struct Host<S> {
     pub(super) scales: Option<Scales>,
     /// Checks the Jacobian that the system supplies, with its shape if it is a matrix.
     pub(super) check: Option<(JacobianCheck, Option<Shape>)>,
-    /// Checks the system's own linear solver or preconditioner.
-    pub(super) solver_check: Option<SolverCheck>,
     /// Finds out whether a DAE failed because of its index; none if the user knows that.
     pub(super) find_index: Option<FindIndex<S>>,
     /// The preconditioner of a Krylov method, if it is not the system's own.
@@ -87,7 +85,7 @@ pub(super) struct Host<S> {
 pub(super) struct Troubles {
     panic: Option<Box<dyn Any + Send>>,
     fatal: Option<(Callback, Box<dyn error::Error + Send + Sync>)>,
-    /// Error in a supplied Jacobian or linear solver.
+    /// Error in a supplied Jacobian.
     wrong: Option<Cause>,
     /// Time and reason of the last request for a smaller step.
     retry: Option<(f64, Cause)>,
@@ -203,7 +201,6 @@ impl<S> Host<S> {
             differences: None,
             scales: None,
             check: None,
-            solver_check: None,
             find_index: None,
             ilu: None,
             setup_time: f64::NAN,
@@ -330,29 +327,6 @@ impl<S> Host<S> {
         STOP
     }
 
-    /// Checks the linear solver or the preconditioner that the system has just set up, if a check is due.
-    pub(super) fn check_solver(
-        &mut self,
-        t: f64,
-        gamma: Option<f64>,
-        point: Point<'_>,
-        mut ask: impl FnMut(&mut S, Asked<'_>, &mut [f64]) -> Result<(), Failure>,
-    ) -> i32 {
-        // Taken out of the host, which calls the system meanwhile.
-        let Some(mut check) = self.solver_check.take() else { return 0 };
-        let mut wrong = None;
-        let outcome = self.guard(Callback::NewtonSolve, t, |system| {
-            wrong = check.find(gamma, point, &mut |asked, out| ask(system, asked, out))?;
-            Ok(())
-        });
-        self.solver_check = Some(check);
-        if wrong.is_none() {
-            return outcome;
-        }
-        self.troubles.wrong = wrong;
-        STOP
-    }
-
     /// Solves with the preconditioner of a Krylov method for `r`: by the incomplete factorization, or in place
     /// by `own` of the system.
     pub(super) fn precondition(
@@ -368,8 +342,20 @@ impl<S> Host<S> {
                 ilu.solve(z);
                 self.check_finite(Callback::Preconditioner, t, z)
             }
-            None => self.guard_output(Callback::NewtonSolve, t, z, own),
+            None => match self.guard_output(Callback::NewtonSolve, t, z, own) {
+                0 => self.check_answer(r, z),
+                failed => failed,
+            },
         }
+    }
+
+    /// Stops where the system's own solver answers zero to a right-hand side that is not.
+    pub(super) fn check_answer(&mut self, r: &[f64], answer: &[f64]) -> i32 {
+        if answer.iter().any(|x| *x != 0.0) || r.iter().all(|r| *r == 0.0) {
+            return 0;
+        }
+        self.troubles.wrong = Some(Cause::WrongSolver);
+        STOP
     }
 
     /// Requests a smaller step where an incomplete factorization has no pivot.

@@ -153,10 +153,6 @@ impl Krylov {
         }
     }
 
-    pub(super) fn asks_system(&self) -> bool {
-        matches!(self.preconditioner, Some((_, Preconditioner::Custom)))
-    }
-
     /// Pattern and entries of an incomplete factorization.
     // If inlined, its test is made before the one whether there is a Krylov method at all, and its value is
     // dropped: valgrind takes that for an error.

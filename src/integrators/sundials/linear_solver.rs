@@ -101,15 +101,6 @@ impl LinearSolver {
         }
     }
 
-    /// Whether the system's own `newton_solve` solves linear systems, and whether it does so as a preconditioner.
-    pub(crate) fn asks_system(&self) -> Option<bool> {
-        match self {
-            Self::Custom => Some(false),
-            Self::Krylov(krylov) => krylov.asks_system().then_some(true),
-            _ => None,
-        }
-    }
-
     /// Whether entries, of the matrix or of its preconditioner, are difference quotients.
     pub(crate) fn takes_quotients(&self) -> bool {
         let entries = match self {

@@ -8,7 +8,7 @@ use super::{
     ode_callbacks::{check_jacobian, evaluate_jacobian},
 };
 use crate::integrators::{
-    common::{Asked, Callback, Point},
+    common::Callback,
     ode::{Ode, call},
 };
 
@@ -71,20 +71,10 @@ fn set_up<S: Ode>(
     let mut fresh = false;
     // Taken out of the host, which calls the system meanwhile.
     let outcome = match host.ilu.take() {
-        None => {
-            let outcome = host.guard(Callback::NewtonSetup, t, |system| {
-                fresh = system.newton_setup(t, y, ydot, gamma, reuse)?;
-                Ok(())
-            });
-            let point = Point { y, yp: &[], cj: 0.0 };
-            match outcome {
-                0 => host.check_solver(t, Some(gamma), point, |system, asked, out| match asked {
-                    Asked::Equations([y, _]) => call::rhs(system, t, y, out),
-                    Asked::Solution => system.newton_solve(gamma, out),
-                }),
-                failed => failed,
-            }
-        }
+        None => host.guard(Callback::NewtonSetup, t, |system| {
+            fresh = system.newton_setup(t, y, ydot, gamma, reuse)?;
+            Ok(())
+        }),
         Some(mut ilu) => {
             fresh = !(reuse && ilu.has_jacobian());
             let mut outcome = 0;

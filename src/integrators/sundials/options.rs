@@ -109,8 +109,7 @@ impl<O> SolverOptions<O> {
     /// iteration may accept a wrong result as the solution. Switch the check off for a Jacobian that is
     /// meant to be an approximation.
     ///
-    /// A linear solver of the system's own ([`LinearSolver::Custom`]) is checked as often: whether its answers are zero, or off by a factor
-    /// with which Newton's method cannot converge; a preconditioner, whether they are zero
+    /// A linear solver or preconditioner of the system's own is not checked, but for answers that are zero
     /// ([`Cause::WrongSolver`](crate::integrators::common::Cause::WrongSolver)).
     pub fn check_jacobian(mut self, on: bool) -> Self {
         self.trusts_jacobian = !on;

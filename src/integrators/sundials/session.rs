@@ -29,7 +29,7 @@ use super::{
     vector::Vector,
 };
 use crate::integrators::{
-    common::{AbsoluteTolerance, Clock, Error, JacobianCheck, SolverCheck, Tolerances},
+    common::{AbsoluteTolerance, Clock, Error, JacobianCheck, Tolerances},
     ode::Ode,
 };
 
@@ -325,9 +325,6 @@ impl<K, S> Session<K, S> {
             let shape = Shape::of(solver).filter(|_| is_matrix);
             self.host.get_mut().check = Some((check, shape));
         }
-        let asks = solver.asks_system().filter(|_| !options.trusts_jacobian);
-        self.host.get_mut().solver_check =
-            asks.map(|is_preconditioner| SolverCheck::new(n, tolerances, is_preconditioner));
         self.host.get_mut().ilu = solver.ilu().map(|(pattern, _)| IncompleteLu::new(pattern));
         let data = self.host.as_ptr();
         // SAFETY: the data is the host, which outlives the solver.
