@@ -157,6 +157,5 @@ fn an_error_tells_why_there_are_so_many_steps() {
             words.contains("raise max_steps if the step size is reasonable"),
             "{method:?}: {words}"
         );
-        assert_eq!(format!("{error:?}"), words, "a main that returns it prints the same");
     }
 }

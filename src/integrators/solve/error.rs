@@ -5,13 +5,11 @@ use std::{error, fmt, time::Duration};
 use thiserror::Error;
 
 use super::solution::Solution;
-use crate::base::input::{InputError, debug_in_words};
+use crate::base::input::InputError;
 use crate::integrators::common;
 
-debug_in_words!(Error, Stopped, Reason);
-
-/// An error of [`solve`](super::solve). It is shown in words, also by [`Debug`](std::fmt::Debug).
-#[derive(Error)]
+/// An error of [`solve`](super::solve). `Debug` is short, for logs; `Display` has the words.
+#[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum Error {
     /// A value that was handed in cannot be used; nothing was computed.
@@ -24,6 +22,7 @@ pub enum Error {
 }
 
 /// A run that stopped: the reason, and the solution until then.
+#[derive(Debug)]
 pub struct Stopped {
     /// Why.
     pub reason: Reason,
@@ -33,7 +32,8 @@ pub struct Stopped {
     pub notice: Option<String>,
 }
 
-/// Why a run stopped, or did not begin. It is shown in words, also by [`Debug`](std::fmt::Debug).
+/// Why a run stopped, or did not begin.
+#[derive(Debug)]
 #[non_exhaustive]
 pub enum Reason {
     /// A value that was handed in cannot be used.
