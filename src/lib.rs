@@ -49,6 +49,9 @@ pub mod io;
 pub mod scene;
 pub mod studies;
 
+/// The matrices of [`Ode::dense_jacobian`](ode::Ode::dense_jacobian) and of sensitivities are those of this crate.
+pub use faer;
+
 // What a first program needs, by its own name.
 pub use base::input::{Fraction, InputError};
 #[cfg(feature = "bodies")]

@@ -22,8 +22,22 @@ pub(crate) use nearest::list;
 pub(crate) use nearest::{unknown, unknown_among};
 pub(crate) use words::{digits, four_digits, percent, short};
 
-/// An invalid input: its name, its value, and the allowed values.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+/// Lets errors have the same words wherever they are shown: a `main` that returns one prints its [`Debug`](std::fmt::Debug) form.
+macro_rules! debug_in_words {
+    ($($error:ty),+) => {$(
+        impl std::fmt::Debug for $error {
+            fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                std::fmt::Display::fmt(self, f)
+            }
+        }
+    )+};
+}
+pub(crate) use debug_in_words;
+
+debug_in_words!(InputError);
+
+/// An invalid input: its name, its value, and the allowed values. It is shown in words, also by [`Debug`](std::fmt::Debug).
+#[derive(Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{input} = {value} cannot be used: {help}")]
 pub struct InputError {
     /// Name of the input, in the words of the API.

@@ -3,13 +3,15 @@
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
 
-use crate::base::input::InputError;
+use crate::base::input::{InputError, debug_in_words};
 use crate::dynamics::equilibrium::NoEquilibrium;
 use crate::dynamics::trajectory::IntegrationFailure;
 use crate::integrators::common;
 
-/// Failure of an operation: its cause, the input concerned, and the remedy.
-#[derive(Debug, thiserror::Error)]
+debug_in_words!(Error);
+
+/// Failure of an operation: its cause, the input concerned, and the remedy. It is shown in words, also by [`Debug`](std::fmt::Debug).
+#[derive(thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
     /// An input that cannot be used.

@@ -12,7 +12,8 @@ use std::{
 
 use pliant::{
     ode::Failure,
-    solve::{Error, Method, Options, Output, Problem, Reason, Solution, solve},
+    solve::{Error, Method, Options, Output, Problem, Reason, Run, Solution, solve},
+    sundials::ButcherTable,
 };
 
 use crate::support::{methods, sine, tight};
@@ -109,4 +110,52 @@ fn another_thread_may_cancel() {
     flag.store(true, Ordering::Relaxed);
     let (reason, _) = worker.join().unwrap();
     assert!(matches!(reason, Reason::Cancelled));
+}
+
+/// Where the integrator knows why there are so many steps, the error tells it in place of the advice to allow more.
+#[test]
+fn an_error_tells_why_there_are_so_many_steps() {
+    let most = 20_000;
+    let options = || Options::new(1e-8, 1e-10).max_steps(most);
+    // it slides along the switch at 0
+    let slides = |_t: f64, y: &[f64], ydot: &mut [f64]| {
+        ydot[0] = -y[0].signum();
+        Ok(())
+    };
+    let mut all = methods();
+    all.push(Method::Rosenbrock);
+    for method in all {
+        let outcome = solve(Problem::ode(slides, [0.5]), method, (0.0, 2.0), &options());
+        let error = outcome.unwrap_err().to_string();
+        assert!(error.contains("switch to and fro"), "{method:?}: {error}");
+        assert!(!error.contains("max_steps"), "{method:?}: {error}");
+    }
+    let stiff = |_t: f64, y: &[f64], ydot: &mut [f64]| {
+        ydot.copy_from_slice(&[y[1], 1e6 * ((1.0 - y[0] * y[0]) * y[1] - y[0])]);
+        Ok(())
+    };
+    let explicit = Method::RungeKutta(ButcherTable::explicit(5).unwrap());
+    for method in [Method::DormandPrince, explicit] {
+        let outcome = solve(Problem::ode(stiff, [2.0, 0.0]), method, (0.0, 2.0), &options());
+        let error = outcome.unwrap_err().to_string();
+        assert!(error.contains("stability, not accuracy, limits the step"), "{method:?}: {error}");
+        let mut run =
+            Run::new(Problem::ode(stiff, [2.0, 0.0]), method, (0.0, 2.0), &options()).unwrap();
+        let reason = loop {
+            if let Err(reason) = run.advance() {
+                break reason;
+            }
+        };
+        assert!(matches!(reason, Reason::Steps(steps) if steps == most), "{reason}");
+        assert!(run.notice().is_some_and(|notice| error.ends_with(&notice)));
+    }
+    // nothing is wrong with a long run of a smooth solution
+    for method in methods() {
+        let error = solve(sine(), method, (0.0, 1e6), &tight().max_steps(most)).unwrap_err();
+        let words = error.to_string();
+        assert!(
+            words.contains("raise max_steps if the step size is reasonable"),
+            "{method:?}: {words}"
+        );
+    }
 }

@@ -12,7 +12,7 @@ pub(crate) struct Clock {
 }
 
 /// Part of a step by which the time of its end may be rounded.
-const ROUNDED: f64 = 1e-11;
+const ROUNDED: f64 = 1e-9;
 
 impl Clock {
     pub(crate) fn starting_at(origin: f64) -> Self {

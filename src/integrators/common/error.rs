@@ -4,10 +4,12 @@ use std::{error, fmt};
 
 use thiserror::Error;
 
-use crate::base::input::InputError;
+use crate::base::input::{InputError, debug_in_words};
 
-/// An error of an integrator.
-#[derive(Debug, Error)]
+debug_in_words!(Error, IntegrationError);
+
+/// An error of an integrator. It is shown in words, also by [`Debug`](std::fmt::Debug).
+#[derive(Error)]
 #[non_exhaustive]
 pub enum Error {
     /// A value that was handed in cannot be used; nothing was computed.
@@ -170,6 +172,9 @@ pub enum Cause {
         /// The same by difference quotients of the equations.
         difference: f64,
     },
+    /// The system's own `newton_solve`, as linear solver or preconditioner, answered zero to a right-hand side that is not: Newton's iteration
+    /// would take its first guess for the solution.
+    WrongSolver,
     /// The Newton matrix could not be factorized.
     LinearSolver,
     /// The mass matrix could not be factorized.
@@ -226,6 +231,9 @@ impl Cause {
                     "{method} is wrong: {what} is {supplied:e}, but {difference:e} by differences of the equations"
                 )
             }
+            Self::WrongSolver => {
+                "newton_solve is wrong: it answers zero to a right-hand side that is not".into()
+            }
             Self::LinearSolver => "the Newton matrix cannot be factorized".into(),
             Self::MassMatrix => "the mass matrix cannot be factorized".into(),
             Self::LinearConvergence => {
@@ -278,6 +286,9 @@ impl Cause {
                 "correct this derivative (ode::check looks at all of them), or let difference quotients take its place; \
                  if it is meant to be an approximation, switch this check off by check_jacobian(false)"
             }
+            Self::WrongSolver => {
+                "look for a factor that it forgets, a division by infinity, or a result that is not written into r"
+            }
             Self::LinearSolver => {
                 "look for a zero row or column of the Jacobian; a DAE has to be of index 1"
             }
@@ -308,7 +319,6 @@ impl Cause {
 }
 
 /// An integration that stopped: where, why, and what to try.
-#[derive(Debug)]
 #[non_exhaustive]
 pub struct IntegrationError {
     /// The integrator, such as "CVODE".

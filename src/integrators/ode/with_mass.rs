@@ -10,6 +10,7 @@ use super::mass::MassKind;
 
 /// The numbers of a constant mass matrix, for [`with_mass`].
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub enum MassMatrix {
     /// Its diagonal, for dense and band linear solvers.
     Diagonal(Vec<f64>),

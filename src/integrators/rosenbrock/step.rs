@@ -200,7 +200,14 @@ impl LinearlyImplicit {
                 }
                 Ok(())
             }
-            None => march.system.newton_solve(share, u),
+            None => {
+                let is_zero = u.iter().all(|u| *u == 0.0);
+                let outcome = march.system.newton_solve(share, u);
+                if outcome.is_ok() && !is_zero && u.iter().all(|u| *u == 0.0) {
+                    return Err(march.stopped(Cause::WrongSolver, h).into());
+                }
+                outcome
+            }
         };
         u[self.coupled..].fill(0.0);
         march.classify(outcome, Callback::NewtonSolve, t, h)

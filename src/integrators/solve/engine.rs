@@ -22,6 +22,7 @@ pub(super) trait Engine {
     fn interpolate(&mut self, t: f64, derivative: u32, out: &mut [f64]) -> Result<(), Error>;
     fn interpolant_degree(&self) -> u32;
     fn statistics(&self) -> Statistics;
+    fn notice(&self) -> Option<String>;
     /// Starts again at `t` from `y` (and `yp`, of a DAE).
     fn restart(&mut self, t: f64, y: &[f64], yp: &[f64]) -> Result<(), Error>;
     fn parameters(&self) -> &[f64];
@@ -88,6 +89,7 @@ macro_rules! forward {
             fn interpolate(t: f64, derivative: u32, out: &mut [f64]) -> Result<(), Error>;
             fn interpolant_degree() -> u32;
             fn statistics() -> Statistics;
+            fn notice() -> Option<String>;
             fn sensitivities_at(t: f64, out: MatMut<'_, f64>) -> Result<(), Error>;
             fn start_sensitivities(s: MatRef<'_, f64>, dp: &[f64]) -> Result<(), Error>;
             fn quadratures_at(t: f64, out: &mut [f64]) -> Result<(), Error>;

@@ -8,7 +8,7 @@ use super::solution::Solution;
 use crate::base::input::InputError;
 use crate::integrators::common;
 
-/// An error of [`solve`](super::solve).
+/// An error of [`solve`](super::solve). `Debug` is short, for logs; `Display` has the words.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum Error {
@@ -28,6 +28,8 @@ pub struct Stopped {
     pub reason: Reason,
     /// The solution so far.
     pub solution: Solution,
+    /// Why there are so many steps, if that is known: [`Run::notice`](super::Run::notice).
+    pub notice: Option<String>,
 }
 
 /// Why a run stopped, or did not begin.
@@ -140,9 +142,12 @@ impl From<common::Error> for Reason {
 impl fmt::Display for Stopped {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let t = self.solution.t().last().copied().unwrap_or(f64::NAN);
-        match &self.reason {
-            Reason::Failed(error) => error.fmt(f),
-            reason => write!(f, "the run stopped at t = {t:?}: {reason}"),
+        match (&self.reason, &self.notice) {
+            (Reason::Failed(error), _) => error.fmt(f),
+            (Reason::Steps(steps), Some(notice)) => {
+                write!(f, "the run stopped at t = {t:?}: {steps} steps taken; {notice}")
+            }
+            (reason, _) => write!(f, "the run stopped at t = {t:?}: {reason}"),
         }
     }
 }

@@ -11,6 +11,7 @@ use crate::integrators::{
 /// Output that a [`Solution`](super::Solution) keeps.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub enum Output {
     /// The ends of all steps, and the polynomials between them, for [`Solution::at`](super::Solution::at) any
     /// time. That takes the memory of the states times the order of the method at most.

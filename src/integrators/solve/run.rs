@@ -95,6 +95,12 @@ pub struct Run<'a> {
     pub(super) end: Option<End>,
 }
 
+/// Steps after which a run may lead nowhere, and how many times as many would then be left.
+const MANY: u64 = 1000;
+const HOPELESS: f64 = 1e3;
+/// Part of the mean step that the last one is then, at most.
+const SHRUNK: f64 = 1e-2;
+
 /// Limits of the whole run.
 pub(super) struct Limits {
     pub(super) steps: u64,
@@ -435,6 +441,25 @@ impl<'a> Run<'a> {
     /// Degree of the polynomial of the last step.
     pub(super) fn interpolant_degree(&self) -> u32 {
         self.engine.interpolant_degree().max(1)
+    }
+
+    /// A warning about the steps, where there are many: that stability, not accuracy, limits their size, or that they lead nowhere.
+    #[must_use]
+    pub fn notice(&self) -> Option<String> {
+        let steps = self.statistics().steps;
+        let h = self.engine.statistics().last_step.abs();
+        let left = (self.span.1 - self.t).abs() / h;
+        let usual = (self.t - self.span.0).abs() / steps.max(1) as f64;
+        let is_hopeless = steps >= MANY && h < SHRUNK * usual && left > HOPELESS * steps as f64;
+        self.engine.notice().or_else(|| {
+            is_hopeless.then(|| {
+                format!(
+                    "steps have shrunk to {h:.1e}, of which the rest of the span would take {left:.0e}: look for equations that switch to \
+                     and fro at this time (a sign, an if), whose solution slides along the switch: smooth them, or turn the switch into an \
+                     event; for a singularity; or for a fast oscillation"
+                )
+            })
+        })
     }
 
     /// Cost counters of the run so far.

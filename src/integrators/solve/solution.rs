@@ -29,6 +29,7 @@ pub struct Occurrence {
 /// Why a run ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub enum End {
     /// The end of the span is reached.
     Span,

@@ -33,7 +33,7 @@ pub fn solve(
         Err(Reason::Input(error)) => return Err(Error::Input(error)),
         Err(reason) => {
             let solution = Solution::new(span.0, SavedPoint { y: &start, s: &[], q: &[] }, dense);
-            return Err(Error::Stopped(Box::new(Stopped { reason, solution })));
+            return Err(Error::Stopped(Box::new(Stopped { reason, solution, notice: None })));
         }
     };
     let mut solution = Solution::new(run.t(), run.row(), dense);
@@ -45,7 +45,8 @@ pub fn solve(
         Ok(()) => Ok(solution),
         Err(reason) => {
             solution.end = End::Early;
-            Err(Error::Stopped(Box::new(Stopped { reason, solution })))
+            let notice = run.notice();
+            Err(Error::Stopped(Box::new(Stopped { reason, solution, notice })))
         }
     }
 }

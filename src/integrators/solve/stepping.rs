@@ -21,7 +21,8 @@ impl Run<'_> {
     /// ends the run.
     ///
     /// # Errors
-    /// The reason why the run cannot continue. The state that was reached remains: [`t`](Self::t), [`y`](Self::y).
+    /// The reason why the run cannot continue. The state that was reached remains: [`t`](Self::t), [`y`](Self::y). Where it is the number of
+    /// steps, [`notice`](Self::notice) may know why there are so many.
     pub fn advance(&mut self) -> Result<Option<Step<'_>>, Reason> {
         if self.end.is_some() {
             return Ok(None);

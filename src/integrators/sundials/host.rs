@@ -342,8 +342,20 @@ impl<S> Host<S> {
                 ilu.solve(z);
                 self.check_finite(Callback::Preconditioner, t, z)
             }
-            None => self.guard_output(Callback::NewtonSolve, t, z, own),
+            None => match self.guard_output(Callback::NewtonSolve, t, z, own) {
+                0 => self.check_answer(r, z),
+                failed => failed,
+            },
         }
+    }
+
+    /// Stops where the system's own solver answers zero to a right-hand side that is not.
+    pub(super) fn check_answer(&mut self, r: &[f64], answer: &[f64]) -> i32 {
+        if answer.iter().any(|x| *x != 0.0) || r.iter().all(|r| *r == 0.0) {
+            return 0;
+        }
+        self.troubles.wrong = Some(Cause::WrongSolver);
+        STOP
     }
 
     /// Requests a smaller step where an incomplete factorization has no pivot.

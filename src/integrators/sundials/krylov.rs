@@ -36,6 +36,7 @@ pub struct Krylov {
 /// The Krylov methods.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub enum KrylovMethod {
     /// Minimizes the residual in a subspace (`SUNLinSol_SPGMR`): one product for each of its dimensions,
     /// whose vectors are all kept.
@@ -66,6 +67,7 @@ pub enum Side {
 /// The preconditioner of a Krylov method: an approximation of its linear systems that is solved directly.
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub enum Preconditioner {
     /// The system's own `newton_setup` and `newton_solve`, which may be approximate here. A `newton_rhs` of
     /// the system is not called: all terms have to be in `rhs`.

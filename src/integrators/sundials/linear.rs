@@ -254,7 +254,11 @@ unsafe extern "C" fn solve<S>(
     unsafe { (custom.step_parameter.1)(custom.memory, &raw mut parameter) };
     let call = |system: &mut S, x: &mut [f64]| newton_solve(system, parameter, x);
     // SUNDIALS takes unknown codes of a linear solver for success.
-    match host.guard_output(Callback::NewtonSolve, host.setup_time, x, call) {
+    let outcome = match host.guard_output(Callback::NewtonSolve, host.setup_time, x, call) {
+        0 => host.check_answer(b, x),
+        failed => failed,
+    };
+    match outcome {
         RETRY => ffi::SUNLS_PACKAGE_FAIL_REC as i32,
         STOP => ffi::SUNLS_PACKAGE_FAIL_UNREC,
         _ => 0,

@@ -107,7 +107,10 @@ impl<O> SolverOptions<O> {
     /// statistics omit. A run with a wrong Jacobian ends with
     /// [`Cause::WrongJacobian`](crate::integrators::common::Cause::WrongJacobian), because Newton's
     /// iteration may accept a wrong result as the solution. Switch the check off for a Jacobian that is
-    /// meant to be an approximation. [`LinearSolver::Custom`] and preconditioners are not checked.
+    /// meant to be an approximation.
+    ///
+    /// A linear solver or preconditioner of the system's own is not checked, but for answers that are zero
+    /// ([`Cause::WrongSolver`](crate::integrators::common::Cause::WrongSolver)).
     pub fn check_jacobian(mut self, on: bool) -> Self {
         self.trusts_jacobian = !on;
         self

@@ -15,6 +15,10 @@ use crate::integrators::common::{
     check_start_time, check_time, number_before,
 };
 
+/// Explicit methods whose steps stability limits fail the error test more often than one in twenty, if there are many.
+const UNSTABLE: f64 = 0.05;
+const MANY: u64 = 1000;
+
 /// Return code of a call that succeeded.
 const DONE: i32 = 0;
 
@@ -148,6 +152,17 @@ impl<K, S> Integrator for Session<K, S> {
 
     fn statistics(&self) -> Statistics {
         self.all_statistics()
+    }
+
+    fn notice(&self) -> Option<String> {
+        let Statistics { steps, error_test_failures: failures, .. } = self.step_statistics();
+        let is_explicit = matches!(self.stages, [Some(_), None]);
+        (is_explicit && steps >= MANY && failures as f64 > UNSTABLE * steps as f64).then(|| {
+            format!(
+                "{failures} steps failed the error test besides the {steps} that were taken, as where stability, not accuracy, limits the steps \
+                 of an explicit method: use an implicit one"
+            )
+        })
     }
 
     fn system(&self) -> &S {

@@ -47,6 +47,7 @@ pub enum Strain {
 /// Each law has the material's Young's modulus and Poisson's ratio at small strains; its other parameters are
 /// ratios, without unit.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub enum Law {
     /// Hooke's law for Green's strain. It softens under compression: a bar pressed to 58 % of its length
     /// (1/sqrt 3) collapses.
@@ -147,6 +148,7 @@ impl Law {
 
 /// How the viscous force of a body follows from its velocities.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Viscosity {
     /// Force -B v with the constant B of the undeformed shape, as in Hirai. Not invariant to
     /// rotation: a body that spins as a whole is braked.

@@ -14,6 +14,7 @@ use crate::integrators::{
 ///
 /// Interpolants are those of the step before, extrapolated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Predictor {
     /// At the state at the start of the step.
     Trivial = 0,

@@ -6,6 +6,7 @@ use crate::integrators::common::check_finite;
 /// How the equations of the sensitivities are solved together with those of the state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub enum SensitivityMethod {
     /// All of one step at once (`CV_SIMULTANEOUS`).
     Simultaneous,
@@ -18,6 +19,7 @@ pub enum SensitivityMethod {
 /// Where the right-hand sides or residuals of the sensitivities come from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub enum SensitivitySource {
     /// The system's own `sensitivity_rhs` or `sensitivity_residual`.
     Supplied,
