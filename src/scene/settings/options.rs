@@ -23,7 +23,6 @@ pub struct SettingsOption {
 
 /// Type of the value of an option, with the function that sets it in [`Settings`].
 #[derive(Debug, Clone, Copy)]
-#[non_exhaustive]
 pub enum SettingsValue {
     /// A number.
     Number(fn(&mut Settings, f64)),
