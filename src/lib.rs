@@ -80,6 +80,7 @@ pub use elements::{
         RigidMass, Substance,
     },
     mesh::{Cells, Mesh, Selection, SolidCells},
+    rod::{Rod, RodSection, SectionNumbers},
 };
 pub use integrators::common::Integrator;
 #[cfg(feature = "scene-file")]
@@ -142,6 +143,11 @@ pub struct EmbeddingDoctests;
 #[doc = include_str!("../docs/reduced-models.md")]
 #[cfg(all(doctest, feature = "sweep"))]
 pub struct ReducedModelsDoctests;
+
+/// Compiles and runs the code blocks of the page on rods.
+#[doc = include_str!("../docs/scenes/rods.md")]
+#[cfg(all(doctest, feature = "bodies"))]
+pub struct RodsDoctests;
 
 /// Compiles and runs the code blocks of the page on sweeps.
 #[doc = include_str!("../docs/sweeps.md")]

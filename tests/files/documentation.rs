@@ -20,6 +20,7 @@ const PAGE: &str = concat!(
     include_str!("../../docs/scenes/magnets.md"),
     include_str!("../../docs/scenes/growth.md"),
     include_str!("../../docs/scenes/fluids.md"),
+    include_str!("../../docs/scenes/rods.md"),
 );
 const SILICONE: &str = include_str!("../../docs/silicone.md");
 
@@ -64,13 +65,15 @@ fn all_scenes_are_run() {
         curl,
         eleventh,
         gust,
+        arm,
+        hoop,
     ] = blocks("toml")[..]
     else {
-        panic!("fifteen blocks")
+        panic!("seventeen blocks")
     };
     assert_eq!([fourth, fifth, sixth, seventh], [GLUED_ARM, GRIPPER, WHEEL, FINGER]);
     assert_eq!([eighth, ninth, led, tenth, curl], [MUSCLES, MAGNETS, LED, GEL, CURL]);
-    assert_eq!(eleventh, FOAM);
+    assert_eq!([eleventh, arm, hoop], [FOAM, ARM, HOOP]);
     let with_sensors = first.to_owned() + sensors;
     for text in [
         &with_sensors,
@@ -87,6 +90,8 @@ fn all_scenes_are_run() {
         curl,
         eleventh,
         gust,
+        arm,
+        hoop,
     ] {
         let file = SceneFile::parse(text, Path::new("scene.toml")).unwrap();
         let motion = file.scene.simulate(&file.settings, &file.output.sampling()).unwrap();
@@ -112,6 +117,8 @@ const LED: &str = include_str!("../../scenes/led-strip.toml");
 const GEL: &str = include_str!("../../scenes/swelling-strip.toml");
 const CURL: &str = include_str!("../../scenes/curling-strip.toml");
 const FOAM: &str = include_str!("../../scenes/float.toml");
+const ARM: &str = include_str!("../../scenes/rod-arm.toml");
+const HOOP: &str = include_str!("../../scenes/hoop.toml");
 const CABLE: &str = include_str!("../../scenes/cable.toml");
 
 /// A cable under the tension T at the distance e from the axis bends a beam as the moment T e does: to the angle T e L/(E I) at its end,

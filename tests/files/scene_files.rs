@@ -254,6 +254,8 @@ fn all_scenes_are_run() {
         "swelling-strip",
         "curling-strip",
         "float",
+        "rod-arm",
+        "hoop",
         "gripper",
         "wheel-over-stones",
         // where smaller models are tested

@@ -64,6 +64,7 @@ mod rigid_holds;
 mod rigid_mass;
 mod ring;
 mod robots;
+mod rods;
 mod rubber_motion;
 mod sensors;
 mod several;

@@ -411,12 +411,18 @@ impl Body {
 
     /// Adds to `matrix` that of the Poisson equation of [steps that turn](super::turning).
     pub(crate) fn add_gradients(&self, matrix: &mut BlockMatrix) {
-        self.continua.iter().for_each(|own| own.elements.add_gradients(matrix));
+        self.continua.iter().for_each(|own| match &own.rod {
+            Some(rod) => rod.add_gradients(matrix),
+            None => own.elements.add_gradients(matrix),
+        });
     }
 
     /// Adds its right-hand side for a `step` (m) from displacements `u` (m) to `right`. Returns the largest turn (rad) of a cell.
     pub(crate) fn add_turned(&self, u: &[f64], step: &[f64], right: &mut [f64]) -> f64 {
-        let turns = self.continua.iter().map(|own| own.elements.add_turned(u, step, right));
+        let turns = self.continua.iter().map(|own| match &own.rod {
+            Some(rod) => rod.add_turned(u, step, right),
+            None => own.elements.add_turned(u, step, right),
+        });
         turns.fold(0.0, f64::max)
     }
 

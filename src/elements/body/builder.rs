@@ -23,6 +23,7 @@ use crate::base::vector::distinct;
 use crate::elements::basis::Finer;
 use crate::elements::material::{Plane, Strain, Substance, Viscosity};
 use crate::elements::mesh::{Mesh, NodeMap};
+use crate::elements::rod::Rod;
 
 /// The builder of a body: see [`Body::new`].
 ///
@@ -105,7 +106,7 @@ impl BodyBuilder {
     }
 
     /// The same bodies on finer meshes; `make` refines each mesh, given the numbers of its cells among those of all. Also returns the
-    /// joined coarse mesh, without point masses, and its refinement. Rigid bodies among several keep their mesh.
+    /// joined coarse mesh, without point masses, and its refinement. Rigid bodies and rods among several keep their mesh.
     ///
     /// # Errors
     /// Regions of cells that the mesh does not have; several bodies with point masses; as `make`.
@@ -123,7 +124,12 @@ impl BodyBuilder {
                     "on finer meshes of several bodies it would have another number: leave it out";
                 return Err(InputError::new("point mass", format!("\"{name}\""), help));
             }
-            let own = match recipe.material.is_rigid && !is_single {
+            if let (true, Some(name)) = (is_single && recipe.rod.is_some(), &recipe.name) {
+                let help = "a rod has no finer mesh: raise its number of elements";
+                return Err(InputError::new("rod", format!("\"{name}\""), help));
+            }
+            let keeps_mesh = recipe.material.is_rigid || recipe.rod.is_some();
+            let own = match keeps_mesh && !is_single {
                 true => Finer::none(mesh),
                 false => make(mesh, cells)?,
             };
@@ -230,13 +236,19 @@ impl Body {
         });
         let mut regions = Regions::new(&mesh, strain, plane, &recipe.material, &recipe.regions)?;
         let whole = Whole::of(&mesh, &recipe)?;
+        let rod = recipe.rod_elements()?;
+        if let (Some(_), Some(name)) = (&rod, &recipe.name) {
+            mesh = mesh.also_named(name);
+        }
         for (name, position, mass) in &recipe.points {
             positive(&format!("mass of point \"{name}\""), *mass, "kg")?;
             mesh.push_node(name, position)?;
         }
 
         let frame = whole.iter().map(|whole| &whole.frame[..]);
-        let pattern = Arc::new(NodePattern::new(mesh.node_count(), mesh.cells().chain(frame)));
+        let sections = rod.as_ref().map_or_else(Vec::new, |rod| rod.groups());
+        let groups = mesh.cells().chain(frame).chain(sections.iter().map(|nodes| &nodes[..]));
+        let pattern = Arc::new(NodePattern::new(mesh.node_count(), groups));
         recipe.dilatation.check(mesh.kind(), mesh.dimension(), plane)?;
         let elements = elements(&mesh, section, recipe.dilatation, &pattern)?;
         mesh.check_sides()?;
@@ -249,7 +261,13 @@ impl Body {
         let mut inertia = NodeMatrix::zeros(&pattern);
         let mut stiffness = BlockMatrix::zeros(&pattern, mesh.dimension());
         let mut damping = stiffness.clone();
-        elements.add_inertia(&regions, &|laws| laws.density, recipe.inertia, &mut inertia);
+        let is_lumped = recipe.inertia == Inertia::Lumped;
+        match &rod {
+            Some(rod) => rod.add_inertia(1.0, is_lumped, &mut inertia),
+            None => {
+                elements.add_inertia(&regions, &|laws| laws.density, recipe.inertia, &mut inertia);
+            }
+        }
         let whole = whole.map(|whole| {
             let uniform = match mesh.is_surface() {
                 true => MassMoments::of_surface(&mesh, material.material.density),
@@ -261,19 +279,29 @@ impl Body {
             Ok((whole, moments))
         });
         let whole = whole.transpose()?;
-        elements.add_stiffness(&regions, &|laws| laws.elastic, &mut stiffness);
-        elements.add_stiffness(&regions, &|laws| laws.natural_viscosity(), &mut damping);
+        match &rod {
+            Some(rod) => rod.add_tangents_at_rest(mesh.node_count(), &mut stiffness, &mut damping),
+            None => {
+                elements.add_stiffness(&regions, &|laws| laws.elastic, &mut stiffness);
+                elements.add_stiffness(&regions, &|laws| laws.natural_viscosity(), &mut damping);
+            }
+        }
         let mass_damping = regions.have_mass_damping().then(|| {
             let mut matrix = match (recipe.inertia, &whole) {
-                (Inertia::Lumped, None) => NodeMatrix::diagonal(mesh.node_count()),
+                (Inertia::Lumped, None) if rod.is_none() => NodeMatrix::diagonal(mesh.node_count()),
                 _ => NodeMatrix::zeros(&pattern),
             };
             let density = |laws: &Laws| laws.mass_damping * laws.density;
-            match &whole {
-                Some((whole, moments)) => {
+            match (&whole, &rod) {
+                (Some((whole, moments)), _) => {
                     whole.add_inertia(moments, material.mass_damping, &mut matrix);
                 }
-                None => elements.add_inertia(&regions, &density, recipe.inertia, &mut matrix),
+                (None, Some(rod)) => {
+                    rod.add_inertia(material.mass_damping, is_lumped, &mut matrix);
+                }
+                (None, None) => {
+                    elements.add_inertia(&regions, &density, recipe.inertia, &mut matrix)
+                }
             }
             damping.add_on_all_axes(&matrix);
             Arc::new(matrix)
@@ -300,6 +328,7 @@ impl Body {
             elements,
             regions: Arc::new(regions),
             fibres: Arc::new(fibres),
+            rod: rod.map(Arc::new),
             recipe: Arc::new(recipe),
         };
         let body = Self {
@@ -336,20 +365,16 @@ impl Body {
     /// [`Law`](crate::Law); [`BodyBuilder::build`] assembles it.
     #[allow(clippy::new_ret_no_self)] // a body is made by its builder alone
     pub fn new(mesh: Mesh, substance: impl Into<Substance>) -> BodyBuilder {
-        let recipe = Recipe {
-            name: None,
-            material: substance.into(),
-            regions: Vec::new(),
-            strain: Strain::default(),
-            viscosity: None,
-            inertia: Inertia::default(),
-            plane: None,
-            dilatation: Dilatation::default(),
-            thickness: None,
-            area: None,
-            points: Vec::new(),
-        };
-        BodyBuilder { bodies: vec![(mesh, recipe)] }
+        BodyBuilder { bodies: vec![(mesh, Recipe::of(substance.into()))] }
+    }
+    /// Starts a body of a [rod](Rod) made of `substance`, whose law is linear; of the options of a body it has a name, inertia and point masses.
+    ///
+    /// # Errors
+    /// A section of no size; fewer than two points, points that coincide; fewer elements than sides of the path; a kink that no section follows.
+    pub fn rod(rod: Rod, substance: impl Into<Substance>) -> Result<BodyBuilder, InputError> {
+        let mesh = rod.mesh()?;
+        let recipe = Recipe { rod: Some(rod), ..Recipe::of(substance.into()) };
+        Ok(BodyBuilder { bodies: vec![(mesh, recipe)] })
     }
 
     /// The builder that made it, for a body that differs in some options.

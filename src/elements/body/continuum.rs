@@ -11,6 +11,7 @@ use super::regions::Regions;
 use super::reinforcement::{Families, among_others};
 use crate::elements::material::{Material, Plane, Strain, Viscosity};
 use crate::elements::mesh::CellKind;
+use crate::elements::rod::RodElements;
 
 /// The cells of one body.
 #[derive(Clone)]
@@ -27,6 +28,8 @@ pub(super) struct Continuum {
     pub(super) elements: Arc<dyn Elements>,
     pub(super) regions: Arc<Regions>,
     pub(super) fibres: Arc<Families>,
+    /// Those of a rod, whose cells have no forces of their own.
+    pub(super) rod: Option<Arc<RodElements>>,
     /// The input that it was built from.
     pub(super) recipe: Arc<Recipe>,
 }
@@ -40,13 +43,14 @@ impl Continuum {
             cells: moved(&self.cells, cell),
             elements: self.elements.among_others(offset),
             fibres: Arc::new(among_others(&self.fibres, offset)),
+            rod: self.rod.as_ref().map(|rod| Arc::new(rod.among_others(offset.node))),
             ..self.clone()
         }
     }
 
     /// The same without its rigid pieces, if there is anything else.
     pub(super) fn soft(&self) -> Option<Self> {
-        self.regions.are_any(false).then(|| self.clone())
+        (self.rod.is_none() && self.regions.are_any(false)).then(|| self.clone())
     }
 
     /// The same with the stiffness of its rigid pieces alone, if it has any.

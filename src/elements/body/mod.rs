@@ -40,6 +40,7 @@ mod reinforcement;
 mod relaxing;
 mod revolved;
 mod rigid;
+mod rods;
 mod sample;
 mod section;
 mod strain_modes;

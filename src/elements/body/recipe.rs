@@ -7,6 +7,7 @@ use super::section::Section;
 use crate::base::input::{InputError, positive};
 use crate::elements::material::{Plane, Strain, Substance, Viscosity};
 use crate::elements::mesh::Mesh;
+use crate::elements::rod::Rod;
 
 /// The options of a body.
 #[derive(Debug, Clone)]
@@ -23,9 +24,29 @@ pub(super) struct Recipe {
     pub(super) thickness: Option<f64>,
     pub(super) area: Option<f64>,
     pub(super) points: Vec<(String, Vec<f64>, f64)>,
+    /// The rod whose axis and sections are the mesh.
+    pub(super) rod: Option<Rod>,
 }
 
 impl Recipe {
+    /// The usual options of a body of a material.
+    pub(super) fn of(material: Substance) -> Self {
+        Self {
+            name: None,
+            material,
+            regions: Vec::new(),
+            strain: Strain::default(),
+            viscosity: None,
+            inertia: Inertia::default(),
+            plane: None,
+            dilatation: Dilatation::default(),
+            thickness: None,
+            area: None,
+            points: Vec::new(),
+            rod: None,
+        }
+    }
+
     /// The assumption across the cells of `mesh`, where they have two dimensions: unless one is given, no strain in the plane,
     /// and no stress in space, where nothing keeps a membrane from changing its thickness.
     pub(super) fn plane(&self, mesh: &Mesh) -> Plane {
@@ -69,6 +90,9 @@ impl Recipe {
                 (Some(value), _) => Err(no_section("area", value)),
                 (_, Some(value)) => Err(no_section("thickness", value)),
             };
+        }
+        if let Some(rod) = &self.rod {
+            return Ok(rod.mean_area());
         }
         match (kind.dimension(), self.area, self.thickness) {
             (1, Some(area), None) => positive("area", area, "m^2"),

@@ -382,7 +382,8 @@ impl Mesh {
             }));
             boundary.extend(mesh.boundary_nodes().iter().map(|node| first_node + node));
             joined.plane.extend(mesh.plane.iter().map(|node| first_node + node));
-            for (own, nodes) in mesh.sets.iter().filter(|(own, _)| *own != "all") {
+            let is_own = |set: &str| set != "all" && !is_of(set, name);
+            for (own, nodes) in mesh.sets.iter().filter(|(own, _)| is_own(own)) {
                 joined.sets.insert(format!("{name}/{own}"), moved(nodes, first_node));
             }
             joined.sets.insert(name.into(), (first_node..joined.node_count()).collect());
@@ -394,6 +395,16 @@ impl Mesh {
         joined.sets.insert("all".into(), (0..joined.node_count()).collect());
         joined.sets.insert("boundary".into(), boundary);
         joined
+    }
+
+    /// The same; its sets are known by the `name` of its body, too, as among others.
+    pub(crate) fn also_named(mut self, name: &str) -> Self {
+        let own = self.sets.clone();
+        for (set, nodes) in own.into_iter().filter(|(set, _)| !is_of(set, name)) {
+            let known = if set == "all" { name.to_owned() } else { format!("{name}/{set}") };
+            self.sets.insert(known, nodes);
+        }
+        self
     }
 
     /// Notes in words on changes made while it was read from a file: omitted triangles without an area, for example.
@@ -467,4 +478,9 @@ fn check_dimension(dimension: usize, kind: CellKind) -> Result<(), InputError> {
         _ => format!("{kind:?} cells need a space of dimension {least}"),
     };
     Err(InputError::new("mesh.dimension", dimension, help))
+}
+
+/// Whether a set is that of the body with a `name`, or one of its own.
+fn is_of(set: &str, name: &str) -> bool {
+    set.strip_prefix(name).is_some_and(|rest| rest.is_empty() || rest.starts_with('/'))
 }

@@ -258,6 +258,7 @@ impl<S: Ode, M: StepMethod> OneStep<S, M> {
 impl<S: Ode, M: StepMethod> Integrator for OneStep<S, M> {
     type System = S;
 
+    #[allow(clippy::misnamed_getters, reason = "`t` of the march counts from its start")]
     fn t(&self) -> f64 {
         self.march.now
     }

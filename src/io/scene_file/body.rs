@@ -137,16 +137,19 @@ pub(super) const POINT: TableKeys = TableKeys::new(
     "[[point]]\nname = \"hub\"\nposition = [0.05, 0.05]\nmass = 0.001",
 );
 
-/// The body or bodies that `value`, `[body]` or `[[body]]`, describes, with the point masses of `points`.
+/// The body or bodies that `value`, `[body]` or `[[body]]`, describes, with the point masses of `points`; `among_others` if there are rods
+/// besides.
 pub(super) fn bodies(
     value: &Value,
     dimension: Option<&Value>,
     points: Option<&Value>,
-) -> Result<Body, Error> {
+    among_others: bool,
+) -> Result<Vec<Body>, Error> {
     let points = points.map(|points| points.tables(&POINT)).transpose()?.unwrap_or_default();
     let tables = value.one_or_more()?;
     if let [single] = &tables[..] {
-        return body(single, dimension, &points.iter().collect::<Vec<_>>(), false);
+        let points: Vec<_> = points.iter().collect();
+        return Ok(vec![body(single, dimension, &points, among_others)?]);
     }
     let mut names = Vec::with_capacity(tables.len());
     for (number, table) in (1..).zip(&tables) {
@@ -166,7 +169,7 @@ pub(super) fn bodies(
         let own: Vec<&Table> = own.map(|(point, _)| point).collect();
         body(table, dimension, &own, true)
     });
-    Body::join(bodies.collect::<Result<Vec<_>, Error>>()?).map_err(|error| value.error(error))
+    bodies.collect()
 }
 
 /// The body of a table, with its `points`. One `among_others` is made of its finer mesh at once.

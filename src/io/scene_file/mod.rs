@@ -64,6 +64,7 @@ mod phase_keys;
 mod reference;
 #[cfg(feature = "play")]
 mod rewrite;
+mod rod;
 mod schema;
 mod selection;
 mod sensor;

@@ -18,7 +18,7 @@ use crate::base::vector::norm;
 use crate::dynamics::error::Error;
 use crate::elements::mesh::Selection;
 use crate::scene::constraint::Axis;
-use crate::scene::forces::Signals;
+use crate::scene::forces::{Signals, WrenchKind};
 use crate::scene::timeline::{Input, Phase, Quantity, Row, Scene, Target};
 
 /// Adds a table inside of a phase.
@@ -103,7 +103,11 @@ fn add_phase(scene: Scene, value: &Value, check: &Check) -> Result<Scene, Error>
 }
 
 fn hold(phase: Phase, table: &Table, scene: &Scene) -> Result<Phase, Error> {
-    let nodes = nodes(table, scene)?;
+    let mut nodes = nodes(table, scene)?;
+    if table.flag("rotation")? {
+        let with_sections = scene.body().with_sections(&nodes);
+        nodes = with_sections.map_err(|error| table.blame(error))?;
+    }
     Ok(match axes(table, scene)? {
         None => phase.hold(nodes),
         Some(axes) => phase.hold_axes(nodes, axes),
@@ -194,19 +198,21 @@ fn hold_combination(phase: Phase, table: &Table, scene: &Scene) -> Result<Phase,
     Ok(phase.hold_combination(terms.iter().map(term).collect::<Result<Vec<_>, Error>>()?))
 }
 
-/// A vector on nodes, of the quantities of the table.
-fn on_nodes(phase: Phase, table: &Table, scene: &Scene) -> Result<Phase, Error> {
+/// Vectors on nodes, of the quantities of the table; a load may have a moment, too.
+fn on_nodes(mut phase: Phase, table: &Table, scene: &Scene) -> Result<Phase, Error> {
     let (nodes, dimension) = (nodes(table, scene)?, scene.body().dimension());
     for quantity in Quantity::ON_NODES {
         let (Row { keys: [list, _], word, .. }, rank) = (quantity.row(), quantity.rank(dimension));
-        if list != table.name() {
+        let is_beside =
+            table.name() == LOAD.name && quantity == Quantity::Wrench(WrenchKind::Moment);
+        if list != table.name() && !is_beside {
             continue;
         }
         if let Some(value) = vectors_until(table, phase.end(), word, rank)? {
-            return Ok(phase.with(Input::new(quantity, Target::Nodes(nodes), value)));
+            phase = phase.with(Input::new(quantity, Target::Nodes(nodes.clone()), value));
         }
     }
-    Ok(phase) // one of them is there: the table's groups say so
+    Ok(phase)
 }
 
 fn steer(phase: Phase, table: &Table, scene: &Scene) -> Result<Phase, Error> {

@@ -76,7 +76,17 @@ const AXES: Key =
 pub(super) const HOLD: TableKeys = TableKeys::new(
     "hold",
     "Nodes stay where they are when the phase begins.",
-    &[NODES, AXES],
+    &[
+        NODES,
+        AXES,
+        Key::new(
+            "rotation",
+            ValueType::Flag,
+            "whether the cross sections of rods at these nodes are held as well",
+        )
+        .note("A rod that is held without rotation turns freely, as in a ball joint.")
+        .default("false"),
+    ],
     "hold = [{ nodes = \"left\" }, { nodes = 3, axes = \"y\" }]",
 );
 
@@ -185,6 +195,8 @@ pub(super) const LOAD: TableKeys = TableKeys::new(
             .note("Spread evenly over the faces that the nodes make up; nodes without faces share it equally."),
         Key::new("traction", ValueType::ChangingVector, "the force per undeformed area of the faces")
             .in_unit("N/m^2"),
+        Key::new("moment", ValueType::ChangingVector, "a moment as of `moment`, alone or beside a force or a total")
+            .in_unit("N m"),
         TIMES,
         PERIOD,
         Key::new("forces", ValueType::List(&ValueType::Vector), "the force on each node at these times")
@@ -193,6 +205,8 @@ pub(super) const LOAD: TableKeys = TableKeys::new(
             .in_unit("N"),
         Key::new("tractions", ValueType::List(&ValueType::Vector), "the traction at these times")
             .in_unit("N/m^2"),
+        Key::new("moments", ValueType::List(&ValueType::Vector), "the moment at these times")
+            .in_unit("N m"),
     ],
     "load = [\n\
      \x20   { nodes = \"right\", times = [0.0, 0.1], forces = [[0.0, 0.0], [0.0, -0.01]] },\n\
@@ -202,9 +216,15 @@ pub(super) const LOAD: TableKeys = TableKeys::new(
 .one_of(&[
     &["force"],
     &["total"],
+    &["moment"],
+    &["force", "moment"],
+    &["total", "moment"],
     &["traction"],
     &["times", "forces"],
     &["times", "totals"],
+    &["times", "moments"],
+    &["times", "forces", "moments"],
+    &["times", "totals", "moments"],
     &["times", "tractions"],
 ]);
 

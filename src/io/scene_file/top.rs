@@ -17,6 +17,7 @@ use super::muscle::{self, MUSCLE};
 use super::obstacle::{self, OBSTACLE};
 use super::phase;
 use super::phase_keys::PHASE;
+use super::rod::{self, ROD};
 use super::sensor::{SENSOR, sensor};
 use super::settings::{self, OUTPUT, SOLVER, STATICS};
 use super::smaller;
@@ -26,10 +27,11 @@ use super::tie::{self, TIE};
 use super::touch::{self, TOUCH};
 use super::value::Value;
 use crate::dynamics::error::Error;
+use crate::elements::body::Body;
 use crate::scene::timeline::{Device, Scene};
 
 /// Keys before and after those of components.
-const BEFORE: [Key; 8] = [
+const BEFORE: [Key; 9] = [
     Key::new("title", ValueType::Text, "the title, for pictures and pages"),
     Key::new("dimension", ValueType::Count, "the dimension of space")
         .note("1, 2 or 3. In a higher one than the mesh has, bars are strings and surfaces membranes.")
@@ -42,7 +44,8 @@ const BEFORE: [Key; 8] = [
     Key::new("unusual", ValueType::List(&ValueType::Text), "quantities whose warnings of units are suppressed")
         .note("Of `size`, `mass`, `density`, `young`, `wave-speed`, `thickness`, `weight`, `remanence`, `magnetic-field`, `dipole-moment`, `absolute-pressure`, `orifice-area`, `touch-start`, `facets`: they are not [warned of](scenes/warnings.md#warnings).")
         .default("none"),
-    Key::new("body", ValueType::Tables(&BODY), "what moves").required(),
+    Key::new("body", ValueType::Tables(&BODY), "what moves").default("required without rods"),
+    Key::new("rod", ValueType::Tables(&ROD), "rods: slender bodies"),
     Key::new("point", ValueType::Tables(&POINT), "point masses"),
     Key::new("initial", ValueType::Table(&INITIAL), "how the body moves at first").default("at rest"),
 ];
@@ -136,9 +139,19 @@ pub(super) const TOP: TableKeys = TableKeys::new(
 pub(super) fn scene_file(top: &Table, devices: Vec<Arc<dyn Device>>) -> Result<SceneFile, Error> {
     let title = top.optional("title", Value::string)?.unwrap_or_default();
     let (dimension, points) = (top.get("dimension"), top.get("point"));
-    let body =
-        top.required("body", |value| body::bodies(value, dimension.as_ref(), points.as_ref()))?;
-    let mut scene = Scene::new(body);
+    let rods = top.optional("rod", rod::rods)?.unwrap_or_default();
+    let bodies = match top.get("body") {
+        None if !rods.is_empty() => Vec::new(),
+        _ => top.required("body", |value| {
+            body::bodies(value, dimension.as_ref(), points.as_ref(), !rods.is_empty())
+        })?,
+    };
+    let of = top.get(if bodies.is_empty() { "rod" } else { "body" });
+    let body = Body::join(bodies.into_iter().chain(rods));
+    let mut scene = Scene::new(body.map_err(|error| match &of {
+        Some(of) => of.error(error),
+        None => top.blame(error),
+    })?);
     if let Some(gravity) = top.get("gravity") {
         let gravity = gravity.vector(scene.body().dimension())?;
         scene = scene.gravity(gravity);
@@ -174,12 +187,16 @@ pub(super) fn scene_file(top: &Table, devices: Vec<Arc<dyn Device>>) -> Result<S
     if scene.phases().is_empty() {
         return Err(top.missing("phase", "a scene needs one phase at least: [[phase]]"));
     }
-    scene = top.required("body", |body| body::on_finer_mesh(scene, body))?;
+    if let Some(body) = top.get("body") {
+        scene = body::on_finer_mesh(scene, &body)?;
+    }
     if let Some(initial) = starts_finer {
         scene = initial::add_initial(scene, &initial)?;
     }
-    scene = top.required("body", |body| body::moving(scene, body))?;
-    let auto = top.required("body", body::auto)?;
+    if let Some(body) = top.get("body") {
+        scene = body::moving(scene, &body)?;
+    }
+    let auto = top.optional("body", body::auto)?.unwrap_or_default();
     let settings = top.optional("solver", settings::solver)?.unwrap_or_default();
     let accuracy = top.optional("solver", settings::accuracy)?.unwrap_or_default();
     let statics = top.optional("statics", |value| settings::statics(value, &scene))?;

@@ -23,6 +23,7 @@ mod obstacle;
 mod passage;
 mod pipe;
 mod pressure;
+mod section_wrench;
 mod shape;
 mod signal;
 mod signals;

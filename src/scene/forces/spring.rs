@@ -23,6 +23,8 @@ use path::{COLLAPSED, Path};
 use super::friction::Friction;
 use super::signal::Signal;
 use super::surface::natural;
+#[cfg(feature = "output")]
+use super::surface::weighted;
 use crate::base::input::{InputError, finite, not_negative, positive};
 use crate::base::vector::norm;
 use crate::elements::basis::shares_at;
@@ -501,6 +503,12 @@ fn distance(a: &[f64; 3], b: &[f64; 3]) -> f64 {
 }
 
 impl Joint {
+    /// A point that moves with nodes.
+    #[cfg(feature = "output")]
+    pub(crate) fn carried(mesh: &Mesh, shares: Vec<(usize, f64)>) -> Self {
+        Self { at: weighted(shares.iter().copied(), mesh.positions(), mesh.dimension()), shares }
+    }
+
     /// The node that it is, if it is one.
     pub(crate) fn node(&self) -> Option<usize> {
         match self.shares[..] {

@@ -45,14 +45,16 @@ pub(crate) fn weighted(
     sum
 }
 
-/// Each boundary node by itself; on a plane of symmetry at which the mesh was cut, half of it, but not on the axis of a body of revolution.
+/// Each boundary node by itself, and the points around the cross sections of rods; on a plane of symmetry at which the mesh was cut, half of it, but not on the axis of a body of revolution.
 pub(crate) fn boundary_nodes(body: &Body) -> Vec<SurfacePoint> {
     let mesh = body.mesh();
     let mut parts = vec![1.0; mesh.node_count()];
     if !body.is_axisymmetric() {
         mesh.plane_of_symmetry().iter().for_each(|&node| parts[node] = 0.5);
     }
-    mesh.boundary_nodes().iter().map(|&node| point(&[node], &[1.0], parts[node])).collect()
+    let nodes = mesh.boundary_nodes().iter().filter(|node| !body.is_of_rod(**node));
+    let nodes = nodes.map(|&node| point(&[node], &[1.0], parts[node]));
+    nodes.chain(body.around_rods().map(|(at, _)| point_of(at, 1.0))).collect()
 }
 
 /// Points along an edge of the boundary, between its nodes: two ends, and the middle of a quadratic one. They
@@ -88,7 +90,7 @@ pub(crate) fn face_centre(kind: FaceKind, face: &[usize]) -> Option<SurfacePoint
 }
 
 /// Gauss points of the faces of the boundary, which are cut into segments or triangles for this. A membrane
-/// in space is boundary all over; a string has no area: `None` if there is one.
+/// in space is boundary all over, and rods have points around their cross sections; a string has no area: `None` if there is one.
 ///
 /// Points inside faces, not nodes: a node at a corner would count the area of faces that do not
 /// touch.
@@ -101,10 +103,11 @@ pub(super) fn gauss_points(body: &Body) -> Option<Vec<SurfacePoint>> {
         }
     };
     let mut points = Vec::new();
-    for face in body.mesh().boundary_faces() {
+    for face in body.mesh().boundary_faces().into_iter().filter(|face| !body.is_of_rod(face[0])) {
         let measured = measured_points(body, &face, rule)?;
         points.extend(measured.into_iter().map(|(at, area)| point_of(at, area)));
     }
+    points.extend(body.around_rods().map(|(at, area)| point_of(at, area)));
     Some(points)
 }
 

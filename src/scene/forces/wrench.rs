@@ -16,6 +16,7 @@ use std::sync::Arc;
 use nalgebra::{Matrix3, Vector3};
 
 use super::faces::shares;
+use super::section_wrench::SectionWrench;
 use super::signal::{VectorSignal, finite_at};
 use crate::base::input::InputError;
 use crate::base::rotation::nearest_rotation;
@@ -111,6 +112,9 @@ impl WrenchForce {
         }
         value.validate(what, kind.rank(dimension), unit)?;
         let nodes = body.mesh().select(selection)?;
+        if let Some(sections) = body.sections_at(&nodes) {
+            return Ok(SectionWrench::build(kind, sections, dimension, value));
+        }
         let weighed = nodes.iter().zip(shares(body, &nodes));
         let points: Vec<Point> = weighed
             .map(|(&node, weight)| {

@@ -30,6 +30,9 @@ impl Scene {
         if let Some(elastic) = self.body.elastic_of_rigid() {
             forces.push(Arc::new(elastic));
         }
+        if let Some(rods) = self.body.rod_forces() {
+            forces.push(Arc::new(rods));
+        }
         if let Some(reinforcement) = self.body.reinforcement() {
             forces.push(Arc::new(reinforcement));
         }

@@ -37,16 +37,27 @@ impl Geometry {
     ) -> Self {
         let joined = joints.clone().filter_map(Joint::node);
         let besides = joined.chain(points.iter().copied());
-        let mut anchors = Vec::new();
-        for joint in joints.filter(|joint| joint.node().is_none()) {
-            if !anchors.contains(joint) {
-                anchors.push(joint.clone());
-            }
-        }
         let mesh = body.mesh();
-        let (mut bodies, mut faces) = (Vec::new(), Vec::new());
+        let (mut bodies, mut faces, mut anchors) = (Vec::new(), Vec::new(), Vec::new());
+        // points of rods are numbered behind the nodes
+        let count = mesh.node_count();
         for part in body.parts() {
             let own = part.body.mesh();
+            let first = (part.cells.start, part.nodes.start);
+            if let Some(tube) = part.body.tube() {
+                let look = if own.dimension() == 2 { "area" } else { "solid" };
+                bodies.push((part.name.to_owned(), look, tube.faces.len()));
+                let place = |point: &usize| count + anchors.len() + point;
+                let moved = |(cell, face): &(usize, Vec<usize>)| {
+                    (first.0 + cell, face.iter().map(place).collect())
+                };
+                faces.extend(tube.faces.iter().map(moved).collect::<Faces>());
+                anchors.extend(tube.points.into_iter().map(|shares| {
+                    let shares = shares.into_iter().map(|(node, share)| (first.1 + node, share));
+                    Joint::carried(mesh, shares.collect())
+                }));
+                continue;
+            }
             let (look, drawn) = match (own.kind().dimension(), own.dimension()) {
                 (1, 1) => ("bar", segments(own)),
                 (1, _) => ("string", segments(own)),
@@ -55,15 +66,19 @@ impl Geometry {
                 _ => ("solid", surface(own)),
             };
             bodies.push((part.name.to_owned(), look, drawn.len()));
-            let first = (part.cells.start, part.nodes.start);
             faces.extend(drawn.into_iter().map(|(cell, mut face)| {
                 face.iter_mut().for_each(|node| *node += first.1);
                 (first.0 + cell, face)
             }));
         }
-        let mut places = vec![None; mesh.node_count()];
+        for joint in joints.filter(|joint| joint.node().is_none()) {
+            if !anchors.contains(joint) {
+                anchors.push(joint.clone());
+            }
+        }
+        let mut places = vec![None; count];
         let mut nodes = Vec::new();
-        let drawn = faces.iter().flat_map(|(_, face)| face).copied();
+        let drawn = faces.iter().flat_map(|(_, face)| face).copied().filter(|node| *node < count);
         for node in drawn.chain(besides).collect::<Vec<_>>() {
             places[node].get_or_insert_with(|| {
                 nodes.push(node);
@@ -96,14 +111,21 @@ impl Geometry {
         geometry
     }
 
-    /// The places of those of `nodes` that are drawn.
+    /// The places of those of `nodes`, and of points behind these, that are drawn.
     pub(super) fn places(&self, nodes: &[usize]) -> Vec<usize> {
-        nodes.iter().filter_map(|&node| self.places[node]).collect()
+        let place = |&node: &usize| match node.checked_sub(self.places.len()) {
+            None => self.places[node],
+            Some(point) => Some(self.nodes.len() + point),
+        };
+        nodes.iter().filter_map(place).collect()
     }
 
-    /// The nodes of a face.
+    /// The nodes of a face; those on the axis of a rod.
     pub(super) fn nodes_of(&self, face: usize) -> impl Iterator<Item = usize> {
-        self.faces[face].iter().map(|&place| self.nodes[place])
+        self.faces[face].iter().map(|&place| match self.nodes.get(place) {
+            Some(node) => *node,
+            None => self.anchors[place - self.nodes.len()].shares[0].0,
+        })
     }
 
     /// The places of what a spring joins, or of what a cable runs along.

@@ -11,6 +11,7 @@ use super::obstacle::Outline;
 use super::projection::{Point, depths, drawn, positions};
 use crate::dynamics::trajectory::{Sample, Trajectory};
 use crate::elements::mesh::{CellKind, Mesh};
+use crate::elements::rod::Tube;
 use crate::io::output::INK;
 use crate::scene::forces::Joint;
 
@@ -68,6 +69,15 @@ impl Panel<'_> {
         let (mut faces, mut hidden) = (Vec::new(), BTreeSet::new());
         for (part, paint) in body.parts().zip((0..).map(Paint::of_body)) {
             let (mesh, points) = (part.body.mesh(), &points[part.nodes.clone()]);
+            if let Some(tube) = part.body.tube() {
+                let drawn =
+                    tube_faces(&tube, points, &|| depths(part.body, &self.sample.u[part.dofs()]));
+                match mesh.dimension() {
+                    2 => panel = panel.add(areas(drawn, paint)),
+                    _ => faces.extend(drawn.into_iter().map(|(depth, face)| (depth, face, paint))),
+                }
+                continue;
+            }
             match (mesh.kind(), mesh.dimension()) {
                 (CellKind::Segment, 1) => panel = panel.add(self.bar(mesh, points, paint)),
                 (CellKind::Segment, _) => panel = panel.add(string(mesh, points, paint)),
@@ -249,6 +259,34 @@ fn surface(
         }
     }
     faces
+}
+
+/// The faces of a rod that look at the viewer, with their depths; in the plane its areas.
+fn tube_faces(
+    tube: &Tube,
+    points: &[Point],
+    depths: &dyn Fn() -> Vec<f64>,
+) -> Vec<(f64, Vec<Point>)> {
+    let place = |point: &usize| {
+        tube.points[*point]
+            .iter()
+            .fold([0.0; 2], |sum, &(node, share)| [0, 1].map(|i| sum[i] + share * points[node][i]))
+    };
+    let is_solid = tube.faces.iter().any(|(_, face)| face.len() > 4);
+    let depths = if is_solid { depths() } else { vec![0.0; points.len()] };
+    let faces = tube.faces.iter().map(|(_, face)| {
+        let of_node = |&(node, share): &(usize, f64)| share * depths[node];
+        let depth: f64 = face.iter().flat_map(|point| &tube.points[*point]).map(of_node).sum();
+        (depth / face.len() as f64, face.iter().map(place).collect::<Vec<Point>>())
+    });
+    faces.filter(|(_, around)| !is_solid || looks_at_viewer(around)).collect()
+}
+
+/// A rod in the plane.
+fn areas(faces: Vec<(f64, Vec<Point>)>, paint: Paint) -> Group {
+    let mut data = Data::default();
+    faces.iter().for_each(|(_, around)| data.polyline(around, true));
+    Group::new().add(body("cells", data, paint.edge, 0.5).set("fill", paint.fill))
 }
 
 /// The nodes on the boundary of a solid that are on no face that looks at the viewer.

@@ -1,0 +1,200 @@
+//! Rods: slender bodies as a chain of cross sections, geometrically exact.
+//!
+//! Each cross section stays plane and keeps its shape; it moves and turns by any amount. A [`Rod`] is a path with a section along it, of which
+//! [`Body::rod`](crate::Body::rod) makes a body. What it leaves out is what the section itself does: warping, ovalization, local buckling.
+
+mod chain;
+mod elements;
+mod path;
+mod section;
+mod strain;
+#[cfg(test)]
+mod tests;
+mod tube;
+mod turning;
+
+use nalgebra::Vector3;
+
+pub(crate) use elements::RodElements;
+use elements::{End, RodElement};
+use path::{Nodes, nodes};
+pub use section::{RodSection, SectionNumbers};
+use strain::{Deformed, Section};
+pub(crate) use tube::{RodPoint, Tube};
+pub(crate) use turning::{CrossSection, SectionLoad};
+
+use super::material::Material;
+use super::mesh::{CellKind, Mesh};
+use crate::base::input::InputError;
+
+/// A rod: its path, the number of its elements, its cross section.
+///
+/// ```
+/// use pliant::{Body, Material, Rod, RodSection};
+///
+/// let silicone = Material { density: 1100.0, young: 5e5, poisson: 0.49, viscosity: 500.0 };
+/// let rod = Rod::new([[0.0, 0.0, 0.0], [0.3, 0.0, 0.0]], 20, RodSection::Circle { radius: 0.006 });
+/// let arm = Body::rod(rod.end(RodSection::Circle { radius: 0.004 }), silicone)?.build()?;
+/// let cone = std::f64::consts::PI * 0.3 / 3.0 * (36.0 + 24.0 + 16.0) * 1e-6; // m^3
+/// assert!((arm.mass() / (1100.0 * cone) - 1.0).abs() < 1e-12);
+/// # Ok::<(), pliant::Error>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct Rod {
+    points: Vec<Vec<f64>>,
+    elements: usize,
+    section: RodSection,
+    end: Option<RodSection>,
+    normal: Option<[f64; 3]>,
+}
+
+impl Rod {
+    /// A rod along the polygon through `points` (m; two coordinates each in the plane, three in space) of so many `elements`, which its sides share
+    /// by their lengths. It is a ring if it ends at its first point. It is free of stress there, bent as the path is.
+    pub fn new(
+        points: impl IntoIterator<Item: Into<Vec<f64>>>,
+        elements: usize,
+        section: RodSection,
+    ) -> Self {
+        let points = points.into_iter().map(Into::into).collect();
+        Self { points, elements, section, end: None, normal: None }
+    }
+
+    /// The section at its end, of the same kind, to which it tapers.
+    pub fn end(self, section: RodSection) -> Self {
+        Self { end: Some(section), ..self }
+    }
+
+    /// The direction, across the path at its first point, of the axis d_1 of its section there; from there on the axes are carried along without
+    /// twist. Default: the axis of space, z before y before x, that is most across the path. In the plane d_1 lies in the plane.
+    pub fn normal(self, direction: [f64; 3]) -> Self {
+        Self { normal: Some(direction), ..self }
+    }
+
+    /// Dimension of its space, 2 or 3.
+    pub(crate) fn dimension(&self) -> usize {
+        self.points.first().map_or(3, Vec::len)
+    }
+
+    /// The mesh of its nodes: those on the axis, which its segments join, then those at the directors d_1, then at d_2; with the node sets
+    /// `axis`, `start` and `end`, the first and the last node of the axis, `start-section` and `end-section`, and `side-1` and `side-2`, the nodes at
+    /// d_1 and d_2, on the surface.
+    ///
+    /// # Errors
+    /// See [`RodSection`] and the path.
+    pub(crate) fn mesh(&self) -> Result<Mesh, InputError> {
+        let (nodes, sections) = self.laid_out()?;
+        let (dimension, count) = (self.dimension(), nodes.x.len());
+        let mut positions = Vec::with_capacity(count * dimension * dimension);
+        positions.extend(
+            nodes.x.iter().flat_map(|x| x.iter().copied().take(dimension).collect::<Vec<_>>()),
+        );
+        for director in 0..dimension - 1 {
+            for ((x, d), section) in nodes.x.iter().zip(&nodes.d).zip(&sections) {
+                let place = x + d[director] * section.numbers(0.0).reach[director];
+                positions.extend(place.iter().copied().take(dimension));
+            }
+        }
+        let last = if nodes.is_closed { count } else { count - 1 };
+        let segments = (0..last).flat_map(|k| [k, (k + 1) % count]).collect();
+        let mut mesh = Mesh::new(dimension, positions, CellKind::Segment, segments)?;
+        let of_section = |k: usize| (0..dimension).map(|v| k + v * count).collect::<Vec<_>>();
+        mesh.set_nodes("axis", (0..count).collect());
+        let directors = ["side-1", "side-2"].into_iter().zip(1..dimension);
+        directors
+            .for_each(|(name, v)| mesh.set_nodes(name, (v * count..(v + 1) * count).collect()));
+        mesh.set_nodes("start", vec![0]);
+        mesh.set_nodes("end", vec![count - 1]);
+        mesh.set_nodes("start-section", of_section(0));
+        mesh.set_nodes("end-section", of_section(count - 1));
+        Ok(mesh)
+    }
+
+    /// The nodes, and the section at each.
+    fn laid_out(&self) -> Result<(Nodes, Vec<RodSection>), InputError> {
+        self.section.validate("section")?;
+        let nodes = nodes(&self.points, self.elements, self.normal)?;
+        let Some(end) = self.end else {
+            let all = vec![self.section; nodes.x.len()];
+            return Ok((nodes, all));
+        };
+        end.validate("end of the section")?;
+        let mut along = vec![0.0];
+        for pair in nodes.x.windows(2) {
+            along.push(along[along.len() - 1] + (pair[1] - pair[0]).norm());
+        }
+        let length = along[along.len() - 1];
+        let sections = along.iter().map(|s| self.section.towards(&end, s / length));
+        Ok((nodes, sections.collect::<Result<_, _>>()?))
+    }
+
+    /// Its elements of a material.
+    pub(crate) fn elements(&self, material: &Material) -> Result<RodElements, InputError> {
+        let (nodes, sections) = self.laid_out()?;
+        let (dimension, count) = (self.dimension(), nodes.x.len());
+        let arms: Vec<[f64; 2]> = sections.iter().map(|s| s.numbers(0.0).reach).collect();
+        let end = |k: usize| End {
+            nodes: std::array::from_fn(|v| if v < dimension { k + v * count } else { k }),
+            arms: arms[k],
+            natural: Section { x: array(nodes.x[k]), d: nodes.d[k].map(array) },
+        };
+        let last = if nodes.is_closed { count } else { count - 1 };
+        let mut elements = Vec::with_capacity(last);
+        for k in 0..last {
+            let next = (k + 1) % count;
+            let ends = [end(k), end(next)];
+            let own = (nodes.x[next] - nodes.x[k]).norm();
+            let middle = sections[k].towards(&sections[next], 0.5).unwrap_or(sections[k]);
+            let along = [sections[k], middle, sections[next]];
+            let mean = SectionNumbers::mean(along.map(|section| section.numbers(material.poisson)));
+            elements.push(element(ends, own, &mean, material));
+        }
+        Ok(RodElements { dimension, elements, outline: self.section.outline(dimension) })
+    }
+
+    /// The mean area of its section (m^2).
+    pub(crate) fn mean_area(&self) -> f64 {
+        let [first, last] =
+            [self.section, self.end.unwrap_or(self.section)].map(|s| s.numbers(0.0).area);
+        let middle = self.end.and_then(|end| self.section.towards(&end, 0.5).ok());
+        (first + 4.0 * middle.map_or(first, |middle| middle.numbers(0.0).area) + last) / 6.0
+    }
+}
+
+/// An element between two ends, free of stress there.
+fn element(
+    ends: [End; 2],
+    length: f64,
+    section: &SectionNumbers,
+    material: &Material,
+) -> RodElement {
+    let natural = Deformed::new(length, ends.map(|end| end.natural)).strains();
+    let SectionNumbers { area, shear, bending, torsion, reach } = *section;
+    let stiffness = |young: f64| {
+        let shearing = young / (2.0 * (1.0 + material.poisson));
+        [
+            shearing * shear[0],
+            shearing * shear[1],
+            young * area,
+            young * bending[0],
+            young * bending[1],
+            shearing * torsion,
+        ]
+    };
+    // the time that a wave takes across the section
+    let time = reach[0].max(reach[1]) * (material.density / material.young).sqrt();
+    let in_plane = 0.5 * material.young * area * length;
+    RodElement {
+        ends,
+        length,
+        natural,
+        stiffness: stiffness(material.young),
+        viscosity: stiffness(material.viscosity),
+        in_plane: [in_plane, in_plane * time],
+        mass: [area, bending[0], bending[1]].map(|number| material.density * number),
+    }
+}
+
+fn array(vector: Vector3<f64>) -> [f64; 3] {
+    vector.into()
+}

@@ -1,0 +1,81 @@
+//! The surface of a rod: points around its cross sections, where it touches and as it is drawn.
+
+use std::collections::BTreeMap;
+
+use super::elements::{End, RodElement, RodElements};
+
+/// A point that moves with a cross section: nodes with their shares.
+pub(crate) type RodPoint = Vec<(usize, f64)>;
+
+/// The surface of a rod as it is drawn.
+pub(crate) struct Tube {
+    pub(crate) points: Vec<RodPoint>,
+    /// The element of each face, and its points, counter-clockwise as seen from outside; in the plane the area of each element.
+    pub(crate) faces: Vec<(usize, Vec<usize>)>,
+}
+
+impl RodElements {
+    /// Points around its cross sections, and the area (m^2) for which each stands.
+    pub(crate) fn around(&self) -> impl Iterator<Item = (RodPoint, f64)> {
+        let mut lengths: BTreeMap<usize, (End, f64)> = BTreeMap::new();
+        for RodElement { ends, length, .. } in &self.elements {
+            for end in ends {
+                lengths.entry(end.nodes[0]).or_insert((*end, 0.0)).1 += 0.5 * length;
+            }
+        }
+        let count = self.outline.len();
+        lengths.into_values().flat_map(move |(end, length)| {
+            let side = move |k: usize| {
+                let [from, to] = [self.outline[k % count], self.outline[(k + 1) % count]];
+                (end.arms[0] * (to[0] - from[0])).hypot(end.arms[1] * (to[1] - from[1]))
+            };
+            (0..count).map(move |k| {
+                // in the plane the section reaches along d_2 to both sides
+                let width = match self.dimension {
+                    2 => 2.0 * end.arms[1],
+                    _ => 0.5 * (side(k + count - 1) + side(k)),
+                };
+                (self.point(&end, k), width * length)
+            })
+        })
+    }
+
+    /// Its surface with its ends.
+    pub(crate) fn tube(&self) -> Tube {
+        let count = self.outline.len();
+        let (mut points, mut rings) = (Vec::new(), BTreeMap::new());
+        let mut ring = |end: &End| {
+            *rings.entry(end.nodes[0]).or_insert_with(|| {
+                points.extend((0..count).map(|k| self.point(end, k)));
+                points.len() - count
+            })
+        };
+        let mut faces = Vec::new();
+        for (number, RodElement { ends, .. }) in self.elements.iter().enumerate() {
+            let [first, second] = [ring(&ends[0]), ring(&ends[1])];
+            match self.dimension {
+                2 => faces.push((number, vec![first + 1, second + 1, second, first])),
+                _ => faces.extend((0..count).map(|k| {
+                    let next = (k + 1) % count;
+                    (number, vec![first + k, first + next, second + next, second + k])
+                })),
+            }
+        }
+        if let (3, [first, .., last]) = (self.dimension, &self.elements[..])
+            && first.ends[0].nodes[0] != last.ends[1].nodes[0]
+        {
+            let [start, end] = [ring(&first.ends[0]), ring(&last.ends[1])];
+            faces.push((0, (0..count).rev().map(|k| start + k).collect()));
+            faces.push((self.elements.len() - 1, (0..count).map(|k| end + k).collect()));
+        }
+        Tube { points, faces }
+    }
+
+    /// Point `k` around a cross section.
+    fn point(&self, end: &End, k: usize) -> RodPoint {
+        let along = &self.outline[k % self.outline.len()][..self.dimension - 1];
+        let centre = (end.nodes[0], 1.0 - along.iter().sum::<f64>());
+        let directors = end.nodes[1..].iter().copied().zip(along.iter().copied());
+        std::iter::once(centre).chain(directors).collect()
+    }
+}
