@@ -7,7 +7,8 @@ use std::collections::BTreeSet;
 
 use nalgebra::{Rotation3, Vector3};
 
-use super::elements::{End, RodElements};
+use super::elements::RodElements;
+use super::end::End;
 use super::strain::{Frame, Section};
 use crate::base::sparse::BlockMatrix;
 

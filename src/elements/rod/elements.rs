@@ -8,24 +8,13 @@
 use nalgebra::{Const, SVector};
 use num_dual::{DualSVec64, DualVec};
 
+use super::end::End;
 use super::strain::{Deformed, Number, Section, Strains, Vector};
-use super::turning::CrossSection;
 use crate::base::sparse::{BlockMatrix, NodeMatrix};
 use crate::integrators::ode::Failure;
 
 /// Unknowns of an element in space.
 const UNKNOWNS: usize = 18;
-
-/// One node of an element.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct End {
-    /// The nodes of the mesh at its centre and at its directors; in the plane, where d_2 is normal to it, the last is the centre.
-    pub(super) nodes: [usize; 3],
-    /// Lengths of the arms from the centre to these (m).
-    pub(super) arms: [f64; 2],
-    /// Undeformed position (m) and directors.
-    pub(super) natural: Section<f64>,
-}
 
 /// An element of a rod.
 #[derive(Debug, Clone)]
@@ -53,47 +42,6 @@ pub(crate) struct RodElements {
 }
 
 type Dual = DualSVec64<UNKNOWNS>;
-
-impl End {
-    /// Its section, where node `v` of it, component `i`, has moved by `moved(v, i)`, from the undeformed one or from 0.
-    pub(super) fn section<T: Number>(
-        &self,
-        dimension: usize,
-        natural: bool,
-        moved: impl Fn(usize, usize) -> T,
-    ) -> Section<T> {
-        let zero = [T::from(0.0); 3];
-        let from = |vector: Vector<f64>| if natural { vector.map(T::from) } else { zero };
-        let mut section = Section { x: from(self.natural.x), d: self.natural.d.map(from) };
-        for i in 0..dimension {
-            let x = moved(0, i);
-            section.x[i] += x;
-            for director in 0..dimension - 1 {
-                section.d[director][i] +=
-                    (moved(director + 1, i) - x) * self.arms[director].recip();
-            }
-        }
-        section
-    }
-
-    /// Adds the forces on its nodes that do the work of those on a section, with a `sign`.
-    pub(super) fn scatter<T: Number>(
-        &self,
-        dimension: usize,
-        on: &Section<T>,
-        mut add: impl FnMut(usize, usize, T),
-    ) {
-        for i in 0..dimension {
-            let mut centre = on.x[i];
-            for director in 0..dimension - 1 {
-                let force = on.d[director][i] * self.arms[director].recip();
-                centre -= force;
-                add(director + 1, i, force);
-            }
-            add(0, i, centre);
-        }
-    }
-}
 
 impl RodElement {
     /// The elastic forces on both ends, with the sign of those that the nodes exert.
@@ -191,13 +139,6 @@ impl RodElements {
                 .collect()
         };
         self.elements.iter().map(of).collect()
-    }
-
-    /// The cross section whose node on the axis has a number.
-    pub(crate) fn section_at(&self, node: usize) -> Option<CrossSection> {
-        let mut ends = self.elements.iter().flat_map(|element| element.ends);
-        let end = ends.find(|end| end.nodes[0] == node)?;
-        Some(CrossSection { end, dimension: self.dimension })
     }
 
     /// The same, on the nodes of several bodies, where its own begin with number `first`.

@@ -5,6 +5,7 @@
 
 mod chain;
 mod elements;
+mod end;
 mod path;
 mod section;
 mod strain;
@@ -15,8 +16,9 @@ mod turning;
 
 use nalgebra::Vector3;
 
+use elements::RodElement;
 pub(crate) use elements::RodElements;
-use elements::{End, RodElement};
+use end::End;
 use path::{Nodes, nodes};
 pub use section::{RodSection, SectionNumbers};
 use strain::{Deformed, Section};

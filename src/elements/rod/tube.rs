@@ -2,7 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use super::elements::{End, RodElement, RodElements};
+use super::elements::{RodElement, RodElements};
+use super::end::End;
 
 /// A point that moves with a cross section: nodes with their shares.
 pub(crate) type RodPoint = Vec<(usize, f64)>;

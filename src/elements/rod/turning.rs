@@ -3,7 +3,8 @@
 use nalgebra::{Const, SVector};
 use num_dual::{DualSVec64, DualVec};
 
-use super::elements::End;
+use super::elements::RodElements;
+use super::end::End;
 use super::strain::{Frame, Number, Section, Vector};
 use crate::base::sparse::BlockMatrix;
 
@@ -24,6 +25,15 @@ pub(crate) struct SectionLoad {
     pub(crate) moment: [f64; 3],
     /// Whether both turn with the section, and are given for the undeformed one.
     pub(crate) follows: bool,
+}
+
+impl RodElements {
+    /// The cross section whose node on the axis has a number.
+    pub(crate) fn section_at(&self, node: usize) -> Option<CrossSection> {
+        let mut ends = self.elements.iter().flat_map(|element| element.ends);
+        let end = ends.find(|end| end.nodes[0] == node)?;
+        Some(CrossSection { end, dimension: self.dimension })
+    }
 }
 
 impl CrossSection {

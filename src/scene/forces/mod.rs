@@ -37,6 +37,7 @@ mod touch;
 mod travel;
 mod turned;
 mod wrench;
+mod wrench_kind;
 
 pub use chamber::Chamber;
 pub(crate) use chamber::{ChamberForce, TURNED};
@@ -82,4 +83,5 @@ pub(crate) use touch::TouchForce;
 pub use touch::{Touch, TouchDistance};
 #[cfg(feature = "output")]
 pub(crate) use turned::corners;
-pub(crate) use wrench::{WrenchForce, WrenchKind};
+pub(crate) use wrench::WrenchForce;
+pub(crate) use wrench_kind::WrenchKind;

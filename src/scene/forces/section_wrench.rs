@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::signal::{VectorSignal, finite_at};
-use super::wrench::WrenchKind;
+use super::wrench_kind::WrenchKind;
 use crate::base::sparse::BlockMatrix;
 use crate::elements::force::{Force, NodalForces, Tangents};
 use crate::elements::rod::{CrossSection, SectionLoad};

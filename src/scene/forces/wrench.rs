@@ -18,6 +18,7 @@ use nalgebra::{Matrix3, Vector3};
 use super::faces::shares;
 use super::section_wrench::SectionWrench;
 use super::signal::{VectorSignal, finite_at};
+use super::wrench_kind::WrenchKind;
 use crate::base::input::InputError;
 use crate::base::rotation::nearest_rotation;
 use crate::base::sparse::BlockMatrix;
@@ -25,19 +26,6 @@ use crate::elements::body::Body;
 use crate::elements::force::{Force, NodalForces, Tangents};
 use crate::elements::mesh::Selection;
 use crate::integrators::ode::Failure;
-
-/// A kind of load on nodes together that depends on where they are.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "checkpoint", serde(rename_all = "snake_case"))]
-pub(crate) enum WrenchKind {
-    /// A moment (N m) whose direction stays.
-    Moment,
-    /// A force (N) that turns with the nodes.
-    FollowerForce,
-    /// A moment (N m) that turns with the nodes.
-    FollowerMoment,
-}
 
 /// A moment on nodes, or a force or a moment that follows them.
 pub(crate) struct WrenchForce {
@@ -75,17 +63,6 @@ struct Acting {
 
 /// Spreads of nodes whose least inertia is a smaller part of the largest are those of a point, in space of a line.
 const THIN: f64 = 1e-8;
-
-impl WrenchKind {
-    /// Number of components of its value in space of a `dimension`.
-    pub(crate) fn rank(self, dimension: usize) -> usize {
-        match (self, dimension) {
-            (Self::FollowerForce, _) => dimension,
-            (_, 2) => 1,
-            _ => 3,
-        }
-    }
-}
 
 impl WrenchForce {
     /// The force of a `value` on the nodes that `selection` names.
