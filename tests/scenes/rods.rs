@@ -40,28 +40,28 @@ fn a_moment_bends_a_rod_to_a_circle() {
     }
 }
 
-/// Bathe and Bolourchi's bend: an eighth of a circle with the radius 100, E = 1e7, of a square of the side 1, under 600 across its plane: the
-/// displacements of a geometrically exact rod (kynema's documentation), whose torsion is that of the polar moment, 1/6, and not Saint-Venant's 0.1406,
-/// with which the first one is 23.82.
+/// Bathe and Bolourchi's bend: an eighth of a circle with the radius 100, E = 1e7, of a square of the side 1, under 600 across its plane: displacements
+/// of its end by shooting, as below. Published ones, 23.646, 13.721, 53.578 (kynema's documentation), lie between those with Saint-Venant's constant of
+/// torsion, 0.1406, and those with the polar moment, 1/6 (23.561, 13.605, 53.475).
 #[test]
 fn a_bend_under_a_load_across_its_plane() {
-    let published = [23.645972, 13.720801, 53.577645];
-    for (elements, tolerance) in [(8, 1e-2), (32, 1e-3)] {
+    let by_shooting = [23.819_09, 13.731_65, 53.607_99];
+    let off = [8, 32].map(|elements| {
         let angle = |k: usize| PI / 4.0 * k as f64 / elements as f64;
         let points =
             (0..=elements).map(|k| [100.0 * angle(k).sin(), 100.0 * (1.0 - angle(k).cos()), 0.0]);
-        let square = RodSection::Rectangle { size: [1.0, 1.0] }.numbers(0.0);
-        let section = RodSection::Numbers(SectionNumbers { torsion: 1.0 / 6.0, ..square });
-        let scene = clamped(Rod::new(points, elements, section), material(1e7, 0.0));
+        let rod = Rod::new(points, elements, RodSection::Rectangle { size: [1.0, 1.0] });
+        let scene = clamped(rod, material(1e7, 0.0));
         let scene =
             scene.phase(Phase::until(1.0).hold("start-section").load("end", [0.0, 0.0, 600.0]));
         let rest = scene.equilibrium(&Statics::default()).unwrap();
         let moved = tip(&rest, &scene);
-        println!("{elements} elements: {moved:?}");
-        for (moved, published) in moved.iter().zip(published) {
-            assert!((moved.abs() / published - 1.0).abs() < tolerance, "{moved} {published}");
-        }
-    }
+        let off = moved.iter().zip(by_shooting).map(|(moved, truth)| moved.abs() / truth - 1.0);
+        off.fold(0.0_f64, |most, off| most.max(off.abs()))
+    });
+    println!("{off:?}");
+    // 4.6e-3 and 3.0e-4 were found: of order 2, with the polygon that the path is
+    assert!(off[0] < 6e-3 && off[1] < 4e-4, "{off:?}");
 }
 
 /// The beam of Princeton under a dead load at its tip, at the angle beta to the stiff axis: displacements (mm) of the tip along both axes by shooting
