@@ -3,8 +3,8 @@
 use std::f64::consts::PI;
 
 use pliant::{
-    Body, Equilibrium, Material, Method, Phase, Rod, RodSection, Sampling, Scene, SectionNumbers,
-    Settings, Stability, Statics,
+    Body, Equilibrium, Material, Method, Phase, Rod, RodSection, Sampling, Scene, Settings,
+    Stability, Statics,
 };
 
 fn material(young: f64, poisson: f64) -> Material {
