@@ -140,3 +140,34 @@ fn a_soft_rod_falls() {
         assert!((x[0] - published[0]).abs() < 3e-3 && (0.6 + x[2] - published[1]).abs() < 3e-3);
     }
 }
+
+/// What is no rod is refused before anything runs, with the number that is wrong and what to do.
+#[test]
+fn what_is_no_rod_is_refused() {
+    let circle = |radius| RodSection::Circle { radius };
+    let straight = [[0.0; 3], [0.3, 0.0, 0.0]];
+    let rod = |points: &[[f64; 3]], elements| Rod::new(points.to_vec(), elements, circle(0.01));
+    let of = material(1e6, 0.3);
+    for (rod, words) in [
+        (rod(&straight[..1], 3), ["points of the rod's path = 1", "two points"]),
+        (rod(&[[0.0; 3]; 2], 3), ["point 2", "coincides"]),
+        (rod(&[[0.0; 3], [f64::NAN, 0.0, 0.0]], 3), ["point 2", "finite"]),
+        (rod(&straight, 0), ["elements of the rod = 0", "raise it"]),
+        (rod(&[[0.0; 3], [0.3, 0.0, 0.0], [0.1, 0.02, 0.0]], 4), ["angle", "kink"]),
+        (rod(&straight, 3).normal([1.0, 0.0, 0.0]), ["normal", "along the path"]),
+        (Rod::new(straight, 3, circle(0.0)), ["radius = 0", "above 0"]),
+        (Rod::new(straight, 3, RodSection::Ring { radius: 0.01, inner: 0.01 }), ["inner", "below"]),
+        (rod(&straight, 3).end(RodSection::Ellipse { radii: [0.01; 2] }), ["end", "same kind"]),
+    ] {
+        let message = Body::rod(rod, of).err().map(|error| error.to_string()).unwrap();
+        println!("{message}");
+        assert!(words.iter().all(|word| message.contains(word)), "{message}");
+    }
+    let body =
+        |of: pliant::Substance| Body::rod(rod(&straight, 3), of).unwrap().named("arm").build();
+    let message = body(of.law(pliant::Law::NeoHookean)).unwrap_err().to_string();
+    assert!(message.contains("rod \"arm\"") && message.contains("law"), "{message}");
+    let scene = Scene::new(body(of.into()).unwrap());
+    let message = scene.halved().unwrap_err().to_string();
+    assert!(message.contains("raise its number of elements"), "{message}");
+}

@@ -124,8 +124,9 @@ impl BodyBuilder {
                     "on finer meshes of several bodies it would have another number: leave it out";
                 return Err(InputError::new("point mass", format!("\"{name}\""), help));
             }
-            if let (true, Some(name)) = (is_single && recipe.rod.is_some(), &recipe.name) {
+            if is_single && recipe.rod.is_some() {
                 let help = "a rod has no finer mesh: raise its number of elements";
+                let name = recipe.name.as_deref().unwrap_or("rod");
                 return Err(InputError::new("rod", format!("\"{name}\""), help));
             }
             let keeps_mesh = recipe.material.is_rigid || recipe.rod.is_some();
@@ -176,6 +177,10 @@ impl BodyBuilder {
         plane: Option<Plane>,
     ) -> Result<Self, InputError> {
         for (mesh, recipe) in &mut self.bodies {
+            if recipe.rod.is_some() {
+                let help = "rods are run whole: they have few unknowns";
+                return Err(InputError::new("smaller model", "of a rod", help));
+            }
             let mut regions = Vec::new();
             for (selection, substance) in recipe.regions.drain(..) {
                 let cells = selection.cells(mesh)?.into_iter().filter_map(|cell| map.cells[cell]);

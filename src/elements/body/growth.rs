@@ -225,6 +225,7 @@ impl Body {
         cells: &[usize],
         course: Option<&FibreDirection>,
     ) -> Result<Growing, InputError> {
+        self.refuse_rods("growth", cells)?;
         let grows = self.marked(cells);
         let (mut bodies, mut oriented) = (Vec::new(), Vec::new());
         for own in &self.continua {

@@ -248,6 +248,10 @@ impl Fluid {
                 nodes
             }
         };
+        if let Some(node) = nodes.iter().find(|node| body.is_of_rod(**node)) {
+            let help = "it does not act on rods yet: name nodes of other bodies";
+            return Err(InputError::new(input(), format!("node {} of a rod", node + 1), help));
+        }
         let said = || self.nodes.as_ref().map_or_else(|| "all".into(), |nodes| nodes.to_string());
         let bad = |help: String| InputError::new(input(), said(), help);
         if nodes.is_empty() {
