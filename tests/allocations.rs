@@ -94,7 +94,9 @@ fn steps_of_what_lags_flows_and_grows_do_not_allocate() {
         ),
     ];
     for (what, scene) in scenes {
-        for method in [Method::CvodeBdf, Method::Ida, Method::Rosenbrock] {
+        // a reduced model has no constraints, for which IDA is
+        let ida = (what != "gas, reduced").then_some(Method::Ida);
+        for method in [Method::CvodeBdf, Method::Rosenbrock].into_iter().chain(ida) {
             let run = |rtol: f64| {
                 let settings = Settings { method, rtol, ..Settings::default() };
                 let mut steps = 0;

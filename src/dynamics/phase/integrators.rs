@@ -240,6 +240,7 @@ fn cvode_options(settings: &Settings, tolerances: Vec<f64>, holds_liquid: bool) 
     let options = CvodeOptions::new(settings.rtol, tolerances)
         .method(method)
         .newton(LinearSolver::Custom)
+        .check_jacobian(false)
         .convergence_coefficient(newton(holds_liquid))
         .stability_limit_detection(settings.stability_limit_detection);
     let is_capped = holds_liquid && matches!(method, Multistep::Bdf) && settings.rtol > ROUGH;
@@ -264,6 +265,7 @@ fn arkode_options(
     let options = ArkodeOptions::new(settings.rtol, tolerances)
         .table(table)
         .newton(LinearSolver::Custom)
+        .check_jacobian(false)
         .convergence_coefficient(newton(holds_liquid));
     Ok(match is_linear {
         true => options.linear(),
@@ -283,7 +285,9 @@ fn rosenbrock_options(
     system: &System,
     is_linear: bool,
 ) -> rosenbrock::Options {
-    let options = rosenbrock::Options::new(settings.rtol, tolerances).newton(LinearSolver::Custom);
+    let options = rosenbrock::Options::new(settings.rtol, tolerances)
+        .newton(LinearSolver::Custom)
+        .check_jacobian(false);
     let options = settings.max_order.into_iter().fold(options, rosenbrock::Options::order);
     match settings.max_order {
         _ if is_linear => options.linear(),

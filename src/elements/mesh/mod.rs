@@ -382,7 +382,7 @@ impl Mesh {
             }));
             boundary.extend(mesh.boundary_nodes().iter().map(|node| first_node + node));
             joined.plane.extend(mesh.plane.iter().map(|node| first_node + node));
-            let is_own = |set: &str| set != "all" && !is_of(set, name);
+            let is_own = |set: &str| set != "all" && !mesh.is_alias(set, name);
             for (own, nodes) in mesh.sets.iter().filter(|(own, _)| is_own(own)) {
                 joined.sets.insert(format!("{name}/{own}"), moved(nodes, first_node));
             }
@@ -399,12 +399,23 @@ impl Mesh {
 
     /// The same; its sets are known by the `name` of its body, too, as among others.
     pub(crate) fn also_named(mut self, name: &str) -> Self {
-        let own = self.sets.clone();
-        for (set, nodes) in own.into_iter().filter(|(set, _)| !is_of(set, name)) {
+        let own = self.sets.clone().into_iter();
+        let own: Vec<_> = own.filter(|(set, _)| !self.is_alias(set, name)).collect();
+        for (set, nodes) in own {
             let known = if set == "all" { name.to_owned() } else { format!("{name}/{set}") };
             self.sets.insert(known, nodes);
         }
         self
+    }
+
+    /// Whether a set is one that [`also_named`](Self::also_named) has added.
+    fn is_alias(&self, set: &str, name: &str) -> bool {
+        let own = match set.strip_prefix(name) {
+            Some("") => "all",
+            Some(rest) => rest.strip_prefix('/').unwrap_or(""),
+            None => "",
+        };
+        self.sets.get(own).is_some_and(|nodes| *nodes == self.sets[set])
     }
 
     /// Notes in words on changes made while it was read from a file: omitted triangles without an area, for example.
@@ -478,9 +489,4 @@ fn check_dimension(dimension: usize, kind: CellKind) -> Result<(), InputError> {
         _ => format!("{kind:?} cells need a space of dimension {least}"),
     };
     Err(InputError::new("mesh.dimension", dimension, help))
-}
-
-/// Whether a set is that of the body with a `name`, or one of its own.
-fn is_of(set: &str, name: &str) -> bool {
-    set.strip_prefix(name).is_some_and(|rest| rest.is_empty() || rest.starts_with('/'))
 }

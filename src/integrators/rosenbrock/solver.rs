@@ -20,6 +20,8 @@ pub struct LinearlyImplicit {
     pub(super) tableau: &'static Tableau,
     /// Checks the Jacobian that the system supplies by the method of this name.
     pub(super) check: Option<(&'static str, JacobianCheck)>,
+    /// Whether the system's own linear solver is checked for answers that are zero.
+    pub(super) checks_answers: bool,
     /// Whether the Jacobian never changes.
     pub(super) is_linear: bool,
     /// The matrix, unless the system has its own linear solver.
@@ -84,6 +86,7 @@ impl<S: Ode> Rosenbrock<S> {
                 .supplied()
                 .filter(|_| !options.trusts_jacobian)
                 .map(|method| (method, JacobianCheck::new(n, &options.forward.tolerances))),
+            checks_answers: !options.trusts_jacobian,
             is_linear: options.linear,
             matrix,
             coupled: n.saturating_sub(system.integrals()),

@@ -110,7 +110,7 @@ impl<O> SolverOptions<O> {
     /// meant to be an approximation.
     ///
     /// A linear solver or preconditioner of the system's own is not checked, but for answers that are zero
-    /// ([`Cause::WrongSolver`](crate::integrators::common::Cause::WrongSolver)).
+    /// ([`Cause::WrongSolver`](crate::integrators::common::Cause::WrongSolver)); switch that off, too, for one that projects.
     pub fn check_jacobian(mut self, on: bool) -> Self {
         self.trusts_jacobian = !on;
         self

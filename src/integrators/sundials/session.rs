@@ -319,6 +319,7 @@ impl<K, S> Session<K, S> {
             let differences = Differences::of_ode(solver, n, tolerances, &self.signs);
             self.host.get_mut().differences = differences;
         }
+        self.host.get_mut().checks_answers = !options.trusts_jacobian;
         if !options.trusts_jacobian && solver.supplied().is_some() {
             let check = JacobianCheck::new(n, tolerances);
             let is_matrix = !matches!(solver, LinearSolver::Krylov(_));

@@ -195,7 +195,7 @@ pub(super) const LOAD: TableKeys = TableKeys::new(
             .note("Spread evenly over the faces that the nodes make up; nodes without faces share it equally."),
         Key::new("traction", ValueType::ChangingVector, "the force per undeformed area of the faces")
             .in_unit("N/m^2"),
-        Key::new("moment", ValueType::ChangingVector, "a moment as of `moment`, alone or beside a force or a total")
+        Key::new("moment", ValueType::ChangingVector, "a moment as of `moment`, alone or beside a force")
             .in_unit("N m"),
         TIMES,
         PERIOD,
@@ -205,7 +205,7 @@ pub(super) const LOAD: TableKeys = TableKeys::new(
             .in_unit("N"),
         Key::new("tractions", ValueType::List(&ValueType::Vector), "the traction at these times")
             .in_unit("N/m^2"),
-        Key::new("moments", ValueType::List(&ValueType::Vector), "the moment at these times")
+        Key::new("moments", ValueType::List(&ValueType::Vector), "moments at these times, beside forces")
             .in_unit("N m"),
     ],
     "load = [\n\
@@ -222,9 +222,6 @@ pub(super) const LOAD: TableKeys = TableKeys::new(
     &["traction"],
     &["times", "forces"],
     &["times", "totals"],
-    &["times", "moments"],
-    &["times", "forces", "moments"],
-    &["times", "totals", "moments"],
     &["times", "tractions"],
 ]);
 
