@@ -7,16 +7,27 @@
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Clock {
     origin: f64,
+    start: f64,
     /// The last time that is shown to the equations; NaN if there is none.
     last: f64,
 }
+
+/// Times (s) up to here are fine by themselves: SUNDIALS distinguishes those that are 2e-12 s apart.
+const FINE: f64 = 100.0;
 
 /// Part of a step by which the time of its end may be rounded.
 const ROUNDED: f64 = 1e-9;
 
 impl Clock {
-    pub(crate) fn starting_at(origin: f64) -> Self {
-        Self { origin, last: f64::NAN }
+    /// A clock that begins at time `t`; it counts from zero where times are fine by themselves.
+    pub(crate) fn starting_at(t: f64) -> Self {
+        let origin = if t.abs() > FINE { t } else { 0.0 };
+        Self { origin, start: t - origin, last: f64::NAN }
+    }
+
+    /// The distance from the origin to the start.
+    pub(crate) fn start(self) -> f64 {
+        self.start
     }
 
     /// The time `elapsed` after the origin, rounded.

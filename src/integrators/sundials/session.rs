@@ -166,7 +166,7 @@ impl<K, S> Session<K, S> {
             host,
             context,
             t: start.t,
-            elapsed: 0.0,
+            elapsed: clock.elapsed(start.t),
             max_steps: 0,
             stop_time: StopTime::default(),
             progress: Progress::default(),

@@ -108,16 +108,17 @@ impl<K, S> Integrator for Session<K, S> {
         check_finite("y", y)?;
         check_state(&self.signs, "y", y)?;
         self.y.as_mut_slice().copy_from_slice(y);
-        self.start_c(0.0)?;
+        let start = Clock::starting_at(t).start();
+        self.start_c(start)?;
         self.host.get_mut().clock = Clock::starting_at(t);
         self.restart_quadratures()?;
         self.restart_sensitivities()?;
-        (self.t, self.elapsed) = (t, 0.0);
+        (self.t, self.elapsed) = (t, start);
         self.progress = Progress::default();
         (self.has_step, self.failed_within, self.history_lost) = (false, false, false);
         let host = self.host.get_mut();
         host.troubles.clear();
-        host.step_end = host.step_end.and(Some(0.0));
+        host.step_end = host.step_end.and(Some(start));
         host.differences.iter_mut().for_each(Differences::restart);
         match self.memory.functions.reinit_forgets_stop_time {
             true => self.stop_time.forget(),

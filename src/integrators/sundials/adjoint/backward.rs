@@ -135,10 +135,11 @@ impl<P: BackwardProblem> Session<P::Kind, Borrowed<'_, P>> {
         let (memory, functions) = (self.memory.raw, P::FUNCTIONS);
         let Some(backward) = &self.backward else { return Ok(()) };
         let which = backward.which;
+        let begin = self.clock().start();
         self.host.get_mut().troubles.clear();
         // SAFETY: memory and everything registered with it are alive; `&mut self` keeps others away while
         // callbacks use the host.
-        let code = unsafe { (functions.solve.1)(memory, 0.0, ffi::CV_NORMAL) };
+        let code = unsafe { (functions.solve.1)(memory, begin, ffi::CV_NORMAL) };
         self.host.get_mut().troubles.resume_panic();
         if code < 0 {
             return Err(self.stopped_back(which, code));
@@ -172,7 +173,8 @@ impl<P: BackwardProblem> Session<P::Kind, Borrowed<'_, P>> {
             (self.memory.functions.get_current_step.1)(memory, &raw mut step);
             (functions.get_current_order.1)(memory, &raw mut order);
         }
-        let (otherwise, blame_retries) = cause_of(code, self.max_steps, self.clock().time(0.0));
+        let begin = self.clock().time(self.clock().start());
+        let (otherwise, blame_retries) = cause_of(code, self.max_steps, begin);
         let troubles = &mut self.host.get_mut().troubles;
         let message = format!("SUNDIALS, code {code}: {}", troubles.message());
         let (cause, source) = troubles.cause((t, step), blame_retries, otherwise);

@@ -8,7 +8,7 @@
 
 use super::{mass, options::ArkodeOptions};
 use crate::integrators::{
-    common::{Error, Integrator, check_start, check_whole},
+    common::{Clock, Error, Integrator, check_start, check_whole},
     ode::{Borrowed, MassKind, Ode},
     sundials::{
         ffi,
@@ -102,13 +102,14 @@ impl<S: Ode> Session<ArkodeKind, S> {
         let mass_form = solver.clone().filter(|_| mass_kind != MassKind::Identity);
         // SAFETY: `create` gets a live context and a vector of its own, the table is that of
         // ARKODE, and the callbacks fit the host that is registered as their data.
+        let begin = Clock::starting_at(start.t).start();
         let mut arkode = unsafe {
-            let create = |y, context| ffi::ARKStepCreate(stages[0], stages[1], 0.0, y, context);
+            let create = |y, context| ffi::ARKStepCreate(stages[0], stages[1], begin, y, context);
             let create = ("ARKStepCreate", create);
             Self::create(Functions::ARKODE, create, ArkodeKind, system, &start, solver)?
         };
         arkode.stages = stages;
-        arkode.host.get_mut().step_end = Some(0.0);
+        arkode.host.get_mut().step_end = Some(arkode.elapsed);
         arkode.configure(options)?;
         let (implicit_id, explicit_id) = options.own.table.ids();
         let degree = options.interpolant_degree();

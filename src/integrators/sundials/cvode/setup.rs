@@ -87,7 +87,8 @@ impl<S: Ode> Session<CvodeKind, S> {
         // host that is registered as their data.
         unsafe {
             let (memory, y) = (cvode.memory.raw, cvode.y.raw());
-            cvode.host.call(named!(CVodeInit), |init| init(memory, Some(rhs::<S>), 0.0, y))?;
+            let elapsed = cvode.elapsed;
+            cvode.host.call(named!(CVodeInit), |init| init(memory, Some(rhs::<S>), elapsed, y))?;
             cvode.configure(options)?;
             cvode.set_root_functions(OdeFunctions::CVODE.set_roots, Some(roots::<S>))?;
             let integrands = Some(quadratures::<S> as _);

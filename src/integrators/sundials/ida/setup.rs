@@ -51,7 +51,9 @@ impl<S: Dae> Session<IdaKind, S> {
         // SAFETY: the memory is alive, vectors have the right length, and the callbacks fit the host
         // that is registered as their data.
         unsafe {
-            ida.host.call(named!(IDAInit), |init| init(memory, Some(residual::<S>), 0.0, y, yp))?;
+            let elapsed = ida.elapsed;
+            ida.host
+                .call(named!(IDAInit), |init| init(memory, Some(residual::<S>), elapsed, y, yp))?;
             ida.configure(options)?;
             ida.set_root_functions(named!(IDARootInit), Some(roots::<S>))?;
             let integrands = Some(quadratures::<S> as _);
