@@ -141,7 +141,7 @@ fn a_soft_rod_falls() {
     }
 }
 
-/// What is no rod is refused before anything runs, with the number that is wrong and what to do.
+/// Bad input of rods is refused before anything runs, with the number that is wrong and what to do.
 #[test]
 fn what_is_no_rod_is_refused() {
     let circle = |radius| RodSection::Circle { radius };

@@ -1,4 +1,4 @@
-//! What a run asks of the equations of a phase, whatever their unknowns are.
+//! The equations of a phase as a run sees them, in any unknowns.
 
 use super::{Energy, ResidualSnapshot, Spectrum, System};
 use crate::elements::force::Forces;
@@ -43,7 +43,7 @@ pub(crate) trait PhaseSystem: Send {
         self.full_mut().spectrum(t, u, v)
     }
 
-    /// What a reduced model leaves over in the `state` at time `t`, if a check is due in the phase from `start` to `end` (s).
+    /// The residual of a reduced model in the `state` at time `t`, if a check is due in the phase from `start` to `end` (s).
     fn left_over(
         &mut self,
         _t: f64,

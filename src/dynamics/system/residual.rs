@@ -1,4 +1,4 @@
-//! What a state of a reduced model leaves over in the equations with all unknowns: the forces on the other nodes and cells, and
+//! The residual of a state of a reduced model in the equations with all unknowns: the forces on the other nodes and cells, and
 //! the displacements that would balance them.
 //!
 //! The residual f - M u'' along all directions is divided by K + D/gamma + M/gamma^2, with gamma 30 times the

@@ -9,7 +9,7 @@ use nalgebra::{Const, SVector};
 use num_dual::{DualSVec64, DualVec};
 
 use super::end::End;
-use super::strain::{Deformed, Number, Section, Strains, Vector};
+use super::strain::{Deformed, Number, Section, Strains, Vector, dot};
 use crate::base::sparse::{BlockMatrix, NodeMatrix};
 use crate::integrators::ode::Failure;
 
@@ -83,20 +83,20 @@ impl RodElement {
         forces
     }
 
-    /// Vectors f of forces on both ends, the slopes of strains by the state, and factors c, with which the damping is the sum of c f f^T.
-    fn dampers(
+    /// Calls `see` with factors c and vectors f of forces on both ends, the slopes of strains by the state: the damping is the sum of c f f^T.
+    fn each_damper(
         &self,
         deformed: &Deformed<f64>,
         at: &[Section<f64>; 2],
-    ) -> Vec<(f64, [Section<f64>; 2])> {
+        mut see: impl FnMut(f64, [Section<f64>; 2]),
+    ) {
         let none = Section { x: [0.0; 3], d: [[0.0; 3]; 2] };
-        let mut dampers = Vec::with_capacity(12);
         for (k, viscosity) in self.viscosity.into_iter().enumerate().filter(|(_, c)| *c > 0.0) {
             let mut unit = [0.0; 6];
             unit[k] = 1.0;
             let [a, b, c, d, e, f] = unit;
             let forces = deformed.forces(Strains { gamma: [a, b, c], kappa: [d, e, f] });
-            dampers.push((viscosity / self.length, forces));
+            see(viscosity / self.length, forces);
         }
         for (end, Section { d, .. }) in at.iter().enumerate() {
             for (unit, count) in
@@ -104,10 +104,9 @@ impl RodElement {
             {
                 let mut forces = [none; 2];
                 add_in_plane(d, unit, &mut forces[end]);
-                dampers.push((count * self.in_plane[1], forces));
+                see(count * self.in_plane[1], forces);
             }
         }
-        dampers
     }
 }
 
@@ -122,10 +121,6 @@ fn add_in_plane<T: Number>(
         on_first[i] += first[i] * s11 + second[i] * s12;
         on_second[i] += first[i] * s12 + second[i] * s22;
     }
-}
-
-fn dot<T: Number>(a: Vector<T>, b: Vector<T>) -> T {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
 impl RodElements {
@@ -265,7 +260,7 @@ impl RodElements {
             }
             let at = self.state(element, u, true);
             let deformed = Deformed::new(element.length, at);
-            for (factor, forces) in element.dampers(&deformed, &at) {
+            element.each_damper(&deformed, &at, |factor, forces| {
                 let mut all = [0.0; UNKNOWNS];
                 for (number, (end, on)) in ends.iter().zip(forces).enumerate() {
                     end.scatter(d, &on, |v, i, force| all[own(number, v, i)] += force);
@@ -277,7 +272,7 @@ impl RodElements {
                         add_row(damping, &ends, d, row, i, |end, w, j| value * all[own(end, w, j)]);
                     }
                 }
-            }
+            });
         }
     }
 

@@ -35,7 +35,7 @@ impl End {
         section
     }
 
-    /// Adds the forces on its nodes that do the work of those on a section, with a `sign`.
+    /// Calls `add` with the forces on its nodes that do the work of those on a section: node `v` of it, component `i`.
     pub(super) fn scatter<T: Number>(
         &self,
         dimension: usize,

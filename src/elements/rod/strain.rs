@@ -38,7 +38,7 @@ pub(super) struct Strains<T> {
     pub(super) kappa: Vector<T>,
 }
 
-fn dot<T: Number>(a: Vector<T>, b: Vector<T>) -> T {
+pub(super) fn dot<T: Number>(a: Vector<T>, b: Vector<T>) -> T {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 

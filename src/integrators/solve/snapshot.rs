@@ -29,7 +29,7 @@ impl Act {
     }
 }
 
-/// What happened to the state, for the way back: each action, or each passage from one side of an event to the
+/// Changes of the state along the run, for the way back: each action, or each passage from one side of an event to the
 /// other, with the state before it.
 pub(super) type Log = Vec<(Act, Snapshot)>;
 

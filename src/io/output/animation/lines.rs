@@ -1,4 +1,4 @@
-//! What is drawn beside the bodies: lines where surfaces of liquids meet the walls, lines and needles of devices.
+//! Drawings beside the bodies: lines where surfaces of liquids meet the walls, lines and needles of devices.
 
 use serde_json::{Value, json};
 
