@@ -78,6 +78,9 @@ impl fmt::Debug for Body {
         if self.is_axisymmetric() {
             parts.field("plane", &Plane::Axisymmetric);
         }
+        if let Some(rod) = &self.recipe().rod {
+            parts.field("rod", rod);
+        }
         parts
             .field("nodes", &self.mesh.node_count())
             .field("cells", &self.mesh.cell_count())

@@ -1,4 +1,4 @@
-//! Rods as bodies: what of a body they have, and their forces.
+//! Rods as bodies: their forces, their options, their nodes.
 
 use std::sync::Arc;
 
@@ -56,9 +56,7 @@ impl Body {
         let rods: Vec<_> = self.continua.iter().filter_map(|own| own.rod.clone()).collect();
         (!rods.is_empty()).then_some(RodForces { rods })
     }
-}
 
-impl Body {
     /// The cross sections of rods at nodes of their axes, if each of the `nodes` (from 0) is one.
     pub(crate) fn sections_at(&self, nodes: &[usize]) -> Option<Vec<CrossSection>> {
         let at = |node: &usize| {

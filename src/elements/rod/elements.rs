@@ -67,12 +67,15 @@ impl RodElement {
         at: &[Section<T>; 2],
         moving: &[Section<T>; 2],
     ) -> [Section<T>; 2] {
-        let mut stress = deformed.rates(*moving);
-        for k in 0..3 {
-            stress.gamma[k] *= T::from(self.viscosity[k]);
-            stress.kappa[k] *= T::from(self.viscosity[3 + k]);
+        let mut forces = [Section::zero(); 2];
+        if self.is_viscous() {
+            let mut stress = deformed.rates(*moving);
+            for k in 0..3 {
+                stress.gamma[k] *= T::from(self.viscosity[k]);
+                stress.kappa[k] *= T::from(self.viscosity[3 + k]);
+            }
+            forces = deformed.forces(stress);
         }
-        let mut forces = deformed.forces(stress);
         for ((Section { d, .. }, Section { d: v, .. }), force) in
             at.iter().zip(moving).zip(&mut forces)
         {
@@ -83,6 +86,11 @@ impl RodElement {
         forces
     }
 
+    /// Whether its material has a viscosity.
+    fn is_viscous(&self) -> bool {
+        self.viscosity != [0.0; 6]
+    }
+
     /// Calls `see` with factors c and vectors f of forces on both ends, the slopes of strains by the state: the damping is the sum of c f f^T.
     fn each_damper(
         &self,
@@ -90,7 +98,6 @@ impl RodElement {
         at: &[Section<f64>; 2],
         mut see: impl FnMut(f64, [Section<f64>; 2]),
     ) {
-        let none = Section { x: [0.0; 3], d: [[0.0; 3]; 2] };
         for (k, viscosity) in self.viscosity.into_iter().enumerate().filter(|(_, c)| *c > 0.0) {
             let mut unit = [0.0; 6];
             unit[k] = 1.0;
@@ -102,7 +109,7 @@ impl RodElement {
             for (unit, count) in
                 [([1.0, 0.0, 0.0], 1.0), ([0.0, 0.5, 0.0], 2.0), ([0.0, 0.0, 1.0], 1.0)]
             {
-                let mut forces = [none; 2];
+                let mut forces = [Section::zero(); 2];
                 add_in_plane(d, unit, &mut forces[end]);
                 see(count * self.in_plane[1], forces);
             }

@@ -97,8 +97,7 @@ impl Rod {
                 positions.extend(place.iter().copied().take(dimension));
             }
         }
-        let last = if nodes.is_closed { count } else { count - 1 };
-        let segments = (0..last).flat_map(|k| [k, (k + 1) % count]).collect();
+        let segments = (0..nodes.elements()).flat_map(|k| [k, (k + 1) % count]).collect();
         let mut mesh = Mesh::new(dimension, positions, CellKind::Segment, segments)?;
         let of_section = |k: usize| (0..dimension).map(|v| k + v * count).collect::<Vec<_>>();
         mesh.set_nodes("axis", (0..count).collect());
@@ -140,9 +139,8 @@ impl Rod {
             arms: arms[k],
             natural: Section { x: array(nodes.x[k]), d: nodes.d[k].map(array) },
         };
-        let last = if nodes.is_closed { count } else { count - 1 };
-        let mut elements = Vec::with_capacity(last);
-        for k in 0..last {
+        let mut elements = Vec::with_capacity(nodes.elements());
+        for k in 0..nodes.elements() {
             let next = (k + 1) % count;
             let ends = [end(k), end(next)];
             let own = (nodes.x[next] - nodes.x[k]).norm();

@@ -14,6 +14,13 @@ pub(super) struct Nodes {
     pub(super) is_closed: bool,
 }
 
+impl Nodes {
+    /// Number of the elements between them.
+    pub(super) fn elements(&self) -> usize {
+        if self.is_closed { self.x.len() } else { self.x.len() - 1 }
+    }
+}
+
 /// A part of the length of a path below which two points are one.
 const NO_LENGTH: f64 = 1e-9;
 

@@ -31,6 +31,13 @@ pub(super) struct Section<T> {
     pub(super) d: [Vector<T>; 2],
 }
 
+impl<T: Number> Section<T> {
+    pub(super) fn zero() -> Self {
+        let zero = [T::from(0.0); 3];
+        Self { x: zero, d: [zero; 2] }
+    }
+}
+
 /// The strains of an element, or the stresses along them: shears and stretch, curvatures and twist.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Strains<T> {

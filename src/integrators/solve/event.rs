@@ -54,19 +54,19 @@ pub struct Event<'a> {
     pub(super) samples: u32,
     pub(super) touching: Option<f64>,
     pub(super) once: bool,
-    pub(super) clock: Option<Clock>,
+    pub(super) schedule: Option<Schedule>,
 }
 
 /// The times of an event that has no function.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Clock {
+pub(super) struct Schedule {
     /// The first one; `None`: all multiples of the period after the start of the span.
     start: Option<f64>,
     /// `None`: there is one.
     period: Option<f64>,
 }
 
-impl Clock {
+impl Schedule {
     /// The next of its times after `t` in the direction `sign` of time; one at `t` counts if it `includes` that.
     pub(super) fn next(self, t: f64, sign: f64, includes: bool) -> Option<f64> {
         let first = self.start.unwrap_or(0.0);
@@ -111,7 +111,7 @@ impl<'a> Event<'a> {
             samples: 4,
             touching: None,
             once: false,
-            clock: None,
+            schedule: None,
         }
     }
 
@@ -142,16 +142,16 @@ impl<'a> Event<'a> {
     /// # Ok::<(), pliant::solve::Error>(())
     /// ```
     pub fn every(period: f64) -> Self {
-        Self::clock(Clock { start: None, period: Some(period) })
+        Self::scheduled(Schedule { start: None, period: Some(period) })
     }
 
     /// An event at the time `t`, which may be the start or the end of the span.
     pub fn at(t: f64) -> Self {
-        Self::clock(Clock { start: Some(t), period: None })
+        Self::scheduled(Schedule { start: Some(t), period: None })
     }
 
-    fn clock(clock: Clock) -> Self {
-        Self { clock: Some(clock), ..Self::new(|_, _| 1.0) }
+    fn scheduled(schedule: Schedule) -> Self {
+        Self { schedule: Some(schedule), ..Self::new(|_, _| 1.0) }
     }
 
     /// The time of the first tick of [`every`](Self::every), which may be the start of the span; the others follow in
@@ -159,8 +159,8 @@ impl<'a> Event<'a> {
     #[must_use]
     pub fn starting_at(mut self, t: f64) -> Self {
         // without a period it is refused before the run
-        let period = self.clock.map_or(Some(f64::NAN), |clock| clock.period);
-        self.clock = Some(Clock { start: Some(t), period });
+        let period = self.schedule.map_or(Some(f64::NAN), |schedule| schedule.period);
+        self.schedule = Some(Schedule { start: Some(t), period });
         self
     }
 
@@ -276,7 +276,7 @@ impl<'a> Event<'a> {
 impl Event<'_> {
     /// Whether the run goes on from it.
     pub(super) fn may_go_on(&self) -> bool {
-        self.action.is_some() || (self.clock.is_none() && self.last != Some(1))
+        self.action.is_some() || (self.schedule.is_none() && self.last != Some(1))
     }
 
     /// Whether it does something to the run.
@@ -286,7 +286,7 @@ impl Event<'_> {
 
     /// The event lent to a run, without what it does where it accumulates.
     pub(super) fn lend(&mut self) -> Event<'_> {
-        let Self { direction, last, samples, touching, once, clock, .. } = *self;
+        let Self { direction, last, samples, touching, once, schedule, .. } = *self;
         let function = self.function.clone();
         let function = Function::new(move |t, y, p| function.at(t, y, p));
         let action =
@@ -300,7 +300,7 @@ impl Event<'_> {
             samples,
             touching,
             once,
-            clock,
+            schedule,
         }
     }
 
@@ -328,7 +328,7 @@ impl Event<'_> {
             let help = "it belongs to an action, which turns the solution back";
             return Err(InputError::new(format!("at_accumulation of event {i}"), "given", help));
         }
-        if let Some(Clock { start, period }) = self.clock {
+        if let Some(Schedule { start, period }) = self.schedule {
             let longest = span.0.abs().max(span.1.abs());
             if let Some(start) = start.filter(|start| !start.is_finite()) {
                 return Err(InputError::new(format!("time of event {i}"), start, "it is finite"));

@@ -105,7 +105,7 @@ pub(super) fn follow(
     }
     let here = run.snapshot();
     let ending = match run.end() {
-        Some(End::Event(i)) if run.events[i].clock.is_none() => Some(i),
+        Some(End::Event(i)) if run.events[i].schedule.is_none() => Some(i),
         _ => None,
     };
     match (parts.last_mut(), ending) {

@@ -4,7 +4,7 @@ use std::mem;
 
 use super::{
     error::Reason,
-    event::{Clock, Jump},
+    event::{Jump, Schedule},
     problem::Break,
     run::Run,
     snapshot::Act,
@@ -21,7 +21,7 @@ impl Run<'_> {
     /// Follows the events from the present time, which is the start of the span, or where a run `resumes`.
     pub(super) fn follow_events(&mut self, resumes: bool) {
         for i in 0..self.events.len() {
-            let may_start = self.events[i].clock.is_some_and(Clock::may_start);
+            let may_start = self.events[i].schedule.is_some_and(Schedule::may_start);
             self.plan_tick(i, may_start && !resumes);
             if resumes && self.watches[i].value() == 0.0 {
                 let band = self.band(i);
@@ -32,8 +32,8 @@ impl Run<'_> {
 
     /// Plans the next tick of event `i`; one at the present time counts if that `is_start`.
     pub(super) fn plan_tick(&mut self, i: usize, is_start: bool) {
-        let Some(clock) = self.events[i].clock else { return };
-        let next = clock.next(self.t, self.sign, is_start);
+        let Some(schedule) = self.events[i].schedule else { return };
+        let next = schedule.next(self.t, self.sign, is_start);
         self.ticks[i] = next.filter(|t| (self.span.1 - t) * self.sign >= 0.0);
         if let Some(t) = self.ticks[i]
             && self.events[i].acts()
@@ -57,8 +57,8 @@ impl Run<'_> {
                     self.count(i);
                     self.occurred.push(Occurrence { event: i, t: tick, sign: 1, y });
                 }
-                let clock = self.events[i].clock;
-                let next = clock.and_then(|clock| clock.next(tick, self.sign, false));
+                let schedule = self.events[i].schedule;
+                let next = schedule.and_then(|schedule| schedule.next(tick, self.sign, false));
                 self.ticks[i] = next.filter(|t| (self.span.1 - t) * self.sign >= 0.0);
             }
         }

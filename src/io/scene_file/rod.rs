@@ -126,15 +126,8 @@ fn rod(table: &Table) -> Result<Body, Error> {
 
 /// The sections at the start and at the end.
 fn section(table: &Table) -> Result<[RodSection; 2], Error> {
-    let number = |key: &str, base: Option<f64>| match (table.optional(key, Value::number)?, base) {
-        (Some(value), _) | (None, Some(value)) => Ok(value),
-        (None, None) => table.required(key, Value::number),
-    };
-    let pair = |key: &str, base: Option<[f64; 2]>| match (table.optional(key, Value::array)?, base)
-    {
-        (Some(value), _) | (None, Some(value)) => Ok(value),
-        (None, None) => table.required(key, Value::array),
-    };
+    let number = |key: &str, base| or_base(table, key, base, Value::number);
+    let pair = |key: &str, base| or_base(table, key, base, Value::array);
     Ok(match table.kind() {
         "circle" => {
             let radius = number("radius", None)?;
@@ -167,4 +160,17 @@ fn section(table: &Table) -> Result<[RodSection; 2], Error> {
             [RodSection::Numbers(numbers); 2]
         }
     })
+}
+
+/// The value of `key` as `read` reads it, or else the `base`; it is required without one.
+fn or_base<'a, T>(
+    table: &Table<'a>,
+    key: &str,
+    base: Option<T>,
+    read: impl FnOnce(&Value<'a>) -> Result<T, Error>,
+) -> Result<T, Error> {
+    match base {
+        Some(base) => Ok(table.optional(key, read)?.unwrap_or(base)),
+        None => table.required(key, read),
+    }
 }

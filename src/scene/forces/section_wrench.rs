@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::signal::{VectorSignal, finite_at};
+use super::signal::VectorSignal;
 use super::wrench_kind::WrenchKind;
 use crate::base::sparse::BlockMatrix;
 use crate::elements::force::{Force, NodalForces, Tangents};
@@ -29,19 +29,10 @@ impl SectionWrench {
 
     /// The share of each section at time `t` (s).
     fn load(&self, t: f64) -> Result<SectionLoad, Failure> {
-        let rank = self.kind.rank(self.dimension);
-        let mut value = [0.0; 3];
-        self.value.at(t, &mut value[..rank]);
-        let what = format_args!("a moment or a follower");
-        value.iter().try_for_each(|x| finite_at(t, what, *x).map(|_| ()))?;
-        let share = value.map(|x| x / self.sections.len() as f64);
-        let (force, moment) = match (self.kind, rank) {
-            (WrenchKind::FollowerForce, _) => (share, [0.0; 3]),
-            // about the normal of the plane
-            (_, 1) => ([0.0; 3], [0.0, 0.0, share[0]]),
-            _ => ([0.0; 3], share),
-        };
-        Ok(SectionLoad { force, moment, follows: self.kind != WrenchKind::Moment })
+        let count = self.sections.len() as f64;
+        let given = self.kind.at(&self.value, self.dimension, t)?;
+        let [force, moment] = given.map(|vector| (vector / count).into());
+        Ok(SectionLoad { force, moment, follows: self.kind.follows() })
     }
 }
 

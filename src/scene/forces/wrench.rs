@@ -17,7 +17,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::faces::shares;
 use super::section_wrench::SectionWrench;
-use super::signal::{VectorSignal, finite_at};
+use super::signal::VectorSignal;
 use super::wrench_kind::WrenchKind;
 use crate::base::input::InputError;
 use crate::base::rotation::nearest_rotation;
@@ -168,22 +168,13 @@ impl WrenchForce {
     }
 
     fn acting(&self, t: f64, spread: &Spread) -> Result<Acting, Failure> {
-        let rank = self.kind.rank(self.dimension);
-        let mut value = [0.0; 3];
-        self.value.at(t, &mut value[..rank]);
-        let what = format_args!("a moment or a follower");
-        value.iter().try_for_each(|x| finite_at(t, what, *x).map(|_| ()))?;
-        let mut value = match rank {
-            // of a moment in the plane
-            1 => Vector3::new(0.0, 0.0, value[0]),
-            _ => Vector3::from(value),
-        };
-        if self.kind != WrenchKind::Moment {
-            value = self.rotation(spread) * value;
-        }
-        let [force, moment] = match self.kind {
-            WrenchKind::FollowerForce => [value, Vector3::zeros()],
-            WrenchKind::Moment | WrenchKind::FollowerMoment => [Vector3::zeros(), value],
+        let given = self.kind.at(&self.value, self.dimension, t)?;
+        let [force, moment] = match self.kind.follows() {
+            true => {
+                let rotation = self.rotation(spread);
+                given.map(|vector| rotation * vector)
+            }
+            false => given,
         };
         Ok(Acting { force, moment, a: spread.inverse * moment })
     }
@@ -238,7 +229,7 @@ impl Force for WrenchForce {
         let (d, inverse) = (self.dimension, spread.inverse);
         let turning = a.cross_matrix();
         let (force, moment) = (force.cross_matrix(), moment.cross_matrix());
-        let follows = self.kind != WrenchKind::Moment;
+        let follows = self.kind.follows();
         for column in &self.points {
             let r = spread.around(column);
             let mut by_spread = inverse
