@@ -60,9 +60,14 @@ impl RunProgress {
         Ok(Self { bar, interrupted, stepping, end, drawn: Instant::now() })
     }
 
+    /// Called before the directory is made: from then on Ctrl-C waits for the step under way.
+    pub fn start(&self) {
+        self.stepping.store(true, Ordering::Relaxed);
+    }
+
     /// Called after each step; stops the run after Ctrl-C.
     pub fn see(&mut self, simulation: &Simulation) -> ControlFlow<()> {
-        self.stepping.store(true, Ordering::Relaxed);
+        self.start();
         if self.interrupted.load(Ordering::Relaxed) {
             return ControlFlow::Break(());
         }

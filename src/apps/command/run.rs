@@ -150,6 +150,7 @@ fn once(
     }
     let began = simulation.time();
     simulation.record(&request.sampling())?;
+    watch.start();
     let table = directory.growing_table(&simulation, request)?;
     let mut keeper = Keeper::new(&mut directory, table);
     let mut result = simulation.finish(|simulation| {

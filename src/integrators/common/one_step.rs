@@ -38,20 +38,21 @@ impl<S: Ode, M: StepMethod> OneStep<S, M> {
         check_form(&system)?;
         options.check(y)?;
         let zeros = || vec![0.0; y.len()];
+        let clock = Clock::starting_at(t);
         let march = March {
             integrator,
             order,
             options: options.clone(),
             weight: zeros(),
-            clock: Clock::starting_at(t),
+            clock,
             now: t,
             stop_given: 0.0,
             stop_time: None,
-            t: Clock::starting_at(t).start(),
+            t: clock.start(),
             y: y.to_vec(),
             slope: zeros(),
             slope_known: false,
-            t_old: Clock::starting_at(t).start(),
+            t_old: clock.start(),
             y_old: zeros(),
             slope_old: zeros(),
             argument: zeros(),

@@ -82,8 +82,7 @@ impl<'a> Surfaces<'a> {
         let Sides { signs, flows, p: own } = &*sides.borrow();
         let off = |(g, sign): (&Function<'_>, &f64)| *sign != 0.0 && g.at(t, y, p) * sign <= 0.0;
         let Some(i) = functions.iter().zip(signs).position(off) else { return 0.0 };
-        let nearest = flows.iter().min_by(|a, b| (a.0 - t).abs().total_cmp(&(b.0 - t).abs()));
-        let Some((_, flow)) = nearest else { return 0.0 };
+        let Some(flow) = nearest(flows, t) else { return 0.0 };
         let mut value = |i: usize, time: f64| {
             place.clear();
             place.extend(y.iter().zip(flow).map(|(y, slope)| y + time * slope));
@@ -123,12 +122,17 @@ impl<'a> Surfaces<'a> {
         self.place.clear();
         self.place.extend_from_slice(y);
         let flows = &self.sides.borrow().flows;
-        let nearest = flows.iter().min_by(|a, b| (a.0 - t).abs().total_cmp(&(b.0 - t).abs()));
-        if let Some((_, flow)) = nearest.filter(|_| time != 0.0) {
+        if let Some(flow) = nearest(flows, t).filter(|_| time != 0.0) {
             self.place.iter_mut().zip(flow).for_each(|(y, slope)| *y += time * slope);
         }
         &self.place
     }
+}
+
+/// The flow at the time nearest to `t`.
+fn nearest(flows: &[(f64, Vec<f64>)], t: f64) -> Option<&Vec<f64>> {
+    let nearest = flows.iter().min_by(|a, b| (a.0 - t).abs().total_cmp(&(b.0 - t).abs()));
+    nearest.map(|(_, flow)| flow)
 }
 
 /// Equations on the sides of their switches that the solution is on.

@@ -108,9 +108,10 @@ impl<K, S> Integrator for Session<K, S> {
         check_finite("y", y)?;
         check_state(&self.signs, "y", y)?;
         self.y.as_mut_slice().copy_from_slice(y);
-        let start = Clock::starting_at(t).start();
+        let clock = Clock::starting_at(t);
+        let start = clock.start();
         self.start_c(start)?;
-        self.host.get_mut().clock = Clock::starting_at(t);
+        self.host.get_mut().clock = clock;
         self.restart_quadratures()?;
         self.restart_sensitivities()?;
         (self.t, self.elapsed) = (t, start);
