@@ -80,7 +80,7 @@ pub use elements::{
         RigidMass, Substance,
     },
     mesh::{Cells, Mesh, Selection, SolidCells},
-    rod::{Rod, RodSection, SectionNumbers},
+    rod::{Rod, RodPath, RodSection, SectionNumbers},
 };
 pub use integrators::common::Integrator;
 #[cfg(feature = "scene-file")]

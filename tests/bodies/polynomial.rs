@@ -1,20 +1,28 @@
 //! Direct computation of Green forces against printed numbers and against the sum over cells.
 
-use pliant::body::{Coefficients, GreenPolynomial};
 use pliant::force::NodalForces;
-use pliant::{Body, CellSelection, Cells, Material, Mesh, Plane, Strain};
+use pliant::{Body, CellSelection, Cells, Lame, Material, Mesh, Plane, Strain};
+
+use self::green_polynomial::GreenPolynomial;
+
+#[path = "../../examples/green_polynomial/polynomial.rs"]
+mod green_polynomial;
 
 const RUBBER: Material = Material { density: 1000.0, young: 1e6, poisson: 0.48, viscosity: 40.0 };
 
-/// Fig. 2.2: six nodes, four right isosceles triangles with legs of `leg`, thickness 1.
-fn six_nodes(leg: f64, material: Material) -> Body {
-    let mesh = Mesh::rectangle([2.0 * leg, leg], [3, 2], Cells::Triangles).unwrap();
-    Body::new(mesh, material).strain(Strain::Cauchy).thickness(1.0).build().unwrap()
+/// Of one material and thickness 1.
+fn polynomial(mesh: &Mesh, material: Material) -> GreenPolynomial {
+    GreenPolynomial::new(mesh, 1.0, &vec![material.elastic(); mesh.cell_count()])
+}
+
+/// Fig. 2.2: six nodes, four right isosceles triangles with legs of 1 m.
+fn six_nodes() -> Mesh {
+    Mesh::rectangle([2.0, 1.0], [3, 2], Cells::Triangles).unwrap()
 }
 
 #[test]
 fn suffixes_as_printed() {
-    let polynomial = GreenPolynomial::new(&six_nodes(1.0, RUBBER)).unwrap();
+    let polynomial = polynomial(&six_nodes(), RUBBER);
     let pairs = polynomial.quadratic_suffixes();
     let triples = polynomial.cubic_suffixes();
     // n_p + 2 n_e and n_p + 6 n_e + 6 n_t of 6 nodes, 9 edges, 4 triangles
@@ -47,12 +55,7 @@ fn coefficients_as_printed() {
         let a11 = |material: Material| {
             let positions = vec![0.0, 0.0, leg, 0.0, 0.0, leg];
             let mesh = Mesh::new(2, positions, pliant::mesh::CellKind::Triangle, vec![0, 1, 2]);
-            let body = Body::new(mesh.unwrap(), material)
-                .strain(Strain::Cauchy)
-                .thickness(1.0)
-                .build()
-                .unwrap();
-            GreenPolynomial::new(&body).unwrap().to_dense(Coefficients::A11)
+            polynomial(&mesh.unwrap(), material).quadratic_matrix(0)
         };
         // nu = 0: lambda = 0, mu = E/2; nu = 1/4: lambda = mu = 0.4 E
         let of_mu = a11(Material { young: 2.0, poisson: 0.0, ..RUBBER });
@@ -73,8 +76,8 @@ fn coefficients_as_printed() {
 /// no others, as only that triangle has node 1.
 #[test]
 fn columns_as_printed() {
-    let polynomial = GreenPolynomial::new(&six_nodes(1.0, RUBBER)).unwrap();
-    let a12 = polynomial.to_dense(Coefficients::A12);
+    let polynomial = polynomial(&six_nodes(), RUBBER);
+    let a12 = polynomial.quadratic_matrix(1);
     let columns: Vec<usize> = (0..24).filter(|&j| a12[(0, j)] != 0.0).map(|j| j + 1).collect();
     assert!(columns.iter().all(|j| [1, 2, 3, 4, 5, 7, 13, 14, 15].contains(j)), "{columns:?}");
     let pairs = polynomial.quadratic_suffixes();
@@ -82,7 +85,7 @@ fn columns_as_printed() {
     let expected = [1, 2, 4].map(|i| [1, 2, 4].map(|j| [i, j])).concat();
     assert_eq!(of_first.as_slice(), expected);
     // C in its first three columns is that of u1 u1 u1, u1 u1 u2, u1 u1 u4
-    let c = polynomial.to_dense(Coefficients::C);
+    let c = polynomial.cubic_matrix();
     assert_eq!((c.nrows(), c.ncols()), (6, 84));
     assert!((0..3).all(|j| c[(0, j)] != 0.0));
 }
@@ -100,8 +103,7 @@ fn meshes() -> Vec<(Mesh, f64)> {
     let connectivity = grid.cells().flatten().copied().collect();
     let irregular = Mesh::new(2, shifted.collect(), grid.kind(), connectivity).unwrap();
     let strip = Mesh::rectangle([0.1, 0.02], [21, 5], Cells::Triangles).unwrap();
-    let six = Mesh::rectangle([2.0, 1.0], [3, 2], Cells::Triangles).unwrap();
-    vec![(grid, 0.1), (irregular, 0.06), (strip, 0.005), (six, 1.0)]
+    vec![(grid, 0.1), (irregular, 0.06), (strip, 0.005), (six_nodes(), 1.0)]
 }
 
 #[test]
@@ -118,13 +120,22 @@ fn forces_are_those_of_the_sum_over_cells() {
                 body = body.point_mass("hub", [9.0, 9.0], 1.0);
             }
             let body = body.build().unwrap();
-            let mut polynomial = GreenPolynomial::new(&body).unwrap();
+            let pair = |cell: usize| {
+                let Lame { lambda, mu } =
+                    if matches!(cell, 2 | 3) { stiff } else { RUBBER }.elastic();
+                match plane {
+                    Plane::Stress => Lame { lambda: 2.0 * lambda * mu / (lambda + 2.0 * mu), mu },
+                    _ => Lame { lambda, mu },
+                }
+            };
+            let lame: Vec<Lame> = (0..body.mesh().cell_count()).map(pair).collect();
+            let mut polynomial = GreenPolynomial::new(body.mesh(), 0.01, &lame);
             for seed in 0..10 {
                 let u = noise(body.dofs(), 0.15 * cell, seed);
                 let mut sum = NodalForces::zeros(body.dofs());
                 body.add_elastic_forces(&u, &mut sum).unwrap();
                 let mut forces = vec![f64::NAN; body.dofs()];
-                polynomial.forces(&u, &mut forces).unwrap();
+                polynomial.forces(&u, &mut forces);
                 let largest = sum.conservative.iter().fold(0.0_f64, |most, f| most.max(f.abs()));
                 for (found, expected) in forces.iter().zip(sum.conservative.iter()) {
                     // round-off of the largest force
@@ -133,24 +144,4 @@ fn forces_are_those_of_the_sum_over_cells() {
             }
         }
     }
-}
-
-#[test]
-fn other_bodies_are_refused() {
-    let message = |body: &Body| GreenPolynomial::new(body).unwrap_err().to_string();
-    let bar = Body::new(Mesh::bar(0.1, 6).unwrap(), RUBBER)
-        .strain(Strain::Cauchy)
-        .area(1e-4)
-        .build()
-        .unwrap();
-    assert!(message(&bar).starts_with("cells of the body = Segment in 1 dimensions"));
-    let positions = vec![0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0];
-    let membrane =
-        Mesh::new(3, positions, pliant::mesh::CellKind::Triangle, vec![0, 1, 2]).unwrap();
-    let membrane =
-        Body::new(membrane, RUBBER).strain(Strain::Cauchy).thickness(0.01).build().unwrap();
-    assert!(message(&membrane).starts_with("cells of the body = Triangle in 3 dimensions"));
-    let mut polynomial = GreenPolynomial::new(&six_nodes(1.0, RUBBER)).unwrap();
-    let short = polynomial.forces(&[0.0; 11], &mut [0.0; 12]).unwrap_err().to_string();
-    assert!(short.starts_with("length of u = 11 cannot be used: the body has 12"), "{short}");
 }

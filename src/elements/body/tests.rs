@@ -372,12 +372,6 @@ fn threads_share_out_large_meshes() {
     assert_eq!(stiffness.values, stiffness_of_three.values);
     assert_eq!(damping.values, damping_of_three.values);
 
-    let mut direct = vec![0.0_f64; body.dofs()];
-    GreenPolynomial::new(&body).unwrap().forces(&u, &mut direct).unwrap();
-    let largest = direct.iter().fold(0.0, |largest: f64, f| largest.max(f.abs()));
-    let apart = direct.iter().zip(one.conservative.iter()).map(|(a, b)| (a - b).abs());
-    assert!(apart.fold(0.0, f64::max) < 1e-12 * largest);
-
     // along one direction, by central differences: third derivatives times 1e-14
     let (x, h) = (noise(body.dofs(), 1.0, 3.0), 1e-7);
     let shifted = |u: &[f64], h: f64| u.iter().zip(&x).map(|(u, x)| u + h * x).collect::<Vec<_>>();

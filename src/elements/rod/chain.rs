@@ -62,14 +62,14 @@ impl RodElements {
         let mut seen = BTreeSet::new();
         for element in &self.elements {
             let [first, second] = &element.ends;
-            let span = Vector3::from(second.natural.x) - Vector3::from(first.natural.x);
+            let span = Vector3::from(second.undeformed.x) - Vector3::from(first.undeformed.x);
             see([first.nodes[0], second.nodes[0]], span, None);
             for end in &element.ends {
                 if !seen.insert(end.nodes[0]) {
                     continue;
                 }
                 for director in 0..self.dimension - 1 {
-                    let natural = end.arms[director] * Vector3::from(end.natural.d[director]);
+                    let natural = end.arms[director] * Vector3::from(end.undeformed.d[director]);
                     see([end.nodes[0], end.nodes[director + 1]], natural, Some(end));
                 }
             }

@@ -10,7 +10,7 @@ pub(super) struct End {
     /// Lengths of the arms from the centre to these (m).
     pub(super) arms: [f64; 2],
     /// Undeformed position (m) and directors.
-    pub(super) natural: Section<f64>,
+    pub(super) undeformed: Section<f64>,
 }
 
 impl End {
@@ -18,12 +18,12 @@ impl End {
     pub(super) fn section<T: Number>(
         &self,
         dimension: usize,
-        natural: bool,
+        undeformed: bool,
         moved: impl Fn(usize, usize) -> T,
     ) -> Section<T> {
         let zero = [T::from(0.0); 3];
-        let from = |vector: Vector<f64>| if natural { vector.map(T::from) } else { zero };
-        let mut section = Section { x: from(self.natural.x), d: self.natural.d.map(from) };
+        let from = |vector: Vector<f64>| if undeformed { vector.map(T::from) } else { zero };
+        let mut section = Section { x: from(self.undeformed.x), d: self.undeformed.d.map(from) };
         for i in 0..dimension {
             let x = moved(0, i);
             section.x[i] += x;

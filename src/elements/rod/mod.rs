@@ -7,6 +7,7 @@ mod chain;
 mod elements;
 mod end;
 mod path;
+mod screw;
 mod section;
 mod strain;
 #[cfg(test)]
@@ -14,12 +15,11 @@ mod tests;
 mod tube;
 mod turning;
 
-use nalgebra::Vector3;
-
 use elements::RodElement;
 pub(crate) use elements::RodElements;
 use end::End;
-use path::{Nodes, nodes};
+use path::Nodes;
+pub use path::RodPath;
 pub use section::{RodSection, SectionNumbers};
 use strain::{Deformed, Section};
 pub(crate) use tube::{RodPoint, Tube};
@@ -43,23 +43,21 @@ use crate::base::input::InputError;
 /// ```
 #[derive(Debug, Clone)]
 pub struct Rod {
-    points: Vec<Vec<f64>>,
+    path: RodPath,
     elements: usize,
     section: RodSection,
     end: Option<RodSection>,
     normal: Option<[f64; 3]>,
+    twist: f64,
+    natural: Option<RodPath>,
 }
 
 impl Rod {
-    /// A rod along the polygon through `points` (m; two coordinates each in the plane, three in space) of so many `elements`, which its sides share
-    /// by their lengths. It is a ring if it ends at its first point. It is free of stress there, bent as the path is.
-    pub fn new(
-        points: impl IntoIterator<Item: Into<Vec<f64>>>,
-        elements: usize,
-        section: RodSection,
-    ) -> Self {
-        let points = points.into_iter().map(Into::into).collect();
-        Self { points, elements, section, end: None, normal: None }
+    /// A rod along a [path](RodPath), such as a list of points (m; two coordinates each in the plane, three in space), of so many `elements`. It is free
+    /// of stress there, bent as the path is.
+    pub fn new(path: impl Into<RodPath>, elements: usize, section: RodSection) -> Self {
+        let path = path.into();
+        Self { path, elements, section, end: None, normal: None, twist: 0.0, natural: None }
     }
 
     /// The section at its end, of the same kind, to which it tapers.
@@ -68,14 +66,26 @@ impl Rod {
     }
 
     /// The direction, across the path at its first point, of the axis d_1 of its section there; from there on the axes are carried along without
-    /// twist. Default: the axis of space, z before y before x, that is most across the path. In the plane d_1 lies in the plane.
+    /// twist on a polygon, with the screw on a helix. Default: the axis of space, z before y before x, that is most across the path. In the plane d_1
+    /// lies in the plane.
     pub fn normal(self, direction: [f64; 3]) -> Self {
         Self { normal: Some(direction), ..self }
     }
 
+    /// The angle (rad) by which its sections turn about the path from the start to the end, besides how the path carries them. Default: 0.
+    pub fn twist(self, angle: f64) -> Self {
+        Self { twist: angle, ..self }
+    }
+
+    /// The path along which it is free of stress, without twist, of as many elements. On its own path it is then bent and twisted by stress,
+    /// as a ring that was bent from a straight rod is. Default: its path, with the twist.
+    pub fn natural(self, path: impl Into<RodPath>) -> Self {
+        Self { natural: Some(path.into()), ..self }
+    }
+
     /// Dimension of its space, 2 or 3.
     pub(crate) fn dimension(&self) -> usize {
-        self.points.first().map_or(3, Vec::len)
+        self.path.dimension()
     }
 
     /// The mesh of its nodes: those on the axis, which its segments join, then those at the directors d_1, then at d_2; with the node sets
@@ -85,7 +95,7 @@ impl Rod {
     /// # Errors
     /// See [`RodSection`] and the path.
     pub(crate) fn mesh(&self) -> Result<Mesh, InputError> {
-        let (nodes, sections) = self.laid_out()?;
+        let (nodes, _, sections) = self.laid_out()?;
         let (dimension, count) = (self.dimension(), nodes.x.len());
         let mut positions = Vec::with_capacity(count * dimension * dimension);
         positions.extend(
@@ -97,7 +107,7 @@ impl Rod {
                 positions.extend(place.iter().copied().take(dimension));
             }
         }
-        let segments = (0..nodes.elements()).flat_map(|k| [k, (k + 1) % count]).collect();
+        let segments = (0..nodes.lengths.len()).flat_map(|k| [k, (k + 1) % count]).collect();
         let mut mesh = Mesh::new(dimension, positions, CellKind::Segment, segments)?;
         let of_section = |k: usize| (0..dimension).map(|v| k + v * count).collect::<Vec<_>>();
         mesh.set_nodes("axis", (0..count).collect());
@@ -111,43 +121,59 @@ impl Rod {
         Ok(mesh)
     }
 
-    /// The nodes, and the section at each.
-    fn laid_out(&self) -> Result<(Nodes, Vec<RodSection>), InputError> {
+    /// The nodes, those of the path along which it is free of stress if that is another one, and the section at each node.
+    fn laid_out(&self) -> Result<(Nodes, Option<Nodes>, Vec<RodSection>), InputError> {
         self.section.validate("section")?;
-        let nodes = nodes(&self.points, self.elements, self.normal)?;
+        let nodes = self.path.nodes(self.elements, self.normal)?;
+        let nodes = nodes.twisted(self.twist, self.dimension())?;
+        let reach = self.section.numbers(0.0).reach;
+        if nodes.curvature * reach[0].max(reach[1]) >= 1.0 {
+            let help = "the section would reach beyond the axis about which the path turns: make it thinner, or the path wider";
+            let radius = format!("{:.3e} m", nodes.curvature.recip());
+            return Err(InputError::new("radius of curvature of the rod's path", radius, help));
+        }
+        let natural = match &self.natural {
+            None => None,
+            Some(path) if path.dimension() == self.dimension() => {
+                Some(path.nodes(self.elements, self.normal)?)
+            }
+            Some(path) => {
+                let help = format!("those of its path have {}: give as many", self.dimension());
+                let input = "coordinates of the rod's natural path";
+                return Err(InputError::new(input, path.dimension(), help));
+            }
+        };
         let Some(end) = self.end else {
             let all = vec![self.section; nodes.x.len()];
-            return Ok((nodes, all));
+            return Ok((nodes, natural, all));
         };
         end.validate("end of the section")?;
-        let mut along = vec![0.0];
-        for pair in nodes.x.windows(2) {
-            along.push(along[along.len() - 1] + (pair[1] - pair[0]).norm());
-        }
-        let length = along[along.len() - 1];
+        let (along, length) = nodes.distances();
         let sections = along.iter().map(|s| self.section.towards(&end, s / length));
-        Ok((nodes, sections.collect::<Result<_, _>>()?))
+        Ok((nodes, natural, sections.collect::<Result<_, _>>()?))
     }
 
     /// Its elements of a material.
     pub(crate) fn elements(&self, material: &Material) -> Result<RodElements, InputError> {
-        let (nodes, sections) = self.laid_out()?;
+        let (nodes, natural, sections) = self.laid_out()?;
+        let natural = natural.as_ref().unwrap_or(&nodes);
         let (dimension, count) = (self.dimension(), nodes.x.len());
         let arms: Vec<[f64; 2]> = sections.iter().map(|s| s.numbers(0.0).reach).collect();
         let end = |k: usize| End {
             nodes: std::array::from_fn(|v| if v < dimension { k + v * count } else { k }),
             arms: arms[k],
-            natural: Section { x: array(nodes.x[k]), d: nodes.d[k].map(array) },
+            undeformed: nodes.section(k),
         };
-        let mut elements = Vec::with_capacity(nodes.elements());
-        for k in 0..nodes.elements() {
+        let mut elements = Vec::with_capacity(nodes.lengths.len());
+        for k in 0..nodes.lengths.len() {
             let next = (k + 1) % count;
             let ends = [end(k), end(next)];
-            let own = (nodes.x[next] - nodes.x[k]).norm();
+            let free = [k, (k + 1) % natural.x.len()].map(|k| natural.section(k));
+            let own = natural.lengths[k];
             let middle = sections[k].towards(&sections[next], 0.5).unwrap_or(sections[k]);
             let along = [sections[k], middle, sections[next]];
             let mean = SectionNumbers::mean(along.map(|section| section.numbers(material.poisson)));
-            elements.push(element(ends, own, &mean, material));
+            elements.push(element(ends, free, own, &mean, material));
         }
         Ok(RodElements { dimension, elements, outline: self.section.outline(dimension) })
     }
@@ -161,14 +187,15 @@ impl Rod {
     }
 }
 
-/// An element between two ends, free of stress there.
+/// An element between two ends, of a length, free of stress where these are as `free`.
 fn element(
     ends: [End; 2],
+    free: [Section<f64>; 2],
     length: f64,
     section: &SectionNumbers,
     material: &Material,
 ) -> RodElement {
-    let natural = Deformed::new(length, ends.map(|end| end.natural)).strains();
+    let natural = Deformed::new(length, free).strains();
     let SectionNumbers { area, shear, bending, torsion, reach } = *section;
     let stiffness = |young: f64| {
         let shearing = young / (2.0 * (1.0 + material.poisson));
@@ -193,8 +220,4 @@ fn element(
         in_plane: [in_plane, in_plane * time],
         mass: [area, bending[0], bending[1]].map(|number| material.density * number),
     }
-}
-
-fn array(vector: Vector3<f64>) -> [f64; 3] {
-    vector.into()
 }

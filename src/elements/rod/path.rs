@@ -1,8 +1,90 @@
 //! Axes of rods: nodes on a path, and the directors there.
 
-use nalgebra::{Unit, UnitQuaternion, Vector3};
+use nalgebra::{Rotation3, Unit, UnitQuaternion, Vector3};
 
+use super::screw::Screw;
+use super::strain::Section;
 use crate::base::input::{InputError, finite};
+
+/// The axis of a [rod](crate::Rod): a polygon, an arc or a helix. Lists of points are polygons.
+///
+/// ```
+/// use pliant::RodPath;
+///
+/// // a coil spring of ten turns around the axis z
+/// let coil = RodPath::helix([0.01, 0.0, 0.0], [0.0, 0.0, 0.0], 0.004, 10.0);
+/// // a half circle in the plane
+/// let arch = RodPath::arc([0.1, 0.0], [0.0, 0.0], std::f64::consts::PI);
+/// let corner = RodPath::from([[0.0, 0.0], [0.1, 0.0], [0.1, 0.1]]);
+/// ```
+#[derive(Debug, Clone)]
+pub struct RodPath(Shape);
+
+#[derive(Debug, Clone)]
+enum Shape {
+    Polygon(Vec<Vec<f64>>),
+    Screw(Screw),
+}
+
+impl<I: IntoIterator<Item: Into<Vec<f64>>>> From<I> for RodPath {
+    /// The polygon through points (m; two coordinates each in the plane, three in space), whose sides share the elements by their lengths.
+    /// It is a ring if it ends at its first point.
+    fn from(points: I) -> Self {
+        Self(Shape::Polygon(points.into_iter().map(Into::into).collect()))
+    }
+}
+
+impl RodPath {
+    /// The arc from `start` around `center` (m; two coordinates each in the plane, three in space) by an `angle` (rad), counterclockwise, in
+    /// space about z, or the [axis](Self::about) given. It is a ring if that is a whole turn.
+    pub fn arc(start: impl Into<Vec<f64>>, center: impl Into<Vec<f64>>, angle: f64) -> Self {
+        let (start, center) = (start.into(), center.into());
+        Self(Shape::Screw(Screw { start, center, axis: [0.0, 0.0, 1.0], pitch: 0.0, angle }))
+    }
+
+    /// The helix from `start` around an axis through `center` (m), along z, or the [axis](Self::about) given, which climbs by the `pitch` (m) in
+    /// each of so many `turns`; it is right-handed, with negative turns and pitch left-handed.
+    pub fn helix(start: [f64; 3], center: [f64; 3], pitch: f64, turns: f64) -> Self {
+        let angle = turns * std::f64::consts::TAU;
+        let (start, center) = (start.into(), center.into());
+        Self(Shape::Screw(Screw { start, center, axis: [0.0, 0.0, 1.0], pitch, angle }))
+    }
+
+    /// The same about an axis of this direction, of any length. It does not change polygons and arcs in the plane.
+    pub fn about(mut self, direction: [f64; 3]) -> Self {
+        if let Shape::Screw(screw) = &mut self.0
+            && screw.start.len() == 3
+        {
+            screw.axis = direction;
+        }
+        self
+    }
+
+    /// Number of coordinates of its points.
+    pub(super) fn dimension(&self) -> usize {
+        match &self.0 {
+            Shape::Polygon(points) => points.first().map_or(3, Vec::len),
+            Shape::Screw(screw) => screw.start.len(),
+        }
+    }
+
+    /// The nodes of so many `elements` along it. d_1 at the first node lies as near to `normal` as it can; along a polygon it is carried without
+    /// twist, along arcs and helices by their screw motion; in the plane it lies in the plane, to the left.
+    ///
+    /// # Errors
+    /// Fewer than two points, points that coincide or are not finite, fewer elements than the path has sides, a kink that no section
+    /// follows, a normal along the path, a helix whose start is on its axis.
+    pub(super) fn nodes(
+        &self,
+        elements: usize,
+        normal: Option<[f64; 3]>,
+    ) -> Result<Nodes, InputError> {
+        match &self.0 {
+            Shape::Polygon(points) => polygon(points, elements, normal),
+            Shape::Screw(screw) => screw.nodes(elements, normal),
+        }
+    }
+}
 
 /// The nodes of a rod.
 pub(super) struct Nodes {
@@ -10,14 +92,56 @@ pub(super) struct Nodes {
     pub(super) x: Vec<Vector3<f64>>,
     /// Directors d_1 and d_2.
     pub(super) d: Vec<[Vector3<f64>; 2]>,
+    /// Lengths of the elements between them (m).
+    pub(super) lengths: Vec<f64>,
+    /// Curvature of a smooth path (1/m); 0 of a polygon.
+    pub(super) curvature: f64,
     /// Whether the last node is followed by the first.
     pub(super) is_closed: bool,
 }
 
 impl Nodes {
-    /// Number of the elements between them.
-    pub(super) fn elements(&self) -> usize {
-        if self.is_closed { self.x.len() } else { self.x.len() - 1 }
+    /// Distances of the nodes from the first along the path, and that of its end (m).
+    pub(super) fn distances(&self) -> (Vec<f64>, f64) {
+        let mut along = vec![0.0];
+        along.extend(self.lengths.iter().scan(0.0, |sum, length| {
+            *sum += length;
+            Some(*sum)
+        }));
+        let end = along[along.len() - 1];
+        along.truncate(self.x.len());
+        (along, end)
+    }
+
+    /// The position and the directors of node `k` (from 0).
+    pub(super) fn section(&self, k: usize) -> Section<f64> {
+        Section { x: self.x[k].into(), d: self.d[k].map(Into::into) }
+    }
+
+    /// The same with directors that turn about the path, by the angle `twist` (rad) in all.
+    ///
+    /// # Errors
+    /// A ring, in which directors meet again, with a twist other than whole turns; a twist in the plane.
+    pub(super) fn twisted(mut self, twist: f64, dimension: usize) -> Result<Self, InputError> {
+        finite("twist of the rod", &[twist])?;
+        let turns = twist / std::f64::consts::TAU;
+        if twist == 0.0 {
+            return Ok(self);
+        }
+        if dimension == 2 || self.is_closed && (turns - turns.round()).abs() > 1e-9 {
+            let help = match dimension {
+                2 => "in the plane no section turns about the path: leave it out",
+                _ => "the sections at both ends of a ring are one: whole turns alone fit",
+            };
+            return Err(InputError::new("twist of the rod", twist, help));
+        }
+        let (along, length) = self.distances();
+        for (d, s) in self.d.iter_mut().zip(along) {
+            let tangent = Unit::new_normalize(d[0].cross(&d[1]));
+            let turn = Rotation3::from_axis_angle(&tangent, twist * s / length);
+            *d = d.map(|d| turn * d);
+        }
+        Ok(self)
     }
 }
 
@@ -27,13 +151,8 @@ const NO_LENGTH: f64 = 1e-9;
 /// Cosine of the angle between two elements beyond which no section follows the kink (120 degrees).
 const SHARP: f64 = -0.5;
 
-/// The nodes of so many `elements` on the polygon through `points` (m), which is a ring if it ends where it begins. d_1 at the first node lies
-/// as near to `normal` as it can and is carried along the path without twist; in the plane it lies in the plane, to the left.
-///
-/// # Errors
-/// Fewer than two points, points that coincide or are not finite, fewer elements than the polygon has sides, a kink that no section
-/// follows, a normal along the path.
-pub(super) fn nodes(
+/// The nodes on the polygon through `points` (m), which is a ring if it ends where it begins.
+fn polygon(
     points: &[Vec<f64>],
     elements: usize,
     normal: Option<[f64; 3]>,
@@ -71,8 +190,9 @@ pub(super) fn nodes(
     }
     let is_closed =
         sides.len() > 2 && (corners[0] - corners[corners.len() - 1]).norm() <= NO_LENGTH * length;
-    let mut x = vec![corners[0]];
-    for (pair, count) in corners.windows(2).zip(shared_out(elements, &sides)) {
+    let (mut x, mut lengths) = (vec![corners[0]], Vec::with_capacity(elements));
+    for ((pair, count), side) in corners.windows(2).zip(shared_out(elements, &sides)).zip(&sides) {
+        lengths.extend(std::iter::repeat_n(side / count as f64, count));
         let place = |k: usize| pair[0] + (pair[1] - pair[0]) * (k as f64 / count as f64);
         x.extend((1..count).map(place));
         x.push(pair[1]);
@@ -82,7 +202,7 @@ pub(super) fn nodes(
     }
     let tangents = tangents(&x, is_closed)?;
     let d = directors(&tangents, normal, dimension)?;
-    Ok(Nodes { x, d, is_closed })
+    Ok(Nodes { x, d, lengths, curvature: 0.0, is_closed })
 }
 
 /// The `elements`, shared out among `sides` by their lengths, one at least to each.
@@ -131,27 +251,7 @@ fn directors(
         let left = |t: &Vector3<f64>| [Vector3::new(-t.y, t.x, 0.0), Vector3::z()];
         return Ok(tangents.iter().map(left).collect());
     }
-    let first = tangents[0];
-    let wanted = match normal {
-        Some(normal) => {
-            finite("normal of the rod", &normal)?;
-            Vector3::from(normal)
-        }
-        // the axis that is most across the path; the later one of two
-        None => {
-            let axes = [Vector3::z(), Vector3::y(), Vector3::x()];
-            let across = |axis: &Vector3<f64>| (first.dot(axis).abs() * 1e6).round();
-            axes.into_iter()
-                .min_by(|a, b| across(a).total_cmp(&across(b)))
-                .unwrap_or_else(Vector3::z)
-        }
-    };
-    let across = wanted - first * first.dot(&wanted);
-    let Some(across) = Unit::try_new(across, 1e-6 * wanted.norm()) else {
-        let help = "it lies along the path at its first point: choose a direction across it";
-        return Err(InputError::new("normal of the rod", format!("{wanted:?}"), help));
-    };
-    let mut d = across.into_inner();
+    let mut d = across(&tangents[0], normal)?;
     let mut all = Vec::with_capacity(tangents.len());
     for (k, t) in tangents.iter().enumerate() {
         if k > 0 {
@@ -162,4 +262,31 @@ fn directors(
         all.push([d, t.cross(&d)]);
     }
     Ok(all)
+}
+
+/// The unit vector across a path with that `tangent`, as near as it can be to `normal`, or else to the axis of space that is most across.
+pub(super) fn across(
+    tangent: &Vector3<f64>,
+    normal: Option<[f64; 3]>,
+) -> Result<Vector3<f64>, InputError> {
+    let wanted = match normal {
+        Some(normal) => {
+            finite("normal of the rod", &normal)?;
+            Vector3::from(normal)
+        }
+        // the later one of two
+        None => {
+            let axes = [Vector3::z(), Vector3::y(), Vector3::x()];
+            let along = |axis: &Vector3<f64>| (tangent.dot(axis).abs() * 1e6).round();
+            axes.into_iter().min_by(|a, b| along(a).total_cmp(&along(b))).unwrap_or_else(Vector3::z)
+        }
+    };
+    let across = wanted - tangent * tangent.dot(&wanted);
+    match Unit::try_new(across, 1e-6 * wanted.norm()) {
+        Some(across) => Ok(across.into_inner()),
+        None => {
+            let help = "it lies along the path at its first point: choose a direction across it";
+            Err(InputError::new("normal of the rod", format!("{wanted:?}"), help))
+        }
+    }
 }

@@ -48,7 +48,7 @@ impl CrossSection {
         let given = |vector: Vector<f64>| vector.map(T::from);
         let (mut force, mut moment) = (given(load.force), frame.to_frame(given(load.moment)));
         if load.follows {
-            let natural = Frame::of(self.end.natural.d);
+            let natural = Frame::of(self.end.undeformed.d);
             force = frame.to_space(given(natural.to_frame(load.force)));
             moment = given(natural.to_frame(load.moment));
         }

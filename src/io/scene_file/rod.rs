@@ -6,7 +6,7 @@ use super::table::Table;
 use super::value::Value;
 use crate::dynamics::error::Error;
 use crate::elements::body::{Body, BodyBuilder, Inertia};
-use crate::elements::rod::{Rod, RodSection, SectionNumbers};
+use crate::elements::rod::{Rod, RodPath, RodSection, SectionNumbers};
 
 pub(super) const ROD: TableKeys = TableKeys::new(
     "[[rod]]",
@@ -15,16 +15,20 @@ pub(super) const ROD: TableKeys = TableKeys::new(
      at the axes d_1 and d_2 of its sections), with its name before them: `arm/end`. Rods come after the bodies of the file.",
     &[
         Key::new("name", ValueType::Text, "its name").required(),
-        Key::new("path", ValueType::List(&ValueType::Vector), "the points of its axis, where it is free of stress")
-            .in_unit("m")
-            .note("A polygon, whose sides share the elements by their lengths; it is a ring if it ends at its first point.")
+        Key::new("path", PATH, "its axis, where it is free of stress: a list of points (m), or an arc or a helix")
+            .note("Points make a polygon, whose sides share the elements by their lengths; it is a ring if it ends at its first point.")
             .required(),
+        Key::new("natural", PATH, "the path along which it is free of stress, without twist")
+            .note("On its own path it is then bent by stress, as a ring is that was bent from a straight rod.")
+            .default("`path`, with its twist"),
         Key::new("elements", ValueType::Count, "the number of its elements").default("20"),
         Key::new("section", ValueType::Table(&SECTION), "its cross section").required(),
         Key::new("normal", ValueType::Array(&ValueType::Number, 3), "the direction across the path, at its first point, of the axis d_1 of its section")
             .in_unit("1")
-            .note("From there on the axes are carried along without twist. In the plane d_1 lies in the plane.")
+            .note("From there on the axes are carried along without twist on a polygon, with the screw on a helix. In the plane d_1 lies in the plane.")
             .default("the axis of space, z before y before x, that is most across the path"),
+        Key::number("twist", "the angle by which its sections turn about the path from the start to the end, besides how the path carries them", "rad")
+            .default("0"),
         Key::new("inertia", ValueType::Word(|| INERTIA.map(|(word, _)| word).into()), "how inertia is shared out")
             .default("consistent"),
         Key::new("material", ValueType::Table(&MATERIAL), "the material, with a linear law").required(),
@@ -39,6 +43,44 @@ pub(super) const ROD: TableKeys = TableKeys::new(
 
 const INERTIA: [(&str, Inertia); 2] =
     [("consistent", Inertia::Consistent), ("lumped", Inertia::Lumped)];
+
+const PATH: ValueType =
+    ValueType::Either(&[ValueType::List(&ValueType::Vector), ValueType::Table(&CURVE)]);
+
+pub(super) const CURVE: TableKeys = TableKeys::new(
+    "path",
+    "The axis of a rod, as a curve.",
+    &[
+        Key::new("start", ValueType::Vector, "its first point").in_unit("m").required(),
+        Key::new("center", ValueType::Vector, "a point of the axis about which it turns, in the plane the center")
+            .in_unit("m")
+            .required(),
+        Key::new("axis", ValueType::Array(&ValueType::Number, 3), "the direction of that axis, in space")
+            .in_unit("1")
+            .default("[0, 0, 1]"),
+    ],
+    "[[rod]]\n\
+     name = \"spring\"\n\
+     path = { kind = \"helix\", start = [0.01, 0.0, 0.0], center = [0.0, 0.0, 0.0], pitch = 0.005, turns = 8.0 }\n\
+     elements = 160\n\
+     section = { kind = \"circle\", radius = 0.0005 }\n\
+     material = { density = 7800.0, young = 2.0e11, poisson = 0.3, viscosity = 0.0 }",
+)
+.kinds(&[
+    Kind {
+        word: "arc",
+        about: "part of a circle; a ring if it is the whole",
+        keys: &[Key::number("angle", "the angle by which it turns, right-handed about the axis", "rad").required()],
+    },
+    Kind {
+        word: "helix",
+        about: "a helix, in space",
+        keys: &[
+            Key::number("pitch", "the way along the axis in a turn", "m").required(),
+            Key::number("turns", "the number of its turns; negative ones go the other way about the axis", "1").required(),
+        ],
+    },
+]);
 
 const PAIR: ValueType = ValueType::Array(&ValueType::Number, 2);
 
@@ -110,18 +152,45 @@ pub(super) fn rods(value: &Value) -> Result<Vec<Body>, Error> {
 
 fn rod(table: &Table) -> Result<Body, Error> {
     let name = table.required("name", Value::string)?;
-    let points = table.required("path", |value| value.list_of("points", Value::numbers))?;
+    let path = table.required("path", path_of)?;
     let elements = table.optional("elements", Value::count)?.unwrap_or(USUAL);
     let [section, end] = table.required("section", |value| section(&value.table(&SECTION)?))?;
-    let mut rod = Rod::new(points, elements, section);
+    let mut rod = Rod::new(path, elements, section);
     if end != section {
         rod = rod.end(end);
     }
     rod = table.added(rod, "normal", Value::array, Rod::normal)?;
+    rod = table.added(rod, "twist", Value::number, Rod::twist)?;
+    rod = table.added(rod, "natural", path_of, Rod::natural)?;
     let material = table.required("material", |value| substance(value, None))?;
     let body = Body::rod(rod, material).map_err(|error| table.blame(error))?.named(name);
     let body = table.added(body, "inertia", |value| value.word(&INERTIA), BodyBuilder::inertia)?;
     body.build().map_err(|error| table.blame(error))
+}
+
+/// A list of points, or a curve.
+fn path_of(value: &Value) -> Result<RodPath, Error> {
+    if value.entries().is_none() {
+        return value.list_of("points", Value::numbers).map(RodPath::from);
+    }
+    let table = &value.table(&CURVE)?;
+    let [start, center] = ["start", "center"].map(|key| table.required(key, Value::numbers));
+    let (start, center) = (start?, center?);
+    let curve = match table.kind() {
+        "arc" => RodPath::arc(start, center, table.required("angle", Value::number)?),
+        _ => {
+            let three = |key, point: Vec<f64>| {
+                let count = point.len();
+                let error = |_| {
+                    table.error(format!("{key} of a helix needs 3 coordinates; it has {count}"))
+                };
+                point.try_into().map_err(error)
+            };
+            let [pitch, turns] = ["pitch", "turns"].map(|key| table.required(key, Value::number));
+            RodPath::helix(three("start", start)?, three("center", center)?, pitch?, turns?)
+        }
+    };
+    table.added(curve, "axis", Value::array, RodPath::about)
 }
 
 /// The sections at the start and at the end.

@@ -10,74 +10,24 @@
 //!
 //! The matrices are built once. Collective vectors hold only products that some triangle has: of
 //! n_p nodes, n_e edges and n_t triangles n_p, n_p + 2 n_e and n_p + 6 n_e + 6 n_t. A_1, A_2, B_1
-//! and B_2 are K; C_1 and C_2 of the text are the same matrix C.
+//! and B_2 make up K; C_1 and C_2 of the text are the same matrix C.
 //!
-//! It is kept as a second way to the same forces; the sum over cells is 5 to 7 times as fast
-//! (`docs/notes/costs.md`).
-
-use std::sync::Arc;
+//! It is a second way to the forces that `Body::add_elastic_forces` of a body with Green strain sums up cell by cell, and
+//! an oracle of its tests; the sum over cells is 5 to 7 times as fast (`docs/notes/costs.md`). Cells that are inverted
+//! are not noticed.
 
 use faer::Mat;
+use pliant::{Lame, Mesh};
 
-use super::assembled::Body;
-use crate::base::input::InputError;
-use crate::base::sparse::BlockMatrix;
-use crate::elements::mesh::CellKind;
-
-/// Most nodes for which three node numbers fit into 64 bits.
-const MOST_NODES: usize = (1 << 21) - 2;
-
-/// The coefficient matrices of the second and third order.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Coefficients {
-    /// Of c_uu in the force along x.
-    A11,
-    /// Of c_uv in the force along x.
-    A12,
-    /// Of c_vv in the force along x.
-    A22,
-    /// Of c_uu in the force along y.
-    B11,
-    /// Of c_uv in the force along y.
-    B12,
-    /// Of c_vv in the force along y.
-    B22,
-    /// Of c_uuu + c_uvv in the force along x and of c_vuu + c_vvv in that along y.
-    C,
-}
-
-/// Green forces of a body of triangles by direct computation.
-///
-/// It is a second way to compute the forces that [`Body::add_elastic_forces`] of a body with Green strain
-/// sums up cell by cell; both are equal but for round-off.
-///
-/// It does not notice cells that are inverted.
-///
-/// ```
-/// use pliant::body::GreenPolynomial;
-/// use pliant::{Body, Cells, Material, Mesh};
-///
-/// let mesh = Mesh::rectangle([2.0, 1.0], [3, 2], Cells::Triangles)?;
-/// let rubber = Material { density: 1000.0, young: 1e6, poisson: 0.48, viscosity: 40.0 };
-/// let body = Body::new(mesh, rubber).thickness(0.01).build()?;
-/// let mut polynomial = GreenPolynomial::new(&body)?;
-/// assert_eq!(polynomial.quadratic_suffixes().len(), 24);
-/// assert_eq!(polynomial.cubic_suffixes().len(), 84);
-/// // a quarter turn costs nothing
-/// let turned = |x: &[f64]| [-x[1] - x[0], x[0] - x[1]];
-/// let u: Vec<f64> = body.mesh().positions().chunks(2).flat_map(turned).collect();
-/// let mut forces = vec![0.0; body.dofs()];
-/// polynomial.forces(&u, &mut forces)?;
-/// assert!(forces.iter().all(|force| force.abs() < 1e-9));
-/// # Ok::<(), pliant::Error>(())
-/// ```
+/// Green forces of triangles in the plane by direct computation.
 #[derive(Debug, Clone)]
 pub struct GreenPolynomial {
-    linear: Arc<BlockMatrix>,
     /// c2i and c2j, from 0.
     pairs: Vec<[u32; 2]>,
     /// c3i, and the place of (c3j, c3k) among the pairs.
     triples: Vec<[u32; 2]>,
+    /// Rows of [A_1, A_2] and [B_1, B_2] at each pair of nodes that a triangle has.
+    linear: Rows<[[f64; 2]; 2]>,
     /// A_11, A_12, A_22, B_11, B_12, B_22 at each entry.
     quadratic: Rows<[f64; 6]>,
     cubic: Rows<f64>,
@@ -113,6 +63,14 @@ impl<V: Clone> Rows<V> {
         self.columns[range.clone()].iter().copied().zip(&self.values[range])
     }
 
+    fn to_dense(&self, columns: usize, number: impl Fn(&V) -> f64) -> Mat<f64> {
+        let mut dense = Mat::zeros(self.offsets.len() - 1, columns);
+        for row in 0..dense.nrows() {
+            self.row(row).for_each(|(column, value)| dense[(row, column as usize)] = number(value));
+        }
+        dense
+    }
+
     /// The entry in `row` and `column`, if there is one.
     fn entry(&mut self, row: usize, column: u32) -> Option<&mut V> {
         let start = self.offsets[row];
@@ -122,24 +80,15 @@ impl<V: Clone> Rows<V> {
 }
 
 impl GreenPolynomial {
-    /// Builds the coefficient matrices of `body`.
+    /// Coefficient matrices of a `mesh` of triangles in the plane of one `thickness` (m), with the Lamé coefficients of each
+    /// triangle.
     ///
-    /// # Errors
-    /// A body that is not made of triangles in the plane, or of more than 2,097,150 nodes.
-    pub fn new(body: &Body) -> Result<Self, InputError> {
-        let mesh = body.mesh();
-        body.single("the polynomials")?;
-        if (mesh.kind(), mesh.dimension()) != (CellKind::Triangle, 2) {
-            let value = format!("{:?} in {} dimensions", mesh.kind(), mesh.dimension());
-            let help = "the polynomials are those of triangles in the plane: add the forces up \
-                        cell by cell";
-            return Err(InputError::new("cells of the body", value, help));
-        }
+    /// # Panics
+    /// Other cells than triangles, or more than 2,097,150 nodes, of which three numbers do not fit into 64 bits.
+    pub fn new(mesh: &Mesh, thickness: f64, lame: &[Lame]) -> Self {
+        assert!(mesh.dimension() == 2 && mesh.cells().all(|cell| cell.len() == 3));
         let nodes = mesh.node_count();
-        if nodes > MOST_NODES {
-            let help = format!("products of three are numbered for {MOST_NODES} at most");
-            return Err(InputError::new("number of nodes", nodes, help));
-        }
+        assert!(nodes < (1 << 21) - 1);
         let cells: Vec<[usize; 3]> = mesh.cells().map(|cell| [cell[0], cell[1], cell[2]]).collect();
 
         // the suffixes as a number to the base n_p + 1; the order of these is the lexicographic one
@@ -175,15 +124,21 @@ impl GreenPolynomial {
         let mut quadratic = Rows::zeros(cells_of.iter().map(columns2), [0.0; 6]);
         let mut cubic = Rows::zeros(cells_of.iter().map(columns3), 0.0);
 
-        let triangles: Vec<Triangle> =
-            cells.iter().map(|cell| Triangle::new(cell.map(|node| mesh.position(node)))).collect();
-        let area: f64 = triangles.iter().map(|triangle| triangle.area).sum();
-        let thickness = body.volume() / area;
-        for (number, (cell, triangle)) in cells.iter().zip(&triangles).enumerate() {
-            let lame = body.continua[0].regions.of(number).hooke.lame;
+        let columns1 = |here: &Vec<[usize; 3]>| here.iter().flatten().map(|&q| q as u32).collect();
+        let mut linear = Rows::zeros(cells_of.iter().map(columns1), [[0.0; 2]; 2]);
+
+        for (cell, lame) in cells.iter().zip(lame) {
+            let triangle = Triangle::new(cell.map(|node| mesh.position(node)));
             let volume = thickness * triangle.area;
             let weights = [lame.lambda * volume, lame.mu * volume];
             for (p, &row) in cell.iter().enumerate() {
+                for (q, &column) in cell.iter().enumerate() {
+                    let Some(entry) = linear.entry(row, column as u32) else { continue };
+                    let new = triangle.linear(weights, [p, q]);
+                    entry.iter_mut().zip(new).for_each(|(entry, new)| {
+                        *entry = [entry[0] + new[0], entry[1] + new[1]];
+                    });
+                }
                 for ([q, r], pair) in local_pairs().zip(pairs_of(cell)) {
                     let Some(entry) = quadratic.entry(row, place(&id2, &pair)) else { continue };
                     let new = triangle.quadratic(weights, [p, q, r]);
@@ -195,31 +150,19 @@ impl GreenPolynomial {
                 }
             }
         }
-        Ok(Self {
-            linear: body.stiffness.clone(),
+        Self {
+            linear,
             second: vec![[0.0; 3]; pairs.len()],
             third: vec![[0.0; 2]; triples.len()],
             pairs,
             triples,
             quadratic,
             cubic,
-        })
+        }
     }
 
-    /// Writes the nodal forces -dU/du (N) at the displacements `u` (m), both with two components
-    /// per node. It allocates nothing.
-    ///
-    /// # Errors
-    /// A length other than that of the body's degrees of freedom.
-    pub fn forces(&mut self, u: &[f64], forces: &mut [f64]) -> Result<(), InputError> {
-        let dofs = 2 * self.linear.pattern().nodes();
-        for (input, length) in [("length of u", u.len()), ("length of forces", forces.len())] {
-            if length != dofs {
-                return Err(InputError::new(input, length, format!("the body has {dofs}")));
-            }
-        }
-        forces.fill(0.0);
-        self.linear.add_product(-1.0, u, forces);
+    /// Writes the nodal forces -dU/du (N) at the displacements `u` (m), both with two components per node.
+    pub fn forces(&mut self, u: &[f64], forces: &mut [f64]) {
         let at = u.as_chunks::<2>().0;
         for (second, &[i, j]) in self.second.iter_mut().zip(&self.pairs) {
             let ([ui, vi], [uj, vj]) = (at[i as usize], at[j as usize]);
@@ -231,6 +174,12 @@ impl GreenPolynomial {
         }
         for (node, force) in forces.as_chunks_mut::<2>().0.iter_mut().enumerate() {
             let mut sum = [0.0; 2];
+            for (column, coefficients) in self.linear.row(node) {
+                let [u, v] = at[column as usize];
+                sum = std::array::from_fn(|i| {
+                    sum[i] + coefficients[i][0] * u + coefficients[i][1] * v
+                });
+            }
             for (column, &[a11, a12, a22, b11, b12, b22]) in self.quadratic.row(node) {
                 let [uu, uv, vv] = self.second[column as usize];
                 sum[0] += a11 * uu + a12 * uv + a22 * vv;
@@ -241,10 +190,8 @@ impl GreenPolynomial {
                 sum[0] += c * along_x;
                 sum[1] += c * along_y;
             }
-            force[0] -= sum[0];
-            force[1] -= sum[1];
+            *force = sum.map(|sum| -sum);
         }
-        Ok(())
     }
 
     /// Suffixes (i, j) of the products in c_uu, c_uv and c_vv, in their order: c2i and c2j of the
@@ -263,26 +210,14 @@ impl GreenPolynomial {
         self.triples.iter().map(all).collect()
     }
 
-    /// A matrix of coefficients (N/m^2; C: N/m^3) as a dense one, for small bodies and tests: a
-    /// row per node, a column per product.
-    pub fn to_dense(&self, which: Coefficients) -> Mat<f64> {
-        let nodes = self.linear.pattern().nodes();
-        let mut dense = match which {
-            Coefficients::C => Mat::zeros(nodes, self.triples.len()),
-            _ => Mat::zeros(nodes, self.pairs.len()),
-        };
-        for node in 0..nodes {
-            match which {
-                Coefficients::C => {
-                    self.cubic.row(node).for_each(|(j, c)| dense[(node, j as usize)] = *c);
-                }
-                _ => self
-                    .quadratic
-                    .row(node)
-                    .for_each(|(j, entry)| dense[(node, j as usize)] = entry[which as usize]),
-            }
-        }
-        dense
+    /// A_11, A_12, A_22, B_11, B_12 or B_22 (`which` from 0, N/m^2) as a dense matrix, for small bodies: a row per node, a column per product.
+    pub fn quadratic_matrix(&self, which: usize) -> Mat<f64> {
+        self.quadratic.to_dense(self.pairs.len(), |entry| entry[which])
+    }
+
+    /// C (N/m^3), likewise.
+    pub fn cubic_matrix(&self) -> Mat<f64> {
+        self.cubic.to_dense(self.triples.len(), |c| *c)
     }
 }
 
@@ -320,6 +255,15 @@ impl Triangle {
             b: others.map(|[j, k]| -across(0, j, k) / twice),
             area: 0.5 * twice,
         }
+    }
+
+    /// Coefficients of the displacements of node q in the forces on node p along x and y: those of K.
+    fn linear(&self, [lambda, mu]: [f64; 2], [p, q]: [usize; 2]) -> [[f64; 2]; 2] {
+        let (a, b) = (&self.a, &self.b);
+        let (aa, ab, ba, bb) = (a[p] * a[q], a[p] * b[q], b[p] * a[q], b[p] * b[q]);
+        let along_x = [lambda * aa + mu * (2.0 * aa + bb), lambda * ab + mu * ba];
+        let along_y = [lambda * ba + mu * ab, lambda * bb + mu * (2.0 * bb + aa)];
+        [along_x, along_y]
     }
 
     /// Coefficients (4.5.8) of the products with local suffixes q and r in the force on node p, for
