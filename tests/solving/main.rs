@@ -21,6 +21,7 @@ mod sensitivities;
 mod standstill;
 mod support;
 mod switches;
+mod threads;
 mod tolerances;
 mod values;
 mod wrong_jacobians;
