@@ -32,8 +32,6 @@ pub struct Stopped {
     pub reason: Reason,
     /// The solution so far.
     pub solution: Solution,
-    /// Why there are so many steps, if that is known: [`Run::notice`](super::Run::notice).
-    pub notice: Option<String>,
 }
 
 /// Why a run stopped, or did not begin.
@@ -146,12 +144,13 @@ impl From<common::Error> for Reason {
 impl fmt::Display for Stopped {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let t = self.solution.t().last().copied().unwrap_or(f64::NAN);
-        match (&self.reason, &self.notice) {
+        match (&self.reason, self.solution.notice()) {
             (Reason::Failed(error), _) => error.fmt(f),
             (Reason::Steps(steps), Some(notice)) => {
                 write!(f, "the run stopped at t = {t:?}: {steps} steps taken; {notice}")
             }
-            (reason, _) => write!(f, "the run stopped at t = {t:?}: {reason}"),
+            (reason, Some(notice)) => write!(f, "the run stopped at t = {t:?}: {reason}; {notice}"),
+            (reason, None) => write!(f, "the run stopped at t = {t:?}: {reason}"),
         }
     }
 }

@@ -8,7 +8,7 @@ use super::{
 use crate::base::input::InputError;
 use crate::integrators::{
     common::{Error, StepOptions, Tolerances},
-    ode::{Boxed, MassKind},
+    ode::Boxed,
     rk,
     rosenbrock::{self, Rosenbrock},
     sundials::{
@@ -85,14 +85,11 @@ impl Method {
 
     /// Refuses options that the method does not have.
     fn check(self, options: &Options, equations: &Equations<'_>) -> Result<(), InputError> {
-        let (is_dae, has_mass) = match equations {
-            Equations::Dae { .. } => (true, false),
-            Equations::Ode(system) => (false, system.mass_kind() != MassKind::Identity),
-        };
+        let is_dae = matches!(equations, Equations::Dae { .. });
         let refused = |input: &str, value: String, help: &str| {
             Err(InputError::new(input, value, format!("{} {help}", self.name())))
         };
-        if is_dae != (self == Self::Ida) && !has_mass {
+        if is_dae != (self == Self::Ida) && !equations.has_mass() {
             let help = match is_dae {
                 true => "integrates ODEs: take Method::Ida for a DAE",
                 false => {

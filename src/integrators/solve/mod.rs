@@ -30,6 +30,7 @@
 mod caution;
 mod control;
 mod crossing;
+mod diagnosis;
 mod edge;
 mod engine;
 mod ensemble;

@@ -15,7 +15,7 @@ use super::{
     snapshot::SharedSides,
 };
 use crate::base::input::InputError;
-use crate::integrators::ode::{Dae, Ode};
+use crate::integrators::ode::{Dae, MassKind, Ode};
 
 /// The equations of a problem.
 pub(super) enum Equations<'a> {
@@ -29,6 +29,11 @@ impl Equations<'_> {
             Self::Ode(system) => system.parameters(),
             Self::Dae { system, .. } => system.parameters(),
         }
+    }
+
+    /// Whether they have a mass matrix.
+    pub(super) fn has_mass(&self) -> bool {
+        matches!(self, Self::Ode(system) if system.mass_kind() != MassKind::Identity)
     }
 
     pub(super) fn quadrature_count(&self) -> usize {
