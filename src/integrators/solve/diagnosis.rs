@@ -108,14 +108,17 @@ impl Run<'_> {
         let Rate { size, oscillates } = self.rate()?;
         let slope = self.slope_of(&self.y.clone())?;
         let is_unfollowed = size * self.unit_of_time(&self.y, &slope) > UNFOLLOWED;
-        let (least, advice) = match self.limit {
-            Limit::Oscillations if oscillates && order > 2 => (
-                0.2,
-                "BDF of order 3 and higher is unstable for fast oscillations with little damping: use Method::Rosenbrock, or Method::RungeKutta with \
-                 an implicit table",
-            ),
-            Limit::FastModes => (0.5, "use an implicit method for stiff equations"),
+        let least = match self.limit {
+            Limit::Oscillations if oscillates && order > 2 => 0.2,
+            Limit::FastModes => 0.5,
             _ => return None,
+        };
+        let advice = match oscillates {
+            true => {
+                "use Method::Rosenbrock, or Method::RungeKutta with an implicit table; BDF of order 3 and higher is unstable for fast \
+                 oscillations with little damping"
+            }
+            false => "use an implicit method for stiff equations, such as Method::Bdf",
         };
         (is_unfollowed && (least..10.0).contains(&(size * h))).then(|| {
             format!(

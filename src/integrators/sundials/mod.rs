@@ -55,6 +55,7 @@ mod factored;
 mod factors;
 mod ffi;
 mod functions;
+mod groups;
 mod host;
 mod ida;
 mod ilu;
