@@ -14,6 +14,7 @@ mod gradients;
 mod integrals;
 mod interpolation;
 mod limits;
+mod patterns;
 mod refusals;
 mod resuming;
 mod rosenbrock;

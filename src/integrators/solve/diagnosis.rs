@@ -37,8 +37,8 @@ impl Method {
             Self::Bdf => Limit::Oscillations,
             Self::Adams => Limit::FastModes,
             Self::DormandPrince => Limit::Watched,
-            Self::RungeKutta(table) if !table.is_implicit() => Limit::FastModes,
-            Self::RungeKutta(_) | Self::Rosenbrock | Self::Ida => Limit::None,
+            method if method.is_explicit() => Limit::FastModes,
+            _ => Limit::None,
         }
     }
 }

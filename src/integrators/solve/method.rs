@@ -83,6 +83,14 @@ impl Method {
         }
     }
 
+    /// Whether it solves no linear systems.
+    pub(super) fn is_explicit(self) -> bool {
+        match self {
+            Self::RungeKutta(table) => !table.is_implicit(),
+            method => method == Self::DormandPrince,
+        }
+    }
+
     /// Refuses options that the method does not have.
     fn check(self, options: &Options, equations: &Equations<'_>) -> Result<(), InputError> {
         let is_dae = matches!(equations, Equations::Dae { .. });
@@ -104,11 +112,7 @@ impl Method {
         if let (Some(order), false) = (options.max_order, multistep || self == Self::Rosenbrock) {
             return refused("max_order", order.to_string(), "has one order, that of its table");
         }
-        let explicit = match self {
-            Self::RungeKutta(table) => !table.is_implicit(),
-            method => method == Self::DormandPrince,
-        };
-        if let (Some(solver), true) = (&options.linear_solver, explicit) {
+        if let (Some(solver), true) = (&options.linear_solver, self.is_explicit()) {
             return refused(
                 "linear_solver",
                 format!("{solver:?}"),

@@ -36,6 +36,7 @@ mod engine;
 mod ensemble;
 mod error;
 mod event;
+mod found_pattern;
 mod gradient;
 mod history;
 mod method;

@@ -57,6 +57,15 @@ impl Shape {
         }
     }
 
+    /// Whether entry (i, j) is stored.
+    pub(super) fn stores(&self, i: usize, j: usize) -> bool {
+        match self {
+            Self::Dense => true,
+            Self::Band { lower, upper } => i <= j + lower && j <= i + upper,
+            Self::Sparse(pattern) => pattern.position(i, j).is_some(),
+        }
+    }
+
     /// Calls `visit` with the row, column and position of each entry.
     pub(super) fn each(&self, n: usize, stored: usize, mut visit: impl FnMut(usize, usize, usize)) {
         for j in 0..n {
