@@ -103,7 +103,8 @@ pub fn gradient(
     }
     let mut problem = problem;
     let (start, n) = (span.0, problem.y.len());
-    let options = &*options.with_pattern(method, &mut problem.equations, start, &problem.y);
+    let options =
+        &*options.with_linear_solver(method, &mut problem.equations, start, &problem.y)?;
     problem.equations = method.take(problem.equations, start, n, options)?;
     let length = (span.1 - start).abs();
     let surfaces = Surfaces::of(&problem.events, &options.tolerances, length);

@@ -36,9 +36,9 @@ mod engine;
 mod ensemble;
 mod error;
 mod event;
-mod found_pattern;
 mod gradient;
 mod history;
+mod linear_solver;
 mod method;
 mod minimum;
 #[cfg(doctest)]

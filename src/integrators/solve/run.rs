@@ -196,7 +196,7 @@ impl<'a> Run<'a> {
         }
         breaks.sort_by(|a, b| ((b.t - a.t) * sign).total_cmp(&0.0));
         let quadrature_count = equations.quadrature_count();
-        let options = &*options.with_pattern(method, &mut equations, start, &y);
+        let options = &*options.with_linear_solver(method, &mut equations, start, &y)?;
         if options.sensitivities.is_some() {
             equations = method.take(equations, start, y.len(), options)?;
             let (tolerances, length) = (&options.tolerances, (end - start).abs());

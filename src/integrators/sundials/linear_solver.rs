@@ -4,7 +4,7 @@ use faer::MatMut;
 
 use super::{jacobian::Jacobian, krylov::Krylov, pattern::Pattern};
 use crate::base::input::InputError;
-use crate::integrators::ode::{BandMut, Entries};
+use crate::integrators::ode::{BandMut, Entries, Storage};
 
 /// How the linear systems of the Newton iteration are solved.
 ///
@@ -104,6 +104,20 @@ impl LinearSolver {
             Self::Klu { .. } | Self::Custom => true,
             Self::Krylov(_) => false,
         }
+    }
+
+    /// The linear solver for a Jacobian that the system supplies.
+    pub(crate) fn of_supplied(storage: Storage<'_>) -> Result<Self, InputError> {
+        let jacobian = Jacobian::Supplied;
+        Ok(match storage {
+            Storage::Dense => Self::Dense(jacobian),
+            Storage::Band { lower, upper } => Self::Band { lower, upper, jacobian },
+            Storage::Sparse { column_pointers, row_indices } => {
+                let numbers = |all: &[i64]| all.iter().map(|&k| k as usize).collect::<Vec<_>>();
+                let (columns, rows) = (numbers(column_pointers), numbers(row_indices));
+                Self::Klu { pattern: Pattern::from_csc(&columns, &rows)?, jacobian }
+            }
+        })
     }
 
     /// The method by which the system supplies a Jacobian that the iteration relies on.

@@ -90,6 +90,7 @@ mod version;
 
 pub use adjoint::{Adjoint, AdjointOf, AdjointOptions, DaeAdjoint, Gradient};
 pub use arkode::{Arkode, ArkodeOptions, ButcherTable, Predictor};
+pub(crate) use colouring::Colouring;
 pub use cvode::{Cvode, CvodeOptions, Multistep};
 pub(crate) use differences::Differences;
 pub(crate) use factors::Factors;
@@ -102,6 +103,7 @@ pub(crate) use options::OfMultistep;
 pub use options::SolverOptions;
 pub use pattern::Pattern;
 pub use sensitivity::{Sensitivities, SensitivityMethod, SensitivitySource};
+pub(crate) use shape::Shape;
 pub use signs::Sign;
 pub use solver::{Kind, Solver, WithSensitivities};
 pub(crate) use stored_matrix::StoredMatrix;

@@ -1,8 +1,10 @@
-//! The linear solver of many unknowns for which none was given: sparse, on a pattern that is found by changes of the unknowns.
+//! The linear solver where none was given: that of the Jacobian that the equations supply; or, of many unknowns, a sparse one, on a pattern
+//! that is found by changes of the unknowns.
 
 use std::borrow::Cow;
 
 use super::{method::Method, options::Options, problem::Equations};
+use crate::base::input::InputError;
 use crate::integrators::sundials::{Jacobian, LinearSolver, Pattern};
 
 /// The largest number of unknowns whose matrix is dense in any case.
@@ -14,30 +16,38 @@ const SPARSE: f64 = 0.2;
 const SPREADS: [f64; 2] = [1e-2, 1e-7];
 
 impl Options {
-    /// These options, with a sparse linear solver where none is given, the method solves linear systems, and there are many unknowns, few of
-    /// which occur in each equation. Entries that the pattern lacks, as the equations do not depend on them at the start, are found by the
-    /// [check](Self::check_jacobian) of the Jacobians later on.
-    pub(super) fn with_pattern(
+    /// These options, with a linear solver where none is given and the method solves linear systems: that of the Jacobian that the
+    /// equations supply. Without one it is sparse if there are many unknowns, few of which occur in each equation. Entries that the pattern
+    /// lacks, as the equations do not depend on them at the start, are found by the [check](Self::check_jacobian) of the Jacobians later on.
+    pub(super) fn with_linear_solver(
         &self,
         method: Method,
         equations: &mut Equations<'_>,
         t: f64,
         y: &[f64],
-    ) -> Cow<'_, Self> {
-        let n = y.len();
-        if n <= FEW || method.is_explicit() || self.linear_solver.is_some() || equations.has_mass()
-        {
-            return Cow::Borrowed(self);
+    ) -> Result<Cow<'_, Self>, InputError> {
+        if method.is_explicit() || self.linear_solver.is_some() || equations.has_mass() {
+            return Ok(Cow::Borrowed(self));
         }
+        let supplied = match &*equations {
+            Equations::Ode(system) => system.supplied_jacobian(),
+            Equations::Dae { .. } => None,
+        };
+        let solver = match supplied {
+            Some(supplied) => Some(LinearSolver::of_supplied(supplied)?),
+            None if y.len() > FEW => self.found(equations, t, y),
+            None => None,
+        };
+        let with = |solver| Cow::Owned(self.clone().linear_solver(solver));
+        Ok(solver.map_or(Cow::Borrowed(self), with))
+    }
+
+    /// A sparse linear solver, on the pattern of the equations at the start.
+    fn found(&self, equations: &mut Equations<'_>, t: f64, y: &[f64]) -> Option<LinearSolver> {
         let found = SPREADS.iter().find_map(|part| self.pattern(equations, t, y, *part));
-        let most = SPARSE * (n as f64).powi(2);
-        match found.filter(|pattern| (pattern.entry_count() as f64) < most) {
-            Some(pattern) => {
-                let jacobian = Jacobian::DifferenceQuotients;
-                Cow::Owned(self.clone().linear_solver(LinearSolver::Klu { pattern, jacobian }))
-            }
-            None => Cow::Borrowed(self),
-        }
+        let most = SPARSE * (y.len() as f64).powi(2);
+        let pattern = found.filter(|pattern| (pattern.entry_count() as f64) < most)?;
+        Some(LinearSolver::Klu { pattern, jacobian: Jacobian::DifferenceQuotients })
     }
 
     /// The pattern of the equations where all unknowns are farther from zero, by up to twice this part of their sizes; none where they have
