@@ -279,7 +279,7 @@ fn slopes_by_parameters_are_those_of_the_equations() {
 struct Functions;
 
 /// How many functions [`Functions`] has; each takes y0 and y1.
-const COUNT: usize = 36;
+const COUNT: usize = 37;
 
 impl RightHandSide for Functions {
     fn rhs<T: Number>(&mut self, _t: f64, y: &[T], _p: &[T], out: &mut [T]) -> Result<(), Failure> {
@@ -320,6 +320,7 @@ impl RightHandSide for Functions {
             x.atan(),
             x.sinh() * x.cosh(),
             x.tanh(),
+            x.asinh(),
             (x - z).abs(),
             x.max(z) * 2.0 + x.min(z),
         ];

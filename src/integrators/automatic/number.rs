@@ -155,6 +155,13 @@ pub trait Number:
         self.function(value, 1.0 - value * value)
     }
 
+    /// The number whose hyperbolic sine is x.
+    #[must_use]
+    fn asinh(self) -> Self {
+        let x = self.value();
+        self.function(x.asinh(), 1.0_f64.hypot(x).recip())
+    }
+
     /// The absolute value; at 0 with the derivative 1.
     #[must_use]
     fn abs(self) -> Self {
