@@ -11,12 +11,14 @@
 
 use std::{hint::black_box, time::Instant};
 
+use faer::Mat;
 use pliant::{
     automatic::{Number, RightHandSide, automatic},
     ode::{Failure, Ode},
+    rosenbrock::{self, Rosenbrock},
     samples::{Brusselator, Hires},
     solve::{Event, Method, Options, Problem, solve},
-    sundials::{Cvode, CvodeOptions, Integrator, Jacobian, LinearSolver, Pattern},
+    sundials::{Cvode, CvodeOptions, Error, Integrator, Jacobian, LinearSolver, Pattern},
 };
 
 /// Shells of each sphere.
@@ -56,7 +58,7 @@ impl RightHandSide for Battery {
     fn rhs<T: Number>(&mut self, _t: f64, y: &[T], p: &[T], ydot: &mut [T]) -> Result<(), Failure> {
         let (current, temperature, film) = (p[0], y[2 * SHELLS], y[2 * SHELLS + 1]);
         // per hour: charge leaves the negative sphere and enters the positive one
-        for (sphere, sign, rate) in [(0, -1.0, 30.0), (SHELLS, 1.0, 20.0)] {
+        for (sphere, sign, rate) in [(0, -1.0, 90.0), (SHELLS, 1.0, 60.0)] {
             let filling = &y[sphere..sphere + SHELLS];
             let mobility = arrhenius(temperature, 14.0) * rate;
             let radius = |k: usize| k as f64 / SHELLS as f64;
@@ -157,30 +159,60 @@ fn time(mut work: impl FnMut()) -> f64 {
     1e6 * shortest
 }
 
-/// Prints a row: steps, evaluations and time of a run by CVODE.
-fn row<S: Ode>(
+/// A system with a linear solver: one Jacobian in evaluations of the right-hand side, and the times (us) of runs by BDF, which keeps a Jacobian for
+/// many steps, and by a Rosenbrock method, which has one in each.
+struct Times {
+    jacobian: f64,
+    runs: [f64; 2],
+}
+
+fn times<S: Ode>(
     name: &str,
     make: impl Fn() -> S,
     solver: &LinearSolver,
-    y0: &[f64],
-    end: f64,
-) -> f64 {
-    let options = CvodeOptions::new(1e-6, 1e-9).newton(solver.clone());
-    let run = || {
-        let mut cvode = Cvode::new(make(), 0.0, y0, &options).expect("the options fit");
-        cvode.solve_to(end).expect("it comes to its end");
-        cvode.statistics()
+    (y0, end): (&[f64], f64),
+) -> Result<Times, Box<dyn std::error::Error>> {
+    let bdf = CvodeOptions::new(1e-6, 1e-9).newton(solver.clone());
+    let rosenbrock = rosenbrock::Options::new(1e-6, 1e-9).newton(solver.clone());
+    let integrate = |mut solver: Box<dyn Integrator<System = S>>| {
+        solver.solve_to(end)?;
+        Ok::<_, Error>(solver.statistics())
     };
-    let statistics = run();
-    let us = time(|| drop(black_box(run())));
+    let with_bdf = || integrate(Box::new(Cvode::new(make(), 0.0, y0, &bdf)?));
+    let with_rosenbrock = || integrate(Box::new(Rosenbrock::new(make(), 0.0, y0, &rosenbrock)?));
+    let (of_bdf, of_rosenbrock) = (with_bdf()?, with_rosenbrock()?);
+    let runs = [time(|| drop(black_box(with_bdf()))), time(|| drop(black_box(with_rosenbrock())))];
+
+    let (mut system, mut ydot) = (make(), vec![0.0; y0.len()]);
+    let evaluation = time(|| drop(black_box(system.rhs(0.0, black_box(y0), &mut ydot))));
+    let jacobian = match solver {
+        LinearSolver::Dense(Jacobian::Supplied) => {
+            let mut matrix = Mat::zeros(y0.len(), y0.len());
+            time(|| drop(system.dense_jacobian(0.0, black_box(y0), &ydot, matrix.as_mut())))
+                / evaluation
+        }
+        LinearSolver::Klu { pattern, jacobian: Jacobian::Supplied } => {
+            let mut values = vec![0.0; pattern.entry_count()];
+            time(|| drop(system.sparse_jacobian(0.0, black_box(y0), &ydot, &mut values)))
+                / evaluation
+        }
+        _ => of_bdf.difference_quotient_evaluations as f64 / of_bdf.jacobian_evaluations as f64,
+    };
     println!(
-        "  {name:<14} {:>5} steps {:>4} Jacobians {:>6} evaluations and {:>6} for differences {us:>9.1} us",
-        statistics.steps,
-        statistics.jacobian_evaluations,
-        statistics.evaluations,
-        statistics.difference_quotient_evaluations,
+        "  {name:<12} a Jacobian {jacobian:>5.1} evaluations; BDF {:>4} steps {:>4} Jacobians {:>8.0} us; Rosenbrock {:>4} steps {:>8.0} us",
+        of_bdf.steps, of_bdf.jacobian_evaluations, runs[0], of_rosenbrock.steps, runs[1],
     );
-    us
+    Ok(Times { jacobian, runs })
+}
+
+/// Prints the time of automatic Jacobians relative to that of others.
+fn ratio(automatic: &Times, name: &str, other: &Times) {
+    println!(
+        "  automatic : {name}: {:.2} for a Jacobian, {:.2} for BDF, {:.2} for Rosenbrock",
+        automatic.jacobian / other.jacobian,
+        automatic.runs[0] / other.runs[0],
+        automatic.runs[1] / other.runs[1]
+    );
 }
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -202,39 +234,33 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let (supplied, differences) = (Jacobian::Supplied, Jacobian::DifferenceQuotients);
 
     println!("HIRES, 8 unknowns, dense:");
-    let by_hand = row("by hand", Hires::new, &dense(supplied), &Hires::Y0, 321.8122);
-    let exact = row("automatic", || automatic(Plant, []), &dense(supplied), &Hires::Y0, 321.8122);
-    let quotients = row("differences", Hires::new, &dense(differences), &Hires::Y0, 321.8122);
-    ratio(exact, Some(by_hand), quotients);
+    let start = (&Hires::Y0[..], 321.8122);
+    let by_hand = times("by hand", Hires::new, &dense(supplied), start)?;
+    let exact = times("automatic", || automatic(Plant, []), &dense(supplied), start)?;
+    let quotients = times("differences", Hires::new, &dense(differences), start)?;
+    ratio(&exact, "by hand", &by_hand);
+    ratio(&exact, "differences", &quotients);
 
+    println!("Brusselator, 1000 unknowns, sparse:");
     let sample = Brusselator::new(500);
     let (pattern, line0) = (sample.pattern(), sample.y0());
-    let line = || automatic(Line(500), []).sparse(pattern.clone());
-    println!("Brusselator, 1000 unknowns, sparse:");
-    let by_hand = row("by hand", || sample.clone(), &klu(pattern, supplied), &line0, 10.0);
-    let exact = row("automatic", line, &klu(pattern, supplied), &line0, 10.0);
-    let quotients = row("differences", || sample.clone(), &klu(pattern, differences), &line0, 10.0);
-    ratio(exact, Some(by_hand), quotients);
+    let (start, line) = ((&line0[..], 10.0), || automatic(Line(500), []).sparse(pattern.clone()));
+    let by_hand = times("by hand", || sample.clone(), &klu(pattern, supplied), start)?;
+    let exact = times("automatic", line, &klu(pattern, supplied), start)?;
+    let quotients = times("differences", || sample.clone(), &klu(pattern, differences), start)?;
+    ratio(&exact, "by hand", &by_hand);
+    ratio(&exact, "differences", &quotients);
 
     let battery = || automatic(Battery, [current]);
     let pattern = Pattern::ode_by_nan(&mut battery(), 0.0, &y0)?;
-    for (name, exact, quotients) in [
-        ("dense", dense(supplied), dense(differences)),
-        ("sparse", klu(&pattern, supplied), klu(&pattern, differences)),
-    ] {
-        println!("Battery, {UNKNOWNS} unknowns, {name}:");
-        let system = || match name {
-            "dense" => battery(),
-            _ => battery().sparse(pattern.clone()),
-        };
-        let exact = row("automatic", system, &exact, &y0, 0.3);
-        ratio(exact, None, row("differences", system, &quotients, &y0, 0.3));
-    }
+    let start = (&y0[..], 0.2);
+    println!("Battery, {UNKNOWNS} unknowns, dense:");
+    let exact = times("automatic", battery, &dense(supplied), start)?;
+    ratio(&exact, "differences", &times("differences", battery, &dense(differences), start)?);
+    println!("Battery, {UNKNOWNS} unknowns, sparse:");
+    let sparse = || battery().sparse(pattern.clone());
+    let exact = times("automatic", sparse, &klu(&pattern, supplied), start)?;
+    let quotients = times("differences", sparse, &klu(&pattern, differences), start)?;
+    ratio(&exact, "differences", &quotients);
     Ok(())
-}
-
-fn ratio(automatic: f64, by_hand: Option<f64>, differences: f64) {
-    let of_hand =
-        by_hand.map_or(String::new(), |time| format!("{:.2} of by hand, ", automatic / time));
-    println!("  automatic takes {of_hand}{:.2} of differences", automatic / differences);
 }

@@ -93,21 +93,15 @@ impl<E> Automatic<E> {
 }
 
 impl<E: RightHandSide> Automatic<E> {
-    /// Calls `put` with row, column, position and value of each entry of df/dy.
-    fn each_entry(
+    /// Differentiates f by all unknowns, and calls `put` with the shape, each column and its lane in f.
+    fn each_column(
         &mut self,
         t: f64,
         y: &[f64],
-        mut put: impl FnMut((usize, usize), usize, f64),
+        mut put: impl FnMut(&Shape, usize, usize, &[Dual<LANES>]),
     ) -> Result<(), Failure> {
         let Self { equations, parameters, shape, colouring, many, .. } = self;
-        let n = y.len();
-        let stored = match shape {
-            Shape::Dense => n * n,
-            Shape::Band { lower, upper } => n * (*lower + *upper + 1),
-            Shape::Sparse(pattern) => pattern.entry_count(),
-        };
-        let colouring = colouring.get_or_insert_with(|| shape.colouring(n));
+        let colouring = colouring.get_or_insert_with(|| shape.colouring(y.len()));
         for first in (0..colouring.count()).step_by(LANES) {
             let lanes = LANES.min(colouring.count() - first);
             many.start(y, parameters);
@@ -117,19 +111,27 @@ impl<E: RightHandSide> Automatic<E> {
             }
             many.evaluate(equations, t)?;
             for lane in 0..lanes {
-                for &j in colouring.columns(first + lane) {
-                    for (k, position) in shape.positions(j, n, stored).enumerate() {
-                        let i = shape.row(j, k);
-                        put((i, j), position, many.f[i].slopes[lane]);
-                    }
-                }
+                let columns = colouring.columns(first + lane).iter();
+                columns.for_each(|&j| put(shape, j, lane, &many.f));
             }
         }
         Ok(())
     }
 
     fn fill(&mut self, t: f64, y: &[f64], mut entries: Entries<'_>) -> Result<(), Failure> {
-        self.each_entry(t, y, |entry, position, value| entries.set(entry, position, value))
+        let n = y.len();
+        self.each_column(t, y, |shape, j, lane, f| match (&mut entries, shape) {
+            (Entries::Dense(matrix), Shape::Dense) => {
+                let column = matrix.as_mut().col_mut(j);
+                column.iter_mut().zip(f).for_each(|(entry, f)| *entry = f.slopes[lane]);
+            }
+            (entries, shape) => {
+                for (k, position) in shape.positions(j, n, shape.stored(n)).enumerate() {
+                    let i = shape.row(j, k);
+                    entries.set((i, j), position, f[i].slopes[lane]);
+                }
+            }
+        })
     }
 
     /// Writes the derivative of f along a direction of the unknowns and of one parameter, if any, into `out`.
@@ -235,7 +237,11 @@ impl<E: RightHandSide> Ode for Automatic<E> {
         lambda: &[f64],
         out: &mut [f64],
     ) -> Result<(), Failure> {
-        self.each_entry(t, y, |(i, j), _, value| out[j] += lambda[i] * value)
+        let n = y.len();
+        self.each_column(t, y, |shape, j, lane, f| {
+            let rows = (0..shape.positions(j, n, shape.stored(n)).len()).map(|k| shape.row(j, k));
+            out[j] = rows.map(|i| lambda[i] * f[i].slopes[lane]).sum();
+        })
     }
 
     fn adjoint_parameters(

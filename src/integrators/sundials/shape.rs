@@ -34,6 +34,15 @@ impl Shape {
         }
     }
 
+    /// How many numbers a matrix with `n` columns stores, without space for pivots.
+    pub(crate) fn stored(&self, n: usize) -> usize {
+        match self {
+            Self::Dense => n * n,
+            Self::Band { lower, upper } => n * (lower + upper + 1),
+            Self::Sparse(pattern) => pattern.entry_count(),
+        }
+    }
+
     /// Positions of the entries of column `j` among the `stored` numbers of a matrix with `n` columns.
     pub(crate) fn positions(&self, j: usize, n: usize, stored: usize) -> Range<usize> {
         match self {
