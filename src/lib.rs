@@ -107,7 +107,7 @@ pub use dynamics::{equations, error, simulate, statics, trajectory};
 #[cfg(feature = "bodies")]
 pub use elements::{body, force, material, mesh};
 pub use integrators::{
-    central_difference, common as integrate, ode, rk, rosenbrock, solve, sundials,
+    automatic, central_difference, common as integrate, ode, rk, rosenbrock, solve, sundials,
 };
 #[cfg(feature = "output")]
 pub use io::output;

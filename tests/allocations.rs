@@ -11,9 +11,10 @@ use pliant::rk::{DormandPrince, Integrator, Options};
 use pliant::rosenbrock::{self, Rosenbrock};
 use pliant::samples::{SQUARE_MATERIAL, square_jump};
 use pliant::simulate::{Component, Reading};
+use pliant::solve::{self, Event, Problem, Run};
 use pliant::sundials::{
-    Cvode, CvodeOptions, Jacobian, Krylov, KrylovMethod, LinearSolver, Pattern, Preconditioner,
-    Side,
+    ButcherTable, Cvode, CvodeOptions, Jacobian, Krylov, KrylovMethod, LinearSolver, Pattern,
+    Preconditioner, Side,
 };
 use pliant::{
     Body, Cells, Chamber, ContactEvents, Gas, Growth, Lag, Liquid, Mesh, Method, Obstacle, Orifice,
@@ -193,6 +194,43 @@ fn rosenbrock_methods_allocate_nothing_after_their_start() {
             solver.solve_to(2.0).unwrap();
         });
         assert_eq!(allocated.count_total, 0);
+    }
+}
+
+/// Steps of a [`Run`] that looks for events and shows itself to an observer, also to times and after a change of the state; only an event
+/// that is met is kept with its state.
+#[test]
+fn runs_allocate_nothing_after_their_start() {
+    let tables = [ButcherTable::implicit(4).unwrap(), ButcherTable::explicit(5).unwrap()];
+    let methods = [
+        solve::Method::Bdf,
+        solve::Method::Adams,
+        solve::Method::DormandPrince,
+        solve::Method::Rosenbrock,
+        solve::Method::RungeKutta(tables[0]),
+        solve::Method::RungeKutta(tables[1]),
+    ];
+    for method in methods {
+        // van der Pol's oscillator, whose velocity stays below 8
+        let rhs = |_t: f64, y: &[f64], ydot: &mut [f64]| {
+            (ydot[0], ydot[1]) = (y[1], 5.0 * (1.0 - y[0] * y[0]) * y[1] - y[0]);
+            Ok(())
+        };
+        let problem = Problem::ode(rhs, [2.0, 0.0])
+            .event(Event::new(|_, y| y[0] - 10.0))
+            .event(Event::new(|_, y| y[1] - 10.0).action(|jump| jump.end()))
+            .observed_by(|_| ControlFlow::Continue(()));
+        let options = solve::Options::new(1e-6, 1e-9);
+        let mut run = Run::new(problem, method, (0.0, 1e3), &options).unwrap();
+        (0..300).for_each(|_| drop(run.advance().unwrap()));
+        let steps = |run: &mut Run<'_>| {
+            (0..300).for_each(|_| drop(run.advance().unwrap()));
+            let t = run.t() + 20.0;
+            assert!(run.advance_to(t).unwrap().is_empty());
+        };
+        assert_eq!(measure(|| steps(&mut run)).count_total, 0, "{method:?}");
+        run.jump(|jump| jump.y[0] += 0.01).unwrap();
+        assert_eq!(measure(|| steps(&mut run)).count_total, 0, "{method:?}");
     }
 }
 

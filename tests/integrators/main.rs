@@ -5,6 +5,7 @@ mod support;
 mod adjoint;
 mod after_failures;
 mod arkode;
+mod automatic;
 mod central_difference;
 mod checks;
 mod control;

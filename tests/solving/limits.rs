@@ -159,3 +159,94 @@ fn an_error_tells_why_there_are_so_many_steps() {
         );
     }
 }
+
+/// A problem, over a span, that a method of some steps cannot finish, or that says nothing.
+fn reason_of_many_steps(
+    rhs: fn(f64, &[f64], &mut [f64]),
+    y: &[f64],
+    end: f64,
+    method: Method,
+    rtol: f64,
+) -> Option<String> {
+    let rhs = move |t: f64, y: &[f64], ydot: &mut [f64]| {
+        rhs(t, y, ydot);
+        Ok(())
+    };
+    let options = Options::new(rtol, 1e-2 * rtol).max_steps(20_000).output(Output::End);
+    match solve(Problem::ode(rhs, y), method, (0.0, end), &options) {
+        Ok(solution) => solution.notice().map(String::from),
+        Err(error) => {
+            let solution = error.solution().expect("it stopped");
+            let notice = solution.notice().map(String::from);
+            // the error says it, too
+            assert!(notice.as_ref().is_none_or(|notice| error.to_string().ends_with(notice)));
+            notice
+        }
+    }
+}
+
+/// Solutions that slide along a switch, of one unknown and of a mass on a moving ground with dry friction; stiff equations and oscillations that
+/// their solutions do not follow, by the methods whose stability they limit; and equations whose steps are as small as their solutions change.
+#[test]
+fn many_steps_have_their_reason() {
+    let [implicit, explicit] =
+        [ButcherTable::implicit(4).unwrap(), ButcherTable::explicit(5).unwrap()];
+    let [dirk, erk] = [Method::RungeKutta(implicit), Method::RungeKutta(explicit)];
+    let (bdf, adams, dopri, ros) =
+        (Method::Bdf, Method::Adams, Method::DormandPrince, Method::Rosenbrock);
+    let slide: fn(f64, &[f64], &mut [f64]) = |_, y, f| f[0] = if y[0] > 0.5 { -1.0 } else { 1.0 };
+    let friction: fn(f64, &[f64], &mut [f64]) =
+        |t, y, f| (f[0], f[1]) = (y[1], 0.5 * t.sin() - y[1].signum());
+    let switches = "switch to and fro at this state";
+    for method in [bdf, adams, dopri, ros, dirk, erk] {
+        let told = reason_of_many_steps(slide, &[0.0], 10.0, method, 1e-6).unwrap();
+        assert!(told.contains(switches), "{method:?}: {told}");
+    }
+    for method in [dopri, ros, dirk, erk] {
+        let told = reason_of_many_steps(friction, &[0.0, 1.0], 10.0, method, 1e-6).unwrap();
+        assert!(told.contains(switches), "{method:?}: {told}");
+    }
+
+    let decay: fn(f64, &[f64], &mut [f64]) = |t, y, f| f[0] = -1e4 * (y[0] - t.cos());
+    let vibration: fn(f64, &[f64], &mut [f64]) =
+        |t, y, f| (f[0], f[1]) = (y[1], -1e8 * (y[0] - t.sin()));
+    let stability = "stability, not accuracy, limits the step";
+    for method in [dopri, erk] {
+        let told = reason_of_many_steps(decay, &[0.0], 20.0, method, 1e-6).unwrap();
+        assert!(told.contains(stability) && told.contains("an implicit method"), "{told}");
+    }
+    for (method, advice) in
+        [(bdf, "Method::Rosenbrock"), (adams, "implicit"), (dopri, "implicit"), (erk, "implicit")]
+    {
+        let told = reason_of_many_steps(vibration, &[0.0, 1.0], 10.0, method, 1e-6).unwrap();
+        assert!(told.contains(stability) && told.contains(advice), "{method:?}: {told}");
+    }
+    // the advice is right: the methods that it names follow the slow motion alone
+    for method in [ros, dirk] {
+        let rhs = move |t: f64, y: &[f64], ydot: &mut [f64]| {
+            vibration(t, y, ydot);
+            Ok(())
+        };
+        let options = Options::new(1e-6, 1e-8).max_steps(2_000).output(Output::End);
+        let solution = solve(Problem::ode(rhs, [0.0, 1.0]), method, (0.0, 10.0), &options).unwrap();
+        assert!((solution.last()[0] - 10_f64.sin()).abs() < 1e-6, "{:?}", solution.last());
+    }
+    // what Dormand and Prince's method sees on the way is told of a run that came to its end, too
+    let told = reason_of_many_steps(decay, &[0.0], 1.0, dopri, 1e-6).unwrap();
+    assert!(told.contains(stability), "{told}");
+
+    let turns: fn(f64, &[f64], &mut [f64]) = |_, y, f| (f[0], f[1]) = (y[1], -1e8 * y[0]);
+    let lorenz: fn(f64, &[f64], &mut [f64]) = |_, y, f| {
+        f[0] = 10.0 * (y[1] - y[0]);
+        f[1] = y[0] * (28.0 - y[2]) - y[1];
+        f[2] = y[0] * y[1] - 8.0 / 3.0 * y[2];
+    };
+    for method in [bdf, adams, dopri, ros, dirk, erk] {
+        for rtol in [1e-3, 1e-6] {
+            let told = reason_of_many_steps(turns, &[1.0, 0.0], 10.0, method, rtol);
+            assert_eq!(told, None, "{method:?}");
+            let told = reason_of_many_steps(lorenz, &[1.0, 0.0, 0.0], 1e3, method, rtol);
+            assert_eq!(told, None, "{method:?}");
+        }
+    }
+}

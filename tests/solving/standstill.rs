@@ -1,6 +1,6 @@
 //! Runs that cannot get on, and times that rounding hardly tells apart.
 
-use std::cell::Cell;
+use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering::Relaxed};
 
 use pliant::{
     integrate::{self, Callback, Cause, Integrator},
@@ -23,7 +23,7 @@ fn all_methods() -> Vec<Method> {
 /// The equations as a method takes them.
 fn problem<'a>(
     method: Method,
-    rhs: impl FnMut(f64, &[f64], &mut [f64]) -> Result<(), Failure> + 'a,
+    rhs: impl FnMut(f64, &[f64], &mut [f64]) -> Result<(), Failure> + Send + 'a,
     y: &[f64],
 ) -> Problem<'a> {
     match method {
@@ -85,16 +85,16 @@ const BROKEN: [(&str, Rhs, usize); 4] = [
 #[test]
 fn what_is_no_number_is_told_by_every_method() {
     for (name, broken, component) in BROKEN {
-        let calls = Cell::new(0);
+        let calls = AtomicU64::new(0);
         let rhs = |t: f64, y: &[f64], f: &mut [f64]| {
-            calls.set(calls.get() + 1);
+            calls.fetch_add(1, Relaxed);
             f[0] = -y[0];
             f[1] = -y[1];
             broken(t, y, f);
             Ok(())
         };
         let check = |by: String, cause: &Cause, text: String| {
-            println!("{name}, {by}, {} calls: {text}", calls.get());
+            println!("{name}, {by}, {} calls: {text}", calls.load(Relaxed));
             let Cause::NotFinite { callback, t, component: at, .. } = *cause else {
                 panic!("{name}, {by}: {text}")
             };
@@ -107,7 +107,7 @@ fn what_is_no_number_is_told_by_every_method() {
             // explicit methods of ARKODE give up where they first see it
             let near = if by.contains("DORMAND") { 0.5 } else { 2e-3 };
             assert!((t - exact).abs() < near && at == component, "{name}, {by}: {text}");
-            let calls = calls.take();
+            let calls = calls.swap(0, Relaxed);
             assert!(calls < 10_000, "{name}, {by}: {calls}");
         };
         for method in all_methods() {
@@ -153,34 +153,34 @@ fn what_is_no_number_is_told_by_every_method() {
 /// What was overcome is not told for what comes later: a state where the equations have no number is met once, far ahead.
 #[test]
 fn what_was_overcome_is_not_blamed() {
-    let met = Cell::new(false);
+    let met = AtomicBool::new(false);
     let rhs = |t: f64, y: &[f64], f: &mut [f64]| {
         f[0] = -y[0];
-        if t > 3.0 && !met.replace(true) {
+        if t > 3.0 && !met.swap(true, Relaxed) {
             f[0] = f64::NAN;
         }
         Ok(())
     };
     let options = Options::new(1e-3, 1e-3).max_steps(60);
     let error = solve(Problem::ode(rhs, [1.0]), Method::Bdf, (0.0, 1e9), &options);
-    assert!(met.get());
+    assert!(met.load(Relaxed));
     match error {
         Ok(solution) => assert_eq!(solution.t().last(), Some(&1e9)),
         Err(Error::Stopped(stopped)) => assert!(matches!(stopped.reason, Reason::Steps(_))),
         Err(error) => panic!("{error}"),
     }
     // nor by the solver itself, where a later call ends at its limit of steps before that time is passed
-    let met = Cell::new(false);
+    let met = AtomicBool::new(false);
     let rhs = |t: f64, y: &[f64], f: &mut [f64]| {
         f[0] = -y[0];
-        if t > 3.0 && !met.replace(true) {
+        if t > 3.0 && !met.swap(true, Relaxed) {
             f[0] = f64::NAN;
         }
         Ok(())
     };
     let options = CvodeOptions::new(1e-3, 1e-3).max_steps(1);
     let mut solver = Cvode::new(rhs, 0.0, &[1.0], &options).unwrap();
-    while !met.get() {
+    while !met.load(Relaxed) {
         solver.step(1e9).unwrap();
     }
     let error = solver.solve_to(1e9).unwrap_err();
@@ -200,7 +200,7 @@ fn breaks_may_be_neighbours() {
             vec![near(0.25, 1), near(1.0, -1)],
             vec![near(0.25, 3), near(1.0, -4)],
         ] {
-            let met = Cell::new(0);
+            let met = AtomicUsize::new(0);
             let mut with_breaks = problem(
                 method,
                 |_, y, f| {
@@ -213,14 +213,14 @@ fn breaks_may_be_neighbours() {
                 let met = &met;
                 with_breaks = with_breaks.break_with(t, move |jump| {
                     assert_eq!(jump.t, t);
-                    met.set(met.get() + 1);
+                    met.fetch_add(1, Relaxed);
                     jump.y[0] *= 2.0;
                 });
             }
             let options = Options::new(1e-9, 1e-12);
             let solution = solve(with_breaks, method, (0.25, 1.0), &options)
                 .unwrap_or_else(|error| panic!("{method:?} {times:?}: {error}"));
-            assert_eq!(met.get(), times.len(), "{method:?} {times:?}");
+            assert_eq!(met.load(Relaxed), times.len(), "{method:?} {times:?}");
             let exact = (-0.75_f64).exp() * f64::from(1 << times.len());
             let error = (solution.last()[0] / exact - 1.0).abs();
             assert!(error < 1e-6, "{method:?} {times:?}: {error:e}");
@@ -379,15 +379,15 @@ fn spans_below_the_least_step_are_refused() {
 #[test]
 fn time_that_stands_still_is_a_cause() {
     for method in [Method::Bdf, Method::Adams, Method::Ida] {
-        let calls = Cell::new(0_u64);
+        let calls = AtomicU64::new(0);
         let rhs = |_: f64, y: &[f64], f: &mut [f64]| {
-            calls.set(calls.get() + 1);
+            calls.fetch_add(1, Relaxed);
             f[0] = 1.0 + y[0] * y[0];
             Ok(())
         };
         match solve(problem(method, rhs, &[1.0]), method, (0.0, 2.0), &Options::new(1e-6, 1e-9)) {
             Err(Error::Stopped(stopped)) => {
-                println!("{method:?}, {} calls: {stopped}", calls.get());
+                println!("{method:?}, {} calls: {stopped}", calls.load(Relaxed));
                 let Reason::Failed(error) = &stopped.reason else { panic!("{stopped}") };
                 let cause = integration_cause(error);
                 assert!(matches!(cause, Cause::StandsStill { steps: 100 }), "{stopped}");
@@ -396,7 +396,7 @@ fn time_that_stands_still_is_a_cause() {
             }
             other => panic!("{method:?}: {other:?}"),
         }
-        assert!(calls.get() < 5000, "{method:?} {}", calls.get());
+        assert!(calls.load(Relaxed) < 5000, "{method:?} {}", calls.load(Relaxed));
     }
 }
 

@@ -1,6 +1,6 @@
 //! Equations and functionals whose functions are those of Python or of C.
 
-use std::cell::RefCell;
+use std::sync::{Mutex, PoisonError};
 
 use faer::MatMut;
 use numpy::{PyArray1, PyReadonlyArray1, PyReadonlyArray2};
@@ -57,7 +57,19 @@ pub enum MassValues {
 }
 
 /// Storage for the first exception of a Python function.
-pub type Raised = RefCell<Option<PyErr>>;
+#[derive(Default)]
+pub struct Raised(Mutex<Option<PyErr>>);
+
+impl Raised {
+    /// Keeps the first one.
+    pub fn keep(&self, error: PyErr) {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(error);
+    }
+
+    pub fn take(&self) -> Option<PyErr> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).take()
+    }
+}
 
 /// y' = f(t, y) or M y' = f(t, y), or F(t, y, y') = 0. Functions of Python take the parameters as their last argument if
 /// there are any.
@@ -76,7 +88,7 @@ pub fn guarded<T>(
 ) -> Result<T, Failure> {
     Python::attach(call).map_err(|error| {
         let told = Failure::Fatal(error.to_string().into());
-        raised.borrow_mut().get_or_insert(error);
+        raised.keep(error);
         told
     })
 }

@@ -3,8 +3,6 @@
 mod equations;
 mod run;
 
-use std::cell::RefCell;
-
 use numpy::PyArray1;
 use pliant::solve::{
     Error, Event, Method, Options, Output, Problem, Reason, gradient as gradient_of,
@@ -103,7 +101,7 @@ impl Asked {
                     returned.call_method0("__float__")?.extract()
                 });
                 value.unwrap_or_else(|raised: PyErr| {
-                    error.borrow_mut().get_or_insert(raised);
+                    error.keep(raised);
                     f64::NAN
                 })
             });
@@ -172,7 +170,7 @@ fn places(
 #[pyfunction]
 pub fn solve(py: Python<'_>, asked: Asked) -> PyResult<Run> {
     let (unknowns, method, span) = (asked.y0.len(), asked.method()?, asked.span);
-    let error = RefCell::new(None);
+    let error = Raised::default();
     let (problem, options) = asked.problem(py, &error)?;
     let result = solve_problem(problem, method, span, &options);
     if let Some(raised) = error.take() {
@@ -204,7 +202,7 @@ pub fn gradient<'py>(
 ) -> PyResult<Slopes<'py>> {
     let (method, span) = (asked.method()?, asked.span);
     let back = AdjointOptions::new(asked.rtol, adjoint_atol);
-    let error = RefCell::new(None);
+    let error = Raised::default();
     let (problem, options) = asked.problem(py, &error)?;
     let sought = Sought { terminal, running, raised: &error };
     let result = gradient_of(problem, sought, method, span, &options, &back);

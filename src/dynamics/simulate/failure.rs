@@ -101,6 +101,7 @@ pub(super) fn in_mechanics(source: Failed, doom: Option<&str>) -> Failed {
         | Cause::SignConstraint { .. }
         | Cause::MassMatrix
         | Cause::WrongJacobian { .. }
+        | Cause::MissingEntry { .. }
         | Cause::WrongSolver
         | Cause::HigherIndex { .. }
         | Cause::Other => return source,

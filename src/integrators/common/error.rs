@@ -172,6 +172,15 @@ pub enum Cause {
         /// The same by difference quotients of the equations.
         difference: f64,
     },
+    /// The equations depend on an unknown by an entry of the Jacobian that its band or pattern, for difference quotients, does not have.
+    MissingEntry {
+        /// The equation, or the first of several.
+        row: usize,
+        /// The unknown on which it depends most, of those without an entry.
+        column: usize,
+        /// The entry by a difference quotient of the equations.
+        difference: f64,
+    },
     /// The system's own `newton_solve`, as linear solver or preconditioner, answered zero to a right-hand side that is not: Newton's iteration
     /// would take its first guess for the solution.
     WrongSolver,
@@ -231,6 +240,9 @@ impl Cause {
                     "{method} is wrong: {what} is {supplied:e}, but {difference:e} by differences of the equations"
                 )
             }
+            Self::MissingEntry { row, column, difference } => format!(
+                "the band or pattern of the Jacobian lacks entry ({row}, {column}), which is {difference:e} by differences of the equations"
+            ),
             Self::WrongSolver => {
                 "newton_solve is wrong: it answers zero to a right-hand side that is not".into()
             }
@@ -285,6 +297,10 @@ impl Cause {
             Self::WrongJacobian { .. } => {
                 "correct this derivative (ode::check looks at all of them), or let difference quotients take its place; \
                  if it is meant to be an approximation, switch this check off by check_jacobian(false)"
+            }
+            Self::MissingEntry { .. } => {
+                "add it; Pattern::ode_by_nan and the like find all entries at a state, those of other states by more points or by hand; if it is \
+                 left out on purpose, which may take many more steps, switch this check off by check_jacobian(false)"
             }
             Self::WrongSolver => {
                 "look for a factor that it forgets, a division by infinity, or a result that is not written into r"

@@ -1,8 +1,11 @@
-//! Checks whether a supplied Jacobian is that of the equations, while an integrator uses it.
+//! Checks whether a Jacobian is that of the equations, while an integrator uses it: a supplied one, or difference quotients on a pattern
+//! that may lack entries.
+
+use std::mem;
 
 use super::{error::Cause, tolerances::Tolerances};
 
-/// Checks products of a supplied Jacobian with directions against difference quotients of the equations.
+/// Checks products of a Jacobian with directions against difference quotients of the equations.
 ///
 /// It checks the first Jacobian, the second, the fourth, the eighth and so on (where unknowns start at zero,
 /// the first says little), along two directions that share no unknown. A check costs three evaluations of the
@@ -55,6 +58,8 @@ pub(crate) enum Wanted<'a> {
     Product(&'a [f64]),
     /// The equations at a state and time derivative.
     Equations([&'a [f64]; 2]),
+    /// Whether the Jacobian has space for this entry: `false` if not.
+    Entry(usize, usize),
 }
 
 /// Writes what is wanted, and returns `false` where it has no value. (`dyn`, as the check would else be compiled once
@@ -103,13 +108,13 @@ impl JacobianCheck {
         is_due
     }
 
-    /// The error in the Jacobian that `method` supplied at the point.
+    /// The error in the Jacobian at the point, which `method` supplied, or which are difference quotients.
     ///
     /// The result is `None` where differences cannot show an error: next to a jump or a kink, or where they do
     /// not converge.
     pub(crate) fn find(
         &mut self,
-        method: &'static str,
+        method: Option<&'static str>,
         point: Point<'_>,
         compute: &mut Compute<'_>,
     ) -> Option<Cause> {
@@ -154,6 +159,12 @@ impl JacobianCheck {
                 continue;
             }
             let Some((row, difference)) = self.wrong_row(compute, half, at) else { continue };
+            let Some(method) = method else {
+                match self.missing_entry(y, row, compute, at) {
+                    Some(missing) => return Some(missing),
+                    None => continue,
+                }
+            };
             let mut cause = (0.0, None, self.products[half][row], difference);
             let unknowns = if y.len() <= MOST_UNKNOWNS { y } else { &[] };
             for (j, &own) in unknowns.iter().enumerate() {
@@ -180,6 +191,38 @@ impl JacobianCheck {
             return Some(Cause::WrongJacobian { method, row, column, supplied, difference });
         }
         None
+    }
+
+    /// The largest entry of a row that the Jacobian has no space for: of the unknowns without one, the half whose common change moves the
+    /// row more, of that the half, and so on.
+    fn missing_entry(
+        &mut self,
+        y: &[f64],
+        row: usize,
+        compute: &mut Compute<'_>,
+        at: impl Fn(&mut Compute<'_>, &mut [Vec<f64>; 2], &[f64], f64, &mut [f64]) -> bool,
+    ) -> Option<Cause> {
+        let Self { direction, moved, ahead, base, tolerances, .. } = self;
+        let size = |j: usize| tolerances.size_of(j, y[j]).copysign(y[j]);
+        let mut columns: Vec<usize> =
+            (0..y.len()).filter(|&j| !compute(Wanted::Entry(row, j), &mut [])).collect();
+        let mut change = |columns: &[usize]| {
+            direction.fill(0.0);
+            columns.iter().for_each(|&j| direction[j] = size(j));
+            let has_value = at(compute, moved, direction, SHIFTS[1], ahead);
+            if has_value { ahead[row] - base[row] } else { 0.0 }
+        };
+        while columns.len() > 1 {
+            let mut others = columns.split_off(columns.len() / 2);
+            if change(&others).abs() > change(&columns).abs() {
+                mem::swap(&mut columns, &mut others);
+            }
+        }
+        let column = *columns.first()?;
+        let change = change(&columns);
+        let difference = change / (SHIFTS[1] * size(column));
+        // an unknown that the equation does not depend on changes nothing, not even by rounding
+        (change != 0.0).then_some(Cause::MissingEntry { row, column, difference })
     }
 
     /// A random direction away from zero: some of the unknowns, each in proportion to its size, or the

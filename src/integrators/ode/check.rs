@@ -26,6 +26,7 @@
 use faer::MatMut;
 use thiserror::Error;
 
+pub use super::storage::Storage;
 use super::{
     band::BandMut,
     call,
@@ -70,27 +71,6 @@ impl From<Failure> for CheckError {
     fn from(failure: Failure) -> Self {
         Self::Failed(failure)
     }
-}
-
-/// Which of the Jacobians of a system is checked. Entries outside its band or pattern have to be zero.
-#[derive(Clone, Copy, Debug)]
-pub enum Storage<'a> {
-    /// `dense_jacobian`
-    Dense,
-    /// `banded_jacobian`
-    Band {
-        /// Diagonals below the main one.
-        lower: usize,
-        /// Diagonals above the main one.
-        upper: usize,
-    },
-    /// `sparse_jacobian`, by columns as [`Pattern`](crate::integrators::sundials::Pattern) has them.
-    Sparse {
-        /// Start of each column, and the number of entries.
-        column_pointers: &'a [i64],
-        /// Row of each entry.
-        row_indices: &'a [i64],
-    },
 }
 
 /// Checks df/dy of an [`Ode`].

@@ -5,6 +5,7 @@ use faer::MatMut;
 use super::dae::Dae;
 use super::failure::Failure;
 use super::first_order::Ode;
+use super::storage::Storage;
 
 /// A right-hand side with its dense Jacobian, made by [`with_jacobian`].
 #[derive(Clone, Debug)]
@@ -45,6 +46,10 @@ where
 {
     fn rhs(&mut self, t: f64, y: &[f64], ydot: &mut [f64]) -> Result<(), Failure> {
         (self.rhs)(t, y, ydot)
+    }
+
+    fn supplied_jacobian(&self) -> Option<Storage<'_>> {
+        Some(Storage::Dense)
     }
 
     fn dense_jacobian(

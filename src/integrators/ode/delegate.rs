@@ -16,6 +16,7 @@ macro_rules! delegate {
     (@Ode equations $field:tt) => {
         delegate! { @methods $field
             fn rhs(t: f64, y: &[f64], ydot: &mut [f64]);
+            fn supplied_jacobian() -> Option<$crate::integrators::ode::Storage<'_>>;
             fn dense_jacobian(t: f64, y: &[f64], ydot: &[f64], jacobian: MatMut<'_, f64>);
             fn banded_jacobian(t: f64, y: &[f64], ydot: &[f64], jacobian: BandMut<'_>);
             fn sparse_jacobian(t: f64, y: &[f64], ydot: &[f64], values: &mut [f64]);

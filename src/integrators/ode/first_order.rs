@@ -5,6 +5,7 @@ use faer::MatMut;
 use super::band::BandMut;
 use super::failure::{Failure, missing};
 use super::mass::MassKind;
+use super::storage::Storage;
 
 /// y' = f(t, y), or M y' = f(t, y) with a [mass matrix](Self::mass_kind).
 ///
@@ -17,6 +18,12 @@ use super::mass::MassKind;
 pub trait Ode {
     /// Writes f(t, y) into `ydot` (same length as `y`, zero on entry).
     fn rhs(&mut self, t: f64, y: &[f64], ydot: &mut [f64]) -> Result<(), Failure>;
+
+    /// The form of a Jacobian that the system supplies, for [`solve`](fn@crate::integrators::solve::solve), which uses it where no linear
+    /// solver is given. Default: none is known.
+    fn supplied_jacobian(&self) -> Option<Storage<'_>> {
+        None
+    }
 
     /// Writes df/dy into the dense matrix `jacobian` (zero on entry); `ydot` is f(t, y).
     fn dense_jacobian(

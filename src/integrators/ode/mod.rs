@@ -22,6 +22,7 @@ mod functional;
 mod mass;
 mod second_order;
 mod split;
+mod storage;
 mod with_mass;
 
 pub use band::BandMut;
@@ -38,4 +39,5 @@ pub use functional::{Functional, Slopes};
 pub use mass::MassKind;
 pub use second_order::{EnergyBalance, Kick, Rates, SecondOrder};
 pub use split::{Split, split};
+pub use storage::Storage;
 pub use with_mass::{MassMatrix, WithMass, with_mass};

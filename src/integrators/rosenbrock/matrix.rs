@@ -75,6 +75,11 @@ impl Matrix {
         Some((place, values[place]))
     }
 
+    /// Whether J has space for an entry.
+    pub(super) fn stores(&self, row: usize, column: usize) -> bool {
+        self.jacobian.stores(row, column)
+    }
+
     /// Writes the product of J with `v`.
     pub(super) fn multiply(&self, v: &[f64], out: &mut [f64]) {
         self.jacobian.multiply(v, out);

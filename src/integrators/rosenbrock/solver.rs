@@ -18,8 +18,8 @@ pub type Rosenbrock<S> = OneStep<S, LinearlyImplicit>;
 #[derive(Debug)]
 pub struct LinearlyImplicit {
     pub(super) tableau: &'static Tableau,
-    /// Checks the Jacobian that the system supplies by the method of this name.
-    pub(super) check: Option<(&'static str, JacobianCheck)>,
+    /// Checks the Jacobian that the system supplies by the method of this name, or difference quotients that may lack entries.
+    pub(super) check: Option<(Option<&'static str>, JacobianCheck)>,
     /// Whether the system's own linear solver is checked for answers that are zero.
     pub(super) checks_answers: bool,
     /// Whether the Jacobian never changes.
@@ -81,11 +81,9 @@ impl<S: Ode> Rosenbrock<S> {
         };
         let method = LinearlyImplicit {
             tableau,
-            check: options
-                .solver
-                .supplied()
-                .filter(|_| !options.trusts_jacobian)
-                .map(|method| (method, JacobianCheck::new(n, &options.forward.tolerances))),
+            check: (options.solver.is_checked() && !options.trusts_jacobian).then(|| {
+                (options.solver.supplied(), JacobianCheck::new(n, &options.forward.tolerances))
+            }),
             checks_answers: !options.trusts_jacobian,
             is_linear: options.linear,
             matrix,

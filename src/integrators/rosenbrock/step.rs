@@ -107,7 +107,7 @@ impl LinearlyImplicit {
         self.service.is_resumed && (1..most).contains(&steps)
     }
 
-    /// The error in the Jacobian that the system has just supplied, if its check is due.
+    /// The error in the Jacobian that was just evaluated, if its check is due.
     fn wrong_jacobian<S: Ode>(&mut self, march: &mut March<S>) -> Option<Cause> {
         let (matrix, (method, check)) = (self.matrix.as_ref()?, self.check.as_mut()?);
         if !check.is_due() {
@@ -115,12 +115,13 @@ impl LinearlyImplicit {
         }
         let t = march.clock.time(march.t);
         let March { system, y, .. } = march;
-        check.find(method, Point { y, yp: &[], cj: 0.0 }, &mut |wanted, out| match wanted {
+        check.find(*method, Point { y, yp: &[], cj: 0.0 }, &mut |wanted, out| match wanted {
             Wanted::Product(v) => {
                 matrix.multiply(v, out);
                 true
             }
             Wanted::Equations([y, _]) => call::rhs(system, t, y, out).is_ok(),
+            Wanted::Entry(row, column) => matrix.stores(row, column),
         })
     }
 

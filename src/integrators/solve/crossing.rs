@@ -27,29 +27,42 @@ pub(super) enum Found {
     Accumulation(usize, Turn),
 }
 
+/// Result of the search for roots of one event in a step.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Seen {
+    /// The next one.
+    root: Option<Root>,
+    /// Where its function was first found undefined.
+    undefined: Option<f64>,
+}
+
 impl<'a> Run<'a> {
     /// Finds the events of the step that has just been made, up to `t`, and records them. Returns those that
     /// stop the step, which are recorded last. `is_last` says that the next step, if any, does not continue
     /// from there, but starts at a break.
     pub(super) fn look_for_events(&mut self, t: f64, is_last: bool) -> Result<Found, Reason> {
-        let tolerance = time_tolerance(t - self.span.0, t - self.t);
-        let count = self.counts.len();
-        let mut roots = Vec::with_capacity(count);
-        // where functions were found undefined
-        let mut undefined = vec![None; count];
-        for (i, undefined) in undefined.iter_mut().enumerate() {
+        let mut seen = mem::take(&mut self.seen);
+        seen.fill(Seen::default());
+        let found = self.look_for_roots((t, is_last), &mut seen);
+        self.seen = seen;
+        found
+    }
+
+    fn look_for_roots(&mut self, up_to: (f64, bool), seen: &mut [Seen]) -> Result<Found, Reason> {
+        let tolerance = time_tolerance(up_to.0 - self.span.0, up_to.0 - self.t);
+        for (i, seen) in seen.iter_mut().enumerate() {
             self.watches[i].begin_step(self.t, self.sign);
-            let sight = self.search(i, (t, is_last), tolerance, undefined)?;
+            let sight = self.search(i, up_to, tolerance, &mut seen.undefined)?;
             if let Sight::Passage(turn) = sight {
                 return Ok(Found::Accumulation(i, turn));
             }
-            roots.push(sight.root());
+            seen.root = sight.root();
         }
         loop {
-            let times = roots.iter().flatten().map(|root| root.t * self.sign);
+            let times = seen.iter().filter_map(|seen| seen.root).map(|root| root.t * self.sign);
             let first = times.fold(f64::INFINITY, f64::min);
-            for (event, t) in undefined.iter().enumerate() {
-                if let Some(t) = *t
+            for (event, seen) in seen.iter().enumerate() {
+                if let Some(t) = seen.undefined
                     && first >= t * self.sign
                 {
                     return Err(Reason::Event { event, t, value: f64::NAN });
@@ -59,11 +72,11 @@ impl<'a> Run<'a> {
                 return Ok(Found::Jumps(Vec::new()));
             }
             let mut met: Vec<(usize, Root)> = Vec::new();
-            for (i, root) in roots.iter().enumerate() {
-                if let Some(root) = root
+            for (i, seen) in seen.iter().enumerate() {
+                if let Some(root) = seen.root
                     && root.t * self.sign <= first + 2.0 * tolerance
                 {
-                    met.push((i, *root));
+                    met.push((i, root));
                 }
             }
             // all of them are placed at the last of their times, where every one has crossed zero
@@ -88,7 +101,8 @@ impl<'a> Run<'a> {
                 return Ok(Found::Jumps(met));
             }
             for (i, _) in met {
-                roots[i] = self.search(i, (t, is_last), tolerance, &mut undefined[i])?.root();
+                let Seen { root, undefined } = &mut seen[i];
+                *root = self.search(i, up_to, tolerance, undefined)?.root();
             }
         }
     }

@@ -11,7 +11,7 @@ use crate::integrators::{
 };
 
 /// An integrator, whatever its kind and its system.
-pub(super) trait Engine {
+pub(super) trait Engine: Send {
     fn t(&self) -> f64;
     fn y(&self) -> &[f64];
     /// The time derivative of the state for a DAE; empty otherwise.
@@ -143,7 +143,7 @@ impl<K: WithSensitivities, S> Extras for Solver<K, S> {
     }
 }
 
-impl<I: Integrator<System: Ode> + Extras> Engine for OdeEngine<I> {
+impl<I: Integrator<System: Ode> + Extras + Send> Engine for OdeEngine<I> {
     forward!();
 
     fn yp(&self) -> &[f64] {
@@ -163,7 +163,7 @@ impl<I: Integrator<System: Ode> + Extras> Engine for OdeEngine<I> {
     }
 }
 
-impl<S: Dae> Engine for DaeEngine<S> {
+impl<S: Dae + Send> Engine for DaeEngine<S> {
     forward!();
 
     fn yp(&self) -> &[f64] {

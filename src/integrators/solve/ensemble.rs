@@ -1,7 +1,8 @@
 //! Many problems on all cores.
 
 use std::{
-    panic::{AssertUnwindSafe, catch_unwind, resume_unwind},
+    any::Any,
+    panic::{AssertUnwindSafe, catch_unwind},
     sync::{
         Mutex,
         atomic::{AtomicUsize, Ordering::Relaxed},
@@ -9,47 +10,37 @@ use std::{
     thread,
 };
 
-use super::{
-    error::Error, method::Method, options::Options, problem::Problem, solution::Solution,
-    solver::solve,
-};
+use super::error::Error;
 
-/// Solves `count` problems on all cores: `problem(k)` makes the one of number k, on the thread that solves
-/// it.
+/// The results of `count` members, computed on all cores: `member(k)` makes and solves the problem of number k, with the method, span and
+/// options that it chooses, on the thread that runs it.
 ///
-/// Each has its own result, whatever happens to the others; results are in the order of the numbers. A member
-/// is computed by one thread from beginning to end, so results do not depend on the number of threads.
+/// Each has its own result, whatever happens to the others: one that panics has [`Error::Panicked`] with its message. Results are in the
+/// order of the numbers. A member is computed by one thread from beginning to end, so results do not depend on the number of threads.
 ///
 /// ```
-/// use pliant::solve::{Method, Options, Output, Problem, ensemble};
+/// use pliant::solve::{Method, Options, Output, Problem, ensemble, solve};
 ///
+/// // each rate over three times its decay time, the fast ones at tighter tolerances
 /// let rates = [0.5, 1.0, 2.0, 4.0];
-/// let decay = |k: usize| {
+/// let results = ensemble(rates.len(), |k| {
 ///     let rate = rates[k];
-///     Problem::ode(move |_t: f64, y: &[f64], ydot: &mut [f64]| {
+///     let decay = move |_t: f64, y: &[f64], ydot: &mut [f64]| {
 ///         ydot[0] = -rate * y[0];
 ///         Ok(())
-///     }, [1.0])
-/// };
-/// let options = Options::new(1e-8, 1e-10).output(Output::End);
-/// for (k, solution) in ensemble(rates.len(), decay, Method::Bdf, (0.0, 1.0), &options).into_iter().enumerate() {
-///     assert!((solution?.last()[0] - (-rates[k]).exp()).abs() < 1e-6);
+///     };
+///     let options = Options::new(1e-8 / rate, 1e-10).output(Output::End);
+///     solve(Problem::ode(decay, [1.0]), Method::Bdf, (0.0, 3.0 / rate), &options)
+/// });
+/// for solution in results {
+///     assert!((solution?.last()[0] - (-3.0_f64).exp()).abs() < 1e-6);
 /// }
 /// # Ok::<(), pliant::solve::Error>(())
 /// ```
-///
-/// # Panics
-/// A panic of a member passes through, after the others have ended; if several panic, that of the lowest
-/// number.
-pub fn ensemble<'a, F>(
-    count: usize,
-    problem: F,
-    method: Method,
-    span: (f64, f64),
-    options: &Options,
-) -> Vec<Result<Solution, Error>>
+pub fn ensemble<T, F>(count: usize, member: F) -> Vec<Result<T, Error>>
 where
-    F: Fn(usize) -> Problem<'a> + Sync,
+    T: Send,
+    F: Fn(usize) -> Result<T, Error> + Sync,
 {
     let threads = thread::available_parallelism().map_or(1, usize::from).min(count);
     let next = AtomicUsize::new(0);
@@ -60,17 +51,22 @@ where
                 loop {
                     let k = next.fetch_add(1, Relaxed);
                     let Some(place) = results.get(k) else { break };
-                    // caught, as a thread that panics would lose the message; nothing of the member is used
-                    // again
-                    let solution =
-                        catch_unwind(AssertUnwindSafe(|| solve(problem(k), method, span, options)));
+                    // nothing of a member that panics is used again
+                    let outcome = catch_unwind(AssertUnwindSafe(|| member(k)));
+                    let result = outcome.unwrap_or_else(|panic| Err(panicked(panic.as_ref())));
                     if let Ok(mut place) = place.lock() {
-                        *place = Some(solution);
+                        *place = Some(result);
                     }
                 }
             });
         }
     });
-    let outcomes = results.into_iter().filter_map(|place| place.into_inner().ok().flatten());
-    outcomes.map(|outcome| outcome.unwrap_or_else(|panic| resume_unwind(panic))).collect()
+    results.into_iter().filter_map(|place| place.into_inner().ok().flatten()).collect()
+}
+
+/// The panic of a member as an error, with its message if that is a text.
+fn panicked(panic: &(dyn Any + Send)) -> Error {
+    let text = panic.downcast_ref::<String>().map(String::as_str);
+    let text = text.or(panic.downcast_ref::<&str>().copied());
+    Error::Panicked(text.unwrap_or("with a value that is no text").into())
 }

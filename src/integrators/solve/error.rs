@@ -8,7 +8,7 @@ use super::solution::Solution;
 use crate::base::input::InputError;
 use crate::integrators::common;
 
-/// An error of [`solve`](super::solve). `Debug` is short, for logs; `Display` has the words.
+/// An error of [`solve`](super::solve) or of a member of an [`ensemble`](super::ensemble). `Debug` is short, for logs; `Display` has the words.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum Error {
@@ -19,6 +19,10 @@ pub enum Error {
     /// The run stopped before the end of the span; the solution until then is included.
     #[error(transparent)]
     Stopped(Box<Stopped>),
+
+    /// A member of an [`ensemble`](super::ensemble) panicked; its message.
+    #[error("the member panicked: {0}")]
+    Panicked(String),
 }
 
 /// A run that stopped: the reason, and the solution until then.
@@ -28,8 +32,6 @@ pub struct Stopped {
     pub reason: Reason,
     /// The solution so far.
     pub solution: Solution,
-    /// Why there are so many steps, if that is known: [`Run::notice`](super::Run::notice).
-    pub notice: Option<String>,
 }
 
 /// Why a run stopped, or did not begin.
@@ -142,12 +144,13 @@ impl From<common::Error> for Reason {
 impl fmt::Display for Stopped {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let t = self.solution.t().last().copied().unwrap_or(f64::NAN);
-        match (&self.reason, &self.notice) {
+        match (&self.reason, self.solution.notice()) {
             (Reason::Failed(error), _) => error.fmt(f),
             (Reason::Steps(steps), Some(notice)) => {
                 write!(f, "the run stopped at t = {t:?}: {steps} steps taken; {notice}")
             }
-            (reason, _) => write!(f, "the run stopped at t = {t:?}: {reason}"),
+            (reason, Some(notice)) => write!(f, "the run stopped at t = {t:?}: {reason}; {notice}"),
+            (reason, None) => write!(f, "the run stopped at t = {t:?}: {reason}"),
         }
     }
 }
@@ -159,12 +162,12 @@ impl error::Error for Stopped {
 }
 
 impl Error {
-    /// The solution up to the time at which the run stopped; none for invalid input.
+    /// The solution up to the time at which the run stopped; none for invalid input and a panic.
     #[must_use]
     pub fn solution(&self) -> Option<&Solution> {
         match self {
             Self::Stopped(stopped) => Some(&stopped.solution),
-            Self::Input(_) => None,
+            Self::Input(_) | Self::Panicked(_) => None,
         }
     }
 }

@@ -1,6 +1,9 @@
 //! Events: roots of functions along a solution, and actions at them.
 
-use std::{cell::RefCell, fmt, rc::Rc};
+use std::{
+    fmt,
+    sync::{Arc, Mutex, PoisonError},
+};
 
 use super::error::Reason;
 use crate::base::input::InputError;
@@ -9,22 +12,24 @@ use crate::integrators::common::check_finite;
 
 /// g(t, y, p), whose roots are the events: equations that keep to one side of them ask it, too.
 #[derive(Clone)]
-pub(super) struct Function<'a>(Rc<RefCell<Closure<'a>>>);
+pub(super) struct Function<'a>(Arc<Mutex<Closure<'a>>>);
 
-type Closure<'a> = dyn FnMut(f64, &[f64], &[f64]) -> f64 + 'a;
+type Closure<'a> = dyn FnMut(f64, &[f64], &[f64]) -> f64 + Send + 'a;
 
 impl<'a> Function<'a> {
-    pub(super) fn new(g: impl FnMut(f64, &[f64], &[f64]) -> f64 + 'a) -> Self {
-        Self(Rc::new(RefCell::new(g)))
+    pub(super) fn new(g: impl FnMut(f64, &[f64], &[f64]) -> f64 + Send + 'a) -> Self {
+        Self(Arc::new(Mutex::new(g)))
     }
 
     pub(super) fn at(&self, t: f64, y: &[f64], p: &[f64]) -> f64 {
-        (self.0.borrow_mut())(t, y, p)
+        // a lock that a panic of the function has poisoned guards nothing else
+        let mut function = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        function(t, y, p)
     }
 }
 
 /// An action at an event or a break: it changes the jump.
-pub(super) type Action<'a> = Box<dyn FnMut(&mut Jump<'_>) + 'a>;
+pub(super) type Action<'a> = Box<dyn FnMut(&mut Jump<'_>) + Send + 'a>;
 
 /// An event along the solution: a root of a function g(t, y), and the action there.
 ///
@@ -96,12 +101,12 @@ impl fmt::Debug for Event<'_> {
 
 impl<'a> Event<'a> {
     /// A root of `g(t, y)`.
-    pub fn new(mut g: impl FnMut(f64, &[f64]) -> f64 + 'a) -> Self {
+    pub fn new(mut g: impl FnMut(f64, &[f64]) -> f64 + Send + 'a) -> Self {
         Self::with_parameters(move |t, y, _| g(t, y))
     }
 
     /// A root of `g(t, y, p)`, with the parameters of the equations.
-    pub fn with_parameters(g: impl FnMut(f64, &[f64], &[f64]) -> f64 + 'a) -> Self {
+    pub fn with_parameters(g: impl FnMut(f64, &[f64], &[f64]) -> f64 + Send + 'a) -> Self {
         Self {
             function: Function::new(g),
             direction: Direction::Either,
@@ -206,7 +211,7 @@ impl<'a> Event<'a> {
     /// In a DAE whose differential unknowns are known, the algebraic ones and the derivatives are made
     /// consistent again.
     #[must_use]
-    pub fn action(mut self, action: impl FnMut(&mut Jump<'_>) + 'a) -> Self {
+    pub fn action(mut self, action: impl FnMut(&mut Jump<'_>) + Send + 'a) -> Self {
         self.action = Some(Box::new(action));
         self
     }
@@ -250,7 +255,7 @@ impl<'a> Event<'a> {
     /// # Ok::<(), pliant::solve::Error>(())
     /// ```
     #[must_use]
-    pub fn at_accumulation(mut self, action: impl FnMut(&mut Jump<'_>) + 'a) -> Self {
+    pub fn at_accumulation(mut self, action: impl FnMut(&mut Jump<'_>) + Send + 'a) -> Self {
         self.at_accumulation = Some(Box::new(action));
         self
     }

@@ -103,6 +103,8 @@ pub fn gradient(
     }
     let mut problem = problem;
     let (start, n) = (span.0, problem.y.len());
+    let options =
+        &*options.with_linear_solver(method, &mut problem.equations, start, &problem.y)?;
     problem.equations = method.take(problem.equations, start, n, options)?;
     let length = (span.1 - start).abs();
     let surfaces = Surfaces::of(&problem.events, &options.tolerances, length);
@@ -202,7 +204,7 @@ impl<F: Functional> BackwardRun<'_, '_, F> {
             return Ok(());
         }
         let slope = self.slope(from)?;
-        self.surfaces.sides().borrow_mut().flows.push((from.t, slope));
+        self.surfaces.sides().lock().flows.push((from.t, slope));
         let Self { problem, surfaces, functional, method, span, options, back, .. } = self;
         let lambda = &gradient.initial_state;
         let piece = Piece { surfaces, functional, lambda, end: Vec::new() };
@@ -232,7 +234,7 @@ impl<F: Functional> BackwardRun<'_, '_, F> {
     fn cross(&mut self, passage: &Passage, gradient: &mut Gradient) -> Result<(), Reason> {
         let at = &passage.before;
         let left = self.slope(at)?;
-        self.surfaces.sides().borrow_mut().flows = vec![(at.t, left.clone())];
+        self.surfaces.sides().lock().flows = vec![(at.t, left.clone())];
         // derivatives of what follows by the state and the parameters after the jump, and by e, which shifts
         // the time of the jump: -J / rate
         let mut weights = [&gradient.initial_state[..], &gradient.parameters, &[0.0]].concat();
@@ -294,7 +296,7 @@ impl<F: Functional> BackwardRun<'_, '_, F> {
     /// Gives the equations the parameters and the sides of a state.
     fn enter(&mut self, at: &Snapshot) {
         self.problem.equations.set_parameters(&at.p);
-        let mut sides = self.surfaces.sides().borrow_mut();
+        let mut sides = self.surfaces.sides().lock();
         sides.signs.copy_from_slice(&at.sides);
         sides.p.clone_from(&at.p);
     }

@@ -8,7 +8,7 @@ use super::{
 use crate::base::input::InputError;
 use crate::integrators::{
     common::{Error, StepOptions, Tolerances},
-    ode::{Boxed, MassKind},
+    ode::Boxed,
     rk,
     rosenbrock::{self, Rosenbrock},
     sundials::{
@@ -83,16 +83,21 @@ impl Method {
         }
     }
 
+    /// Whether it solves no linear systems.
+    pub(super) fn is_explicit(self) -> bool {
+        match self {
+            Self::RungeKutta(table) => !table.is_implicit(),
+            method => method == Self::DormandPrince,
+        }
+    }
+
     /// Refuses options that the method does not have.
     fn check(self, options: &Options, equations: &Equations<'_>) -> Result<(), InputError> {
-        let (is_dae, has_mass) = match equations {
-            Equations::Dae { .. } => (true, false),
-            Equations::Ode(system) => (false, system.mass_kind() != MassKind::Identity),
-        };
+        let is_dae = matches!(equations, Equations::Dae { .. });
         let refused = |input: &str, value: String, help: &str| {
             Err(InputError::new(input, value, format!("{} {help}", self.name())))
         };
-        if is_dae != (self == Self::Ida) && !has_mass {
+        if is_dae != (self == Self::Ida) && !equations.has_mass() {
             let help = match is_dae {
                 true => "integrates ODEs: take Method::Ida for a DAE",
                 false => {
@@ -107,11 +112,7 @@ impl Method {
         if let (Some(order), false) = (options.max_order, multistep || self == Self::Rosenbrock) {
             return refused("max_order", order.to_string(), "has one order, that of its table");
         }
-        let explicit = match self {
-            Self::RungeKutta(table) => !table.is_implicit(),
-            method => method == Self::DormandPrince,
-        };
-        if let (Some(solver), true) = (&options.linear_solver, explicit) {
+        if let (Some(solver), true) = (&options.linear_solver, self.is_explicit()) {
             return refused(
                 "linear_solver",
                 format!("{solver:?}"),

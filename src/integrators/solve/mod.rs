@@ -30,6 +30,7 @@
 mod caution;
 mod control;
 mod crossing;
+mod diagnosis;
 mod edge;
 mod engine;
 mod ensemble;
@@ -37,6 +38,7 @@ mod error;
 mod event;
 mod gradient;
 mod history;
+mod linear_solver;
 mod method;
 mod minimum;
 #[cfg(doctest)]

@@ -67,8 +67,12 @@ impl Options {
         }
     }
 
-    /// How implicit methods solve the linear systems of Newton's method. Default: a dense matrix of
-    /// difference quotients.
+    /// How implicit methods solve the linear systems of Newton's method. Default: by the Jacobian that an ODE supplies, if it says in which
+    /// form ([`Ode::supplied_jacobian`](crate::integrators::ode::Ode::supplied_jacobian)); else a dense matrix of difference quotients; for more than
+    /// 500 unknowns a sparse one, if changes of the unknowns at the start show that few occur in each equation (and there is no mass
+    /// matrix).
+    ///
+    /// A pattern of one's own needs no search, and has entries that come later: [`LinearSolver::Klu`].
     pub fn linear_solver(mut self, solver: LinearSolver) -> Self {
         self.linear_solver = Some(solver);
         self

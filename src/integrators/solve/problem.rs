@@ -15,12 +15,12 @@ use super::{
     snapshot::SharedSides,
 };
 use crate::base::input::InputError;
-use crate::integrators::ode::{Dae, Ode};
+use crate::integrators::ode::{Dae, MassKind, Ode};
 
 /// The equations of a problem.
 pub(super) enum Equations<'a> {
-    Ode(Box<dyn Ode + 'a>),
-    Dae { system: Box<dyn Dae + 'a>, yp: Vec<f64>, differential: Option<Vec<bool>> },
+    Ode(Box<dyn Ode + Send + 'a>),
+    Dae { system: Box<dyn Dae + Send + 'a>, yp: Vec<f64>, differential: Option<Vec<bool>> },
 }
 
 impl Equations<'_> {
@@ -29,6 +29,11 @@ impl Equations<'_> {
             Self::Ode(system) => system.parameters(),
             Self::Dae { system, .. } => system.parameters(),
         }
+    }
+
+    /// Whether they have a mass matrix.
+    pub(super) fn has_mass(&self) -> bool {
+        matches!(self, Self::Ode(system) if system.mass_kind() != MassKind::Identity)
     }
 
     pub(super) fn quadrature_count(&self) -> usize {
@@ -80,7 +85,7 @@ pub struct Progress<'p> {
 }
 
 /// Called after each step; may end the run.
-pub(super) type Observer<'a> = Box<dyn FnMut(Progress<'_>) -> ControlFlow<()> + 'a>;
+pub(super) type Observer<'a> = Box<dyn FnMut(Progress<'_>) -> ControlFlow<()> + Send + 'a>;
 
 /// Equations, initial values, events and breaks.
 ///
@@ -111,13 +116,17 @@ impl fmt::Debug for Problem<'_> {
 
 impl<'a> Problem<'a> {
     /// y' = f(t, y), starting from `y`.
-    pub fn ode(system: impl Ode + 'a, y: impl Into<Vec<f64>>) -> Self {
+    pub fn ode(system: impl Ode + Send + 'a, y: impl Into<Vec<f64>>) -> Self {
         Self::new(Equations::Ode(Box::new(system)), y.into())
     }
 
     /// F(t, y, y') = 0, starting from `y` and its time derivative `yp`, which have to satisfy the equations
     /// unless [`differential`](Self::differential) says which of them may be corrected.
-    pub fn dae(system: impl Dae + 'a, y: impl Into<Vec<f64>>, yp: impl Into<Vec<f64>>) -> Self {
+    pub fn dae(
+        system: impl Dae + Send + 'a,
+        y: impl Into<Vec<f64>>,
+        yp: impl Into<Vec<f64>>,
+    ) -> Self {
         let system = Box::new(system);
         Self::new(Equations::Dae { system, yp: yp.into(), differential: None }, y.into())
     }
@@ -168,7 +177,7 @@ impl<'a> Problem<'a> {
     }
 
     /// A [break](Self::breaks) at which the state or the parameters change.
-    pub fn break_with(mut self, t: f64, action: impl FnMut(&mut Jump<'_>) + 'a) -> Self {
+    pub fn break_with(mut self, t: f64, action: impl FnMut(&mut Jump<'_>) + Send + 'a) -> Self {
         self.push_break(t, Some(Box::new(action)));
         self
     }
@@ -180,7 +189,7 @@ impl<'a> Problem<'a> {
     /// Shows each step to `observer`, which may end the run by [`ControlFlow::Break`].
     pub fn observed_by(
         mut self,
-        observer: impl FnMut(Progress<'_>) -> ControlFlow<()> + 'a,
+        observer: impl FnMut(Progress<'_>) -> ControlFlow<()> + Send + 'a,
     ) -> Self {
         self.observer = Some(Box::new(observer));
         self

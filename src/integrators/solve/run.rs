@@ -10,6 +10,8 @@ use faer::{MatMut, MatRef};
 
 use super::{
     caution::Caution,
+    crossing::Seen,
+    diagnosis::Limit,
     engine::Engine,
     error::Reason,
     event::Event,
@@ -64,6 +66,8 @@ pub struct Run<'a> {
     pub(super) observer: Option<Observer<'a>>,
     pub(super) cancel: Option<Arc<AtomicBool>>,
     pub(super) limits: Limits,
+    /// What limits the steps besides accuracy.
+    pub(super) limit: Limit,
     pub(super) tolerances: Tolerances,
     pub(super) span: (f64, f64),
     /// +1 forward in time, -1 backward.
@@ -85,6 +89,8 @@ pub struct Run<'a> {
     pub(super) log: Log,
     /// Integrals since the start of the span, and up to the last start of the integrator.
     pub(super) quadratures: [Vec<f64>; 2],
+    /// The search for events in the last step, one for each.
+    pub(super) seen: Vec<Seen>,
     pub(super) occurred: Vec<Occurrence>,
     /// How many of them the last step has shown.
     pub(super) shown: usize,
@@ -94,12 +100,6 @@ pub struct Run<'a> {
     pub(super) started: Instant,
     pub(super) end: Option<End>,
 }
-
-/// Steps after which a run may lead nowhere, and how many times as many would then be left.
-const MANY: u64 = 1000;
-const HOPELESS: f64 = 1e3;
-/// Part of the mean step that the last one is then, at most.
-const SHRUNK: f64 = 1e-2;
 
 /// Limits of the whole run.
 pub(super) struct Limits {
@@ -196,6 +196,7 @@ impl<'a> Run<'a> {
         }
         breaks.sort_by(|a, b| ((b.t - a.t) * sign).total_cmp(&0.0));
         let quadrature_count = equations.quadrature_count();
+        let options = &*options.with_linear_solver(method, &mut equations, start, &y)?;
         if options.sensitivities.is_some() {
             equations = method.take(equations, start, y.len(), options)?;
             let (tolerances, length) = (&options.tolerances, (end - start).abs());
@@ -203,6 +204,7 @@ impl<'a> Run<'a> {
             equations = surfaces.keep(equations);
             sides = Some(surfaces.sides().clone());
         }
+        let limit = if equations.has_mass() { Limit::None } else { method.limit() };
         let mut engine = method.engine(equations, (start, sign), &y, options)?;
         let jumps = events.iter().any(Event::may_go_on) || !breaks.is_empty();
         if options.sensitivities.is_some() && jumps && !engine.can_be_consistent() {
@@ -248,6 +250,7 @@ impl<'a> Run<'a> {
             engine,
             armed: saved.as_ref().map_or(vec![true; events.len()], |saved| saved.armed.clone()),
             ticks: vec![None; events.len()],
+            seen: vec![Seen::default(); events.len()],
             counts: saved.as_ref().map_or(vec![0; events.len()], |saved| saved.counts.clone()),
             events,
             watches,
@@ -257,6 +260,7 @@ impl<'a> Run<'a> {
             observer,
             cancel,
             limits,
+            limit,
             tolerances: options.tolerances.clone(),
             span,
             sign,
@@ -441,25 +445,6 @@ impl<'a> Run<'a> {
     /// Degree of the polynomial of the last step.
     pub(super) fn interpolant_degree(&self) -> u32 {
         self.engine.interpolant_degree().max(1)
-    }
-
-    /// A warning about the steps, where there are many: that stability, not accuracy, limits their size, or that they lead nowhere.
-    #[must_use]
-    pub fn notice(&self) -> Option<String> {
-        let steps = self.statistics().steps;
-        let h = self.engine.statistics().last_step.abs();
-        let left = (self.span.1 - self.t).abs() / h;
-        let usual = (self.t - self.span.0).abs() / steps.max(1) as f64;
-        let is_hopeless = steps >= MANY && h < SHRUNK * usual && left > HOPELESS * steps as f64;
-        self.engine.notice().or_else(|| {
-            is_hopeless.then(|| {
-                format!(
-                    "steps have shrunk to {h:.1e}, of which the rest of the span would take {left:.0e}: look for equations that switch to \
-                     and fro at this time (a sign, an if), whose solution slides along the switch: smooth them, or turn the switch into an \
-                     event; for a singularity; or for a fast oscillation"
-                )
-            })
-        })
     }
 
     /// Cost counters of the run so far.

@@ -5,8 +5,6 @@
 //! taken for such a switch: up to it the equations are those before it, and from there on those behind it. Next
 //! to the surface, on its wrong side, they are continued along a line from points on the right side.
 
-use std::{cell::RefCell, rc::Rc};
-
 use faer::MatMut;
 
 use super::{
@@ -54,7 +52,7 @@ impl<'a> Surfaces<'a> {
         let functions: Vec<_> = events.iter().map(|event| event.function.clone()).collect();
         let signs = vec![0.0; functions.len()];
         let sides = Sides { signs, flows: Vec::new(), p: Vec::new() };
-        let (sides, tolerances) = (Rc::new(RefCell::new(sides)), tolerances.clone());
+        let (sides, tolerances) = (SharedSides::new(sides), tolerances.clone());
         Self { functions, sides, tolerances, longest, place: Vec::new() }
     }
 
@@ -79,7 +77,7 @@ impl<'a> Surfaces<'a> {
     /// right side; 0 if it is there, or far from it.
     pub(super) fn shift(&mut self, t: f64, y: &[f64], p: &[f64]) -> f64 {
         let Self { functions, sides, tolerances, longest, place } = self;
-        let Sides { signs, flows, p: own } = &*sides.borrow();
+        let Sides { signs, flows, p: own } = &*sides.lock();
         let off = |(g, sign): (&Function<'_>, &f64)| *sign != 0.0 && g.at(t, y, p) * sign <= 0.0;
         let Some(i) = functions.iter().zip(signs).position(off) else { return 0.0 };
         let Some(flow) = nearest(flows, t) else { return 0.0 };
@@ -121,7 +119,7 @@ impl<'a> Surfaces<'a> {
     pub(super) fn moved(&mut self, t: f64, y: &[f64], time: f64) -> &[f64] {
         self.place.clear();
         self.place.extend_from_slice(y);
-        let flows = &self.sides.borrow().flows;
+        let flows = &self.sides.lock().flows;
         if let Some(flow) = nearest(flows, t).filter(|_| time != 0.0) {
             self.place.iter_mut().zip(flow).for_each(|(y, slope)| *y += time * slope);
         }
@@ -180,7 +178,7 @@ macro_rules! moved {
     (@result $result:ty) => { $result };
 }
 
-impl<'a> Ode for Sided<'a, dyn Ode + 'a> {
+impl<'a> Ode for Sided<'a, dyn Ode + Send + 'a> {
     delegate!(Ode in system: explicit_part, mass);
     delegate! { @methods [system]
         fn project(t: f64, y: &[f64], correction: &mut [f64], error: &mut [f64]);
@@ -222,7 +220,7 @@ impl<'a> Ode for Sided<'a, dyn Ode + 'a> {
     }
 }
 
-impl<'a> Dae for Sided<'a, dyn Dae + 'a> {
+impl<'a> Dae for Sided<'a, dyn Dae + Send + 'a> {
     delegate! { @methods [system]
         fn root_count() -> usize;
         fn roots(t: f64, y: &[f64], yp: &[f64], g: &mut [f64]);

@@ -1,6 +1,6 @@
 //! Where a run stood, the actions that it performed there, and the sides of its events.
 
-use std::{cell::RefCell, rc::Rc};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// A time, the state there, its time derivative (of a DAE), the parameters of the equations, and the sides of
 /// the events that the solution is on.
@@ -43,4 +43,17 @@ pub(super) struct Sides {
     pub(super) p: Vec<f64>,
 }
 
-pub(super) type SharedSides = Rc<RefCell<Sides>>;
+/// Sides that a run, or its way back, shares with its equations.
+#[derive(Clone)]
+pub(super) struct SharedSides(Arc<Mutex<Sides>>);
+
+impl SharedSides {
+    pub(super) fn new(sides: Sides) -> Self {
+        Self(Arc::new(Mutex::new(sides)))
+    }
+
+    /// The sides; whoever holds them calls no equations meanwhile.
+    pub(super) fn lock(&self) -> MutexGuard<'_, Sides> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}

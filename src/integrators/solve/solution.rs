@@ -65,6 +65,8 @@ pub struct Solution {
     pub(super) statistics: Statistics,
     pub(super) end: End,
     pub(super) saved: Saved,
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub(super) notice: Option<String>,
 }
 
 impl fmt::Debug for Solution {
@@ -130,6 +132,7 @@ impl Solution {
             statistics: Statistics::default(),
             end: End::Early,
             saved: Saved::default(),
+            notice: None,
         }
     }
 
@@ -333,6 +336,12 @@ impl Solution {
     #[must_use]
     pub fn statistics(&self) -> &Statistics {
         &self.statistics
+    }
+
+    /// A warning about the steps, if they were many: [`Run::notice`](super::Run::notice) at the end of the run.
+    #[must_use]
+    pub fn notice(&self) -> Option<&str> {
+        self.notice.as_deref()
     }
 
     /// Where the run stood at its end, to go on from there: [`Problem::resume`](super::Problem::resume).

@@ -33,20 +33,20 @@ pub fn solve(
         Err(Reason::Input(error)) => return Err(Error::Input(error)),
         Err(reason) => {
             let solution = Solution::new(span.0, SavedPoint { y: &start, s: &[], q: &[] }, dense);
-            return Err(Error::Stopped(Box::new(Stopped { reason, solution, notice: None })));
+            return Err(Error::Stopped(Box::new(Stopped { reason, solution })));
         }
     };
     let mut solution = Solution::new(run.t(), run.row(), dense);
     let outcome = integrate(&mut run, &mut solution, &options.output);
     solution.statistics = run.statistics();
     solution.saved = run.save();
+    solution.notice = run.notice();
     solution.end = run.end().unwrap_or(End::Early);
     match outcome {
         Ok(()) => Ok(solution),
         Err(reason) => {
             solution.end = End::Early;
-            let notice = run.notice();
-            Err(Error::Stopped(Box::new(Stopped { reason, solution, notice })))
+            Err(Error::Stopped(Box::new(Stopped { reason, solution })))
         }
     }
 }

@@ -30,13 +30,13 @@ const SHIFT: f64 = 1e-10;
 impl Run<'_> {
     /// The sides of the events that the equations keep to; none without derivatives.
     pub(super) fn signs(&self) -> Vec<f64> {
-        self.sides.as_ref().map_or(Vec::new(), |sides| sides.borrow().signs.clone())
+        self.sides.as_ref().map_or(Vec::new(), |sides| sides.lock().signs.clone())
     }
 
     /// Makes the equations keep to these sides.
     pub(super) fn set_signs(&mut self, signs: &[f64]) {
         if let Some(sides) = &self.sides {
-            sides.borrow_mut().signs.copy_from_slice(signs);
+            sides.lock().signs.copy_from_slice(signs);
         }
     }
 
@@ -84,7 +84,7 @@ impl Run<'_> {
         self.sharpen_derivative()?;
         let slope = self.slope_at(self.t, &self.y.clone(), self.yp.clone())?;
         if let Some(sides) = &self.sides {
-            let mut sides = sides.borrow_mut();
+            let mut sides = sides.lock();
             sides.flows = vec![(self.t, slope)];
             sides.p.clone_from(&self.parameters);
         }
@@ -98,7 +98,7 @@ impl Run<'_> {
         };
         let found = self.slope_here()?;
         // of algebraic unknowns that of the last long step
-        let flow = sides.borrow().flows.first().cloned();
+        let flow = sides.lock().flows.first().cloned();
         let flow =
             flow.filter(|_| self.caution.is_short()).map_or(self.yp.clone(), |(_, flow)| flow);
         let pairs = found.into_iter().zip(flow);
@@ -119,7 +119,7 @@ impl Run<'_> {
         let is_on = failures > before || last < until;
         self.caution = Caution { failures, last, until: if is_on { until } else { 0.0 }, is_on };
         // the polynomial of a step that became short next to a switch is no measure
-        let flows = &mut sides.borrow_mut().flows;
+        let flows = &mut sides.lock().flows;
         if self.caution.is_short() && flows.first().is_some_and(|(at, _)| (t - at).abs() < until) {
             return Ok(());
         }
@@ -134,7 +134,7 @@ impl Run<'_> {
     pub(super) fn turn_side(&mut self, i: usize, turns: bool) {
         if let Some(sides) = self.sides.as_ref().filter(|_| turns && self.watches[i].value() == 0.0)
         {
-            let signs = &mut sides.borrow_mut().signs;
+            let signs = &mut sides.lock().signs;
             signs[i] = -signs[i];
         }
     }

@@ -6,7 +6,7 @@ use super::pattern::Pattern;
 
 /// The columns of a matrix in groups, the colours: no row has entries in two columns of one colour, so that a
 /// single evaluation with all of them shifted gives the entries of each (Curtis, Powell and Reid).
-pub(super) struct Colouring {
+pub(crate) struct Colouring {
     /// Columns, colour after colour.
     columns: Vec<usize>,
     /// Where each colour ends in `columns`.
@@ -70,12 +70,12 @@ impl Colouring {
     }
 
     /// How many colours there are.
-    pub(super) fn count(&self) -> usize {
+    pub(crate) fn count(&self) -> usize {
         self.ends.len()
     }
 
     /// The columns of a colour.
-    pub(super) fn columns(&self, colour: usize) -> &[usize] {
+    pub(crate) fn columns(&self, colour: usize) -> &[usize] {
         let start = if colour == 0 { 0 } else { self.ends[colour - 1] };
         &self.columns[start..self.ends[colour]]
     }

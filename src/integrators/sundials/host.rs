@@ -292,8 +292,7 @@ impl<S> Host<S> {
         }
     }
 
-    /// Checks a Jacobian that the system has just supplied, if a check is due: its entries, or the products
-    /// that `times` writes.
+    /// Checks the Jacobian that was just evaluated, if a check is due: its entries, or the products that `times` writes.
     pub(super) fn check_jacobian(
         &mut self,
         t: f64,
@@ -304,9 +303,7 @@ impl<S> Host<S> {
     ) -> i32 {
         let method = self.linear_solver.as_ref().and_then(LinearSolver::supplied);
         // Taken out of the host, which calls the system meanwhile.
-        let (Some(method), Some((mut check, shape))) = (method, self.check.take()) else {
-            return 0;
-        };
+        let Some((mut check, shape)) = self.check.take() else { return 0 };
         let mut wrong = None;
         let mut outcome = 0;
         if check.is_due() {
@@ -318,6 +315,9 @@ impl<S> Host<S> {
                     }
                     (Wanted::Product(v), None) => times(system, v, out).is_ok(),
                     (Wanted::Equations(at), _) => evaluate(system, at, out).is_ok(),
+                    (Wanted::Entry(row, column), shape) => {
+                        shape.as_ref().is_none_or(|shape| shape.stores(row, column))
+                    }
                 });
                 Ok(())
             });

@@ -4,7 +4,7 @@ use faer::MatMut;
 
 use super::{jacobian::Jacobian, krylov::Krylov, pattern::Pattern};
 use crate::base::input::InputError;
-use crate::integrators::ode::{BandMut, Entries};
+use crate::integrators::ode::{BandMut, Entries, Storage};
 
 /// How the linear systems of the Newton iteration are solved.
 ///
@@ -27,7 +27,8 @@ pub enum LinearSolver {
     },
     /// Sparse LU factorization by KLU.
     Klu {
-        /// Where the nonzeros are. Difference quotients are wrong where the Jacobian has others.
+        /// Where the nonzeros are. Difference quotients are wrong where the Jacobian has others, which is checked
+        /// ([`CvodeOptions::check_jacobian`](super::CvodeOptions::check_jacobian)).
         pattern: Pattern,
         /// Where the entries come from.
         jacobian: Jacobian,
@@ -40,8 +41,23 @@ pub enum LinearSolver {
 }
 
 impl LinearSolver {
-    /// Rejects options on which C would crash.
+    /// Rejects options on which C would crash, and dense matrices that do not fit into the memory.
     pub(crate) fn check(&self, n: usize) -> Result<(), InputError> {
+        self.check_sizes(n)?;
+        // two matrices are stored: the Jacobian, and the factors of Newton's matrix
+        let has_memory = |count: usize| Vec::<f64>::new().try_reserve_exact(count).is_ok();
+        if matches!(self, Self::Dense(_)) && !has_memory(2 * n * n) {
+            let help = format!(
+                "two dense matrices of {:.1} GB each do not fit into the memory: give a band (LinearSolver::Band), a pattern \
+                 (LinearSolver::Klu; Pattern::ode_by_sampling or ode_by_nan finds it), a Krylov method or a custom linear solver",
+                8e-9 * (n * n) as f64
+            );
+            return Err(InputError::new("number of unknowns", n, help));
+        }
+        Ok(())
+    }
+
+    fn check_sizes(&self, n: usize) -> Result<(), InputError> {
         match self {
             Self::Dense(_) if !is_addressable(n, n) => Err(InputError::new(
                 "number of unknowns",
@@ -90,6 +106,20 @@ impl LinearSolver {
         }
     }
 
+    /// The linear solver for a Jacobian that the system supplies.
+    pub(crate) fn of_supplied(storage: Storage<'_>) -> Result<Self, InputError> {
+        let jacobian = Jacobian::Supplied;
+        Ok(match storage {
+            Storage::Dense => Self::Dense(jacobian),
+            Storage::Band { lower, upper } => Self::Band { lower, upper, jacobian },
+            Storage::Sparse { column_pointers, row_indices } => {
+                let numbers = |all: &[i64]| all.iter().map(|&k| k as usize).collect::<Vec<_>>();
+                let (columns, rows) = (numbers(column_pointers), numbers(row_indices));
+                Self::Klu { pattern: Pattern::from_csc(&columns, &rows)?, jacobian }
+            }
+        })
+    }
+
     /// The method by which the system supplies a Jacobian that the iteration relies on.
     pub(crate) fn supplied(&self) -> Option<&'static str> {
         match self {
@@ -99,6 +129,13 @@ impl LinearSolver {
             Self::Krylov(krylov) if krylov.products == Jacobian::Supplied => Some("jacobian_times"),
             _ => None,
         }
+    }
+
+    /// Whether the Jacobian is checked against the equations: a supplied one, or difference quotients that may lack entries.
+    pub(crate) fn is_checked(&self) -> bool {
+        let quotients = Jacobian::DifferenceQuotients;
+        self.supplied().is_some()
+            || matches!(self, Self::Band { jacobian, .. } | Self::Klu { jacobian, .. } if *jacobian == quotients)
     }
 
     /// Whether entries, of the matrix or of its preconditioner, are difference quotients.
@@ -149,12 +186,12 @@ mod tests {
     #[test]
     fn matrices_whose_size_overflows_are_refused() {
         let dense = LinearSolver::Dense(Jacobian::Supplied);
-        assert!(dense.check(1 << 29).is_ok());
-        assert!(dense.check(1 << 30).is_err());
+        assert!(dense.check_sizes(1 << 29).is_ok());
+        assert!(dense.check_sizes(1 << 30).is_err());
         let band =
             |half| LinearSolver::Band { lower: half, upper: half, jacobian: Jacobian::Supplied };
-        assert!(band(1).check(1 << 40).is_ok());
-        assert!(band((1 << 40) - 1).check(1 << 40).is_err());
-        assert!(band(usize::MAX / 2).check(usize::MAX).is_err());
+        assert!(band(1).check_sizes(1 << 40).is_ok());
+        assert!(band((1 << 40) - 1).check_sizes(1 << 40).is_err());
+        assert!(band(usize::MAX / 2).check_sizes(usize::MAX).is_err());
     }
 }

@@ -99,15 +99,16 @@ impl<O> SolverOptions<O> {
         self
     }
 
-    /// Whether a Jacobian that the system supplies is checked against differences of the equations.
-    /// Default: yes.
+    /// Whether a Jacobian that the system supplies, or the band or pattern of its difference quotients, is checked against differences of
+    /// the equations. Default: yes.
     ///
     /// The first Jacobian, the second, the fourth, the eighth and so on is checked, by its entries or its
     /// products, along two random directions. That costs three evaluations each time, which the
     /// statistics omit. A run with a wrong Jacobian ends with
     /// [`Cause::WrongJacobian`](crate::integrators::common::Cause::WrongJacobian), because Newton's
-    /// iteration may accept a wrong result as the solution. Switch the check off for a Jacobian that is
-    /// meant to be an approximation.
+    /// iteration may accept a wrong result as the solution; one whose band or pattern lacks entries with
+    /// [`Cause::MissingEntry`](crate::integrators::common::Cause::MissingEntry), as steps may become many times as many. Switch the check
+    /// off for a Jacobian that is meant to be an approximation.
     ///
     /// A linear solver or preconditioner of the system's own is not checked, but for answers that are zero
     /// ([`Cause::WrongSolver`](crate::integrators::common::Cause::WrongSolver)); switch that off, too, for one that projects.

@@ -320,7 +320,7 @@ impl<K, S> Session<K, S> {
             self.host.get_mut().differences = differences;
         }
         self.host.get_mut().checks_answers = !options.trusts_jacobian;
-        if !options.trusts_jacobian && solver.supplied().is_some() {
+        if !options.trusts_jacobian && solver.is_checked() {
             let check = JacobianCheck::new(n, tolerances);
             let is_matrix = !matches!(solver, LinearSolver::Krylov(_));
             let shape = Shape::of(solver).filter(|_| is_matrix);

@@ -6,7 +6,7 @@ use super::{colouring::Colouring, linear_solver::LinearSolver, pattern::Pattern}
 
 /// The entries that a linear solver stores of a matrix, column by column.
 #[derive(Clone, Debug)]
-pub(super) enum Shape {
+pub(crate) enum Shape {
     Dense,
     Band { lower: usize, upper: usize },
     Sparse(Pattern),
@@ -14,7 +14,7 @@ pub(super) enum Shape {
 
 impl Shape {
     /// The shape of the matrix, or of the preconditioner's matrix; none if there is neither.
-    pub(super) fn of(solver: &LinearSolver) -> Option<Self> {
+    pub(crate) fn of(solver: &LinearSolver) -> Option<Self> {
         match (solver, solver.ilu()) {
             (LinearSolver::Dense(_), _) => Some(Self::Dense),
             (&LinearSolver::Band { lower, upper, .. }, _) => Some(Self::Band { lower, upper }),
@@ -26,7 +26,7 @@ impl Shape {
     }
 
     /// Which of the `n` columns can share one evaluation of the function for their difference quotients.
-    pub(super) fn colouring(&self, n: usize) -> Colouring {
+    pub(crate) fn colouring(&self, n: usize) -> Colouring {
         match self {
             Self::Dense => Colouring::every(n, n),
             Self::Band { lower, upper } => Colouring::every(n, lower + upper + 1),
@@ -34,8 +34,17 @@ impl Shape {
         }
     }
 
+    /// How many numbers a matrix with `n` columns stores, without space for pivots.
+    pub(crate) fn stored(&self, n: usize) -> usize {
+        match self {
+            Self::Dense => n * n,
+            Self::Band { lower, upper } => n * (lower + upper + 1),
+            Self::Sparse(pattern) => pattern.entry_count(),
+        }
+    }
+
     /// Positions of the entries of column `j` among the `stored` numbers of a matrix with `n` columns.
-    pub(super) fn positions(&self, j: usize, n: usize, stored: usize) -> Range<usize> {
+    pub(crate) fn positions(&self, j: usize, n: usize, stored: usize) -> Range<usize> {
         match self {
             Self::Dense => j * n..(j + 1) * n,
             Self::Band { lower, upper } => {
@@ -49,11 +58,20 @@ impl Shape {
     }
 
     /// Row of the `k`-th entry of column `j`.
-    pub(super) fn row(&self, j: usize, k: usize) -> usize {
+    pub(crate) fn row(&self, j: usize, k: usize) -> usize {
         match self {
             Self::Dense => k,
             Self::Band { upper, .. } => j - upper.min(&j) + k,
             Self::Sparse(pattern) => pattern.column(j)[k] as usize,
+        }
+    }
+
+    /// Whether entry (i, j) is stored.
+    pub(super) fn stores(&self, i: usize, j: usize) -> bool {
+        match self {
+            Self::Dense => true,
+            Self::Band { lower, upper } => i <= j + lower && j <= i + upper,
+            Self::Sparse(pattern) => pattern.position(i, j).is_some(),
         }
     }
 

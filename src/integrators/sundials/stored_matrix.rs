@@ -51,6 +51,11 @@ impl StoredMatrix {
         }
     }
 
+    /// Whether entry (i, j) is stored.
+    pub(crate) fn stores(&self, i: usize, j: usize) -> bool {
+        self.shape.stores(i, j)
+    }
+
     /// Its entries, set to zero and to be filled.
     pub(crate) fn entries(&mut self) -> Entries<'_> {
         self.values.fill(0.0);

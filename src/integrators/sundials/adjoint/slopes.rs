@@ -38,9 +38,10 @@ impl SlopesCheck {
         let Self { by_y, by_p } = self;
         for (check, own, slopes, by) in [(by_y, y, slopes[0], "y"), (by_p, p, slopes[1], "p")] {
             let point = Point { y: own, yp: &[], cj: 0.0 };
-            let found = check.find(name, point, &mut |wanted, out| {
+            let found = check.find(Some(name), point, &mut |wanted, out| {
                 let result = match wanted {
                     Wanted::Product(v) => Ok(slopes.iter().zip(v).map(|(a, b)| a * b).sum()),
+                    Wanted::Entry(..) => return true,
                     Wanted::Equations([moved, _]) if by == "y" => value(moved, p),
                     Wanted::Equations([moved, _]) => value(y, moved),
                 };
