@@ -7,7 +7,7 @@ use pliant::{
     ode::{BandMut, Failure, Functional, Ode, Slopes},
     sundials::{
         Adjoint, AdjointOptions, Callback, Cause, Cvode, CvodeOptions, Error, Gradient, Integrator,
-        Jacobian, LinearSolver, Pattern, Sensitivities,
+        Jacobian, Krylov, KrylovMethod, LinearSolver, Pattern, Preconditioner, Sensitivities, Side,
     },
 };
 
@@ -227,6 +227,42 @@ fn robertson_backward_and_forward_agree() {
     }
 }
 
+/// Krylov methods back in time, by products of the system and an incomplete factorization, which has no fill to leave
+/// out on this pattern: the gradients are those of the forward sensitivities, as with matrices.
+#[test]
+fn krylov_methods_solve_the_backward_run() {
+    let (value, slopes) = forward(40.0);
+    let pattern = || Reactions::new().pattern;
+    let gmres = KrylovMethod::Gmres { dimension: 3, restarts: 0 };
+    for jacobian in [Jacobian::Supplied, Jacobian::DifferenceQuotients] {
+        let ilu = |side| (side, Preconditioner::Ilu { pattern: pattern(), jacobian });
+        let [left, right] = [Side::Left, Side::Right].map(ilu);
+        for (method, preconditioner) in [
+            (gmres, None),
+            (gmres, Some(left)),
+            (KrylovMethod::BiCgStab { iterations: 10 }, Some(right.clone())),
+            (KrylovMethod::Tfqmr { iterations: 10 }, Some(right.clone())),
+            (KrylovMethod::Fgmres { dimension: 3, restarts: 0 }, Some(right)),
+        ] {
+            let krylov = Krylov::new(method).tolerance_factor(1e-3);
+            let krylov = match preconditioner.clone() {
+                Some((side, ilu)) => krylov.preconditioner(side, ilu),
+                None => krylov,
+            };
+            let forward =
+                CvodeOptions::new(1e-8, [1e-12, 1e-16, 1e-12]).newton(LinearSolver::Krylov(krylov));
+            let options = AdjointOptions::new(1e-8, 1e-9).supplied_rhs();
+            let mut adjoint =
+                Adjoint::new(Reactions::new(), Mixed, 0.0, &START, &forward, &options).unwrap();
+            let gradient = adjoint.gradient(40.0).unwrap();
+            let errors =
+                (largest(&[gradient.value], [value]), largest(&gradient.parameters, slopes));
+            println!("{method:?} {}: {errors:?}", preconditioner.is_some());
+            assert!(errors.0 < 5e-8 && errors.1 < 2e-6);
+        }
+    }
+}
+
 /// An oscillator x'' = -w^2 x: G = x(T), in w, x0 and v0, in both directions of time.
 #[test]
 fn an_oscillator_in_closed_form() {
@@ -320,6 +356,12 @@ fn unusable_input_is_named() {
         other => panic!("{other:?}"),
     };
     assert!(refused(&forward.clone().newton(LinearSolver::Custom), &back).contains("entries"));
+    let krylov = Krylov::new(KrylovMethod::Gmres { dimension: 3, restarts: 0 });
+    let plain = forward.clone().newton(LinearSolver::Krylov(krylov.clone()));
+    assert!(refused(&plain, &back).contains("adjoint_rhs"));
+    let own = krylov.preconditioner(Side::Left, Preconditioner::Custom);
+    let own = forward.clone().newton(LinearSolver::Krylov(own));
+    assert!(refused(&own, &back.clone().supplied_rhs()).contains("Ilu"));
     assert!(refused(&forward.clone().fixed_point(0), &back).contains("Newton"));
     assert!(refused(&forward.clone().project(), &back).contains("project"));
     let sensitivities = forward.clone().sensitivities(Sensitivities::of([0]));

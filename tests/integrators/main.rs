@@ -35,4 +35,5 @@ mod signs;
 mod sparse;
 mod stability_limit;
 mod standard_problems;
+mod step_control;
 mod threads;

@@ -2,7 +2,7 @@
 
 use std::{ffi::c_void, ptr};
 
-use super::ffi;
+use super::{ffi, linear_solver::LinearSolver};
 
 /// A C function with its name, for errors.
 pub(super) type Named<F> = (&'static str, F);
@@ -70,8 +70,8 @@ type GetBackward =
 pub(super) type InitBackward =
     Named<unsafe fn(*mut c_void, i32, f64, ffi::N_Vector, ffi::N_Vector) -> i32>;
 
-/// Sets an option of a backward problem: (memory, problem).
-pub(super) type SetBackward = Named<unsafe fn(*mut c_void, i32) -> i32>;
+/// Gives a backward problem the callbacks of its linear solver: (memory, problem, linear solver).
+pub(super) type SetBackward = Named<unsafe fn(*mut c_void, i32, &LinearSolver) -> i32>;
 
 /// Gives a backward problem its integrals: (memory, problem, initial values, which are zero).
 pub(super) type InitBackwardQuadratures = Named<unsafe fn(*mut c_void, i32, ffi::N_Vector) -> i32>;
@@ -129,6 +129,7 @@ table! {
     set_user_data: Set<*mut c_void> = CVodeSetUserData, IDASetUserData, ARKStepSetUserData;
     scalar_tolerances: SetTwo<f64, f64> = CVodeSStolerances, IDASStolerances, ARKStepSStolerances;
     vector_tolerances: SetTwo<f64, ffi::N_Vector> = CVodeSVtolerances, IDASVtolerances, ARKStepSVtolerances;
+    weight_tolerances: Set<ffi::CVEwtFn> = CVodeWFtolerances, IDAWFtolerances, ARKStepWFtolerances;
     set_linear_solver: SetTwo<ffi::SUNLinearSolver, ffi::SUNMatrix>
         = CVodeSetLinearSolver, IDASetLinearSolver, ARKStepSetLinearSolver;
     set_nonlinear_solver: Set<ffi::SUNNonlinearSolver>
@@ -139,6 +140,11 @@ table! {
     set_initial_step: Set<f64> = CVodeSetInitStep, IDASetInitStep, ARKStepSetInitStep;
     set_max_step: Set<f64> = CVodeSetMaxStep, IDASetMaxStep, ARKStepSetMaxStep;
     set_min_step: Set<f64> = CVodeSetMinStep, IDASetMinStep, ARKStepSetMinStep;
+    set_max_growth: Set<f64> = CVodeSetEtaMax, IDASetEtaMax, ARKStepSetMaxGrowth;
+    set_min_reduction: Set<f64> = CVodeSetEtaMin, IDASetEtaMin, ARKStepSetMinReduction;
+    set_kept: SetTwo<f64, f64> = CVodeSetEtaFixedStepBounds, IDASetEtaFixedStepBounds, ARKStepSetFixedStepBounds;
+    set_after_error_failure: Set<f64> = CVodeSetEtaMinErrFail, IDASetEtaMinErrFail, ARKStepSetMaxEFailGrowth;
+    set_after_convergence_failure: Set<f64> = CVodeSetEtaConvFail, IDASetEtaConvFail, ARKStepSetMaxCFailGrowth;
     set_convergence_coefficient: Set<f64> = CVodeSetNonlinConvCoef, IDASetNonlinConvCoef, ARKStepSetNonlinConvCoef;
     /// For a Krylov method.
     set_tolerance_factor: Set<f64> = CVodeSetEpsLin, IDASetEpsLin, ARKStepSetEpsLin;
@@ -167,6 +173,9 @@ table! {
     [some]
     /// Continues from a time and state after a change of the system, with the previous step size.
     reset: SetTwo<f64, ffi::N_Vector> = -, -, ARKStepReset;
+    /// Of the first ten steps, which CVODE treats apart.
+    set_early_growth: Set<f64> = CVodeSetEtaMaxEarlyStep, -, -;
+    set_first_growth: Set<f64> = CVodeSetEtaMaxFirstStep, -, ARKStepSetMaxFirstGrowth;
     set_max_error_test_failures: Set<i32> = CVodeSetMaxErrTestFails, -, ARKStepSetMaxErrTestFails;
     /// The order of a Runge-Kutta method is that of its table.
     set_max_order: Set<i32> = CVodeSetMaxOrd, IDASetMaxOrd, -;

@@ -15,13 +15,14 @@ use super::{
     differences::{Differences, Scales},
     ffi,
     functions::{Get, Named},
-    ilu::IncompleteLu,
+    ilu::{IncompleteLu, no_pivot},
     index::Index,
     linear_solver::LinearSolver,
     matrix,
     sensitivity::SensitivityRhs,
     shape::Shape,
     signs::Violation,
+    weights::ErrorWeights,
 };
 use crate::integrators::{
     common::{Callback, Cause, Clock, Error, JacobianCheck, Point, Wanted},
@@ -79,6 +80,8 @@ pub(super) struct Host<S> {
     /// Time that whole steps have reached, noted for ARKODE, which reports the time of a stage after a
     /// failure.
     pub(super) step_end: Option<f64>,
+    /// The weights of the error norm, if they are not those of the tolerances.
+    pub(super) weights: Option<ErrorWeights>,
     pub(super) troubles: Troubles,
 }
 
@@ -173,6 +176,11 @@ impl Troubles {
         }
     }
 
+    /// Whether the user's code has asked to stop.
+    pub(super) fn is_fatal(&self) -> bool {
+        self.fatal.is_some()
+    }
+
     pub(super) fn recent_violation(&self) -> Option<Violation> {
         self.violation.filter(Violation::is_recent)
     }
@@ -208,6 +216,7 @@ impl<S> Host<S> {
             checks_answers: false,
             setup_time: f64::NAN,
             step_end: None,
+            weights: None,
             troubles,
         }
     }
@@ -225,6 +234,11 @@ impl<S> Host<S> {
     pub(super) fn time_of_call(&mut self, elapsed: f64) -> f64 {
         self.now = elapsed;
         self.clock.time(elapsed)
+    }
+
+    /// The time of the last callback that had one.
+    pub(super) fn last_time(&self) -> f64 {
+        self.clock.time(self.now)
     }
 
     /// All numbers that a matrix of the linear solver stores; none if it stores none.
@@ -365,11 +379,7 @@ impl<S> Host<S> {
     /// Requests a smaller step where an incomplete factorization has no pivot.
     pub(super) fn check_pivots(&mut self, t: f64, factorized: Result<(), usize>) -> i32 {
         let Err(row) = factorized else { return 0 };
-        let message = format!(
-            "the incomplete LU factorization, which takes each unknown from the equation of its own row, has no \
-             pivot in row {row}"
-        );
-        let callback = Callback::Preconditioner;
+        let (callback, message) = (Callback::Preconditioner, no_pivot(row));
         self.troubles.retry(self.now, Cause::Rejected { callback, t, message })
     }
 

@@ -81,14 +81,16 @@ mod session;
 mod shape;
 mod signs;
 mod solver;
+mod step_control;
 mod stepping;
 mod stop_time;
 mod stored_matrix;
 mod vector;
 mod version;
+mod weights;
 
 pub use adjoint::{Adjoint, AdjointOf, AdjointOptions, DaeAdjoint, Gradient};
-pub use arkode::{Arkode, ArkodeOptions, ButcherTable, Predictor};
+pub use arkode::{Arkode, ArkodeOptions, ButcherTable, Controller, Predictor};
 pub use cvode::{Cvode, CvodeOptions, Multistep};
 pub(crate) use differences::Differences;
 pub(crate) use factors::Factors;
@@ -103,6 +105,7 @@ pub use pattern::Pattern;
 pub use sensitivity::{Sensitivities, SensitivityMethod, SensitivitySource};
 pub use signs::Sign;
 pub use solver::{Kind, Solver, WithSensitivities};
+pub use step_control::StepControl;
 pub(crate) use stored_matrix::StoredMatrix;
 pub use version::{suitesparse_version, version};
 

@@ -27,6 +27,7 @@ use super::{
     signs::{self, Sign},
     stop_time::StopTime,
     vector::Vector,
+    weights::error_weights,
 };
 use crate::integrators::{
     common::{AbsoluteTolerance, Clock, Error, JacobianCheck, Tolerances},
@@ -222,7 +223,7 @@ impl<K, S> Session<K, S> {
     /// Registers the host, after the integrator was initialised with the callbacks for it, and
     /// sets tolerances and the options of the step size control.
     pub(super) fn configure<O>(&mut self, options: &SolverOptions<O>) -> Result<(), Error> {
-        let steps = &options.steps;
+        let (steps, control) = (&options.steps, &options.step_control);
         self.max_steps = steps.max_steps;
         self.initial_step = steps.initial_step;
         let functions = self.memory.functions;
@@ -232,6 +233,10 @@ impl<K, S> Session<K, S> {
             let set = (functions.scalar_tolerances, functions.vector_tolerances);
             self.set_tolerances(set, &options.tolerances)?;
             self.set(functions.set_user_data, self.host.as_ptr())?;
+            if let Some(weights) = &options.weights {
+                self.host.get_mut().weights = Some(weights.clone());
+                self.set(functions.weight_tolerances, Some(error_weights::<S>))?;
+            }
             self.set(functions.set_max_steps, i64::from(steps.max_steps))?;
             if let Some(set) = functions.set_max_error_test_failures {
                 self.set(set, ERROR_TEST_FAILURES)?;
@@ -241,10 +246,28 @@ impl<K, S> Session<K, S> {
                 (functions.set_max_step, steps.max_step),
                 (functions.set_min_step, options.min_step),
                 (functions.set_convergence_coefficient, options.convergence_coefficient),
+                (functions.set_max_growth, control.max_growth),
+                (functions.set_min_reduction, control.min_reduction),
+                (functions.set_after_error_failure, control.after_error_failure),
+                (functions.set_after_convergence_failure, control.after_convergence_failure),
             ] {
                 if let Some(value) = value {
                     self.set(function, value)?;
                 }
+            }
+            if let Some((low, high)) = control.kept {
+                self.host.call(functions.set_kept, |set| set(self.memory.raw, low, high))?;
+            }
+            if let (Some(set), Some(ratio)) = (functions.set_early_growth, control.max_growth) {
+                self.set(set, ratio)?;
+            }
+            match (functions.set_first_growth, control.first_growth) {
+                (Some(set), Some(ratio)) => self.set(set, ratio)?,
+                (None, Some(ratio)) => {
+                    let help = format!("{} has no such bound", functions.integrator);
+                    return Err(Error::input("first_growth", ratio, help));
+                }
+                (_, None) => (),
             }
             if let (Some(set), Some(order)) = (functions.set_max_order, options.max_order) {
                 self.set(set, order as i32)?;

@@ -331,7 +331,7 @@ impl<K, S> Session<K, S> {
                 }
                 Ok(if stopped { Reached::StopTime } else { Reached::Time })
             }
-            code if functions.refusals.contains(&code) => {
+            code if functions.refusals.contains(&code) && !self.host.get().troubles.is_fatal() => {
                 self.host.accept(name, code).map(|()| Reached::Time)
             }
             code => Err(self.stopped(code, t)),

@@ -104,6 +104,7 @@ impl<P: BackwardProblem> Session<P::Kind, Borrowed<'_, P>> {
         let Tolerances { rtol, atol } = &options.tolerances;
         let atol = Vector::from_slice(&spread(atol, n), context)?;
         let max_steps = i64::from(self.max_steps);
+        let solver_kind = self.host.get_mut().system.0.equations().backward.clone();
         let backward = self.backward.insert(Backward { which, linear, lambda, slope, gradient });
         let (solver, matrix) = (backward.linear.solver(), backward.linear.matrix());
         let (lambda, slope) = (backward.lambda.raw(), backward.raw_slope());
@@ -117,7 +118,7 @@ impl<P: BackwardProblem> Session<P::Kind, Borrowed<'_, P>> {
             host.call(functions.set_user_data, |set| set(memory, which, data))?;
             host.call(functions.set_max_steps, |set| set(memory, which, max_steps))?;
             host.call(functions.set_linear_solver, |set| set(memory, which, solver, matrix))?;
-            host.call(P::SET_JACOBIAN, |set| set(memory, which))?;
+            host.call(P::SET_JACOBIAN, |set| set(memory, which, &solver_kind))?;
         }
         let Some(integrals) = integrals else { return Ok(()) };
         let Tolerances { rtol, atol } = options.tolerances_for(&parameters);

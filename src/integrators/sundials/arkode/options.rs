@@ -1,6 +1,6 @@
 //! How ARKODE is to integrate.
 
-use super::butcher_table::ButcherTable;
+use super::{butcher_table::ButcherTable, controller::Controller};
 use crate::base::input::InputError;
 use crate::integrators::{
     common::{AbsoluteTolerance, check_count, check_step},
@@ -49,6 +49,9 @@ pub struct OwnOptions {
     pub(super) max_iterations: u32,
     pub(super) linear: bool,
     pub(super) predictor: Predictor,
+    pub(super) controller: Controller,
+    pub(super) safety_factor: Option<f64>,
+    pub(super) error_bias: Option<f64>,
 }
 
 impl OfOde for OwnOptions {}
@@ -64,6 +67,9 @@ impl ArkodeOptions {
             max_iterations: 6,
             linear: false,
             predictor: Predictor::VariableOrder,
+            controller: Controller::Pid,
+            safety_factor: None,
+            error_bias: None,
         };
         Self::with(rtol, atol, own)
     }
@@ -112,6 +118,24 @@ impl ArkodeOptions {
         self
     }
 
+    /// How the next step size follows from the last errors. Default: [`Controller::Pid`].
+    pub fn controller(mut self, controller: Controller) -> Self {
+        self.own.controller = controller;
+        self
+    }
+
+    /// Factor of the step size that the controller proposes (`ARKStepSetSafetyFactor`). Default: 0.96.
+    pub fn safety_factor(mut self, factor: f64) -> Self {
+        self.own.safety_factor = Some(factor);
+        self
+    }
+
+    /// Factor of the error estimates that the controller gets (`ARKStepSetErrorBias`). Default: 1.5.
+    pub fn error_bias(mut self, factor: f64) -> Self {
+        self.own.error_bias = Some(factor);
+        self
+    }
+
     /// Degree of the polynomials between the steps. Those of degree 4 and 5 need evaluations of the
     /// right-hand side at each use, and are less accurate in stiff systems.
     pub(super) fn interpolant_degree(&self) -> u32 {
@@ -125,6 +149,20 @@ impl ArkodeOptions {
         if self.own.fixed_step.is_some() && self.signs.iter().any(|sign| *sign != Sign::Free) {
             let help = "signs are kept by smaller steps: let the tolerances choose the steps";
             return Err(InputError::new("sign_constraints", "given with fixed_step", help));
+        }
+        if let Some(factor) =
+            self.own.safety_factor.filter(|factor| !(*factor > 0.0 && *factor < 1.0))
+        {
+            return Err(InputError::new(
+                "safety_factor",
+                factor,
+                "it lies between 0 and 1, such as 0.96",
+            ));
+        }
+        if let Some(factor) =
+            self.own.error_bias.filter(|factor| !(*factor >= 1.0 && factor.is_finite()))
+        {
+            return Err(InputError::new("error_bias", factor, "it is at least 1, such as 1.5"));
         }
         for (input, value) in [
             ("max_steps_between_jacobians", self.own.max_steps_between_jacobians),

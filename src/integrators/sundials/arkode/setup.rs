@@ -6,7 +6,9 @@
 //! ARKODE evaluate the right-hand side at the ends of steps, which costs accuracy in stiff systems; it serves
 //! fixed steps alone.
 
-use super::{mass, options::ArkodeOptions};
+use std::ptr;
+
+use super::{controller::filtered_step, mass, options::ArkodeOptions};
 use crate::integrators::{
     common::{Clock, Error, Integrator, check_start, check_whole},
     ode::{Borrowed, MassKind, Ode},
@@ -132,6 +134,7 @@ impl<S: Ode> Session<ArkodeKind, S> {
             } else {
                 let (set, note) = (named!(ARKStepSetStabilityFn), Some(note_time::<S> as _));
                 arkode.host.call(set, |set| set(memory, note, data))?;
+                control_steps(&mut arkode, options)?;
             }
         }
         if is_implicit {
@@ -142,6 +145,34 @@ impl<S: Ode> Session<ArkodeKind, S> {
         }
         Ok(arkode)
     }
+}
+
+/// Sets how step sizes follow from errors.
+fn control_steps<S: Ode>(
+    arkode: &mut Session<ArkodeKind, S>,
+    options: &ArkodeOptions,
+) -> Result<(), Error> {
+    let memory = arkode.memory.raw;
+    // SAFETY: the memory is alive, filters are static, and the other values are plain numbers.
+    unsafe {
+        match options.own.controller.method() {
+            Ok(number) => arkode.host.call(named!(ARKStepSetAdaptivityMethod), |set| {
+                set(memory, number, 1, 0, ptr::null_mut())
+            })?,
+            Err(filter) => arkode.host.call(named!(ARKStepSetAdaptivityFn), |set| {
+                set(memory, Some(filtered_step), ptr::from_ref(filter).cast_mut().cast())
+            })?,
+        }
+        for (function, value) in [
+            (named!(ARKStepSetSafetyFactor as _), options.own.safety_factor),
+            (named!(ARKStepSetErrorBias as _), options.own.error_bias),
+        ] {
+            if let Some(value) = value {
+                arkode.set(function, value)?;
+            }
+        }
+    }
+    Ok(())
 }
 
 /// Sets how the equations of implicit stages are solved.
