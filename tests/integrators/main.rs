@@ -36,4 +36,5 @@ mod sparse;
 mod stability_limit;
 mod standard_problems;
 mod step_control;
+mod tableaux;
 mod threads;

@@ -139,11 +139,12 @@ fn step_sizes_change_within_their_bounds() {
         assert!(name == "IDA" || bounded[0] < 1.6 + 1e-9, "{name}: {}", bounded[0]);
         assert!(later.len() > 20 && most(later) < 1.7 + 1e-9, "{name}: {}", most(later));
     }
-    // steps that are kept as long as they may be longer by less than a factor of three
+    // steps that are kept as long as they may be longer by less than a factor of three; failures shorten them
     let keep = StepControl::new().keep_between(0.5, 3.0);
     let (mut a, ..) = solvers(|o| o.step_control(keep), |o| o, |o| o);
     let kept = ratios(&mut a);
-    assert!(kept.iter().all(|r| (r - 1.0).abs() < 1e-6 || *r >= 3.0 - 1e-6 || *r < 0.5 + 1e-6));
+    // CVODE does not look at the bounds for the second step
+    assert!(kept[2..].iter().all(|r| *r < 1.0 + 1e-6 || *r > 3.0 - 1e-6));
 }
 
 #[test]

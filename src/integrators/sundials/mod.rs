@@ -90,7 +90,7 @@ mod version;
 mod weights;
 
 pub use adjoint::{Adjoint, AdjointOf, AdjointOptions, DaeAdjoint, Gradient};
-pub use arkode::{Arkode, ArkodeOptions, ButcherTable, Controller, Predictor};
+pub use arkode::{Arkode, ArkodeOptions, ButcherTable, Controller, Predictor, Tableau};
 pub use cvode::{Cvode, CvodeOptions, Multistep};
 pub(crate) use differences::Differences;
 pub(crate) use factors::Factors;

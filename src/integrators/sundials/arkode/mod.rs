@@ -5,8 +5,10 @@ mod controller;
 mod mass;
 mod options;
 mod setup;
+mod tableau;
 
 pub use butcher_table::ButcherTable;
 pub use controller::Controller;
 pub use options::{ArkodeOptions, Predictor};
 pub use setup::Arkode;
+pub use tableau::Tableau;

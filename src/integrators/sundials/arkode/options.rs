@@ -1,6 +1,10 @@
 //! How ARKODE is to integrate.
 
-use super::{butcher_table::ButcherTable, controller::Controller};
+use super::{
+    butcher_table::ButcherTable,
+    controller::Controller,
+    tableau::{Scheme, Tableau},
+};
 use crate::base::input::InputError;
 use crate::integrators::{
     common::{AbsoluteTolerance, check_count, check_step},
@@ -44,7 +48,7 @@ pub type ArkodeOptions = SolverOptions<OwnOptions>;
 #[derive(Clone, Debug)]
 pub struct OwnOptions {
     pub(super) fixed_step: Option<f64>,
-    pub(super) table: ButcherTable,
+    pub(super) scheme: Scheme,
     pub(super) max_steps_between_jacobians: Option<u32>,
     pub(super) max_iterations: u32,
     pub(super) linear: bool,
@@ -62,7 +66,7 @@ impl ArkodeOptions {
     pub fn new(rtol: f64, atol: impl Into<AbsoluteTolerance>) -> Self {
         let own = OwnOptions {
             fixed_step: None,
-            table: ButcherTable::default(),
+            scheme: Scheme::Known(ButcherTable::default()),
             max_steps_between_jacobians: None,
             max_iterations: 6,
             linear: false,
@@ -79,7 +83,20 @@ impl ArkodeOptions {
     /// The options of Newton's iteration are for implicit methods; explicit ones have none. (But the linear
     /// solver also gives a mass matrix its form.)
     pub fn table(mut self, table: ButcherTable) -> Self {
-        self.own.table = table;
+        self.own.scheme = Scheme::Known(table);
+        self
+    }
+
+    /// The method, by coefficients of one's own: explicit or diagonally implicit (`ARKStepSetTables`).
+    pub fn tableau(mut self, tableau: Tableau) -> Self {
+        self.own.scheme = Scheme::Own(tableau);
+        self
+    }
+
+    /// The method, by a pair of tableaux of one's own with the same stages, for a right-hand side that is
+    /// [split](crate::integrators::ode::Ode::is_split) (`ARKStepSetTables`).
+    pub fn imex_tableaux(mut self, implicit: Tableau, explicit: Tableau) -> Self {
+        self.own.scheme = Scheme::OwnPair(implicit, explicit);
         self
     }
 
@@ -139,13 +156,14 @@ impl ArkodeOptions {
     /// Degree of the polynomials between the steps. Those of degree 4 and 5 need evaluations of the
     /// right-hand side at each use, and are less accurate in stiff systems.
     pub(super) fn interpolant_degree(&self) -> u32 {
-        let highest = if self.own.table.is_implicit() { 3 } else { 5 };
-        (self.own.table.order() - 1).min(highest)
+        let highest = if self.own.scheme.is_implicit() { 3 } else { 5 };
+        (self.own.scheme.order() - 1).clamp(1, highest)
     }
 
     pub(super) fn check(&self, y0: &[f64]) -> Result<(), InputError> {
         self.check_shared(y0, u32::MAX)?;
         self.own.fixed_step.map_or(Ok(()), |h| check_step("fixed_step", h))?;
+        self.own.scheme.check(self.own.fixed_step.is_none())?;
         if self.own.fixed_step.is_some() && self.signs.iter().any(|sign| *sign != Sign::Free) {
             let help = "signs are kept by smaller steps: let the tolerances choose the steps";
             return Err(InputError::new("sign_constraints", "given with fixed_step", help));

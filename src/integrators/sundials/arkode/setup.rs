@@ -82,15 +82,16 @@ impl<S: Ode> Session<ArkodeKind, S> {
     fn of_arkode(system: S, t0: f64, y0: &[f64], options: &ArkodeOptions) -> Result<Self, Error> {
         check_start(t0, y0)?;
         options.check(y0)?;
-        if !options.own.table.is_imex() {
+        let scheme = &options.own.scheme;
+        if !scheme.is_imex() {
             check_whole(&system)?;
         } else if !system.is_split() {
             let help = "a pair of tables is for a right-hand side of two parts: see `is_split` and `split`";
-            return Err(Error::input("table", options.own.table, help));
+            return Err(Error::input("table", scheme, help));
         }
 
         let start = InitialState { t: t0, y: y0, yp: None, root_count: system.root_count() };
-        let (is_implicit, is_imex) = (options.own.table.is_implicit(), options.own.table.is_imex());
+        let (is_implicit, is_imex) = (scheme.is_implicit(), scheme.is_imex());
         let stages: Stages = match (is_imex, is_implicit) {
             (true, _) => [Some(explicit_rhs::<S>), Some(rhs::<S>)],
             (false, true) => [None, Some(rhs::<S>)],
@@ -113,16 +114,13 @@ impl<S: Ode> Session<ArkodeKind, S> {
         arkode.stages = stages;
         arkode.host.get_mut().step_end = Some(arkode.elapsed);
         arkode.configure(options)?;
-        let (implicit_id, explicit_id) = options.own.table.ids();
         let degree = options.interpolant_degree();
         arkode.interpolant_degree = Some(degree);
-        // SAFETY: the callback fits the host; the memory is alive and reads the names, C strings, once;
-        // the other values are plain numbers.
+        // SAFETY: the callback fits the host; the memory is alive; the other values are plain numbers.
         unsafe {
             arkode.set_root_functions(OdeFunctions::ARKODE.set_roots, Some(roots::<S>))?;
-            let (implicit, explicit) = (implicit_id.as_ptr(), explicit_id.as_ptr());
             let (memory, data) = (arkode.memory.raw, arkode.host.as_ptr());
-            arkode.host.call(named!(ARKStepSetTableName), |set| set(memory, implicit, explicit))?;
+            scheme.set(memory, |name, code| arkode.host.accept(name, code))?;
             arkode.set(named!(ARKStepSetInterpolantDegree as _), degree as i32)?;
             // Post-processing of steps makes ARKODE evaluate the right-hand side at their ends; it is used
             // for fixed steps only.
