@@ -22,7 +22,7 @@ const HEADERS: &str = "\
 #include <arkode/arkode.h>
 #include <arkode/arkode_ls.h>
 #include <arkode/arkode_arkstep.h>
-#include <arkode/arkode_erkstep.h>
+#include <arkode/arkode_mristep.h>
 #include <sundials/sundials_version.h>
 #include <sunlinsol/sunlinsol_klu.h>
 #include <SuiteSparse_config.h>
@@ -110,12 +110,11 @@ fn generate_bindings(include_directories: &[&Path]) {
         .parse_callbacks(Box::new(SignedConstants))
         // Whatever these declarations refer to is defined by `sundials-sys`.
         .allowlist_recursively(false)
-        .allowlist_function("(ARKStep|ERKStep|ARKode)\\w+")
+        .allowlist_function("(ARKStep|MRIStep|ARKode)\\w+")
         .allowlist_function("SUNLinSol_KLU|SUNLinSol_KLUSetOrdering")
         .allowlist_function("SUNDIALSGetVersion|SuiteSparse_version")
-        .blocklist_function("ARKStepCreateMRIStepInnerStepper")
-        .allowlist_type("ARK\\w+|_?ARKodeButcherTable\\w*")
-        .allowlist_var("ARK_\\w+|ARKSTEP_\\w+|ERKSTEP_\\w+|ARKODE_\\w+")
+        .allowlist_type("ARK\\w+|_?ARKodeButcherTable\\w*|_?MRI\\w+")
+        .allowlist_var("ARK_\\w+|ARKODE_\\w+")
         .allowlist_var("SUITESPARSE_(MAIN|SUB)_VERSION")
         .layout_tests(false)
         .generate_comments(false);

@@ -22,6 +22,7 @@ mod lifecycle;
 mod long_spans;
 mod mass;
 mod mass_matrix;
+mod multirate;
 mod outputs;
 mod patterns;
 mod projection;

@@ -34,6 +34,7 @@
 //! | y' = f(t, y) | [`Cvode`], [`Arkode`] |
 //! | M y' = f(t, y) with a [mass matrix](crate::integrators::ode::Ode::mass_kind) | [`Arkode`]; [`Ida`] by [`MassForm`], where M may be singular |
 //! | y' = f(t, y) + g(t, y), f alone [stiff](crate::integrators::ode::Ode::is_split) | [`Arkode`] by [`ButcherTable::imex`] |
+//! | y' = f(t, y) + g(t, y), g faster than f and cheap | [`Multirate`] |
 //! | y' = f(t, y) with invariants | [`Cvode`] by [`CvodeOptions::project`] |
 //! | F(t, y, y') = 0 of index 1 | [`Ida`], see [`Ida::check_index`] |
 //!
@@ -66,6 +67,7 @@ mod linear;
 mod linear_solver;
 mod mass_form;
 mod matrix;
+mod multirate;
 mod nonlinear;
 mod ode_callbacks;
 mod ode_krylov;
@@ -99,6 +101,7 @@ pub use jacobian::Jacobian;
 pub use krylov::{Krylov, KrylovMethod, Preconditioner, Side};
 pub use linear_solver::LinearSolver;
 pub use mass_form::MassForm;
+pub use multirate::{Coupling, Multirate, MultirateOptions};
 pub(crate) use options::OfMultistep;
 pub use options::SolverOptions;
 pub use pattern::Pattern;

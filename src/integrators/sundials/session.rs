@@ -44,6 +44,7 @@ const ERROR_TEST_FAILURES: i32 = 20;
 pub(super) struct Session<K, S> {
     // Fields are dropped in this order: first what uses the others.
     pub(super) memory: Memory,
+    pub(super) kind: K,
     /// Integrates.
     pub(super) solve: Solve,
     /// The right-hand sides of ARKODE.
@@ -86,7 +87,6 @@ pub(super) struct Session<K, S> {
     pub(super) roots_found: Vec<i32>,
     /// Which signs the unknowns keep, if any.
     pub(super) signs: Vec<Sign>,
-    pub(super) kind: K,
 }
 
 /// Owns the memory block of an integrator.
@@ -241,39 +241,52 @@ impl<K, S> Session<K, S> {
             if let Some(set) = functions.set_max_error_test_failures {
                 self.set(set, ERROR_TEST_FAILURES)?;
             }
-            for (function, value) in [
-                (functions.set_initial_step, steps.initial_step),
-                (functions.set_max_step, steps.max_step),
-                (functions.set_min_step, options.min_step),
-                (functions.set_convergence_coefficient, options.convergence_coefficient),
-                (functions.set_max_growth, control.max_growth),
-                (functions.set_min_reduction, control.min_reduction),
-                (functions.set_after_error_failure, control.after_error_failure),
-                (functions.set_after_convergence_failure, control.after_convergence_failure),
-            ] {
-                if let Some(value) = value {
-                    self.set(function, value)?;
-                }
+            if let Some(coefficient) = options.convergence_coefficient {
+                self.set(functions.set_convergence_coefficient, coefficient)?;
             }
-            if let Some((low, high)) = control.kept {
-                self.host.call(functions.set_kept, |set| set(self.memory.raw, low, high))?;
+            for (name, function, value) in [
+                ("initial_step", functions.set_initial_step, steps.initial_step),
+                ("max_step", functions.set_max_step, steps.max_step),
+                ("min_step", functions.set_min_step, options.min_step),
+                ("max_growth", functions.set_max_growth, control.max_growth),
+                ("first_growth", functions.set_first_growth, control.first_growth),
+                ("min_reduction", functions.set_min_reduction, control.min_reduction),
+                (
+                    "after_error_failure",
+                    functions.set_after_error_failure,
+                    control.after_error_failure,
+                ),
+                (
+                    "after_convergence_failure",
+                    functions.set_after_convergence_failure,
+                    control.after_convergence_failure,
+                ),
+            ] {
+                let Some(value) = value else { continue };
+                let function = function.ok_or_else(|| self.lacks(name, value))?;
+                self.set(function, value)?;
             }
             if let (Some(set), Some(ratio)) = (functions.set_early_growth, control.max_growth) {
                 self.set(set, ratio)?;
             }
-            match (functions.set_first_growth, control.first_growth) {
-                (Some(set), Some(ratio)) => self.set(set, ratio)?,
-                (None, Some(ratio)) => {
-                    let help = format!("{} has no such bound", functions.integrator);
-                    return Err(Error::input("first_growth", ratio, help));
-                }
-                (_, None) => (),
+            if let Some((low, high)) = control.kept {
+                let set = functions.set_kept.ok_or_else(|| self.lacks("keep_between", low))?;
+                self.host.call(set, |set| set(self.memory.raw, low, high))?;
             }
             if let (Some(set), Some(order)) = (functions.set_max_order, options.max_order) {
                 self.set(set, order as i32)?;
             }
         }
         self.set_signs(&options.signs)
+    }
+
+    /// The error of an option that the integrator does not have.
+    fn lacks(&self, option: &str, value: f64) -> Error {
+        Error::input(
+            option,
+            value,
+            format!("{} has no such option", self.memory.functions.integrator),
+        )
     }
 
     /// Forgets the factors after a failure: the matrix of Newton's iteration may be half written.
@@ -291,12 +304,15 @@ impl<K, S> Session<K, S> {
         }
         let values: Vec<f64> = signs.iter().map(|sign| f64::from(*sign as i8)).collect();
         let values = Vector::from_slice(&values, &self.context)?;
+        let set = self.memory.functions.set_constraints;
+        let set =
+            set.ok_or_else(|| self.lacks("sign_constraints", f64::from(signs.len() as u32)))?;
         self.signs = signs.to_vec();
         // SAFETY: C keeps a clone of the vector, whose length was checked, and it notes what it finds in the
         // host, which outlives the memory.
         unsafe {
             signs::note_in(values.raw(), self.host.violation())?;
-            self.set(self.memory.functions.set_constraints, values.raw())
+            self.set(set, values.raw())
         }
     }
 

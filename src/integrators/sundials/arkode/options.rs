@@ -3,34 +3,17 @@
 use super::{
     butcher_table::ButcherTable,
     controller::Controller,
+    stages::{OfStages, StageOptions},
     tableau::{Scheme, Tableau},
 };
 use crate::base::input::InputError;
 use crate::integrators::{
-    common::{AbsoluteTolerance, check_count, check_step},
+    common::{AbsoluteTolerance, check_step},
     sundials::{
         options::{OfOde, SolverOptions},
         signs::Sign,
     },
 };
-
-/// Where the iteration for an implicit stage starts (`ARKStepSetPredictorMethod`).
-///
-/// Interpolants are those of the step before, extrapolated.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum Predictor {
-    /// At the state at the start of the step.
-    Trivial = 0,
-    /// On the interpolant of highest degree.
-    MaximumOrder = 1,
-    /// On the interpolant of a degree that falls from 3 to 1 with the distance of the stage.
-    VariableOrder = 2,
-    /// On the interpolant of highest degree up to half a step, on the linear one beyond.
-    CutoffOrder = 3,
-    /// At the state that the previous stages of the step give without this one.
-    MinimumCorrection = 5,
-}
 
 /// Tolerances, method and limits of an [`Arkode`](super::Arkode).
 ///
@@ -49,16 +32,19 @@ pub type ArkodeOptions = SolverOptions<OwnOptions>;
 pub struct OwnOptions {
     pub(super) fixed_step: Option<f64>,
     pub(super) scheme: Scheme,
-    pub(super) max_steps_between_jacobians: Option<u32>,
-    pub(super) max_iterations: u32,
-    pub(super) linear: bool,
-    pub(super) predictor: Predictor,
+    pub(super) stages: StageOptions,
     pub(super) controller: Controller,
     pub(super) safety_factor: Option<f64>,
     pub(super) error_bias: Option<f64>,
 }
 
 impl OfOde for OwnOptions {}
+
+impl OfStages for OwnOptions {
+    fn stages_mut(&mut self) -> &mut StageOptions {
+        &mut self.stages
+    }
+}
 
 impl ArkodeOptions {
     /// The implicit method of order 4 with a Newton iteration on a dense matrix of difference
@@ -67,10 +53,7 @@ impl ArkodeOptions {
         let own = OwnOptions {
             fixed_step: None,
             scheme: Scheme::Known(ButcherTable::default()),
-            max_steps_between_jacobians: None,
-            max_iterations: 6,
-            linear: false,
-            predictor: Predictor::VariableOrder,
+            stages: StageOptions::default(),
             controller: Controller::Pid,
             safety_factor: None,
             error_bias: None,
@@ -104,34 +87,6 @@ impl ArkodeOptions {
     /// (`ARKStepSetFixedStep`). Default: the tolerances control the steps.
     pub fn fixed_step(mut self, h: f64) -> Self {
         self.own.fixed_step = Some(h);
-        self
-    }
-
-    /// Steps after which a new Newton matrix gets a new Jacobian in any case (`ARKStepSetJacEvalFrequency`).
-    /// Default: 51.
-    pub fn max_steps_between_jacobians(mut self, steps: u32) -> Self {
-        self.own.max_steps_between_jacobians = Some(steps);
-        self
-    }
-
-    /// Iterations allowed for each stage (`ARKStepSetMaxNonlinIters`). Default: 6.
-    pub fn max_iterations(mut self, iterations: u32) -> Self {
-        self.own.max_iterations = iterations;
-        self
-    }
-
-    /// Declares that the right-hand side is linear in y, with a constant Jacobian (`ARKStepSetLinear`).
-    /// Default: it is not.
-    ///
-    /// One iteration then solves a stage, with an exact Newton matrix.
-    pub fn linear(mut self) -> Self {
-        self.own.linear = true;
-        self
-    }
-
-    /// Where iterations start. Default: variable order.
-    pub fn predictor(mut self, predictor: Predictor) -> Self {
-        self.own.predictor = predictor;
         self
     }
 
@@ -182,12 +137,6 @@ impl ArkodeOptions {
         {
             return Err(InputError::new("error_bias", factor, "it is at least 1, such as 1.5"));
         }
-        for (input, value) in [
-            ("max_steps_between_jacobians", self.own.max_steps_between_jacobians),
-            ("max_iterations", Some(self.own.max_iterations)),
-        ] {
-            value.map_or(Ok(()), |count| check_count(input, count))?;
-        }
-        Ok(())
+        self.own.stages.check()
     }
 }

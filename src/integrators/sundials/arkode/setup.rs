@@ -14,9 +14,8 @@ use crate::integrators::{
     ode::{Borrowed, MassKind, Ode},
     sundials::{
         ffi,
-        functions::{Functions, OdeFunctions, Stages, named},
+        functions::{Functions, OdeFunctions, StageFunctions, Stages, named},
         ode_callbacks::{explicit_rhs, note_step_end, note_time, rhs, roots},
-        ode_krylov::newton_setup_with_mass,
         session::{InitialState, Session},
         solver::{Kind, Owner, Solver},
     },
@@ -79,7 +78,12 @@ fn start(
 }
 
 impl<S: Ode> Session<ArkodeKind, S> {
-    fn of_arkode(system: S, t0: f64, y0: &[f64], options: &ArkodeOptions) -> Result<Self, Error> {
+    pub(in crate::integrators::sundials) fn of_arkode(
+        system: S,
+        t0: f64,
+        y0: &[f64],
+        options: &ArkodeOptions,
+    ) -> Result<Self, Error> {
         check_start(t0, y0)?;
         options.check(y0)?;
         let scheme = &options.own.scheme;
@@ -136,7 +140,7 @@ impl<S: Ode> Session<ArkodeKind, S> {
             }
         }
         if is_implicit {
-            solve_stages(&mut arkode, options)?;
+            options.own.stages.set(&mut arkode, StageFunctions::ARKODE, options)?;
         }
         if let Some(form) = mass_form {
             mass::attach(&mut arkode, &form, mass_kind)?;
@@ -168,39 +172,6 @@ fn control_steps<S: Ode>(
             if let Some(value) = value {
                 arkode.set(function, value)?;
             }
-        }
-    }
-    Ok(())
-}
-
-/// Sets how the equations of implicit stages are solved.
-fn solve_stages<S: Ode>(
-    arkode: &mut Session<ArkodeKind, S>,
-    options: &ArkodeOptions,
-) -> Result<(), Error> {
-    // SAFETY: the values are plain numbers.
-    unsafe {
-        arkode.set(named!(ARKStepSetPredictorMethod as _), options.own.predictor as i32)?;
-        arkode.set(named!(ARKStepSetMaxNonlinIters as _), options.own.max_iterations as i32)?;
-        // The slope of a stage follows from its equation: this spares an evaluation, which would
-        // also stop the integration if it failed, and magnify errors of stiff components.
-        arkode.set(named!(ARKStepSetDeduceImplicitRhs as _), 1)?;
-        if options.own.linear {
-            arkode.set(named!(ARKStepSetLinear as _), 0)?;
-        }
-        if let Some(steps) = options.max_steps_between_setups {
-            arkode.set(named!(ARKStepSetLSetupFrequency as _), steps as i32)?;
-        }
-    }
-    // SAFETY: the functions are those of ARKODE, and the callback fits the registered host; the value is a plain number.
-    unsafe {
-        arkode.set_nonlinear(OdeFunctions::ARKODE, options, |arkode| {
-            arkode.set(named!(ARKStepSetLinSysFn), Some(newton_setup_with_mass::<S> as _))
-        })?;
-        if let (Some(_), Some(steps)) =
-            (options.newton_solver(), options.own.max_steps_between_jacobians)
-        {
-            arkode.set(named!(ARKStepSetJacEvalFrequency as _), i64::from(steps))?;
         }
     }
     Ok(())
