@@ -34,8 +34,8 @@ impl<S: Ode, F: Functional> AdjointSystem<S, F> {
         let access = Access { get: S::parameters, set: S::set_parameters };
         let equations = Equations::new(system, functional, access, n, forward)?;
         if let (LinearSolver::Krylov(_), false) = (&equations.backward, options.supplied_rhs) {
-            let help = "without a matrix of the Jacobian, its transposed products are those of the system: write \
-                        adjoint_rhs, and say so by AdjointOptions::supplied_rhs";
+            let help = "there are no entries of the Jacobian to transpose: write adjoint_rhs, and say so by \
+                        AdjointOptions::supplied_rhs";
             return Err(InputError::new("linear solver", "Krylov", help));
         }
         Ok(Self {
