@@ -76,8 +76,8 @@ pub(super) type SetBackward = Named<unsafe fn(*mut c_void, i32, &LinearSolver) -
 /// Gives a backward problem its integrals: (memory, problem, initial values, which are zero).
 pub(super) type InitBackwardQuadratures = Named<unsafe fn(*mut c_void, i32, ffi::N_Vector) -> i32>;
 
-/// Defines a table with a column for each integrator: first functions that all of them have, then those that some have
-/// (`-`: no), then anything else.
+/// Defines a table with a column for each integrator: first functions that all of them have, then those of SUNDIALS 6
+/// alone, those that some have (`-`: no), and anything else.
 macro_rules! table {
     ($(#[$doc:meta])* $table:ident: $first:ident, $second:ident;
      $($(#[$about:meta])* $field:ident: $type:ty = $a:ident, $b:ident;)+
@@ -85,8 +85,8 @@ macro_rules! table {
         table!(@struct $table [$(#[$doc])*] $($(#[$about])* $field: $type,)+
                $($(#[$about_value])* $value: $value_type,)*);
         impl $table {
-            table!(@column $first [$($field $a)+] [] [$($value $value_a)*]);
-            table!(@column $second [$($field $b)+] [] [$($value $value_b)*]);
+            table!(@column $first [$($field $a)+] [] [] [$($value $value_a)*]);
+            table!(@column $second [$($field $b)+] [] [] [$($value $value_b)*]);
         }
     };
     ($(#[$doc:meta])* $table:ident: $first:ident, $second:ident, $third:ident;
@@ -94,24 +94,26 @@ macro_rules! table {
     ) => {
         table!(@struct $table [$(#[$doc])*] $($(#[$about])* $field: $type,)+);
         impl $table {
-            table!(@column $first [$($field $a)+] [] []);
-            table!(@column $second [$($field $b)+] [] []);
-            table!(@column $third [$($field $c)+] [] []);
+            table!(@column $first [$($field $a)+] [] [] []);
+            table!(@column $second [$($field $b)+] [] [] []);
+            table!(@column $third [$($field $c)+] [] [] []);
         }
     };
     ($(#[$doc:meta])* $table:ident: $first:ident, $second:ident, $third:ident, $fourth:ident;
      $($(#[$about:meta])* $field:ident: $type:ty = $a:ident, $b:ident, $c:ident, $d:ident;)+
+     [sundials 6] $($old:ident: $old_type:ty = $old_a:ident, $old_b:ident, $old_c:ident, $old_d:ident;)+
      [some] $($(#[$about_some:meta])* $some:ident: $some_type:ty = $some_a:tt, $some_b:tt, $some_c:tt, $some_d:tt;)+
      [others] $($(#[$about_value:meta])* $value:ident: $value_type:ty
          = $value_a:expr, $value_b:expr, $value_c:expr, $value_d:expr;)+
     ) => {
         table!(@struct $table [$(#[$doc])*] $($(#[$about])* $field: $type,)+
+               $(#[cfg(sundials_major = "6")] $old: $old_type,)+
                $($(#[$about_some])* $some: Option<$some_type>,)+ $($(#[$about_value])* $value: $value_type,)+);
         impl $table {
-            table!(@column $first [$($field $a)+] [$($some $some_a)+] [$($value $value_a)+]);
-            table!(@column $second [$($field $b)+] [$($some $some_b)+] [$($value $value_b)+]);
-            table!(@column $third [$($field $c)+] [$($some $some_c)+] [$($value $value_c)+]);
-            table!(@column $fourth [$($field $d)+] [$($some $some_d)+] [$($value $value_d)+]);
+            table!(@column $first [$($field $a)+] [$($old $old_a)+] [$($some $some_a)+] [$($value $value_a)+]);
+            table!(@column $second [$($field $b)+] [$($old $old_b)+] [$($some $some_b)+] [$($value $value_b)+]);
+            table!(@column $third [$($field $c)+] [$($old $old_c)+] [$($some $some_c)+] [$($value $value_c)+]);
+            table!(@column $fourth [$($field $d)+] [$($old $old_d)+] [$($some $some_d)+] [$($value $value_d)+]);
         }
     };
     (@struct $table:ident [$($doc:tt)*] $($(#[$about:meta])* $field:ident: $type:ty,)+) => {
@@ -120,10 +122,11 @@ macro_rules! table {
             $($(#[$about])* pub(super) $field: $type,)+
         }
     };
-    (@column $column:ident [$($field:ident $function:ident)+] [$($some:ident $cell:tt)*]
+    (@column $column:ident [$($field:ident $function:ident)+] [$($old:ident $old_function:ident)*] [$($some:ident $cell:tt)*]
      [$($value:ident $other:expr)*]) => {
         pub(super) const $column: &'static Self = &Self {
             $($field: named!($function),)+
+            $(#[cfg(sundials_major = "6")] $old: named!($old_function),)*
             $($some: table!(@cell $cell),)*
             $($value: $other,)*
         };
@@ -136,8 +139,6 @@ table! {
     /// One integrator of SUNDIALS. All functions take its memory block first.
     Functions: CVODE, IDA, ARKODE, MULTIRATE;
 
-    set_error_handler: SetTwo<ffi::CVErrHandlerFn, *mut c_void>
-        = CVodeSetErrHandlerFn, IDASetErrHandlerFn, ARKStepSetErrHandlerFn, MRIStepSetErrHandlerFn;
     set_user_data: Set<*mut c_void> = CVodeSetUserData, IDASetUserData, ARKStepSetUserData, MRIStepSetUserData;
     scalar_tolerances: SetTwo<f64, f64> = CVodeSStolerances, IDASStolerances, ARKStepSStolerances, MRIStepSStolerances;
     vector_tolerances: SetTwo<f64, ffi::N_Vector> = CVodeSVtolerances, IDASVtolerances, ARKStepSVtolerances, MRIStepSVtolerances;
@@ -172,6 +173,10 @@ table! {
     get_preconditioner_solves: Get<i64> = CVodeGetNumPrecSolves, IDAGetNumPrecSolves, ARKStepGetNumPrecSolves, MRIStepGetNumPrecSolves;
     get_root_evaluations: Get<i64> = CVodeGetNumGEvals, IDAGetNumGEvals, ARKStepGetNumGEvals, MRIStepGetNumGEvals;
     get_tolerance_scale: Get<f64> = CVodeGetTolScaleFactor, IDAGetTolScaleFactor, ARKStepGetTolScaleFactor, MRIStepGetTolScaleFactor;
+
+    [sundials 6]
+    set_error_handler: SetTwo<ffi::CVErrHandlerFn, *mut c_void>
+        = CVodeSetErrHandlerFn, IDASetErrHandlerFn, ARKStepSetErrHandlerFn, MRIStepSetErrHandlerFn;
 
     [some]
     set_initial_step: Set<f64> = CVodeSetInitStep, IDASetInitStep, ARKStepSetInitStep, -;

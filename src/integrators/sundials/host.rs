@@ -6,7 +6,7 @@
 use std::{
     any::Any,
     error,
-    ffi::{CStr, c_char, c_void},
+    ffi::{CStr, c_void},
     panic::{AssertUnwindSafe, catch_unwind, resume_unwind},
     ptr::NonNull,
 };
@@ -183,6 +183,14 @@ impl Troubles {
 
     pub(super) fn recent_violation(&self) -> Option<Violation> {
         self.violation.filter(Violation::is_recent)
+    }
+
+    /// Keeps the last message of SUNDIALS. Warnings have positive codes; they do not stop the integration.
+    pub(super) fn keep_message(&mut self, code: i32, message: &CStr) {
+        if code < 0 {
+            self.message.clear();
+            self.message.push_str(message.to_string_lossy().trim());
+        }
     }
 
     pub(super) fn message(&self) -> &str {
@@ -461,27 +469,4 @@ impl<S> Drop for HostBox<S> {
         // SAFETY: leaked from a Box in `new` and freed once; owners drop the C objects first.
         drop(unsafe { Box::from_raw(self.0.as_ptr()) });
     }
-}
-
-/// Error handler of SUNDIALS: keeps the last message instead of printing it.
-///
-/// # Safety
-/// `data` points to a live [`Host<S>`] that nobody else uses; `message` is null or a C string.
-pub(super) unsafe extern "C" fn keep_message<S>(
-    code: i32,
-    _module: *const c_char,
-    _function: *const c_char,
-    message: *mut c_char,
-    data: *mut c_void,
-) {
-    // Warnings have positive codes; they do not stop the integration.
-    if code >= 0 || message.is_null() {
-        return;
-    }
-    // SAFETY: SUNDIALS passes the data pointer that was registered with this handler, and a
-    // terminated message; the callbacks that also use the host have returned.
-    let (troubles, message) =
-        unsafe { (&mut Host::<S>::of(data).troubles, CStr::from_ptr(message)) };
-    troubles.message.clear();
-    troubles.message.push_str(message.to_string_lossy().trim());
 }

@@ -67,6 +67,7 @@ mod linear;
 mod linear_solver;
 mod mass_form;
 mod matrix;
+mod messages;
 mod multirate;
 mod nonlinear;
 mod ode_callbacks;
@@ -110,7 +111,7 @@ pub use signs::Sign;
 pub use solver::{Kind, Solver, WithSensitivities};
 pub use step_control::StepControl;
 pub(crate) use stored_matrix::StoredMatrix;
-pub use version::{suitesparse_version, version};
+pub use version::{description, suitesparse_version, version};
 
 pub use crate::integrators::common::{
     AbsoluteTolerance, Callback, Cause, Error, IntegrationError, Integrator, Reached, Statistics,

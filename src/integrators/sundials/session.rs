@@ -12,12 +12,13 @@ use super::{
     differences::{Differences, Scales},
     ffi,
     functions::{Functions, OdeFunctions, Set, SetTwo, Solve, Stages},
-    host::{CustomSolve, Host, HostBox, NewtonSolve, keep_message},
+    host::{CustomSolve, Host, HostBox, NewtonSolve},
     ilu::IncompleteLu,
     jacobian::Jacobian,
     krylov::Krylov,
     linear::Linear,
     linear_solver::LinearSolver,
+    messages,
     nonlinear::FixedPoint,
     ode_callbacks::{jacobian, newton_rhs},
     ode_krylov::{jacobian_times, precondition_setup, precondition_solve},
@@ -145,11 +146,10 @@ impl<K, S> Session<K, S> {
         if memory.raw.is_null() {
             return Err(Error::out_of_memory(function));
         }
-        let data = host.as_ptr();
-        // SAFETY: the memory is alive, and the handler fits the host registered as its data.
-        host.call(functions.set_error_handler, |set| unsafe {
-            set(memory.raw, Some(keep_message::<S>), data)
-        })?;
+        // SAFETY: the memory is alive, and uses neither host nor context when these are dropped.
+        let (name, code) =
+            unsafe { messages::keep_in::<S>(host.as_ptr(), functions, memory.raw, &context) };
+        host.accept(name, code)?;
         Ok(Self {
             memory,
             solve: functions.solve,

@@ -361,7 +361,6 @@ fn rows_in_any_order_and_parameters_in_the_mass_matrix() {
     }
 }
 
-/// A nonlinear rod whose rates are unknowns of their own, against the rod as an ODE.
 /// x'' = -9 x as a DAE F = y' - f with an algebraic copy of x: lambda of the differential unknowns along the backward run
 /// is the slope of x(T) by the state there, in closed form.
 #[test]
@@ -390,6 +389,7 @@ fn the_adjoint_along_the_way_in_closed_form() {
     assert!((gradient.initial_state[0] - 6f64.cos()).abs() < 1e-7);
 }
 
+/// A nonlinear rod whose rates are unknowns of their own, against the rod as an ODE.
 #[test]
 fn a_rod_with_its_rates_as_unknowns() {
     const N: usize = 30;

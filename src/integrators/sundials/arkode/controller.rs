@@ -34,18 +34,18 @@ pub enum Controller {
 }
 
 /// Exponents of the last three errors, times the order of the error estimate, and of the last two ratios of step sizes.
+#[derive(Clone, Copy, Debug)]
 pub(super) struct Filter {
     errors: [f64; 3],
     ratios: [f64; 2],
+    /// Factor of the errors, if C does not apply it.
+    pub(super) bias: f64,
 }
 
 impl Controller {
     /// The controller of ARKODE, by its number, or the filter to be given to it.
-    pub(super) fn method(self) -> Result<i32, &'static Filter> {
-        const H211: Filter = Filter { errors: [0.25, 0.25, 0.0], ratios: [-0.25, 0.0] };
-        const H0211: Filter = Filter { errors: [0.5, 0.5, 0.0], ratios: [-0.5, 0.0] };
-        const H312: Filter = Filter { errors: [0.125, 0.25, 0.125], ratios: [-0.375, -0.125] };
-        const H0321: Filter = Filter { errors: [1.25, 0.5, -0.75], ratios: [0.25, 0.75] };
+    pub(super) fn method(self) -> Result<i32, Filter> {
+        let filter = |errors, ratios| Err(Filter { errors, ratios, bias: 1.0 });
         match self {
             Self::Pid => Ok(0),
             Self::Pi => Ok(1),
@@ -53,10 +53,10 @@ impl Controller {
             Self::ExplicitGustafsson => Ok(3),
             Self::ImplicitGustafsson => Ok(4),
             Self::ImExGustafsson => Ok(5),
-            Self::H211 => Err(&H211),
-            Self::H0211 => Err(&H0211),
-            Self::H312 => Err(&H312),
-            Self::H0321 => Err(&H0321),
+            Self::H211 => filter([0.25, 0.25, 0.0], [-0.25, 0.0]),
+            Self::H0211 => filter([0.5, 0.5, 0.0], [-0.5, 0.0]),
+            Self::H312 => filter([0.125, 0.25, 0.125], [-0.375, -0.125]),
+            Self::H0321 => filter([1.25, 0.5, -0.75], [0.25, 0.75]),
         }
     }
 }
@@ -77,13 +77,13 @@ pub(super) unsafe extern "C" fn filtered_step(
     new: *mut f64,
     data: *mut c_void,
 ) -> i32 {
-    // SAFETY: the data is the filter that was registered, which is static; the result pointer is valid.
+    // SAFETY: the data is the filter that was registered, which outlives the memory; the result pointer is valid.
     let (filter, new) = unsafe { (&*data.cast::<Filter>(), &mut *new) };
     let errors = [error, error_before, error_first];
     let order = f64::from(embedded_order + 1);
     *new = h;
     for (error, exponent) in errors.into_iter().zip(filter.errors) {
-        *new *= error.max(1e-10).powf(-exponent / order);
+        *new *= (filter.bias * error).max(1e-10).powf(-exponent / order);
     }
     for ((h, before), exponent) in
         [(h, h_before), (h_before, h_first)].into_iter().zip(filter.ratios)

@@ -8,7 +8,11 @@
 
 use std::ptr;
 
-use super::{controller::filtered_step, mass, options::ArkodeOptions};
+use super::{
+    controller::{Filter, filtered_step},
+    mass,
+    options::ArkodeOptions,
+};
 use crate::integrators::{
     common::{Clock, Error, Integrator, check_start, check_whole},
     ode::{Borrowed, MassKind, Ode},
@@ -43,7 +47,10 @@ pub type Arkode<S> = Solver<ArkodeKind, S>;
 
 /// Marks a [`Solver`] as one of ARKODE.
 #[derive(Debug)]
-pub struct ArkodeKind;
+pub struct ArkodeKind {
+    /// Freed after the memory, which refers to it.
+    filter: Option<Box<Filter>>,
+}
 
 impl Kind for ArkodeKind {
     type System = dyn Ode;
@@ -113,7 +120,14 @@ impl<S: Ode> Session<ArkodeKind, S> {
         let mut arkode = unsafe {
             let create = |y, context| ffi::ARKStepCreate(stages[0], stages[1], begin, y, context);
             let create = ("ARKStepCreate", create);
-            Self::create(Functions::ARKODE, create, ArkodeKind, system, &start, solver)?
+            Self::create(
+                Functions::ARKODE,
+                create,
+                ArkodeKind { filter: None },
+                system,
+                &start,
+                solver,
+            )?
         };
         arkode.stages = stages;
         arkode.host.get_mut().step_end = Some(arkode.elapsed);
@@ -125,6 +139,10 @@ impl<S: Ode> Session<ArkodeKind, S> {
             arkode.set_root_functions(OdeFunctions::ARKODE.set_roots, Some(roots::<S>))?;
             let (memory, data) = (arkode.memory.raw, arkode.host.as_ptr());
             scheme.set(memory, |name, code| arkode.host.accept(name, code))?;
+            if is_imex && !cfg!(sundials_major = "6") {
+                // SUNDIALS 7 evaluates the slopes of Hermite polynomials anew, with the errors of stiff components in them
+                arkode.set(named!(ARKStepSetInterpolantType), ffi::ARK_INTERP_LAGRANGE)?;
+            }
             arkode.set(named!(ARKStepSetInterpolantDegree as _), degree as i32)?;
             // Post-processing of steps makes ARKODE evaluate the right-hand side at their ends; it is used
             // for fixed steps only.
@@ -155,15 +173,22 @@ fn control_steps<S: Ode>(
     options: &ArkodeOptions,
 ) -> Result<(), Error> {
     let memory = arkode.memory.raw;
-    // SAFETY: the memory is alive, filters are static, and the other values are plain numbers.
+    // SAFETY: the memory is alive and dropped before the filter; the other values are plain numbers.
     unsafe {
         match options.own.controller.method() {
             Ok(number) => arkode.host.call(named!(ARKStepSetAdaptivityMethod), |set| {
                 set(memory, number, 1, 0, ptr::null_mut())
             })?,
-            Err(filter) => arkode.host.call(named!(ARKStepSetAdaptivityFn), |set| {
-                set(memory, Some(filtered_step), ptr::from_ref(filter).cast_mut().cast())
-            })?,
+            Err(mut filter) => {
+                // from SUNDIALS 7 on the bias is that of its own controllers alone
+                if !cfg!(sundials_major = "6") {
+                    filter.bias = options.own.error_bias.unwrap_or(1.5);
+                }
+                let data = ptr::from_mut(arkode.kind.filter.insert(Box::new(filter)).as_mut());
+                arkode.host.call(named!(ARKStepSetAdaptivityFn), |set| {
+                    set(memory, Some(filtered_step), data.cast())
+                })?;
+            }
         }
         for (function, value) in [
             (named!(ARKStepSetSafetyFactor as _), options.own.safety_factor),
