@@ -22,7 +22,7 @@ const HEADERS: &str = "\
 #include <arkode/arkode.h>
 #include <arkode/arkode_ls.h>
 #include <arkode/arkode_arkstep.h>
-#include <arkode/arkode_erkstep.h>
+#include <arkode/arkode_mristep.h>
 #include <sundials/sundials_version.h>
 #include <sunlinsol/sunlinsol_klu.h>
 #include <SuiteSparse_config.h>
@@ -35,7 +35,9 @@ fn main() {
     }
 
     let sundials = include_dir("SUNDIALS_INCLUDE_DIR", &[""], "sundials/sundials_config.h");
-    check_configuration(&sundials.join("sundials/sundials_config.h"));
+    let major = check_configuration(&sundials.join("sundials/sundials_config.h"));
+    println!("cargo::rustc-check-cfg=cfg(sundials_major, values(\"6\", \"7\"))");
+    println!("cargo::rustc-cfg=sundials_major=\"{major}\"");
     if !sundials.join("sunlinsol/sunlinsol_klu.h").is_file() {
         fail("This SUNDIALS was built without KLU: sunlinsol/sunlinsol_klu.h is missing.");
     }
@@ -72,8 +74,9 @@ fn include_dir(variable: &str, subdirectories: &[&str], header: &str) -> PathBuf
     fail(&format!("The header {header} is not in {}.", places.join(", ")))
 }
 
-/// Stops unless the configuration header says: SUNDIALS 6, double precision, 64-bit indices.
-fn check_configuration(header: &Path) {
+/// Stops unless the configuration header says: SUNDIALS 6 or 7, double precision, 64-bit indices. Returns the first number of
+/// the version.
+fn check_configuration(header: &Path) -> String {
     let Ok(text) = fs::read_to_string(header) else {
         fail(&format!("{} can not be read.", header.display()));
     };
@@ -86,10 +89,17 @@ fn check_configuration(header: &Path) {
     };
 
     let version = value("SUNDIALS_VERSION").unwrap_or_else(|| "of unknown version".into());
-    if value("SUNDIALS_VERSION_MAJOR").as_deref() != Some("6") {
+    let major = value("SUNDIALS_VERSION_MAJOR").unwrap_or_default();
+    let minor = value("SUNDIALS_VERSION_MINOR").and_then(|minor| minor.parse::<u32>().ok());
+    let is_known = match (major.as_str(), minor) {
+        ("6", Some(minor)) => minor >= 4,
+        ("7", _) => true,
+        _ => false,
+    };
+    if !is_known {
         fail(&format!(
-            "SUNDIALS {version} was found, but pliant is written for SUNDIALS 6 (6.2 or newer). \
-             SUNDIALS 7 changed error handlers, SUNContext_Create and the library names."
+            "SUNDIALS {version} was found in {}, but pliant is written for SUNDIALS 6 from 6.4 on and for SUNDIALS 7.",
+            header.display()
         ));
     }
     if value("SUNDIALS_DOUBLE_PRECISION").is_none() || value("SUNDIALS_INT64_T").is_none() {
@@ -98,6 +108,7 @@ fn check_configuration(header: &Path) {
              (SUNDIALS_PRECISION=double, SUNDIALS_INDEX_SIZE=64)."
         ));
     }
+    major
 }
 
 fn generate_bindings(include_directories: &[&Path]) {
@@ -110,12 +121,11 @@ fn generate_bindings(include_directories: &[&Path]) {
         .parse_callbacks(Box::new(SignedConstants))
         // Whatever these declarations refer to is defined by `sundials-sys`.
         .allowlist_recursively(false)
-        .allowlist_function("(ARKStep|ERKStep|ARKode)\\w+")
+        .allowlist_function("(ARKStep|MRIStep|ARKode)\\w+")
         .allowlist_function("SUNLinSol_KLU|SUNLinSol_KLUSetOrdering")
         .allowlist_function("SUNDIALSGetVersion|SuiteSparse_version")
-        .blocklist_function("ARKStepCreateMRIStepInnerStepper")
-        .allowlist_type("ARK\\w+|_?ARKodeButcherTable\\w*")
-        .allowlist_var("ARK_\\w+|ARKSTEP_\\w+|ERKSTEP_\\w+|ARKODE_\\w+")
+        .allowlist_type("ARK\\w+|_?ARKodeButcherTable\\w*|_?MRI\\w+")
+        .allowlist_var("ARK_\\w+|ARKODE_\\w+")
         .allowlist_var("SUITESPARSE_(MAIN|SUB)_VERSION")
         .layout_tests(false)
         .generate_comments(false);

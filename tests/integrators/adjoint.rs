@@ -7,7 +7,7 @@ use pliant::{
     ode::{BandMut, Failure, Functional, Ode, Slopes},
     sundials::{
         Adjoint, AdjointOptions, Callback, Cause, Cvode, CvodeOptions, Error, Gradient, Integrator,
-        Jacobian, LinearSolver, Pattern, Sensitivities,
+        Jacobian, Krylov, KrylovMethod, LinearSolver, Pattern, Preconditioner, Sensitivities, Side,
     },
 };
 
@@ -227,6 +227,42 @@ fn robertson_backward_and_forward_agree() {
     }
 }
 
+/// Krylov methods back in time, by products of the system and an incomplete factorization, which has no fill to leave
+/// out on this pattern: the gradients are those of the forward sensitivities, as with matrices.
+#[test]
+fn krylov_methods_solve_the_backward_run() {
+    let (value, slopes) = forward(40.0);
+    let pattern = || Reactions::new().pattern;
+    let gmres = KrylovMethod::Gmres { dimension: 3, restarts: 0 };
+    for jacobian in [Jacobian::Supplied, Jacobian::DifferenceQuotients] {
+        let ilu = |side| (side, Preconditioner::Ilu { pattern: pattern(), jacobian });
+        let [left, right] = [Side::Left, Side::Right].map(ilu);
+        for (method, preconditioner) in [
+            (gmres, None),
+            (gmres, Some(left)),
+            (KrylovMethod::BiCgStab { iterations: 10 }, Some(right.clone())),
+            (KrylovMethod::Tfqmr { iterations: 10 }, Some(right.clone())),
+            (KrylovMethod::Fgmres { dimension: 3, restarts: 0 }, Some(right)),
+        ] {
+            let krylov = Krylov::new(method).tolerance_factor(1e-3);
+            let krylov = match preconditioner.clone() {
+                Some((side, ilu)) => krylov.preconditioner(side, ilu),
+                None => krylov,
+            };
+            let forward =
+                CvodeOptions::new(1e-8, [1e-12, 1e-16, 1e-12]).newton(LinearSolver::Krylov(krylov));
+            let options = AdjointOptions::new(1e-8, 1e-9).supplied_rhs();
+            let mut adjoint =
+                Adjoint::new(Reactions::new(), Mixed, 0.0, &START, &forward, &options).unwrap();
+            let gradient = adjoint.gradient(40.0).unwrap();
+            let errors =
+                (largest(&[gradient.value], [value]), largest(&gradient.parameters, slopes));
+            println!("{method:?} {}: {errors:?}", preconditioner.is_some());
+            assert!(errors.0 < 5e-8 && errors.1 < 2e-6);
+        }
+    }
+}
+
 /// An oscillator x'' = -w^2 x: G = x(T), in w, x0 and v0, in both directions of time.
 #[test]
 fn an_oscillator_in_closed_form() {
@@ -254,6 +290,42 @@ fn an_oscillator_in_closed_form() {
         let error = errors.fold(0.0, f64::max);
         println!("{error:e}");
         assert!(error < 5e-8, "{gradient:?} {exact:?}");
+    }
+}
+
+/// Lambda along the backward run is the slope of G by the state there: of x(T) for the oscillator, in closed form. The
+/// gradient stays what it is.
+#[test]
+fn the_adjoint_along_the_way_in_closed_form() {
+    let w = 3.0;
+    let oscillator = move |_t: f64, y: &[f64], ydot: &mut [f64]| {
+        ydot.copy_from_slice(&[y[1], -w * w * y[0]]);
+        Ok(())
+    };
+    let (forward, options) = (CvodeOptions::new(1e-9, 1e-11), AdjointOptions::new(1e-9, 1e-11));
+    for (start, end) in [(0.0, 2.0), (2.0, 0.0), (1e9, 1e9 + 2.0)] {
+        let made = Adjoint::new(oscillator, End, start, &[1.0, 0.5], &forward, &options);
+        let mut adjoint = made.unwrap();
+        let times: Vec<f64> = (0..=10).map(|k| end + (start - end) * f64::from(k) / 10.0).collect();
+        let mut seen = Vec::new();
+        let gradient = adjoint
+            .gradient_along(end, &times, |t, lambda| {
+                let (sin, cos) = f64::sin_cos(w * (end - t));
+                let error = f64::max((lambda[0] - cos).abs(), (lambda[1] - sin / w).abs());
+                // measured: 1.5e-8
+                assert!(error < 5e-8, "{t}: {error:e}");
+                seen.push(t);
+            })
+            .unwrap();
+        assert_eq!(seen, times);
+        let plain = adjoint.gradient(end).unwrap();
+        let pairs = gradient.initial_state.iter().zip(&plain.initial_state);
+        // another first target is another first step
+        assert!(pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) < 5e-8);
+        for times in [vec![end, start, end], vec![f64::NAN], vec![2.0 * end - start]] {
+            let error = adjoint.gradient_along(end, &times, |_, _| ()).unwrap_err().to_string();
+            assert!(error.contains("time along"), "{error}");
+        }
     }
 }
 
@@ -320,6 +392,12 @@ fn unusable_input_is_named() {
         other => panic!("{other:?}"),
     };
     assert!(refused(&forward.clone().newton(LinearSolver::Custom), &back).contains("entries"));
+    let krylov = Krylov::new(KrylovMethod::Gmres { dimension: 3, restarts: 0 });
+    let plain = forward.clone().newton(LinearSolver::Krylov(krylov.clone()));
+    assert!(refused(&plain, &back).contains("adjoint_rhs"));
+    let own = krylov.preconditioner(Side::Left, Preconditioner::Custom);
+    let own = forward.clone().newton(LinearSolver::Krylov(own));
+    assert!(refused(&own, &back.clone().supplied_rhs()).contains("Ilu"));
     assert!(refused(&forward.clone().fixed_point(0), &back).contains("Newton"));
     assert!(refused(&forward.clone().project(), &back).contains("project"));
     let sensitivities = forward.clone().sensitivities(Sensitivities::of([0]));

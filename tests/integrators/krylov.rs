@@ -142,8 +142,19 @@ fn exact(t: f64) -> Vec<f64> {
     (0..N).map(|i| (1..=N).map(|k| mode(k, i)).sum()).collect()
 }
 
-const METHODS: [KrylovMethod; 2] =
-    [KrylovMethod::Gmres { dimension: 20, restarts: 2 }, KrylovMethod::BiCgStab { iterations: 40 }];
+/// The last is for symmetric matrices alone.
+const METHODS: [KrylovMethod; 5] = [
+    KrylovMethod::Gmres { dimension: 20, restarts: 2 },
+    KrylovMethod::BiCgStab { iterations: 40 },
+    KrylovMethod::Fgmres { dimension: 20, restarts: 2 },
+    KrylovMethod::Tfqmr { iterations: 40 },
+    KrylovMethod::ConjugateGradients { iterations: 60 },
+];
+
+/// Whether a method takes a preconditioner on this side.
+fn takes(method: KrylovMethod, side: Side) -> bool {
+    !(matches!(method, KrylovMethod::Fgmres { .. }) && side == Side::Left)
+}
 
 fn ilu(jacobian: Jacobian) -> Preconditioner {
     Preconditioner::Ilu { pattern: Pattern::band(N, 1, 1).unwrap(), jacobian }
@@ -226,16 +237,28 @@ fn heat_by_every_method_and_preconditioner() {
             (Side::Right, Jacobian::Supplied),
             (Side::Right, Jacobian::DifferenceQuotients),
         ] {
+            if !takes(method, side) {
+                continue;
+            }
             let krylov = Krylov::new(method).preconditioner(side, ilu(way));
             for ((name, error, s), (_, _, plain)) in runs(&krylov, Some(side)).iter().zip(&plain) {
                 report(&format!("{method:?} {name}, {side:?} {way:?}"), *error, s);
                 assert!(*error < 2e-6, "{name}: {error}");
-                assert!(s.linear_iterations <= s.nonlinear_iterations, "{name}");
+                // conjugate gradients measure the residual before P^-1, whose size IDA does not have in mind
+                let is_cg = matches!(method, KrylovMethod::ConjugateGradients { .. });
+                let most = if is_cg { 2 } else { 1 } * s.nonlinear_iterations;
+                assert!(s.linear_iterations <= most, "{name}");
                 assert!(s.linear_iterations < plain.linear_iterations / 3, "{name}");
                 if *name == "CVODE" {
                     assert!(s.steps.abs_diff(direct.steps) < 5);
                 }
-                assert!(s.preconditioner_solves > s.linear_iterations);
+                // these two have no need to undo the preconditioner at the end
+                let spares = matches!(
+                    method,
+                    KrylovMethod::Fgmres { .. } | KrylovMethod::ConjugateGradients { .. }
+                );
+                let least = s.linear_iterations + u64::from(!spares);
+                assert!(s.preconditioner_solves >= least, "{name}");
                 assert!(s.preconditioner_setups > 0);
             }
         }
@@ -340,13 +363,17 @@ fn a_brusselator_with_an_incomplete_factorization() {
     let mut system = brusselator;
     let pattern = Pattern::ode_by_nan(&mut system, 0.0, &y0).unwrap();
     assert_eq!(pattern.entry_count(), 4 * points + 4 * (points - 1));
-    for method in METHODS {
+    for method in &METHODS[..4] {
+        let (method, side) = match takes(*method, Side::Left) {
+            true => (*method, Side::Left),
+            false => (*method, Side::Right),
+        };
         let plain = run("plain", Krylov::new(method));
         let ilu = Preconditioner::Ilu {
             pattern: pattern.clone(),
             jacobian: Jacobian::DifferenceQuotients,
         };
-        let preconditioned = run("ILU", Krylov::new(method).preconditioner(Side::Left, ilu));
+        let preconditioned = run("ILU", Krylov::new(method).preconditioner(side, ilu));
         assert!(preconditioned < plain / 2, "{plain} and {preconditioned}");
     }
 }

@@ -38,10 +38,15 @@ use failure::Failure;
 /// Ends with code 0; 1 if a computation failed or was interrupted (what was computed is kept, and
 /// report.json says where and why); 2 for bad input.
 #[derive(Parser)]
-#[command(version)]
+#[command(version = version())]
 struct Cli {
     #[command(subcommand)]
     command: Command,
+}
+
+/// The version, with those of the linked libraries.
+fn version() -> String {
+    format!("{} ({})", env!("CARGO_PKG_VERSION"), pliant::sundials::description())
 }
 
 #[derive(Subcommand)]

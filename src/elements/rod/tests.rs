@@ -118,8 +118,8 @@ fn elements_of_a_helix_have_its_strains() {
     };
     for (from, to) in [(0.0, length), (0.0, 0.01), (0.1, 0.13)] {
         let at = |s: f64| Section {
-            x: array(place(s)),
-            d: [0, 1].map(|i| array(turn(s) * Vector3::ith(i, 1.0))),
+            x: place(s).into(),
+            d: [0, 1].map(|i| (turn(s) * Vector3::ith(i, 1.0)).into()),
         };
         let strains = Deformed::new(to - from, [at(from), at(to)]).strains();
         let kappa = Vector3::from(strains.kappa) - curvature;

@@ -81,6 +81,8 @@ pub enum Callback {
     Quadratures,
     /// `project`
     Projection,
+    /// The weights of the error norm.
+    ErrorWeights,
     /// A [`Functional`](crate::integrators::ode::Functional), `adjoint_rhs`, `adjoint_parameters`, or the
     /// equations in their place
     Adjoint,
@@ -106,6 +108,7 @@ impl fmt::Display for Callback {
             Self::Adjoint => "the adjoint equations",
             Self::Quadratures => "the integrands",
             Self::Projection => "the projection",
+            Self::ErrorWeights => "the error weights",
             Self::Sensitivities => "the equations of the sensitivities",
             Self::Forces => "the equations of motion",
         })

@@ -2,7 +2,7 @@
 
 use std::{ffi::c_void, ptr};
 
-use super::ffi;
+use super::{ffi, linear_solver::LinearSolver};
 
 /// A C function with its name, for errors.
 pub(super) type Named<F> = (&'static str, F);
@@ -70,14 +70,14 @@ type GetBackward =
 pub(super) type InitBackward =
     Named<unsafe fn(*mut c_void, i32, f64, ffi::N_Vector, ffi::N_Vector) -> i32>;
 
-/// Sets an option of a backward problem: (memory, problem).
-pub(super) type SetBackward = Named<unsafe fn(*mut c_void, i32) -> i32>;
+/// Gives a backward problem the callbacks of its linear solver: (memory, problem, linear solver).
+pub(super) type SetBackward = Named<unsafe fn(*mut c_void, i32, &LinearSolver) -> i32>;
 
 /// Gives a backward problem its integrals: (memory, problem, initial values, which are zero).
 pub(super) type InitBackwardQuadratures = Named<unsafe fn(*mut c_void, i32, ffi::N_Vector) -> i32>;
 
-/// Defines a table with a column for each integrator: first functions that all of them have, then those that some have
-/// (`-`: no), then anything else.
+/// Defines a table with a column for each integrator: first functions that all of them have, then those of SUNDIALS 6
+/// alone, those that some have (`-`: no), and anything else.
 macro_rules! table {
     ($(#[$doc:meta])* $table:ident: $first:ident, $second:ident;
      $($(#[$about:meta])* $field:ident: $type:ty = $a:ident, $b:ident;)+
@@ -85,21 +85,35 @@ macro_rules! table {
         table!(@struct $table [$(#[$doc])*] $($(#[$about])* $field: $type,)+
                $($(#[$about_value])* $value: $value_type,)*);
         impl $table {
-            table!(@column $first [$($field $a)+] [] [$($value $value_a)*]);
-            table!(@column $second [$($field $b)+] [] [$($value $value_b)*]);
+            table!(@column $first [$($field $a)+] [] [] [$($value $value_a)*]);
+            table!(@column $second [$($field $b)+] [] [] [$($value $value_b)*]);
         }
     };
     ($(#[$doc:meta])* $table:ident: $first:ident, $second:ident, $third:ident;
      $($(#[$about:meta])* $field:ident: $type:ty = $a:ident, $b:ident, $c:ident;)+
-     [some] $($(#[$about_some:meta])* $some:ident: $some_type:ty = $some_a:tt, $some_b:tt, $some_c:tt;)+
-     [others] $($(#[$about_value:meta])* $value:ident: $value_type:ty = $value_a:expr, $value_b:expr, $value_c:expr;)+
+    ) => {
+        table!(@struct $table [$(#[$doc])*] $($(#[$about])* $field: $type,)+);
+        impl $table {
+            table!(@column $first [$($field $a)+] [] [] []);
+            table!(@column $second [$($field $b)+] [] [] []);
+            table!(@column $third [$($field $c)+] [] [] []);
+        }
+    };
+    ($(#[$doc:meta])* $table:ident: $first:ident, $second:ident, $third:ident, $fourth:ident;
+     $($(#[$about:meta])* $field:ident: $type:ty = $a:ident, $b:ident, $c:ident, $d:ident;)+
+     [sundials 6] $($old:ident: $old_type:ty = $old_a:ident, $old_b:ident, $old_c:ident, $old_d:ident;)+
+     [some] $($(#[$about_some:meta])* $some:ident: $some_type:ty = $some_a:tt, $some_b:tt, $some_c:tt, $some_d:tt;)+
+     [others] $($(#[$about_value:meta])* $value:ident: $value_type:ty
+         = $value_a:expr, $value_b:expr, $value_c:expr, $value_d:expr;)+
     ) => {
         table!(@struct $table [$(#[$doc])*] $($(#[$about])* $field: $type,)+
+               $(#[cfg(sundials_major = "6")] $old: $old_type,)+
                $($(#[$about_some])* $some: Option<$some_type>,)+ $($(#[$about_value])* $value: $value_type,)+);
         impl $table {
-            table!(@column $first [$($field $a)+] [$($some $some_a)+] [$($value $value_a)+]);
-            table!(@column $second [$($field $b)+] [$($some $some_b)+] [$($value $value_b)+]);
-            table!(@column $third [$($field $c)+] [$($some $some_c)+] [$($value $value_c)+]);
+            table!(@column $first [$($field $a)+] [$($old $old_a)+] [$($some $some_a)+] [$($value $value_a)+]);
+            table!(@column $second [$($field $b)+] [$($old $old_b)+] [$($some $some_b)+] [$($value $value_b)+]);
+            table!(@column $third [$($field $c)+] [$($old $old_c)+] [$($some $some_c)+] [$($value $value_c)+]);
+            table!(@column $fourth [$($field $d)+] [$($old $old_d)+] [$($some $some_d)+] [$($value $value_d)+]);
         }
     };
     (@struct $table:ident [$($doc:tt)*] $($(#[$about:meta])* $field:ident: $type:ty,)+) => {
@@ -108,10 +122,11 @@ macro_rules! table {
             $($(#[$about])* pub(super) $field: $type,)+
         }
     };
-    (@column $column:ident [$($field:ident $function:ident)+] [$($some:ident $cell:tt)*]
+    (@column $column:ident [$($field:ident $function:ident)+] [$($old:ident $old_function:ident)*] [$($some:ident $cell:tt)*]
      [$($value:ident $other:expr)*]) => {
         pub(super) const $column: &'static Self = &Self {
             $($field: named!($function),)+
+            $(#[cfg(sundials_major = "6")] $old: named!($old_function),)*
             $($some: table!(@cell $cell),)*
             $($value: $other,)*
         };
@@ -122,87 +137,100 @@ macro_rules! table {
 
 table! {
     /// One integrator of SUNDIALS. All functions take its memory block first.
-    Functions: CVODE, IDA, ARKODE;
+    Functions: CVODE, IDA, ARKODE, MULTIRATE;
 
-    set_error_handler: SetTwo<ffi::CVErrHandlerFn, *mut c_void>
-        = CVodeSetErrHandlerFn, IDASetErrHandlerFn, ARKStepSetErrHandlerFn;
-    set_user_data: Set<*mut c_void> = CVodeSetUserData, IDASetUserData, ARKStepSetUserData;
-    scalar_tolerances: SetTwo<f64, f64> = CVodeSStolerances, IDASStolerances, ARKStepSStolerances;
-    vector_tolerances: SetTwo<f64, ffi::N_Vector> = CVodeSVtolerances, IDASVtolerances, ARKStepSVtolerances;
+    set_user_data: Set<*mut c_void> = CVodeSetUserData, IDASetUserData, ARKStepSetUserData, MRIStepSetUserData;
+    scalar_tolerances: SetTwo<f64, f64> = CVodeSStolerances, IDASStolerances, ARKStepSStolerances, MRIStepSStolerances;
+    vector_tolerances: SetTwo<f64, ffi::N_Vector> = CVodeSVtolerances, IDASVtolerances, ARKStepSVtolerances, MRIStepSVtolerances;
+    weight_tolerances: Set<ffi::CVEwtFn> = CVodeWFtolerances, IDAWFtolerances, ARKStepWFtolerances, MRIStepWFtolerances;
     set_linear_solver: SetTwo<ffi::SUNLinearSolver, ffi::SUNMatrix>
-        = CVodeSetLinearSolver, IDASetLinearSolver, ARKStepSetLinearSolver;
+        = CVodeSetLinearSolver, IDASetLinearSolver, ARKStepSetLinearSolver, MRIStepSetLinearSolver;
     set_nonlinear_solver: Set<ffi::SUNNonlinearSolver>
-        = CVodeSetNonlinearSolver, IDASetNonlinearSolver, ARKStepSetNonlinearSolver;
+        = CVodeSetNonlinearSolver, IDASetNonlinearSolver, ARKStepSetNonlinearSolver, MRIStepSetNonlinearSolver;
     allow_inactive_roots: Named<unsafe extern "C" fn(*mut c_void) -> i32>
-        = CVodeSetNoInactiveRootWarn, IDASetNoInactiveRootWarn, ARKStepSetNoInactiveRootWarn;
-    set_max_steps: Set<i64> = CVodeSetMaxNumSteps, IDASetMaxNumSteps, ARKStepSetMaxNumSteps;
-    set_initial_step: Set<f64> = CVodeSetInitStep, IDASetInitStep, ARKStepSetInitStep;
-    set_max_step: Set<f64> = CVodeSetMaxStep, IDASetMaxStep, ARKStepSetMaxStep;
-    set_min_step: Set<f64> = CVodeSetMinStep, IDASetMinStep, ARKStepSetMinStep;
-    set_convergence_coefficient: Set<f64> = CVodeSetNonlinConvCoef, IDASetNonlinConvCoef, ARKStepSetNonlinConvCoef;
+        = CVodeSetNoInactiveRootWarn, IDASetNoInactiveRootWarn, ARKStepSetNoInactiveRootWarn, MRIStepSetNoInactiveRootWarn;
+    set_max_steps: Set<i64> = CVodeSetMaxNumSteps, IDASetMaxNumSteps, ARKStepSetMaxNumSteps, MRIStepSetMaxNumSteps;
+    set_convergence_coefficient: Set<f64> = CVodeSetNonlinConvCoef, IDASetNonlinConvCoef, ARKStepSetNonlinConvCoef, MRIStepSetNonlinConvCoef;
     /// For a Krylov method.
-    set_tolerance_factor: Set<f64> = CVodeSetEpsLin, IDASetEpsLin, ARKStepSetEpsLin;
-    set_stop_time: Set<f64> = CVodeSetStopTime, IDASetStopTime, ARKStepSetStopTime;
-    set_constraints: Set<ffi::N_Vector> = CVodeSetConstraints, IDASetConstraints, ARKStepSetConstraints;
-    get_root_info: Get<i32> = CVodeGetRootInfo, IDAGetRootInfo, ARKStepGetRootInfo;
-    get_dky: GetDky = CVodeGetDky, IDAGetDky, ARKStepGetDky;
+    set_tolerance_factor: Set<f64> = CVodeSetEpsLin, IDASetEpsLin, ARKStepSetEpsLin, MRIStepSetEpsLin;
+    set_stop_time: Set<f64> = CVodeSetStopTime, IDASetStopTime, ARKStepSetStopTime, MRIStepSetStopTime;
+    get_root_info: Get<i32> = CVodeGetRootInfo, IDAGetRootInfo, ARKStepGetRootInfo, MRIStepGetRootInfo;
+    get_dky: GetDky = CVodeGetDky, IDAGetDky, ARKStepGetDky, MRIStepGetDky;
     /// gamma of y - gamma f(t, y), or cj of IDA.
-    get_step_parameter: Get<f64> = CVodeGetCurrentGamma, IDAGetCurrentCj, ARKStepGetCurrentGamma;
+    get_step_parameter: Get<f64> = CVodeGetCurrentGamma, IDAGetCurrentCj, ARKStepGetCurrentGamma, MRIStepGetCurrentGamma;
     /// In the first step of a multistep method CVODE reports 0.
-    get_current_step: Get<f64> = CVodeGetCurrentStep, IDAGetCurrentStep, ARKStepGetCurrentStep;
-    get_error_weights: Set<ffi::N_Vector> = CVodeGetErrWeights, IDAGetErrWeights, ARKStepGetErrWeights;
-    get_linear_flag: Get<i64> = CVodeGetLastLinFlag, IDAGetLastLinFlag, ARKStepGetLastLinFlag;
+    get_current_step: Get<f64> = CVodeGetCurrentStep, IDAGetCurrentStep, ARKStepGetCurrentStep, MRIStepGetLastStep;
+    get_error_weights: Set<ffi::N_Vector> = CVodeGetErrWeights, IDAGetErrWeights, ARKStepGetErrWeights, MRIStepGetErrWeights;
+    get_linear_flag: Get<i64> = CVodeGetLastLinFlag, IDAGetLastLinFlag, ARKStepGetLastLinFlag, MRIStepGetLastLinFlag;
     get_nonlinear_stats: SetTwo<*mut i64, *mut i64>
-        = CVodeGetNonlinSolvStats, IDAGetNonlinSolvStats, ARKStepGetNonlinSolvStats;
-    get_step_failures: Get<i64> = CVodeGetNumStepSolveFails, IDAGetNumStepSolveFails, ARKStepGetNumStepSolveFails;
-    get_jacobian_evaluations: Get<i64> = CVodeGetNumJacEvals, IDAGetNumJacEvals, ARKStepGetNumJacEvals;
-    get_quotient_evaluations: Get<i64> = CVodeGetNumLinRhsEvals, IDAGetNumLinResEvals, ARKStepGetNumLinRhsEvals;
-    get_linear_iterations: Get<i64> = CVodeGetNumLinIters, IDAGetNumLinIters, ARKStepGetNumLinIters;
-    get_linear_failures: Get<i64> = CVodeGetNumLinConvFails, IDAGetNumLinConvFails, ARKStepGetNumLinConvFails;
-    get_preconditioner_setups: Get<i64> = CVodeGetNumPrecEvals, IDAGetNumPrecEvals, ARKStepGetNumPrecEvals;
-    get_preconditioner_solves: Get<i64> = CVodeGetNumPrecSolves, IDAGetNumPrecSolves, ARKStepGetNumPrecSolves;
-    get_root_evaluations: Get<i64> = CVodeGetNumGEvals, IDAGetNumGEvals, ARKStepGetNumGEvals;
-    get_tolerance_scale: Get<f64> = CVodeGetTolScaleFactor, IDAGetTolScaleFactor, ARKStepGetTolScaleFactor;
+        = CVodeGetNonlinSolvStats, IDAGetNonlinSolvStats, ARKStepGetNonlinSolvStats, MRIStepGetNonlinSolvStats;
+    get_step_failures: Get<i64> = CVodeGetNumStepSolveFails, IDAGetNumStepSolveFails, ARKStepGetNumStepSolveFails, MRIStepGetNumStepSolveFails;
+    get_jacobian_evaluations: Get<i64> = CVodeGetNumJacEvals, IDAGetNumJacEvals, ARKStepGetNumJacEvals, MRIStepGetNumJacEvals;
+    get_quotient_evaluations: Get<i64> = CVodeGetNumLinRhsEvals, IDAGetNumLinResEvals, ARKStepGetNumLinRhsEvals, MRIStepGetNumLinRhsEvals;
+    get_linear_iterations: Get<i64> = CVodeGetNumLinIters, IDAGetNumLinIters, ARKStepGetNumLinIters, MRIStepGetNumLinIters;
+    get_linear_failures: Get<i64> = CVodeGetNumLinConvFails, IDAGetNumLinConvFails, ARKStepGetNumLinConvFails, MRIStepGetNumLinConvFails;
+    get_preconditioner_setups: Get<i64> = CVodeGetNumPrecEvals, IDAGetNumPrecEvals, ARKStepGetNumPrecEvals, MRIStepGetNumPrecEvals;
+    get_preconditioner_solves: Get<i64> = CVodeGetNumPrecSolves, IDAGetNumPrecSolves, ARKStepGetNumPrecSolves, MRIStepGetNumPrecSolves;
+    get_root_evaluations: Get<i64> = CVodeGetNumGEvals, IDAGetNumGEvals, ARKStepGetNumGEvals, MRIStepGetNumGEvals;
+    get_tolerance_scale: Get<f64> = CVodeGetTolScaleFactor, IDAGetTolScaleFactor, ARKStepGetTolScaleFactor, MRIStepGetTolScaleFactor;
+
+    [sundials 6]
+    set_error_handler: SetTwo<ffi::CVErrHandlerFn, *mut c_void>
+        = CVodeSetErrHandlerFn, IDASetErrHandlerFn, ARKStepSetErrHandlerFn, MRIStepSetErrHandlerFn;
 
     [some]
+    set_initial_step: Set<f64> = CVodeSetInitStep, IDASetInitStep, ARKStepSetInitStep, -;
+    set_max_step: Set<f64> = CVodeSetMaxStep, IDASetMaxStep, ARKStepSetMaxStep, -;
+    set_min_step: Set<f64> = CVodeSetMinStep, IDASetMinStep, ARKStepSetMinStep, -;
+    set_max_growth: Set<f64> = CVodeSetEtaMax, IDASetEtaMax, ARKStepSetMaxGrowth, -;
+    set_min_reduction: Set<f64> = CVodeSetEtaMin, IDASetEtaMin, ARKStepSetMinReduction, -;
+    set_kept: SetTwo<f64, f64> = CVodeSetEtaFixedStepBounds, IDASetEtaFixedStepBounds, ARKStepSetFixedStepBounds, -;
+    set_after_error_failure: Set<f64> = CVodeSetEtaMinErrFail, IDASetEtaMinErrFail, ARKStepSetMaxEFailGrowth, -;
+    set_after_convergence_failure: Set<f64> = CVodeSetEtaConvFail, IDASetEtaConvFail, ARKStepSetMaxCFailGrowth, -;
+    set_constraints: Set<ffi::N_Vector> = CVodeSetConstraints, IDASetConstraints, ARKStepSetConstraints, -;
     /// Continues from a time and state after a change of the system, with the previous step size.
-    reset: SetTwo<f64, ffi::N_Vector> = -, -, ARKStepReset;
-    set_max_error_test_failures: Set<i32> = CVodeSetMaxErrTestFails, -, ARKStepSetMaxErrTestFails;
+    reset: SetTwo<f64, ffi::N_Vector> = -, -, ARKStepReset, MRIStepReset;
+    /// Of the first ten steps, which CVODE treats apart.
+    set_early_growth: Set<f64> = CVodeSetEtaMaxEarlyStep, -, -, -;
+    set_first_growth: Set<f64> = CVodeSetEtaMaxFirstStep, -, ARKStepSetMaxFirstGrowth, -;
+    set_max_error_test_failures: Set<i32> = CVodeSetMaxErrTestFails, -, ARKStepSetMaxErrTestFails, -;
     /// The order of a Runge-Kutta method is that of its table.
-    set_max_order: Set<i32> = CVodeSetMaxOrd, IDASetMaxOrd, -;
-    get_stability_reductions: Get<i64> = CVodeGetNumStabLimOrderReds, -, -;
+    set_max_order: Set<i32> = CVodeSetMaxOrd, IDASetMaxOrd, -, -;
+    get_stability_reductions: Get<i64> = CVodeGetNumStabLimOrderReds, -, -, -;
     /// Evaluations of an explicit and of an implicit right-hand side.
-    get_rhs_evaluations: SetTwo<*mut i64, *mut i64> = -, -, ARKStepGetNumRhsEvals;
+    get_rhs_evaluations: SetTwo<*mut i64, *mut i64> = -, -, ARKStepGetNumRhsEvals, MRIStepGetNumRhsEvals;
 
     [others]
     /// The name of the integrator in errors.
-    integrator: &'static str = "CVODE", "IDA", "ARKODE";
-    free: unsafe extern "C" fn(*mut *mut c_void) = ffi::CVodeFree, ffi::IDAFree, ffi::ARKStepFree;
+    integrator: &'static str = "CVODE", "IDA", "ARKODE", "ARKODE's multirate method";
+    free: unsafe extern "C" fn(*mut *mut c_void) = ffi::CVodeFree, ffi::IDAFree, ffi::ARKStepFree, ffi::MRIStepFree;
     // SAFETY: whoever calls through the table vouches for the arguments, here and in the other rows.
     solve: Solve = ("CVode", |memory, target, t, y, _, task| unsafe { ffi::CVode(memory, target, y, t, task) }),
         ("IDASolve", |memory, target, t, y, yp, task| unsafe { ffi::IDASolve(memory, target, t, y, yp, task) }),
-        ("ARKStepEvolve", |memory, target, t, y, _, task| unsafe { ffi::ARKStepEvolve(memory, target, y, t, task) });
+        ("ARKStepEvolve", |memory, target, t, y, _, task| unsafe { ffi::ARKStepEvolve(memory, target, y, t, task) }),
+        ("MRIStepEvolve", |memory, target, t, y, _, task| unsafe { ffi::MRIStepEvolve(memory, target, y, t, task) });
     // SAFETY: as above.
     reinit: Reinit = ("CVodeReInit", |memory, _, t, y, _| unsafe { ffi::CVodeReInit(memory, t, y) }),
         ("IDAReInit", |memory, _, t, y, yp| unsafe { ffi::IDAReInit(memory, t, y, yp) }),
-        ("ARKStepReInit", |memory, [f, g], t, y, _| unsafe { ffi::ARKStepReInit(memory, f, g, t, y) });
+        ("ARKStepReInit", |memory, [f, g], t, y, _| unsafe { ffi::ARKStepReInit(memory, f, g, t, y) }),
+        ("MRIStepReInit", |memory, [f, g], t, y, _| unsafe { ffi::MRIStepReInit(memory, f, g, t, y) });
     /// ARKODE does, and would refuse another stop time if the direction of time has been reversed.
-    reinit_forgets_stop_time: bool = false, false, true;
+    reinit_forgets_stop_time: bool = false, false, true, true;
     get_integrator_stats: GetIntegratorStats
-        = ffi::CVodeGetIntegratorStats, ffi::IDAGetIntegratorStats, arkode_integrator_stats;
+        = ffi::CVodeGetIntegratorStats, ffi::IDAGetIntegratorStats, arkode_integrator_stats, multirate_integrator_stats;
     /// Codes of `solve` for a call that cannot be made.
     refusals: &'static [i32] = &[ffi::CV_ILL_INPUT, ffi::CV_TOO_CLOSE, ffi::CV_BAD_T], &[ffi::IDA_ILL_INPUT],
-        &[ffi::ARK_ILL_INPUT, ffi::ARK_TOO_CLOSE, ffi::ARK_BAD_T];
+        &[ffi::ARK_ILL_INPUT, ffi::ARK_TOO_CLOSE, ffi::ARK_BAD_T], &[ffi::ARK_ILL_INPUT, ffi::ARK_TOO_CLOSE, ffi::ARK_BAD_T];
     /// Codes of `solve` for a mass matrix that cannot be factorized.
-    mass_failures: &'static [i32] = &[], &[], &[ffi::ARK_MASSSETUP_FAIL, ffi::ARK_MASSSOLVE_FAIL];
+    mass_failures: &'static [i32] = &[], &[], &[ffi::ARK_MASSSETUP_FAIL, ffi::ARK_MASSSOLVE_FAIL], &[];
     /// Codes of `get_dky` for a time outside the last step, and for too high a derivative.
-    bad_time: i32 = ffi::CV_BAD_T, ffi::IDA_BAD_T, ffi::ARK_BAD_T;
-    bad_derivative: i32 = ffi::CV_BAD_K, ffi::IDA_BAD_K, ffi::ARK_BAD_K;
+    bad_time: i32 = ffi::CV_BAD_T, ffi::IDA_BAD_T, ffi::ARK_BAD_T, ffi::ARK_BAD_T;
+    bad_derivative: i32 = ffi::CV_BAD_K, ffi::IDA_BAD_K, ffi::ARK_BAD_K, ffi::ARK_BAD_K;
     /// ARKODE has neither integrals nor sensitivities.
     quadratures: Option<&'static QuadratureFunctions>
-        = Some(QuadratureFunctions::CVODE), Some(QuadratureFunctions::IDA), None;
+        = Some(QuadratureFunctions::CVODE), Some(QuadratureFunctions::IDA), None, None;
     sensitivities: Option<&'static SensitivityFunctions>
-        = Some(SensitivityFunctions::CVODE), Some(SensitivityFunctions::IDA), None;
+        = Some(SensitivityFunctions::CVODE), Some(SensitivityFunctions::IDA), None, None;
 }
 
 table! {
@@ -278,15 +306,28 @@ table! {
 
 table! {
     /// The functions of the integrators of ODEs that take callbacks.
-    OdeFunctions: CVODE, ARKODE;
-    set_roots: SetTwo<i32, ffi::CVRootFn> = CVodeRootInit, ARKStepRootInit;
-    set_jacobian: Set<ffi::CVLsJacFn> = CVodeSetJacFn, ARKStepSetJacFn;
+    OdeFunctions: CVODE, ARKODE, MULTIRATE;
+    set_roots: SetTwo<i32, ffi::CVRootFn> = CVodeRootInit, ARKStepRootInit, MRIStepRootInit;
+    set_jacobian: Set<ffi::CVLsJacFn> = CVodeSetJacFn, ARKStepSetJacFn, MRIStepSetJacFn;
     set_jacobian_times: SetTwo<ffi::CVLsJacTimesSetupFn, ffi::CVLsJacTimesVecFn>
-        = CVodeSetJacTimes, ARKStepSetJacTimes;
+        = CVodeSetJacTimes, ARKStepSetJacTimes, MRIStepSetJacTimes;
     set_preconditioner: SetTwo<ffi::CVLsPrecSetupFn, ffi::CVLsPrecSolveFn>
-        = CVodeSetPreconditioner, ARKStepSetPreconditioner;
-    set_newton_rhs: Set<ffi::CVRhsFn> = CVodeSetNlsRhsFn, ARKStepSetNlsRhsFn;
+        = CVodeSetPreconditioner, ARKStepSetPreconditioner, MRIStepSetPreconditioner;
+    set_newton_rhs: Set<ffi::CVRhsFn> = CVodeSetNlsRhsFn, ARKStepSetNlsRhsFn, MRIStepSetNlsRhsFn;
+}
+
+table! {
+    /// The functions for implicit stages of the methods of ARKODE.
+    StageFunctions: ARKODE, MULTIRATE;
+    set_predictor: Set<i32> = ARKStepSetPredictorMethod, MRIStepSetPredictorMethod;
+    set_max_iterations: Set<i32> = ARKStepSetMaxNonlinIters, MRIStepSetMaxNonlinIters;
+    deduce_slopes: Set<i32> = ARKStepSetDeduceImplicitRhs, MRIStepSetDeduceImplicitRhs;
+    set_linear: Set<i32> = ARKStepSetLinear, MRIStepSetLinear;
+    set_setup_frequency: Set<i32> = ARKStepSetLSetupFrequency, MRIStepSetLSetupFrequency;
+    set_jacobian_frequency: Set<i64> = ARKStepSetJacEvalFrequency, MRIStepSetJacEvalFrequency;
+    set_linear_system: Set<ffi::ARKLsLinSysFn> = ARKStepSetLinSysFn, MRIStepSetLinSysFn;
     [others]
+    ode: &'static OdeFunctions = OdeFunctions::ARKODE, OdeFunctions::MULTIRATE;
 }
 
 /// `CVodeGetIntegratorStats` for ARKODE: evaluations are the sum of explicit and implicit ones, and both
@@ -330,6 +371,38 @@ unsafe extern "C" fn arkode_integrator_stats(
         let order = table.as_ref().map_or(0, |table| table.q);
         (*last_order, *current_order) = (order, order);
         code
+    }
+}
+
+/// The same for multirate methods: those of the slow steps, which all have one size.
+unsafe extern "C" fn multirate_integrator_stats(
+    memory: *mut c_void,
+    steps: *mut i64,
+    evaluations: *mut i64,
+    setups: *mut i64,
+    error_test_failures: *mut i64,
+    last_order: *mut i32,
+    current_order: *mut i32,
+    initial_step: *mut f64,
+    last_step: *mut f64,
+    current_step: *mut f64,
+    current_time: *mut f64,
+) -> i32 {
+    let [mut explicit, mut implicit] = [0; 2];
+    let mut coupling = ptr::null_mut();
+    // SAFETY: whoever calls through the table vouches for memory and places; a coupling that is there lives as long as
+    // the memory.
+    unsafe {
+        ffi::MRIStepGetNumSteps(memory, steps);
+        ffi::MRIStepGetNumRhsEvals(memory, &raw mut explicit, &raw mut implicit);
+        ffi::MRIStepGetNumLinSolvSetups(memory, setups);
+        ffi::MRIStepGetCurrentCoupling(memory, &raw mut coupling);
+        ffi::MRIStepGetLastStep(memory, last_step);
+        (*evaluations, *error_test_failures) = (explicit + implicit, 0);
+        (*current_step, *initial_step) = (*last_step, *last_step);
+        let order = coupling.as_ref().map_or(0, |coupling| coupling.q);
+        (*last_order, *current_order) = (order, order);
+        ffi::MRIStepGetCurrentTime(memory, current_time)
     }
 }
 

@@ -6,7 +6,7 @@
 use std::{
     any::Any,
     error,
-    ffi::{CStr, c_char, c_void},
+    ffi::{CStr, c_void},
     panic::{AssertUnwindSafe, catch_unwind, resume_unwind},
     ptr::NonNull,
 };
@@ -15,13 +15,14 @@ use super::{
     differences::{Differences, Scales},
     ffi,
     functions::{Get, Named},
-    ilu::IncompleteLu,
+    ilu::{IncompleteLu, no_pivot},
     index::Index,
     linear_solver::LinearSolver,
     matrix,
     sensitivity::SensitivityRhs,
     shape::Shape,
     signs::Violation,
+    weights::ErrorWeights,
 };
 use crate::integrators::{
     common::{Callback, Cause, Clock, Error, JacobianCheck, Point, Wanted},
@@ -79,6 +80,8 @@ pub(super) struct Host<S> {
     /// Time that whole steps have reached, noted for ARKODE, which reports the time of a stage after a
     /// failure.
     pub(super) step_end: Option<f64>,
+    /// The weights of the error norm, if they are not those of the tolerances.
+    pub(super) weights: Option<ErrorWeights>,
     pub(super) troubles: Troubles,
 }
 
@@ -173,8 +176,21 @@ impl Troubles {
         }
     }
 
+    /// Whether the user's code has asked to stop.
+    pub(super) fn is_fatal(&self) -> bool {
+        self.fatal.is_some()
+    }
+
     pub(super) fn recent_violation(&self) -> Option<Violation> {
         self.violation.filter(Violation::is_recent)
+    }
+
+    /// Keeps the last message of SUNDIALS. Warnings have positive codes; they do not stop the integration.
+    pub(super) fn keep_message(&mut self, code: i32, message: &CStr) {
+        if code < 0 {
+            self.message.clear();
+            self.message.push_str(message.to_string_lossy().trim());
+        }
     }
 
     pub(super) fn message(&self) -> &str {
@@ -208,6 +224,7 @@ impl<S> Host<S> {
             checks_answers: false,
             setup_time: f64::NAN,
             step_end: None,
+            weights: None,
             troubles,
         }
     }
@@ -225,6 +242,11 @@ impl<S> Host<S> {
     pub(super) fn time_of_call(&mut self, elapsed: f64) -> f64 {
         self.now = elapsed;
         self.clock.time(elapsed)
+    }
+
+    /// The time of the last callback that had one.
+    pub(super) fn last_time(&self) -> f64 {
+        self.clock.time(self.now)
     }
 
     /// All numbers that a matrix of the linear solver stores; none if it stores none.
@@ -365,11 +387,7 @@ impl<S> Host<S> {
     /// Requests a smaller step where an incomplete factorization has no pivot.
     pub(super) fn check_pivots(&mut self, t: f64, factorized: Result<(), usize>) -> i32 {
         let Err(row) = factorized else { return 0 };
-        let message = format!(
-            "the incomplete LU factorization, which takes each unknown from the equation of its own row, has no \
-             pivot in row {row}"
-        );
-        let callback = Callback::Preconditioner;
+        let (callback, message) = (Callback::Preconditioner, no_pivot(row));
         self.troubles.retry(self.now, Cause::Rejected { callback, t, message })
     }
 
@@ -451,27 +469,4 @@ impl<S> Drop for HostBox<S> {
         // SAFETY: leaked from a Box in `new` and freed once; owners drop the C objects first.
         drop(unsafe { Box::from_raw(self.0.as_ptr()) });
     }
-}
-
-/// Error handler of SUNDIALS: keeps the last message instead of printing it.
-///
-/// # Safety
-/// `data` points to a live [`Host<S>`] that nobody else uses; `message` is null or a C string.
-pub(super) unsafe extern "C" fn keep_message<S>(
-    code: i32,
-    _module: *const c_char,
-    _function: *const c_char,
-    message: *mut c_char,
-    data: *mut c_void,
-) {
-    // Warnings have positive codes; they do not stop the integration.
-    if code >= 0 || message.is_null() {
-        return;
-    }
-    // SAFETY: SUNDIALS passes the data pointer that was registered with this handler, and a
-    // terminated message; the callbacks that also use the host have returned.
-    let (troubles, message) =
-        unsafe { (&mut Host::<S>::of(data).troubles, CStr::from_ptr(message)) };
-    troubles.message.clear();
-    troubles.message.push_str(message.to_string_lossy().trim());
 }

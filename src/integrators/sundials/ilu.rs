@@ -22,6 +22,14 @@ pub(super) struct IncompleteLu {
     positions: Vec<Option<usize>>,
 }
 
+/// The reason to request a smaller step where there is no pivot in this row.
+pub(super) fn no_pivot(row: usize) -> String {
+    format!(
+        "the incomplete LU factorization, which takes each unknown from the equation of its own row, has no pivot \
+         in row {row}"
+    )
+}
+
 impl IncompleteLu {
     pub(super) fn new(pattern: &Pattern) -> Self {
         let n = pattern.dimension();

@@ -22,7 +22,7 @@ use crate::base::input::InputError;
 /// # Ok::<(), pliant::InputError>(())
 /// ```
 ///
-/// User guide: chapter "Linear Algebraic Solvers", `SUNLinSol_SPGMR` and `SUNLinSol_SPBCGS`.
+/// User guide: chapter "Linear Algebraic Solvers", `SUNLinSol_SPGMR` and the others.
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[must_use]
@@ -49,6 +49,26 @@ pub enum KrylovMethod {
     /// The stabilized method of biconjugate gradients (`SUNLinSol_SPBCGS`): two products for each iteration,
     /// and six vectors.
     BiCgStab {
+        /// Iterations allowed, 1 to 1000; the default of C is 5.
+        iterations: u32,
+    },
+    /// The flexible GMRES (`SUNLinSol_SPFGMR`): its preconditioner, on the [right](Side::Right), may change from
+    /// one iteration to the next, as where it iterates itself. Twice the vectors of GMRES.
+    Fgmres {
+        /// Dimensions of the subspace, 1 to 1000; the default of C is 5.
+        dimension: u32,
+        /// How often it may restart from the point it has reached, at most 1000; 0: not at all.
+        restarts: u32,
+    },
+    /// The quasi-minimal residual method without products with the transposed matrix (`SUNLinSol_SPTFQMR`): two
+    /// products for each iteration, and eleven vectors.
+    Tfqmr {
+        /// Iterations allowed, 1 to 1000; the default of C is 5.
+        iterations: u32,
+    },
+    /// Conjugate gradients (`SUNLinSol_PCG`): one product for each iteration, and four vectors. For symmetric
+    /// definite Newton matrices with a symmetric preconditioner, whose side does not matter.
+    ConjugateGradients {
         /// Iterations allowed, 1 to 1000; the default of C is 5.
         iterations: u32,
     },
@@ -117,8 +137,11 @@ impl Krylov {
     pub(super) fn check(&self, n: usize) -> Result<(), InputError> {
         const MOST: u32 = 1000;
         let (input, size, restarts) = match self.method {
-            KrylovMethod::Gmres { dimension, restarts } => ("dimension", dimension, restarts),
-            KrylovMethod::BiCgStab { iterations } => ("iterations", iterations, 0),
+            KrylovMethod::Gmres { dimension, restarts }
+            | KrylovMethod::Fgmres { dimension, restarts } => ("dimension", dimension, restarts),
+            KrylovMethod::BiCgStab { iterations }
+            | KrylovMethod::Tfqmr { iterations }
+            | KrylovMethod::ConjugateGradients { iterations } => ("iterations", iterations, 0),
         };
         if !(1..=MOST).contains(&size) {
             return Err(InputError::new(input, size, format!("it lies between 1 and {MOST}")));
@@ -135,10 +158,34 @@ impl Krylov {
                 "it is positive, such as 0.05",
             ));
         }
+        if let (KrylovMethod::Fgmres { .. }, Some((Side::Left, _))) =
+            (self.method, &self.preconditioner)
+        {
+            let help = "FGMRES has preconditioners on the right alone";
+            return Err(InputError::new("side of the preconditioner", "Side::Left", help));
+        }
         match self.ilu() {
             Some((pattern, _)) => pattern.check(n),
             None => Ok(()),
         }
+    }
+
+    /// The same method for the transposed matrices of a backward run, with products by the system. A preconditioner
+    /// is the incomplete factorization on the transposed pattern.
+    pub(super) fn transposed(&self) -> Result<Self, InputError> {
+        let preconditioner = match &self.preconditioner {
+            Some((_, Preconditioner::Custom)) => {
+                let help =
+                    "an adjoint gradient needs one for the transposed matrix: choose Ilu, or none";
+                return Err(InputError::new("preconditioner", "Custom", help));
+            }
+            Some((side, Preconditioner::Ilu { pattern, .. })) => {
+                let (pattern, jacobian) = (pattern.transposed(), Jacobian::Supplied);
+                Some((*side, Preconditioner::Ilu { pattern, jacobian }))
+            }
+            None => None,
+        };
+        Ok(Self { products: Jacobian::Supplied, preconditioner, ..self.clone() })
     }
 
     /// Refuses the right side: IDA takes the preconditioned residual as the solution if no iteration is

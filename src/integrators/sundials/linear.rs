@@ -136,50 +136,76 @@ unsafe fn krylov(
         Some((Side::Left, _)) => ffi::SUN_PREC_LEFT,
         Some((Side::Right, _)) => ffi::SUN_PREC_RIGHT,
     } as i32;
-    // SAFETY: the caller vouches for the arguments; the operations table of a new solver is writable.
-    unsafe {
+    let n = |number: u32| number as i32;
+    // SAFETY: the caller vouches for the arguments.
+    let (name, raw, solve): (_, _, KrylovSolve) = unsafe {
         match options.method {
             KrylovMethod::Gmres { dimension, restarts } => {
-                let raw = ffi::SUNLinSol_SPGMR(template, side, dimension as i32, context);
+                let raw = ffi::SUNLinSol_SPGMR(template, side, n(dimension), context);
                 if !raw.is_null() {
-                    ffi::SUNLinSol_SPGMRSetMaxRestarts(raw, restarts as i32);
-                    (*(*raw).ops).solve = Some(solve_by_gmres);
+                    ffi::SUNLinSol_SPGMRSetMaxRestarts(raw, n(restarts));
                 }
-                ("SUNLinSol_SPGMR", raw)
+                ("SUNLinSol_SPGMR", raw, solve_by_gmres)
+            }
+            KrylovMethod::Fgmres { dimension, restarts } => {
+                let raw = ffi::SUNLinSol_SPFGMR(template, side, n(dimension), context);
+                if !raw.is_null() {
+                    ffi::SUNLinSol_SPFGMRSetMaxRestarts(raw, n(restarts));
+                }
+                ("SUNLinSol_SPFGMR", raw, solve_by_fgmres)
             }
             KrylovMethod::BiCgStab { iterations } => {
-                let raw = ffi::SUNLinSol_SPBCGS(template, side, iterations as i32, context);
-                if !raw.is_null() {
-                    (*(*raw).ops).solve = Some(solve_by_bicgstab);
-                }
-                ("SUNLinSol_SPBCGS", raw)
+                let raw = ffi::SUNLinSol_SPBCGS(template, side, n(iterations), context);
+                ("SUNLinSol_SPBCGS", raw, solve_by_bicgstab)
+            }
+            KrylovMethod::Tfqmr { iterations } => {
+                let raw = ffi::SUNLinSol_SPTFQMR(template, side, n(iterations), context);
+                ("SUNLinSol_SPTFQMR", raw, solve_by_tfqmr)
+            }
+            KrylovMethod::ConjugateGradients { iterations } => {
+                let raw = ffi::SUNLinSol_PCG(template, side, n(iterations), context);
+                ("SUNLinSol_PCG", raw, solve_by_conjugate_gradients)
             }
         }
+    };
+    if !raw.is_null() {
+        // SAFETY: the operations table of a new solver is writable.
+        unsafe { (*(*raw).ops).solve = Some(solve) };
     }
+    (name, raw)
 }
 
-/// The `solve` operation of GMRES, with codes that all integrators know.
-unsafe extern "C" fn solve_by_gmres(
-    solver: ffi::SUNLinearSolver,
-    matrix: ffi::SUNMatrix,
-    x: ffi::N_Vector,
-    b: ffi::N_Vector,
-    tolerance: f64,
-) -> i32 {
-    // SAFETY: SUNDIALS calls the operation as it would this function.
-    known(unsafe { ffi::SUNLinSolSolve_SPGMR(solver, matrix, x, b, tolerance) })
+/// The `solve` operation of a linear solver: (solver, matrix, x, b, tolerance).
+type KrylovSolve = unsafe extern "C" fn(
+    ffi::SUNLinearSolver,
+    ffi::SUNMatrix,
+    ffi::N_Vector,
+    ffi::N_Vector,
+    f64,
+) -> i32;
+
+/// The `solve` operations of Krylov methods, with codes that all integrators know.
+macro_rules! solve_operations {
+    ($($name:ident: $solve:ident;)+) => {$(
+        unsafe extern "C" fn $name(
+            solver: ffi::SUNLinearSolver,
+            matrix: ffi::SUNMatrix,
+            x: ffi::N_Vector,
+            b: ffi::N_Vector,
+            tolerance: f64,
+        ) -> i32 {
+            // SAFETY: SUNDIALS calls the operation as it would this function.
+            known(unsafe { ffi::$solve(solver, matrix, x, b, tolerance) })
+        }
+    )+};
 }
 
-/// The same for BiCGStab.
-unsafe extern "C" fn solve_by_bicgstab(
-    solver: ffi::SUNLinearSolver,
-    matrix: ffi::SUNMatrix,
-    x: ffi::N_Vector,
-    b: ffi::N_Vector,
-    tolerance: f64,
-) -> i32 {
-    // SAFETY: SUNDIALS calls the operation as it would this function.
-    known(unsafe { ffi::SUNLinSolSolve_SPBCGS(solver, matrix, x, b, tolerance) })
+solve_operations! {
+    solve_by_gmres: SUNLinSolSolve_SPGMR;
+    solve_by_fgmres: SUNLinSolSolve_SPFGMR;
+    solve_by_bicgstab: SUNLinSolSolve_SPBCGS;
+    solve_by_tfqmr: SUNLinSolSolve_SPTFQMR;
+    solve_by_conjugate_gradients: SUNLinSolSolve_PCG;
 }
 
 /// Replaces the codes of a failed product, which IDA takes for success.

@@ -138,15 +138,24 @@ impl LinearSolver {
             || matches!(self, Self::Band { jacobian, .. } | Self::Klu { jacobian, .. } if *jacobian == quotients)
     }
 
-    /// Whether entries, of the matrix or of its preconditioner, are difference quotients.
-    pub(crate) fn takes_quotients(&self) -> bool {
-        let entries = match self {
+    /// Where entries, of the matrix or of its preconditioner, come from.
+    fn source_of_entries(&self) -> Option<Jacobian> {
+        match self {
             Self::Dense(jacobian) | Self::Band { jacobian, .. } | Self::Klu { jacobian, .. } => {
                 Some(*jacobian)
             }
             _ => self.ilu().map(|(_, jacobian)| jacobian),
-        };
-        entries == Some(Jacobian::DifferenceQuotients)
+        }
+    }
+
+    /// Whether these are difference quotients.
+    pub(crate) fn takes_quotients(&self) -> bool {
+        self.source_of_entries() == Some(Jacobian::DifferenceQuotients)
+    }
+
+    /// Whether the system supplies them.
+    pub(super) fn supplies_entries(&self) -> bool {
+        self.source_of_entries() == Some(Jacobian::Supplied)
     }
 
     /// The pattern on which the layer itself takes difference quotients.

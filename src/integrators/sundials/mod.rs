@@ -34,6 +34,7 @@
 //! | y' = f(t, y) | [`Cvode`], [`Arkode`] |
 //! | M y' = f(t, y) with a [mass matrix](crate::integrators::ode::Ode::mass_kind) | [`Arkode`]; [`Ida`] by [`MassForm`], where M may be singular |
 //! | y' = f(t, y) + g(t, y), f alone [stiff](crate::integrators::ode::Ode::is_split) | [`Arkode`] by [`ButcherTable::imex`] |
+//! | y' = f(t, y) + g(t, y), g faster than f and cheap | [`Multirate`] |
 //! | y' = f(t, y) with invariants | [`Cvode`] by [`CvodeOptions::project`] |
 //! | F(t, y, y') = 0 of index 1 | [`Ida`], see [`Ida::check_index`] |
 //!
@@ -67,6 +68,8 @@ mod linear;
 mod linear_solver;
 mod mass_form;
 mod matrix;
+mod messages;
+mod multirate;
 mod nonlinear;
 mod ode_callbacks;
 mod ode_krylov;
@@ -82,14 +85,16 @@ mod session;
 mod shape;
 mod signs;
 mod solver;
+mod step_control;
 mod stepping;
 mod stop_time;
 mod stored_matrix;
 mod vector;
 mod version;
+mod weights;
 
 pub use adjoint::{Adjoint, AdjointOf, AdjointOptions, DaeAdjoint, Gradient};
-pub use arkode::{Arkode, ArkodeOptions, ButcherTable, Predictor};
+pub use arkode::{Arkode, ArkodeOptions, ButcherTable, Controller, Predictor, Tableau};
 pub(crate) use colouring::Colouring;
 pub use cvode::{Cvode, CvodeOptions, Multistep};
 pub(crate) use differences::Differences;
@@ -99,6 +104,7 @@ pub use jacobian::Jacobian;
 pub use krylov::{Krylov, KrylovMethod, Preconditioner, Side};
 pub use linear_solver::LinearSolver;
 pub use mass_form::MassForm;
+pub use multirate::{Coupling, Multirate, MultirateOptions};
 pub(crate) use options::OfMultistep;
 pub use options::SolverOptions;
 pub use pattern::Pattern;
@@ -106,8 +112,9 @@ pub use sensitivity::{Sensitivities, SensitivityMethod, SensitivitySource};
 pub(crate) use shape::Shape;
 pub use signs::Sign;
 pub use solver::{Kind, Solver, WithSensitivities};
+pub use step_control::StepControl;
 pub(crate) use stored_matrix::StoredMatrix;
-pub use version::{suitesparse_version, version};
+pub use version::{description, suitesparse_version, version};
 
 pub use crate::integrators::common::{
     AbsoluteTolerance, Callback, Cause, Error, IntegrationError, Integrator, Reached, Statistics,

@@ -5,6 +5,8 @@ use super::{
     linear_solver::LinearSolver,
     sensitivity::Sensitivities,
     signs::{Sign, check_signs, check_state},
+    step_control::StepControl,
+    weights::ErrorWeights,
 };
 use crate::base::input::InputError;
 use crate::integrators::common::{
@@ -19,6 +21,9 @@ pub struct SolverOptions<O> {
     pub(super) tolerances: Tolerances,
     pub(crate) steps: StepOptions,
     pub(super) min_step: Option<f64>,
+    pub(super) step_control: StepControl,
+    /// Weights of the error norm, if they are not those of the tolerances.
+    pub(super) weights: Option<ErrorWeights>,
     /// Of multistep methods.
     pub(super) max_order: Option<u32>,
     pub(super) convergence_coefficient: Option<f64>,
@@ -52,6 +57,8 @@ impl<O> SolverOptions<O> {
             tolerances: Tolerances::new(rtol, atol),
             steps: StepOptions::default(),
             min_step: None,
+            step_control: StepControl::new(),
+            weights: None,
             max_order: None,
             convergence_coefficient: None,
             signs: Vec::new(),
@@ -77,6 +84,25 @@ impl<O> SolverOptions<O> {
     /// Lower bound of |step size|. Default: none.
     pub fn min_step(mut self, h: f64) -> Self {
         self.min_step = Some(h);
+        self
+    }
+
+    /// Bounds for changes of the step size. Default: those of the integrator.
+    pub fn step_control(mut self, control: StepControl) -> Self {
+        self.step_control = control;
+        self
+    }
+
+    /// Weights w_i of the error norm sqrt(sum_i (w_i e_i)^2 / n), in which local errors e are kept below 1
+    /// (`CVodeWFtolerances`, `IDAWFtolerances`, `ARKStepWFtolerances`): `weights(y, w)` writes a positive one for each
+    /// unknown of the state y. Default: 1/(rtol |y_i| + atol_i).
+    ///
+    /// The tolerances still tell the sizes of unknowns for difference quotients, and the errors allowed to integrals.
+    pub fn error_weights(
+        mut self,
+        weights: impl Fn(&[f64], &mut [f64]) + Send + Sync + 'static,
+    ) -> Self {
+        self.weights = Some(ErrorWeights::new(weights));
         self
     }
 
@@ -126,6 +152,7 @@ impl<O> SolverOptions<O> {
     pub(super) fn check_shared(&self, y0: &[f64], highest: u32) -> Result<(), InputError> {
         self.tolerances.check(y0)?;
         self.steps.check()?;
+        self.step_control.check()?;
         if let Some(h) = self.min_step {
             check_step("min_step", h)?;
             if h < 0.0 {

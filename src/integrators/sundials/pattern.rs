@@ -189,6 +189,19 @@ impl Pattern {
         Ok(values)
     }
 
+    /// The pattern of the transposed matrix.
+    pub(super) fn transposed(&self) -> Self {
+        let mut columns = vec![Vec::new(); self.dimension()];
+        for j in 0..columns.len() {
+            self.column(j).iter().for_each(|&i| columns[i as usize].push(j as i64));
+        }
+        let mut column_pointers = vec![0];
+        for rows in &columns {
+            column_pointers.push(column_pointers[column_pointers.len() - 1] + rows.len() as i64);
+        }
+        Self { column_pointers, row_indices: columns.concat() }
+    }
+
     /// Checks that the matrix has as many columns as there are unknowns.
     pub(super) fn check(&self, n: usize) -> Result<(), InputError> {
         if self.dimension() == n {

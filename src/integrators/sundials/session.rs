@@ -12,12 +12,13 @@ use super::{
     differences::{Differences, Scales},
     ffi,
     functions::{Functions, OdeFunctions, Set, SetTwo, Solve, Stages},
-    host::{CustomSolve, Host, HostBox, NewtonSolve, keep_message},
+    host::{CustomSolve, Host, HostBox, NewtonSolve},
     ilu::IncompleteLu,
     jacobian::Jacobian,
     krylov::Krylov,
     linear::Linear,
     linear_solver::LinearSolver,
+    messages,
     nonlinear::FixedPoint,
     ode_callbacks::{jacobian, newton_rhs},
     ode_krylov::{jacobian_times, precondition_setup, precondition_solve},
@@ -27,6 +28,7 @@ use super::{
     signs::{self, Sign},
     stop_time::StopTime,
     vector::Vector,
+    weights::error_weights,
 };
 use crate::integrators::{
     common::{AbsoluteTolerance, Clock, Error, JacobianCheck, Tolerances},
@@ -43,6 +45,7 @@ const ERROR_TEST_FAILURES: i32 = 20;
 pub(super) struct Session<K, S> {
     // Fields are dropped in this order: first what uses the others.
     pub(super) memory: Memory,
+    pub(super) kind: K,
     /// Integrates.
     pub(super) solve: Solve,
     /// The right-hand sides of ARKODE.
@@ -85,7 +88,6 @@ pub(super) struct Session<K, S> {
     pub(super) roots_found: Vec<i32>,
     /// Which signs the unknowns keep, if any.
     pub(super) signs: Vec<Sign>,
-    pub(super) kind: K,
 }
 
 /// Owns the memory block of an integrator.
@@ -144,11 +146,10 @@ impl<K, S> Session<K, S> {
         if memory.raw.is_null() {
             return Err(Error::out_of_memory(function));
         }
-        let data = host.as_ptr();
-        // SAFETY: the memory is alive, and the handler fits the host registered as its data.
-        host.call(functions.set_error_handler, |set| unsafe {
-            set(memory.raw, Some(keep_message::<S>), data)
-        })?;
+        // SAFETY: the memory is alive, and uses neither host nor context when these are dropped.
+        let (name, code) =
+            unsafe { messages::keep_in::<S>(host.as_ptr(), functions, memory.raw, &context) };
+        host.accept(name, code)?;
         Ok(Self {
             memory,
             solve: functions.solve,
@@ -222,7 +223,7 @@ impl<K, S> Session<K, S> {
     /// Registers the host, after the integrator was initialised with the callbacks for it, and
     /// sets tolerances and the options of the step size control.
     pub(super) fn configure<O>(&mut self, options: &SolverOptions<O>) -> Result<(), Error> {
-        let steps = &options.steps;
+        let (steps, control) = (&options.steps, &options.step_control);
         self.max_steps = steps.max_steps;
         self.initial_step = steps.initial_step;
         let functions = self.memory.functions;
@@ -232,25 +233,60 @@ impl<K, S> Session<K, S> {
             let set = (functions.scalar_tolerances, functions.vector_tolerances);
             self.set_tolerances(set, &options.tolerances)?;
             self.set(functions.set_user_data, self.host.as_ptr())?;
+            if let Some(weights) = &options.weights {
+                self.host.get_mut().weights = Some(weights.clone());
+                self.set(functions.weight_tolerances, Some(error_weights::<S>))?;
+            }
             self.set(functions.set_max_steps, i64::from(steps.max_steps))?;
             if let Some(set) = functions.set_max_error_test_failures {
                 self.set(set, ERROR_TEST_FAILURES)?;
             }
-            for (function, value) in [
-                (functions.set_initial_step, steps.initial_step),
-                (functions.set_max_step, steps.max_step),
-                (functions.set_min_step, options.min_step),
-                (functions.set_convergence_coefficient, options.convergence_coefficient),
+            if let Some(coefficient) = options.convergence_coefficient {
+                self.set(functions.set_convergence_coefficient, coefficient)?;
+            }
+            for (name, function, value) in [
+                ("initial_step", functions.set_initial_step, steps.initial_step),
+                ("max_step", functions.set_max_step, steps.max_step),
+                ("min_step", functions.set_min_step, options.min_step),
+                ("max_growth", functions.set_max_growth, control.max_growth),
+                ("first_growth", functions.set_first_growth, control.first_growth),
+                ("min_reduction", functions.set_min_reduction, control.min_reduction),
+                (
+                    "after_error_failure",
+                    functions.set_after_error_failure,
+                    control.after_error_failure,
+                ),
+                (
+                    "after_convergence_failure",
+                    functions.set_after_convergence_failure,
+                    control.after_convergence_failure,
+                ),
             ] {
-                if let Some(value) = value {
-                    self.set(function, value)?;
-                }
+                let Some(value) = value else { continue };
+                let function = function.ok_or_else(|| self.lacks(name, value))?;
+                self.set(function, value)?;
+            }
+            if let (Some(set), Some(ratio)) = (functions.set_early_growth, control.max_growth) {
+                self.set(set, ratio)?;
+            }
+            if let Some((low, high)) = control.kept {
+                let set = functions.set_kept.ok_or_else(|| self.lacks("keep_between", low))?;
+                self.host.call(set, |set| set(self.memory.raw, low, high))?;
             }
             if let (Some(set), Some(order)) = (functions.set_max_order, options.max_order) {
                 self.set(set, order as i32)?;
             }
         }
         self.set_signs(&options.signs)
+    }
+
+    /// The error of an option that the integrator does not have.
+    fn lacks(&self, option: &str, value: f64) -> Error {
+        Error::input(
+            option,
+            value,
+            format!("{} has no such option", self.memory.functions.integrator),
+        )
     }
 
     /// Forgets the factors after a failure: the matrix of Newton's iteration may be half written.
@@ -268,12 +304,15 @@ impl<K, S> Session<K, S> {
         }
         let values: Vec<f64> = signs.iter().map(|sign| f64::from(*sign as i8)).collect();
         let values = Vector::from_slice(&values, &self.context)?;
+        let set = self.memory.functions.set_constraints;
+        let set =
+            set.ok_or_else(|| self.lacks("sign_constraints", f64::from(signs.len() as u32)))?;
         self.signs = signs.to_vec();
         // SAFETY: C keeps a clone of the vector, whose length was checked, and it notes what it finds in the
         // host, which outlives the memory.
         unsafe {
             signs::note_in(values.raw(), self.host.violation())?;
-            self.set(self.memory.functions.set_constraints, values.raw())
+            self.set(set, values.raw())
         }
     }
 

@@ -100,7 +100,7 @@ impl<S> Owner<S> {
         })
     }
 
-    fn into_system(self) -> S {
+    pub(super) fn into_system(self) -> S {
         let pointer = self.0;
         mem::forget(self);
         // SAFETY: leaked from a Box in `new`; `self` is forgotten, so it is freed only here.

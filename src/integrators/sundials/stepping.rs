@@ -214,8 +214,7 @@ impl<K, S> Session<K, S> {
         let whole = stop.filter(|stop| steps == 0 && apart(self.elapsed, *stop) != *stop);
         let whole = whole.filter(|_| self.initial_step.is_none());
         if let Some(stop) = whole {
-            // SAFETY: the value is a plain number.
-            unsafe { self.set(functions.set_initial_step, stop - self.elapsed)? };
+            self.set_first_step(stop - self.elapsed)?;
         }
         let (name, solve) = self.solve;
         // C writes to other vectors than the present state, which is kept if C fails to give another
@@ -266,12 +265,10 @@ impl<K, S> Session<K, S> {
             }
         }
         if shortened > 0 || whole.is_some() {
-            // SAFETY: the value is a plain number, which requests an estimate.
-            unsafe { self.set(functions.set_initial_step, 0.0)? };
+            self.set_first_step(0.0)?;
         }
         if is_shortened {
-            // SAFETY: the value is a plain number.
-            unsafe { self.set(functions.set_initial_step, self.initial_step.unwrap_or(0.0))? };
+            self.set_first_step(self.initial_step.unwrap_or(0.0))?;
         }
         if stops {
             // C has forgotten the stop time of the caller
@@ -331,10 +328,19 @@ impl<K, S> Session<K, S> {
                 }
                 Ok(if stopped { Reached::StopTime } else { Reached::Time })
             }
-            code if functions.refusals.contains(&code) => {
+            code if functions.refusals.contains(&code) && !self.host.get().troubles.is_fatal() => {
                 self.host.accept(name, code).map(|()| Reached::Time)
             }
             code => Err(self.stopped(code, t)),
+        }
+    }
+
+    /// Sets the size of the first step after a start; 0 requests an estimate. Multirate methods have their own.
+    fn set_first_step(&mut self, h: f64) -> Result<(), Error> {
+        match self.memory.functions.set_initial_step {
+            // SAFETY: the value is a plain number.
+            Some(set) => unsafe { self.set(set, h) },
+            None => Ok(()),
         }
     }
 
@@ -360,8 +366,7 @@ impl<K, S> Session<K, S> {
         self.elapsed = before;
         self.forget_factors();
         self.start_c_again(before)?;
-        // SAFETY: the value is a plain number.
-        unsafe { self.set(self.memory.functions.set_initial_step, h)? };
+        self.set_first_step(h)?;
         Ok(true)
     }
 
@@ -385,7 +390,7 @@ impl<K, S> Session<K, S> {
         // SAFETY: memory and vector are alive; C has written the end of the last step there, and copies it. The values are plain numbers.
         unsafe {
             self.host.call(reset, |reset| reset(self.memory.raw, end, self.scratch.raw()))?;
-            self.set(functions.set_initial_step, h)?;
+            self.set_first_step(h)?;
             if let Some(stop) = stop {
                 self.set(functions.set_stop_time, stop)?;
             }

@@ -3,7 +3,7 @@
 use crate::base::input::InputError;
 use crate::integrators::{
     ode::{Entries, Failure},
-    sundials::{Jacobian, LinearSolver, Pattern, colouring::Colouring, shape::Shape},
+    sundials::{Jacobian, LinearSolver, colouring::Colouring, shape::Shape},
 };
 
 /// A matrix in the form of a linear solver.
@@ -22,7 +22,8 @@ impl StoredMatrix {
             LinearSolver::Dense(_) => n * n,
             LinearSolver::Band { lower, upper, .. } => n * (lower + upper + 1),
             LinearSolver::Klu { pattern, .. } => pattern.entry_count(),
-            _ => 0,
+            LinearSolver::Krylov(krylov) => krylov.ilu().map_or(0, |(ilu, _)| ilu.entry_count()),
+            LinearSolver::Custom => 0,
         };
         let shape = Shape::of(solver).unwrap_or(Shape::Dense);
         Self { solver: solver.clone(), shape, n, values: vec![0.0; count] }
@@ -37,16 +38,15 @@ impl StoredMatrix {
                 upper: *lower,
                 jacobian: Jacobian::Supplied,
             }),
-            LinearSolver::Klu { .. } => {
-                let mut entries = Vec::new();
-                self.each_position(|i, j, _| entries.push((j, i)));
-                let pattern = Pattern::from_entries(self.n, entries)?;
-                Ok(LinearSolver::Klu { pattern, jacobian: Jacobian::Supplied })
+            LinearSolver::Klu { pattern, .. } => {
+                let (pattern, jacobian) = (pattern.transposed(), Jacobian::Supplied);
+                Ok(LinearSolver::Klu { pattern, jacobian })
             }
-            other => {
-                let help = "an adjoint gradient needs entries of the Jacobian: choose a dense, a band or a \
-                            sparse linear solver";
-                Err(InputError::new("linear solver", format!("{other:?}"), help))
+            LinearSolver::Krylov(krylov) => Ok(LinearSolver::Krylov(krylov.transposed()?)),
+            LinearSolver::Custom => {
+                let help = "an adjoint gradient needs entries of the Jacobian, or transposed products: choose a \
+                            dense, a band or a sparse linear solver, or a Krylov method";
+                Err(InputError::new("linear solver", "Custom", help))
             }
         }
     }
@@ -109,8 +109,10 @@ impl StoredMatrix {
         value: impl Fn(usize, usize) -> f64,
     ) {
         self.each_position(|i, j, position| {
-            let to = match backward {
-                LinearSolver::Klu { pattern, .. } => pattern.position(j, i),
+            let to = match (backward, backward.ilu()) {
+                (LinearSolver::Klu { pattern, .. }, _) | (_, Some((pattern, _))) => {
+                    pattern.position(j, i)
+                }
                 _ => Some(position),
             };
             if let Some(to) = to {

@@ -27,8 +27,26 @@ pub fn suitesparse_version() -> String {
     version.map(|part| part.to_string()).join(".")
 }
 
+/// The linked libraries in words: versions, parts and the size of indices.
+#[must_use]
+pub fn description() -> String {
+    format!(
+        "SUNDIALS {} with CVODES, IDAS, ARKODE, {}-bit indices; KLU of SuiteSparse {}",
+        version(),
+        8 * size_of::<ffi::sunindextype>(),
+        suitesparse_version()
+    )
+}
+
 #[cfg(test)]
 mod tests {
+    #[test]
+    fn the_description_has_both_versions() {
+        let words = super::description();
+        assert!(words.starts_with(&format!("SUNDIALS {} ", super::version())), "{words}");
+        assert!(words.ends_with(&super::suitesparse_version()), "{words}");
+    }
+
     /// The libraries are those whose headers the crate was built with, except for the last number.
     #[test]
     fn the_linked_versions_are_those_of_the_headers() {

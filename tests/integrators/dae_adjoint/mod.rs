@@ -13,6 +13,8 @@ use pliant::{
     },
 };
 
+use crate::support::End;
+
 /// A functional of closures for g and h with their slopes, without parameters in them.
 struct By<G, H>(G, H);
 
@@ -357,6 +359,34 @@ fn rows_in_any_order_and_parameters_in_the_mass_matrix() {
         println!("{error:e}");
         assert!(error < 5e-8, "{gradient:?} {exact:?}");
     }
+}
+
+/// x'' = -9 x as a DAE F = y' - f with an algebraic copy of x: lambda of the differential unknowns along the backward run
+/// is the slope of x(T) by the state there, in closed form.
+#[test]
+fn the_adjoint_along_the_way_in_closed_form() {
+    let oscillator = |_t: f64, y: &[f64], yp: &[f64], r: &mut [f64]| {
+        r.copy_from_slice(&[yp[0] - y[1], yp[1] + 9.0 * y[2], y[2] - y[0]]);
+        Ok(())
+    };
+    let forward = IdaOptions::new(1e-9, 1e-11).differential([true, true, false]);
+    let back = AdjointOptions::new(1e-9, 1e-11);
+    let (y0, yp0) = ([1.0, 0.5, 0.0], [0.0; 3]);
+    let made = DaeAdjoint::new(oscillator, End, 0.0, &y0, &yp0, &forward, &back);
+    let times = [2.0, 1.4, 0.3, 0.0];
+    let mut seen = Vec::new();
+    let gradient = made
+        .unwrap()
+        .gradient_along(2.0, &times, |t, lambda| {
+            let (sin, cos) = f64::sin_cos(3.0 * (2.0 - t));
+            let error = f64::max((lambda[0] - cos).abs(), (lambda[1] - sin / 3.0).abs());
+            println!("{error:e}");
+            assert!(error < 1e-7, "{t}: {error:e}");
+            seen.push(t);
+        })
+        .unwrap();
+    assert_eq!(seen, times);
+    assert!((gradient.initial_state[0] - 6f64.cos()).abs() < 1e-7);
 }
 
 /// A nonlinear rod whose rates are unknowns of their own, against the rod as an ODE.

@@ -1,6 +1,6 @@
 //! The forward run with checkpoints and the backward run, for CVODES and IDAS.
 
-use super::{equations::Equations, gradient::Gradient, options::AdjointOptions};
+use super::{equations::Equations, gradient::Gradient, options::AdjointOptions, setup::Along};
 use crate::integrators::{
     common::{AbsoluteTolerance, Error, IntegrationError, Integrator, Tolerances},
     ode::{Borrowed, Functional},
@@ -53,11 +53,16 @@ pub(in crate::integrators::sundials) unsafe trait BackwardProblem {
 }
 
 impl<P: BackwardProblem> Session<P::Kind, Borrowed<'_, P>> {
-    /// Value and gradient of the functional, by a run to time `t` and back.
+    /// Value and gradient of the functional, by a run to time `t` and back, `along` which lambda is shown.
     ///
     /// A further run would begin with the first step size of this one, whatever has changed: the backward run
     /// leaves it in C (6.4.1).
-    pub(super) fn gradient(mut self, t: f64, options: &AdjointOptions) -> Result<Gradient, Error> {
+    pub(super) fn gradient(
+        mut self,
+        t: f64,
+        options: &AdjointOptions,
+        along: Along<'_>,
+    ) -> Result<Gradient, Error> {
         let (memory, steps) = (self.memory.raw, i64::from(options.checkpoint_steps));
         // As late as possible: if no run follows, IDAS 6.4.1 frees pointers that it never wrote.
         // SAFETY: the memory is alive and of this integrator; the values are plain numbers.
@@ -74,7 +79,7 @@ impl<P: BackwardProblem> Session<P::Kind, Borrowed<'_, P>> {
         let mut gradient = equations.terminal(integrator, t, self.y.as_slice())?;
         gradient.value += self.quadratures()[0];
         self.start_back(t, &mut gradient, options)?;
-        self.run_back(&mut gradient)?;
+        self.run_back(t, &mut gradient, along)?;
         Ok(gradient)
     }
 
@@ -104,6 +109,7 @@ impl<P: BackwardProblem> Session<P::Kind, Borrowed<'_, P>> {
         let Tolerances { rtol, atol } = &options.tolerances;
         let atol = Vector::from_slice(&spread(atol, n), context)?;
         let max_steps = i64::from(self.max_steps);
+        let solver_kind = self.host.get_mut().system.0.equations().backward.clone();
         let backward = self.backward.insert(Backward { which, linear, lambda, slope, gradient });
         let (solver, matrix) = (backward.linear.solver(), backward.linear.matrix());
         let (lambda, slope) = (backward.lambda.raw(), backward.raw_slope());
@@ -117,7 +123,7 @@ impl<P: BackwardProblem> Session<P::Kind, Borrowed<'_, P>> {
             host.call(functions.set_user_data, |set| set(memory, which, data))?;
             host.call(functions.set_max_steps, |set| set(memory, which, max_steps))?;
             host.call(functions.set_linear_solver, |set| set(memory, which, solver, matrix))?;
-            host.call(P::SET_JACOBIAN, |set| set(memory, which))?;
+            host.call(P::SET_JACOBIAN, |set| set(memory, which, &solver_kind))?;
         }
         let Some(integrals) = integrals else { return Ok(()) };
         let Tolerances { rtol, atol } = options.tolerances_for(&parameters);
@@ -130,25 +136,28 @@ impl<P: BackwardProblem> Session<P::Kind, Borrowed<'_, P>> {
         }
     }
 
-    /// Integrates back to the start, adds the integrals to dG/dp, and writes dG/dy0.
-    fn run_back(&mut self, gradient: &mut Gradient) -> Result<(), Error> {
-        let (memory, functions) = (self.memory.raw, P::FUNCTIONS);
-        let Some(backward) = &self.backward else { return Ok(()) };
-        let which = backward.which;
-        let begin = self.clock().start();
+    /// Integrates back from time `end` to the start, adds the integrals to dG/dp, and writes dG/dy0.
+    fn run_back(
+        &mut self,
+        end: f64,
+        gradient: &mut Gradient,
+        Along { times, visit }: Along<'_>,
+    ) -> Result<(), Error> {
+        let (clock, begin) = (self.clock(), self.clock().start());
+        let start = clock.time(begin);
         self.host.get_mut().troubles.clear();
-        // SAFETY: memory and everything registered with it are alive; `&mut self` keeps others away while
-        // callbacks use the host.
-        let code = unsafe { (functions.solve.1)(memory, begin, ffi::CV_NORMAL) };
-        self.host.get_mut().troubles.resume_panic();
-        if code < 0 {
-            return Err(self.stopped_back(which, code));
+        for &t in times {
+            if t != end {
+                self.go_back(if t == start { begin } else { clock.elapsed(t) })?;
+            }
+            self.backward.iter().for_each(|backward| visit(t, backward.lambda.as_slice()));
         }
+        if times.last() != Some(&start) {
+            self.go_back(begin)?;
+        }
+        let Some(backward) = &self.backward else { return Ok(()) };
+        let (memory, functions, which) = (self.memory.raw, P::FUNCTIONS, backward.which);
         let mut t = 0.0;
-        let (lambda, slope) = (backward.lambda.raw(), backward.raw_slope());
-        // SAFETY: memory and vectors are alive, the result pointers are valid.
-        self.host
-            .call(functions.get, |get| unsafe { get(memory, which, &raw mut t, lambda, slope) })?;
         let lambda = backward.lambda.as_slice();
         self.host.get().system.0.by_initial_state(lambda, &mut gradient.initial_state);
         let Some(integrals) = &backward.gradient else { return Ok(()) };
@@ -159,6 +168,26 @@ impl<P: BackwardProblem> Session<P::Kind, Borrowed<'_, P>> {
         let pairs = gradient.parameters.iter_mut().zip(integrals.as_slice());
         pairs.for_each(|(slope, integral)| *slope += integral);
         Ok(())
+    }
+
+    /// Integrates back to time `t` of C, and reads lambda there.
+    fn go_back(&mut self, t: f64) -> Result<(), Error> {
+        let (memory, functions) = (self.memory.raw, P::FUNCTIONS);
+        let Some(backward) = &self.backward else { return Ok(()) };
+        let which = backward.which;
+        // SAFETY: memory and everything registered with it are alive; `&mut self` keeps others away while
+        // callbacks use the host.
+        let code = unsafe { (functions.solve.1)(memory, t, ffi::CV_NORMAL) };
+        self.host.get_mut().troubles.resume_panic();
+        if code < 0 {
+            return Err(self.stopped_back(which, code));
+        }
+        let mut reached = 0.0;
+        let (lambda, slope) = (backward.lambda.raw(), backward.raw_slope());
+        // SAFETY: memory and vectors are alive, the result pointer is valid.
+        self.host.call(functions.get, |get| unsafe {
+            get(memory, which, &raw mut reached, lambda, slope)
+        })
     }
 
     /// The error of a backward run that stopped.

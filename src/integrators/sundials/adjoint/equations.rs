@@ -56,7 +56,7 @@ impl<S, F: Functional> Equations<S, F> {
             functional,
             access,
             tolerances: tolerances.clone(),
-            is_supplied: forward.supplied().is_some(),
+            is_supplied: forward.supplies_entries(),
             quotients: Quotients::new(&jacobian),
             jacobian,
             backward,

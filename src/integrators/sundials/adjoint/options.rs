@@ -17,7 +17,9 @@ pub struct AdjointOptions {
 impl AdjointOptions {
     /// With these tolerances for the adjoint lambda, which is dG/dy(t) for an ODE.
     ///
-    /// Its linear solver is that of the forward run, for the transposed matrix.
+    /// Its linear solver is that of the forward run, for the transposed matrix. A Krylov method needs
+    /// [`supplied_rhs`](Self::supplied_rhs), whose products are those of the transposed matrix, and is for an ODE
+    /// only.
     pub fn new(rtol: f64, atol: impl Into<AbsoluteTolerance>) -> Self {
         Self {
             tolerances: Tolerances::new(rtol, atol),

@@ -22,6 +22,27 @@ pub(super) struct Runs<O> {
     pub(super) options: AdjointOptions,
 }
 
+/// Times of the backward run at which its lambda is wanted, from the end to the start, and the function that gets it.
+pub(super) struct Along<'a> {
+    pub(super) times: &'a [f64],
+    pub(super) visit: &'a mut dyn FnMut(f64, &[f64]),
+}
+
+impl Along<'_> {
+    /// Checks the times of a run between `start` and `end`.
+    pub(super) fn check(&self, start: f64, end: f64) -> Result<(), Error> {
+        let mut last = end;
+        for &t in self.times {
+            if !((t - start) * (end - start) >= 0.0 && (last - t) * (end - start) >= 0.0) {
+                let help = format!("times lead from the end, {end:?}, to the start, {start:?}");
+                return Err(Error::input("time along the backward run", t, help));
+            }
+            last = t;
+        }
+        Ok(())
+    }
+}
+
 impl<O: Clone> Runs<O> {
     /// Checks the options of the backward run for a system with so many parameters and root functions.
     pub(super) fn new(

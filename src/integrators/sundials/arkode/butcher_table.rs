@@ -11,6 +11,7 @@ use crate::base::input::InputError;
 /// ones are L-stable, of stage order 2 (the highest possible), and stiffly accurate: a step ends with the
 /// last stage. `ARK` ones come in pairs of an implicit and an explicit table with the same stages:
 /// [`imex`](Self::imex) takes both, for systems that are [split](crate::integrators::ode::Ode::is_split).
+/// (Others are a [`Tableau`](super::Tableau).)
 ///
 /// ```
 /// use pliant::sundials::ButcherTable;

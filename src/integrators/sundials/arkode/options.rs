@@ -1,32 +1,19 @@
 //! How ARKODE is to integrate.
 
-use super::butcher_table::ButcherTable;
+use super::{
+    butcher_table::ButcherTable,
+    controller::Controller,
+    stages::{OfStages, StageOptions},
+    tableau::{Scheme, Tableau},
+};
 use crate::base::input::InputError;
 use crate::integrators::{
-    common::{AbsoluteTolerance, check_count, check_step},
+    common::{AbsoluteTolerance, check_step},
     sundials::{
         options::{OfOde, SolverOptions},
         signs::Sign,
     },
 };
-
-/// Where the iteration for an implicit stage starts (`ARKStepSetPredictorMethod`).
-///
-/// Interpolants are those of the step before, extrapolated.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum Predictor {
-    /// At the state at the start of the step.
-    Trivial = 0,
-    /// On the interpolant of highest degree.
-    MaximumOrder = 1,
-    /// On the interpolant of a degree that falls from 3 to 1 with the distance of the stage.
-    VariableOrder = 2,
-    /// On the interpolant of highest degree up to half a step, on the linear one beyond.
-    CutoffOrder = 3,
-    /// At the state that the previous stages of the step give without this one.
-    MinimumCorrection = 5,
-}
 
 /// Tolerances, method and limits of an [`Arkode`](super::Arkode).
 ///
@@ -44,14 +31,20 @@ pub type ArkodeOptions = SolverOptions<OwnOptions>;
 #[derive(Clone, Debug)]
 pub struct OwnOptions {
     pub(super) fixed_step: Option<f64>,
-    pub(super) table: ButcherTable,
-    pub(super) max_steps_between_jacobians: Option<u32>,
-    pub(super) max_iterations: u32,
-    pub(super) linear: bool,
-    pub(super) predictor: Predictor,
+    pub(super) scheme: Scheme,
+    pub(super) stages: StageOptions,
+    pub(super) controller: Controller,
+    pub(super) safety_factor: Option<f64>,
+    pub(super) error_bias: Option<f64>,
 }
 
 impl OfOde for OwnOptions {}
+
+impl OfStages for OwnOptions {
+    fn stages_mut(&mut self) -> &mut StageOptions {
+        &mut self.stages
+    }
+}
 
 impl ArkodeOptions {
     /// The implicit method of order 4 with a Newton iteration on a dense matrix of difference
@@ -59,11 +52,11 @@ impl ArkodeOptions {
     pub fn new(rtol: f64, atol: impl Into<AbsoluteTolerance>) -> Self {
         let own = OwnOptions {
             fixed_step: None,
-            table: ButcherTable::default(),
-            max_steps_between_jacobians: None,
-            max_iterations: 6,
-            linear: false,
-            predictor: Predictor::VariableOrder,
+            scheme: Scheme::Known(ButcherTable::default()),
+            stages: StageOptions::default(),
+            controller: Controller::Pid,
+            safety_factor: None,
+            error_bias: None,
         };
         Self::with(rtol, atol, own)
     }
@@ -73,7 +66,20 @@ impl ArkodeOptions {
     /// The options of Newton's iteration are for implicit methods; explicit ones have none. (But the linear
     /// solver also gives a mass matrix its form.)
     pub fn table(mut self, table: ButcherTable) -> Self {
-        self.own.table = table;
+        self.own.scheme = Scheme::Known(table);
+        self
+    }
+
+    /// The method, by coefficients of one's own: explicit or diagonally implicit (`ARKStepSetTables`).
+    pub fn tableau(mut self, tableau: Tableau) -> Self {
+        self.own.scheme = Scheme::Own(tableau);
+        self
+    }
+
+    /// The method, by a pair of tableaux of one's own with the same stages, for a right-hand side that is
+    /// [split](crate::integrators::ode::Ode::is_split) (`ARKStepSetTables`).
+    pub fn imex_tableaux(mut self, implicit: Tableau, explicit: Tableau) -> Self {
+        self.own.scheme = Scheme::OwnPair(implicit, explicit);
         self
     }
 
@@ -84,54 +90,53 @@ impl ArkodeOptions {
         self
     }
 
-    /// Steps after which a new Newton matrix gets a new Jacobian in any case (`ARKStepSetJacEvalFrequency`).
-    /// Default: 51.
-    pub fn max_steps_between_jacobians(mut self, steps: u32) -> Self {
-        self.own.max_steps_between_jacobians = Some(steps);
+    /// How the next step size follows from the last errors. Default: [`Controller::Pid`].
+    pub fn controller(mut self, controller: Controller) -> Self {
+        self.own.controller = controller;
         self
     }
 
-    /// Iterations allowed for each stage (`ARKStepSetMaxNonlinIters`). Default: 6.
-    pub fn max_iterations(mut self, iterations: u32) -> Self {
-        self.own.max_iterations = iterations;
+    /// Factor of the step size that the controller proposes (`ARKStepSetSafetyFactor`). Default: 0.96.
+    pub fn safety_factor(mut self, factor: f64) -> Self {
+        self.own.safety_factor = Some(factor);
         self
     }
 
-    /// Declares that the right-hand side is linear in y, with a constant Jacobian (`ARKStepSetLinear`).
-    /// Default: it is not.
-    ///
-    /// One iteration then solves a stage, with an exact Newton matrix.
-    pub fn linear(mut self) -> Self {
-        self.own.linear = true;
-        self
-    }
-
-    /// Where iterations start. Default: variable order.
-    pub fn predictor(mut self, predictor: Predictor) -> Self {
-        self.own.predictor = predictor;
+    /// Factor of the error estimates that the controller gets (`ARKStepSetErrorBias`). Default: 1.5.
+    pub fn error_bias(mut self, factor: f64) -> Self {
+        self.own.error_bias = Some(factor);
         self
     }
 
     /// Degree of the polynomials between the steps. Those of degree 4 and 5 need evaluations of the
     /// right-hand side at each use, and are less accurate in stiff systems.
     pub(super) fn interpolant_degree(&self) -> u32 {
-        let highest = if self.own.table.is_implicit() { 3 } else { 5 };
-        (self.own.table.order() - 1).min(highest)
+        let highest = if self.own.scheme.is_implicit() { 3 } else { 5 };
+        (self.own.scheme.order() - 1).clamp(1, highest)
     }
 
     pub(super) fn check(&self, y0: &[f64]) -> Result<(), InputError> {
         self.check_shared(y0, u32::MAX)?;
         self.own.fixed_step.map_or(Ok(()), |h| check_step("fixed_step", h))?;
+        self.own.scheme.check(self.own.fixed_step.is_none())?;
         if self.own.fixed_step.is_some() && self.signs.iter().any(|sign| *sign != Sign::Free) {
             let help = "signs are kept by smaller steps: let the tolerances choose the steps";
             return Err(InputError::new("sign_constraints", "given with fixed_step", help));
         }
-        for (input, value) in [
-            ("max_steps_between_jacobians", self.own.max_steps_between_jacobians),
-            ("max_iterations", Some(self.own.max_iterations)),
-        ] {
-            value.map_or(Ok(()), |count| check_count(input, count))?;
+        if let Some(factor) =
+            self.own.safety_factor.filter(|factor| !(*factor > 0.0 && *factor < 1.0))
+        {
+            return Err(InputError::new(
+                "safety_factor",
+                factor,
+                "it lies between 0 and 1, such as 0.96",
+            ));
         }
-        Ok(())
+        if let Some(factor) =
+            self.own.error_bias.filter(|factor| !(*factor >= 1.0 && factor.is_finite()))
+        {
+            return Err(InputError::new("error_bias", factor, "it is at least 1, such as 1.5"));
+        }
+        self.own.stages.check()
     }
 }

@@ -6,15 +6,20 @@
 //! ARKODE evaluate the right-hand side at the ends of steps, which costs accuracy in stiff systems; it serves
 //! fixed steps alone.
 
-use super::{mass, options::ArkodeOptions};
+use std::ptr;
+
+use super::{
+    controller::{Filter, filtered_step},
+    mass,
+    options::ArkodeOptions,
+};
 use crate::integrators::{
     common::{Clock, Error, Integrator, check_start, check_whole},
     ode::{Borrowed, MassKind, Ode},
     sundials::{
         ffi,
-        functions::{Functions, OdeFunctions, Stages, named},
+        functions::{Functions, OdeFunctions, StageFunctions, Stages, named},
         ode_callbacks::{explicit_rhs, note_step_end, note_time, rhs, roots},
-        ode_krylov::newton_setup_with_mass,
         session::{InitialState, Session},
         solver::{Kind, Owner, Solver},
     },
@@ -42,7 +47,10 @@ pub type Arkode<S> = Solver<ArkodeKind, S>;
 
 /// Marks a [`Solver`] as one of ARKODE.
 #[derive(Debug)]
-pub struct ArkodeKind;
+pub struct ArkodeKind {
+    /// Freed after the memory, which refers to it.
+    filter: Option<Box<Filter>>,
+}
 
 impl Kind for ArkodeKind {
     type System = dyn Ode;
@@ -77,18 +85,24 @@ fn start(
 }
 
 impl<S: Ode> Session<ArkodeKind, S> {
-    fn of_arkode(system: S, t0: f64, y0: &[f64], options: &ArkodeOptions) -> Result<Self, Error> {
+    pub(in crate::integrators::sundials) fn of_arkode(
+        system: S,
+        t0: f64,
+        y0: &[f64],
+        options: &ArkodeOptions,
+    ) -> Result<Self, Error> {
         check_start(t0, y0)?;
         options.check(y0)?;
-        if !options.own.table.is_imex() {
+        let scheme = &options.own.scheme;
+        if !scheme.is_imex() {
             check_whole(&system)?;
         } else if !system.is_split() {
             let help = "a pair of tables is for a right-hand side of two parts: see `is_split` and `split`";
-            return Err(Error::input("table", options.own.table, help));
+            return Err(Error::input("table", scheme, help));
         }
 
         let start = InitialState { t: t0, y: y0, yp: None, root_count: system.root_count() };
-        let (is_implicit, is_imex) = (options.own.table.is_implicit(), options.own.table.is_imex());
+        let (is_implicit, is_imex) = (scheme.is_implicit(), scheme.is_imex());
         let stages: Stages = match (is_imex, is_implicit) {
             (true, _) => [Some(explicit_rhs::<S>), Some(rhs::<S>)],
             (false, true) => [None, Some(rhs::<S>)],
@@ -106,21 +120,29 @@ impl<S: Ode> Session<ArkodeKind, S> {
         let mut arkode = unsafe {
             let create = |y, context| ffi::ARKStepCreate(stages[0], stages[1], begin, y, context);
             let create = ("ARKStepCreate", create);
-            Self::create(Functions::ARKODE, create, ArkodeKind, system, &start, solver)?
+            Self::create(
+                Functions::ARKODE,
+                create,
+                ArkodeKind { filter: None },
+                system,
+                &start,
+                solver,
+            )?
         };
         arkode.stages = stages;
         arkode.host.get_mut().step_end = Some(arkode.elapsed);
         arkode.configure(options)?;
-        let (implicit_id, explicit_id) = options.own.table.ids();
         let degree = options.interpolant_degree();
         arkode.interpolant_degree = Some(degree);
-        // SAFETY: the callback fits the host; the memory is alive and reads the names, C strings, once;
-        // the other values are plain numbers.
+        // SAFETY: the callback fits the host; the memory is alive; the other values are plain numbers.
         unsafe {
             arkode.set_root_functions(OdeFunctions::ARKODE.set_roots, Some(roots::<S>))?;
-            let (implicit, explicit) = (implicit_id.as_ptr(), explicit_id.as_ptr());
             let (memory, data) = (arkode.memory.raw, arkode.host.as_ptr());
-            arkode.host.call(named!(ARKStepSetTableName), |set| set(memory, implicit, explicit))?;
+            scheme.set(memory, |name, code| arkode.host.accept(name, code))?;
+            if is_imex && !cfg!(sundials_major = "6") {
+                // SUNDIALS 7 evaluates the slopes of Hermite polynomials anew, with the errors of stiff components in them
+                arkode.set(named!(ARKStepSetInterpolantType), ffi::ARK_INTERP_LAGRANGE)?;
+            }
             arkode.set(named!(ARKStepSetInterpolantDegree as _), degree as i32)?;
             // Post-processing of steps makes ARKODE evaluate the right-hand side at their ends; it is used
             // for fixed steps only.
@@ -132,10 +154,11 @@ impl<S: Ode> Session<ArkodeKind, S> {
             } else {
                 let (set, note) = (named!(ARKStepSetStabilityFn), Some(note_time::<S> as _));
                 arkode.host.call(set, |set| set(memory, note, data))?;
+                control_steps(&mut arkode, options)?;
             }
         }
         if is_implicit {
-            solve_stages(&mut arkode, options)?;
+            options.own.stages.set(&mut arkode, StageFunctions::ARKODE, options)?;
         }
         if let Some(form) = mass_form {
             mass::attach(&mut arkode, &form, mass_kind)?;
@@ -144,34 +167,36 @@ impl<S: Ode> Session<ArkodeKind, S> {
     }
 }
 
-/// Sets how the equations of implicit stages are solved.
-fn solve_stages<S: Ode>(
+/// Sets how step sizes follow from errors.
+fn control_steps<S: Ode>(
     arkode: &mut Session<ArkodeKind, S>,
     options: &ArkodeOptions,
 ) -> Result<(), Error> {
-    // SAFETY: the values are plain numbers.
+    let memory = arkode.memory.raw;
+    // SAFETY: the memory is alive and dropped before the filter; the other values are plain numbers.
     unsafe {
-        arkode.set(named!(ARKStepSetPredictorMethod as _), options.own.predictor as i32)?;
-        arkode.set(named!(ARKStepSetMaxNonlinIters as _), options.own.max_iterations as i32)?;
-        // The slope of a stage follows from its equation: this spares an evaluation, which would
-        // also stop the integration if it failed, and magnify errors of stiff components.
-        arkode.set(named!(ARKStepSetDeduceImplicitRhs as _), 1)?;
-        if options.own.linear {
-            arkode.set(named!(ARKStepSetLinear as _), 0)?;
+        match options.own.controller.method() {
+            Ok(number) => arkode.host.call(named!(ARKStepSetAdaptivityMethod), |set| {
+                set(memory, number, 1, 0, ptr::null_mut())
+            })?,
+            Err(mut filter) => {
+                // from SUNDIALS 7 on the bias is that of its own controllers alone
+                if !cfg!(sundials_major = "6") {
+                    filter.bias = options.own.error_bias.unwrap_or(1.5);
+                }
+                let data = ptr::from_mut(arkode.kind.filter.insert(Box::new(filter)).as_mut());
+                arkode.host.call(named!(ARKStepSetAdaptivityFn), |set| {
+                    set(memory, Some(filtered_step), data.cast())
+                })?;
+            }
         }
-        if let Some(steps) = options.max_steps_between_setups {
-            arkode.set(named!(ARKStepSetLSetupFrequency as _), steps as i32)?;
-        }
-    }
-    // SAFETY: the functions are those of ARKODE, and the callback fits the registered host; the value is a plain number.
-    unsafe {
-        arkode.set_nonlinear(OdeFunctions::ARKODE, options, |arkode| {
-            arkode.set(named!(ARKStepSetLinSysFn), Some(newton_setup_with_mass::<S> as _))
-        })?;
-        if let (Some(_), Some(steps)) =
-            (options.newton_solver(), options.own.max_steps_between_jacobians)
-        {
-            arkode.set(named!(ARKStepSetJacEvalFrequency as _), i64::from(steps))?;
+        for (function, value) in [
+            (named!(ARKStepSetSafetyFactor as _), options.own.safety_factor),
+            (named!(ARKStepSetErrorBias as _), options.own.error_bias),
+        ] {
+            if let Some(value) = value {
+                arkode.set(function, value)?;
+            }
         }
     }
     Ok(())

@@ -68,7 +68,7 @@ unsafe impl<S: Dae, F: Functional> BackwardProblem for AdjointDae<S, F> {
         unsafe { ffi::IDAInitB(memory, which, Some(residual::<S, F>), t, lambda, slope) }
     });
 
-    const SET_JACOBIAN: SetBackward = ("IDASetJacFnB", |memory, which| {
+    const SET_JACOBIAN: SetBackward = ("IDASetJacFnB", |memory, which, _| {
         // SAFETY: as above.
         unsafe { ffi::IDASetJacFnB(memory, which, Some(jacobian::<S, F>)) }
     });

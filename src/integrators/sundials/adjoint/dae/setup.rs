@@ -9,7 +9,7 @@ use crate::integrators::{
         adjoint::{
             gradient::Gradient,
             options::AdjointOptions,
-            setup::{AdjointOf, Runs},
+            setup::{AdjointOf, Along, Runs},
         },
         ida::{IdaKind, StartsDae},
         session::Session,
@@ -110,11 +110,12 @@ impl Runs<IdaOptions> {
         system: &mut dyn Dae,
         functional: &mut dyn Functional,
         t: f64,
+        along: Along<'_>,
     ) -> Result<Gradient, Error> {
         let mut equations = self.equations(system, functional)?;
         let mut session = self.session(&mut equations)?;
         session.consistent_start(InitialCondition::Algebraic, t)?;
-        session.gradient(t, &self.options)
+        session.gradient(t, &self.options, along)
     }
 }
 
@@ -164,6 +165,25 @@ impl<S: Dae, F: Functional> DaeAdjoint<S, F> {
     /// # Panics
     /// A panic of the system or the functional passes through.
     pub fn gradient(&mut self, t: f64) -> Result<Gradient, Error> {
+        self.gradient_along(t, &[], |_, _| ())
+    }
+
+    /// As [`gradient`](Self::gradient), and calls `visit(t, lambda)` at each of the `times` of the backward run, which
+    /// lead from the end to the start (`IDAGetB`).
+    ///
+    /// (dF/dy')^T lambda at time t is the derivative of G with respect to the differential unknowns at that time.
+    ///
+    /// # Errors
+    /// As for `gradient`, and for times that are not on that way.
+    ///
+    /// # Panics
+    /// As for `gradient`.
+    pub fn gradient_along(
+        &mut self,
+        t: f64,
+        times: &[f64],
+        mut visit: impl FnMut(f64, &[f64]),
+    ) -> Result<Gradient, Error> {
         check_time("end time", t)?;
         let t0 = self.runs.start.0;
         if t <= t0 {
@@ -173,6 +193,8 @@ impl<S: Dae, F: Functional> DaeAdjoint<S, F> {
             );
             return Err(Error::input("end time", t, help));
         }
-        self.runs.gradient(&mut self.system, &mut self.functional, t)
+        let along = Along { times, visit: &mut visit };
+        along.check(self.runs.start.0, t)?;
+        self.runs.gradient(&mut self.system, &mut self.functional, t, along)
     }
 }

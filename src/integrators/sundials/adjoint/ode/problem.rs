@@ -5,6 +5,7 @@ use crate::integrators::{
     common::{Callback, Error},
     ode::{Borrowed, Functional, Ode},
     sundials::{
+        LinearSolver,
         adjoint::{
             backward::{BackwardProblem, Point},
             equations::Equations,
@@ -51,6 +52,39 @@ callbacks! {
             system.0.backward_jacobian(t, y, values)
         })
     }
+
+    /// `CVLsJacTimesVecFnB`
+    fn jacobian_times<S: Ode, F: Functional>(
+        v: read, out: write, t: (time host), y: read, _: vector, _: vector,
+        host: (data Borrowed<'_, AdjointSystem<S, F>>), _: vector
+    ) {
+        host.guard_output(Callback::Adjoint, t, out, |system, out| {
+            system.0.backward_product(t, y, v, out)
+        })
+    }
+
+    /// `CVLsPrecSetupFnB`
+    fn precondition_setup<S: Ode, F: Functional>(
+        t: (time host), y: read, _: vector, _: vector, reuse: i32, current: (result i32), gamma: f64,
+        host: (data Borrowed<'_, AdjointSystem<S, F>>)
+    ) {
+        host.guard(Callback::Adjoint, t, |system| {
+            *current = i32::from(system.0.backward_setup(t, y, gamma, reuse != 0)?);
+            Ok(())
+        })
+    }
+
+    /// `CVLsPrecSolveFnB`
+    fn precondition_solve<S: Ode, F: Functional>(
+        t: (time host), _: vector, _: vector, _: vector, r: read, z: write, _: f64, _: f64, _: i32,
+        host: (data Borrowed<'_, AdjointSystem<S, F>>)
+    ) {
+        z.copy_from_slice(r);
+        host.guard_output(Callback::Adjoint, t, z, |system, z| {
+            system.0.backward_solve(z);
+            Ok(())
+        })
+    }
 }
 
 // SAFETY: the functions are those of CVODE, and the callbacks are those for this system.
@@ -66,9 +100,25 @@ unsafe impl<S: Ode, F: Functional> BackwardProblem for AdjointSystem<S, F> {
         unsafe { ffi::CVodeInitB(memory, which, Some(rhs::<S, F>), t, lambda) }
     });
 
-    const SET_JACOBIAN: SetBackward = ("CVodeSetJacFnB", |memory, which| {
+    const SET_JACOBIAN: SetBackward = ("CVodeSetJacFnB", |memory, which, solver| {
+        let LinearSolver::Krylov(krylov) = solver else {
+            // SAFETY: as above.
+            return unsafe { ffi::CVodeSetJacFnB(memory, which, Some(jacobian::<S, F>)) };
+        };
         // SAFETY: as above.
-        unsafe { ffi::CVodeSetJacFnB(memory, which, Some(jacobian::<S, F>)) }
+        unsafe {
+            let times = Some(jacobian_times::<S, F> as _);
+            let (set_up, solve) =
+                (Some(precondition_setup::<S, F> as _), Some(precondition_solve::<S, F> as _));
+            let mut codes = [ffi::CVodeSetJacTimesB(memory, which, None, times), 0, 0];
+            if krylov.preconditioner.is_some() {
+                codes[1] = ffi::CVodeSetPreconditionerB(memory, which, set_up, solve);
+            }
+            if let Some(factor) = krylov.tolerance_factor {
+                codes[2] = ffi::CVodeSetEpsLinB(memory, which, factor);
+            }
+            codes.into_iter().min().unwrap_or(0)
+        }
     });
 
     const INIT_QUADRATURES: InitBackwardQuadratures =

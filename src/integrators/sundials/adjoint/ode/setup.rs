@@ -10,7 +10,7 @@ use crate::integrators::{
         adjoint::{
             gradient::Gradient,
             options::AdjointOptions,
-            setup::{AdjointOf, Runs},
+            setup::{AdjointOf, Along, Runs},
         },
         cvode::CvodeKind,
         session::Session,
@@ -98,8 +98,9 @@ impl Runs<CvodeOptions> {
         system: &mut dyn Ode,
         functional: &mut dyn Functional,
         t: f64,
+        along: Along<'_>,
     ) -> Result<Gradient, Error> {
-        self.session(&mut self.equations(system, functional)?)?.gradient(t, &self.options)
+        self.session(&mut self.equations(system, functional)?)?.gradient(t, &self.options, along)
     }
 }
 
@@ -137,10 +138,32 @@ impl<S: Ode, F: Functional> Adjoint<S, F> {
     /// # Panics
     /// A panic of the system or the functional passes through.
     pub fn gradient(&mut self, t: f64) -> Result<Gradient, Error> {
+        self.gradient_along(t, &[], |_, _| ())
+    }
+
+    /// As [`gradient`](Self::gradient), and calls `visit(t, lambda)` at each of the `times` of the backward run, which
+    /// lead from the end to the start (`CVodeGetB`).
+    ///
+    /// Lambda at time t is the derivative of G with respect to the state y(t), for the equations from there on: what a push at
+    /// that time changes.
+    ///
+    /// # Errors
+    /// As for `gradient`, and for times that are not on that way.
+    ///
+    /// # Panics
+    /// As for `gradient`.
+    pub fn gradient_along(
+        &mut self,
+        t: f64,
+        times: &[f64],
+        mut visit: impl FnMut(f64, &[f64]),
+    ) -> Result<Gradient, Error> {
         check_time("end time", t)?;
         if t == self.runs.start.0 {
             return Err(Error::input("end time", t, "it is another than the start"));
         }
-        self.runs.gradient(&mut self.system, &mut self.functional, t)
+        let along = Along { times, visit: &mut visit };
+        along.check(self.runs.start.0, t)?;
+        self.runs.gradient(&mut self.system, &mut self.functional, t, along)
     }
 }

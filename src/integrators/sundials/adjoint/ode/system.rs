@@ -9,6 +9,7 @@ use crate::integrators::{
     sundials::{
         LinearSolver,
         adjoint::{equations::Equations, options::AdjointOptions},
+        ilu::{IncompleteLu, no_pivot},
         sensitivity::Access,
     },
 };
@@ -18,6 +19,8 @@ pub(super) struct AdjointSystem<S, F> {
     pub(super) equations: Equations<S, F>,
     supplied_rhs: bool,
     supplied_parameters: bool,
+    /// The preconditioner of a Krylov method in the backward run.
+    ilu: Option<IncompleteLu>,
 }
 
 impl<S: Ode, F: Functional> AdjointSystem<S, F> {
@@ -29,10 +32,17 @@ impl<S: Ode, F: Functional> AdjointSystem<S, F> {
         options: &AdjointOptions,
     ) -> Result<Self, InputError> {
         let access = Access { get: S::parameters, set: S::set_parameters };
+        let equations = Equations::new(system, functional, access, n, forward)?;
+        if let (LinearSolver::Krylov(_), false) = (&equations.backward, options.supplied_rhs) {
+            let help = "there are no entries of the Jacobian to transpose: write adjoint_rhs, and say so by \
+                        AdjointOptions::supplied_rhs";
+            return Err(InputError::new("linear solver", "Krylov", help));
+        }
         Ok(Self {
-            equations: Equations::new(system, functional, access, n, forward)?,
             supplied_rhs: options.supplied_rhs,
             supplied_parameters: options.supplied_parameters,
+            ilu: equations.backward.ilu().map(|(pattern, _)| IncompleteLu::new(pattern)),
+            equations,
         })
     }
 
@@ -87,6 +97,50 @@ impl<S: Ode, F: Functional> AdjointSystem<S, F> {
         let entries = backward.entries(y.len(), values);
         jacobian.write_transposed(backward, entries, |_, position| -jacobian.values()[position]);
         Ok(())
+    }
+
+    /// Writes the product of that derivative with `v`: -(df/dy)^T v.
+    pub(super) fn backward_product(
+        &mut self,
+        t: f64,
+        y: &[f64],
+        v: &[f64],
+        out: &mut [f64],
+    ) -> Result<(), Failure> {
+        call::adjoint_rhs(&mut self.equations.system, t, y, v, out)?;
+        out.iter_mut().for_each(|out| *out = -*out);
+        Ok(())
+    }
+
+    /// Factorizes I + gamma (df/dy)^T incompletely. Returns whether df/dy is that of this point.
+    pub(super) fn backward_setup(
+        &mut self,
+        t: f64,
+        y: &[f64],
+        gamma: f64,
+        reuse: bool,
+    ) -> Result<bool, Failure> {
+        // Taken out, as its values are written by all of the system.
+        let Some(mut ilu) = self.ilu.take() else { return Ok(true) };
+        let fresh = !(reuse && ilu.has_jacobian());
+        let mut outcome = Ok(());
+        if fresh {
+            ilu.update_jacobian(|values| {
+                outcome = self.backward_jacobian(t, y, values);
+                i32::from(outcome.is_err())
+            });
+        }
+        if outcome.is_ok() {
+            let factorized = ilu.factorize_shifted(gamma);
+            outcome = factorized.map_err(|row| Failure::Recoverable(no_pivot(row).into()));
+        }
+        self.ilu = Some(ilu);
+        outcome.map(|()| fresh)
+    }
+
+    /// Replaces `z` by the solution for it, by those factors.
+    pub(super) fn backward_solve(&self, z: &mut [f64]) {
+        self.ilu.iter().for_each(|ilu| ilu.solve(z));
     }
 
     fn update_jacobian(&mut self, t: f64, y: &[f64]) -> Result<(), Failure> {
