@@ -222,9 +222,9 @@ fn runs_allocate_nothing_after_their_start() {
             .observed_by(|_| ControlFlow::Continue(()));
         let options = solve::Options::new(1e-6, 1e-9);
         let mut run = Run::new(problem, method, (0.0, 1e3), &options).unwrap();
-        (0..300).for_each(|_| drop(run.advance().unwrap()));
+        (0..300).for_each(|_| assert!(run.advance().unwrap().is_some()));
         let steps = |run: &mut Run<'_>| {
-            (0..300).for_each(|_| drop(run.advance().unwrap()));
+            (0..300).for_each(|_| assert!(run.advance().unwrap().is_some()));
             let t = run.t() + 20.0;
             assert!(run.advance_to(t).unwrap().is_empty());
         };

@@ -17,6 +17,15 @@ pub(super) struct Dual<const N: usize> {
     pub(super) slopes: [f64; N],
 }
 
+impl<const N: usize> Dual<N> {
+    /// A function of this number and another one, from its value and its derivatives by both.
+    #[inline(always)]
+    fn with(self, other: Self, value: f64, [by_self, by_other]: [f64; 2]) -> Self {
+        let slope = |k: usize| by_self * self.slopes[k] + by_other * other.slopes[k];
+        Self { value, slopes: array::from_fn(slope) }
+    }
+}
+
 impl<const N: usize> Number for Dual<N> {
     #[inline(always)]
     fn value(self) -> f64 {
@@ -82,9 +91,7 @@ macro_rules! operator {
                 #[inline(always)]
                 fn $method(self, other: Self) -> Self {
                     let ($x, $y) = (self.value, other.value);
-                    let (by_x, by_y): (f64, f64) = ($by_x, $by_y);
-                    let slope = |k: usize| by_x * self.slopes[k] + by_y * other.slopes[k];
-                    Self { value: $value, slopes: array::from_fn(slope) }
+                    self.with(other, $value, [$by_x, $by_y])
                 }
             }
 

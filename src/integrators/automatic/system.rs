@@ -102,18 +102,16 @@ impl<E: RightHandSide> Automatic<E> {
     ) -> Result<(), Failure> {
         let Self { equations, parameters, shape, colouring, many, .. } = self;
         let colouring = colouring.get_or_insert_with(|| shape.colouring(y.len()));
+        many.start(y, parameters);
         for first in (0..colouring.count()).step_by(LANES) {
             let lanes = LANES.min(colouring.count() - first);
-            many.start(y, parameters);
-            for lane in 0..lanes {
-                let columns = colouring.columns(first + lane).iter();
-                columns.for_each(|&j| many.y[j].slopes[lane] = 1.0);
-            }
+            let columns =
+                |lane: usize| colouring.columns(first + lane).iter().map(move |&j| (j, lane));
+            let directions = || (0..lanes).flat_map(columns);
+            directions().for_each(|(j, lane)| many.y[j].slopes[lane] = 1.0);
             many.evaluate(equations, t)?;
-            for lane in 0..lanes {
-                let columns = colouring.columns(first + lane).iter();
-                columns.for_each(|&j| put(shape, j, lane, &many.f));
-            }
+            directions().for_each(|(j, lane)| put(shape, j, lane, &many.f));
+            directions().for_each(|(j, lane)| many.y[j].slopes[lane] = 0.0);
         }
         Ok(())
     }
@@ -291,11 +289,11 @@ impl<const N: usize> Workspace<N> {
         };
         numbers(y, &mut self.y);
         numbers(p, &mut self.p);
-        self.f.clear();
         self.f.resize(y.len(), Dual::from(0.0));
     }
 
     fn evaluate<E: RightHandSide>(&mut self, equations: &mut E, t: f64) -> Result<(), Failure> {
+        self.f.fill(Dual::from(0.0));
         equations.rhs(t, &self.y, &self.p, &mut self.f)
     }
 }

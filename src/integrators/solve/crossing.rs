@@ -14,7 +14,7 @@ use super::{
     sensitivities::{Carried, Crossing},
     snapshot::{Act, Snapshot},
     solution::{End, Occurrence},
-    watch::{Root, Sight, Turn},
+    watch::{Root, Seen, Sight, Turn},
 };
 use crate::base::input::InputError;
 use crate::integrators::common::{check_finite, time_tolerance};
@@ -25,15 +25,6 @@ pub(super) enum Found {
     Jumps(Vec<(usize, Root)>),
     /// The event of this number accumulates where the step began.
     Accumulation(usize, Turn),
-}
-
-/// Result of the search for roots of one event in a step.
-#[derive(Clone, Copy, Default)]
-pub(super) struct Seen {
-    /// The next one.
-    root: Option<Root>,
-    /// Where its function was first found undefined.
-    undefined: Option<f64>,
 }
 
 impl<'a> Run<'a> {

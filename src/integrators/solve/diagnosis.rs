@@ -1,6 +1,6 @@
 //! Why a run takes so many steps, by a look at the equations where it has come to.
 
-use super::{method::Method, run::Run};
+use super::{method::Limit, run::Run};
 use crate::base::vector::noise;
 
 /// Steps after which a run may lead nowhere, and how many times as many would then be left.
@@ -16,32 +16,6 @@ const PRODUCTS: i32 = 12;
 const SHIFT: f64 = 1e-7;
 /// So many times in which it decays or turns, a mode is none that the solution follows.
 const UNFOLLOWED: f64 = 30.0;
-
-/// What limits the steps of a method besides accuracy.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Limit {
-    /// Nothing, or it is unknown.
-    None,
-    /// Any fast mode.
-    FastModes,
-    /// The same, and the integrator itself watches for them.
-    Watched,
-    /// Fast oscillations, at orders from 3 on.
-    Oscillations,
-}
-
-impl Method {
-    /// What limits its steps for ODEs without a mass matrix.
-    pub(super) fn limit(self) -> Limit {
-        match self {
-            Self::Bdf => Limit::Oscillations,
-            Self::Adams => Limit::FastModes,
-            Self::DormandPrince => Limit::Watched,
-            method if method.is_explicit() => Limit::FastModes,
-            _ => Limit::None,
-        }
-    }
-}
 
 /// The dominant eigenvalue of df/dy.
 struct Rate {

@@ -69,7 +69,31 @@ pub enum Method {
     Ida,
 }
 
+/// What limits the steps of a method besides accuracy.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Limit {
+    /// Nothing, or it is unknown.
+    None,
+    /// Any fast mode.
+    FastModes,
+    /// The same, and the integrator itself watches for them.
+    Watched,
+    /// Fast oscillations, at orders from 3 on.
+    Oscillations,
+}
+
 impl Method {
+    /// What limits its steps for ODEs without a mass matrix.
+    pub(super) fn limit(self) -> Limit {
+        match self {
+            Self::Bdf => Limit::Oscillations,
+            Self::Adams => Limit::FastModes,
+            Self::DormandPrince => Limit::Watched,
+            method if method.is_explicit() => Limit::FastModes,
+            _ => Limit::None,
+        }
+    }
+
     /// Its name in error messages.
     #[must_use]
     pub fn name(self) -> String {

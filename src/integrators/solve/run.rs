@@ -10,12 +10,10 @@ use faer::{MatMut, MatRef};
 
 use super::{
     caution::Caution,
-    crossing::Seen,
-    diagnosis::Limit,
     engine::Engine,
     error::Reason,
     event::Event,
-    method::Method,
+    method::{Limit, Method},
     options::Options,
     problem::{Break, Equations, Observer, Problem},
     saved::Saved,
@@ -23,7 +21,7 @@ use super::{
     sides::Surfaces,
     snapshot::{Log, SharedSides, Snapshot},
     solution::{End, Occurrence, SavedPoint},
-    watch::EventTracker,
+    watch::{EventTracker, Seen},
 };
 use crate::base::input::InputError;
 use crate::integrators::common::{

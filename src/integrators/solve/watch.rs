@@ -22,6 +22,15 @@ pub(super) struct Root {
     behind: Point,
 }
 
+/// The search for roots of one event in a step.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Seen {
+    /// The next one.
+    pub(super) root: Option<Root>,
+    /// Where the function was first found undefined.
+    pub(super) undefined: Option<f64>,
+}
+
 /// An event function, and how far it was followed.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct EventTracker {

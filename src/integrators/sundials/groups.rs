@@ -108,6 +108,9 @@ fn halved<E>(
 mod tests {
     use super::columns_by_groups;
 
+    /// The number of columns, and the entries.
+    type Matrix = (usize, Vec<(usize, usize)>);
+
     /// The entries that are found of a matrix, and how many evaluations that takes.
     fn found(n: usize, entries: &[(usize, usize)]) -> (Vec<(usize, usize)>, usize) {
         let mut columns = vec![Vec::new(); n];
@@ -144,7 +147,7 @@ mod tests {
         let arrow = |n: usize| (n, (0..n).flat_map(|k| [(0, k), (k, 0)]).collect());
         let empty = |n: usize| (n, vec![(n - 1, 0)]);
         // a few evaluations for each of log2(n / 16) splittings, or all columns by themselves
-        let cases: [((usize, Vec<(usize, usize)>), usize); 9] = [
+        let cases: [(Matrix, usize); 9] = [
             (grid(30), 200),
             (line(2000), 70),
             (line(1), 1),
