@@ -51,6 +51,8 @@ pub mod studies;
 
 /// The matrices of [`Ode::dense_jacobian`](ode::Ode::dense_jacobian) and of sensitivities are those of this crate.
 pub use faer;
+#[cfg(feature = "bodies")]
+pub use num_dual;
 
 // What a first program needs, by its own name.
 pub use base::input::{Fraction, InputError};
@@ -76,8 +78,8 @@ pub use elements::{
         Part, Strain, Viscosity,
     },
     material::{
-        FibreDirection, Fibres, Hill, Lame, Law, Material, MaxwellBranch, Moments, Plane,
-        RigidMass, Substance,
+        FibreDirection, Fibres, Hill, Lame, Law, Material, MaxwellBranch, Moments, OwnEnergy,
+        Plane, RigidMass, StrainEnergy, Substance,
     },
     mesh::{Cells, Mesh, Selection, SolidCells},
     rod::{Rod, RodPath, RodSection, SectionNumbers},

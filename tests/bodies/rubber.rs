@@ -1,9 +1,10 @@
 //! Laws of rubber, and bodies that are nearly incompressible, against closed forms and published numbers.
 
 use pliant::force::NodalForces;
+use pliant::num_dual::DualNum;
 use pliant::{
     Axis, Body, Cells, Dilatation, Equilibrium, Fibres, Law, Material, Mesh, Phase, Plane, Scene,
-    SolidCells, Statics, Strain, Substance,
+    SolidCells, Statics, Strain, StrainEnergy, Substance,
 };
 
 /// Shear modulus (Pa) of the closed forms, which are those of incompressible bodies.
@@ -14,11 +15,26 @@ fn rubber(law: Law) -> Substance {
     Material::of_moduli(1000.0, SHEAR, 1e5 * SHEAR, 0.0).law(law)
 }
 
-const LAWS: [Law; 4] = [
+/// Gent's rubber, an energy of a program's own: W = -mu J/2 ln(1 - (I1 - 3)/J).
+#[derive(Debug)]
+struct Gent;
+
+/// J
+const LIMIT: f64 = 20.0;
+
+impl StrainEnergy for Gent {
+    fn energy<T: DualNum<Primitive = f64> + Copy>(&self, [a, b, c]: [T; 3]) -> T {
+        let above = a * a + b * b + c * c - 3.0;
+        (-above / LIMIT).ln_1p() * (-0.5 * SHEAR * LIMIT)
+    }
+}
+
+const LAWS: [Law; 5] = [
     Law::NeoHookean,
     Law::MooneyRivlin { second: 0.25 },
     Law::Yeoh { second: -0.1, third: 0.02 },
     Law::Ogden { exponents: [1.3, 5.0, -2.0], shares: [0.97, 0.01, 0.02] },
+    Law::own(&Gent),
 ];
 
 /// Nominal stress (Pa) along the first axis where a body that keeps its volume is stretched by these factors, and nothing pulls
@@ -37,6 +53,7 @@ fn nominal(law: Law, stretches: [f64; 3]) -> f64 {
         Law::Yeoh { second, third } => {
             [0.5 * SHEAR * (1.0 + 2.0 * second * above + 3.0 * third * above * above), 0.0]
         }
+        Law::Own(_) => [0.5 * SHEAR * LIMIT / (LIMIT - above), 0.0],
         _ => [0.5 * SHEAR, 0.0],
     };
     2.0 * (first * first - third * third) * (w1 + w2 * second * second) / first
@@ -370,4 +387,26 @@ fn frequencies_do_not_lock() {
         assert!((found / exact - 1.0).abs() < 0.01, "{unknowns} unknowns: {found}, {exact}");
     }
     assert!(locked.1 > 1.5 * exact, "{locked:?} {exact}");
+}
+
+/// An energy that does not belong to its material is refused.
+#[test]
+fn energies_fit_their_material() {
+    #[derive(Debug)]
+    struct OneSided;
+    impl StrainEnergy for OneSided {
+        fn energy<T: DualNum<Primitive = f64> + Copy>(&self, [a, _, _]: [T; 3]) -> T {
+            (a - 1.0) * (a - 1.0) * SHEAR
+        }
+    }
+    let refused = |of: Substance| {
+        let body = Body::new(Mesh::bar(1.0, 4).unwrap(), of).area(0.01).build();
+        body.unwrap_err().to_string()
+    };
+    let message =
+        refused(Material::of_moduli(1000.0, 1.01 * SHEAR, SHEAR, 0.0).law(Law::own(&Gent)));
+    assert!(message.contains("Gent") && message.contains("1.000000e5 Pa"), "{message}");
+    assert!(message.contains("1.010000e5 Pa"), "{message}");
+    let message = refused(rubber(Law::own(&OneSided)));
+    assert!(message.contains("OneSided") && message.contains("symmetric"), "{message}");
 }

@@ -27,7 +27,7 @@ pub(crate) use laws::{
     ByPoint, Elastic, Fibre, Hookean, Linear, Maxwell, ObjectiveViscosity, Sprung, ViscousLaw,
     with_law,
 };
-pub use laws::{Hill, Law, Strain, Viscosity};
+pub use laws::{Hill, Law, OwnEnergy, Strain, StrainEnergy, Viscosity};
 pub(crate) use response::axes;
 pub use rigid_mass::{Moments, RigidMass};
 pub use substance::Substance;

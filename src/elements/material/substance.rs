@@ -277,6 +277,9 @@ impl Substance {
         not_negative("material.mass_damping", self.mass_damping, "1/s")?;
         self.branches.iter().try_for_each(MaxwellBranch::validate)?;
         self.fibres.iter().try_for_each(Fibres::validate)?;
-        self.law.map_or(Ok(()), |law| law.validate())
+        match self.law {
+            Some(Law::Own(energy)) => energy.validate(self.material.elastic().mu),
+            law => law.map_or(Ok(()), Law::validate),
+        }
     }
 }

@@ -9,6 +9,7 @@ mod invariants;
 mod maxwell;
 mod newtonian;
 mod objective_viscosity;
+mod own;
 mod principal;
 mod rivlin;
 mod stretches;
@@ -23,6 +24,7 @@ pub use hill::Hill;
 pub(crate) use hookean::{Hookean, Linear, StVenantKirchhoff};
 pub(crate) use maxwell::{Maxwell, Sprung};
 pub(crate) use objective_viscosity::ObjectiveViscosity;
+pub use own::{OwnEnergy, StrainEnergy};
 pub(crate) use rivlin::Rivlin;
 pub(crate) use stretches::ByStretches;
 use stretches::Kind;
@@ -80,9 +82,16 @@ pub enum Law {
     /// in a frame that rotates with the point, for large rotations and small strains. Unlike St.
     /// Venant-Kirchhoff material it stays stiff under compression.
     Corotated,
+    /// W = an energy that the program [defines](StrainEnergy), of the stretches without the change of volume, + U: see [`Law::own`].
+    Own(OwnEnergy),
 }
 
 impl Law {
+    /// The law of an energy of one's own: of a `static`, or a value that `Box::leak` keeps, as laws are copied to all places that need them.
+    pub const fn own(energy: &'static impl StrainEnergy) -> Self {
+        Self::Own(OwnEnergy::new(energy))
+    }
+
     /// Its name, as in scene files.
     pub fn name(self) -> &'static str {
         match self {
@@ -92,12 +101,13 @@ impl Law {
             Self::Yeoh { .. } => "yeoh",
             Self::Ogden { .. } => "ogden",
             Self::Corotated => "corotated",
+            Self::Own(_) => "own",
         }
     }
 
     pub(crate) fn validate(self) -> Result<(), InputError> {
         match self {
-            Self::StVenantKirchhoff | Self::NeoHookean | Self::Corotated => Ok(()),
+            Self::StVenantKirchhoff | Self::NeoHookean | Self::Corotated | Self::Own(_) => Ok(()),
             Self::MooneyRivlin { second } => match (0.0..=1.0).contains(&second) {
                 true => Ok(()),
                 false => {
@@ -202,6 +212,7 @@ impl Elastic {
                 };
                 by_stretches(Kind::Ogden { terms: [term(0), term(1), term(2)], bulk })
             }
+            (Some(Law::Own(energy)), _) => by_stretches(Kind::Own { energy, bulk }),
             (Some(Law::Corotated), _) => by_stretches(Kind::Corotated(lame)),
             (Some(Law::Yeoh { second, third }), _) => rivlin([c1, c1 * second, c1 * third], 0.0),
         }

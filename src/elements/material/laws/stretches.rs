@@ -1,4 +1,4 @@
-//! Laws that are written by the principal stretches: Ogden's rubber, and Hooke's law of the stretches.
+//! Laws that are written by the principal stretches: Ogden's rubber, energies of programs, and Hooke's law of the stretches.
 //!
 //! The corotated frame rotates at each point and not with the cell as a whole, so that energy is conserved
 //! and tangents are symmetric. Both laws are one for the loops: eigenvalues, eigenvectors and functions of
@@ -8,6 +8,7 @@
 
 #![allow(clippy::needless_range_loop, reason = "closures would not be compiled in place")]
 
+use super::own::OwnEnergy;
 use super::principal::{Principal, Slopes};
 use super::volume::{less_exponential, swollen};
 use crate::base::tensor::{Matrix, Real};
@@ -33,6 +34,12 @@ pub(super) enum Kind {
         /// kappa (Pa)
         bulk: f64,
     },
+    /// W = an energy of l_i / J^(1/3) + (kappa/4) (J^2 - 1 - 2 ln J), g = J - 1.
+    Own {
+        energy: OwnEnergy,
+        /// kappa (Pa)
+        bulk: f64,
+    },
     /// W = mu |U - I|^2 + (lambda/2) tr(U - I)^2 with U^2 = F^T F, g = tr(U - I): Hooke's law in the frame
     /// that rotates with the point.
     Corotated(Lame),
@@ -53,6 +60,11 @@ impl Kind {
                 };
                 terms.into_iter().map(of_term).sum()
             }
+            Self::Own { energy, .. } => {
+                let x = each(twice, logarithm);
+                let mean = (x[0] + x[1] + x[2]) / 3.0;
+                energy.value(each(x, |x| x - mean))
+            }
             Self::Corotated(Lame { mu, .. }) => {
                 let squares = each(twice, |twice| longer(twice) * longer(twice));
                 mu * squares.iter().sum::<f64>()
@@ -64,7 +76,9 @@ impl Kind {
     #[inline]
     fn dilatation(self, twice: [f64; 3]) -> f64 {
         match self {
-            Self::Ogden { .. } => each(twice, logarithm).iter().sum::<f64>().exp_m1(),
+            Self::Ogden { .. } | Self::Own { .. } => {
+                each(twice, logarithm).iter().sum::<f64>().exp_m1()
+            }
             Self::Corotated(_) => each(twice, longer).iter().sum(),
         }
     }
@@ -73,7 +87,7 @@ impl Kind {
     #[inline]
     fn swelling(self, twice: [f64; 3]) -> [f64; 3] {
         let stretch = match self {
-            Self::Ogden { .. } => {
+            Self::Ogden { .. } | Self::Own { .. } => {
                 return each(twice, |own| (self.dilatation(twice) + 1.0) / (own + 1.0));
             }
             Self::Corotated(_) => each(twice, |twice| longer(twice) + 1.0),
@@ -85,7 +99,7 @@ impl Kind {
     #[inline]
     fn of_volume(self, dilatation: f64) -> [f64; 3] {
         match self {
-            Self::Ogden { bulk, .. } => swollen(bulk, dilatation),
+            Self::Ogden { bulk, .. } | Self::Own { bulk, .. } => swollen(bulk, dilatation),
             Self::Corotated(Lame { lambda, .. }) => {
                 let pull = lambda * dilatation;
                 [0.5 * pull * dilatation, pull, lambda]
@@ -124,6 +138,16 @@ impl Kind {
                 (0..3).for_each(|i| kirchhoff[i] /= twice[i] + 1.0);
                 kirchhoff
             }
+            Self::Own { energy, .. } => {
+                let [pull, _] = self.volume(twice, pull);
+                let x = each(twice, logarithm);
+                let (mut kirchhoff, _) = energy.slopes(x);
+                let stretch = (x[0] + x[1] + x[2]).exp();
+                (0..3).for_each(|i| {
+                    kirchhoff[i] = (kirchhoff[i] + stretch * pull) / (twice[i] + 1.0)
+                });
+                kirchhoff
+            }
             // S_i l_i = U' + 2 mu (l_i - 1)
             Self::Corotated(Lame { mu, .. }) => {
                 let [pull, _] = self.volume(twice, pull);
@@ -139,6 +163,7 @@ impl Kind {
         let volume = self.volume(twice, pull);
         match self {
             Self::Ogden { terms, .. } => ogden(terms, twice, stress, volume),
+            Self::Own { energy, .. } => own(energy, twice, stress, volume),
             Self::Corotated(Lame { mu, .. }) => corotated(mu, twice, stress, volume),
         }
     }
@@ -228,6 +253,42 @@ fn ogden(
                 };
         }
     }
+    by_logarithms(squares, stress, by, apart)
+}
+
+/// A law of a program's own, likewise.
+fn own(energy: OwnEnergy, twice: [f64; 3], stress: [f64; 3], [pull, stiff]: [f64; 2]) -> Slopes {
+    let x = each(twice, logarithm);
+    let stretch = (x[0] + x[1] + x[2]).exp();
+    let squares = each(twice, |twice| twice + 1.0);
+    let (kirchhoff, mut by) = energy.slopes(x);
+    let apart = std::array::from_fn(|i| {
+        let [j, k] = [(i + 1) % 3, (i + 2) % 3];
+        let d = x[j] - x[k];
+        // where stretches meet, the mean of the slopes on both sides, an error of second order in d
+        match d.abs() > NEAR {
+            true => (kirchhoff[j] - kirchhoff[k]) / (squares[j] - squares[k]),
+            false => {
+                0.25 * (by[j][j] + by[k][k] - 2.0 * by[j][k]) / (0.5 * (squares[j] + squares[k]))
+            }
+        }
+    });
+    for row in &mut by {
+        row.iter_mut().for_each(|by| *by += stretch * (pull + stretch * stiff));
+    }
+    by_logarithms(squares, stress, by, apart)
+}
+
+/// Difference of logarithms of stretches below which a quotient of differences has fewer digits than a derivative.
+const NEAR: f64 = 1e-5;
+
+/// Slopes of S_i = t_i / l_i^2, from the squares of l, the derivatives of t_i by x_j, and (t_j - t_k) / (l_j^2 - l_k^2) for each i.
+fn by_logarithms(
+    squares: [f64; 3],
+    stress: [f64; 3],
+    by: [[f64; 3]; 3],
+    apart: [f64; 3],
+) -> Slopes {
     let mut slopes = Slopes { stress, ..Slopes::default() };
     for i in 0..3 {
         for j in 0..3 {
@@ -368,15 +429,27 @@ impl ElasticLaw for ByStretches {
 
     #[inline(always)]
     fn domain<T: Real, const M: usize>(&self, stretch: T, at: &Principal<T, M>) -> T {
-        match self.across.is_free::<M>() {
+        let stretch = match self.across.is_free::<M>() {
             true => stretch * self.thickness(at),
             false => stretch,
-        }
+        };
+        let Kind::Own { .. } = self.kind else { return stretch };
+        let [x, y, z] = at.twice;
+        let [domain] = T::each([stretch, x, y, z], |[stretch, x, y, z]| {
+            let is_defined = self.kind.energy_of_shape([x, y, z]).is_finite();
+            [if is_defined { stretch } else { -1.0 }]
+        });
+        domain
     }
 
     fn outside(&self, domain: f64) -> String {
         let law = match self.kind {
             Kind::Ogden { .. } => "rubber of Ogden's law cannot be pressed to nothing",
+            Kind::Own { energy, .. } => {
+                return format!(
+                    "is inverted, or the energy of {energy:?} is not defined there: load it less, or refine the mesh there"
+                );
+            }
             Kind::Corotated(_) => {
                 "the corotated law is one of small strains; take one of rubber for larger ones"
             }

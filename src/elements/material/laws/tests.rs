@@ -2,6 +2,7 @@
 //! every space.
 
 use nalgebra::{Rotation3, Vector3};
+use num_dual::DualNum;
 use pulp::{Arch, Scalar, Simd, WithSimd};
 
 use super::hookean_viscosity::HookeanViscosity;
@@ -14,7 +15,7 @@ use crate::elements::material::{Blocks, Deformation, ElasticLaw, Lame, Material,
 /// Moduli of a soft material, Pa.
 const LAME: Lame = Lame { lambda: 2.0, mu: 1.0 };
 /// All laws, with the assumption across a plane.
-const LAWS: [(Strain, Option<Law>, Plane); 13] = [
+static LAWS: [(Strain, Option<Law>, Plane); 15] = [
     (Strain::Cauchy, None, Plane::Strain),
     (Strain::Cauchy, None, Plane::Stress),
     (Strain::Green, None, Plane::Strain),
@@ -25,12 +26,30 @@ const LAWS: [(Strain, Option<Law>, Plane); 13] = [
     (Strain::Green, Some(Law::Yeoh { second: -0.2, third: 0.1 }), Plane::Stress),
     (Strain::Green, Some(OGDEN), Plane::Strain),
     (Strain::Green, Some(OGDEN), Plane::Stress),
+    (Strain::Green, Some(Law::own(&MOONEY)), Plane::Strain),
+    (Strain::Green, Some(Law::own(&MOONEY)), Plane::Stress),
     (Strain::Green, Some(Law::Corotated), Plane::Strain),
     (Strain::Green, Some(Law::Corotated), Plane::Stress),
     (Strain::Green, None, Plane::Stress),
 ];
 
 const OGDEN: Law = Law::Ogden { exponents: [1.3, 5.0, -2.0], shares: [0.7, 0.1, 0.2] };
+
+/// Mooney and Rivlin's energy, as a program may write it.
+#[derive(Debug)]
+struct Mooney {
+    first: f64,
+    second: f64,
+}
+
+static MOONEY: Mooney = Mooney { first: 0.35, second: 0.15 };
+
+impl StrainEnergy for Mooney {
+    fn energy<T: DualNum<Primitive = f64> + Copy>(&self, [a, b, c]: [T; 3]) -> T {
+        let [a, b, c] = [a * a, b * b, c * c];
+        (a + b + c - 3.0) * self.first + (a * b + b * c + c * a - 3.0) * self.second
+    }
+}
 
 fn law((strain, law, plane): (Strain, Option<Law>, Plane), cell_dimension: usize) -> Elastic {
     Elastic::new(strain, law, LAME, cell_dimension, plane)
@@ -462,7 +481,7 @@ fn simple_shear() {
             (_, None | Some(Law::StVenantKirchhoff), _) => {
                 mu * gamma + gamma.powi(3) * (0.5 * lambda + mu)
             }
-            (_, Some(Law::NeoHookean | Law::MooneyRivlin { .. }), _) => mu * gamma,
+            (_, Some(Law::NeoHookean | Law::MooneyRivlin { .. } | Law::Own(_)), _) => mu * gamma,
             (_, Some(Law::Yeoh { second, third }), _) => {
                 let above = gamma * gamma;
                 mu * gamma * (1.0 + 2.0 * second * above + 3.0 * third * above * above)
