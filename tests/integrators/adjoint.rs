@@ -329,6 +329,143 @@ fn the_adjoint_along_the_way_in_closed_form() {
     }
 }
 
+/// The integral of |y|^2/2.
+struct HalfSquare;
+
+impl Functional for HalfSquare {
+    fn running(
+        &mut self,
+        _t: f64,
+        y: &[f64],
+        _p: &[f64],
+        slopes: Option<Slopes<'_>>,
+    ) -> Result<f64, Failure> {
+        if let Some(slopes) = slopes {
+            slopes.y.copy_from_slice(y);
+        }
+        Ok(0.5 * y.iter().map(|y| y * y).sum::<f64>())
+    }
+}
+
+/// `cvsHessian_ASA_FSA` of SUNDIALS 6.4.1: the gradient and the Hessian that its `.out` prints with five digits.
+#[test]
+fn the_hessian_of_the_example_of_cvodes() {
+    let rhs = |_t: f64, y: &[f64], p: &[f64], ydot: &mut [f64]| {
+        ydot.copy_from_slice(&[-p[0] * y[0] * y[0] - y[2], -y[1], -p[1] * p[1] * y[1] * y[2]]);
+        Ok(())
+    };
+    let pattern = Pattern::from_entries(3, [(0, 0), (0, 2), (1, 1), (2, 1), (2, 2)]).unwrap();
+    let jacobian = Jacobian::DifferenceQuotients;
+    for solver in [
+        LinearSolver::Dense(jacobian),
+        LinearSolver::Band { lower: 1, upper: 2, jacobian },
+        LinearSolver::Klu { pattern, jacobian },
+    ] {
+        let system = pliant::ode::with_parameters(rhs, [1.0, 2.0]);
+        let forward = CvodeOptions::new(1e-8, 1e-8).newton(solver);
+        let options = AdjointOptions::new(1e-8, 1e-8);
+        let mut adjoint =
+            Adjoint::new(system, HalfSquare, 0.0, &[1.0; 3], &forward, &options).unwrap();
+        let columns = [[1.0, 0.0], [0.0, 1.0]].map(|v| adjoint.hessian_times(2.0, &v).unwrap());
+        let printed = [(-1.2838e-1, [1.5628e-1, -7.8678e-2]), (1.8036e-2, [-7.8678e-2, 8.9814e-2])];
+        for (column, (slope, second)) in columns.iter().zip(printed) {
+            println!("{column:?}");
+            let far = |found: f64, printed: f64| (found / printed - 1.0).abs();
+            // half of the last digit that is printed; the second component of dG/dp is 1.8037e-2 forward
+            assert!(far(column.value, slope) < 5e-5, "{} {slope}", column.value);
+            let errors = column.parameters.iter().zip(second).map(|(h, p)| far(*h, p));
+            assert!(errors.fold(0.0, f64::max) < 1e-5, "{:?} {second:?}", column.parameters);
+        }
+        assert_eq!(adjoint.system().parameters(), [1.0, 2.0], "put back to the last bit");
+        // any direction, by its columns
+        let mixed = adjoint.hessian_times(2.0, &[3.0, -0.5]).unwrap();
+        for i in 0..2 {
+            let sum = 3.0 * columns[0].parameters[i] - 0.5 * columns[1].parameters[i];
+            assert!((mixed.parameters[i] - sum).abs() < 1e-6, "{} {sum}", mixed.parameters[i]);
+        }
+    }
+}
+
+/// x(T) of an oscillator x'' = -w^2 x, of w and the start: second derivatives in closed form, with everything supplied by the
+/// system and with nothing.
+#[test]
+fn second_derivatives_of_an_oscillator_in_closed_form() {
+    struct Oscillator([f64; 1]);
+    impl Ode for Oscillator {
+        fn rhs(&mut self, _t: f64, y: &[f64], ydot: &mut [f64]) -> Result<(), Failure> {
+            ydot.copy_from_slice(&[y[1], -self.0[0] * self.0[0] * y[0]]);
+            Ok(())
+        }
+        fn dense_jacobian(
+            &mut self,
+            _t: f64,
+            _y: &[f64],
+            _ydot: &[f64],
+            mut jacobian: MatMut<'_, f64>,
+        ) -> Result<(), Failure> {
+            (jacobian[(0, 1)], jacobian[(1, 0)]) = (1.0, -self.0[0] * self.0[0]);
+            Ok(())
+        }
+        fn adjoint_rhs(
+            &mut self,
+            _t: f64,
+            _y: &[f64],
+            lambda: &[f64],
+            out: &mut [f64],
+        ) -> Result<(), Failure> {
+            out.copy_from_slice(&[-self.0[0] * self.0[0] * lambda[1], lambda[0]]);
+            Ok(())
+        }
+        fn adjoint_parameters(
+            &mut self,
+            _t: f64,
+            y: &[f64],
+            lambda: &[f64],
+            out: &mut [f64],
+        ) -> Result<(), Failure> {
+            out[0] = -2.0 * self.0[0] * y[0] * lambda[1];
+            Ok(())
+        }
+        fn parameters(&self) -> &[f64] {
+            &self.0
+        }
+        fn set_parameters(&mut self, values: &[f64]) {
+            self.0.copy_from_slice(values);
+        }
+    }
+    let back = || AdjointOptions::new(1e-8, 1e-10);
+    let (w, t) = (3.0, 1.3);
+    let (sin, cos) = f64::sin_cos(w * t);
+    // x(T) = cos w T + sin w T/(2 w), from x0 = 1 and v0 = 1/2
+    let exact = [
+        -t * sin + 0.5 * (t * cos / w - sin / (w * w)),
+        -t * t * cos + 0.5 * (-t * t * sin / w - 2.0 * t * cos / (w * w) + 2.0 * sin / (w * w * w)),
+        -t * sin,
+        t * cos / w - sin / (w * w),
+    ];
+    for (jacobian, options) in [
+        (Jacobian::DifferenceQuotients, back()),
+        (Jacobian::Supplied, back()),
+        (Jacobian::Supplied, back().supplied_rhs().supplied_parameters()),
+    ] {
+        let forward = CvodeOptions::new(1e-8, 1e-10).newton(LinearSolver::Dense(jacobian));
+        let made = Adjoint::new(Oscillator([w]), End, 0.0, &[1.0, 0.5], &forward, &options);
+        let mut adjoint = made.unwrap();
+        let found = adjoint.hessian_times(t, &[1.0]).unwrap();
+        let found =
+            [found.value, found.parameters[0], found.initial_state[0], found.initial_state[1]];
+        let error = found.iter().zip(exact).map(|(f, e)| (f - e).abs()).fold(0.0, f64::max);
+        println!("{jacobian:?}: {error:e}");
+        assert!(error < 5e-7, "{found:?} {exact:?}");
+        for (direction, says) in
+            [(vec![], "length"), (vec![0.0], "zero"), (vec![f64::NAN], "direction")]
+        {
+            let error = adjoint.hessian_times(t, &direction).unwrap_err().to_string();
+            assert!(error.contains(says), "{error}");
+        }
+    }
+}
+
 /// y' = y, which ends where the equations end: at t = 1.
 #[test]
 fn the_equations_are_not_asked_beyond_the_end() {

@@ -1,5 +1,6 @@
 //! Adjoint gradients of ordinary differential equations, by CVODES.
 
+mod hessian;
 mod problem;
 mod setup;
 mod system;
