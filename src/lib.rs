@@ -87,8 +87,9 @@ pub use integrators::common::Integrator;
 pub use io::scene_file::{DeviceTable, OutputRequest, SceneFile};
 #[cfg(feature = "bodies")]
 pub use scene::{
-    BodyState, Device, DeviceGauge, DeviceInput, DeviceOutput, DeviceSignals, DeviceSite,
-    DeviceState, DeviceValue, InputLimit, Phase, ReducedModel, Scene, SceneState, Smaller, Term,
+    BodyState, Device, DeviceGauge, DeviceInput, DeviceOutput, DeviceRow, DeviceSignals,
+    DeviceSite, DeviceState, DeviceValue, InputLimit, Phase, ReducedModel, Scene, SceneState,
+    Smaller, Term,
     constraint::{Axis, Prescribed},
     devices::*,
     forces::*,

@@ -35,7 +35,9 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 
 pub(crate) use contacts::ContactReader;
-pub use device::{Device, DeviceGauge, DeviceSignals, DeviceSite, DeviceState, DeviceValue};
+pub use device::{
+    Device, DeviceGauge, DeviceRow, DeviceSignals, DeviceSite, DeviceState, DeviceValue,
+};
 pub(crate) use device_rows::STEER;
 pub use device_rows::{DeviceInput, DeviceOutput, InputLimit};
 pub(crate) use gas::Amounts;
@@ -531,7 +533,8 @@ impl Scene {
         start: &PhaseStart,
     ) -> Result<Vec<ConstraintRow>, InputError> {
         let (tied, on_axis) = (self.tied()?, self.held_on_axis());
-        let all = phase.constraints.iter().chain(tied).chain(&on_axis);
+        let of_devices = self.device_constraints()?;
+        let all = phase.constraints.iter().chain(tied).chain(&on_axis).chain(&of_devices);
         rows(all, &self.body, &phase.name, start)
     }
 }
