@@ -93,7 +93,9 @@ pub(super) fn add_joint(scene: Scene, value: &Value) -> Result<Scene, Error> {
     let name = device_name(table, &scene, "joint", "joint")?;
     let kind = table.required("kind", |value| value.word(&KINDS))?;
     let side = |value: &Value| match value.value {
-        DeValue::String(name) if name == "world" => Ok("world".into()),
+        DeValue::String(name) if name == "world" || scene.body().name() == Some(name) => {
+            Ok(Selection::Set(name.to_string()))
+        }
         _ => selection(value, scene.body().mesh()),
     };
     let between: [Selection; 2] = table.required("between", |value| {

@@ -97,7 +97,13 @@ impl Side {
                 label,
             });
         }
-        let nodes = body.mesh().select(selection)?;
+        let nodes = match selection {
+            // the name of a single body is no set of its mesh
+            Selection::Set(name) if body.name() == Some(name) => {
+                (0..body.mesh().node_count()).collect()
+            }
+            _ => body.mesh().select(selection)?,
+        };
         let nodes = match (rigid_frame(body, &nodes, input, &label)?, body.sections_at(&nodes)) {
             (Some(frame), _) => frame,
             (None, Some(sections)) => {
