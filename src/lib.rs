@@ -150,6 +150,11 @@ pub struct ReducedModelsDoctests;
 #[cfg(all(doctest, feature = "bodies"))]
 pub struct RodsDoctests;
 
+/// Compiles and runs the code blocks of the page on joints.
+#[doc = include_str!("../docs/scenes/joints.md")]
+#[cfg(all(doctest, feature = "bodies"))]
+pub struct JointsDoctests;
+
 /// Compiles and runs the code blocks of the page on sweeps.
 #[doc = include_str!("../docs/sweeps.md")]
 #[cfg(all(doctest, feature = "sweep"))]

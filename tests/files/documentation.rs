@@ -21,6 +21,7 @@ const PAGE: &str = concat!(
     include_str!("../../docs/scenes/growth.md"),
     include_str!("../../docs/scenes/fluids.md"),
     include_str!("../../docs/scenes/rods.md"),
+    include_str!("../../docs/scenes/joints.md"),
 );
 const SILICONE: &str = include_str!("../../docs/silicone.md");
 

@@ -50,7 +50,7 @@ pub(super) const JOINT: TableKeys = TableKeys::new(
         Key::number("motor_limit", "the largest torque or force of the motor, at rest", "N m or N").default("none"),
         Key::number("no_load_speed", "the speed at which that has fallen to 0, along a line", "rad/s or m/s").default("none"),
     ],
-    "[[joint]]\nname = \"hip\"\nkind = \"revolute\"\nbetween = [\"world\", \"thigh\"]\nat = [0.0, 0.2]\nservo_stiffness = 2.0\nservo_damping = 0.05",
+    "[[joint]]\nname = \"hip\"\nkind = \"revolute\"\nbetween = [\"world\", \"left\"]\nat = [0.0, 0.05]\nservo_stiffness = 2.0\nservo_damping = 0.05",
 );
 
 pub(super) const MOTOR: TableKeys = TableKeys::new(

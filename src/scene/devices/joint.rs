@@ -40,10 +40,17 @@ use crate::scene::timeline::{
 /// ```
 /// use pliant::{Body, Cells, Joint, Material, Mesh, Phase, Sampling, Scene, Settings, simulate::Reading};
 ///
-/// // a rigid bar on a pin, which a servo lifts to the level
+/// // a motor of 1 N m lifts a bar by a pin at its end: what it supplies is torque times angle
 /// let mesh = Mesh::rectangle([0.2, 0.02], [2, 2], Cells::Rectangles)?;
-/// let steel = Material { density: 7800.0, ..Material::rigid(7800.0) };
-/// let bar = Body::new(mesh, steel).thickness(0.02).named("bar").build()?;
+/// let bar = Body::new(mesh, Material::rigid(1000.0)).thickness(0.02).named("bar").build()?;
+/// let scene = Scene::new(bar)
+///     .gravity([0.0, -9.81])
+///     .joint(Joint::revolute("pin", ["world", "bar"], [0.0, 0.01]))
+///     .phase(Phase::until(0.05).device_input("pin", &Joint::TORQUE, 1.0));
+/// let sampling = Sampling::phase_ends().read("angle", Reading::device("pin", &Joint::ANGLE));
+/// let motion = scene.simulate(&Settings::default(), &sampling)?;
+/// let (angle, energy) = (motion.last().sensors[0], motion.last().energy);
+/// assert!(angle > 0.1 && (energy.supplied - angle).abs() < 1e-3 * angle);
 /// # Ok::<(), pliant::Error>(())
 /// ```
 #[derive(Debug, Clone)]
@@ -64,6 +71,19 @@ const fn input(word: &'static str, unit: &'static str, is_scaled: bool) -> Devic
 
 const fn number(word: &'static str, unit: &'static str) -> DeviceOutput {
     DeviceOutput { word, unit, is_vector: false }
+}
+
+/// Outputs in the plane and in space, each of a hinge and of a slider: those of the constraints, then those of the coordinate.
+static OUTPUTS: [[[DeviceOutput; 6]; 2]; 2] =
+    [outputs(Joint::REACTION_COUPLE), outputs(Joint::REACTION_MOMENT)];
+
+const fn outputs(moment: DeviceOutput) -> [[DeviceOutput; 6]; 2] {
+    use Joint as J;
+    let force = J::REACTION_FORCE;
+    [
+        [force, moment, J::ANGLE, J::SPEED, J::MOTOR_TORQUE, J::POWER],
+        [force, moment, J::DISPLACEMENT, J::VELOCITY, J::MOTOR_FORCE, J::POWER],
+    ]
 }
 
 impl Joint {
@@ -241,44 +261,10 @@ impl Device for Joint {
 
     /// Those of the constraints, then those of the coordinate.
     fn outputs(&self) -> &'static [DeviceOutput] {
-        use Joint as J;
-        let in_plane = self.geometry.at.len() == 2;
-        match (self.geometry.kind, in_plane) {
-            (JointKind::Revolute, true) => &[
-                J::REACTION_FORCE,
-                J::REACTION_COUPLE,
-                J::ANGLE,
-                J::SPEED,
-                J::MOTOR_TORQUE,
-                J::POWER,
-            ],
-            (JointKind::Revolute, false) => &[
-                J::REACTION_FORCE,
-                J::REACTION_MOMENT,
-                J::ANGLE,
-                J::SPEED,
-                J::MOTOR_TORQUE,
-                J::POWER,
-            ],
-            (JointKind::Prismatic, true) => &[
-                J::REACTION_FORCE,
-                J::REACTION_COUPLE,
-                J::DISPLACEMENT,
-                J::VELOCITY,
-                J::MOTOR_FORCE,
-                J::POWER,
-            ],
-            (JointKind::Prismatic, false) => &[
-                J::REACTION_FORCE,
-                J::REACTION_MOMENT,
-                J::DISPLACEMENT,
-                J::VELOCITY,
-                J::MOTOR_FORCE,
-                J::POWER,
-            ],
-            (_, true) => &[J::REACTION_FORCE, J::REACTION_COUPLE],
-            (_, false) => &[J::REACTION_FORCE, J::REACTION_MOMENT],
-        }
+        let Geometry { kind, at, .. } = &self.geometry;
+        let of_dimension = &OUTPUTS[usize::from(at.len() > 2)];
+        let all = &of_dimension[usize::from(*kind == JointKind::Prismatic)];
+        if kind.moves() { all } else { &all[..2] }
     }
 
     fn rows(&self, site: &DeviceSite<'_>) -> Result<Vec<DeviceRow>, InputError> {

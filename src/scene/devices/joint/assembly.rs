@@ -12,7 +12,7 @@ use crate::elements::mesh::Selection;
 use crate::scene::constraint::Axis;
 use crate::scene::timeline::DeviceRow;
 
-/// How far sides may be apart at the start, relative to their size: round-off of a file.
+/// Distance of sides at the start, relative to their size and place, that is round-off of a file.
 const APART: f64 = 1e-6;
 
 /// A joint as it is given.
@@ -105,7 +105,7 @@ impl Geometry {
 
     /// Both sides, and the place.
     fn sides(&self, body: &Body) -> Result<([Side; 2], Vector3<f64>), InputError> {
-        let (input, dimension) = (self.input("sides"), body.dimension());
+        let (input, dimension) = (self.input("between"), body.dimension());
         let side = |k: usize| Side::new(body, &self.between[k], &input);
         let sides = [side(0)?, side(1)?];
         let refused = |help: &str| Err(InputError::new(&*input, self.sides_in_words(), help));
@@ -120,7 +120,7 @@ impl Geometry {
         if self.kind == JointKind::Prismatic && !sides.iter().any(Side::is_world) {
             return refused("one side of a prismatic joint must be the \"world\"");
         }
-        let (input, value) = (self.input("place"), format!("{:?}", self.at));
+        let (input, value) = (self.input("at"), format!("{:?}", self.at));
         if dimension == 1 {
             return Err(InputError::new(input, value, "nothing turns on a line: use a tie"));
         }
@@ -159,7 +159,7 @@ impl Geometry {
                     return Ok(common);
                 }
                 let help = "their nodes lie on a line, or in planes that differ, and do not say how they are turned: name others";
-                Err(InputError::new(self.input("sides"), self.sides_in_words(), help))
+                Err(InputError::new(self.input("between"), self.sides_in_words(), help))
             }
         }
     }
@@ -198,7 +198,7 @@ impl Assembly {
         let dimension = body.dimension();
         let (sides, at) = geometry.sides(body)?;
         let axis = geometry.direction(dimension)?;
-        let input = geometry.input("place");
+        let input = geometry.input("at");
         let points = [sides[0].point(at, &input)?, sides[1].point(at, &input)?];
         let size = sides[0].size.min(sides[1].size);
         let ways = || (0..dimension).map(|i| Vector3::ith(i, 1.0));
@@ -251,12 +251,12 @@ impl Assembly {
     pub(super) fn check_together(&self, geometry: &Geometry, u: &[f64]) -> Result<(), InputError> {
         let gaps = self.rows.iter().map(|row| row.gap(u, self.dimension).abs());
         let apart = gaps.fold(0.0, f64::max);
-        if apart <= APART * self.size {
+        if apart <= APART * (self.size + self.place.natural.norm()) {
             return Ok(());
         }
         let help = "the initial displacements take them apart or turn them out of the joint: move both alike";
         Err(InputError::new(
-            geometry.input("sides"),
+            geometry.input("between"),
             format!("{apart:.3e} m apart at the start"),
             help,
         ))

@@ -5,7 +5,7 @@
 //! stops      -k_s (q - q_1) above q_1, below q_2 likewise
 //! damping    -c q'
 //! friction   -F h(q'/w),   h(x) = (3 x - x^3)/2 up to |x| = 1, then the sign of x
-//! motor      Q + k_p (q_t - q) + k_d (q'_t - q'),   no larger than F_m, while it drives than F_m (1 - |q'|/w_0)
+//! motor      Q + k_p (q_t - q) + k_d (q'_t - q'),   no larger than F_m, while it drives than F_m (1 - |q'|/w_0), to which it bends
 //! ```
 //!
 //! Q, q_t and q'_t are inputs. Differences of angles are those without whole turns, so that no force has to count them: a spring and a servo turn
@@ -66,7 +66,7 @@ impl Law {
         finite(&input("rest"), &[self.rest])?;
         not_negative(&input("damping"), self.damping, "")?;
         for (word, gain) in ["stiffness", "damping"].into_iter().zip(self.servo) {
-            not_negative(&input(&format!("servo {word}")), gain, "")?;
+            not_negative(&input(&format!("servo_{word}")), gain, "")?;
         }
         if let Some((stops, stiffness)) = self.stops {
             finite(&input("stops"), &stops)?;
@@ -86,7 +86,7 @@ impl Law {
             not_negative(&input("friction"), force, "")?;
             positive(&input("sticking_speed"), speed, "")?;
         }
-        self.most.map_or(Ok(0.0), |most| positive(&input("motor limit"), most, ""))?;
+        self.most.map_or(Ok(0.0), |most| positive(&input("motor_limit"), most, ""))?;
         let Some(speed) = self.no_load_speed else { return Ok(()) };
         positive(&input("no_load_speed"), speed, "")?;
         match self.most {
@@ -145,17 +145,35 @@ impl Law {
         let asked = given + by_place * wrapped(target - q) + by_rate * (speed - rate);
         let free = Part { force: asked, slopes: [-by_place, -by_rate] };
         let Some(most) = self.most else { return free };
-        let (mut limit, mut slope) = (most, 0.0);
+        let (mut limit, mut by_speed) = (most, 0.0);
         if let Some(no_load) = self.no_load_speed {
             let share = 1.0 - asked.signum() * rate / no_load;
             limit = most * share.clamp(0.0, 1.0);
             let is_between = share > 0.0 && share < 1.0;
-            slope = if is_between { -most / no_load } else { 0.0 };
+            by_speed = if is_between { -most / no_load } else { 0.0 };
         }
-        match asked.abs() > limit {
-            true => Part { force: asked.signum() * limit, slopes: [0.0, slope] },
-            false => free,
-        }
+        let [force, by_asked, by_limit] = limited(asked, limit);
+        let slopes = [-by_place * by_asked, -by_rate * by_asked + by_limit.abs() * by_speed];
+        Part { force, slopes }
+    }
+}
+
+/// Part of a limit over which forces bend to it.
+const BEND: f64 = 0.1;
+
+/// `asked`, no larger than `limit`, with the derivatives by both: a parabola leads from one to the other, so that no step ends there.
+fn limited(asked: f64, limit: f64) -> [f64; 3] {
+    let (sign, size) = (asked.signum(), asked.abs());
+    // 0 where it begins to bend, 1 where it is at the limit
+    let bent = (size - (1.0 - BEND) * limit) / (2.0 * BEND * limit);
+    if bent <= 0.0 {
+        [asked, 1.0, 0.0]
+    } else if bent < 1.0 {
+        let force = size - BEND * limit * bent * bent;
+        [sign * force, 1.0 - bent, sign * bent * (1.0 - BEND + BEND * bent)]
+    } else {
+        // without any force left, also where it is 0 that is asked for
+        [sign * limit, 0.0, sign]
     }
 }
 

@@ -149,7 +149,7 @@ impl Side {
         }
         let share = (self.nodes.len() as f64).recip();
         let (gradient, off) = self.gradient(at - self.mean);
-        if off > BESIDE * self.size.max((at - self.mean).norm()) {
+        if off > BESIDE * (self.size + at.norm()) {
             let help = format!(
                 "it is {off:.3e} m beside the plane, the line or the point of the nodes of {}: a place on them is needed",
                 self.label
