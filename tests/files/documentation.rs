@@ -148,7 +148,7 @@ fn tables_that_are_not_there_say_what_stands_in() {
         ("bodies", &["[[body]]", "[[obstacle]]"]),
         ("rigid", &["rigid = true", "[[obstacle]]"]),
         ("tendon", &["[[cable]]", "a winch"]),
-        ("joint", &["is a hinge", "hold_combination"]),
+        ("hinge", &["is a [[joint]]", "hold_combination"]),
         ("pump", &["[[gas]]", "[[orifice]]", "[[chamber]]", "[[liquid]]"]),
         ("friction", &["friction_coefficient in [[obstacle]]"]),
     ] {
