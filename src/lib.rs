@@ -89,8 +89,9 @@ pub use integrators::common::Integrator;
 pub use io::scene_file::{DeviceTable, OutputRequest, SceneFile};
 #[cfg(feature = "bodies")]
 pub use scene::{
-    BodyState, Device, DeviceGauge, DeviceInput, DeviceOutput, DeviceSignals, DeviceSite,
-    DeviceState, DeviceValue, InputLimit, Phase, ReducedModel, Scene, SceneState, Smaller, Term,
+    BodyState, Device, DeviceGauge, DeviceInput, DeviceOutput, DeviceRow, DeviceSignals,
+    DeviceSite, DeviceState, DeviceValue, InputLimit, Phase, ReducedModel, Scene, SceneState,
+    Smaller, Term,
     constraint::{Axis, Prescribed},
     devices::*,
     forces::*,
@@ -150,6 +151,11 @@ pub struct ReducedModelsDoctests;
 #[doc = include_str!("../docs/scenes/rods.md")]
 #[cfg(all(doctest, feature = "bodies"))]
 pub struct RodsDoctests;
+
+/// Compiles and runs the code blocks of the page on joints.
+#[doc = include_str!("../docs/scenes/joints.md")]
+#[cfg(all(doctest, feature = "bodies"))]
+pub struct JointsDoctests;
 
 /// Compiles and runs the code blocks of the page on sweeps.
 #[doc = include_str!("../docs/sweeps.md")]

@@ -82,6 +82,27 @@ def test_wind_is_set():
         plate.set_input("gust", "speed", 1.0)
 
 
+def test_motors_are_commanded():
+    """A bar on a pin at its end turns by T t^2/(2 J) under a torque T."""
+    bar = pliant.Scene(
+        body=dict(
+            name="bar",
+            mesh=dict(kind="rectangle", size=[0.1, 0.01], nodes=[2, 2], cells="rectangles"),
+            thickness=0.01,
+            material=dict(density=1000.0, rigid=True),
+        ),
+        joint=[dict(name="pin", kind="revolute", between=["world", "bar"], at=[0.0, 0.005])],
+        phase=[dict(until=1.0)],
+    ).start(rtol=1e-8)
+    bar.set_input("pin", "torque", 1e-3)
+    bar.advance_to(0.1)
+    moment_of_inertia = 0.01 * ((0.1**2 + 0.01**2) / 12 + 0.05**2)
+    angle = bar.device_output("pin", "angle")
+    assert abs(angle[0] / (1e-3 * 0.1**2 / (2 * moment_of_inertia)) - 1.0) < 1e-6
+    with pytest.raises(pliant.InputError, match="force"):
+        bar.set_input("pin", "force", 1.0)
+
+
 def test_states_are_returned_to():
     beam = BEAM.start(rtol=1e-8)
     beam.advance_to(0.1)

@@ -61,6 +61,8 @@ pub(crate) enum Axes {
 pub(crate) enum Motion {
     /// Stay where the nodes are when the phase begins.
     Hold,
+    /// Stay where they are undeformed, of a general row.
+    Together,
     /// Move from there with constant velocity (m/s), one per axis (a single one for a general row).
     Velocity(Vec<f64>),
     /// Follow a path (the same for all axes).
@@ -79,6 +81,7 @@ impl fmt::Debug for Motion {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Hold => f.write_str("Hold"),
+            Self::Together => f.write_str("Together"),
             Self::Velocity(velocity) => f.debug_tuple("Velocity").field(velocity).finish(),
             Self::Path(_) => f.write_str("Path"),
             Self::Spline(spline) => spline.fmt(f),
@@ -94,7 +97,9 @@ impl Motion {
         match self {
             Self::Spline(spline) => spline.times(),
             Self::Turn(turn) => turn.breaks(),
-            Self::Hold | Self::Velocity(_) | Self::Path(_) | Self::Formula(_) => &[],
+            Self::Hold | Self::Together | Self::Velocity(_) | Self::Path(_) | Self::Formula(_) => {
+                &[]
+            }
         }
     }
 }

@@ -12,6 +12,6 @@ pub mod timeline;
 
 pub use reduced_model::ReducedModel;
 pub use timeline::{
-    BodyState, Device, DeviceGauge, DeviceInput, DeviceOutput, DeviceSignals, DeviceSite,
-    DeviceState, DeviceValue, InputLimit, Phase, Scene, SceneState, Smaller, Term,
+    BodyState, Device, DeviceGauge, DeviceInput, DeviceOutput, DeviceRow, DeviceSignals,
+    DeviceSite, DeviceState, DeviceValue, InputLimit, Phase, Scene, SceneState, Smaller, Term,
 };

@@ -21,6 +21,7 @@ const PAGE: &str = concat!(
     include_str!("../../docs/scenes/growth.md"),
     include_str!("../../docs/scenes/fluids.md"),
     include_str!("../../docs/scenes/rods.md"),
+    include_str!("../../docs/scenes/joints.md"),
 );
 const SILICONE: &str = include_str!("../../docs/silicone.md");
 
@@ -147,7 +148,7 @@ fn tables_that_are_not_there_say_what_stands_in() {
         ("bodies", &["[[body]]", "[[obstacle]]"]),
         ("rigid", &["rigid = true", "[[obstacle]]"]),
         ("tendon", &["[[cable]]", "a winch"]),
-        ("joint", &["is a hinge", "hold_combination"]),
+        ("hinge", &["is a [[joint]]", "hold_combination"]),
         ("pump", &["[[gas]]", "[[orifice]]", "[[chamber]]", "[[liquid]]"]),
         ("friction", &["friction_coefficient in [[obstacle]]"]),
     ] {

@@ -9,7 +9,7 @@ use serde_json::Value;
 const PAGE: &str = include_str!("../../docs/reference.md");
 
 /// A file of these parts, each of which may be replaced.
-const PARTS: [(&str, &str); 13] = [
+const PARTS: [(&str, &str); 14] = [
     ("top", "title = \"base\"\n"),
     ("[body]", "[body]\nthickness = 0.01\n"),
     ("[[spring]]", "[[spring]]\nname = \"down\"\nends = [1, 3]\n"),
@@ -27,6 +27,10 @@ const PARTS: [(&str, &str); 13] = [
     (
         "[[obstacle]]",
         "[[obstacle]]\nkind = \"disc\"\ncentre = [0.0, -1.0]\nradius = 0.1\nstiffness = 1e3\n",
+    ),
+    (
+        "[[joint]]",
+        "[[joint]]\nname = \"hip\"\nkind = \"revolute\"\nbetween = [\"world\", \"left\"]\nat = [0.0, 0.05]\n",
     ),
     ("[[phase]]", "[[phase]]\nuntil = 0.5\n"),
 ];
@@ -62,6 +66,7 @@ fn with(example: &str, mesh: &str) -> String {
             "[[magnet]]" => ["magnetic_field", "[[dipole]]", "drive"].contains(&key),
             "[[dipole]]" => key == "drive",
             "[[wind]]" => key == "steer",
+            "[[joint]]" => key == "motor",
             _ => true,
         };
         text += if is_whole || !is_needed { "" } else { base };

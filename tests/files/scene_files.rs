@@ -274,6 +274,8 @@ fn all_scenes_are_run() {
         // where moments and followers are tested
         "fluttering-column",
         "gust",
+        // where joints are tested
+        "hopping-leg",
         // where contact is tested
         "cradle",
         "ring-on-table",

@@ -36,6 +36,7 @@ mod hill;
 mod in_plane;
 mod index_two;
 mod indicators;
+mod joints;
 mod lags;
 mod large;
 mod levels;

@@ -140,7 +140,7 @@ impl Scene {
         each.chain(units::of_scene(self))
             .chain(gas::gas(self))
             .chain(mesh::pieces(self))
-            .chain(overlap::drawn(body))
+            .chain(overlap::drawn(self))
             .chain(touch::begun_inside(self))
             .chain(pressed::pressed(self))
             .chain(early::tables(self))

@@ -51,11 +51,14 @@ struct Overlaps<'a> {
     cells: Vec<(CellKind, &'a [usize])>,
     /// Largest depth allowed for a point within each cell (m).
     limits: Vec<f64>,
+    /// Bodies that joints join, which may lie within each other.
+    joined: Vec<[usize; 2]>,
 }
 
 impl<'a> Overlaps<'a> {
     /// Only where a body fills its space; others have no inside.
-    fn new(body: &'a Body) -> Option<Self> {
+    fn new(scene: &'a Scene) -> Option<Self> {
+        let body = scene.body();
         let fills_space = |part: Part| part.body.mesh().kind().dimension() == body.dimension();
         body.parts().any(fills_space).then(|| Self {
             body,
@@ -63,6 +66,8 @@ impl<'a> Overlaps<'a> {
             points: points(body, 1),
             cells: body.mesh().cells_with_kinds().collect(),
             limits: cell_sizes(body).into_iter().map(|size| MOST_OF_CELL * size).collect(),
+            // the scene was checked before
+            joined: scene.jointed_bodies().unwrap_or_default(),
         })
     }
 
@@ -108,6 +113,7 @@ impl<'a> Overlaps<'a> {
             }
             grid.each_within(&corners, |point| {
                 if !is_own(self, point, cell)
+                    && !self.are_joined(point, cell)
                     && let Some(shares) = shares_in((*kind, d), &now, cell, &places[point][..d])
                 {
                     met.push((point, number, shares));
@@ -163,6 +169,17 @@ impl<'a> Overlaps<'a> {
         let pattern = self.body.inertia().pattern();
         let mut nodes = self.points[point].nodes().map(|(node, _)| node);
         nodes.any(|node| cell.iter().any(|&other| pattern.find(node, other).is_some()))
+    }
+
+    /// Whether joints join the bodies of a point and of a cell.
+    fn are_joined(&self, point: usize, cell: &[usize]) -> bool {
+        if self.joined.is_empty() {
+            return false;
+        }
+        let number = |node: usize| self.body.parts().position(|part| part.nodes.contains(&node));
+        let own = self.points[point].nodes().next().and_then(|(node, _)| number(node));
+        let pair = own.zip(number(cell[0]));
+        pair.is_some_and(|(a, b)| self.joined.contains(&[a, b]) || self.joined.contains(&[b, a]))
     }
 
     /// The depth of a point, the cell that it is in, counted from 1, and the limit.
@@ -221,8 +238,8 @@ impl<'a> Overlaps<'a> {
 }
 
 /// A mesh that overlaps itself in its undeformed shape.
-pub(super) fn drawn(body: &Body) -> Option<Indicator> {
-    let mut overlaps = Overlaps::new(body)?;
+pub(super) fn drawn(scene: &Scene) -> Option<Indicator> {
+    let mut overlaps = Overlaps::new(scene)?;
     let entries = overlaps.drawn_entries();
     let deepest = Overlaps::deepest(&entries);
     let [depth, limit] = overlaps.numbers(deepest.as_ref());
@@ -262,7 +279,7 @@ pub(crate) fn check_start(scene: &Scene) -> Result<(), InputError> {
     if scene.touches().is_empty() {
         return Ok(());
     }
-    let Some(mut overlaps) = Overlaps::new(scene.body()) else { return Ok(()) };
+    let Some(mut overlaps) = Overlaps::new(scene) else { return Ok(()) };
     let mut entries = overlaps.entries(scene.initial_displacements());
     entries.retain(|entry| {
         let nodes = [overlaps.node(entry), overlaps.cells[entry.cell].1[0]];
@@ -286,8 +303,7 @@ pub(crate) fn check_start(scene: &Scene) -> Result<(), InputError> {
 /// A body that passes through itself, or pieces of it that pass through each other, at any of the `samples`. Points that lie in
 /// other cells already in the undeformed shape do not count.
 pub(super) fn overlap(scene: &Scene, samples: &[&Sample]) -> Option<Indicator> {
-    let body = scene.body();
-    let mut overlaps = Overlaps::new(body)?;
+    let mut overlaps = Overlaps::new(scene)?;
     let mut is_drawn = vec![false; overlaps.points.len()];
     for entry in overlaps.drawn_entries() {
         is_drawn[entry.point] |= entry.is_beyond();

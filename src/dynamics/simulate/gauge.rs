@@ -18,7 +18,7 @@ use crate::elements::body::{Body, Branches, NodalField, Part};
 use crate::elements::mesh::Selection;
 use crate::scene::constraint::{ConstraintRow, PhaseStart};
 use crate::scene::forces::FluidForce;
-use crate::scene::timeline::Scene;
+use crate::scene::timeline::{DeviceRow, Scene};
 
 /// Reads a quantity, or NaN where it is undefined.
 pub(super) type Gauge = Box<dyn Fn(&View, &Sample) -> Value + Send + Sync>;
@@ -79,8 +79,14 @@ impl Reading {
             ReadingKind::OfDevice(output, name) => {
                 let device = scene.device_number(name, "device")?;
                 let number = scene.output_number(device, output.word)?;
-                let is_vector = output.is_vector;
-                Box::new(move |view, _| view.device_value(device, number, is_vector))
+                let multipliers = multipliers_of_device(scene, device)?;
+                let (is_vector, is_angle) = (output.is_vector, output.is_angle());
+                let unit = if is_angle { self.full_turn() / TAU } else { 1.0 };
+                Box::new(move |view, sample| {
+                    let multipliers = multipliers(view, sample);
+                    let value = view.device_value(device, number, Some(&multipliers));
+                    if is_vector { Value::Vector(value) } else { Value::Number(unit * value[0]) }
+                })
             }
             ReadingKind::MagneticMoment => {
                 if scene.magnets().is_empty() {
@@ -187,6 +193,11 @@ impl Reading {
                 let across = if d == 2 { normal[2] } else { norm(&normal) };
                 in_turn * across.atan2(dot(&a, &b))
             }));
+        }
+        if let ReadingKind::OfDevice(output, name) = &self.what {
+            let device = scene.device_number(name, "device")?;
+            let number = scene.output_number(device, output.word)?;
+            return Ok(Arc::new(move |view| in_turn * view.device_value(device, number, None)[0]));
         }
         let fit = self.fit(scene, on)?;
         Ok(Arc::new(move |view| in_turn * fit.angle(view)))
@@ -341,31 +352,74 @@ fn constraint_sum(
         };
         rows.iter().enumerate().flat_map(of_row).collect()
     };
-    // where rows start from affects what they prescribe, not which components they couple
-    let rest = vec![0.0; scene.body().dofs()];
-    let mut time = 0.0;
-    let mut of_phases = Vec::new();
-    for phase in scene.phases() {
-        of_phases.push(terms(&scene.rows(phase, &PhaseStart { time, u: &rest })?));
-        time = phase.end();
-    }
+    let in_force = of_rows_in_force(scene, terms)?;
     Ok(Box::new(move |view, sample| {
-        let of_commanded;
-        let acting = match &sample.commanded.0 {
-            None => of_phases.get(sample.phase),
-            Some(phase) => {
-                let start = PhaseStart { time: 0.0, u: &rest };
-                of_commanded = view.scene.rows(phase, &start).map(|rows| terms(&rows)).ok();
-                of_commanded.as_ref()
-            }
-        };
-        let Some(acting) = acting else { return [f64::NAN; 3] };
+        let Some(acting) = in_force(view, sample) else { return [f64::NAN; 3] };
         let mut sum = [0.0; 3];
-        for &(row, dof, coefficient) in acting {
+        for &(row, dof, coefficient) in &*acting {
             let force = coefficient * sample.multipliers.get(row).copied().unwrap_or(f64::NAN);
             let along = vector(view, dof);
             sum.iter_mut().zip(along).for_each(|(sum, along)| *sum += along * force);
         }
         sum
+    }))
+}
+
+/// Reads the multipliers (N) of the rows of a device, 0 of those that follow from others.
+type Multipliers = Box<dyn Fn(&View, &Sample) -> Vec<f64> + Send + Sync>;
+
+/// The function that reads the multipliers of a device.
+fn multipliers_of_device(scene: &Scene, device: usize) -> Result<Multipliers, InputError> {
+    let own = scene.rows_of_device(device)?;
+    if own.is_empty() {
+        return Ok(Box::new(|_, _| Vec::new()));
+    }
+    let d = scene.body().dimension();
+    let with_dofs = |row: &DeviceRow| {
+        let mut terms: Vec<(usize, f64)> =
+            row.iter().map(|&(node, axis, c)| ((node - 1) * d + axis.index(), c)).collect();
+        terms.sort_unstable_by_key(|&(dof, _)| dof);
+        terms
+    };
+    let own: Vec<Vec<(usize, f64)>> = own.iter().map(with_dofs).collect();
+    let count = own.len();
+    let numbers = move |rows: &[ConstraintRow]| -> Vec<Option<usize>> {
+        own.iter().map(|terms| rows.iter().position(|row| row.terms == *terms)).collect()
+    };
+    let in_force = of_rows_in_force(scene, numbers)?;
+    Ok(Box::new(move |view, sample| {
+        let Some(numbers) = in_force(view, sample) else { return vec![f64::NAN; count] };
+        let multiplier = |number: &Option<usize>| match number {
+            None => 0.0,
+            Some(row) => sample.multipliers.get(*row).copied().unwrap_or(f64::NAN),
+        };
+        numbers.iter().map(multiplier).collect()
+    }))
+}
+
+/// Finds something on the rows in force at a sample.
+type OfRows<T> = Box<dyn Fn(&View, &Sample) -> Option<Arc<T>> + Send + Sync>;
+
+/// The function that finds what `of_rows` makes of the rows in force at a sample, once for each phase of the scene.
+fn of_rows_in_force<T: Send + Sync + 'static>(
+    scene: &Scene,
+    of_rows: impl Fn(&[ConstraintRow]) -> T + Send + Sync + 'static,
+) -> Result<OfRows<T>, InputError> {
+    // where rows start from affects what they prescribe, not which components they couple
+    let rest = vec![0.0; scene.body().dofs()];
+    let mut time = 0.0;
+    let mut of_phases = Vec::new();
+    for phase in scene.phases() {
+        let rows = scene.rows(phase, &PhaseStart { time, u: &rest })?;
+        of_phases.push(Arc::new(of_rows(&rows)));
+        time = phase.end();
+    }
+    Ok(Box::new(move |view, sample| match &sample.commanded.0 {
+        None => of_phases.get(sample.phase).cloned(),
+        Some(phase) => {
+            let start = PhaseStart { time: 0.0, u: &rest };
+            let rows = view.scene.rows(phase, &start).ok()?;
+            Some(Arc::new(of_rows(&rows)))
+        }
     }))
 }

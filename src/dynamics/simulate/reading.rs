@@ -9,7 +9,7 @@ use super::spot::Spot;
 use crate::base::input::InputError;
 use crate::dynamics::trajectory::DEGREES;
 use crate::elements::mesh::Selection;
-use crate::scene::timeline::DeviceOutput;
+use crate::scene::timeline::{DeviceOutput, Scene};
 
 /// A quantity that a sensor reads: see [`Sampling::read`](crate::Sampling::read).
 ///
@@ -322,6 +322,7 @@ impl Reading {
             }
             ReadingKind::Distance(_) => "m",
             ReadingKind::Of(output, _) => output.unit,
+            ReadingKind::OfDevice(..) if self.in_degrees => DEGREES,
             ReadingKind::OfDevice(output, _) => output.unit,
             ReadingKind::Velocity(_) => "m/s",
             ReadingKind::Acceleration(_) => "m/s^2",
@@ -354,9 +355,14 @@ impl Reading {
         if self.in_degrees { 360.0 } else { TAU }
     }
 
-    /// Whether it reads forces of constraints, which take an evaluation of all forces.
-    pub(super) fn is_of_constraints(&self) -> bool {
-        matches!(self.what, ReadingKind::ConstraintForce(_) | ReadingKind::ConstraintMoment(..))
+    /// Whether it reads forces of constraints, which take an evaluation of all forces, or may.
+    pub(super) fn is_of_constraints(&self, scene: &Scene) -> bool {
+        match &self.what {
+            ReadingKind::OfDevice(_, name) => scene.joins(name),
+            what => {
+                matches!(what, ReadingKind::ConstraintForce(_) | ReadingKind::ConstraintMoment(..))
+            }
+        }
     }
 
     /// Whether it reads accelerations, which take one, too.
@@ -377,11 +383,14 @@ impl Reading {
 
     /// Whether it is continuous over whole turns, for a body in `dimension` dimensions.
     pub(super) fn turns(&self, dimension: usize) -> bool {
-        dimension == 2 && self.is_angle()
+        self.is_angle() && (dimension == 2 || matches!(self.what, ReadingKind::OfDevice(..)))
     }
 
     fn is_angle(&self) -> bool {
-        matches!(self.what, ReadingKind::Angle(_) | ReadingKind::Rotation(_))
+        match &self.what {
+            ReadingKind::OfDevice(output, _) => output.is_angle(),
+            what => matches!(what, ReadingKind::Angle(_) | ReadingKind::Rotation(_)),
+        }
     }
 
     /// The components that are read for a body in `dimension` dimensions; none for a number.

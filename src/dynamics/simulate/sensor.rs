@@ -96,7 +96,7 @@ impl Sensors {
         let components = reading.components(scene.body().dimension())?;
         let gauge = reading.gauge(scene)?;
         self.need_accelerations |= reading.is_of_accelerations();
-        self.need_forces |= reading.is_of_constraints() || reading.is_of_accelerations();
+        self.need_forces |= reading.is_of_constraints(scene) || reading.is_of_accelerations();
         let unit = reading.unit();
         if reading.turns(scene.body().dimension()) {
             let (gauge, full_turn) = (reading.angle_gauge(scene)?, reading.full_turn());

@@ -20,7 +20,7 @@ impl Scene {
         let mut nodes = Vec::new();
         for Constraint { what, how } in &phase.constraints {
             let role = match how {
-                Motion::Hold => Role::Held,
+                Motion::Hold | Motion::Together => Role::Held,
                 Motion::Velocity(_)
                 | Motion::Path(_)
                 | Motion::Spline(_)

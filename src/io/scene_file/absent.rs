@@ -26,10 +26,9 @@ const ABSENT: [(&[&str], &str); 8] = [
         "a cable is a [[cable]] along a path of nodes and points, driven by a tension or by a winch (winch = true) through actuate of a phase",
     ),
     (
-        &["joint", "joints", "hinge", "bearing", "constraint", "constraints"],
-        "a node that alone is held in a phase (hold), or tied to another body ([[tie]]), is a hinge, in space a ball joint, and nodes along a line are a \
-         hinge about it; a phase also moves and turns nodes (axes, move, path, rotate, symmetry) and ties displacements by \
-         hold_combination, and two nodes may have a stiff [[spring]] between them; there are no motors and no stops",
+        &["joints", "hinge", "pin", "bearing", "slider", "constraint", "constraints"],
+        "a pin, a hinge, a ball joint or a guide between bodies, rods and the world is a [[joint]], with motors, stops and friction; a phase holds, moves and turns \
+         nodes (hold, axes, move, path, rotate, symmetry) and ties displacements by hold_combination, and two nodes may have a stiff [[spring]] between them",
     ),
     (
         &[
@@ -49,8 +48,8 @@ const ABSENT: [(&[&str], &str); 8] = [
          there is [[gas]] in it, which flows through an [[orifice]] from a [[supply]], or a [[liquid]], of which a phase lets flow = [...] in, and which a [[pipe]] leads to another chamber",
     ),
     (
-        &["motor", "actuator", "actuators"],
-        "what acts is a force along a [[spring]], the stress of a [[muscle]] or the strain of a [[growth]] (actuate in a phase), a pressure in a [[chamber]], a load, or nodes \
+        &["motor", "servo", "actuator", "actuators"],
+        "a motor is part of a [[joint]], and motor in a phase commands it; what else acts is a force along a [[spring]], the stress of a [[muscle]] or the strain of a [[growth]] (actuate in a phase), a pressure in a [[chamber]], a load, or nodes \
          that follow a path",
     ),
 ];

@@ -92,7 +92,12 @@ pub(super) fn add_wind(scene: Scene, value: &Value) -> Result<Scene, Error> {
 }
 
 /// The name of a device that the table describes, which no other one has.
-fn device_name(table: &Table, scene: &Scene, kind: &str, word: &str) -> Result<String, Error> {
+pub(super) fn device_name(
+    table: &Table,
+    scene: &Scene,
+    kind: &str,
+    word: &str,
+) -> Result<String, Error> {
     let name = table.optional("name", Value::string)?;
     let name = name.map_or_else(|| scene.next_device(kind, word), Into::into);
     unique(table, &name, scene.devices().iter().map(|device| device.name()))?;

@@ -48,6 +48,7 @@ mod friction;
 mod gas;
 mod growth;
 mod initial;
+mod joint;
 mod keys;
 mod lag;
 mod leaves;

@@ -4,6 +4,7 @@ use toml::de::DeValue;
 
 use super::course::{course, vectors_until};
 use super::device::{DRIVE, drive};
+use super::joint::{MOTOR, motor};
 use super::keys::TableKeys;
 use super::magnet::magnetic_field;
 use super::phase_keys::{
@@ -25,7 +26,7 @@ use crate::scene::timeline::{Input, Phase, Quantity, Row, Scene, Target};
 type Add = fn(Phase, &Table, &Scene) -> Result<Phase, Error>;
 
 /// The tables inside of a phase: what they add.
-const PARTS: [(&TableKeys, Add); 16] = [
+const PARTS: [(&TableKeys, Add); 17] = [
     (&HOLD, hold),
     (&MOVE, moving),
     (&PATH, path),
@@ -41,6 +42,7 @@ const PARTS: [(&TableKeys, Add); 16] = [
     (&FLOW, flow),
     (&ACTUATE, actuate),
     (&DRIVE, drive),
+    (&MOTOR, motor),
     (&STEER, steer),
 ];
 

@@ -1,6 +1,7 @@
 //! The keys of `[[phase]]` and of the tables in it.
 
 use super::device::DRIVE;
+use super::joint::MOTOR;
 use super::keys::{Key, PERIOD, TIMES, TableKeys, ValueType};
 
 pub(super) const PHASE: TableKeys = TableKeys::new(
@@ -30,6 +31,7 @@ pub(super) const PHASE: TableKeys = TableKeys::new(
         part(&FLOW, "flows of liquids into chambers"),
         part(&ACTUATE, "forces in springs and cables, stresses of muscles, strains of growth"),
         part(&DRIVE, "positions and moments of external magnets"),
+        part(&MOTOR, "motors of joints"),
         part(&STEER, "inputs of devices, such as winds"),
         Key::new("magnetic_field", ValueType::Table(&MAGNETIC_FIELD), "the magnetic field"),
         Key::new(

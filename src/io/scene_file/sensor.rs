@@ -101,10 +101,11 @@ const OWN: [Kind; 22] = [
     },
     Kind {
         word: "device",
-        about: "an output of a device by its word: the `force` of a `[[wind]]` (N)",
+        about: "an output of a device by its word: the `force` of a `[[wind]]` (N), the `angle` of a `[[joint]]`",
         keys: &[
             Key::new("device", ValueType::Text, "the name of the device").required(),
             Key::new("output", ValueType::Text, "the word of the output").required(),
+            UNIT,
         ],
     },
     Kind {
@@ -302,7 +303,7 @@ fn device(table: &Table, scene: &Scene) -> Result<Reading, Error> {
     let blame = |error| table.blame(error);
     let device = scene.device_number(name, "device").map_err(blame)?;
     let number = scene.output_number(device, word).map_err(blame)?;
-    Ok(Reading::device(name, &scene.devices()[device].outputs()[number]))
+    in_unit(table, Reading::device(name, &scene.devices()[device].outputs()[number]))
 }
 
 /// A place whose motion is read.

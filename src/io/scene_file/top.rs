@@ -9,6 +9,7 @@ use super::fluid::{self, FLUID};
 use super::gas::{self, GAS, ORIFICE, SUPPLY};
 use super::growth::{self, GROWTH};
 use super::initial::{self, INITIAL};
+use super::joint::{self, JOINT};
 use super::keys::{Key, TableKeys, ValueType};
 use super::lag::{self, LAG};
 use super::liquid::{self, LIQUID, PIPE};
@@ -61,7 +62,7 @@ const AFTER: [Key; 5] = [
 type Add = fn(Scene, &Value) -> Result<Scene, Error>;
 
 /// The tables of components, in the order in which they are read.
-const COMPONENTS: [(Key, Add); 18] = [
+const COMPONENTS: [(Key, Add); 19] = [
     (Key::new("tie", ValueType::Tables(&TIE), "ties between bodies"), tie::add_tie),
     (
         Key::new(
@@ -109,6 +110,10 @@ const COMPONENTS: [(Key, Add); 18] = [
     ),
     (Key::new("fluid", ValueType::Tables(&FLUID), "fluids around bodies"), fluid::add_fluid),
     (Key::new("wind", ValueType::Tables(&WIND), "wind over faces"), device::add_wind),
+    (
+        Key::new("joint", ValueType::Tables(&JOINT), "joints between bodies, with motors"),
+        joint::add_joint,
+    ),
     (Key::new("obstacle", ValueType::Tables(&OBSTACLE), "obstacles"), obstacle::add_obstacle),
 ];
 

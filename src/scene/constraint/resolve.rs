@@ -34,7 +34,7 @@ pub(crate) fn rows<'a>(
             Motion::Spline(spline) => spline.validate("displacements of a path", "m")?,
             Motion::Formula(formula) => formula.check_smooth()?,
             Motion::Turn(turn) => turn.validate(dimension)?,
-            Motion::Hold | Motion::Velocity(_) | Motion::Path(_) => {}
+            Motion::Hold | Motion::Together | Motion::Velocity(_) | Motion::Path(_) => {}
         }
         match what {
             Constrained::Nodes(selection, axes) => {
@@ -92,6 +92,7 @@ fn row(
     };
     let motion = match motion {
         Motion::Hold => linear(0.0),
+        Motion::Together => RowMotion::Linear { start: 0.0, since: 0.0, velocity: 0.0 },
         Motion::Velocity(velocity) => linear(velocity[component]),
         Motion::Path(path) => RowMotion::Path(path.clone()),
         Motion::Spline(spline) => RowMotion::Spline(spline.clone()),

@@ -2,7 +2,9 @@
 //! these, a dipole sees the magnets of its scene, and has keys of its own in phases of scene files.
 
 mod dipole;
+mod joint;
 mod wind;
 
 pub use dipole::Dipole;
+pub use joint::{Joint, JointKind};
 pub use wind::Wind;

@@ -71,8 +71,8 @@ pub use shape::Shape;
 pub use signal::Signal;
 pub(crate) use signal::{SharedValue, SignalKind, VectorSignal, finite_at};
 pub use signals::Signals;
-pub(crate) use spring::Joint;
 pub(crate) use spring::SpringGauge;
+pub(crate) use spring::SpringPoint;
 pub use spring::{Guide, Spring};
 pub(crate) use stuck::Stuck;
 pub(crate) use surface::{

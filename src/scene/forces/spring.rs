@@ -124,7 +124,7 @@ impl Guide {
 
 /// An end of a spring or a place of a cable: in the mesh, or a point of space.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Joint {
+pub(crate) struct SpringPoint {
     /// Its undeformed position (m); components beyond the dimension are 0.
     pub(crate) at: [f64; 3],
     /// The nodes with which it moves, counted from 0, and their shares: none of a point of space.
@@ -291,8 +291,8 @@ impl Spring {
     ///
     /// # Errors
     /// Ends of a spring that are not one node each; less than two places; a point with a wrong number of coordinates.
-    pub(crate) fn joints(&self, mesh: &Mesh) -> Result<Vec<Joint>, InputError> {
-        let mut joints: Vec<Joint> = Vec::new();
+    pub(crate) fn joints(&self, mesh: &Mesh) -> Result<Vec<SpringPoint>, InputError> {
+        let mut joints: Vec<SpringPoint> = Vec::new();
         for (number, Guide(place)) in (1..).zip(&self.path) {
             let input = |key: &str| match (self.is_cable(), number) {
                 (true, _) => self.input(&format!("place {number}")),
@@ -312,7 +312,8 @@ impl Spring {
                         let far = |node: usize| distance(&before, &natural(mesh, node));
                         nodes.sort_by(|a, b| far(*a).total_cmp(&far(*b)));
                     }
-                    let joint = |node| Joint { at: natural(mesh, node), shares: vec![(node, 1.0)] };
+                    let joint =
+                        |node| SpringPoint { at: natural(mesh, node), shares: vec![(node, 1.0)] };
                     joints.extend(nodes.into_iter().map(joint));
                 }
                 Place::Inside(point) | Place::Point(point) => {
@@ -330,7 +331,7 @@ impl Spring {
                         _ => Vec::new(),
                     };
                     let at = std::array::from_fn(|i| point.get(i).copied().unwrap_or(0.0));
-                    joints.push(Joint { at, shares });
+                    joints.push(SpringPoint { at, shares });
                 }
             }
         }
@@ -502,7 +503,7 @@ fn distance(a: &[f64; 3], b: &[f64; 3]) -> f64 {
     norm(&std::array::from_fn::<f64, 3, _>(|i| a[i] - b[i]))
 }
 
-impl Joint {
+impl SpringPoint {
     /// A point that moves with nodes.
     #[cfg(feature = "output")]
     pub(crate) fn carried(mesh: &Mesh, shares: Vec<(usize, f64)>) -> Self {

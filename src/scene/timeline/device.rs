@@ -15,6 +15,7 @@ use crate::base::input::InputError;
 use crate::elements::body::{Body, MagnetizedPoints};
 use crate::elements::force::Force;
 use crate::elements::mesh::Selection;
+use crate::scene::constraint::Axis;
 use crate::scene::forces::{Magnet, Signal, Signals};
 
 /// A part of a scene that exerts a force on its body, with inputs and outputs of its own: a jet, a fan, a gyroscope.
@@ -58,6 +59,15 @@ pub trait Device: fmt::Debug + Send + Sync {
         site: &DeviceSite<'_>,
         inputs: DeviceSignals,
     ) -> Result<Arc<dyn Force>, InputError>;
+
+    /// The constraints that it puts on nodes of the body, row by row. Default: none.
+    ///
+    /// # Errors
+    /// Nodes that do not exist, numbers out of range.
+    fn rows(&self, site: &DeviceSite<'_>) -> Result<Vec<DeviceRow>, InputError> {
+        let _ = site;
+        Ok(Vec::new())
+    }
 
     /// Checks the device at the start of a scene, `now`, before its force is evaluated. Default: nothing.
     ///
@@ -140,6 +150,9 @@ impl fmt::Debug for DeviceSite<'_> {
     }
 }
 
+/// A constraint sum c u = 0 on displacements: numbers of nodes (from 1), axes, and the coefficients c.
+pub type DeviceRow = Vec<(usize, Axis, f64)>;
+
 /// The function that reads an output of a device.
 pub type DeviceGauge = Box<dyn Fn(&DeviceState<'_>) -> [f64; 3] + Send + Sync>;
 
@@ -153,6 +166,11 @@ pub struct DeviceSignals {
 }
 
 impl DeviceSignals {
+    /// Whether the phase, or the device itself, has a value for one of the inputs.
+    pub fn are_set(&self) -> bool {
+        self.signals.iter().any(|own| !own.is_empty())
+    }
+
     /// The value of the input of a number (from 0) at time `t` (s): the sum of the phase's signals for it. Components beyond its own
     /// are 0, and so is an input that the device does not have.
     pub fn at(&self, number: usize, t: f64) -> [f64; 3] {
@@ -174,6 +192,8 @@ pub struct DeviceState<'a> {
     pub u: &'a [f64],
     /// Velocities (m/s), likewise.
     pub v: &'a [f64],
+    /// Multipliers (N) of its [rows](Device::rows), 0 of those that follow from others; not known at the start, and without a sample.
+    pub multipliers: Option<&'a [f64]>,
     pub(super) device: &'a dyn Device,
     pub(super) phase: &'a Phase,
 }

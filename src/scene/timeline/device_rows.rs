@@ -68,6 +68,11 @@ impl DeviceInput {
 }
 
 impl DeviceOutput {
+    /// Whether it is an angle, which sensors follow over whole turns.
+    pub(crate) fn is_angle(&self) -> bool {
+        self.unit == "rad" && !self.is_vector
+    }
+
     /// Number of components on a body of this `dimension`.
     pub(crate) const fn rank(&self, dimension: usize) -> usize {
         if self.is_vector { dimension } else { 1 }

@@ -35,7 +35,9 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 
 pub(crate) use contacts::ContactReader;
-pub use device::{Device, DeviceGauge, DeviceSignals, DeviceSite, DeviceState, DeviceValue};
+pub use device::{
+    Device, DeviceGauge, DeviceRow, DeviceSignals, DeviceSite, DeviceState, DeviceValue,
+};
 pub(crate) use device_rows::STEER;
 pub use device_rows::{DeviceInput, DeviceOutput, InputLimit};
 pub(crate) use gas::Amounts;
@@ -499,17 +501,35 @@ impl Scene {
 
     /// The forces of a touch of bodies of the scene.
     pub(crate) fn force_of(&self, touch: &Touch) -> Result<TouchForce, InputError> {
+        let of_devices = self.device_constraints()?;
+        let glued = self.bodies_joined_by(self.tied()?.into_iter().chain(&of_devices));
+        touch.force(&self.body, &glued, self.initial_displacements())
+    }
+
+    /// The pairs of numbers of bodies that devices join.
+    pub(crate) fn jointed_bodies(&self) -> Result<Vec<[usize; 2]>, InputError> {
+        Ok(self.bodies_joined_by(self.device_constraints()?.iter()))
+    }
+
+    /// The pairs of numbers of bodies that have terms in the same row.
+    fn bodies_joined_by<'a>(
+        &self,
+        constraints: impl Iterator<Item = &'a Constraint>,
+    ) -> Vec<[usize; 2]> {
         let number = |node: usize| self.body.parts().position(|part| part.nodes.contains(&node));
-        let mut glued = Vec::new();
-        for constraint in self.tied()? {
+        let mut joined = Vec::new();
+        for constraint in constraints {
             if let Constrained::Row(terms) = &constraint.what {
-                let mut bodies = terms.iter().filter_map(|&(node, ..)| number(node - 1));
-                glued.extend(bodies.next().zip(bodies.next()).map(<[usize; 2]>::from));
+                let mut bodies: Vec<usize> =
+                    terms.iter().filter_map(|&(node, ..)| number(node - 1)).collect();
+                bodies.dedup();
+                let pair = bodies.first().zip(bodies.get(1));
+                joined.extend(pair.map(|(one, other)| [*one, *other]));
             }
         }
-        glued.sort_unstable();
-        glued.dedup();
-        touch.force(&self.body, &glued, self.initial_displacements())
+        joined.sort_unstable();
+        joined.dedup();
+        joined
     }
 
     /// The constraints of all ties.
@@ -531,7 +551,8 @@ impl Scene {
         start: &PhaseStart,
     ) -> Result<Vec<ConstraintRow>, InputError> {
         let (tied, on_axis) = (self.tied()?, self.held_on_axis());
-        let all = phase.constraints.iter().chain(tied).chain(&on_axis);
+        let of_devices = self.device_constraints()?;
+        let all = phase.constraints.iter().chain(tied).chain(&on_axis).chain(&of_devices);
         rows(all, &self.body, &phase.name, start)
     }
 }

@@ -3,12 +3,15 @@
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-use super::device::{Device, DeviceGauge, DeviceSignals, DeviceSite, DeviceState, DeviceValue};
+use super::device::{
+    Device, DeviceGauge, DeviceRow, DeviceSignals, DeviceSite, DeviceState, DeviceValue,
+};
 use super::device_rows::DeviceInput;
 use super::input::{Input, InputSignal, Quantity, Target};
 use super::{Phase, Scene, taken};
 use crate::base::input::{InputError, find};
 use crate::elements::force::Forces;
+use crate::scene::constraint::{Constrained, Constraint, Motion};
 
 impl Scene {
     /// Adds a device, which acts in all phases.
@@ -46,6 +49,30 @@ impl Scene {
 
     pub(super) fn device_site(&self) -> DeviceSite<'_> {
         DeviceSite::new(&self.body, &self.magnets)
+    }
+
+    /// The rows of a device, by its number (from 0).
+    ///
+    /// # Errors
+    /// Nodes that do not exist, numbers out of range.
+    pub(crate) fn rows_of_device(&self, number: usize) -> Result<Vec<DeviceRow>, InputError> {
+        self.devices[number].rows(&self.device_site())
+    }
+
+    /// Whether the device with a name has rows.
+    pub(crate) fn joins(&self, name: &str) -> bool {
+        let number = self.devices.iter().position(|device| device.name() == name);
+        number.is_some_and(|number| self.rows_of_device(number).is_ok_and(|own| !own.is_empty()))
+    }
+
+    /// The constraints of all devices.
+    pub(super) fn device_constraints(&self) -> Result<Vec<Constraint>, InputError> {
+        let mut all = Vec::new();
+        for number in 0..self.devices.len() {
+            let rows = self.rows_of_device(number)?.into_iter().map(Constrained::Row);
+            all.extend(rows.map(|what| Constraint { what, how: Motion::Together }));
+        }
+        Ok(all)
     }
 
     /// Checks the devices at the start, under these displacements and velocities.
@@ -128,7 +155,7 @@ impl Scene {
         time: f64,
         [u, v]: [&'a [f64]; 2],
     ) -> DeviceState<'a> {
-        DeviceState { time, body: &self.body, u, v, device, phase }
+        DeviceState { time, body: &self.body, u, v, multipliers: None, device, phase }
     }
 
     /// The lines by which devices are drawn (m).

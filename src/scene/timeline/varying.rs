@@ -87,7 +87,11 @@ impl List {
                 self.0.push(Varying::Function(Arc::new(move |t| path(t).displacement)));
             }
             Motion::Formula(formula) => self.formula(formula),
-            Motion::Hold | Motion::Velocity(_) | Motion::Spline(_) | Motion::Turn(_) => {}
+            Motion::Hold
+            | Motion::Together
+            | Motion::Velocity(_)
+            | Motion::Spline(_)
+            | Motion::Turn(_) => {}
         }
     }
 }

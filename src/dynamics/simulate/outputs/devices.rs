@@ -1,6 +1,5 @@
 //! Outputs of devices, which have their rows.
 
-use super::super::output::Value;
 use super::super::reading::{Reading, ReadingKind};
 use super::super::view::View;
 use crate::base::input::InputError;
@@ -16,23 +15,19 @@ impl View<'_> {
         let own = self.scene.output_number(number, output)?;
         let output = &self.scene.devices()[number].outputs()[own];
         let rank = output.rank(self.body().dimension());
-        Ok(self.device_output(number, own)[..rank].to_vec())
+        Ok(self.device_value(number, own, None)[..rank].to_vec())
     }
 
-    /// An output of a device, both by number.
+    /// An output of a device, both by number, where its rows have these `multipliers`.
     pub(in crate::dynamics::simulate) fn device_value(
         &self,
         device: usize,
         output: usize,
-        is_vector: bool,
-    ) -> Value {
-        let value = self.device_output(device, output);
-        if is_vector { Value::Vector(value) } else { Value::Number(value[0]) }
-    }
-
-    fn device_output(&self, device: usize, output: usize) -> [f64; 3] {
+        multipliers: Option<&[f64]>,
+    ) -> [f64; 3] {
         let own = &*self.scene.devices()[device];
-        let state = self.scene.device_state(own, self.phase, self.time, [self.u, self.v]);
+        let mut state = self.scene.device_state(own, self.phase, self.time, [self.u, self.v]);
+        state.multipliers = multipliers;
         (self.gauges.devices[device][output])(&state)
     }
 }

@@ -35,7 +35,8 @@ pub(super) static POSITION: Output = Output {
 };
 
 fn read(view: &View<'_>, number: usize, word: &str) -> Result<Value, InputError> {
-    Ok(view.device_value(number, view.scene.output_number(number, word)?, true))
+    let output = view.scene.output_number(number, word)?;
+    Ok(Value::Vector(view.device_value(number, output, None)))
 }
 
 impl View<'_> {

@@ -16,7 +16,7 @@ use crate::elements::mesh::Mesh;
 use crate::io::output::acting::Remanence;
 use crate::io::output::role::Role;
 use crate::io::output::svg::{View, displaced, positions};
-use crate::scene::forces::{Joint, Obstacle, Shape, ShapeKind, Spring, corners};
+use crate::scene::forces::{Obstacle, Shape, ShapeKind, Spring, SpringPoint, corners};
 use crate::scene::timeline::{Phase, Scene};
 
 /// Most samples that a page holds, the bytes that they may take together before encoding, and the number of
@@ -308,7 +308,7 @@ fn add_shape(shape: &Shape, courses: &Value, shapes: &mut Vec<Value>) {
 }
 
 /// Joints of each spring, at its ends or along its path.
-pub(super) fn spring_ends(scene: &Scene) -> Result<Vec<Vec<Joint>>, Error> {
+pub(super) fn spring_ends(scene: &Scene) -> Result<Vec<Vec<SpringPoint>>, Error> {
     let mesh = scene.body().mesh();
     scene.springs().iter().map(|spring| Ok(spring.joints(mesh)?)).collect()
 }
@@ -318,7 +318,7 @@ fn springs(
     trajectory: &Trajectory,
     frames: &[&Sample],
     geometry: &Geometry,
-    ends: &[Vec<Joint>],
+    ends: &[Vec<SpringPoint>],
 ) -> Result<Value, Error> {
     let scene = trajectory.scene();
     let forces = frames.iter().map(|sample| {

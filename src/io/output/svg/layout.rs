@@ -3,7 +3,7 @@
 use super::obstacle::{Outline, outlines};
 use super::projection::{Point, drawn, positions};
 use crate::dynamics::trajectory::{Sample, Trajectory};
-use crate::scene::forces::Joint;
+use crate::scene::forces::SpringPoint;
 use crate::scene::timeline::Scene;
 
 /// Width that a page aims at, its least width, and the limits of a panel (px).
@@ -147,7 +147,7 @@ fn anchors(scene: &Scene) -> Vec<Vec<f64>> {
     let mesh = scene.body().mesh();
     let joints = scene.springs().iter().filter_map(|spring| spring.joints(mesh).ok());
     let point =
-        |joint: Joint| joint.shares.is_empty().then(|| joint.at[..mesh.dimension()].to_vec());
+        |joint: SpringPoint| joint.shares.is_empty().then(|| joint.at[..mesh.dimension()].to_vec());
     joints.flatten().filter_map(point).collect()
 }
 

@@ -13,7 +13,7 @@ use crate::dynamics::trajectory::{Sample, Trajectory};
 use crate::elements::mesh::{CellKind, Mesh};
 use crate::elements::rod::Tube;
 use crate::io::output::INK;
-use crate::scene::forces::Joint;
+use crate::scene::forces::SpringPoint;
 
 /// The edges of cells and the cells of the first body, of the second, and so on; then over again.
 const PAINTS: [Paint; 6] = [
@@ -187,7 +187,7 @@ impl Panel<'_> {
         let mut data = Data::default();
         for spring in self.trajectory.scene().springs() {
             let Ok(joints) = spring.joints(mesh) else { continue };
-            let place = |joint: Joint| match &joint.shares[..] {
+            let place = |joint: SpringPoint| match &joint.shares[..] {
                 [] => self.layout.place(self.number, drawn(&joint.at[..mesh.dimension()])),
                 shares => shares.iter().fold([0.0; 2], |sum, &(node, share)| {
                     [0, 1].map(|i| sum[i] + share * points[node][i])

@@ -13,7 +13,7 @@ use crate::base::vector::distinct;
 use crate::elements::body::CellSelection;
 use crate::elements::material::FibreDirection;
 use crate::elements::mesh::Selection;
-use crate::scene::forces::{Joint, Spring};
+use crate::scene::forces::{Spring, SpringPoint};
 
 /// A component in the half of a scene.
 pub(super) struct Component {
@@ -88,7 +88,7 @@ impl Same<'_> {
         for spring in &scene.springs {
             let joints = spring.joints(mesh)?;
             let numbers = |is_image: bool| {
-                let number = |joint: &Joint| {
+                let number = |joint: &SpringPoint| {
                     let mut x = joint.at;
                     if is_image {
                         x[map.axis] = 2.0 * map.ends[0] - x[map.axis];

@@ -1,0 +1,108 @@
+//! The force of what acts along the coordinate of a joint.
+
+use super::coordinate::{At, Coordinate};
+use super::law::{Law, Part};
+use crate::base::sparse::BlockMatrix;
+use crate::elements::force::{Force, NodalForces, Reservoir, Tangents};
+use crate::integrators::ode::Failure;
+use crate::scene::forces::finite_at;
+use crate::scene::timeline::DeviceSignals;
+
+/// Spring, stops, damping, friction and motor of a joint.
+pub(super) struct JointForce {
+    name: String,
+    /// The coordinate, if anything acts along it.
+    coordinate: Option<Coordinate>,
+    law: Law,
+    inputs: DeviceSignals,
+}
+
+impl JointForce {
+    pub(super) fn new(
+        name: &str,
+        coordinate: Option<Coordinate>,
+        law: Law,
+        inputs: DeviceSignals,
+    ) -> Self {
+        let acts = law.is_of_state() || inputs.are_set();
+        Self { name: name.into(), coordinate: coordinate.filter(|_| acts), law, inputs }
+    }
+
+    /// The forces by their effect on the energy: elastic, resisting, of the motor.
+    fn parts(&self, coordinate: &Coordinate, at: &At, t: f64) -> [Part; 3] {
+        let wrapped = |difference| coordinate.wrapped(difference);
+        let inputs = [0, 1, 2].map(|number| self.inputs.at(number, t)[0]);
+        [
+            self.law.elastic(at.value, wrapped),
+            self.law.resistance(at.rate),
+            self.law.motor(inputs, [at.value, at.rate], wrapped),
+        ]
+    }
+}
+
+impl Force for JointForce {
+    fn add_forces(
+        &self,
+        t: f64,
+        u: &[f64],
+        v: &[f64],
+        forces: &mut NodalForces,
+    ) -> Result<(), Failure> {
+        let Some(coordinate) = &self.coordinate else { return Ok(()) };
+        let at = coordinate.at(u, v, false);
+        let [elastic, resisting, motor] = self.parts(coordinate, &at, t);
+        finite_at(t, format_args!("the motor of joint \"{}\"", self.name), motor.force)?;
+        coordinate.add_forces(&at, elastic.force, &mut forces.conservative);
+        coordinate.add_forces(&at, resisting.force, &mut forces.dissipative);
+        coordinate.add_forces(&at, motor.force, &mut forces.applied);
+        Ok(())
+    }
+
+    fn add_tangents(
+        &self,
+        t: f64,
+        u: &[f64],
+        v: &[f64],
+        stiffness: &mut BlockMatrix,
+        damping: &mut BlockMatrix,
+    ) -> Tangents {
+        let Some(coordinate) = &self.coordinate else { return Tangents::Added };
+        let at = coordinate.at(u, v, true);
+        let parts = self.parts(coordinate, &at, t);
+        let force = parts.iter().map(|part| part.force).sum();
+        let slopes = [0, 1].map(|way| parts.iter().map(|part| part.slopes[way]).sum());
+        coordinate.add_tangents(&at, (force, slopes), stiffness, damping);
+        Tangents::Added
+    }
+
+    fn is_nonlinear(&self) -> bool {
+        self.coordinate.is_some()
+    }
+
+    fn potential(&self, _t: f64, u: &[f64]) -> f64 {
+        let Some(coordinate) = &self.coordinate else { return 0.0 };
+        // the value needs no velocities: those of the displacements do as well as any
+        let value = coordinate.at(u, u, false).value;
+        self.law.potential(value, |difference| coordinate.wrapped(difference))
+    }
+
+    fn reservoir(&self) -> Reservoir {
+        Reservoir::Springs
+    }
+
+    fn nodes(&self) -> Option<Vec<usize>> {
+        Some(
+            self.coordinate
+                .as_ref()
+                .map_or_else(Vec::new, |coordinate| coordinate.nodes().collect()),
+        )
+    }
+
+    fn couplings(&self) -> Vec<[usize; 2]> {
+        let Some(coordinate) = &self.coordinate else { return Vec::new() };
+        let nodes: Vec<usize> = coordinate.nodes().collect();
+        let pairs = |k: usize| nodes[..k].iter().map(move |&other| (other, k));
+        let pairs = (0..nodes.len()).flat_map(pairs);
+        pairs.map(|(other, k)| [other, nodes[k]]).collect()
+    }
+}
