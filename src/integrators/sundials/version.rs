@@ -33,7 +33,7 @@ pub fn description() -> String {
     format!(
         "SUNDIALS {} with CVODES, IDAS, ARKODE, {}-bit indices; KLU of SuiteSparse {}",
         version(),
-        8 * size_of::<ffi::sunindextype>(),
+        ffi::sunindextype::BITS,
         suitesparse_version()
     )
 }

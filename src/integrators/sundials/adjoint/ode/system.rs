@@ -132,7 +132,7 @@ impl<S: Ode, F: Functional> AdjointSystem<S, F> {
         }
         if outcome.is_ok() {
             let factorized = ilu.factorize_shifted(gamma);
-            outcome = factorized.map_err(|row| Failure::Recoverable(no_pivot(row).into()));
+            outcome = factorized.map_err(|row| Failure::Recoverable(no_pivot(row)));
         }
         self.ilu = Some(ilu);
         outcome.map(|()| fresh)
