@@ -141,17 +141,19 @@ fn stiff_jacobian(t: f64, y: &[f64], _: &[f64], mut jacobian: MatMut<'_, f64>) -
     Ok(())
 }
 
+type Rhs = fn(f64, &[f64], &mut [f64]) -> Result;
+
 /// Errors of u and v over the times of the example, and the solver.
 fn kpr<S: Ode>(
     slow: S,
     options: MultirateOptions,
     inner: &ArkodeOptions,
-) -> ([f64; 2], Multirate<S, fn(f64, &[f64], &mut [f64]) -> Result>) {
+) -> ([f64; 2], Multirate<S, Rhs>) {
     let options = options
         .newton(LinearSolver::Dense(Jacobian::Supplied))
         .predictor(Predictor::Trivial)
         .max_steps(1_000_000);
-    let fast: fn(f64, &[f64], &mut [f64]) -> Result = fast;
+    let fast: Rhs = fast;
     let mut solver = Multirate::new(slow, fast, 0.0, &exact(0.0), &options, inner).unwrap();
     let (mut tout, mut sums) = (0.0_f64, [0.0; 2]);
     for _ in 0..50 {
