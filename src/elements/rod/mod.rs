@@ -6,6 +6,7 @@
 mod chain;
 mod elements;
 mod end;
+mod nodes;
 mod path;
 mod screw;
 mod section;
@@ -18,7 +19,7 @@ mod turning;
 use elements::RodElement;
 pub(crate) use elements::RodElements;
 use end::End;
-use path::Nodes;
+use nodes::Nodes;
 pub use path::RodPath;
 pub use section::{RodSection, SectionNumbers};
 use strain::{Deformed, Section};

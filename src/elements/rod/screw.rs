@@ -2,7 +2,7 @@
 
 use nalgebra::{Rotation3, Unit, Vector3};
 
-use super::path::{Nodes, across};
+use super::nodes::{Nodes, across};
 use crate::base::input::{InputError, finite};
 
 /// The curve of a point that turns about an axis and moves along it in proportion.

@@ -1,6 +1,7 @@
 //! Numbers with their derivatives along some directions (forward differentiation).
 //!
-//! A. Griewank, A. Walther, "Evaluating Derivatives" (SIAM 2008), section 3.2.
+//! A. Griewank, A. Walther, "Evaluating Derivatives" (SIAM 2008), section 3.2. The numbers of the crate `num-dual`, whose slopes may be absent, take five
+//! times as long (`docs/notes/integrators.md`).
 
 use std::{
     array,

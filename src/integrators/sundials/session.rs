@@ -8,6 +8,7 @@ use std::{ffi::c_void, ptr};
 
 use super::{
     auxiliary::{Backward, Quadratures, Sensitivity},
+    callbacks::callbacks,
     context::Context,
     differences::{Differences, Scales},
     ffi,
@@ -28,10 +29,9 @@ use super::{
     signs::{self, Sign},
     stop_time::StopTime,
     vector::Vector,
-    weights::error_weights,
 };
 use crate::integrators::{
-    common::{AbsoluteTolerance, Clock, Error, JacobianCheck, Tolerances},
+    common::{AbsoluteTolerance, Callback, Clock, Error, JacobianCheck, Tolerances},
     ode::Ode,
 };
 
@@ -442,5 +442,14 @@ impl<K, S> Session<K, S> {
                 _ => self.set(functions.set_jacobian, Some(jacobian::<S>)),
             }
         }
+    }
+}
+
+callbacks! {
+    /// `CVEwtFn`
+    fn error_weights<S: Sized>(y: read, weights: write, host: (data S)) {
+        let Some(own) = host.weights.clone() else { return 0 };
+        let t = host.last_time();
+        host.guard(Callback::ErrorWeights, t, |_| own.write(y, weights))
     }
 }

@@ -2,8 +2,7 @@
 
 use std::{fmt, sync::Arc};
 
-use super::callbacks::callbacks;
-use crate::integrators::{common::Callback, ode::Failure};
+use crate::integrators::ode::Failure;
 
 type Weigh = dyn Fn(&[f64], &mut [f64]) + Send + Sync;
 
@@ -16,7 +15,11 @@ impl ErrorWeights {
         Self(Arc::new(weigh))
     }
 
-    fn write(&self, y: &[f64], weights: &mut [f64]) -> Result<(), Failure> {
+    /// Writes the weights of a state.
+    ///
+    /// # Errors
+    /// Weights that are not positive.
+    pub(super) fn write(&self, y: &[f64], weights: &mut [f64]) -> Result<(), Failure> {
         (self.0)(y, weights);
         match weights.iter().position(|weight| !(*weight > 0.0 && weight.is_finite())) {
             None => Ok(()),
@@ -34,14 +37,5 @@ impl ErrorWeights {
 impl fmt::Debug for ErrorWeights {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str("ErrorWeights")
-    }
-}
-
-callbacks! {
-    /// `CVEwtFn`
-    fn error_weights<S: Sized>(y: read, weights: write, host: (data S)) {
-        let Some(own) = host.weights.clone() else { return 0 };
-        let t = host.last_time();
-        host.guard(Callback::ErrorWeights, t, |_| own.write(y, weights))
     }
 }
