@@ -52,32 +52,49 @@ pub(super) const CURVE: TableKeys = TableKeys::new(
     "The axis of a rod, as a curve.",
     &[
         Key::new("start", ValueType::Vector, "its first point").in_unit("m").required(),
-        Key::new("center", ValueType::Vector, "a point of the axis about which it turns, in the plane the center")
-            .in_unit("m")
-            .required(),
-        Key::new("axis", ValueType::Array(&ValueType::Number, 3), "the direction of that axis, in space")
-            .in_unit("1")
-            .default("[0, 0, 1]"),
+        Key::new(
+            "center",
+            ValueType::Vector,
+            "a point of the axis about which it turns, in the plane the center",
+        )
+        .in_unit("m")
+        .required(),
+        Key::new(
+            "axis",
+            ValueType::Array(&ValueType::Number, 3),
+            "the direction of that axis, in space",
+        )
+        .in_unit("1")
+        .default("[0, 0, 1]"),
     ],
     "[[rod]]\n\
-     name = \"spring\"\n\
-     path = { kind = \"helix\", start = [0.01, 0.0, 0.0], center = [0.0, 0.0, 0.0], pitch = 0.005, turns = 8.0 }\n\
-     elements = 160\n\
-     section = { kind = \"circle\", radius = 0.0005 }\n\
-     material = { density = 7800.0, young = 2.0e11, poisson = 0.3, viscosity = 0.0 }",
+     name = \"arch\"\n\
+     path = { kind = \"arc\", start = [0.1, 0.0], center = [0.0, 0.0], angle = 3.0 }\n\
+     section = { kind = \"circle\", radius = 0.005 }\n\
+     material = { density = 1100.0, young = 5.0e5, poisson = 0.49, viscosity = 500.0 }",
 )
 .kinds(&[
     Kind {
         word: "arc",
         about: "part of a circle; a ring if it is the whole",
-        keys: &[Key::number("angle", "the angle by which it turns, right-handed about the axis", "rad").required()],
+        keys: &[Key::number(
+            "angle",
+            "the angle by which it turns, right-handed about the axis",
+            "rad",
+        )
+        .required()],
     },
     Kind {
         word: "helix",
         about: "a helix, in space",
         keys: &[
             Key::number("pitch", "the way along the axis in a turn", "m").required(),
-            Key::number("turns", "the number of its turns; negative ones go the other way about the axis", "1").required(),
+            Key::number(
+                "turns",
+                "the number of its turns; negative ones go the other way about the axis",
+                "1",
+            )
+            .required(),
         ],
     },
 ]);
