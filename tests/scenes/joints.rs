@@ -483,7 +483,7 @@ fn refusal(scene: Scene) -> InputError {
     scene.phase(Phase::until(1.0)).validate().unwrap_err()
 }
 
-/// What makes no joint is refused with the name of the joint, before anything runs.
+/// A table that makes no joint is refused with the name of the joint, before anything runs.
 #[test]
 fn what_is_no_joint_is_refused() {
     let scene = || Scene::new(Body::join([bar("bar", 0.0), bar("lower", LENGTH)]).unwrap());

@@ -69,7 +69,7 @@ pub enum Method {
     Ida,
 }
 
-/// What limits the steps of a method besides accuracy.
+/// The limit of the steps of a method, besides accuracy.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Limit {
     /// Nothing, or it is unknown.
@@ -83,7 +83,7 @@ pub(super) enum Limit {
 }
 
 impl Method {
-    /// What limits its steps for ODEs without a mass matrix.
+    /// The limit of its steps for ODEs without a mass matrix.
     pub(super) fn limit(self) -> Limit {
         match self {
             Self::Bdf => Limit::Oscillations,

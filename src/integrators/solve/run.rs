@@ -64,7 +64,7 @@ pub struct Run<'a> {
     pub(super) observer: Option<Observer<'a>>,
     pub(super) cancel: Option<Arc<AtomicBool>>,
     pub(super) limits: Limits,
-    /// What limits the steps besides accuracy.
+    /// The limit of the steps, besides accuracy.
     pub(super) limit: Limit,
     pub(super) tolerances: Tolerances,
     pub(super) span: (f64, f64),

@@ -124,7 +124,7 @@ impl OwnEnergy {
     pub(in crate::elements::material) fn validate(self, mu: f64) -> Result<(), InputError> {
         let input = format!("material.law {self:?}");
         let [one, other] = [[0.1, 0.0, -0.1], [-0.1, 0.1, 0.0]].map(|x| self.value(x));
-        if (one - other).abs() > 1e-9 * one.abs() || !one.is_finite() {
+        if (one - other).abs() > 1e-9 * one.abs() || !(one - other).is_finite() {
             let help = "the material is isotropic: the energy is symmetric in the stretches";
             let value = format!("{one} J/m^3, {other} J/m^3 with the stretches exchanged");
             return Err(InputError::new(input, value, help));

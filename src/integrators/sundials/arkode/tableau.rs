@@ -33,7 +33,7 @@ pub struct Tableau {
 impl Tableau {
     /// Of this order, with the rows of a, in which zeros at the end may be left out, and the weights b.
     ///
-    /// What cannot be used is an error of the solver's `new`.
+    /// Coefficients that cannot be used are an error of the solver's `new`.
     pub fn new<R: AsRef<[f64]>>(
         order: u32,
         a: impl IntoIterator<Item = R>,
