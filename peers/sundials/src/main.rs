@@ -46,7 +46,8 @@ fn main() -> ExitCode {
     let mut figures = Figures::default();
     let outcome = robertson::cvodes(&mut figures)
         .and_then(|()| robertson::idas(&mut figures))
-        .and_then(|()| second_order::hessian(&mut figures))
+        .and_then(|()| second_order::of_ode(&mut figures))
+        .and_then(|()| second_order::of_dae(&mut figures))
         .and_then(|()| one_way::coupling(&mut figures))
         .and_then(|()| kpr::all(&mut figures))
         .and_then(|()| brusselator::imex(&mut figures));

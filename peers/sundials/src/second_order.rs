@@ -1,8 +1,8 @@
-//! `cvsHessian_ASA_FSA`: the gradient and the Hessian of an integral.
+//! `cvsHessian_ASA_FSA` and `idasHessian_ASA_FSA`: gradients and Hessians of an integral.
 
 use pliant::{
-    ode::{Failure, Functional, Slopes, with_parameters},
-    sundials::{Adjoint, AdjointOptions, CvodeOptions, Error},
+    ode::{Failure, Functional, Slopes, dae_with_parameters, with_parameters},
+    sundials::{Adjoint, AdjointOptions, CvodeOptions, DaeAdjoint, Error, IdaOptions},
 };
 
 use crate::Figures;
@@ -24,7 +24,7 @@ impl Functional for HalfSquare {
     }
 }
 
-pub fn hessian(figures: &mut Figures) -> Result<(), Error> {
+pub fn of_ode(figures: &mut Figures) -> Result<(), Error> {
     let example = "cvsHessian_ASA_FSA";
     let system = with_parameters(
         |_t: f64, y: &[f64], p: &[f64], ydot: &mut [f64]| {
@@ -48,6 +48,42 @@ pub fn hessian(figures: &mut Figures) -> Result<(), Error> {
         ("H12", -7.8678e-2, columns[0].parameters[1]),
         ("H21", -7.8678e-2, columns[1].parameters[0]),
         ("H22", 8.9814e-2, columns[1].parameters[1]),
+    ] {
+        figures.number(example, name, printed, 4, found);
+    }
+    Ok(())
+}
+
+/// Robertson's reactions with a conservation law.
+pub fn of_dae(figures: &mut Figures) -> Result<(), Error> {
+    let example = "idasHessian_ASA_FSA";
+    let system = dae_with_parameters(
+        |_t: f64, y: &[f64], yp: &[f64], p: &[f64], r: &mut [f64]| {
+            let exchange = p[0] * y[0] - p[1] * y[1] * y[2];
+            r[0] = yp[0] + exchange;
+            r[1] = yp[1] - exchange + 3e7 * y[1] * y[1];
+            r[2] = y[0] + y[1] + y[2] - 1.0;
+            Ok(())
+        },
+        [0.04, 1e4],
+    );
+    let forward = IdaOptions::new(1e-8, 1e-10).differential([true, true, false]);
+    let back = AdjointOptions::new(1e-8, 1e-8);
+    let (y0, yp0) = ([1.0, 0.0, 0.0], [-0.04, 0.04, 0.0]);
+    let mut adjoint = DaeAdjoint::new(system, HalfSquare, 0.0, &y0, &yp0, &forward, &back)?;
+    let gradient = adjoint.gradient(80.0)?;
+    let columns =
+        [adjoint.hessian_times(80.0, &[1.0, 0.0])?, adjoint.hessian_times(80.0, &[0.0, 1.0])?];
+    for (name, printed, found) in [
+        ("G", 2.5042e1, gradient.value),
+        ("dG/dp1", -1.3753e2, gradient.parameters[0]),
+        ("dG/dp2", 4.1552e-4, gradient.parameters[1]),
+        ("dG/dp1 (forward)", -1.3753e2, columns[0].value),
+        ("dG/dp2 (forward)", 4.1552e-4, columns[1].value),
+        ("H11", 4.4243e3, columns[0].parameters[0]),
+        ("H12", -2.7779e-3, columns[0].parameters[1]),
+        ("H21", -2.7779e-3, columns[1].parameters[0]),
+        ("H22", -2.4173e-8, columns[1].parameters[1]),
     ] {
         figures.number(example, name, printed, 4, found);
     }

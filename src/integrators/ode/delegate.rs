@@ -101,6 +101,7 @@ macro_rules! delegate {
                 t: f64, y: &[f64], yp: &[f64], parameter: usize, s: &[f64], sp: &[f64],
                 residual: &mut [f64]
             );
+            fn adjoint_parameters(t: f64, y: &[f64], yp: &[f64], lambda: &[f64], out: &mut [f64]);
         }
     };
 

@@ -1,6 +1,7 @@
 //! Adjoint gradients of DAEs, against closed forms, those of ODEs, forward sensitivities and differences.
 
 mod failures;
+mod hessian;
 
 use faer::MatMut;
 use pliant::{

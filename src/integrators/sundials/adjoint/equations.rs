@@ -1,9 +1,7 @@
 //! A system, of any kind, with a functional: their derivatives in the backward run.
 
-use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
-
-use super::{gradient::Gradient, slopes::SlopesCheck};
-use crate::base::{input::InputError, vector::size_or_one};
+use super::{gradient::Gradient, parameters::ParameterDifferences, slopes::SlopesCheck};
+use crate::base::input::InputError;
 use crate::integrators::{
     common::{Callback, Cause, Error, IntegrationError, Tolerances},
     ode::{Entries, Failure, Functional, Slopes},
@@ -33,10 +31,8 @@ pub(in crate::integrators::sundials) struct Equations<S, F> {
     /// The derivatives of h with respect to the unknowns and to the parameters.
     pub(super) slopes_y: Vec<f64>,
     pub(super) slopes_p: Vec<f64>,
-    p: Vec<f64>,
-    trial: Vec<f64>,
-    ahead: Vec<f64>,
-    behind: Vec<f64>,
+    differences: ParameterDifferences,
+    scratch: Vec<f64>,
 }
 
 impl<S, F: Functional> Equations<S, F> {
@@ -50,7 +46,7 @@ impl<S, F: Functional> Equations<S, F> {
     ) -> Result<Self, InputError> {
         let jacobian = StoredMatrix::new(forward, n);
         let backward = jacobian.backward_solver()?;
-        let p = (access.get)(&system).to_vec();
+        let count = (access.get)(&system).len();
         Ok(Self {
             system,
             functional,
@@ -62,13 +58,11 @@ impl<S, F: Functional> Equations<S, F> {
             backward,
             jacobian_time: None,
             jacobian_state: vec![0.0; n],
-            check: SlopesCheck::new((n, tolerances), p.len()),
+            check: SlopesCheck::new((n, tolerances), count),
             slopes_y: vec![0.0; n],
-            slopes_p: vec![0.0; p.len()],
-            trial: p.clone(),
-            p,
-            ahead: vec![0.0; n],
-            behind: vec![0.0; n],
+            slopes_p: vec![0.0; count],
+            differences: ParameterDifferences::new(count, n),
+            scratch: vec![0.0; n],
         })
     }
 
@@ -99,9 +93,9 @@ impl<S, F: Functional> Equations<S, F> {
             return Ok(false);
         }
         self.jacobian_time = None;
-        let Self { system, jacobian, quotients, tolerances, ahead, .. } = self;
+        let Self { system, jacobian, quotients, tolerances, scratch, .. } = self;
         if self.is_supplied {
-            supplied(system, jacobian.entries(), ahead)?;
+            supplied(system, jacobian.entries(), scratch)?;
         } else {
             let step = |j: usize| f64::EPSILON.cbrt() * tolerances.size_of(j, y[j]);
             quotients.write(jacobian, y, step, |y, out| evaluate(system, y, out))?;
@@ -144,33 +138,15 @@ impl<S, F: Functional> Equations<S, F> {
     }
 
     /// Writes the product of lambda with the derivatives of `evaluate` with respect to p, by central
-    /// differences; the parameters are restored to the last bit, whatever happens.
+    /// differences.
     pub(super) fn parameter_differences(
         &mut self,
         lambda: &[f64],
         out: &mut [f64],
-        mut evaluate: impl FnMut(&mut S, &mut [f64]) -> Result<(), Failure>,
+        evaluate: impl FnMut(&mut S, &mut [f64]) -> Result<(), Failure>,
     ) -> Result<(), Failure> {
-        let (get, set) = (self.access.get, self.access.set);
-        self.p.copy_from_slice(get(&self.system));
-        let outcome = catch_unwind(AssertUnwindSafe(|| {
-            for (i, out) in out.iter_mut().enumerate() {
-                let p = self.p[i];
-                let step = f64::EPSILON.cbrt() * size_or_one(p);
-                for (p, result) in [(p + step, &mut self.ahead), (p - step, &mut self.behind)] {
-                    self.trial.copy_from_slice(&self.p);
-                    self.trial[i] = p;
-                    set(&mut self.system, &self.trial);
-                    evaluate(&mut self.system, result)?;
-                }
-                let differences = self.ahead.iter().zip(&self.behind).map(|(a, b)| a - b);
-                let sum: f64 = differences.zip(lambda).map(|(d, lambda)| d * lambda).sum();
-                *out = sum / ((p + step) - (p - step));
-            }
-            Ok(())
-        }));
-        set(&mut self.system, &self.p);
-        outcome.unwrap_or_else(|panic| resume_unwind(panic))
+        let Self { system, access, differences, .. } = self;
+        differences.write(system, access, f64::EPSILON.cbrt(), lambda, out, evaluate)
     }
 }
 

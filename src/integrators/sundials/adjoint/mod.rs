@@ -2,10 +2,12 @@
 
 mod backward;
 mod dae;
+mod doubled;
 mod equations;
 mod gradient;
 mod ode;
 mod options;
+mod parameters;
 mod setup;
 mod slopes;
 

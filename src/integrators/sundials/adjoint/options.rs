@@ -58,8 +58,8 @@ impl AdjointOptions {
         self
     }
 
-    /// Takes (df/dp)^T lambda from
-    /// [`Ode::adjoint_parameters`](crate::integrators::ode::Ode::adjoint_parameters); for an ODE only.
+    /// Takes (df/dp)^T lambda from [`Ode::adjoint_parameters`](crate::integrators::ode::Ode::adjoint_parameters), or
+    /// (dF/dp)^T lambda from [`Dae::adjoint_parameters`](crate::integrators::ode::Dae::adjoint_parameters).
     ///
     /// Default: by central differences, two evaluations for each parameter.
     pub fn supplied_parameters(mut self) -> Self {
@@ -83,14 +83,10 @@ impl AdjointOptions {
 
     /// Rejects options that only an ODE can supply.
     pub(super) fn check_for_dae(&self) -> Result<(), InputError> {
-        let supplied = [
-            ("supplied_rhs", self.supplied_rhs),
-            ("supplied_parameters", self.supplied_parameters),
-        ];
-        match supplied.into_iter().find(|(_, on)| *on) {
-            Some((name, _)) => Err(InputError::new(name, true, "an Ode has it, a Dae has not")),
-            None => Ok(()),
+        if self.supplied_rhs {
+            return Err(InputError::new("supplied_rhs", true, "an Ode has it, a Dae has not"));
         }
+        Ok(())
     }
 
     /// The tolerances of dG/dp, for these parameters.

@@ -47,6 +47,13 @@ impl IdaOptions {
         self
     }
 
+    /// Says for twice the unknowns which are differential.
+    pub(in crate::integrators::sundials) fn repeat_differential(&mut self) {
+        if let Some(differential) = &mut self.own.differential {
+            differential.extend_from_within(..);
+        }
+    }
+
     /// Options of an adjoint problem: the linear solver, the tolerances, and which unknowns are differential.
     pub(in crate::integrators::sundials) fn for_adjoint(
         &self,

@@ -7,5 +7,5 @@ mod solve;
 
 pub(super) use callbacks::{all_residuals, one_rhs};
 pub use options::{Sensitivities, SensitivityMethod, SensitivitySource};
-pub(super) use rhs::{Access, SensitivityRhs};
+pub(super) use rhs::{Access, SensitivityRhs, move_along};
 pub use solve::CarriesSensitivities;

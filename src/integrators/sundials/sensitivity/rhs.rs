@@ -12,6 +12,20 @@ pub(in crate::integrators::sundials) struct Access<S> {
     pub(in crate::integrators::sundials) set: fn(&mut S, &[f64]),
 }
 
+impl<S> Access<S> {
+    /// Calls `evaluate`, which may change the parameters, and sets them to `p` then, whatever happens.
+    pub(in crate::integrators::sundials) fn restoring<T>(
+        &self,
+        system: &mut S,
+        p: &[f64],
+        evaluate: impl FnOnce(&mut S) -> T,
+    ) -> T {
+        let outcome = catch_unwind(AssertUnwindSafe(|| evaluate(system)));
+        (self.set)(system, p);
+        outcome.unwrap_or_else(|panic| resume_unwind(panic))
+    }
+}
+
 /// Which parameters the sensitivities are to, and scratch space for differences.
 pub(in crate::integrators::sundials) struct SensitivityRhs {
     parameters: Vec<usize>,
@@ -180,7 +194,12 @@ impl SensitivityRhs {
     }
 }
 
-fn move_along(to: &mut [f64], (from, direction): (&[f64], &[f64]), step: f64) {
+/// Writes `from` + `step` `direction`.
+pub(in crate::integrators::sundials) fn move_along(
+    to: &mut [f64],
+    (from, direction): (&[f64], &[f64]),
+    step: f64,
+) {
     for ((to, from), direction) in to.iter_mut().zip(from).zip(direction) {
         *to = from + step * direction;
     }

@@ -1,6 +1,7 @@
 //! Adjoint gradients of differential-algebraic equations, by IDAS.
 
 mod end;
+mod hessian;
 mod problem;
 mod setup;
 mod system;

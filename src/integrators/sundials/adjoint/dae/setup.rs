@@ -85,7 +85,7 @@ impl Runs<IdaOptions> {
         let (t0, y0, yp0) = &self.start;
         let (system, functional) = (Borrowed(system), Borrowed(functional));
         let forward = self.forward.for_adjoint(y0)?;
-        let mut equations = AdjointDae::new(system, functional, y0.len(), forward)?;
+        let mut equations = AdjointDae::new(system, functional, y0.len(), forward, &self.options)?;
         equations.start((*t0, y0, yp0))?;
         Ok(equations)
     }

@@ -11,6 +11,7 @@ use crate::integrators::{
         adjoint::{
             backward::Point,
             equations::{Equations, refused},
+            options::AdjointOptions,
         },
         sensitivity::Access,
         stored_matrix::StoredMatrix,
@@ -21,6 +22,7 @@ use crate::integrators::{
 /// linear in y'.
 pub(super) struct AdjointDae<S, F> {
     pub(super) equations: Equations<S, F>,
+    supplied_parameters: bool,
     /// Which unknowns were declared differential.
     differential: Vec<bool>,
     /// dF/dy'
@@ -38,11 +40,13 @@ impl<S: Dae, F: Functional> AdjointDae<S, F> {
         functional: F,
         n: usize,
         (solver, tolerances, differential): (&LinearSolver, &Tolerances, &[bool]),
+        options: &AdjointOptions,
     ) -> Result<Self, InputError> {
         let access = Access { get: S::parameters, set: S::set_parameters };
         let vector = || vec![0.0; n];
         Ok(Self {
             equations: Equations::new(system, functional, access, n, (solver, tolerances))?,
+            supplied_parameters: options.supplied_parameters,
             differential: differential.to_vec(),
             mass: StoredMatrix::new(solver, n),
             algebraic: vec![false; n],
@@ -127,6 +131,10 @@ impl<S: Dae, F: Functional> AdjointDae<S, F> {
         lambda: &[f64],
         out: &mut [f64],
     ) -> Result<(), Failure> {
+        if self.supplied_parameters {
+            let system = &mut self.equations.system;
+            return call::dae_adjoint_parameters(system, t, y, yp, lambda, out);
+        }
         let evaluate =
             |system: &mut S, residual: &mut [f64]| call::residual(system, t, y, yp, residual);
         self.equations.parameter_differences(lambda, out, evaluate)
