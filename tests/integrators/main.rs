@@ -16,6 +16,7 @@ mod golden_counts;
 mod ida;
 mod imex;
 mod index;
+mod integral_sensitivities;
 mod jacobians;
 mod krylov;
 mod krylov_failures;

@@ -131,7 +131,8 @@ impl Run<'_> {
         (self.before, self.shown, self.stale) = (None, 0, true);
         self.engine.set_parameters(&self.parameters);
         if let Some(carried) = &mut self.carried {
-            carried.start(&saved.sensitivities, &saved.parameter_sensitivities, None)?;
+            let Saved { sensitivities: s, parameter_sensitivities: dp, .. } = saved;
+            carried.start([s, dp, &saved.quadrature_sensitivities], None)?;
         }
         self.breaks.append(&mut self.passed);
         self.breaks.retain(|at| at.tick.is_none());

@@ -17,7 +17,10 @@ use super::{
     watch::{Root, Seen, Sight, Turn},
 };
 use crate::base::input::InputError;
-use crate::integrators::common::{check_finite, time_tolerance};
+use crate::integrators::{
+    common::{check_finite, time_tolerance},
+    ode::Failure,
+};
 
 /// Events within a step.
 pub(super) enum Found {
@@ -170,6 +173,16 @@ impl<'a> Run<'a> {
         Ok(slope)
     }
 
+    /// The integrands on one side of a jump at the present time.
+    fn integrands_at(&mut self, side: &Snapshot, out: &mut [f64]) -> Result<(), Reason> {
+        let outcome = self.engine.integrands(self.t, &side.y, &side.yp, out);
+        let failed = |failure: Failure| {
+            let help = "they are needed on both sides of an event and of a jump";
+            InputError::new("integrands at a jump", failure.into_error(), help)
+        };
+        Ok(outcome.map_err(failed)?)
+    }
+
     /// Handles the accumulation of event `i` at the present time.
     pub(super) fn accumulate(&mut self, i: usize, turn: Turn) -> Result<(), Reason> {
         let before = self.snapshot();
@@ -283,16 +296,21 @@ impl<'a> Run<'a> {
     ) -> Result<(), Reason> {
         let Some(mut carried) = self.carried.take() else { return Ok(()) };
         let (of_dae, here) = (!self.yp.is_empty(), self.snapshot());
-        let mut slopes = Vec::new();
-        for side in [before, &here] {
+        let count = if carried.has_integrals() { self.quadratures().len() } else { 0 };
+        let (mut slopes, mut integrands) = (Vec::new(), [vec![0.0; count], vec![0.0; count]]);
+        for (side, integrands) in [before, &here].into_iter().zip(&mut integrands) {
             self.engine.set_parameters(&side.p);
             self.set_signs(&side.sides);
             slopes.push(self.slope_at(self.t, &side.y, side.yp.clone())?);
+            if count > 0 {
+                self.integrands_at(side, integrands)?;
+            }
         }
         let [left, right] = [&slopes[0][..], &slopes[1]];
         let (t, slopes, p) = (self.t, [left, right], &before.p);
         let unit_of_time = self.unit_of_time(&before.y, left);
-        let at = Crossing { t, unit_of_time, before: &before.y, slopes, of_dae, p };
+        let integrands = [&integrands[0][..], &integrands[1]];
+        let at = Crossing { t, unit_of_time, before: &before.y, slopes, integrands, of_dae, p };
         cross(&mut carried, &at)?;
         self.correct(Some((&mut carried.s, &carried.dp)))?;
         self.carried = Some(carried);

@@ -35,6 +35,11 @@ pub(super) trait Engine: Send {
     fn sensitivities_at(&mut self, t: f64, out: MatMut<'_, f64>) -> Result<(), Error>;
     /// Writes the integrals from the last start to `t`, within the last step.
     fn quadratures_at(&mut self, t: f64, out: &mut [f64]) -> Result<(), Error>;
+    /// Writes the sensitivities of the integrals from the last start to `t`, within the last step.
+    fn quadrature_sensitivities_at(&mut self, t: f64, out: MatMut<'_, f64>) -> Result<(), Error>;
+    /// Writes the integrands.
+    fn integrands(&mut self, t: f64, y: &[f64], yp: &[f64], out: &mut [f64])
+    -> Result<(), Failure>;
     /// Sets the initial sensitivities to `s`, after a new start, and the derivatives of all parameters by those
     /// of the sensitivities to `dp`, column by column.
     fn start_sensitivities(&mut self, s: MatRef<'_, f64>, dp: &[f64]) -> Result<(), Error>;
@@ -93,6 +98,7 @@ macro_rules! forward {
             fn sensitivities_at(t: f64, out: MatMut<'_, f64>) -> Result<(), Error>;
             fn start_sensitivities(s: MatRef<'_, f64>, dp: &[f64]) -> Result<(), Error>;
             fn quadratures_at(t: f64, out: &mut [f64]) -> Result<(), Error>;
+            fn quadrature_sensitivities_at(t: f64, out: MatMut<'_, f64>) -> Result<(), Error>;
         }
 
         fn set_stop_time(&mut self, t: f64) -> Result<(), Error> {
@@ -122,6 +128,10 @@ pub(super) trait Extras {
     fn quadratures_at(&mut self, _: f64, _: &mut [f64]) -> Result<(), Error> {
         Ok(())
     }
+
+    fn quadrature_sensitivities_at(&mut self, _: f64, _: MatMut<'_, f64>) -> Result<(), Error> {
+        Ok(())
+    }
 }
 
 impl<S> Extras for Arkode<S> {}
@@ -141,6 +151,10 @@ impl<K: WithSensitivities, S> Extras for Solver<K, S> {
     fn quadratures_at(&mut self, t: f64, out: &mut [f64]) -> Result<(), Error> {
         self.interpolate_quadratures(t, 0, out)
     }
+
+    fn quadrature_sensitivities_at(&mut self, t: f64, out: MatMut<'_, f64>) -> Result<(), Error> {
+        self.interpolate_quadrature_sensitivities(t, 0, out)
+    }
 }
 
 impl<I: Integrator<System: Ode> + Extras + Send> Engine for OdeEngine<I> {
@@ -156,6 +170,10 @@ impl<I: Integrator<System: Ode> + Extras + Send> Engine for OdeEngine<I> {
 
     fn equations(&mut self, t: f64, y: &[f64], _: &[f64], out: &mut [f64]) -> Result<(), Failure> {
         call::rhs(self.integrator.system_mut(), t, y, out)
+    }
+
+    fn integrands(&mut self, t: f64, y: &[f64], _: &[f64], out: &mut [f64]) -> Result<(), Failure> {
+        call::quadratures(self.integrator.system_mut(), t, y, out)
     }
 
     fn restart(&mut self, t: f64, y: &[f64], _: &[f64]) -> Result<(), Error> {
@@ -176,6 +194,16 @@ impl<S: Dae + Send> Engine for DaeEngine<S> {
 
     fn equations(&mut self, t: f64, y: &[f64], yp: &[f64], out: &mut [f64]) -> Result<(), Failure> {
         call::residual(self.integrator.system_mut(), t, y, yp, out)
+    }
+
+    fn integrands(
+        &mut self,
+        t: f64,
+        y: &[f64],
+        yp: &[f64],
+        out: &mut [f64],
+    ) -> Result<(), Failure> {
+        call::dae_quadratures(self.integrator.system_mut(), t, y, yp, out)
     }
 
     fn restart(&mut self, t: f64, y: &[f64], yp: &[f64]) -> Result<(), Error> {

@@ -6,7 +6,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-use faer::{MatMut, MatRef};
+use faer::MatRef;
 
 use super::{
     caution::Caution,
@@ -210,11 +210,14 @@ impl<'a> Run<'a> {
             return Err(InputError::new("sensitivities", "given for a DAE", help).into());
         }
         let count = engine.parameters().len();
-        let mut carried = options.sensitivities.as_ref().map(|s| Carried::new(s, y.len(), count));
+        let sizes = [y.len(), quadrature_count];
+        let mut carried = options.sensitivities.as_ref().map(|s| Carried::new(s, sizes, count));
         let saved_sensitivities = saved.as_ref().map(|saved| &saved.sensitivities);
-        let dp = saved.as_ref().map_or(&[][..], |saved| &saved.parameter_sensitivities);
+        let [dp, q] = saved.as_ref().map_or([&[][..]; 2], |saved| {
+            [&saved.parameter_sensitivities[..], &saved.quadrature_sensitivities]
+        });
         match (&mut carried, saved_sensitivities.or(initial_sensitivities.as_ref())) {
-            (Some(carried), Some(s)) => carried.start(s, dp, Some(engine.as_mut()))?,
+            (Some(carried), Some(s)) => carried.start([s, dp, q], Some(engine.as_mut()))?,
             (None, Some(_)) if initial_sensitivities.is_some() => {
                 let help = "Options::sensitivities says which parameters they belong to";
                 return Err(InputError::new("initial_sensitivities", "given", help).into());
@@ -363,6 +366,7 @@ impl<'a> Run<'a> {
             sensitivities: self.carried.as_ref().map_or(Vec::new(), |carried| carried.s.clone()),
             parameter_sensitivities: self.carried.as_ref().map_or(Vec::new(), |c| c.dp.clone()),
             quadratures: self.quadratures().to_vec(),
+            quadrature_sensitivities: self.carried.as_ref().map_or(Vec::new(), |c| c.q[0].clone()),
             event_values: self.watches.iter().map(EventTracker::value).collect(),
         }
     }
@@ -382,27 +386,34 @@ impl<'a> Run<'a> {
         &self.quadratures[0]
     }
 
+    /// The sensitivities of the integrals at the present time, after any jump, if they are
+    /// [wanted](crate::integrators::sundials::Sensitivities::integrals): entry (i, j) is the derivative of integral i with
+    /// respect to the j-th parameter of [`Options::sensitivities`].
+    #[must_use]
+    pub fn quadrature_sensitivities(&self) -> MatRef<'_, f64> {
+        let q = self.carried.as_ref().map_or(&[][..], |carried| &carried.q[0]);
+        let rows = self.quadratures().len();
+        MatRef::from_column_major_slice(q, rows, q.len() / rows.max(1))
+    }
+
     /// State, sensitivities and integrals at the present time, after any jump.
     pub(super) fn row(&self) -> SavedPoint<'_> {
-        let s = self.carried.as_ref().map_or(&[][..], |carried| &carried.s);
-        SavedPoint { y: &self.y, s, q: self.quadratures() }
+        let [s, sq] = self.carried.as_ref().map_or([&[][..]; 2], |c| [&c.s[..], &c.q[0]]);
+        SavedPoint { y: &self.y, s, q: self.quadratures(), sq }
     }
 
-    /// The sensitivities that belong to the states of the last step: before its jump, or at its end if there
-    /// was none.
-    pub(super) fn sensitivities_before(&self) -> &[f64] {
-        let Some(carried) = &self.carried else { return &[] };
-        carried.before.as_ref().unwrap_or(&carried.s)
+    /// The sensitivities, of states and of integrals, that belong to the states of the last step: before its jump, or at its
+    /// end if there was none.
+    pub(super) fn sensitivities_before(&self) -> [&[f64]; 2] {
+        self.carried.as_ref().map_or([&[][..]; 2], Carried::before)
     }
 
-    /// The sensitivities at time `t` within the last step, one column after the other.
-    pub(super) fn sensitivities_at(&mut self, t: f64) -> Result<Vec<f64>, Reason> {
-        let Some(carried) = &self.carried else { return Ok(Vec::new()) };
-        let (n, mut s) = (self.y.len(), vec![0.0; carried.s.len()]);
-        let columns = s.len() / n;
-        let out = MatMut::from_column_major_slice_mut(&mut s, n, columns);
-        self.engine.sensitivities_at(t, out)?;
-        Ok(s)
+    /// The sensitivities of states and of integrals at time `t` within the last step, one column after the other.
+    pub(super) fn sensitivities_at(&mut self, t: f64) -> Result<[Vec<f64>; 2], Reason> {
+        let Some(carried) = &self.carried else { return Ok([Vec::new(), Vec::new()]) };
+        let [mut s, mut q] = [vec![0.0; carried.s.len()], vec![0.0; carried.q[0].len()]];
+        carried.write_at(self.engine.as_mut(), t, [&mut s, &mut q])?;
+        Ok([s, q])
     }
 
     /// The integrals at time `t` within the last step.

@@ -32,6 +32,9 @@ pub struct Saved {
     pub parameter_sensitivities: Vec<f64>,
     /// The integrals since the start; empty if there are none.
     pub quadratures: Vec<f64>,
+    /// The sensitivities of the integrals, one column after the other; empty if there are none.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub quadrature_sensitivities: Vec<f64>,
     /// Values of the event functions; 0 for one that is about to leave zero.
     pub event_values: Vec<f64>,
 }

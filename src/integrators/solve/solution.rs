@@ -61,6 +61,9 @@ pub struct Solution {
     sensitivities: Vec<f64>,
     /// The integrals of each time.
     quadratures: Vec<f64>,
+    /// Their sensitivities, one column after the other.
+    #[cfg_attr(feature = "serde", serde(default))]
+    quadrature_sensitivities: Vec<f64>,
     pub(super) events: Vec<Occurrence>,
     pub(super) statistics: Statistics,
     pub(super) end: End,
@@ -81,12 +84,13 @@ impl fmt::Debug for Solution {
     }
 }
 
-/// Saved values at one time: state, sensitivities (one column after the other) and integrals.
+/// Saved values at one time: state, sensitivities (one column after the other), integrals and their sensitivities.
 #[derive(Clone, Copy)]
 pub(super) struct SavedPoint<'r> {
     pub(super) y: &'r [f64],
     pub(super) s: &'r [f64],
     pub(super) q: &'r [f64],
+    pub(super) sq: &'r [f64],
 }
 
 /// Times of the inner nodes of a step for a polynomial of this degree: the extrema of Chebyshev's polynomial.
@@ -128,6 +132,7 @@ impl Solution {
             nodes: Vec::new(),
             sensitivities: row.s.to_vec(),
             quadratures: row.q.to_vec(),
+            quadrature_sensitivities: row.sq.to_vec(),
             events: Vec::new(),
             statistics: Statistics::default(),
             end: End::Early,
@@ -167,6 +172,7 @@ impl Solution {
         self.states.extend_from_slice(row.y);
         self.sensitivities.extend_from_slice(row.s);
         self.quadratures.extend_from_slice(row.q);
+        self.quadrature_sensitivities.extend_from_slice(row.sq);
     }
 
     /// Adds the state after a jump.
@@ -220,6 +226,20 @@ impl Solution {
     pub fn quadratures(&self, k: usize) -> &[f64] {
         let count = self.quadratures.len() / self.t.len();
         &self.quadratures[k * count..(k + 1) * count]
+    }
+
+    /// The sensitivities of the integrals at time `t()[k]`, if they are
+    /// [wanted](crate::integrators::sundials::Sensitivities::integrals): entry (i, j) is the derivative of integral i with
+    /// respect to the j-th parameter of [`Options::sensitivities`](super::Options::sensitivities).
+    ///
+    /// # Panics
+    /// If there is no such time.
+    #[must_use]
+    pub fn quadrature_sensitivities(&self, k: usize) -> MatRef<'_, f64> {
+        let (count, rows) =
+            (self.quadrature_sensitivities.len() / self.t.len(), self.quadratures(k).len());
+        let q = &self.quadrature_sensitivities[k * count..(k + 1) * count];
+        MatRef::from_column_major_slice(q, rows, count / rows.max(1))
     }
 
     /// The time derivative of the last state for a DAE; empty otherwise.
@@ -388,11 +408,15 @@ impl Solution {
             let ordered = ends.clone().zip(ends.clone().skip(1)).all(|(start, end)| start <= end);
             inner.len() + 1 == times && ordered && ends.into_iter().all(|end| end % n.max(1) == 0)
         });
+        let integrals = self.quadratures.len();
+        let fits_integrals = self.quadrature_sensitivities.is_empty()
+            || integrals > 0 && self.quadrature_sensitivities.len().is_multiple_of(integrals);
         n > 0
             && times > 0
             && self.states.len() == n * times
             && self.sensitivities.len().is_multiple_of(n * times)
             && self.quadratures.len().is_multiple_of(times)
+            && fits_integrals
             && inner
     }
 }

@@ -32,7 +32,8 @@ pub fn solve(
         Ok(run) => run,
         Err(Reason::Input(error)) => return Err(Error::Input(error)),
         Err(reason) => {
-            let solution = Solution::new(span.0, SavedPoint { y: &start, s: &[], q: &[] }, dense);
+            let solution =
+                Solution::new(span.0, SavedPoint { y: &start, s: &[], q: &[], sq: &[] }, dense);
             return Err(Error::Stopped(Box::new(Stopped { reason, solution })));
         }
     };
@@ -86,8 +87,9 @@ fn integrate(run: &mut Run<'_>, solution: &mut Solution, output: &Output) -> Res
                 y.copy_from_slice(run.y());
             }
             let degree = run.interpolant_degree();
-            let (s, q) = (run.sensitivities_before().to_vec(), run.quadratures().to_vec());
-            let row = SavedPoint { y: &y, s: &s, q: &q };
+            let [s, sq] = run.sensitivities_before().map(<[f64]>::to_vec);
+            let q = run.quadratures().to_vec();
+            let row = SavedPoint { y: &y, s: &s, q: &q, sq: &sq };
             solution.push(t, row, degree, |at, out| run.interpolate(at, out))?;
             if jumped {
                 solution.push_jump(t, run.row());
@@ -101,8 +103,8 @@ fn integrate(run: &mut Run<'_>, solution: &mut Solution, output: &Output) -> Res
                 solution.push_jump(*first, run.row());
             } else {
                 run.interpolate(*first, &mut y)?;
-                let (s, q) = (run.sensitivities_at(*first)?, run.quadratures_at(*first)?);
-                solution.push_jump(*first, SavedPoint { y: &y, s: &s, q: &q });
+                let ([s, sq], q) = (run.sensitivities_at(*first)?, run.quadratures_at(*first)?);
+                solution.push_jump(*first, SavedPoint { y: &y, s: &s, q: &q, sq: &sq });
             }
             times = rest;
         }

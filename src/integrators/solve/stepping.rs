@@ -114,7 +114,7 @@ impl Run<'_> {
         let [q, past] = &mut self.quadratures;
         past.copy_from_slice(q);
         self.engine.restart(self.t, &self.y, &self.yp)?;
-        if let Some(carried) = &self.carried {
+        if let Some(carried) = &mut self.carried {
             carried.hand_over(self.engine.as_mut())?;
         }
         self.engine.make_consistent(self.span.1)?;

@@ -158,8 +158,9 @@ impl Run<'_> {
         if behind == signs {
             return Ok(false);
         }
-        // a residual has no scale, and a functional may switch, too
-        if !self.yp.is_empty() || self.carried.is_none() {
+        // a residual has no scale, and a functional or integrands may switch, too
+        let only_states = self.carried.as_ref().is_some_and(|carried| !carried.has_integrals());
+        if !self.yp.is_empty() || !only_states {
             return Ok(true);
         }
         let left = self.slope_at(t, y, Vec::new())?;

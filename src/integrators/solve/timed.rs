@@ -154,7 +154,7 @@ impl Run<'_> {
         // its time depends on no parameter
         let outcome = self.carry(&before, |carried, at| {
             if !acts {
-                carried.before = Some(carried.s.clone());
+                carried.note_before();
                 return Ok(());
             }
             let taus = vec![0.0; at.p.len()];

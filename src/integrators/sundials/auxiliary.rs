@@ -5,7 +5,7 @@ use std::ptr;
 use super::{
     context::Context,
     ffi,
-    functions::{QuadratureFunctions, SensitivityFunctions},
+    functions::{QuadratureFunctions, QuadratureSensitivityFunctions, SensitivityFunctions},
     linear::Linear,
     vector::Vector,
 };
@@ -31,6 +31,18 @@ pub(super) struct Sensitivity {
     pub(super) values: Vec<f64>,
     /// C's number of the method.
     pub(super) method: i32,
+    /// Those of integrals, if they are wanted.
+    pub(super) integrals: Option<IntegralSensitivity>,
+}
+
+/// Sensitivities of integrals at the present time, one vector for each parameter.
+pub(super) struct IntegralSensitivity {
+    pub(super) functions: &'static QuadratureSensitivityFunctions,
+    pub(super) s: Vectors,
+    /// One of them at another time.
+    pub(super) scratch: Vector,
+    /// The present ones, one after the other.
+    pub(super) values: Vec<f64>,
 }
 
 impl Sensitivity {

@@ -264,6 +264,18 @@ table! {
 }
 
 table! {
+    /// The functions for sensitivities of integrals.
+    QuadratureSensitivityFunctions: CVODE, IDA;
+    reinit: Set<*mut ffi::N_Vector> = CVodeQuadSensReInit, IDAQuadSensReInit;
+    set_tolerances: Named<unsafe extern "C" fn(*mut c_void) -> i32> = CVodeQuadSensEEtolerances, IDAQuadSensEEtolerances;
+    set_error_control: Set<i32> = CVodeSetQuadSensErrCon, IDASetQuadSensErrCon;
+    get: SetTwo<*mut f64, *mut ffi::N_Vector> = CVodeGetQuadSens, IDAGetQuadSens;
+    get_dky: Named<unsafe extern "C" fn(*mut c_void, f64, i32, i32, ffi::N_Vector) -> i32>
+        = CVodeGetQuadSensDky1, IDAGetQuadSensDky1;
+    [others]
+}
+
+table! {
     /// The functions for backward problems, which belong to the memory of the forward run and are identified by a
     /// number, the first argument.
     BackwardFunctions: CVODE, IDA;

@@ -218,6 +218,29 @@ impl<K: WithSensitivities, S> Solver<K, S> {
         self.session.set_sensitivities(s)
     }
 
+    /// The sensitivities of the integrals at time [`t`](Integrator::t), if they are
+    /// [wanted](super::Sensitivities::integrals): entry (i, j) is the derivative of integral i with respect to the j-th
+    /// parameter of [`Sensitivities::of`](super::Sensitivities::of). A new start sets them to zero. (`CVodeGetQuadSens`,
+    /// `IDAGetQuadSens`)
+    #[must_use]
+    pub fn quadrature_sensitivities(&self) -> MatRef<'_, f64> {
+        self.session.quadrature_sensitivities()
+    }
+
+    /// As [`interpolate`](Integrator::interpolate), for the sensitivities of the integrals. (`CVodeGetQuadSensDky1`,
+    /// `IDAGetQuadSensDky1`)
+    ///
+    /// # Errors
+    /// As for [`interpolate`](Integrator::interpolate).
+    pub fn interpolate_quadrature_sensitivities(
+        &mut self,
+        t: f64,
+        derivative: u32,
+        out: MatMut<'_, f64>,
+    ) -> Result<(), Error> {
+        self.session.interpolate_quadrature_sensitivities(t, derivative, out)
+    }
+
     /// Sets how the parameters of the system change with each parameter of the sensitivities: columns, one
     /// after the other.
     pub(crate) fn set_parameter_directions(&mut self, directions: &[f64]) -> Result<(), Error> {

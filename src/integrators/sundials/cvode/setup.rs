@@ -6,10 +6,10 @@ use crate::integrators::{
     ode::{Borrowed, Ode},
     sundials::{
         ffi,
-        functions::{Functions, OdeFunctions, named},
+        functions::{Functions, OdeFunctions, QuadratureSensitivityFunctions, named},
         ode_callbacks::{project, quadratures, rhs, roots},
         ode_krylov::newton_setup,
-        sensitivity::{Access, CarriesSensitivities, one_rhs},
+        sensitivity::{Access, CarriesSensitivities, integrands, one_rhs},
         session::{InitialState, Session},
         solver::{Kind, Owner, Solver, WithSensitivities},
     },
@@ -115,6 +115,12 @@ impl<S: Ode> Session<CvodeKind, S> {
                     ffi::CVodeSensInit1(memory, count, method, Some(one_rhs::<S>), s)
                 });
                 cvode.set_up_sensitivities(sensitivities, &options.tolerances, &access, init)?;
+                cvode.set_up_integral_sensitivities(
+                    sensitivities,
+                    options,
+                    QuadratureSensitivityFunctions::CVODE,
+                    (named!(CVodeQuadSensInit), Some(integrands::<S> as _)),
+                )?;
             }
         }
         // SAFETY: the functions are those of CVODE, and the callback fits the registered host.

@@ -10,10 +10,10 @@ use crate::integrators::{
             residual, roots,
         },
         ffi,
-        functions::{Functions, named},
+        functions::{Functions, QuadratureSensitivityFunctions, named},
         index::index,
         linear_solver::LinearSolver,
-        sensitivity::{Access, all_residuals},
+        sensitivity::{Access, all_residuals, dae_integrands},
         session::{InitialState, Session},
         vector::Vector,
     },
@@ -93,6 +93,12 @@ impl<S: Dae> Session<IdaKind, S> {
                     ffi::IDASensInit(memory, count, method, Some(all_residuals::<S>), s, sp)
                 });
                 ida.set_up_sensitivities(sensitivities, &options.tolerances, &access, init)?;
+                ida.set_up_integral_sensitivities(
+                    sensitivities,
+                    options,
+                    QuadratureSensitivityFunctions::IDA,
+                    (named!(IDAQuadSensInit), Some(dae_integrands::<S> as _)),
+                )?;
             }
         }
         Ok(ida)

@@ -1,13 +1,13 @@
 //! The C functions through which CVODES and IDAS evaluate the equations of the sensitivities.
 
-use super::rhs::{Access, Line};
+use super::rhs::{Access, Line, SensitivityRhs};
 use crate::integrators::{
     common::Callback,
     ode::{Dae, Ode, call},
     sundials::{
         callbacks::callbacks,
         ffi,
-        host::STOP,
+        host::{Host, STOP},
         serial::{slice, slice_mut},
     },
 };
@@ -33,19 +33,55 @@ callbacks! {
         outcome
     }
 
+    /// `CVQuadSensRhsFn`
+    fn integrands<S: Ode>(
+        count: i32, t: (time host), y: read, s: (*mut ffi::N_Vector), qdot: read, out: (*mut ffi::N_Vector),
+        host: (data S), _: vector, _: vector
+    ) {
+        for_each(host, count, |host, rhs, index| {
+            // SAFETY: the arrays have `count` live serial vectors; those to be filled are different from the others.
+            let (s, out) = unsafe { (slice(*s.add(index)), slice_mut(*out.add(index))) };
+            host.guard_output(Callback::Quadratures, t, out, |system, out| {
+                let access = Access { get: S::parameters, set: S::set_parameters };
+                let line = Line { y: (y, s), yp: (&[], &[]) };
+                rhs.differences(system, &access, index, &line, qdot, out, |system, y, _, out| {
+                    call::quadratures(system, t, y, out)
+                })
+            })
+        })
+    }
+
+    /// `IDAQuadSensRhsFn`
+    fn dae_integrands<S: Dae>(
+        count: i32, t: (time host), y: read, yp: read, s: (*mut ffi::N_Vector), sp: (*mut ffi::N_Vector), qdot: read,
+        out: (*mut ffi::N_Vector), host: (data S), _: vector, _: vector, _: vector
+    ) {
+        for_each(host, count, |host, rhs, index| {
+            // SAFETY: as above.
+            let (s, sp, out) = unsafe {
+                (slice(*s.add(index)), slice(*sp.add(index)), slice_mut(*out.add(index)))
+            };
+            host.guard_output(Callback::Quadratures, t, out, |system, out| {
+                let access = Access { get: S::parameters, set: S::set_parameters };
+                let line = Line { y: (y, s), yp: (yp, sp) };
+                rhs.differences(system, &access, index, &line, qdot, out, |system, y, yp, out| {
+                    call::dae_quadratures(system, t, y, yp, out)
+                })
+            })
+        })
+    }
+
     /// `IDASensResFn`
     fn all_residuals<S: Dae>(
         count: i32, t: (time host), y: read, yp: read, residual: read, s: (*mut ffi::N_Vector), sp: (*mut ffi::N_Vector),
         residuals: (*mut ffi::N_Vector), host: (data S), _: vector, _: vector, _: vector
     ) {
-        let Some(mut rhs) = host.sensitivity.take() else { return STOP };
-        let mut outcome = 0;
-        for index in 0..count as usize {
-            // SAFETY: the arrays have `count` live serial vectors; those to be filled are different from the others.
+        for_each(host, count, |host, rhs, index| {
+            // SAFETY: as above.
             let (s, sp, out) = unsafe {
                 (slice(*s.add(index)), slice(*sp.add(index)), slice_mut(*residuals.add(index)))
             };
-            outcome = host.guard_output(Callback::Sensitivities, t, out, |system, out| {
+            host.guard_output(Callback::Sensitivities, t, out, |system, out| {
                 if rhs.is_supplied() {
                     let parameter = rhs.parameter(index);
                     return call::sensitivity_residual(system, t, y, yp, parameter, s, sp, out);
@@ -55,12 +91,21 @@ callbacks! {
                 rhs.differences(system, &access, index, &line, residual, out, |system, y, yp, out| {
                     call::residual(system, t, y, yp, out)
                 })
-            });
-            if outcome != 0 {
-                break;
-            }
-        }
-        host.sensitivity = Some(rhs);
-        outcome
+            })
+        })
     }
+}
+
+/// Calls `evaluate` for each of the `count` sensitivities, until one of them fails.
+fn for_each<S>(
+    host: &mut Host<S>,
+    count: i32,
+    mut evaluate: impl FnMut(&mut Host<S>, &mut SensitivityRhs, usize) -> i32,
+) -> i32 {
+    // Taken out of the host, which calls the system meanwhile.
+    let Some(mut rhs) = host.sensitivity.take() else { return STOP };
+    let outcomes = (0..count as usize).map(|index| evaluate(host, &mut rhs, index));
+    let outcome = { outcomes }.find(|outcome| *outcome != 0).unwrap_or(0);
+    host.sensitivity = Some(rhs);
+    outcome
 }

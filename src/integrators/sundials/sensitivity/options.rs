@@ -64,6 +64,8 @@ pub struct Sensitivities {
     pub(super) source: SensitivitySource,
     pub(super) scales: Option<Vec<f64>>,
     pub(super) error_control: bool,
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub(super) integrals: bool,
 }
 
 impl Sensitivities {
@@ -76,6 +78,7 @@ impl Sensitivities {
             source: SensitivitySource::CentralDifferences,
             scales: None,
             error_control: true,
+            integrals: false,
         }
     }
 
@@ -107,6 +110,22 @@ impl Sensitivities {
     pub fn error_control(mut self, on: bool) -> Self {
         self.error_control = on;
         self
+    }
+
+    /// Also those of the integrals [`quadratures`](crate::integrators::ode::Ode::quadratures), dq/dp
+    /// (`CVodeQuadSensInit`, `IDAQuadSensInit`). Default: not.
+    ///
+    /// The derivatives of their integrands are differences along (s, dp), two evaluations each at every step, or one with
+    /// [`ForwardDifferences`](SensitivitySource::ForwardDifferences). Their errors control the step size where those of the
+    /// sensitivities and of the [integrals](super::super::CvodeOptions::quadrature_error_control) do.
+    pub fn integrals(mut self) -> Self {
+        self.integrals = true;
+        self
+    }
+
+    /// Whether those of the integrals are wanted.
+    pub(crate) fn has_integrals(&self) -> bool {
+        self.integrals
     }
 
     /// Places of the parameters.

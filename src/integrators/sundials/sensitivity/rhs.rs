@@ -49,11 +49,11 @@ pub(super) struct Line<'a> {
 }
 
 impl SensitivityRhs {
-    /// Storage for sensitivities of `n` unknowns.
+    /// Storage for sensitivities of `n` unknowns and so many `integrals`.
     pub(super) fn new<S>(
         options: &Sensitivities,
         tolerances: &Tolerances,
-        n: usize,
+        [n, integrals]: [usize; 2],
         system: &mut S,
         access: &Access<S>,
     ) -> Result<Self, InputError> {
@@ -69,9 +69,9 @@ impl SensitivityRhs {
             p,
             y: vec![0.0; n],
             yp: vec![0.0; n],
-            behind: vec![0.0; n],
+            behind: vec![0.0; n.max(integrals)],
         };
-        if rhs.source != SensitivitySource::Supplied {
+        if rhs.source != SensitivitySource::Supplied || options.integrals {
             rhs.check_access(system, access)?;
         }
         Ok(rhs)
@@ -89,7 +89,7 @@ impl SensitivityRhs {
             return Ok(());
         }
         let help = "set_parameters has to change what parameters gives, or the equations of the \
-                    sensitivities have to be supplied";
+                    sensitivities have to be supplied, and those of integrals can not be computed";
         Err(InputError::new("parameters of the system", format!("{:?}", self.p), help))
     }
 
@@ -150,7 +150,7 @@ impl SensitivityRhs {
         out: &mut [f64],
         mut evaluate: impl FnMut(&mut S, &[f64], &[f64], &mut [f64]) -> Result<(), Failure>,
     ) -> Result<(), Failure> {
-        let central = self.source == SensitivitySource::CentralDifferences;
+        let central = self.source != SensitivitySource::ForwardDifferences;
         let increment = self.increment(index, central, line.y);
         let mut at = |rhs: &mut Self, step: f64, out: &mut [f64]| {
             let direction = &rhs.directions[index * rhs.p.len()..];
@@ -163,11 +163,11 @@ impl SensitivityRhs {
         at(self, increment, out)?;
         if central {
             let mut behind = std::mem::take(&mut self.behind);
-            let outcome = at(self, -increment, &mut behind);
+            let outcome = at(self, -increment, &mut behind[..out.len()]);
             self.behind = behind;
             outcome?;
         } else {
-            self.behind.copy_from_slice(value);
+            self.behind[..out.len()].copy_from_slice(value);
         }
         let width = if central { 2.0 * increment } else { increment };
         out.iter_mut().zip(&self.behind).for_each(|(out, behind)| *out = (*out - behind) / width);

@@ -29,6 +29,13 @@ pub trait CarriesSensitivities: CarriesIntegrals {
         out: MatMut<'_, f64>,
     ) -> Result<(), Error>;
     fn set_sensitivities(&mut self, s: MatRef<'_, f64>) -> Result<(), Error>;
+    fn quadrature_sensitivities(&self) -> MatRef<'_, f64>;
+    fn interpolate_quadrature_sensitivities(
+        &mut self,
+        t: f64,
+        derivative: u32,
+        out: MatMut<'_, f64>,
+    ) -> Result<(), Error>;
     fn set_parameter_directions(&mut self, directions: &[f64]) -> Result<(), Error>;
 }
 
@@ -71,6 +78,19 @@ impl<K, S> CarriesSensitivities for Session<K, S> {
 
     fn set_sensitivities(&mut self, s: MatRef<'_, f64>) -> Result<(), Error> {
         self.start_sensitivities(s, None)
+    }
+
+    fn quadrature_sensitivities(&self) -> MatRef<'_, f64> {
+        self.integral_sensitivities()
+    }
+
+    fn interpolate_quadrature_sensitivities(
+        &mut self,
+        t: f64,
+        derivative: u32,
+        out: MatMut<'_, f64>,
+    ) -> Result<(), Error> {
+        self.interpolate_integrals(t, derivative, out)
     }
 
     fn set_parameter_directions(&mut self, directions: &[f64]) -> Result<(), Error> {
@@ -139,9 +159,9 @@ impl<K, S> Session<K, S> {
         ),
     ) -> Result<(), Error> {
         let Some(functions) = self.memory.functions.sensitivities else { return Ok(()) };
-        let n = self.y().len();
+        let (n, integrals) = (self.y().len(), self.quadratures().len());
         let system = &mut self.host.get_mut().system;
-        let rhs = SensitivityRhs::new(options, tolerances, n, system, access)?;
+        let rhs = SensitivityRhs::new(options, tolerances, [n, integrals], system, access)?;
         let mut scales = rhs.scales().to_vec();
         let count = scales.len();
         let Ok(c_count) = i32::try_from(count) else {
@@ -161,6 +181,7 @@ impl<K, S> Session<K, S> {
             scratch: Vector::from_slice(&vec![0.0; n], &self.context)?,
             values: vec![0.0; n * count],
             method,
+            integrals: None,
         };
         let sensitivities = self.sensitivities.insert(sensitivities);
         let [s, sp] = sensitivities.raw();
@@ -184,7 +205,8 @@ impl<K, S> Session<K, S> {
         // SAFETY: the memory is alive, and the result pointers are valid.
         let code = unsafe { get(self.memory.raw, &raw mut t, sensitivities.s.raw()) };
         sensitivities.s.copy_to(&mut sensitivities.values);
-        self.host.accept(name, code)
+        self.host.accept(name, code)?;
+        self.read_integral_sensitivities()
     }
 
     /// Sets the sensitivities to zero, with a new start.
@@ -193,6 +215,9 @@ impl<K, S> Session<K, S> {
         sensitivities.values.fill(0.0);
         if let Some(sp) = &mut sensitivities.sp {
             sp.fill(0.0);
+        }
+        if let Some(integrals) = &mut sensitivities.integrals {
+            integrals.values.fill(0.0);
         }
         self.hand_over_sensitivities()
     }
@@ -207,7 +232,8 @@ impl<K, S> Session<K, S> {
         let (name, reinit) = sensitivities.functions.reinit;
         // SAFETY: the memory is alive and copies the vectors, of which there are as many as at first.
         let code = unsafe { reinit(self.memory.raw, sensitivities.method, s, sp) };
-        self.host.accept(name, code)
+        self.host.accept(name, code)?;
+        self.hand_over_integral_sensitivities()
     }
 }
 
