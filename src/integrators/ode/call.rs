@@ -49,6 +49,9 @@ clearing! {
     sensitivity_residual: Dae::sensitivity_residual(
         t: f64, y: &[f64], yp: &[f64], parameter: usize, s: &[f64], sp: &[f64]
     ) -> Outcome;
+    adjoint_residual: Dae::adjoint_residual(
+        t: f64, y: &[f64], yp: &[f64], lambda: &[f64], mu: &[f64]
+    ) -> Outcome;
     dae_adjoint_parameters: Dae::adjoint_parameters(
         t: f64, y: &[f64], yp: &[f64], lambda: &[f64]
     ) -> Outcome;

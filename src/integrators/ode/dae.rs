@@ -125,6 +125,19 @@ pub trait Dae {
         Err(missing("sensitivity_residual"))
     }
 
+    /// Writes (dF/dy)^T lambda + (dF/dy')^T mu into `out` (zero on entry), for adjoint gradients.
+    fn adjoint_residual(
+        &mut self,
+        _t: f64,
+        _y: &[f64],
+        _yp: &[f64],
+        _lambda: &[f64],
+        _mu: &[f64],
+        _out: &mut [f64],
+    ) -> Result<(), Failure> {
+        Err(missing("adjoint_residual"))
+    }
+
     /// Writes (dF/dp)^T lambda into `out` (zero on entry), a number for each of the
     /// [`parameters`](Self::parameters).
     fn adjoint_parameters(

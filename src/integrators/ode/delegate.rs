@@ -101,6 +101,9 @@ macro_rules! delegate {
                 t: f64, y: &[f64], yp: &[f64], parameter: usize, s: &[f64], sp: &[f64],
                 residual: &mut [f64]
             );
+            fn adjoint_residual(
+                t: f64, y: &[f64], yp: &[f64], lambda: &[f64], mu: &[f64], out: &mut [f64]
+            );
             fn adjoint_parameters(t: f64, y: &[f64], yp: &[f64], lambda: &[f64], out: &mut [f64]);
         }
     };

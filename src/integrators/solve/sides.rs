@@ -263,5 +263,7 @@ impl<'a> Dae for Sided<'a, dyn Dae + Send + 'a> {
         fn jacobian_times(cj, [y, yp], v: &[f64], jv: &mut [f64]);
         fn newton_setup(cj, [y, yp]);
         fn sensitivity_residual([y, yp], parameter: usize, s: &[f64], sp: &[f64], out: &mut [f64]);
+        fn adjoint_residual([y, yp], lambda: &[f64], mu: &[f64], out: &mut [f64]);
+        fn adjoint_parameters([y, yp], lambda: &[f64], out: &mut [f64]);
     }
 }

@@ -2,6 +2,7 @@
 
 mod failures;
 mod hessian;
+mod krylov;
 
 use faer::MatMut;
 use pliant::{
@@ -120,6 +121,32 @@ impl Dae for Linear {
     ) -> Result<(), Failure> {
         let [[a, b], [c, d]] = self.entries(cj);
         values.copy_from_slice(&[a, c, b, d]);
+        Ok(())
+    }
+
+    fn adjoint_residual(
+        &mut self,
+        _t: f64,
+        _y: &[f64],
+        _yp: &[f64],
+        lambda: &[f64],
+        mu: &[f64],
+        out: &mut [f64],
+    ) -> Result<(), Failure> {
+        let by_state = self.p[0] * lambda[1] - self.p[1] * lambda[0];
+        out.copy_from_slice(&[by_state + mu[1], lambda[0] - lambda[1]]);
+        Ok(())
+    }
+
+    fn adjoint_parameters(
+        &mut self,
+        _t: f64,
+        y: &[f64],
+        _yp: &[f64],
+        lambda: &[f64],
+        out: &mut [f64],
+    ) -> Result<(), Failure> {
+        out.copy_from_slice(&[y[0] * lambda[1], -y[0] * lambda[0]]);
         Ok(())
     }
 

@@ -1,9 +1,14 @@
 //! The forward run with checkpoints and the backward run, for CVODES and IDAS.
 
-use super::{equations::Equations, gradient::Gradient, options::AdjointOptions, setup::Along};
+use super::{
+    equations::{Equations, refused},
+    gradient::Gradient,
+    options::AdjointOptions,
+    setup::Along,
+};
 use crate::integrators::{
     common::{AbsoluteTolerance, Error, IntegrationError, Integrator, Tolerances},
-    ode::{Borrowed, Functional},
+    ode::{Borrowed, Failure, Functional},
     sundials::{
         auxiliary::Backward,
         context::Context,
@@ -49,7 +54,7 @@ pub(in crate::integrators::sundials) unsafe trait BackwardProblem {
     ) -> Result<(Vector, Option<Vector>), Error>;
 
     /// Writes dG/dy0 for the lambda at the start.
-    fn by_initial_state(&self, lambda: &[f64], out: &mut [f64]);
+    fn by_initial_state(&mut self, lambda: &[f64], out: &mut [f64]) -> Result<(), Failure>;
 }
 
 impl<P: BackwardProblem> Session<P::Kind, Borrowed<'_, P>> {
@@ -159,7 +164,9 @@ impl<P: BackwardProblem> Session<P::Kind, Borrowed<'_, P>> {
         let (memory, functions, which) = (self.memory.raw, P::FUNCTIONS, backward.which);
         let mut t = 0.0;
         let lambda = backward.lambda.as_slice();
-        self.host.get().system.0.by_initial_state(lambda, &mut gradient.initial_state);
+        let system = &mut self.host.get_mut().system.0;
+        let by_state = system.by_initial_state(lambda, &mut gradient.initial_state);
+        by_state.map_err(|failure| refused(functions.integrator, start, failure))?;
         let Some(integrals) = &backward.gradient else { return Ok(()) };
         // SAFETY: as above.
         self.host.call(functions.get_quadratures, |get| unsafe {

@@ -18,8 +18,7 @@ impl AdjointOptions {
     /// With these tolerances for the adjoint lambda, which is dG/dy(t) for an ODE.
     ///
     /// Its linear solver is that of the forward run, for the transposed matrix. A Krylov method needs
-    /// [`supplied_rhs`](Self::supplied_rhs), whose products are those of the transposed matrix, and is for an ODE
-    /// only.
+    /// [`supplied_rhs`](Self::supplied_rhs), whose products are those of the transposed matrix.
     pub fn new(rtol: f64, atol: impl Into<AbsoluteTolerance>) -> Self {
         Self {
             tolerances: Tolerances::new(rtol, atol),
@@ -48,8 +47,8 @@ impl AdjointOptions {
         self
     }
 
-    /// Takes (df/dy)^T lambda from [`Ode::adjoint_rhs`](crate::integrators::ode::Ode::adjoint_rhs); for an
-    /// ODE only.
+    /// Takes (df/dy)^T lambda from [`Ode::adjoint_rhs`](crate::integrators::ode::Ode::adjoint_rhs), or
+    /// (dF/dy)^T lambda + (dF/dy')^T lambda' from [`Dae::adjoint_residual`](crate::integrators::ode::Dae::adjoint_residual).
     ///
     /// Default: from the Jacobian, supplied or by difference quotients as for the linear solver of the
     /// forward run.
@@ -77,14 +76,6 @@ impl AdjointOptions {
                 return Err(InputError::new("gradient_tolerances", "given", help));
             }
             tolerances.check(&vec![0.0; parameters])?;
-        }
-        Ok(())
-    }
-
-    /// Rejects options that only an ODE can supply.
-    pub(super) fn check_for_dae(&self) -> Result<(), InputError> {
-        if self.supplied_rhs {
-            return Err(InputError::new("supplied_rhs", true, "an Ode has it, a Dae has not"));
         }
         Ok(())
     }

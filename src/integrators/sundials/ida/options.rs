@@ -65,11 +65,6 @@ impl IdaOptions {
             let help = "an adjoint gradient needs to know which unknowns are algebraic";
             return Err(InputError::new("differential", "not given", help));
         };
-        if let LinearSolver::Krylov(_) = &self.linear_solver {
-            let help = "an adjoint gradient of a DAE needs entries of the Jacobian: choose a dense, a band or a \
-                        sparse linear solver";
-            return Err(InputError::new("linear solver", "Krylov", help));
-        }
         Ok((&self.linear_solver, &self.tolerances, differential))
     }
 

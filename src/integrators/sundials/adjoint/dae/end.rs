@@ -27,16 +27,25 @@ pub(super) fn start_of_backward_problem<S: Dae, F: Functional>(
     context: &Context,
 ) -> Result<(Vector, Vector), Error> {
     let failed = |failure| refused("IDA", t, failure);
-    system.update_jacobian((t, y, yp)).map_err(failed)?;
     system.equations.evaluate_slopes(t, y).map_err(failed)?;
-    check_finite("dF/dy at the end", system.equations.jacobian.values())?;
     check_finite("dh/dy at the end", &system.equations.slopes_y)?;
-    if !factorize(system, linear, context)? {
-        return Err(failed(singular()));
+    if system.products.is_none() {
+        system.update_jacobian((t, y, yp)).map_err(failed)?;
+        check_finite("dF/dy at the end", system.equations.jacobian.values())?;
+        if !factorize(system, linear, context)? {
+            return Err(failed(singular()));
+        }
     }
+    let mut solve = |system: &mut AdjointDae<S, F>, b: &mut Vector| match system.products {
+        Some(_) => match system.solve_by_products((t, y, yp), b.as_mut_slice())? {
+            true => Ok(()),
+            false => Err(unsolved()),
+        },
+        None => solve(linear, b),
+    };
 
     let mut first = Vector::from_slice(&end.initial_state, context)?;
-    solve(linear, &mut first).map_err(failed)?;
+    solve(system, &mut first).map_err(failed)?;
     let (mut lambda, mut mu) = (first.as_slice().to_vec(), first.as_slice().to_vec());
     for (i, algebraic) in system.algebraic.iter().enumerate() {
         *(if *algebraic { &mut lambda[i] } else { &mut mu[i] }) = 0.0;
@@ -46,10 +55,11 @@ pub(super) fn start_of_backward_problem<S: Dae, F: Functional>(
     check_finite("dF/dp at the end", &by_p)?;
     end.parameters.iter_mut().zip(by_p).for_each(|(slope, by_p)| *slope -= by_p);
 
-    let mut rhs: Vec<f64> = system.equations.slopes_y.iter().map(|slope| -slope).collect();
-    system.equations.jacobian.add_transposed_times(1.0, &lambda, &mut rhs);
+    let mut rhs = vec![0.0; y.len()];
+    system.by_state((t, y, yp), &lambda, &mut rhs).map_err(failed)?;
+    rhs.iter_mut().zip(&system.equations.slopes_y).for_each(|(rhs, slope)| *rhs -= slope);
     let mut second = Vector::from_slice(&rhs, context)?;
-    solve(linear, &mut second).map_err(failed)?;
+    solve(system, &mut second).map_err(failed)?;
     let mut slope = second.as_slice().to_vec();
     for (i, _) in system.algebraic.iter().enumerate().filter(|(_, algebraic)| **algebraic) {
         (lambda[i], slope[i]) = (-slope[i], 0.0);
@@ -92,6 +102,13 @@ fn factorize<S, F: Functional>(
 fn solve(linear: &mut Linear, b: &mut Vector) -> Result<(), Failure> {
     let is_solved = linear.solve(b) && b.as_slice().iter().all(|x| x.is_finite());
     if is_solved { Ok(()) } else { Err(singular()) }
+}
+
+fn unsolved() -> Failure {
+    let why = "the linear system where the backward run starts is not solved by 200 iterations of GMRES: choose an \
+               incomplete factorization as the preconditioner, or a linear solver with a matrix; or the equations are \
+               not of index 1";
+    Failure::Fatal(why.into())
 }
 
 fn singular() -> Failure {

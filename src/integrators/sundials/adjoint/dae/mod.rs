@@ -1,8 +1,10 @@
 //! Adjoint gradients of differential-algebraic equations, by IDAS.
 
 mod end;
+mod gmres;
 mod hessian;
 mod problem;
+mod products;
 mod setup;
 mod system;
 

@@ -3,8 +3,9 @@
 use super::{end::start_of_backward_problem, system::AdjointDae};
 use crate::integrators::{
     common::{Callback, Error},
-    ode::{Borrowed, Dae, Functional},
+    ode::{Borrowed, Dae, Failure, Functional},
     sundials::{
+        LinearSolver,
         adjoint::{
             backward::{BackwardProblem, Point},
             equations::Equations,
@@ -53,6 +54,36 @@ callbacks! {
             system.0.backward_jacobian((t, y, yp), cj, values)
         })
     }
+
+    /// `IDALsJacTimesVecFnB`
+    fn jacobian_times<S: Dae, F: Functional>(
+        t: (time host), y: read, yp: read, _: vector, _: vector, _: vector, v: read, out: write, cj: f64,
+        host: (data Borrowed<'_, AdjointDae<S, F>>), _: vector, _: vector
+    ) {
+        host.guard_output(Callback::Adjoint, t, out, |system, out| {
+            system.0.transposed_times((t, y, yp), [-1.0, cj], v, out)
+        })
+    }
+
+    /// `IDALsPrecSetupFnB`
+    fn precondition_setup<S: Dae, F: Functional>(
+        t: (time host), y: read, yp: read, _: vector, _: vector, _: vector, cj: f64,
+        host: (data Borrowed<'_, AdjointDae<S, F>>)
+    ) {
+        host.guard(Callback::Adjoint, t, |system| system.0.backward_setup((t, y, yp), cj))
+    }
+
+    /// `IDALsPrecSolveFnB`
+    fn precondition_solve<S: Dae, F: Functional>(
+        t: (time host), _: vector, _: vector, _: vector, _: vector, _: vector, r: read, z: write, _: f64, _: f64,
+        host: (data Borrowed<'_, AdjointDae<S, F>>)
+    ) {
+        z.copy_from_slice(r);
+        host.guard_output(Callback::Adjoint, t, z, |system, z| {
+            system.0.backward_solve(z);
+            Ok(())
+        })
+    }
 }
 
 // SAFETY: the functions are those of IDA, and the callbacks are those for this system.
@@ -68,9 +99,25 @@ unsafe impl<S: Dae, F: Functional> BackwardProblem for AdjointDae<S, F> {
         unsafe { ffi::IDAInitB(memory, which, Some(residual::<S, F>), t, lambda, slope) }
     });
 
-    const SET_JACOBIAN: SetBackward = ("IDASetJacFnB", |memory, which, _| {
+    const SET_JACOBIAN: SetBackward = ("IDASetJacFnB", |memory, which, solver| {
+        let LinearSolver::Krylov(krylov) = solver else {
+            // SAFETY: as above.
+            return unsafe { ffi::IDASetJacFnB(memory, which, Some(jacobian::<S, F>)) };
+        };
         // SAFETY: as above.
-        unsafe { ffi::IDASetJacFnB(memory, which, Some(jacobian::<S, F>)) }
+        unsafe {
+            let times = Some(jacobian_times::<S, F> as _);
+            let (set_up, solve) =
+                (Some(precondition_setup::<S, F> as _), Some(precondition_solve::<S, F> as _));
+            let mut codes = [ffi::IDASetJacTimesB(memory, which, None, times), 0, 0];
+            if krylov.preconditioner.is_some() {
+                codes[1] = ffi::IDASetPreconditionerB(memory, which, set_up, solve);
+            }
+            if let Some(factor) = krylov.tolerance_factor {
+                codes[2] = ffi::IDASetEpsLinB(memory, which, factor);
+            }
+            codes.into_iter().min().unwrap_or(0)
+        }
     });
 
     const INIT_QUADRATURES: InitBackwardQuadratures =
@@ -94,8 +141,7 @@ unsafe impl<S: Dae, F: Functional> BackwardProblem for AdjointDae<S, F> {
         Ok((lambda, Some(slope)))
     }
 
-    fn by_initial_state(&self, lambda: &[f64], out: &mut [f64]) {
-        out.fill(0.0);
-        self.mass.add_transposed_times(1.0, lambda, out);
+    fn by_initial_state(&mut self, lambda: &[f64], out: &mut [f64]) -> Result<(), Failure> {
+        self.mass_times(lambda, out)
     }
 }

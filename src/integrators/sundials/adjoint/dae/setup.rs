@@ -148,7 +148,6 @@ impl<S: Dae, F: Functional> DaeAdjoint<S, F> {
         check_finite("yp0", yp0)?;
         let sizes = (system.parameters().len(), system.root_count());
         let runs = Runs::new((t0, y0, yp0), forward, options, sizes)?;
-        options.check_for_dae()?;
         let mut adjoint = Self { system, functional, runs };
         adjoint.runs.check(&mut adjoint.system, &mut adjoint.functional)?;
         Ok(adjoint)

@@ -2,6 +2,7 @@
 
 use faer::MatMut;
 
+use super::products::Products;
 use crate::base::input::InputError;
 use crate::integrators::{
     common::{Error, Tolerances, check_finite},
@@ -22,16 +23,19 @@ use crate::integrators::{
 /// linear in y'.
 pub(super) struct AdjointDae<S, F> {
     pub(super) equations: Equations<S, F>,
+    supplied_rhs: bool,
     supplied_parameters: bool,
+    /// Of a Krylov method.
+    pub(super) products: Option<Products>,
     /// Which unknowns were declared differential.
-    differential: Vec<bool>,
+    pub(super) differential: Vec<bool>,
     /// dF/dy'
     pub(super) mass: StoredMatrix,
     /// Which equations contain no y'.
     pub(super) algebraic: Vec<bool>,
     /// Two shifted y', and F at both.
-    moved: [Vec<f64>; 2],
-    residuals: [Vec<f64>; 2],
+    pub(super) moved: [Vec<f64>; 2],
+    pub(super) residuals: [Vec<f64>; 2],
 }
 
 impl<S: Dae, F: Functional> AdjointDae<S, F> {
@@ -44,8 +48,17 @@ impl<S: Dae, F: Functional> AdjointDae<S, F> {
     ) -> Result<Self, InputError> {
         let access = Access { get: S::parameters, set: S::set_parameters };
         let vector = || vec![0.0; n];
+        let equations = Equations::new(system, functional, access, n, (solver, tolerances))?;
+        let products = Products::new(&equations.backward, n);
+        if products.is_some() && !options.supplied_rhs {
+            let help = "there are no entries of the Jacobian to transpose: write adjoint_residual, and say so by \
+                        AdjointOptions::supplied_rhs";
+            return Err(InputError::new("linear solver", "Krylov", help));
+        }
         Ok(Self {
-            equations: Equations::new(system, functional, access, n, (solver, tolerances))?,
+            equations,
+            products,
+            supplied_rhs: options.supplied_rhs,
             supplied_parameters: options.supplied_parameters,
             differential: differential.to_vec(),
             mass: StoredMatrix::new(solver, n),
@@ -61,6 +74,14 @@ impl<S: Dae, F: Functional> AdjointDae<S, F> {
         // F is linear in y', so that differences over large steps contain nothing but dF/dy'
         const LARGE: f64 = 1024.0 * 1024.0;
         self.equations.forget();
+        if self.products.is_some() {
+            self.start_products((t, y, yp))?;
+            self.check_counts()?;
+            // for the preconditioner
+            if self.mass.values().is_empty() {
+                return Ok(());
+            }
+        }
         let step = |j: usize| LARGE * self.equations.size(j, y[j]).max(yp[j].abs());
         let steps: Vec<f64> = (0..y.len()).map(step).collect();
         let Equations { system, quotients, .. } = &mut self.equations;
@@ -70,6 +91,9 @@ impl<S: Dae, F: Functional> AdjointDae<S, F> {
             .write(&mut self.mass, yp, |j| steps[j], evaluate)
             .map_err(|failure| refused("IDA", t, failure))?;
         check_finite("dF/dy'", self.mass.values())?;
+        if self.products.is_some() {
+            return Ok(());
+        }
         self.algebraic.fill(true);
         let mut wrong = None;
         self.mass.each(|i, j, value| {
@@ -84,6 +108,11 @@ impl<S: Dae, F: Functional> AdjointDae<S, F> {
             let help = format!("its derivative occurs in equation {i}");
             return Err(Error::input("differential", format!("false of unknown {j}"), help));
         }
+        self.check_counts()
+    }
+
+    /// Refuses another number of algebraic equations than of algebraic unknowns.
+    fn check_counts(&self) -> Result<(), Error> {
         let unknowns = self.differential.iter().filter(|differential| !*differential).count();
         let equations = self.algebraic.iter().filter(|algebraic| **algebraic).count();
         if unknowns != equations {
@@ -103,11 +132,36 @@ impl<S: Dae, F: Functional> AdjointDae<S, F> {
         (lambda, slope): (&[f64], &[f64]),
         out: &mut [f64],
     ) -> Result<(), Failure> {
-        self.update_jacobian((t, y, yp))?;
+        if self.supplied_rhs {
+            self.check_products((t, y, yp))?;
+            let [negative, _] = &mut self.moved;
+            negative.iter_mut().zip(lambda).for_each(|(negative, lambda)| *negative = -lambda);
+            let system = &mut self.equations.system;
+            call::adjoint_residual(system, t, y, yp, negative, slope, out)?;
+        } else {
+            self.update_jacobian((t, y, yp))?;
+            out.fill(0.0);
+            self.mass.add_transposed_times(1.0, slope, out);
+            self.equations.jacobian.add_transposed_times(-1.0, lambda, out);
+        }
         self.equations.evaluate_slopes(t, y)?;
-        out.copy_from_slice(&self.equations.slopes_y);
-        self.mass.add_transposed_times(1.0, slope, out);
-        self.equations.jacobian.add_transposed_times(-1.0, lambda, out);
+        out.iter_mut().zip(&self.equations.slopes_y).for_each(|(out, slope)| *out += slope);
+        Ok(())
+    }
+
+    /// Writes (dF/dy)^T lambda.
+    pub(super) fn by_state(
+        &mut self,
+        at: Point<'_>,
+        lambda: &[f64],
+        out: &mut [f64],
+    ) -> Result<(), Failure> {
+        if self.supplied_rhs {
+            return self.transposed_times(at, [1.0, 0.0], lambda, out);
+        }
+        self.update_jacobian(at)?;
+        out.fill(0.0);
+        self.equations.jacobian.add_transposed_times(1.0, lambda, out);
         Ok(())
     }
 
@@ -166,7 +220,10 @@ impl<S: Dae, F: Functional> AdjointDae<S, F> {
             call::residual(system, t, y, yp, residual)
         };
         if self.equations.update_jacobian(t, y, supplied, evaluate)? {
-            let checked = self.check_mass((t, y, yp));
+            let checked = match self.products {
+                Some(_) => self.check_products((t, y, yp)),
+                None => self.check_mass((t, y, yp)),
+            };
             if checked.is_err() {
                 self.equations.forget();
             }
@@ -203,12 +260,16 @@ impl<S: Dae, F: Functional> AdjointDae<S, F> {
         });
         let changed =
             ahead.iter().zip(behind.iter()).position(|(d, size)| d.abs() > TOLERANCE * size);
-        let Some(i) = changed else { return Ok(()) };
+        changed.map_or(Ok(()), |i| Err(Self::changed(i)))
+    }
+
+    /// The failure of an equation whose dF/dy' is not constant.
+    pub(super) fn changed(i: usize) -> Failure {
         let why = format!(
             "dF/dy' of equation {i} is not that of the start: an adjoint gradient needs it constant; write \
              0 = F(t, y, z) with y' = z for such equations, and z as more algebraic unknowns"
         );
-        Err(Failure::Fatal(why.into()))
+        Failure::Fatal(why.into())
     }
 }
 

@@ -3,7 +3,7 @@
 use super::system::AdjointSystem;
 use crate::integrators::{
     common::{Callback, Error},
-    ode::{Borrowed, Functional, Ode},
+    ode::{Borrowed, Failure, Functional, Ode},
     sundials::{
         LinearSolver,
         adjoint::{
@@ -141,7 +141,8 @@ unsafe impl<S: Ode, F: Functional> BackwardProblem for AdjointSystem<S, F> {
         Ok((Vector::from_slice(&end.initial_state, context)?, None))
     }
 
-    fn by_initial_state(&self, lambda: &[f64], out: &mut [f64]) {
+    fn by_initial_state(&mut self, lambda: &[f64], out: &mut [f64]) -> Result<(), Failure> {
         out.copy_from_slice(lambda);
+        Ok(())
     }
 }
