@@ -6,6 +6,7 @@ mod adjoint;
 mod after_failures;
 mod arkode;
 mod automatic;
+mod automatic_dae;
 mod central_difference;
 mod checks;
 mod control;

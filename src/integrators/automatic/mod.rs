@@ -3,7 +3,7 @@
 //! A right-hand side that is generic over [`Number`] is evaluated with numbers that carry derivatives along: its Jacobian has the rounding of
 //! one evaluation and no increment to choose, in place of the noise of differences. [`automatic`] makes an
 //! [`Ode`](crate::integrators::ode::Ode) of it, with df/dy in any form, products with vectors, and derivatives by the parameters for
-//! sensitivities and adjoint gradients.
+//! sensitivities and adjoint gradients; and a [`Dae`](crate::integrators::ode::Dae) of a [`Residual`].
 //!
 //! ```
 //! use pliant::{
@@ -33,9 +33,15 @@
 //! # Ok::<(), pliant::solve::Error>(())
 //! ```
 
+mod dae;
+mod derivatives;
 mod dual;
 mod number;
+mod ode;
 mod system;
+mod workspace;
 
+pub use dae::Residual;
 pub use number::Number;
-pub use system::{Automatic, RightHandSide, automatic};
+pub use ode::RightHandSide;
+pub use system::{Automatic, automatic};

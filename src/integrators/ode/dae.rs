@@ -4,6 +4,7 @@ use faer::MatMut;
 
 use super::band::BandMut;
 use super::failure::{Failure, missing};
+use super::storage::Storage;
 
 /// F(t, y, y') = 0.
 ///
@@ -18,6 +19,12 @@ pub trait Dae {
         yp: &[f64],
         residual: &mut [f64],
     ) -> Result<(), Failure>;
+
+    /// The form of a Jacobian that the system supplies, for [`solve`](fn@crate::integrators::solve::solve), which uses it where no linear
+    /// solver is given. Default: none is known.
+    fn supplied_jacobian(&self) -> Option<Storage<'_>> {
+        None
+    }
 
     /// Writes dF/dy + cj dF/dy' into the dense matrix `jacobian` (zero on entry).
     fn dense_jacobian(

@@ -71,6 +71,7 @@ macro_rules! delegate {
     (@Dae equations $field:tt) => {
         delegate! { @methods $field
             fn residual(t: f64, y: &[f64], yp: &[f64], residual: &mut [f64]);
+            fn supplied_jacobian() -> Option<$crate::integrators::ode::Storage<'_>>;
             fn dense_jacobian(t: f64, cj: f64, y: &[f64], yp: &[f64], jacobian: MatMut<'_, f64>);
             fn banded_jacobian(t: f64, cj: f64, y: &[f64], yp: &[f64], jacobian: BandMut<'_>);
             fn sparse_jacobian(t: f64, cj: f64, y: &[f64], yp: &[f64], values: &mut [f64]);

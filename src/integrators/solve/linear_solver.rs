@@ -31,7 +31,7 @@ impl Options {
         }
         let supplied = match &*equations {
             Equations::Ode(system) => system.supplied_jacobian(),
-            Equations::Dae { .. } => None,
+            Equations::Dae { system, .. } => system.supplied_jacobian(),
         };
         let solver = match supplied {
             Some(supplied) => Some(LinearSolver::of_supplied(supplied)?),

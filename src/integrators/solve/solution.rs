@@ -236,8 +236,9 @@ impl Solution {
     /// If there is no such time.
     #[must_use]
     pub fn quadrature_sensitivities(&self, k: usize) -> MatRef<'_, f64> {
+        let times = self.t.len();
         let (count, rows) =
-            (self.quadrature_sensitivities.len() / self.t.len(), self.quadratures(k).len());
+            (self.quadrature_sensitivities.len() / times, self.quadratures.len() / times);
         let q = &self.quadrature_sensitivities[k * count..(k + 1) * count];
         MatRef::from_column_major_slice(q, rows, count / rows.max(1))
     }

@@ -3,6 +3,7 @@
 mod end;
 mod gmres;
 mod hessian;
+mod matrix_free;
 mod problem;
 mod products;
 mod setup;
