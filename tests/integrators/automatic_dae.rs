@@ -210,3 +210,71 @@ fn gradient_and_hessian_of_the_example_of_idas() {
         assert!((found / printed - 1.0).abs() < 3.7e-5, "{found} {printed}");
     }
 }
+
+/// These equations with a product by the unknowns, and one by the parameters, that may be wrong.
+struct Wrong(Automatic<Mixed>, [f64; 2]);
+
+impl Dae for Wrong {
+    fn residual(&mut self, t: f64, y: &[f64], yp: &[f64], r: &mut [f64]) -> Result<(), Failure> {
+        self.0.residual(t, y, yp, r)
+    }
+
+    fn adjoint_residual(
+        &mut self,
+        t: f64,
+        y: &[f64],
+        yp: &[f64],
+        lambda: &[f64],
+        mu: &[f64],
+        out: &mut [f64],
+    ) -> Result<(), Failure> {
+        self.0.adjoint_residual(t, y, yp, lambda, mu, out)?;
+        out[1] *= self.1[0];
+        Ok(())
+    }
+
+    fn adjoint_parameters(
+        &mut self,
+        t: f64,
+        y: &[f64],
+        yp: &[f64],
+        lambda: &[f64],
+        out: &mut [f64],
+    ) -> Result<(), Failure> {
+        self.0.adjoint_parameters(t, y, yp, lambda, out)?;
+        out[2] *= self.1[1];
+        Ok(())
+    }
+
+    fn parameters(&self) -> &[f64] {
+        self.0.parameters()
+    }
+
+    fn set_parameters(&mut self, values: &[f64]) {
+        self.0.set_parameters(values);
+    }
+}
+
+/// Differences, without a solver, find the products right, and name one that is wrong by a thousandth.
+#[test]
+fn products_are_checked() {
+    let (at, v) = ((&Y[..], &YP[..]), [0.3, -1.1, 0.5, 0.9]);
+    let entry = |outcome: Result<(), check::CheckError>| match outcome {
+        Ok(()) => None,
+        Err(check::CheckError::Mismatch { entry, .. }) => Some(entry),
+        Err(error) => panic!("{error}"),
+    };
+    let new = |factors| Wrong(automatic(Mixed, P), factors);
+    let by_state = |factor| {
+        let mut system = new([factor, 1.0]);
+        entry(check::adjoint_residual(&mut system, 0.9, at, (&v, &Y)))
+    };
+    assert_eq!((by_state(1.0), by_state(1.001)), (None, Some((0, 1))));
+    let by_parameters = |factor| {
+        let mut system = new([1.0, factor]);
+        entry(check::dae_adjoint_parameters(&mut system, 0.9, at, &v))
+    };
+    assert_eq!((by_parameters(1.0), by_parameters(1.001)), (None, Some((0, 2))));
+    let short = check::adjoint_residual(&mut new([1.0; 2]), 0.9, at, (&v[1..], &Y));
+    assert!(short.unwrap_err().to_string().contains("lambda"));
+}

@@ -1,8 +1,12 @@
 //! The C functions of the integrators, in tables with a column for each.
 
-use std::{ffi::c_void, ptr};
+use std::ffi::c_void;
 
-use super::{ffi, linear_solver::LinearSolver};
+use super::{
+    ffi,
+    integrator_stats::{arkode_integrator_stats, multirate_integrator_stats},
+    linear_solver::LinearSolver,
+};
 
 /// A C function with its name, for errors.
 pub(super) type Named<F> = (&'static str, F);
@@ -340,82 +344,6 @@ table! {
     set_linear_system: Set<ffi::ARKLsLinSysFn> = ARKStepSetLinSysFn, MRIStepSetLinSysFn;
     [others]
     ode: &'static OdeFunctions = OdeFunctions::ARKODE, OdeFunctions::MULTIRATE;
-}
-
-/// `CVodeGetIntegratorStats` for ARKODE: evaluations are the sum of explicit and implicit ones, and both
-/// orders are that of the table.
-unsafe extern "C" fn arkode_integrator_stats(
-    memory: *mut c_void,
-    steps: *mut i64,
-    evaluations: *mut i64,
-    setups: *mut i64,
-    error_test_failures: *mut i64,
-    last_order: *mut i32,
-    current_order: *mut i32,
-    initial_step: *mut f64,
-    last_step: *mut f64,
-    current_step: *mut f64,
-    current_time: *mut f64,
-) -> i32 {
-    let [mut explicit, mut implicit] = [0; 2];
-    let (mut implicit_table, mut explicit_table) = (ptr::null_mut(), ptr::null_mut());
-    // SAFETY: whoever calls through the table vouches for memory and places; a table that is
-    // there lives as long as the memory.
-    unsafe {
-        let code = ffi::ARKStepGetStepStats(
-            memory,
-            steps,
-            initial_step,
-            last_step,
-            current_step,
-            current_time,
-        );
-        ffi::ARKStepGetNumRhsEvals(memory, &raw mut explicit, &raw mut implicit);
-        ffi::ARKStepGetNumLinSolvSetups(memory, setups);
-        ffi::ARKStepGetNumErrTestFails(memory, error_test_failures);
-        ffi::ARKStepGetCurrentButcherTables(
-            memory,
-            &raw mut implicit_table,
-            &raw mut explicit_table,
-        );
-        *evaluations = explicit + implicit;
-        let table = if implicit_table.is_null() { explicit_table } else { implicit_table };
-        let order = table.as_ref().map_or(0, |table| table.q);
-        (*last_order, *current_order) = (order, order);
-        code
-    }
-}
-
-/// The same for multirate methods: those of the slow steps, which all have one size.
-unsafe extern "C" fn multirate_integrator_stats(
-    memory: *mut c_void,
-    steps: *mut i64,
-    evaluations: *mut i64,
-    setups: *mut i64,
-    error_test_failures: *mut i64,
-    last_order: *mut i32,
-    current_order: *mut i32,
-    initial_step: *mut f64,
-    last_step: *mut f64,
-    current_step: *mut f64,
-    current_time: *mut f64,
-) -> i32 {
-    let [mut explicit, mut implicit] = [0; 2];
-    let mut coupling = ptr::null_mut();
-    // SAFETY: whoever calls through the table vouches for memory and places; a coupling that is there lives as long as
-    // the memory.
-    unsafe {
-        ffi::MRIStepGetNumSteps(memory, steps);
-        ffi::MRIStepGetNumRhsEvals(memory, &raw mut explicit, &raw mut implicit);
-        ffi::MRIStepGetNumLinSolvSetups(memory, setups);
-        ffi::MRIStepGetCurrentCoupling(memory, &raw mut coupling);
-        ffi::MRIStepGetLastStep(memory, last_step);
-        (*evaluations, *error_test_failures) = (explicit + implicit, 0);
-        (*current_step, *initial_step) = (*last_step, *last_step);
-        let order = coupling.as_ref().map_or(0, |coupling| coupling.q);
-        (*last_order, *current_order) = (order, order);
-        ffi::MRIStepGetCurrentTime(memory, current_time)
-    }
 }
 
 // Tasks and codes that all integrators number alike: the shared code uses CVODE's names.
