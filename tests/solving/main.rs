@@ -1,6 +1,7 @@
 //! Problems solved by one call: events, breaks, interpolation, limits.
 
 mod accumulation;
+mod auto;
 mod bounds;
 mod breaks;
 mod clock_times;

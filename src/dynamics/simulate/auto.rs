@@ -13,6 +13,7 @@
 use crate::dynamics::system::{PhaseSystem, Spectrum};
 use crate::integrators::central_difference;
 use crate::integrators::ode::Rates;
+use crate::integrators::rk::{REACH, REACH_UNDAMPED};
 use crate::scene::settings::{ContactEvents, Method, Settings};
 
 /// How a phase is integrated from now on.
@@ -88,10 +89,6 @@ const LOSING: f64 = 0.25;
 /// behind, which the implicit method then has to follow, and for a part of twice at most that is no bargain. Two syringes of
 /// water and a pipe took 82,207 steps at 1e-6 where explicit steps counted as long as they were, and take 1042.
 const ONCE_LOST: f64 = 0.5;
-
-/// Stability limits of Dormand-Prince 5(4) on the real and on the imaginary axis: step times rate.
-const EXPLICIT_REACH: f64 = 3.3;
-const EXPLICIT_REACH_UNDAMPED: f64 = 1.0;
 
 /// Relative tolerance below which implicit methods locate contact events: on Hirai's scenes that
 /// takes a quarter less time there, and at 1e-5 a quarter more.
@@ -414,10 +411,10 @@ fn explicit_step(spectrum: &Spectrum, decay: f64) -> f64 {
     // undamped vibrations lie on the imaginary axis, at the edge of the stability region, which leaves it at
     // 1
     let reach = match damping_rate > 0.1 * highest_frequency {
-        true => EXPLICIT_REACH,
-        false => EXPLICIT_REACH_UNDAMPED,
+        true => REACH,
+        false => REACH_UNDAMPED,
     };
-    (reach / spectrum.stiffest_rate()).min(EXPLICIT_REACH / decay)
+    (reach / spectrum.stiffest_rate()).min(REACH / decay)
 }
 
 #[cfg(test)]

@@ -117,6 +117,11 @@ pub trait Integrator {
     /// Cost counters of the integration so far, and its present time, step size and order.
     fn statistics(&self) -> Statistics;
 
+    /// Steps taken since the last start: cheap enough to be read at every step.
+    fn steps(&self) -> u64 {
+        self.statistics().steps
+    }
+
     /// A warning about the steps: that stability, not accuracy, limits their size.
     fn notice(&self) -> Option<String> {
         None

@@ -402,6 +402,10 @@ impl<S: Ode, M: StepMethod> Integrator for OneStep<S, M> {
         }
     }
 
+    fn steps(&self) -> u64 {
+        self.march.statistics.steps
+    }
+
     fn notice(&self) -> Option<String> {
         self.method.notice()
     }

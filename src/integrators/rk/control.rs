@@ -81,6 +81,10 @@ impl fmt::Display for StabilityLimit {
     }
 }
 
+/// Stability limits of the method on the real and on the imaginary axis: step times rate.
+pub(crate) const REACH: f64 = 3.3;
+pub(crate) const REACH_UNDAMPED: f64 = 1.0;
+
 /// Beyond this h |lambda| a step is at the border of the stability region (at 3.307).
 const LIMITED: f64 = 3.25;
 /// Number of limited steps, not interrupted by `CLEAR_AFTER` others, after which the notice is given.

@@ -28,6 +28,7 @@ mod dormand_prince;
 mod tableau;
 
 pub use control::StabilityLimit;
+pub(crate) use control::{REACH, REACH_UNDAMPED};
 pub use dormand_prince::DormandPrince;
 
 pub use crate::integrators::common::{

@@ -2,6 +2,7 @@
 
 use faer::{MatMut, MatRef};
 
+use super::method::MethodUse;
 use crate::integrators::{
     common::{Error, Integrator, Reached, Statistics},
     ode::{Borrowed, Dae, Failure, Ode, call, delegate::delegate},
@@ -22,7 +23,12 @@ pub(super) trait Engine: Send {
     fn interpolate(&mut self, t: f64, derivative: u32, out: &mut [f64]) -> Result<(), Error>;
     fn interpolant_degree(&self) -> u32;
     fn statistics(&self) -> Statistics;
+    fn steps(&self) -> u64;
     fn notice(&self) -> Option<String>;
+    /// The methods so far, if it changes between them.
+    fn uses(&self) -> &[MethodUse] {
+        &[]
+    }
     /// Starts again at `t` from `y` (and `yp`, of a DAE).
     fn restart(&mut self, t: f64, y: &[f64], yp: &[f64]) -> Result<(), Error>;
     fn parameters(&self) -> &[f64];
@@ -94,6 +100,7 @@ macro_rules! forward {
             fn interpolate(t: f64, derivative: u32, out: &mut [f64]) -> Result<(), Error>;
             fn interpolant_degree() -> u32;
             fn statistics() -> Statistics;
+            fn steps() -> u64;
             fn notice() -> Option<String>;
             fn sensitivities_at(t: f64, out: MatMut<'_, f64>) -> Result<(), Error>;
             fn start_sensitivities(s: MatRef<'_, f64>, dp: &[f64]) -> Result<(), Error>;

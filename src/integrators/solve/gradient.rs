@@ -93,6 +93,11 @@ pub fn gradient(
     options: &Options,
     back: &AdjointOptions,
 ) -> Result<Gradient, Reason> {
+    let method = match method {
+        Method::Auto if problem.equations.is_dae() => Method::Ida,
+        Method::Auto => Method::Bdf,
+        method => method,
+    };
     if !matches!(method, Method::Bdf | Method::Adams | Method::Ida) {
         let help = "a gradient takes Bdf or Adams, or Ida for a DAE";
         return Err(InputError::new("method", format!("{method:?}"), help).into());

@@ -1,6 +1,7 @@
 //! The methods, and the integrators behind them.
 
 use super::{
+    auto::AutoEngine,
     engine::{DaeEngine, Engine, OdeEngine},
     options::Options,
     problem::Equations,
@@ -45,11 +46,52 @@ fn multistep<O: OfMultistep>(
     options.sensitivities.iter().cloned().fold(built, SolverOptions::sensitivities)
 }
 
+impl Options {
+    /// Those of the method of Dormand and Prince.
+    pub(super) fn explicit(&self) -> rk::Options {
+        let Tolerances { rtol, atol } = self.tolerances.clone();
+        let mut built = rk::Options::new(rtol, atol);
+        built.steps = steps(self, 1.0);
+        built
+    }
+
+    /// Those of Rosenbrock methods.
+    pub(super) fn rosenbrock(&self) -> rosenbrock::Options {
+        let Tolerances { rtol, atol } = self.tolerances.clone();
+        let built = rosenbrock::Options::new(rtol, atol).check_jacobian(self.check_jacobian);
+        let solver = self.linear_solver.iter().cloned();
+        let built = solver.fold(built, rosenbrock::Options::newton);
+        let mut built = self.max_order.into_iter().fold(built, rosenbrock::Options::order);
+        built.forward.steps = steps(self, 1.0);
+        built
+    }
+}
+
+/// A method at work, from a time on.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
+pub struct MethodUse {
+    /// Time of its start.
+    pub t: f64,
+    /// The method.
+    pub method: Method,
+    /// Why it is used.
+    pub reason: String,
+}
+
 /// An integration method.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum Method {
+    /// The method that leads farthest for its work, which is counted, never measured, and changes with the solution: that of Dormand and Prince;
+    /// where stability limits its steps a Rosenbrock method or BDF, by tolerance and number of unknowns; and back.
+    /// [`Solution::methods`](super::Solution::methods) tells which, when and why.
+    ///
+    /// Where only one method can do what is asked for, it is that one: IDA for DAEs and mass matrices; BDF for sensitivities, integrals,
+    /// gradients, projection, signs of unknowns, bounds of steps or orders, and backward in time.
+    Auto,
     /// CVODE, backward differentiation formulas of order 1 to 5: for stiff ODEs.
     Bdf,
     /// CVODE, Adams-Moulton formulas of order 1 to 12, with a Newton iteration: for smooth ODEs whose
@@ -98,6 +140,7 @@ impl Method {
     #[must_use]
     pub fn name(self) -> String {
         match self {
+            Self::Auto => "the automatic choice".into(),
             Self::Bdf => "CVODE's BDF".into(),
             Self::Adams => "CVODE's Adams methods".into(),
             Self::RungeKutta(table) => format!("ARKODE's {}", table.name()),
@@ -112,6 +155,30 @@ impl Method {
         match self {
             Self::RungeKutta(table) => !table.is_implicit(),
             method => method == Self::DormandPrince,
+        }
+    }
+
+    /// This method, or the one that [`Auto`](Self::Auto) stands for where there is no choice, and why.
+    pub(super) fn resolve(
+        self,
+        equations: &Equations<'_>,
+        options: &Options,
+        sign: f64,
+    ) -> (Self, &'static str) {
+        let reasons = [
+            (options.sensitivities.is_some(), "it computes sensitivities"),
+            (equations.quadrature_count() > 0, "it computes integrals"),
+            (options.project, "it projects"),
+            (!options.sign_constraints.is_empty(), "it keeps signs"),
+            (options.min_step.is_some(), "it has a lower bound of steps"),
+            (options.max_order.is_some(), "it has a choice of orders"),
+            (sign < 0.0, "it goes backward in time"),
+        ];
+        let reason = reasons.into_iter().find_map(|(applies, reason)| applies.then_some(reason));
+        match (self, reason) {
+            (Self::Auto, _) if equations.is_dae() => (Self::Ida, "it takes DAEs"),
+            (Self::Auto, Some(reason)) => (Self::Bdf, reason),
+            (method, _) => (method, "as asked for"),
         }
     }
 
@@ -162,14 +229,15 @@ impl Method {
         Ok(())
     }
 
-    /// An integrator for `equations` at the time `t` and state `y`, for the direction `sign` of time.
+    /// An integrator for `equations` from the time `t` and state `y` towards `end`.
     pub(super) fn engine<'a>(
         self,
         equations: Equations<'a>,
-        (t, sign): (f64, f64),
+        (t, end): (f64, f64),
         y: &[f64],
         options: &Options,
     ) -> Result<Box<dyn Engine + 'a>, Error> {
+        let sign = (end - t).signum();
         let Tolerances { rtol, atol } = options.tolerances.clone();
         let system = match self.take(equations, t, y.len(), options)? {
             Equations::Dae { system, yp, differential } => {
@@ -184,20 +252,14 @@ impl Method {
                 let built = shared(ArkodeOptions::new(rtol, atol).table(table), options, sign);
                 Box::new(OdeEngine { integrator: Arkode::new(system, t, y, &built)? })
             }
+            Self::Auto => Box::new(AutoEngine::new(system, (t, end), y, options)?),
             Self::DormandPrince => {
-                let mut built = rk::Options::new(rtol, atol);
-                built.steps = steps(options, sign);
-                Box::new(OdeEngine { integrator: rk::DormandPrince::new(system, t, y, &built)? })
+                let integrator = rk::DormandPrince::new(system, t, y, &options.explicit())?;
+                Box::new(OdeEngine { integrator })
             }
             Self::Rosenbrock => {
-                let built =
-                    rosenbrock::Options::new(rtol, atol).check_jacobian(options.check_jacobian);
-                let solver = options.linear_solver.iter().cloned();
-                let built = solver.fold(built, rosenbrock::Options::newton);
-                let mut built =
-                    options.max_order.into_iter().fold(built, rosenbrock::Options::order);
-                built.forward.steps = steps(options, sign);
-                Box::new(OdeEngine { integrator: Rosenbrock::new(system, t, y, &built)? })
+                let integrator = Rosenbrock::new(system, t, y, &options.rosenbrock())?;
+                Box::new(OdeEngine { integrator })
             }
             _ => {
                 let built = self.cvode(options, sign);

@@ -27,7 +27,9 @@
 //! [`Run`] does the same step by step, under the caller's control, and [`ensemble`] solves many problems on
 //! all cores. Features that a method lacks are errors before the first step, and are never replaced by others.
 
+mod auto;
 mod caution;
+mod choice;
 mod control;
 mod crossing;
 mod diagnosis;
@@ -61,7 +63,7 @@ pub use ensemble::ensemble;
 pub use error::{Error, Reason, Stopped};
 pub use event::{Event, Jump};
 pub use gradient::gradient;
-pub use method::Method;
+pub use method::{Method, MethodUse};
 pub use options::{Options, Output};
 pub use problem::{Problem, Progress};
 pub use run::{Run, Step};

@@ -31,6 +31,11 @@ impl Equations<'_> {
         }
     }
 
+    /// Whether they are a DAE, or have a mass matrix.
+    pub(super) fn is_dae(&self) -> bool {
+        matches!(self, Self::Dae { .. }) || self.has_mass()
+    }
+
     /// Whether they have a mass matrix.
     pub(super) fn has_mass(&self) -> bool {
         matches!(self, Self::Ode(system) if system.mass_kind() != MassKind::Identity)

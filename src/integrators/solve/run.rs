@@ -13,7 +13,7 @@ use super::{
     engine::Engine,
     error::Reason,
     event::Event,
-    method::{Limit, Method},
+    method::{Limit, Method, MethodUse},
     options::Options,
     problem::{Break, Equations, Observer, Problem},
     saved::Saved,
@@ -48,6 +48,8 @@ use crate::integrators::common::{
 /// ```
 pub struct Run<'a> {
     pub(super) engine: Box<dyn Engine + 'a>,
+    /// The method, unless the engine changes between several.
+    method: MethodUse,
     pub(super) events: Vec<Event<'a>>,
     pub(super) watches: Vec<EventTracker>,
     pub(super) counts: Vec<u32>,
@@ -194,6 +196,7 @@ impl<'a> Run<'a> {
         }
         breaks.sort_by(|a, b| ((b.t - a.t) * sign).total_cmp(&0.0));
         let quadrature_count = equations.quadrature_count();
+        let (method, reason) = method.resolve(&equations, options, sign);
         let options = &*options.with_linear_solver(method, &mut equations, start, &y)?;
         if options.sensitivities.is_some() {
             equations = method.take(equations, start, y.len(), options)?;
@@ -203,7 +206,7 @@ impl<'a> Run<'a> {
             sides = Some(surfaces.sides().clone());
         }
         let limit = if equations.has_mass() { Limit::None } else { method.limit() };
-        let mut engine = method.engine(equations, (start, sign), &y, options)?;
+        let mut engine = method.engine(equations, span, &y, options)?;
         let jumps = events.iter().any(Event::may_go_on) || !breaks.is_empty();
         if options.sensitivities.is_some() && jumps && !engine.can_be_consistent() {
             let help = "to go on across events and breaks, Problem::differential says which unknowns are differential";
@@ -249,6 +252,7 @@ impl<'a> Run<'a> {
         };
         let mut run = Self {
             engine,
+            method: MethodUse { t: start, method, reason: reason.into() },
             armed: saved.as_ref().map_or(vec![true; events.len()], |saved| saved.armed.clone()),
             ticks: vec![None; events.len()],
             seen: vec![Seen::default(); events.len()],
@@ -456,9 +460,23 @@ impl<'a> Run<'a> {
         self.engine.interpolant_degree().max(1)
     }
 
+    /// The methods of the run so far, each with its first time and why it is used: [`Method::Auto`] changes between several.
+    #[must_use]
+    pub fn methods(&self) -> &[MethodUse] {
+        match self.engine.uses() {
+            [] => std::slice::from_ref(&self.method),
+            uses => uses,
+        }
+    }
+
     /// Cost counters of the run so far.
     #[must_use]
     pub fn statistics(&self) -> Statistics {
         self.past.followed_by(&self.engine.statistics())
+    }
+
+    /// Steps of the run so far.
+    pub(super) fn steps(&self) -> u64 {
+        self.past.steps + self.engine.steps()
     }
 }

@@ -8,7 +8,7 @@ use std::fmt;
 
 use faer::MatRef;
 
-use super::saved::Saved;
+use super::{method::MethodUse, saved::Saved};
 use crate::base::input::InputError;
 use crate::integrators::common::{Statistics, check_length, check_time};
 
@@ -70,6 +70,8 @@ pub struct Solution {
     pub(super) saved: Saved,
     #[cfg_attr(feature = "serde", serde(default))]
     pub(super) notice: Option<String>,
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub(super) methods: Vec<MethodUse>,
 }
 
 impl fmt::Debug for Solution {
@@ -138,6 +140,7 @@ impl Solution {
             end: End::Early,
             saved: Saved::default(),
             notice: None,
+            methods: Vec::new(),
         }
     }
 
@@ -357,6 +360,12 @@ impl Solution {
     #[must_use]
     pub fn statistics(&self) -> &Statistics {
         &self.statistics
+    }
+
+    /// The methods of the run, each with its first time and why it was used: [`Method::Auto`](super::Method::Auto) changes between several.
+    #[must_use]
+    pub fn methods(&self) -> &[MethodUse] {
+        &self.methods
     }
 
     /// A warning about the steps, if they were many: [`Run::notice`](super::Run::notice) at the end of the run.

@@ -41,6 +41,7 @@ pub fn solve(
     let outcome = integrate(&mut run, &mut solution, &options.output);
     solution.statistics = run.statistics();
     solution.saved = run.save();
+    solution.methods = run.methods().to_vec();
     solution.notice = run.notice();
     solution.end = run.end().unwrap_or(End::Early);
     match outcome {

@@ -125,14 +125,17 @@ impl Run<'_> {
         if self.cancel.as_ref().is_some_and(|flag| flag.load(Relaxed)) {
             return Err(Reason::Cancelled);
         }
-        let statistics = self.statistics();
-        let evaluations = statistics.evaluations + statistics.difference_quotient_evaluations;
-        if statistics.steps >= self.limits.steps {
+        let steps = self.steps();
+        if steps >= self.limits.steps {
             self.engine.diagnose()?;
-            return Err(Reason::Steps(statistics.steps));
+            return Err(Reason::Steps(steps));
         }
-        if self.limits.evaluations.is_some_and(|most| evaluations >= most) {
-            return Err(Reason::Evaluations(evaluations));
+        if let Some(most) = self.limits.evaluations {
+            let statistics = self.statistics();
+            let evaluations = statistics.evaluations + statistics.difference_quotient_evaluations;
+            if evaluations >= most {
+                return Err(Reason::Evaluations(evaluations));
+            }
         }
         match self.limits.wall_time {
             Some(most) if self.started.elapsed() >= most => {
@@ -147,7 +150,7 @@ impl Run<'_> {
         let Some(mut observer) = self.observer.take() else { return };
         let (start, end) = self.span;
         let part = (self.t - start) / (end - start);
-        let steps = self.statistics().steps;
+        let steps = self.steps();
         let goes_on = observer(Progress { t: self.t, y: &self.y, steps, part });
         self.observer = Some(observer);
         if goes_on == ControlFlow::Break(()) {

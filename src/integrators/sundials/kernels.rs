@@ -23,6 +23,7 @@ pub(super) unsafe fn install(vector: ffi::N_Vector) {
         let ops = &mut *(*vector).ops;
         ops.nvwrmsnorm = Some(weighted_norm);
         ops.nvlinearsum = Some(linear_sum);
+        ops.nvlinearcombination = Some(linear_combination);
         ops.nvconst = Some(constant);
         ops.nvscale = Some(scale);
         ops.nvabs = Some(abs);
@@ -86,6 +87,42 @@ unsafe extern "C" fn linear_sum(
             }
         }
     }
+}
+
+/// z = sum_i c_i x_i, from the first to the last, where z may be the first.
+unsafe extern "C" fn linear_combination(
+    count: i32,
+    c: *mut f64,
+    x: *mut ffi::N_Vector,
+    z: ffi::N_Vector,
+) -> i32 {
+    const BLOCK: usize = 8;
+    // SAFETY: SUNDIALS passes as many numbers and live vectors of equal length, of which only the first may be z; no numbers are read after
+    // those of z at the same places were written.
+    unsafe {
+        let (c, x) =
+            (slice::from_raw_parts(c, count as usize), slice::from_raw_parts(x, count as usize));
+        let (z, n) = parts(z);
+        let mut start = 0;
+        while start < n {
+            let length = BLOCK.min(n - start);
+            let mut sums = [0.0; BLOCK];
+            for (k, (c, x)) in c.iter().zip(x).enumerate() {
+                let x = slice::from_raw_parts(parts(*x).0.add(start), length);
+                if let Ok(x) = <&[f64; BLOCK]>::try_from(x) {
+                    sums =
+                        std::array::from_fn(|i| if k == 0 { c * x[i] } else { c * x[i] + sums[i] });
+                } else {
+                    for (sum, x) in sums.iter_mut().zip(x) {
+                        *sum = if k == 0 { c * x } else { c * x + *sum };
+                    }
+                }
+            }
+            slice::from_raw_parts_mut(z.add(start), length).copy_from_slice(&sums[..length]);
+            start += length;
+        }
+    }
+    0
 }
 
 /// z = f(x), where z may be x.
@@ -177,6 +214,35 @@ mod tests {
                         ffi::N_VLinearSum_Serial(a, v[x].raw(), b, v[y].raw(), v[z].raw());
                     }
                     check(&ours, &theirs, 1e-15);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn combinations_are_those_of_sundials() {
+        let context = Context::new().unwrap();
+        let mut c = [0.7, -1.3, 2.1];
+        for n in [1, 7, 8, 9, 100] {
+            for count in 1..=3 {
+                // the result is a vector of its own, or the first one
+                for into_first in [true, false] {
+                    let (ours, theirs) = (vectors(n, &context), vectors(n, &context));
+                    let results = [&ours, &theirs].map(|_| vectors(n, &context));
+                    let into = |v: &[Vector; 3], own: &[Vector; 3]| match into_first {
+                        true => v[0].raw(),
+                        false => own[0].raw(),
+                    };
+                    let z = [into(&ours, &results[0]), into(&theirs, &results[1])];
+                    let [mut v, mut w] = [&ours, &theirs].map(|v| v.each_ref().map(Vector::raw));
+                    // SAFETY: the vectors are alive and of equal length.
+                    unsafe {
+                        let (c, count) = (c.as_mut_ptr(), count as i32);
+                        ffi::N_VLinearCombination(count, c, v.as_mut_ptr(), z[0]);
+                        ffi::N_VLinearCombination_Serial(count, c, w.as_mut_ptr(), z[1]);
+                    }
+                    check(&ours, &theirs, 1e-15);
+                    check(&results[0], &results[1], 1e-15);
                 }
             }
         }

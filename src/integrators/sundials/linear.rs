@@ -4,7 +4,8 @@ use std::{ffi::c_void, ptr};
 
 use super::{
     context::Context,
-    factored::{factored, forget_factors},
+    dense::DenseFactors,
+    factored::{Direct, factored, forget_factors},
     ffi,
     host::{Host, RETRY, STOP},
     krylov::{Krylov, KrylovMethod, Side},
@@ -43,9 +44,11 @@ impl Linear {
         let m = matrix.as_ref().map_or(ptr::null_mut(), Matrix::raw);
         let (y, c) = (template.raw(), context.raw());
         let (function, raw) = match kind {
+            // SAFETY: the matrix is made for this solver.
+            LinearSolver::Dense(_) => ("SUNLinSolNewEmpty", unsafe {
+                factored(Direct::Dense(DenseFactors::new(n)), context)
+            }),
             // SAFETY: vector, matrix and context are alive and fit together.
-            LinearSolver::Dense(_) => ("SUNLinSol_Dense", unsafe { ffi::SUNLinSol_Dense(y, m, c) }),
-            // SAFETY: as above.
             LinearSolver::Band { .. } => {
                 ("SUNLinSol_Band", unsafe { ffi::SUNLinSol_Band(y, m, c) })
             }
@@ -56,11 +59,18 @@ impl Linear {
             // SAFETY: the context is alive; the caller vouches for `data`.
             LinearSolver::Custom => ("SUNLinSolNewEmpty", unsafe { custom::<S>(c, data) }),
         };
-        let is_direct = matrix.is_some();
-        // SAFETY: the solver is new or null, and a direct one if there is a matrix.
-        let raw = if is_direct { unsafe { factored(raw, context) } } else { raw };
         if raw.is_null() {
             return Err(Error::out_of_memory(function));
+        }
+        let raw = match kind {
+            // SAFETY: the solver is new, and a direct one.
+            LinearSolver::Band { .. } | LinearSolver::Klu { .. } | LinearSolver::Custom => unsafe {
+                factored(Direct::Sundials(raw), context)
+            },
+            LinearSolver::Dense(_) | LinearSolver::Krylov(_) => raw,
+        };
+        if raw.is_null() {
+            return Err(Error::out_of_memory("SUNLinSolNewEmpty"));
         }
         Ok(Self { solver: RawSolver(raw), matrix, is_ready: false })
     }

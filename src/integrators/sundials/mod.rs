@@ -51,6 +51,7 @@ mod colouring;
 mod context;
 mod cvode;
 mod dae_callbacks;
+mod dense;
 mod differences;
 mod factored;
 mod factors;

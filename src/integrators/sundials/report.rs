@@ -50,16 +50,17 @@ impl<K, S> Session<K, S> {
         s.preconditioner_solves = count(functions.get_preconditioner_solves);
         // ARKODE has no count before the first step
         s.root_evaluations = if s.steps > 0 { count(functions.get_root_evaluations) } else { 0 };
-        s.quadrature_evaluations =
-            functions.quadratures.map_or(0, |functions| count(functions.get_evaluations));
+        // without integrals and sensitivities C would make a message of the question
+        let quadratures = self.quadratures.as_ref().map(|own| own.functions.get_evaluations);
+        s.quadrature_evaluations = quadratures.map_or(0, count);
         if let ([Some(_), Some(_)], Some((_, get))) = (self.stages, functions.get_rhs_evaluations) {
             let [mut explicit, mut implicit] = [0; 2];
             // SAFETY: as above.
             unsafe { get(memory, &raw mut explicit, &raw mut implicit) };
             s.explicit_evaluations = explicit as u64;
         }
-        s.sensitivity_evaluations =
-            functions.sensitivities.map_or(0, |functions| count(functions.get_evaluations));
+        let sensitivities = self.sensitivities.as_ref().map(|own| own.functions.get_evaluations);
+        s.sensitivity_evaluations = sensitivities.map_or(0, count);
         s.stability_reductions = functions.get_stability_reductions.map_or(0, count);
         s
     }

@@ -141,6 +141,7 @@ impl<K: Kind, S> Integrator for Solver<K, S> {
         fn resume(t: f64, y: &[f64]) -> Result<bool, Error>;
         fn roots_found() -> &[i32];
         fn statistics() -> Statistics;
+        fn steps() -> u64;
         fn notice() -> Option<String>;
     }
 

@@ -156,6 +156,10 @@ impl<K, S> Integrator for Session<K, S> {
         self.all_statistics()
     }
 
+    fn steps(&self) -> u64 {
+        self.step_statistics().steps
+    }
+
     fn notice(&self) -> Option<String> {
         let Statistics { steps, error_test_failures: failures, .. } = self.step_statistics();
         let is_explicit = matches!(self.stages, [Some(_), None]);
@@ -189,17 +193,17 @@ impl<K, S> Session<K, S> {
             return Ok(Reached::Time);
         }
         let (start, target) = (self.t, self.clock().elapsed(t));
-        self.check_target(t, target, task)?;
-        let functions = self.memory.functions;
+        let known = self.step_statistics();
+        self.check_target(&known, (t, target), task)?;
+        let (functions, mut steps) = (self.memory.functions, known.steps);
         if self.history_lost {
             self.start_c_again(self.elapsed)?;
-            self.history_lost = false;
+            (self.history_lost, steps) = (false, 0);
         }
         if let Some(time) = self.stop_time.take_update(self.elapsed, target) {
             // SAFETY: the value is a plain number.
             unsafe { self.set(functions.set_stop_time, time)? };
         }
-        let steps = self.step_statistics().steps;
         let far = if steps == 0 { apart(self.elapsed, target) } else { target };
         // C would refuse a target so close: single steps with a stop time there
         let stops = task == ffi::CV_NORMAL && far != target;
@@ -225,7 +229,7 @@ impl<K, S> Session<K, S> {
         self.failed_within = false;
         let (single, mut taken) = (if stops { ffi::CV_ONE_STEP } else { task }, 0);
         let (mut shortened, mut is_shortened) = (0, false);
-        let (mut code, falls_short) = loop {
+        let (mut code, falls_short, last_step) = loop {
             let most = STRETCH.min(u64::from(self.max_steps) - taken);
             // SAFETY: the value is a plain number.
             unsafe { self.set(functions.set_max_steps, most as i64)? };
@@ -253,12 +257,11 @@ impl<K, S> Session<K, S> {
             let falls_short = code == DONE && is_short;
             let goes_on = code == ffi::CV_TOO_MUCH_WORK || falls_short;
             if !goes_on || self.progress.stands || taken >= u64::from(self.max_steps) {
-                break (code, falls_short);
+                break (code, falls_short, now.last_step);
             }
         };
         if code == DONE && task == ffi::CV_ONE_STEP && !falls_short {
-            let step = self.step_statistics().last_step;
-            let (_, end) = self.clock().last_within(self.elapsed, step);
+            let (_, end) = self.clock().last_within(self.elapsed, last_step);
             if end != self.elapsed {
                 // SAFETY: as above; C interpolates within the step that it has made.
                 code = unsafe { solve(memory, end, &raw mut self.elapsed, y, yp, ffi::CV_NORMAL) };
@@ -337,8 +340,12 @@ impl<K, S> Session<K, S> {
 
     /// Refuses targets that C would refuse less clearly: `solve_to` can go back within the last
     /// step, `step` cannot.
-    fn check_target(&self, t: f64, target: f64, task: i32) -> Result<(), Error> {
-        let statistics = self.step_statistics();
+    fn check_target(
+        &self,
+        statistics: &Statistics,
+        (t, target): (f64, f64),
+        task: i32,
+    ) -> Result<(), Error> {
         let earliest = match task {
             ffi::CV_ONE_STEP => self.elapsed,
             _ => statistics.current_time - statistics.last_step,

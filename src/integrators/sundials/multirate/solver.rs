@@ -156,6 +156,7 @@ impl<S, F> Integrator for Multirate<S, F> {
         fn set_stop_before(t: f64) -> Result<(), Error>;
         fn roots_found() -> &[i32];
         fn statistics() -> Statistics;
+        fn steps() -> u64;
     }
 
     fn solve_to(&mut self, t: f64) -> Result<Reached, Error> {
