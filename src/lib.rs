@@ -78,8 +78,8 @@ pub use elements::{
         Part, Strain, Viscosity,
     },
     material::{
-        FibreDirection, Fibres, Hill, Lame, Law, Material, MaxwellBranch, Moments, OwnEnergy,
-        Plane, RigidMass, StrainEnergy, Substance,
+        FibreDirection, Fibres, Hill, Lame, Law, LawConstant, LawInformation, Material,
+        MaxwellBranch, Moments, OwnEnergy, Plane, RigidMass, StrainEnergy, Substance,
     },
     mesh::{Cells, Mesh, Selection, SolidCells},
     rod::{Rod, RodPath, RodSection, SectionNumbers},
@@ -96,7 +96,8 @@ pub use scene::{
     devices::*,
     forces::*,
     settings::{
-        AbsoluteTolerances, ContactEvents, Method, Settings, SettingsOption, SettingsValue,
+        AbsoluteTolerances, ContactEvents, Method, MethodInformation, MotionForm, Settings,
+        SettingsOption, SettingsValue,
     },
 };
 

@@ -584,7 +584,10 @@ fn methods_are_listed() {
     let text = stdout(&output);
     assert_eq!(text.lines().count(), Method::ALL.len());
     for (line, method) in text.lines().zip(Method::ALL) {
-        assert!(line.starts_with(method.name()) && line.contains(method.purpose()), "{line}");
+        assert!(
+            line.starts_with(method.name()) && line.contains(method.information().purpose),
+            "{line}"
+        );
     }
     assert_eq!(text.matches("[default]").count(), 1);
 }

@@ -119,10 +119,9 @@ impl Run {
         let full = scene.system(&matrices, phase, forces, &start, settings.alpha)?;
         let mut equations = scene.phase_system(full, &phase.name)?;
         let system = equations.full();
-        if system.relaxation_rate() > 0.0 && !settings.method.takes_branches() {
-            let takes = Method::ALL.into_iter().filter(|method| method.takes_branches());
-            let takes: Vec<&str> = takes.map(Method::name).collect();
-            let help = format!("bodies with Maxwell branches are for {}", takes.join(", "));
+        if system.relaxation_rate() > 0.0 && !settings.method.information().has_internal_unknowns {
+            let takes = Method::names(|row| row.has_internal_unknowns);
+            let help = format!("bodies with Maxwell branches are for {takes}");
             return Err(InputError::new("method", settings.method, help).into());
         }
         indicators::overlap::check_start(scene)?;

@@ -46,6 +46,7 @@ mod device;
 mod fluid;
 mod friction;
 mod gas;
+mod generators;
 mod growth;
 mod initial;
 mod joint;
