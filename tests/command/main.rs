@@ -1,19 +1,9 @@
 //! The command `pliant` as a whole: what it writes, what it says, how it ends.
 
 mod beside;
-// what the command uses has its unit tests, which are run here: a program for them alone would be the command, linked once more
-#[allow(dead_code)]
-#[path = "../../src/apps/command/failure.rs"]
-mod failure;
 mod fit;
 mod reduce;
-#[allow(dead_code)]
-#[path = "../../src/apps/command/settings.rs"]
-mod settings;
 mod sweep;
-#[allow(dead_code)]
-#[path = "../../src/apps/command/task.rs"]
-mod task;
 mod trust;
 mod world;
 

@@ -79,7 +79,7 @@ fn a_finger_that_is_blown_up_through_an_orifice_is_reduced() {
     let [exact, own] = [full.clone(), full.reduced(model).unwrap()]
         .map(|scene| scene.simulate(&settings(Method::Arkode, 1e-6), &sampling).unwrap());
     let off = error(&exact, &own);
-    let told = own.report().reduced.as_ref().unwrap().told_error;
+    let told = own.report().reduced.as_ref().unwrap().estimated_error;
     let amounts = apart(&exact, &own);
     println!("off by {off:.1e}, told {told:.1e}, amounts by {amounts:.1e}");
     // between the points that it was learned from

@@ -3,7 +3,7 @@
 use clap::Args;
 use pliant::{Method, MethodInformation};
 
-use crate::failure::{Failure, print};
+use super::failure::{Failure, print};
 
 /// List the integration methods and what each is for
 #[derive(Args)]

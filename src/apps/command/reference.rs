@@ -3,17 +3,17 @@
 use std::fmt::Write;
 
 use clap::{Arg, Args, Command};
-use pliant::{Method, MethodInformation, output, scene_file};
+use pliant::{Method, MethodInformation, SceneReader, output, scene_file};
 
-use crate::failure::{Failure, print};
-use crate::methods;
+use super::failure::{Failure, print};
+use super::methods;
 
 /// Print the reference of scene files, flags and results: docs/reference.md
 #[derive(Args)]
 pub struct Arguments {}
 
-pub fn run(_: &Arguments, command: Command) -> Result<(), Failure> {
-    print(page(command).trim_end())
+pub fn run(_: &Arguments, command: Command, reader: &SceneReader) -> Result<(), Failure> {
+    print(page(command, reader).trim_end())
 }
 
 const HEAD: &str = "\
@@ -88,8 +88,8 @@ Those of `pliant reduce`, by default beside the scene file:
 ";
 
 /// The page.
-fn page(command: Command) -> String {
-    let [scenes, studies] = [scene_file::reference(), scene_file::study_reference()];
+fn page(command: Command, reader: &SceneReader) -> String {
+    let [scenes, studies] = [reader.reference(), scene_file::study_reference()];
     let methods = methods_table();
     let mut page =
         format!("{HEAD}{scenes}\n{methods}\n{STUDIES}{studies}\n## Commands and flags\n");

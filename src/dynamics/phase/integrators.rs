@@ -112,8 +112,8 @@ fn compression(indefinite: usize) -> Option<String> {
     (indefinite > 0).then(|| {
         format!(
             "{indefinite} Newton matrices were not positive definite, which costs time: at states that were tried and given \
-             up, or because friction falls with the speed, or because the body is pressed together until it may buckle \
-             or collapse; if it is, see whether it ought to"
+             up, or because friction falls with the speed, or because compression brings the body near buckling; check \
+             whether that is physical"
         )
     })
 }

@@ -27,7 +27,7 @@ use crate::dynamics::error::Error;
 use crate::dynamics::indicators::{self, Follower};
 use crate::dynamics::matrices::Matrices;
 use crate::dynamics::phase::{Failed, Integrable, Start};
-use crate::dynamics::report::{PhaseReport, Report, ToldReading, creation};
+use crate::dynamics::report::{PhaseReport, Report, SensorErrorEstimate, creation};
 use crate::dynamics::state::{Layout, State};
 use crate::dynamics::system::{PhaseSystem, ResidualSnapshot, System};
 use crate::dynamics::trajectory::{IntegrationFailure, Interrupted, Leap, Sample, Trajectory};
@@ -495,7 +495,7 @@ impl Run {
     }
 
     /// Changes of the readings of nodal positions under additional displacements (m) of a state.
-    fn changes_by(&self, at: &ResidualSnapshot, displacements: &[f64]) -> Vec<ToldReading> {
+    fn changes_by(&self, at: &ResidualSnapshot, displacements: &[f64]) -> Vec<SensorErrorEstimate> {
         if !self.sensors.read_places() {
             return Vec::new();
         }
