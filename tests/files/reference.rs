@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use pliant::scene_file::StudyFile;
-use pliant::{SceneFile, SceneReader, scene_file};
+use pliant::{SceneFile, SceneReader};
 use serde_json::Value;
 
 const PAGE: &str = include_str!("../../docs/reference.md");
