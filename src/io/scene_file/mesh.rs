@@ -1,7 +1,7 @@
 //! `mesh` of `[body]`: a generator or a file (`generators.rs`), put in its place and made finer.
 
 use super::generators::{AutoCells, KINDS, generate};
-use super::keys::{AUTO, Key, TableKeys, ValueType};
+use super::keys::{AUTO, Key, Kind, TableKeys, ValueType};
 use super::selection::selection;
 use super::table::Table;
 use super::value::Value;
@@ -163,6 +163,11 @@ pub(super) fn gets_mid_nodes(value: &Value) -> Result<(bool, bool), Error> {
 /// Whether the cells of a generated mesh are left to be chosen.
 pub(super) fn has_auto_cells(value: &Value) -> Result<bool, Error> {
     let table = value.table(&MESH)?;
+    let has_cells =
+        |kind: &Kind| kind.word == table.kind() && kind.keys.iter().any(|key| key.name == "cells");
+    if !KINDS.iter().any(has_cells) {
+        return Ok(false);
+    }
     let word = table.get("cells").and_then(|cells| cells.string().ok());
     Ok(word == Some(AUTO))
 }
