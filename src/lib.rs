@@ -35,7 +35,11 @@
     allow(dead_code, unused_imports, unused_macros)
 )]
 
-#[cfg(feature = "play")]
+// the command uses the public API, as programs do
+#[cfg(feature = "cli")]
+extern crate self as pliant;
+
+#[cfg(any(feature = "cli", feature = "play"))]
 pub mod apps;
 mod base;
 #[cfg(feature = "bodies")]
@@ -63,8 +67,8 @@ pub use dynamics::{
     error::{Error, Panicked},
     phase::PhaseSummary,
     report::{
-        Achieved, Counts, Indicator, PhaseReport, ReducedReport, Report, SlipEvent, ToldReading,
-        Verdict,
+        Achieved, Counts, Indicator, PhaseReport, ReducedReport, Report, SensorErrorEstimate,
+        SlipEvent, Verdict,
     },
     simulate::{Checkpoint, Sampling, Simulation, View},
     statics::Statics,
@@ -78,29 +82,32 @@ pub use elements::{
         Part, Strain, Viscosity,
     },
     material::{
-        FibreDirection, Fibres, Hill, Lame, Law, Material, MaxwellBranch, Moments, OwnEnergy,
-        Plane, RigidMass, StrainEnergy, Substance,
+        FibreDirection, Fibres, Hill, Lame, Law, LawConstant, LawInformation, Material,
+        MaxwellBranch, Moments, OwnEnergy, Plane, RigidMass, StrainEnergy, Substance,
     },
     mesh::{Cells, Mesh, Selection, SolidCells},
     rod::{Rod, RodPath, RodSection, SectionNumbers},
 };
 pub use integrators::common::Integrator;
 #[cfg(feature = "scene-file")]
-pub use io::scene_file::{DeviceTable, OutputRequest, SceneFile};
+pub use io::scene_file::{DeviceKey, DeviceTable, OutputRequest, SceneFile, SceneReader};
 #[cfg(feature = "bodies")]
 pub use scene::{
-    BodyState, Device, DeviceGauge, DeviceInput, DeviceOutput, DeviceRow, DeviceSignals,
-    DeviceSite, DeviceState, DeviceValue, InputLimit, Phase, ReducedModel, Scene, SceneState,
-    Smaller, Term,
+    BodyState, Device, DeviceGauge, DeviceInput, DeviceMultipliers, DeviceOutput, DeviceRow,
+    DeviceSignals, DeviceSite, DeviceState, DeviceValue, InputLimit, Phase, ReducedModel, Scene,
+    SceneState, Smaller, Term,
     constraint::{Axis, Prescribed},
     devices::*,
     forces::*,
     settings::{
-        AbsoluteTolerances, ContactEvents, Method, Settings, SettingsOption, SettingsValue,
+        AbsoluteTolerances, ContactEvents, Method, MethodInformation, MotionForm, Settings,
+        SettingsOption, SettingsValue,
     },
 };
 
 // Modules by the short paths that programs use.
+#[cfg(feature = "cli")]
+pub use apps::command;
 #[cfg(feature = "play")]
 pub use apps::play;
 #[cfg(feature = "bodies")]

@@ -17,7 +17,7 @@ struct Module {
     imports: Vec<Vec<String>>,
 }
 
-/// Modules by their paths, as in `crate::mesh::cell`; those of the command begin with `command`.
+/// Modules by their paths, as in `crate::mesh::cell`.
 type House = BTreeMap<Vec<String>, Module>;
 
 fn house() -> House {
@@ -30,14 +30,10 @@ fn house() -> House {
         if names.iter().any(|name| name == "tests") {
             continue;
         }
-        let krate = match names.starts_with(&["apps".into(), "command".into()]) {
-            true => names.drain(..2).next_back().unwrap(),
-            false => "crate".into(),
-        };
         if names.last().is_some_and(|name| ["mod", "lib", "main"].contains(&name.as_str())) {
             names.pop();
         }
-        let module = [vec![krate], names].concat();
+        let module = [vec!["crate".to_owned()], names].concat();
         house.insert(module.clone(), read(&module, file, &fs::read_to_string(path).unwrap()));
     }
     house

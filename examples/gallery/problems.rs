@@ -4,7 +4,7 @@ use clap::ValueEnum;
 use pliant::samples::{self, ClampedBeam, RingRoll};
 use pliant::study::{Problem, Scenes, all_methods};
 use pliant::{
-    Body, Cells, Dilatation, Error, Inertia, InputError, Law, Material, Mesh, Method, Phase, Scene,
+    Body, Cells, Dilatation, Error, Inertia, InputError, Law, Material, Mesh, Phase, Scene,
     Settings, SolidCells, Strain,
 };
 
@@ -101,9 +101,7 @@ impl Sample {
             Self::RubberNeoHookean => return Ok(Box::new(rubber(self.title(), Law::NeoHookean)?)),
         };
         let scenes = Scenes::new(self.title(), scene?).tolerances(tolerances);
-        let all = all_methods().into_iter();
-        // KLU takes the steps of the structured settings
-        let lines = all.filter(|(_, settings)| settings.method != Method::IdaKlu);
+        let lines = all_methods().into_iter();
         Ok(Box::new(lines.fold(scenes, |scenes, (name, settings)| scenes.line(name, settings))))
     }
 }

@@ -6,8 +6,8 @@ use pliant::force::{Force, NodalForces, Tangents};
 use pliant::ode::Failure;
 use pliant::sparse::BlockMatrix;
 use pliant::{
-    Body, Device, DeviceGauge, DeviceInput, DeviceOutput, DeviceSignals, DeviceSite, DeviceState,
-    InputError, Selection,
+    Body, Device, DeviceGauge, DeviceInput, DeviceKey, DeviceOutput, DeviceSignals, DeviceSite,
+    DeviceState, InputError, Selection,
 };
 use serde::Deserialize;
 
@@ -25,6 +25,19 @@ const THRUST: usize = 0;
 const ANGLE: usize = 1;
 
 impl Jet {
+    /// For the reference page and the schema of a command that has it.
+    #[allow(dead_code, reason = "the program that steers the jet has no command")]
+    pub const ABOUT: &str = "A jet in the plane, which `steer` of phases fires and turns by `thrust` (N) and `angle` (rad).";
+    #[allow(dead_code, reason = "the program that steers the jet has no command")]
+    pub const KEYS: [DeviceKey; 2] = [
+        DeviceKey { name: "name", unit: "", meaning: "the name of the jet" },
+        DeviceKey {
+            name: "nozzle",
+            unit: "",
+            meaning: "the name of the set of nodes that it pushes",
+        },
+    ];
+
     pub const THRUST: DeviceInput = DeviceInput::number("thrust", "N");
     /// Direction of the thrust from the x axis, counter-clockwise; statics does not bring it on by load steps.
     pub const ANGLE: DeviceInput =

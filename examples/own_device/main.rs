@@ -19,7 +19,7 @@ use clap::Parser;
 use common::{Common, finish};
 use jet::Jet;
 use pliant::output::{Snapshots, write_animation};
-use pliant::{DeviceTable, Error, SceneFile, Simulation};
+use pliant::{DeviceTable, Error, SceneReader, Simulation};
 
 /// A strip with a jet at its end: where the end goes, and pictures.
 #[derive(Parser)]
@@ -35,7 +35,8 @@ const WANTED: f64 = 0.02;
 fn run(arguments: &Arguments) -> Result<(), Error> {
     let Arguments { common } = arguments;
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/own_device/scene.toml");
-    let file = SceneFile::read_with_devices(path, &[], &[DeviceTable::of::<Jet>("jet")])?;
+    let reader = SceneReader::new(&[DeviceTable::of::<Jet>("jet")]);
+    let file = reader.read_with(path, &[])?;
     let motion = file.scene.simulate(&common.settings(), &file.output.sampling())?;
     println!("{}\ntime (s)  end: x, y (mm)   power (mW)", motion.report());
     for sample in motion.samples().iter().step_by(10) {

@@ -6,7 +6,7 @@ use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pliant::fit::{Measured, MeasuredAtRest, SceneFit, Unknown};
 use pliant::scene_file::{SetValue, override_of, toml_of as toml_of_scene};
 use pliant::study::{Adviser, Quantity, Scenes, Study, Verification, all_methods};
-use pliant::{Error, Mesh, Part, ReducedModel, SceneFile, Settings, Trajectory};
+use pliant::{Error, Mesh, Part, ReducedModel, SceneFile, SceneReader, Settings, Trajectory};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -252,7 +252,15 @@ impl Scene {
         unknowns: Vec<(String, f64, f64)>,
     ) -> PyResult<FoundByFit> {
         let measured = Measured { times, columns };
-        let fit = || SceneFit::of_text(&*self.text, &self.path, &self.overrides, &measured);
+        let fit = || {
+            SceneFit::of_text(
+                &SceneReader::default(),
+                &*self.text,
+                &self.path,
+                &self.overrides,
+                &measured,
+            )
+        };
         fitted(py, fit, unknowns)
     }
 
@@ -267,7 +275,15 @@ impl Scene {
             (name, values.iter().map(|value| SetValue::read(value)).collect())
         };
         let measured = MeasuredAtRest { columns: columns.into_iter().map(of_column).collect() };
-        let fit = || SceneFit::at_rest_of_text(&*self.text, &self.path, &self.overrides, &measured);
+        let fit = || {
+            SceneFit::at_rest_of_text(
+                &SceneReader::default(),
+                &*self.text,
+                &self.path,
+                &self.overrides,
+                &measured,
+            )
+        };
         fitted(py, fit, unknowns)
     }
 
@@ -372,7 +388,7 @@ pub fn toml_of(json: &str) -> PyResult<String> {
 /// The JSON Schema of scene files.
 #[pyfunction]
 pub fn schema() -> String {
-    pliant::scene_file::schema().to_string()
+    SceneReader::default().schema().to_string()
 }
 
 /// Nodes, cells, the word for these, node sets, groups of cells and notes of a file of Gmsh.

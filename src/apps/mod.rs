@@ -1,4 +1,7 @@
-//! Applications for users who do not write a program: [`play`](mod@play) shows a scene live in the web
-//! browser; the command `pliant` (`command/`) is a separate crate, which uses the public API.
+//! Applications for users who do not write a program: `play` shows a scene live in the web browser; `command` is the command
+//! `pliant`, which uses the public API alone, and which programs with devices of their own have by one line.
 
+#[cfg(feature = "cli")]
+pub mod command;
+#[cfg(feature = "play")]
 pub mod play;

@@ -7,7 +7,7 @@ use std::fmt;
 
 pub(crate) use indicator::warnings;
 pub use indicator::{Indicator, Verdict};
-pub use reduced::{ReducedReport, ToldReading};
+pub use reduced::{ReducedReport, SensorErrorEstimate};
 
 use crate::base::input::four_digits;
 use crate::scene::settings::Method;

@@ -35,7 +35,7 @@ pub struct Sample {
     /// by nodes.
     pub multipliers: Vec<f64>,
     /// Amounts (kg) of the gases in chambers and then of the liquids, the states of [lags](crate::Lag), and the flows of pipes (m^3/s), each in the order of the scene; none where
-    /// they are constants: by `ida-klu` and by `central-difference`, and in equilibria without gas and liquids.
+    /// they are constants: by `central-difference`, and in equilibria without gas and liquids.
     pub amounts: Vec<f64>,
     /// Internal strains (1) of Maxwell branches, of the last sample of a motion alone: there are many.
     pub internal_strains: Vec<f64>,

@@ -12,6 +12,7 @@ pub mod timeline;
 
 pub use reduced_model::ReducedModel;
 pub use timeline::{
-    BodyState, Device, DeviceGauge, DeviceInput, DeviceOutput, DeviceRow, DeviceSignals,
-    DeviceSite, DeviceState, DeviceValue, InputLimit, Phase, Scene, SceneState, Smaller, Term,
+    BodyState, Device, DeviceGauge, DeviceInput, DeviceMultipliers, DeviceOutput, DeviceRow,
+    DeviceSignals, DeviceSite, DeviceState, DeviceValue, InputLimit, Phase, Scene, SceneState,
+    Smaller, Term,
 };

@@ -1,19 +1,11 @@
 //! The command `pliant` as a whole: what it writes, what it says, how it ends.
 
 mod beside;
-// what the command uses has its unit tests, which are run here: a program for them alone would be the command, linked once more
-#[allow(dead_code)]
-#[path = "../../src/apps/command/failure.rs"]
-mod failure;
 mod fit;
+mod printed;
 mod reduce;
-#[allow(dead_code)]
-#[path = "../../src/apps/command/settings.rs"]
-mod settings;
+mod statics;
 mod sweep;
-#[allow(dead_code)]
-#[path = "../../src/apps/command/task.rs"]
-mod task;
 mod trust;
 mod world;
 
@@ -22,7 +14,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 
 use pliant::output::write_csv;
-use pliant::{Method, SceneFile, sundials};
+use pliant::{SceneFile, sundials};
 use serde_json::{Value, json};
 use tempfile::TempDir;
 
@@ -345,190 +337,6 @@ fn bad_input_writes_nothing() {
     }
 }
 
-/// The slides' square, whose equilibrium is also that of a slow motion.
-#[test]
-fn static_finds_the_equilibrium() {
-    let place = Place::new();
-    let scene = shipped("static-square.toml");
-    let asked = ["--track", "all", "--formats", "csv", "--quantity", "com.y"];
-    let output = place.run(&[&["static", &scene], &asked[..]].concat());
-    assert_eq!((output.status.code(), stderr(&output)), (Some(0), String::new()));
-    says(&stdout(&output), &["Static square", "stable, lowest natural frequency", "-static"]);
-    says(&stdout(&output), &["com.y is", "off by about", "% of its change) because of the mesh"]);
-    assert_eq!(
-        place.files("out/static-square-static"),
-        ["report.json", "state.json", "trajectory.csv"]
-    );
-    let report = place.report("out/static-square-static");
-    assert_eq!((&report["status"], &report["method"]), (&json!("finished"), &json!("static")));
-    assert_eq!(report["stability"]["kind"], "stable");
-    assert_eq!(report["mesh_estimate"]["quantity"], "com.y");
-    let (header, rows) = place.table("out/static-square-static");
-    assert_eq!((rows.len(), rows[0][0]), (1, 1.0));
-    let value =
-        |row: &[f64], name: &str| row[header.iter().position(|other| other == name).unwrap()];
-    assert!((value(&rows[0], "u14_y") + 0.3).abs() < 1e-15);
-    assert_eq!((value(&rows[0], "kinetic"), value(&rows[0], "momentum_x")), (0.0, 0.0));
-
-    let text = fs::read_to_string(&scene).unwrap();
-    let slow = text.replace("until = 1.0", "until = 100.0").replace("-0.3]", "-0.003]");
-    let slow = slow.replace("viscosity = 0.0", "viscosity = 1e4");
-    let output = place.run(&["run", place.scene(&slow), "--track", "all", "--out", "slow"]);
-    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
-    let (_, moved) = place.table("slow");
-    for node in 1..=16 {
-        for axis in ["x", "y"] {
-            let name = format!("u{node}_{axis}");
-            let (still, slow) = (value(&rows[0], &name), value(moved.last().unwrap(), &name));
-            // viscosity holds it back by its rate times c/E, 0.003 x 0.01 m
-            assert!((still - slow).abs() < 5e-5, "{name}: {still} {slow}");
-        }
-    }
-}
-
-/// Sensors of a scene are columns of its equilibrium, too, with degrees in their headings.
-#[test]
-fn static_reads_sensors() {
-    let place = Place::new();
-    let scene = fs::read_to_string(shipped("beam-static-green.toml")).unwrap();
-    let sensors = "[[sensor]]\nname = \"tip\"\nkind = \"position\"\nnodes = \"right\"\n\
-                   [[sensor]]\nname = \"clamp\"\nkind = \"constraint-force\"\nnodes = \"left\"\n\
-                   [[sensor]]\nname = \"turn\"\nkind = \"rotation\"\nunit = \"deg\"\n";
-    let scene = place.scene(&format!("{scene}\n{sensors}"));
-    let output = place.run(&["static", scene, "--track", "all"]);
-    assert_eq!((output.status.code(), stderr(&output)), (Some(0), String::new()));
-    let (header, rows) = place.table("out/scene-static");
-    let value = |name: &str| rows[0][header.iter().position(|other| other == name).unwrap()];
-    // the clamp carries what hangs on the beam, and turns it clockwise
-    let reaction = value("reaction_left_y");
-    assert!(reaction > 0.0 && (value("clamp.y") - reaction).abs() < 1e-12 * reaction);
-    let sunk = value("tip.y") - 0.01;
-    assert!(sunk < -0.01 && (-90.0..-1.0).contains(&value("turn (deg)")), "{sunk}");
-    let units = place.report("out/scene-static")["sensors"].clone();
-    assert_eq!(units[4], json!({ "name": "turn", "unit": "deg" }));
-}
-
-/// A bar in two phases: the load of the second comes on in steps, by arc length or at once.
-#[test]
-fn static_writes_load_curves() {
-    let place = Place::new();
-    let two = bar(1.0).replace("area", "strain = \"green\"\narea")
-        + "[[phase]]\nname = \"push\"\nuntil = 2.0\nhold = [{ nodes = \"left\" }]\n\
-           load = [{ nodes = \"right\", force = [-0.2] }]\n\
-           [statics]\nphase = \"push\"\nload_steps = 4\n";
-    let output =
-        place.run(&["static", place.scene(&two), "--formats", "vtk,html,plot", "--out", "curve"]);
-    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
-    let (header, rows) = place.table("curve");
-    let column = header.iter().position(|name| name == "load factor").unwrap();
-    let factors: Vec<f64> = rows.iter().map(|row| row[column]).collect();
-    assert_eq!(factors, [0.0, 0.25, 0.5, 0.75, 1.0]);
-    let frames =
-        |directory| place.files(directory).iter().filter(|name| name.ends_with(".vtu")).count();
-    assert_eq!(frames("curve"), 5);
-    // sensors are drawn over the load factor
-    let plot = fs::read_to_string(place.path("curve/plot.svg")).unwrap();
-    says(&plot, &["load factor", "class=\"series\""]);
-
-    let arc = ["--arc-steps", "50", "--out", "arc", "--quiet"];
-    let output = place.run(&[&["static", "scene.toml"][..], &arc].concat());
-    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
-    let end = place.table("arc").1;
-    // steps of equal length along a path that bends a little
-    assert!((4..=6).contains(&(end.len() - 1)), "{}", end.len());
-    let pulled = |rows: &[Vec<f64>]| rows.last().unwrap()[column];
-    assert_eq!((pulled(&end), pulled(&rows)), (1.0, 1.0));
-
-    // the first phase pulls by as much as none of the second; one equilibrium is one file
-    let plain = ["--phase", "pull", "--load-steps", "1", "--formats", "vtk", "--out", "plain"];
-    let output = place.run(&[&["static", "scene.toml"][..], &plain].concat());
-    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
-    let (header, rows) = place.table("plain");
-    assert_eq!((rows.len(), rows[0][0], frames("plain")), (1, 1.0, 1));
-    assert!(!header.contains(&"load factor".to_owned()));
-    let output = place.run(&["static", "scene.toml", "--phase", "pul"]);
-    assert_eq!(output.status.code(), Some(2));
-    says(&stderr(&output), &["phase of statics = \"pul\"", "\"pull\""]);
-    for (bad, told) in [
-        ("phase = \"puhs\"", "\"push\""),
-        ("load_steps = 0", "statics.load_steps"),
-        ("rtol = 1.0", "statics.rtol"),
-    ] {
-        let (key, _) = bad.split_once(' ').unwrap();
-        let kept = two.lines().filter(|line| key == "phase" || !line.starts_with(key));
-        let kept = kept.filter(|line| key != "phase" || *line != "phase = \"push\"");
-        let text = kept.collect::<Vec<_>>().join("\n") + "\n" + bad + "\n";
-        let output = place.run(&["static", place.scene(&text)]);
-        assert_eq!(output.status.code(), Some(2), "{bad}");
-        says(&stderr(&output), &["scene.toml:", told]);
-    }
-}
-
-#[test]
-fn static_tells_what_it_cannot_hold() {
-    let place = Place::new();
-    let linear = bar(1.0).replace("area", "strain = \"cauchy\"\narea");
-    let loose = linear.replace("hold = [{ nodes = \"left\" }]", "");
-    let output = place.run(&["static", place.scene(&loose)]);
-    assert_eq!(output.status.code(), Some(2));
-    says(&stderr(&output), &["pliant: constraints of phase \"pull\"", "hold more of its nodes"]);
-    assert_eq!(place.files("."), ["scene.toml"]);
-
-    // pressed together by far more than it can bear
-    let green = bar(1.0).replace("area", "strain = \"green\"\narea").replace("0.1]", "-50.0]");
-    let output = place.run(&["static", place.scene(&green), "--out", "lost"]);
-    assert_eq!(output.status.code(), Some(1), "{}", stdout(&output));
-    says(&stderr(&output), &["pliant: phase \"pull\": no equilibrium at"]);
-    assert_eq!(place.report("lost")["status"], "failed");
-    assert_eq!(place.table("lost").1.len(), 1);
-}
-
-#[test]
-fn check_prints_what_a_scene_contains() {
-    let place = Place::new();
-    let output = place.run(&["check", &shipped("ring-springs.toml")]);
-    assert_eq!((output.status.code(), stderr(&output)), (Some(0), String::new()));
-    let text = stdout(&output);
-    // 32 x 3 nodes and the mass in the middle, two triangles in each of 32 x 2 quadrangles
-    says(&text, &["97 nodes (64 on the boundary)", "128 cells (triangle)", "194 displacements"]);
-    says(&text, &["gravity", "-9.8", "springs", "A1, A2", "A8", "obstacles", "floor", "mass (1)"]);
-    says(&text, &["green strain, natural viscosity", "rtol", "atol", "alpha", "fastest (1/s)"]);
-    says(&text, &["phase ", "A3 and A7 ", "actuators of A2, A6; contact with floor"]);
-    assert_eq!(place.files("."), Vec::<String>::new());
-
-    let text = stdout(&place.run(&["check", &shipped("square-jump.toml")]));
-    let row = |name: &str| -> Vec<&str> {
-        text.lines().find(|line| line.starts_with(name)).unwrap().split_whitespace().collect()
-    };
-    // bottom and two nodes of the top are held in the first two phases
-    assert_eq!(row("push")[1..4], ["0", "0.5", "12"]);
-    assert_eq!(row("hold")[1..4], ["0.5", "1", "12"]);
-    assert_eq!(row("free")[1..4], ["1", "1.5", "0"]);
-    assert_eq!(row("free")[7..], ["contact", "with", "floor"]);
-    // its greatest eigenvalue, by an independent program; the estimate is some per cent below
-    let fastest: f64 = row("push")[4].parse().unwrap();
-    assert!((0.95 * 4.6e3..4.6e3).contains(&fastest), "{fastest}");
-    says(&text, &["every 0.01 s"]);
-    // a bar that swings along itself, a quarter wave in its length: 4 L sqrt(rho/E) = 56.6 ms, and
-    // 0.4 % less on five cells, (k h)^2/24
-    let text = stdout(&place.run(&["check", place.scene(&bar(1.0))]));
-    says(&text, &["5.63", "loads on 1 node(s)", "6 displacements"]);
-    assert!(!text.contains("note:") && !text.contains("gravity"), "{text}");
-    // where a phase has its own
-    let falling = bar(1.0).replace("dimension = 1", "dimension = 1\ngravity = [-1.0]");
-    let checked = ["check", place.scene(&falling), "--set", "phase.pull.gravity=[-2.5]"];
-    says(
-        &stdout(&place.run(&checked)),
-        &["gravity    [-1.0] m/s^2", "  gravity [-2.5] m/s^2; loads on"],
-    );
-    let same = ["check", place.scene(&falling), "--set", "phase.pull.gravity=[-1.0]"];
-    assert_eq!(stdout(&place.run(&same)).matches("gravity").count(), 1);
-    let old = fs::read_to_string(shipped("problem-4.toml")).unwrap();
-    let old = old.replace("\ntangential_damping =", "\nfriction =");
-    let text = stdout(&place.run(&["check", place.scene(&old)]));
-    says(&text, &["note: line 29: obstacle.friction is read as tangential_damping"]);
-}
-
 #[test]
 fn chart_compares_methods_and_goes_on_where_it_stopped() {
     let place = Place::new();
@@ -578,18 +386,6 @@ fn chart_compares_methods_and_goes_on_where_it_stopped() {
 }
 
 #[test]
-fn methods_are_listed() {
-    let output = Place::new().run(&["methods"]);
-    assert_eq!((output.status.code(), stderr(&output)), (Some(0), String::new()));
-    let text = stdout(&output);
-    assert_eq!(text.lines().count(), Method::ALL.len());
-    for (line, method) in text.lines().zip(Method::ALL) {
-        assert!(line.starts_with(method.name()) && line.contains(method.purpose()), "{line}");
-    }
-    assert_eq!(text.matches("[default]").count(), 1);
-}
-
-#[test]
 fn quiet_prints_results_only() {
     let place = Place::new();
     let scene = shipped("beam-jump.toml");
@@ -615,46 +411,6 @@ fn standard_output_may_break() {
     let output = place.command(&["methods"]).stdout(full).stderr(Stdio::piped()).output().unwrap();
     assert_eq!(output.status.code(), Some(1));
     says(&stderr(&output), &["pliant: cannot write to the standard output"]);
-}
-
-/// Scenes to start from are right, say nothing of doubt, and are never written over.
-#[test]
-fn new_writes_scenes_that_run() {
-    let place = Place::new();
-    for kind in ["square", "ring", "finger", "cantilever", "blank"] {
-        let file = format!("{kind}.toml");
-        says(&stdout(&place.run(&["new", kind])), &["written to", &file, "pliant run"]);
-        assert_eq!(place.run(&["check", &file]).status.code(), Some(0), "{kind}");
-        let output = place.run(&["run", &file, "--rtol", "1e-3"]);
-        assert_eq!(output.status.code(), Some(0), "{kind}: {}", stderr(&output));
-        assert!(!stdout(&output).contains("WARNING"), "{kind}: {}", stdout(&output));
-        let again = place.run(&["new", kind]);
-        assert_eq!(again.status.code(), Some(2));
-        says(&stderr(&again), &[&file, "is there already", "name another file"]);
-    }
-    assert_eq!(place.run(&["new", "blank", "mine.toml"]).status.code(), Some(0));
-    assert_eq!(place.run(&["static", "cantilever.toml"]).status.code(), Some(0));
-    assert_eq!(place.run(&["new", "pyramid"]).status.code(), Some(2));
-}
-
-/// `docs/reference.md` is what the command prints. Made anew by `pliant reference > docs/reference.md`.
-#[cfg(feature = "play")]
-#[test]
-fn the_reference_is_up_to_date() {
-    let printed = stdout(&Place::new().run(&["reference"]));
-    let page = include_str!("../../docs/reference.md");
-    let apart = page.lines().zip(printed.lines()).find(|(old, new)| old != new);
-    assert_eq!(apart, None);
-    assert_eq!(page.len(), printed.len());
-}
-
-/// `docs/scene.schema.json`, made anew by `pliant schema > docs/scene.schema.json`.
-#[test]
-fn the_schema_is_up_to_date() {
-    let printed = stdout(&Place::new().run(&["schema"]));
-    assert_eq!(include_str!("../../docs/scene.schema.json"), printed);
-    let schema: Value = serde_json::from_str(&printed).unwrap();
-    assert_eq!(schema["properties"]["phase"]["anyOf"][0]["$ref"], "#/definitions/[[phase]]");
 }
 
 /// Sensors of a scene file become columns and plots, and `plot` draws them once more from the results.
@@ -699,74 +455,4 @@ fn sensors_are_plotted() {
         assert_eq!(output.status.code(), Some(2));
         says(&stderr(&output), &[part]);
     }
-}
-
-/// The square is pressed by statics, let go, and cut off; each scene starts from what the one before has left.
-#[test]
-fn a_scene_starts_from_what_another_has_left() {
-    let place = Place::new();
-    let scene = |initial: &str, phase: &str| {
-        format!(
-            r#"
-            [body]
-            mesh = {{ kind = "rectangle", size = [0.3, 0.3], nodes = [4, 4], cells = "triangles" }}
-            thickness = 0.01
-            material = {{ density = 1000.0, young = 1e6, poisson = 0.3, viscosity = 40.0 }}
-            {initial}
-            [[phase]]
-            hold = [{{ nodes = "bottom" }}]
-            {phase}
-            [solver]
-            method = "cvode-bdf"
-            [output]
-            step = 0.01
-            track = "all"
-            "#
-        )
-    };
-    let ran = |arguments: &[&str], text: &str| {
-        place.scene(text);
-        let output = place.run(&[arguments, &["scene.toml", "-q"]].concat());
-        assert_eq!((output.status.code(), stderr(&output)), (Some(0), String::new()));
-    };
-    let pressed = "until = 1.0\nload = [{ nodes = \"top\", force = [3.0, -5.0] }]";
-    ran(&["static"], &scene("", pressed));
-    let from = |left: &str| format!("[initial]\nfrom = \"{left}\"");
-    let [whole, rest] = ["until = 0.04", "until = 0.02"];
-    ran(&["run", "--out", "whole"], &scene(&from("out/scene-static"), whole));
-    ran(&["run", "--out", "half"], &scene(&from("out/scene-static/state.json"), rest));
-    ran(&["run", "--out", "rest"], &scene(&from("half"), rest));
-    let (header, all) = place.table("whole");
-    let (_, cut) = place.table("rest");
-    assert_eq!((all.len(), cut.len()), (5, 3));
-    for column in (0..header.len()).filter(|&column| header[column].starts_with('u')) {
-        let [whole, cut] = [all[4][column], cut[2][column]];
-        // displacements of millimetres at rtol 1e-5, in other steps: 2e-7 apart
-        assert!((whole - cut).abs() < 1e-6, "{}: {whole} {cut}", header[column]);
-    }
-    assert!(all[0].iter().zip(&all[4]).skip(1).any(|(a, b)| (a - b).abs() > 1e-4));
-
-    let told = |initial: &str| {
-        place.scene(&scene(initial, rest));
-        let output = place.run(&["check", "scene.toml"]);
-        assert_eq!(output.status.code(), Some(2));
-        stderr(&output)
-    };
-    let thrown = format!("{}\nvelocity = [1.0, 0.0]", from("half"));
-    says(&told(&thrown), &["scene.toml:8: initial.velocity", "move already"]);
-    says(&told(&from("nowhere")), &["scene.toml:7: initial.from", "nowhere"]);
-    says(&told(&from("half/report.json")), &["scene.toml:7: initial.from", "pliant state"]);
-    let other = scene(&from("half"), rest).replace("[4, 4]", "[4, 5]");
-    place.scene(&other);
-    let output = place.run(&["check", "scene.toml"]);
-    says(&stderr(&output), &["scene.toml:7: initial.from", "16 nodes", "20"]);
-    // a scene that moves to a finer mesh starts from states of either mesh
-    let finer = |left: &str| {
-        scene(&from(left), rest).replace("nodes = [4, 4]", "nodes = [4, 4], halved = 1")
-    };
-    ran(&["run", "--out", "fine"], &finer("half"));
-    ran(&["run", "--out", "finer"], &finer("fine"));
-    // an equilibrium may be thrown
-    place.scene(&scene(&thrown.replace("half", "out/scene-static"), rest));
-    assert_eq!(place.run(&["check", "scene.toml"]).status.code(), Some(0));
 }

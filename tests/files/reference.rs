@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use pliant::scene_file::StudyFile;
-use pliant::{SceneFile, scene_file};
+use pliant::{SceneFile, SceneReader};
 use serde_json::Value;
 
 const PAGE: &str = include_str!("../../docs/reference.md");
@@ -110,7 +110,7 @@ fn examples_are_read() {
 /// JSON Schema, of which there is none here.)
 #[test]
 fn the_schema_knows_the_scenes() {
-    let schema = scene_file::schema();
+    let schema = SceneReader::default().schema();
     let text = schema.to_string();
     for (at, _) in text.match_indices("#/definitions/") {
         let name = text[at + 14..].split('"').next().unwrap();
@@ -141,7 +141,7 @@ fn the_schema_knows_the_scenes() {
 /// What the schema says of keys that are left out, or are too many, is what reading does.
 #[test]
 fn the_schema_requires_what_reading_does() {
-    let schema = scene_file::schema();
+    let schema = SceneReader::default().schema();
     let mut missing = 0;
     for file in [include_str!("../data/rich.toml"), include_str!("../data/solid.toml")] {
         let lines: Vec<&str> = file.lines().collect();

@@ -16,7 +16,7 @@ use std::path::Path;
 use std::thread;
 
 use pliant::play::Player;
-use pliant::{SceneFile, Settings};
+use pliant::{SceneFile, SceneReader, Settings};
 
 type Outcome = Result<(), Box<dyn Error>>;
 
@@ -67,7 +67,8 @@ fn served_scene(text: &str, change: impl FnOnce(&mut Settings)) -> Result<String
     let mut file = SceneFile::parse(text, Path::new(PATH))?;
     change(&mut file.settings);
     let player = Player::new(&file.scene, &file.settings, &file.title, 0)?;
-    let player = player.sensors(&file.output.sampling())?.saving(text, PATH);
+    let player =
+        player.sensors(&file.output.sampling())?.saving(text, PATH, &SceneReader::default());
     let address = player.address();
     thread::spawn(move || player.serve());
     Ok(address)

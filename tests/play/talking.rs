@@ -5,7 +5,7 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use pliant::play::Player;
-use pliant::{Sampling, Scene, SceneFile, Settings};
+use pliant::{Sampling, Scene, SceneFile, SceneReader, Settings};
 use serde_json::json;
 use tungstenite::Message;
 
@@ -69,7 +69,7 @@ fn sliders_move_the_scene_and_are_saved() -> Outcome {
 fn the_end_that_was_played_is_saved() -> Outcome {
     let file = SceneFile::parse(BEAM, Path::new(PATH))?;
     let player = Player::new(&file.scene.lasting(0.13), &file.settings, "", 0)?;
-    let player = player.saving(BEAM, PATH);
+    let player = player.saving(BEAM, PATH, &SceneReader::default());
     let address = player.address();
     thread::spawn(move || player.serve());
     let mut client = Client::at(&address)?;

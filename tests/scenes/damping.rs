@@ -45,7 +45,7 @@ pub fn run(scene: &Scene, method: Method, rtol: f64) -> Trajectory {
 fn error(method: Method) -> f64 {
     match method {
         Method::CentralDifference => 6e-4,
-        Method::CvodeBdf | Method::Ida | Method::IdaKlu | Method::IdaIndexTwo => 1.5e-4,
+        Method::CvodeBdf | Method::Ida | Method::IdaIndexTwo => 1.5e-4,
         _ => 1e-5,
     }
 }

@@ -10,7 +10,7 @@ use jet::Jet;
 use pliant::simulate::Reading;
 use pliant::{
     Body, Cells, DeviceTable, Fluid, Material, Mesh, Method, Phase, Sampling, Scene, SceneFile,
-    Settings, Signals, Statics, Strain, Trajectory, Wind,
+    SceneReader, Settings, Signals, Statics, Strain, Trajectory, Wind,
 };
 
 const RUBBER: Material = Material { density: 1100.0, young: 2e5, poisson: 0.4, viscosity: 400.0 };
@@ -100,7 +100,7 @@ fn a_gust_bends_a_leaf() {
 fn with_jet(text: &str) -> Result<SceneFile, pliant::Error> {
     let path = std::env::temp_dir().join(format!("jet-{}-{}.toml", std::process::id(), text.len()));
     std::fs::write(&path, text).unwrap();
-    let file = SceneFile::read_with_devices(&path, &[], &[DeviceTable::of::<Jet>("jet")]);
+    let file = SceneReader::new(&[DeviceTable::of::<Jet>("jet")]).read_with(&path, &[]);
     std::fs::remove_file(&path).unwrap();
     file
 }

@@ -238,11 +238,9 @@ fn nonsense_is_refused() {
         assert!(error.contains(told), "{error}");
     }
     let scene = with(Lag::first_order(0.1), "coil");
-    for method in [Method::IdaKlu, Method::CentralDifference] {
-        let settings = Settings { method, ..Settings::default() };
-        let error = scene.simulate(&settings, &Sampling::phase_ends()).unwrap_err();
-        assert!(error.to_string().contains("that lag"), "{error}");
-    }
+    let settings = Settings { method: Method::CentralDifference, ..Settings::default() };
+    let error = scene.simulate(&settings, &Sampling::phase_ends()).unwrap_err();
+    assert!(error.to_string().contains("that lag"), "{error}");
     let scene = mass_on_spring().lag(Lag::first_order(0.1), ["coil"]);
     let scene = scene.phase(hold().actuate_with(["coil"], |t| 1.0 / (0.05 - t).max(0.0)));
     let error = scene.simulate(&Settings::default(), &Sampling::phase_ends()).unwrap_err();

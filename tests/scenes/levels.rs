@@ -173,7 +173,6 @@ fn methods_agree_on_a_ring_that_is_half_full() {
     for method in [
         Method::CvodeBdf,
         Method::Ida,
-        Method::IdaKlu,
         Method::IdaIndexTwo,
         Method::Arkode,
         Method::CentralDifference,

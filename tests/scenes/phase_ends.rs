@@ -33,7 +33,6 @@ fn a_fall_to_a_height() {
         Method::Rosenbrock,
         Method::Rk,
         Method::Ida,
-        Method::IdaKlu,
         Method::CentralDifference,
         Method::Auto,
     ] {

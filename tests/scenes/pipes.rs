@@ -217,10 +217,9 @@ fn limits_are_told() {
     assert_eq!(other.view().pipe_flow("pipe").unwrap(), flow);
     let told = vessels.view().pipe_flow("pope").unwrap_err().to_string();
     assert!(told.contains("did you mean \"pipe\""), "{told}");
-    for method in [Method::IdaKlu, Method::CentralDifference] {
-        let told = scene.simulate(&settings(method, 1e-4), &Sampling::every(0.1)).unwrap_err();
-        assert!(told.to_string().contains("through pipes"), "{told}");
-    }
+    let central = settings(Method::CentralDifference, 1e-4);
+    let told = scene.simulate(&central, &Sampling::every(0.1)).unwrap_err();
+    assert!(told.to_string().contains("through pipes"), "{told}");
     let told = scene.equilibrium(&Statics::default()).unwrap_err().to_string();
     assert!(told.contains("pipe of statics"), "{told}");
     let with = |scene: Scene| match scene.phase(Phase::until(1.0).hold("all")).validate() {

@@ -52,7 +52,7 @@ fn held_out_runs_are_within_what_was_wanted_and_tell_their_errors() {
         let full = pushed(force, frequency);
         let own = run(&full.clone().reduced(model.clone()).unwrap(), 1e-6);
         let exact = error(&run(&full, 1e-6), &own);
-        let told = own.report().reduced.as_ref().unwrap().told_error;
+        let told = own.report().reduced.as_ref().unwrap().estimated_error;
         assert!(exact < 0.01, "{exact:e}");
         // an estimate, by the ratio in the runs that were learned from
         assert!(told > 0.5 * exact && told < 10.0 * exact, "told {told:e} of {exact:e}");
@@ -291,7 +291,7 @@ fn cells_that_grow_have_the_forces_of_their_time() {
         let own = run(&full.clone().reduced(model.clone()).unwrap(), 1e-6);
         let exact = error(&run(&full, 1e-6), &own);
         let report = own.report();
-        let told = report.reduced.as_ref().unwrap().told_error;
+        let told = report.reduced.as_ref().unwrap().estimated_error;
         assert!(exact < 0.02, "{exact:e}");
         assert!(told > 0.5 * exact && told < 10.0 * exact, "told {told:e} of {exact:e}");
         // what growth supplies is counted: rtol, as in full runs

@@ -310,9 +310,6 @@ fn bad_touches_are_told() {
     );
     let twice = scene(0.01, touch()).touch(touch());
     assert!(twice.validate().unwrap_err().to_string().contains("touch name"));
-    let klu = Settings { method: Method::IdaKlu, ..Settings::default() };
-    let error = scene(0.01, touch()).simulate(&klu, &Sampling::phase_ends()).unwrap_err();
-    assert!(error.to_string().contains("take ida"), "{error}");
     let string = Mesh::bar(0.1, 3).unwrap().mapped(|x| [x[0], 0.5]).unwrap();
     let string = Body::new(string, SOFT).area(1e-6).named("string");
     let block = block("block", [0.0, 0.0], [0.1, 0.1], [3, 3], Cells::Triangles);

@@ -191,7 +191,7 @@ fn the_table_has_all_candidates() -> Outcome {
         ["1e-3", "10 %", "10.0 ms", "14", "as written front"],
         ["1e-5", "0.5 %", "100 ms", "14", "enough front"],
         ["1e-6", "2 %", "1.00 s", "14", ""],
-        ["1e-9", "", "10.0 s", "14", "what all are compared with"],
+        ["1e-9", "", "10.0 s", "14", "the reference"],
         ["1e-2", "", "", "", &failed],
     ];
     assert_eq!(rows.len(), expected.len());

@@ -4,8 +4,8 @@ use clap::Args;
 use pliant::Fraction;
 use pliant::scene_file::AccuracyRequest;
 
-use crate::failure::Failure;
-use crate::settings::SettingsArguments;
+use super::failure::Failure;
+use super::settings::SettingsArguments;
 
 /// The flags, which override `accuracy` and `quantity` of `[solver]`.
 #[derive(Args)]

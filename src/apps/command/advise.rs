@@ -15,12 +15,12 @@ use pliant::studies::{
 };
 use pliant::{Fraction, Sampling, SceneFile};
 
-use crate::failure::{Failure, print};
-use crate::files::Directory;
-use crate::progress::spinner;
-use crate::scene::SceneArguments;
-use crate::settings::{SettingsArguments, ended};
-use crate::shell::quoted;
+use super::failure::{Failure, print};
+use super::files::Directory;
+use super::progress::spinner;
+use super::scene::SceneArguments;
+use super::settings::{SettingsArguments, ended};
+use super::shell::quoted;
 
 /// Longest command (bytes) that is printed: one with lists of cells is not.
 const LONGEST: usize = 2000;
@@ -35,7 +35,7 @@ const FRAMES: f64 = 400.0;
 #[derive(Args)]
 pub struct Arguments {
     #[command(flatten)]
-    scene: SceneArguments,
+    pub(super) scene: SceneArguments,
     #[command(flatten)]
     settings: SettingsArguments,
     /// Quantity that has to be right: motion, a sensor or node set and a component such as tip.y, com.x, rotation; with :end,

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use pliant::output::join_animations;
 
-use crate::failure::{Failure, print};
+use super::failure::{Failure, print};
 
 /// Put the animations of several runs side by side in one page
 ///

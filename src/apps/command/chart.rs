@@ -8,10 +8,10 @@ use pliant::ContactEvents;
 use pliant::studies::work_precision::{Scenes, Stage, Study, all_methods};
 use pliant::{Method, SceneFile, Settings};
 
-use crate::failure::{Failure, print};
-use crate::files::Directory;
-use crate::scene::SceneArguments;
-use crate::settings::ended;
+use super::failure::{Failure, print};
+use super::files::Directory;
+use super::scene::SceneArguments;
+use super::settings::ended;
 
 /// Chart speed against accuracy on a scene, method by method and tolerance by tolerance
 ///
@@ -23,7 +23,7 @@ use crate::settings::ended;
 #[derive(Args)]
 pub struct Arguments {
     #[command(flatten)]
-    scene: SceneArguments,
+    pub(super) scene: SceneArguments,
     /// Integration methods [default: all, some of them with several orders]
     #[arg(long, value_delimiter = ',')]
     methods: Vec<Method>,

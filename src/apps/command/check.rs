@@ -9,8 +9,8 @@ use pliant::{
     Dilatation, Lame, Law, Part, PhaseSummary, Scene, SceneFile, Settings, Strain, Substance,
 };
 
-use crate::failure::{Failure, print};
-use crate::scene::SceneArguments;
+use super::failure::{Failure, print};
+use super::scene::SceneArguments;
 
 /// Check a scene file and print what the scene contains
 ///
@@ -21,7 +21,7 @@ use crate::scene::SceneArguments;
 #[derive(Args)]
 pub struct Arguments {
     #[command(flatten)]
-    scene: SceneArguments,
+    pub(super) scene: SceneArguments,
 
     /// Run the scene coarsely, for 2 seconds at most, and print what it tells of the model
     ///
@@ -41,6 +41,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     surroundings(&file.scene)?;
     solver(&file)?;
     timeline(&phases)?;
+    redundant(&phases)?;
     file.notes.iter().try_for_each(|note| print(format_args!("note: {note}")))?;
     if arguments.look {
         let look = Look::of(&file.scene, &file.settings, Look::SECONDS)?;
@@ -238,6 +239,20 @@ fn timeline(phases: &[PhaseSummary]) -> Result<(), Failure> {
              {damping:9.1e}  {acting}"
         ))
     })
+}
+
+/// Rows of joints that other constraints imply: the forces that they would carry are those of the others.
+fn redundant(phases: &[PhaseSummary]) -> Result<(), Failure> {
+    let of_phase = |phase: &PhaseSummary| {
+        phase.redundant.iter().try_for_each(|(device, [count, all])| {
+            print(format_args!(
+                "note: {device} in phase \"{}\": {count} of its {all} rows follow from other constraints and are left out; \
+                 their forces count with those",
+                phase.name
+            ))
+        })
+    };
+    phases.iter().try_for_each(of_phase)
 }
 
 /// Text with the end, gravity, loads, actuators, pressures and contacts of a phase.

@@ -9,9 +9,9 @@ use std::time::Duration;
 
 use clap::ValueEnum;
 
-use crate::failure::{Failure, print};
-use crate::shell::{absolute, quoted};
-use crate::task::array;
+use super::failure::{Failure, print};
+use super::shell::{absolute, quoted};
+use super::task::array;
 
 /// Who computes the rows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

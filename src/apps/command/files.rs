@@ -9,7 +9,7 @@ use pliant::scene_file::Format;
 use pliant::simulate::{Checkpoint, Simulation};
 use pliant::{Error, OutputRequest, SceneFile, Selection, Trajectory};
 
-use crate::failure::{BAD_INPUT, Failure, print};
+use super::failure::{BAD_INPUT, Failure, print};
 
 /// Flags that choose what is written.
 #[derive(Args)]

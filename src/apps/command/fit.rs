@@ -3,11 +3,12 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use pliant::SceneFile;
 use pliant::fit::{Measured, MeasuredAtRest, SceneFit, Unknown};
 
-use crate::failure::{Failure, print};
-use crate::progress::spinner;
-use crate::scene::SceneArguments;
+use super::failure::{Failure, print};
+use super::progress::spinner;
+use super::scene::SceneArguments;
 
 /// Fit keys of a scene file to measurements
 ///
@@ -18,7 +19,7 @@ use crate::scene::SceneArguments;
 #[derive(Args)]
 pub struct Arguments {
     #[command(flatten)]
-    scene: SceneArguments,
+    pub(super) scene: SceneArguments,
     /// Table (CSV) of what was measured: a column t or time (s), the others with names of sensors of the scene, as tip.y
     #[arg(long, value_name = "FILE")]
     data: PathBuf,
@@ -48,8 +49,16 @@ fn unknown(text: &str) -> Result<Unknown, String> {
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let Arguments { scene, data, at_rest, unknown, plot, quiet } = arguments;
     let fit = match at_rest {
-        true => SceneFit::at_rest(&scene.path, &scene.set, &MeasuredAtRest::read(data)?)?,
-        false => SceneFit::new(&scene.path, &scene.set, &Measured::read(data)?)?,
+        true => {
+            let measured = MeasuredAtRest::read(data)?;
+            let text = SceneFile::text_with(&scene.path, &[])?;
+            SceneFit::at_rest_of_text(&scene.reader, text, &scene.path, &scene.set, &measured)?
+        }
+        false => {
+            let measured = Measured::read(data)?;
+            let text = SceneFile::text_with(&scene.path, &[])?;
+            SceneFit::of_text(&scene.reader, text, &scene.path, &scene.set, &measured)?
+        }
     };
     let progress = spinner(*quiet);
     let fitted = fit.fit(unknown, &mut |runs, rms| {

@@ -3,7 +3,7 @@
 use clap::Args;
 use pliant::scene_file;
 
-use crate::failure::{Failure, print};
+use super::failure::{Failure, print};
 
 /// List the material laws, what each is for, and its constants
 #[derive(Args)]

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
-use crate::failure::{Failure, print};
+use super::failure::{Failure, print};
 
 /// Write a scene file to start from, with comments
 #[derive(Args)]

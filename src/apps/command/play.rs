@@ -8,9 +8,9 @@ use clap::Args;
 use pliant::OutputRequest;
 use pliant::play::Player;
 
-use crate::failure::{Failure, print};
-use crate::scene::SceneArguments;
-use crate::settings::SettingsArguments;
+use super::failure::{Failure, print};
+use super::scene::SceneArguments;
+use super::settings::SettingsArguments;
 
 /// Play a scene live in the web browser
 ///
@@ -22,7 +22,7 @@ use crate::settings::SettingsArguments;
 #[derive(Args)]
 pub struct Arguments {
     #[command(flatten)]
-    scene: SceneArguments,
+    pub(super) scene: SceneArguments,
     #[command(flatten)]
     settings: SettingsArguments,
     /// Play it by this reduced model, a file of `pliant reduce`, in place of that of the scene file
@@ -52,7 +52,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let mut player = player.sensors(&sensors)?;
     // nodes of a smaller model are no nodes of the file
     if file.smaller.is_empty() {
-        player = player.saving(text, &scene.path);
+        player = player.saving(text, &scene.path, &scene.reader);
     }
     // there is nothing that would have to be saved first
     ctrlc::set_handler(|| process::exit(0))

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use pliant::output::{Plot, Table};
 
-use crate::failure::{Failure, print};
+use super::failure::{Failure, print};
 
 /// Draw sensors and energies over time from the results of a run
 ///

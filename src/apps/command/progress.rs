@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use pliant::simulate::Simulation;
 
-use crate::failure::Failure;
+use super::failure::Failure;
 
 /// Watches a run: shows how far it has come, and stops it when Ctrl-C was pressed.
 pub struct RunProgress {

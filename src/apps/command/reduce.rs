@@ -7,11 +7,11 @@ use clap::Args;
 use pliant::reduce::{Training, VariedKey, reduce, reduce_by_modes, verify, words};
 use pliant::{Fraction, ReducedModel};
 
-use crate::failure::{Failure, print};
-use crate::files::Directory;
-use crate::progress::spinner;
-use crate::scene::SceneArguments;
-use crate::settings::SettingsArguments;
+use super::failure::{Failure, print};
+use super::files::Directory;
+use super::progress::spinner;
+use super::scene::SceneArguments;
+use super::settings::SettingsArguments;
 
 /// Learn a reduced model of a scene, with a few unknowns
 ///
@@ -25,7 +25,7 @@ use crate::settings::SettingsArguments;
 #[derive(Args)]
 pub struct Arguments {
     #[command(flatten)]
-    scene: SceneArguments,
+    pub(super) scene: SceneArguments,
     #[command(flatten)]
     settings: SettingsArguments,
     /// Largest error of a displacement that is wanted, relative to the largest one: 2% or 0.02

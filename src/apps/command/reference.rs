@@ -3,16 +3,17 @@
 use std::fmt::Write;
 
 use clap::{Arg, Args, Command};
-use pliant::{output, scene_file};
+use pliant::{Method, MethodInformation, SceneReader, output, scene_file};
 
-use crate::failure::{Failure, print};
+use super::failure::{Failure, print};
+use super::methods;
 
 /// Print the reference of scene files, flags and results: docs/reference.md
 #[derive(Args)]
 pub struct Arguments {}
 
-pub fn run(_: &Arguments, command: Command) -> Result<(), Failure> {
-    print(page(command).trim_end())
+pub fn run(_: &Arguments, command: Command, reader: &SceneReader) -> Result<(), Failure> {
+    print(page(command, reader).trim_end())
 }
 
 const HEAD: &str = "\
@@ -23,6 +24,16 @@ All that `pliant` reads and writes. This page is made by `pliant reference > doc
 
 ## Scene files
 
+";
+
+const METHODS: &str = "\
+## Integration methods
+
+`method` of `[solver]`. DAEs have the forces of constraints among their unknowns. `auto` takes a method where the last column
+says so, and the report says why.
+
+| method | in full | `max_order` | equations | for | `auto` takes it where |
+| --- | --- | --- | --- | --- | --- |
 ";
 
 const STUDIES: &str = "\
@@ -77,14 +88,31 @@ Those of `pliant reduce`, by default beside the scene file:
 ";
 
 /// The page.
-fn page(command: Command) -> String {
-    let [scenes, studies] = [scene_file::reference(), scene_file::study_reference()];
-    let mut page = format!("{HEAD}{scenes}\n{STUDIES}{studies}\n## Commands and flags\n");
+fn page(command: Command, reader: &SceneReader) -> String {
+    let [scenes, studies] = [reader.reference(), scene_file::study_reference()];
+    let methods = methods_table();
+    let mut page =
+        format!("{HEAD}{scenes}\n{methods}\n{STUDIES}{studies}\n## Commands and flags\n");
     for command in command.get_subcommands() {
         // writing to a text cannot fail
         let _ = section(&mut page, command);
     }
     format!("{page}{RESULTS}\n{}", output::reference())
+}
+
+/// The integration methods, one row for each.
+fn methods_table() -> String {
+    let row = |method: Method| {
+        let MethodInformation { name, long_name, purpose, form, automatic, .. } =
+            method.information();
+        let (form, orders) = match method {
+            Method::Auto => ("that of the choice", "that of the choice".into()),
+            _ => (form.name(), methods::orders(method)),
+        };
+        format!("| `{name}` | {long_name} | {orders} | {form} | {purpose} | {automatic} |\n")
+    };
+    let rows: String = Method::ALL.into_iter().map(row).collect();
+    format!("{METHODS}{rows}")
 }
 
 fn section(page: &mut String, command: &Command) -> std::fmt::Result {

@@ -13,12 +13,12 @@ use pliant::simulate::Simulation;
 use pliant::studies::work_precision::Verification;
 use pliant::{Error, Fraction, IntegrationFailure, SceneFile, Trajectory};
 
-use crate::accuracy::AccuracyArguments;
-use crate::failure::{Failure, print};
-use crate::files::{Directory, OutputArguments, REPORT, without_older};
-use crate::progress::RunProgress;
-use crate::scene::SceneArguments;
-use crate::settings::{SettingsArguments, ended};
+use super::accuracy::AccuracyArguments;
+use super::failure::{Failure, print};
+use super::files::{Directory, OutputArguments, REPORT, without_older};
+use super::progress::RunProgress;
+use super::scene::SceneArguments;
+use super::settings::{SettingsArguments, ended};
 
 /// Run a scene and write its motion
 ///
@@ -30,7 +30,7 @@ use crate::settings::{SettingsArguments, ended};
 #[derive(Args)]
 pub struct Arguments {
     #[command(flatten)]
-    scene: SceneArguments,
+    pub(super) scene: SceneArguments,
     #[command(flatten)]
     settings: SettingsArguments,
     /// Time between rows of trajectory.csv (s)
@@ -235,11 +235,15 @@ fn verified(
     let mut verification = Verification::of_file(file, within)?;
     let mut refused = None;
     let cut_short = loop {
-        let refined = verification.refine(|simulation| match directory.claim() {
-            Ok(()) => watch.see(simulation),
-            Err(failure) => {
-                refused = Some(failure);
-                ControlFlow::Break(())
+        let refined = verification.refine(|simulation| {
+            // from the directory on a signal waits for the step under way
+            watch.start();
+            match directory.claim() {
+                Ok(()) => watch.see(simulation),
+                Err(failure) => {
+                    refused = Some(failure);
+                    ControlFlow::Break(())
+                }
             }
         });
         refused.take().map_or(Ok(()), Err)?;

@@ -4,10 +4,10 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use pliant::scene_file::override_of;
-use pliant::{Error, ReducedModel, SceneFile};
+use pliant::{Error, ReducedModel, SceneFile, SceneReader};
 
-use crate::failure::Failure;
-use crate::shell::absolute;
+use super::failure::Failure;
+use super::shell::absolute;
 
 /// Override for a scene without its reduced model.
 pub const UNREDUCED: &str = "solver.reduced=\"\"";
@@ -22,6 +22,9 @@ pub struct SceneArguments {
     /// followed by the name or number of one); may be given several times
     #[arg(long, value_name = "KEY=VALUE")]
     pub set: Vec<String>,
+    /// How scene files are read: with the tables of devices of the program.
+    #[arg(skip)]
+    pub reader: SceneReader,
 }
 
 impl SceneArguments {
@@ -32,7 +35,7 @@ impl SceneArguments {
 
     /// Reads the file with these values, and then `others`, in place of its own.
     pub fn read_with(&self, others: &[String]) -> Result<SceneFile, Error> {
-        SceneFile::read_with(&self.path, &[&self.set[..], others].concat())
+        self.reader.read_with(&self.path, &[&self.set[..], others].concat())
     }
 
     /// Reads the file, with this reduced model in place of its own if there is one.
@@ -46,7 +49,7 @@ impl SceneArguments {
 
     /// Reads another file, with the same values in place of its own.
     pub fn read_too(&self, path: &Path) -> Result<SceneFile, Error> {
-        SceneFile::read_with(path, &self.set)
+        self.reader.read_with(path, &self.set)
     }
 
     /// Where the file divides cells: `body.mesh.halved_in`.

@@ -1,9 +1,9 @@
 //! `pliant schema`
 
 use clap::Args;
-use pliant::scene_file;
+use pliant::SceneReader;
 
-use crate::failure::{Failure, print};
+use super::failure::{Failure, print};
 
 /// Print the JSON Schema of scene files, by which editors complete and check them
 ///
@@ -12,6 +12,6 @@ use crate::failure::{Failure, print};
 #[derive(Args)]
 pub struct Arguments {}
 
-pub fn run(_: &Arguments) -> Result<(), Failure> {
-    print(format_args!("{:#}", scene_file::schema()))
+pub fn run(_: &Arguments, reader: &SceneReader) -> Result<(), Failure> {
+    print(format_args!("{:#}", reader.schema()))
 }

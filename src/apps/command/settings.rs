@@ -3,7 +3,7 @@
 use clap::{Arg, ArgMatches, Args, Command, FromArgMatches, value_parser};
 use pliant::{InputError, Scene, Settings, SettingsOption, SettingsValue as Value};
 
-use crate::failure::Failure;
+use super::failure::Failure;
 
 /// The flags that were given.
 pub struct SettingsArguments(ArgMatches);

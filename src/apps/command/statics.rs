@@ -9,9 +9,9 @@ use pliant::scene_file::Format;
 use pliant::studies::work_precision::Quantity;
 use pliant::{Equilibrium, Error, MeshEstimate, NoEquilibrium, OutputRequest, SceneFile};
 
-use crate::failure::{Failure, print};
-use crate::files::{Directory, OutputArguments, REFINED, REPORT, without_older};
-use crate::scene::SceneArguments;
+use super::failure::{Failure, print};
+use super::files::{Directory, OutputArguments, REFINED, REPORT, without_older};
+use super::scene::SceneArguments;
 
 /// Find the equilibrium of a phase of a scene
 ///
@@ -22,7 +22,7 @@ use crate::scene::SceneArguments;
 #[derive(Args)]
 pub struct Arguments {
     #[command(flatten)]
-    scene: SceneArguments,
+    pub(super) scene: SceneArguments,
     /// Name of the phase [default: the first one]
     #[arg(long, value_name = "NAME")]
     phase: Option<String>,

@@ -13,15 +13,15 @@ use pliant::scene_file::{Format, StudyFile, Written};
 use pliant::sweep::{
     Condition, Outcome, PointRun, Results, Row, RowVerdict, Runner, Store, Sweep, Watch,
 };
-use pliant::{Error, Fraction, SceneFile};
+use pliant::{Error, Fraction, SceneFile, SceneReader};
 
-use crate::engine::{Engine, TaskArray};
-use crate::failure::{Failure, print};
-use crate::files::{Directory, place, without_older};
-use crate::progress::{KILLED, rows_bar};
-use crate::run::keep;
-use crate::statics;
-use crate::task::Tasks;
+use super::engine::{Engine, TaskArray};
+use super::failure::{Failure, print};
+use super::files::{Directory, place, without_older};
+use super::progress::{KILLED, rows_bar};
+use super::run::keep;
+use super::statics;
+use super::task::Tasks;
 
 /// Run a scene, or find its equilibrium, for many values of its keys
 ///
@@ -81,9 +81,9 @@ pub struct Arguments {
 /// Default for the largest number of tasks of an array: the usual limit of Slurm.
 const MOST_TASKS: usize = 1000;
 
-pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+pub fn run(arguments: &Arguments, reader: SceneReader) -> Result<(), Failure> {
     let place = place(arguments.out.as_deref(), &arguments.study, "-sweep");
-    let (sweep, batch, units) = match begin(arguments) {
+    let (sweep, batch, units) = match begin(arguments, reader) {
         Ok(begun) => begun,
         // these write no table
         Err(failure) if arguments.plan || arguments.task.is_some() => return Err(failure),
@@ -114,8 +114,11 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 /// The study, the number of rows in a task and the units of the quantities, which a plan does without.
-fn begin(arguments: &Arguments) -> Result<(Sweep, usize, Vec<&'static str>), Failure> {
-    let sweep = read(arguments)?;
+fn begin(
+    arguments: &Arguments,
+    reader: SceneReader,
+) -> Result<(Sweep, usize, Vec<&'static str>), Failure> {
+    let sweep = read(arguments, reader)?;
     let batch = arguments.batch.unwrap_or(sweep.plan().len().div_ceil(MOST_TASKS));
     if batch == 0 {
         return Err(Failure::bad_input("--batch = 0: a task has one row at least"));
@@ -130,12 +133,12 @@ fn begin(arguments: &Arguments) -> Result<(Sweep, usize, Vec<&'static str>), Fai
 }
 
 /// The study, with flags in place of values of the file.
-fn read(arguments: &Arguments) -> Result<Sweep, Failure> {
+fn read(arguments: &Arguments, reader: SceneReader) -> Result<Sweep, Failure> {
     let mut file = StudyFile::read(&arguments.study)?;
     let flags = arguments.set.iter();
     file.set.extend(flags.map(|set| Written { text: set.clone(), line: 0 }));
     file.accuracy = arguments.accuracy.or(file.accuracy);
-    let sweep = Sweep::new(file, arguments.yes)?;
+    let sweep = Sweep::new(file, arguments.yes)?.read_by(reader);
     if let Some(condition) = &arguments.keep {
         condition.check(&sweep)?;
     }

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use super::slider::{Target, ascending};
-use crate::io::scene_file::{Rewritten, SceneFile, rewritten};
+use crate::io::scene_file::{Rewritten, SceneReader, rewritten};
 use crate::scene::forces::{Signal, TimeTable, VectorSignal};
 use crate::scene::timeline::{Input, Scene};
 
@@ -23,6 +23,7 @@ pub(super) struct Record {
 pub(super) struct Original {
     pub(super) text: String,
     pub(super) path: PathBuf,
+    pub(super) reader: SceneReader,
 }
 
 impl Original {
@@ -57,9 +58,12 @@ impl Record {
         if self.tracks.is_empty() {
             return Err("no slider was moved since the start: there is nothing to be saved".into());
         }
-        let Original { text, path } = original;
+        let Original { text, path, reader } = original;
         let cannot = |reason: String| format!("{} cannot be changed: {reason}", path.display());
-        let written = SceneFile::parse(text, path).map_err(|error| cannot(error.to_string()))?;
+        let read = |text: &str| {
+            reader.parse_with(text, path, &[]).map_err(|error| cannot(error.to_string()))
+        };
+        let written = read(text)?;
         let mut changes: Vec<Rewritten> = Vec::new();
         for (number, phase) in scene.phases().iter().enumerate() {
             let mut change = Rewritten { number, phase: phase.clone(), keys: BTreeSet::new() };
@@ -78,7 +82,7 @@ impl Record {
             }
         }
         let text = rewritten(text, scene, &changes).map_err(cannot)?;
-        SceneFile::parse(&text, path).map_err(|error| cannot(error.to_string()))?;
+        read(&text)?;
         let name = file_name(path);
         Ok(format!(
             "# {name} with the sliders moved by hand. Files that it names are sought beside it.\n{text}"

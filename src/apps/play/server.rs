@@ -23,6 +23,7 @@ use crate::base::input::InputError;
 use crate::dynamics::error::Error;
 use crate::dynamics::simulate::Sampling;
 use crate::io::output::Picture;
+use crate::io::scene_file::SceneReader;
 use crate::scene::settings::Settings;
 use crate::scene::timeline::Scene;
 
@@ -137,10 +138,15 @@ impl Player {
 
     /// Allows slider moves to be saved as a scene file.
     ///
-    /// This is the file at `path` with the text `text`, from which the scene was read, with tables of
+    /// This is the file at `path` with the text `text`, from which the scene was read by `reader`, with tables of
     /// pressures, forces and loads in place of its own.
-    pub fn saving(mut self, text: impl Into<String>, path: impl Into<PathBuf>) -> Self {
-        let original = Original { text: text.into(), path: path.into() };
+    pub fn saving(
+        mut self,
+        text: impl Into<String>,
+        path: impl Into<PathBuf>,
+        reader: &SceneReader,
+    ) -> Self {
+        let original = Original { text: text.into(), path: path.into(), reader: reader.clone() };
         self.data["saves"] = original.new_name().into();
         self.session.original = Some(original);
         self

@@ -15,14 +15,8 @@ use crate::elements::material::Law;
 
 /// Largest relative difference of the stress of a law from that of rubber (incompressible and neo-Hookean, uniaxial).
 const MOST_WRONG: f64 = 0.25;
-/// Relative difference of the stress from that of rubber, in multiples of the strain: of the laws of St.
-/// Venant and Kirchhoff and of Hooke, and of laws of rubber. The last follow rubber up to about twice the
-/// length, where it begins to stiffen as its chains of molecules are stretched out.
-const GREEN_LAW: f64 = 2.5;
+/// Relative difference of the stress of Hooke's law for Cauchy's strain from that of rubber, in multiples of the strain.
 const CAUCHY_LAW: f64 = 1.0;
-const NEO_HOOKEAN: f64 = 0.25;
-/// Remedy for a law that is not one of rubber.
-const OF_RUBBER: &str = "take a law of rubber (law = { kind = \"neo-hookean\" })";
 /// Largest error of the strains with which Cauchy strain is still good enough.
 const MOST_NONLINEAR: f64 = 0.01;
 /// Strains below this are round-off.
@@ -83,28 +77,25 @@ impl Deformed {
     }
 
     fn largest_strain(&self, body: &Body) -> Indicator {
-        let is_plain = |law: Option<Law>| matches!(law, None | Some(Law::StVenantKirchhoff));
-        let (factor, off, help) = match body.strain() {
-            Strain::Cauchy => (
+        let laws = body.substances().map(|of| of.law.unwrap_or(Law::StVenantKirchhoff));
+        let rows = laws.map(Law::information);
+        // of several the one that is farthest from rubber
+        let worst = rows.max_by(|a, b| a.error_of_strain.total_cmp(&b.error_of_strain));
+        let (factor, off, help) = match (body.strain(), worst) {
+            (Strain::Green, Some(law)) if law.is_rubber => (
+                law.error_of_strain,
+                law.error,
+                "fit the constants of its law to measurements at such strains",
+            ),
+            (Strain::Green, Some(law)) => (
+                law.error_of_strain,
+                law.error,
+                "take a law of rubber (law = { kind = \"neo-hookean\" })",
+            ),
+            _ => (
                 CAUCHY_LAW,
                 "Hooke's law is off by about as much",
                 "take strain = \"green\" and a law of rubber (law = { kind = \"neo-hookean\" })",
-            ),
-            Strain::Green if body.substances().any(|substance| is_plain(substance.law)) => (
-                GREEN_LAW,
-                "St. Venant and Kirchhoff's law is off by some 2.5 times that",
-                OF_RUBBER,
-            ),
-            Strain::Green
-                if body.substances().any(|substance| substance.law == Some(Law::Corotated)) =>
-            {
-                (CAUCHY_LAW, "Hooke's law of the stretches is off by about as much", OF_RUBBER)
-            }
-            // constants of the other laws are fitted to the strains that they are used for
-            Strain::Green => (
-                NEO_HOOKEAN,
-                "rubber stiffens at such strains as only constants that are fitted to it tell",
-                "fit the constants of its law to measurements at such strains",
             ),
         };
         let Self { strain, at: (time, cell), .. } = *self;

@@ -19,12 +19,12 @@ pub(crate) fn reduced(run: &ReducedReport) -> Vec<Indicator> {
     let limit = TIMES_WANTED * run.within;
     let said = format!(
         "the reduced model tells an error of {} of the largest displacement (limit: {})",
-        percent(run.told_error),
+        percent(run.estimated_error),
         percent(limit)
     );
     let beyond =
         || format!("{said}: reduce the scene with runs such as this one, or run it unreduced");
-    let value = (run.told_error, "1");
+    let value = (run.estimated_error, "1");
     let error = Indicator::trusted("reduced-error", value, [0.0, limit], || said.clone(), beyond);
     let said = format!(
         "the motion is outside of those that the reduced model has learned by {} of their range (limit: {})",
@@ -40,7 +40,7 @@ pub(crate) fn reduced(run: &ReducedReport) -> Vec<Indicator> {
         let said = format!(
             "the reduced model was learned from one run, off by {}; this one tells {}",
             percent(run.checked_error),
-            percent(run.told_error)
+            percent(run.estimated_error)
         );
         let beyond = || {
             format!(
@@ -62,7 +62,7 @@ pub(crate) fn reduced(run: &ReducedReport) -> Vec<Indicator> {
                 "the reduced model was not learned over {}{others} (limit: no such key): it may be off by many times the {} that this run \
                  tells; reduce the scene over a range of these keys (--vary), or have a run such as this one checked (pliant reduce --verify)",
                 first.join(", "),
-                percent(run.told_error)
+                percent(run.estimated_error)
             )
         };
         let value = (run.unlearned.len() as f64, "");

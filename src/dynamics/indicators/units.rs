@@ -4,7 +4,7 @@ use crate::base::input::{four_digits, percent};
 use crate::base::vector::{dot, norm};
 use crate::dynamics::report::{Indicator, Verdict};
 use crate::elements::body::Body;
-use crate::elements::material::{Law, Material, Plane};
+use crate::elements::material::{Material, Plane};
 use crate::scene::forces::VectorSignal;
 use crate::scene::timeline::{DeviceInput, InputLimit, Phase, Quantity, Scene, Target};
 
@@ -171,8 +171,7 @@ fn materials(body: &Body) -> Vec<Indicator> {
             || format!("{said}: is it in g/cm^3? Water has 1000 kg/m^3, which is 1 g/cm^3");
         let value = (density, "kg/m^3");
         let density = Indicator::trusted("density", value, DENSITIES, || said.clone(), beyond);
-        let is_rubber =
-            !matches!(substance.law, None | Some(Law::StVenantKirchhoff | Law::Corotated));
+        let is_rubber = substance.law.is_some_and(|law| law.information().is_rubber);
         let (most, of) = match is_rubber {
             true => (STIFFEST_RUBBER, "a law of rubber"),
             false => (STIFFEST, "any material"),

@@ -231,6 +231,7 @@ impl Edges {
 
     /// The derivatives of what [`imbalances`](Self::imbalances) has of the edge `k` by the displacements, and by the
     /// velocities in a step in which x'' changes by `cj` times as much as x'.
+    #[cfg(test)]
     pub(crate) fn slopes(&self, k: usize, alpha: f64, cj: f64) -> [[f64; 3]; 2] {
         let (x, rate, acceleration) = (&self.arms[k], &self.rates[k], &self.accelerations[k]);
         [

@@ -12,8 +12,8 @@ use crate::integrators::ode::{Failure, Ode};
 use crate::integrators::rk::{self, DormandPrince};
 use crate::integrators::rosenbrock::{self, Rosenbrock};
 use crate::integrators::sundials::{
-    Arkode, ArkodeOptions, ButcherTable, Cvode, CvodeOptions, Ida, IdaOptions, Jacobian,
-    LinearSolver, Multistep, Pattern,
+    Arkode, ArkodeOptions, ButcherTable, Cvode, CvodeOptions, Ida, IdaOptions, LinearSolver,
+    Multistep,
 };
 use crate::scene::settings::{Method, Settings};
 
@@ -112,8 +112,8 @@ fn compression(indefinite: usize) -> Option<String> {
     (indefinite > 0).then(|| {
         format!(
             "{indefinite} Newton matrices were not positive definite, which costs time: at states that were tried and given \
-             up, or because friction falls with the speed, or because the body is pressed together until it may buckle \
-             or collapse; if it is, see whether it ought to"
+             up, or because friction falls with the speed, or because compression brings the body near buckling; check \
+             whether that is physical"
         )
     })
 }
@@ -133,15 +133,12 @@ impl Integrable for System {
         system.expect_iteration(iterates(settings.method, &system));
         let longest = settings.max_step.unwrap_or(f64::INFINITY);
         match settings.method {
-            Method::Ida | Method::IdaKlu | Method::IdaIndexTwo => {
-                let index = match settings.method {
-                    Method::IdaIndexTwo => Index::Two,
-                    _ => Index::One,
-                };
+            method @ (Method::Ida | Method::IdaIndexTwo) => {
+                let index = if method == Method::Ida { Index::One } else { Index::Two };
                 let mut equations = DaeForm::new(system, index);
                 tolerances.extend(equations.tolerances([atol.force, atol.momentum]));
                 let (y, yp) = equations.consistent(t, state).map_err(Failure::into_error)?;
-                let options = ida_options(settings, tolerances, &mut equations)?;
+                let options = ida_options(settings, tolerances, &equations);
                 Ok(Box::new(Ida::new(equations, t, &y, &yp, &options)?))
             }
             Method::CentralDifference => {
@@ -211,8 +208,8 @@ impl IntoStepper for System {
 fn iterates(method: Method, system: &System) -> bool {
     match method {
         Method::Arkode => !system.is_linear(),
-        Method::Rosenbrock | Method::Rk | Method::CentralDifference => false,
-        _ => true,
+        Method::Rosenbrock => false,
+        _ => method.information().is_implicit,
     }
 }
 
@@ -297,34 +294,18 @@ fn rosenbrock_options(
     }
 }
 
-fn ida_options(
-    settings: &Settings,
-    tolerances: Vec<f64>,
-    equations: &mut DaeForm,
-) -> Result<IdaOptions, Failed> {
+fn ida_options(settings: &Settings, tolerances: Vec<f64>, equations: &DaeForm) -> IdaOptions {
     // What is not marked as differential stays out of the error test: energies and multipliers.
     let first_energy = equations.system.layout().energies().start;
     let differential: Vec<bool> = (0..equations.size()).map(|i| i < first_energy).collect();
-    let linear_solver = match settings.method {
-        Method::IdaKlu => LinearSolver::Klu {
-            pattern: jacobian_pattern(equations)?,
-            jacobian: Jacobian::Supplied,
-        },
-        _ => LinearSolver::Custom,
-    };
     let options = IdaOptions::new(settings.rtol, tolerances)
-        .newton(linear_solver)
+        .newton(LinearSolver::Custom)
         .check_jacobian(false)
         .differential(differential)
         .suppress_algebraic(true)
         .max_step(settings.max_step.unwrap_or(f64::INFINITY));
-    Ok(match settings.max_order {
+    match settings.max_order {
         Some(order) => options.max_order(order),
         None => options,
-    })
-}
-
-fn jacobian_pattern(equations: &mut DaeForm) -> Result<Pattern, Failed> {
-    let (offsets, row_indices) = equations.sparse_pattern();
-    Ok(Pattern::from_csc(&offsets, &row_indices)?)
+    }
 }

@@ -7,7 +7,7 @@ use crate::dynamics::reduced::ReducedSystem;
 use crate::dynamics::report::Counts;
 use crate::dynamics::system::PhaseSystem;
 use crate::integrators::common::Integrator;
-use crate::scene::settings::Method;
+use crate::scene::settings::{Method, MotionForm};
 
 /// An integrator of a reduced model.
 struct Lifted<I> {
@@ -21,10 +21,10 @@ struct Lifted<I> {
 impl Integrable for ReducedSystem {
     fn start(mut self: Box<Self>, start: &Start) -> Result<Box<dyn Stepper>, Failed> {
         let method = start.settings.method;
-        if let Method::Ida | Method::IdaKlu | Method::IdaIndexTwo | Method::CentralDifference =
-            method
-        {
-            let help = "a reduced model is an ODE, without constraints: take cvode-bdf, arkode, rosenbrock or rk";
+        if method.information().form != MotionForm::Ode {
+            let takes = Method::names(|row| row.form == MotionForm::Ode);
+            let help =
+                format!("a reduced model is an ODE, without constraints: take one of {takes}");
             return Err(InputError::new("method", method, help).into());
         }
         let y = self.begin(start.time, start.state);

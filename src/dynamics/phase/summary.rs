@@ -21,6 +21,8 @@ pub struct PhaseSummary {
     pub gravity: Option<Vec<f64>>,
     /// Number of rows of its constraints: one for each component of a node that is held or moved.
     pub constraints: usize,
+    /// Devices of which rows follow from other constraints and are left out: kind and name, how many rows, and of how many.
+    pub redundant: Vec<(String, [usize; 2])>,
     /// Number of nodes under loads and pressures on faces, counted once for each of them.
     pub loaded_nodes: usize,
     /// Whether a magnetic field acts.
@@ -86,6 +88,16 @@ impl Scene {
     ) -> Result<PhaseSummary, InputError> {
         let rows =
             self.rows(phase, &PhaseStart { time: start, u: self.initial_displacements() })?;
+        let mut redundant = Vec::new();
+        for (number, device) in self.devices().iter().enumerate() {
+            let own = self.terms_of_device(number)?;
+            let is_left_out = |terms: &&Vec<_>| rows.iter().all(|row| row.terms != **terms);
+            let count = own.iter().filter(is_left_out).count();
+            if count > 0 {
+                let device = format!("{} \"{}\"", device.kind(), device.name());
+                redundant.push((device, [count, own.len()]));
+            }
+        }
         let mut loaded_nodes = 0;
         let loads = phase.vectors_on_nodes().map(|(_, selection, _)| selection);
         for selection in loads.chain(phase.face_pressures().map(|(selection, _)| selection)) {
@@ -101,6 +113,7 @@ impl Scene {
             ends: phase.ends.as_ref().map(ToString::to_string),
             gravity: gravity.map(Into::into),
             constraints: rows.len(),
+            redundant,
             loaded_nodes,
             has_magnetic_field: phase.uniform_field().is_some(),
             actuated: names(Quantity::Actuation),

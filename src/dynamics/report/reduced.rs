@@ -17,17 +17,17 @@ pub struct ReducedReport {
     pub checked_error: f64,
     /// The error that was wanted of it.
     pub within: f64,
-    /// The error that this run tells, relative to the largest displacement in it or in these runs: what the forces left over would move, times the ratio of the two in the runs that the
+    /// The error that this run estimates, relative to the largest displacement in it or in these runs: what the forces left over would move, times the ratio of the two in the runs that the
     /// model was checked with.
-    pub told_error: f64,
+    pub estimated_error: f64,
     /// Extrapolation: distance outside the training range, relative to the largest modal range.
     pub outside: f64,
-    /// The errors of what sensors read that follows from where the nodes are, as this run tells them.
-    pub readings: Vec<ToldReading>,
-    /// The keys of the scene's file, with their values, that the model was not learned over: neither the error that this run tells nor that
+    /// Estimated errors of the sensors that follow from positions of nodes.
+    pub readings: Vec<SensorErrorEstimate>,
+    /// The keys of the scene's file, with their values, that the model was not learned over: neither the error that this run estimates nor that
     /// where it was checked is one of such scenes.
     pub unlearned: Vec<String>,
-    /// Whether its error is not that of any run with all unknowns, but what its own runs told.
+    /// Whether its error is not that of any run with all unknowns, but an estimate by its own runs.
     pub is_estimate: bool,
     /// Whether it was learned from one run.
     is_of_one_run: bool,
@@ -37,9 +37,9 @@ pub struct ReducedReport {
     travel: f64,
 }
 
-/// The error of what a sensor reads, as a run by a reduced model tells it.
+/// The error of a sensor, as a run by a reduced model estimates it.
 #[derive(Debug, Clone, PartialEq)]
-pub struct ToldReading {
+pub struct SensorErrorEstimate {
     /// Name of its column.
     pub name: String,
     /// Its unit.
@@ -56,7 +56,7 @@ impl ReducedReport {
             cells: [model.cells(), model.cell_count],
             checked_error: model.error,
             within: model.within,
-            told_error: 0.0,
+            estimated_error: 0.0,
             outside: 0.0,
             readings: Vec::new(),
             unlearned: model.unlearned(keys),
@@ -72,22 +72,22 @@ impl ReducedReport {
     pub(crate) fn note_state(&mut self, travel: f64, outside: f64) {
         self.travel = self.travel.max(travel);
         self.outside = self.outside.max(outside);
-        self.told_error = self.per_imbalance * self.imbalance();
+        self.estimated_error = self.per_imbalance * self.imbalance();
     }
 
     /// Adds an imbalance (m).
     pub(crate) fn note_imbalance(&mut self, imbalance: f64) {
         self.imbalance = self.imbalance.max(imbalance);
-        self.told_error = self.per_imbalance * self.imbalance();
+        self.estimated_error = self.per_imbalance * self.imbalance();
     }
 
     /// Adds by how much an imbalance would change what sensors read.
-    pub(crate) fn note_changes(&mut self, changes: Vec<ToldReading>) {
+    pub(crate) fn note_changes(&mut self, changes: Vec<SensorErrorEstimate>) {
         for change in changes {
             let error = self.per_imbalance * change.error;
             match self.readings.iter_mut().find(|told| told.name == change.name) {
                 Some(told) => told.error = told.error.max(error),
-                None => self.readings.push(ToldReading { error, ..change }),
+                None => self.readings.push(SensorErrorEstimate { error, ..change }),
             }
         }
     }
@@ -95,8 +95,8 @@ impl ReducedReport {
     /// Difference of the error of this run from that of the single full-order run that the model was learned from, relative to the
     /// required accuracy; none if it was learned from several runs, and without an error of this run.
     pub(crate) fn apart_from_one_run(&self) -> Option<f64> {
-        let is_told = self.is_of_one_run && !self.is_estimate && self.told_error > 0.0;
-        is_told.then(|| (self.told_error - self.checked_error).abs() / self.within)
+        let is_told = self.is_of_one_run && !self.is_estimate && self.estimated_error > 0.0;
+        is_told.then(|| (self.estimated_error - self.checked_error).abs() / self.within)
     }
 
     /// The imbalance (m) up to which the error is one that was wanted.
@@ -117,12 +117,12 @@ impl ReducedReport {
 
 impl fmt::Display for ReducedReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { shapes, cells: [cells, all], checked_error, told_error, .. } = self;
+        let Self { shapes, cells: [cells, all], checked_error, estimated_error, .. } = self;
         write!(f, "reduced model: {shapes} shapes")?;
         if *cells > 0 {
             write!(f, ", {cells} of {all} cells")?;
         }
-        let (checked, said) = (percent(*checked_error), percent(*told_error));
+        let (checked, said) = (percent(*checked_error), percent(*estimated_error));
         match self.is_estimate {
             true => {
                 write!(f, "; error {said} as told by this run, checked with none of all unknowns")?
@@ -131,7 +131,7 @@ impl fmt::Display for ReducedReport {
                 write!(f, "; error {checked} where it was checked, {said} as told by this run")?
             }
         }
-        for ToldReading { name, unit, error } in &self.readings {
+        for SensorErrorEstimate { name, unit, error } in &self.readings {
             let unit = if unit == "1" { "" } else { unit };
             write!(f, ", {name} {} {unit}", four_digits(*error))?;
         }

@@ -354,14 +354,10 @@ fn part(method: Method, rtol: f64) -> f64 {
     part.max((TIGHTEST / rtol).min(1.0))
 }
 
-/// The highest order that was requested, if the method has a choice of orders.
+/// The order of a method that is nearest to that requested, if it has a choice of orders.
 fn cap(method: Method, max_order: Option<u32>) -> Option<u32> {
-    match method {
-        Method::Arkode => max_order.map(|order| order.clamp(2, 5)),
-        Method::CvodeBdf => max_order.map(|order| order.min(5)),
-        Method::Rosenbrock => max_order.filter(|order| (3..=4).contains(order)),
-        _ => None,
-    }
+    let [lowest, highest] = method.information().orders;
+    max_order.filter(|_| method.has_orders()).map(|order| order.clamp(lowest, highest))
 }
 
 /// The method, whether it follows a body that creeps, and why it was chosen, for a body whose materials have a viscosity of

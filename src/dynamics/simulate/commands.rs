@@ -44,8 +44,7 @@ impl Simulation {
     /// Sets the flow (m^3/s) of liquid into a chamber, in place of the present one; below 0 it flows out.
     ///
     /// # Errors
-    /// A name that no chamber with a liquid has; numbers that are not finite; a method without unknowns for amounts (`ida-klu`,
-    /// `central-difference`).
+    /// A name that no chamber with a liquid has; numbers that are not finite; a method without unknowns for amounts (`central-difference`).
     pub fn flow(&mut self, chamber: &str, flow: impl Into<Signal>) -> Result<(), Error> {
         self.scene().liquid_number(chamber, "flow into chamber")?;
         self.set_named(Quantity::Flow, chamber, flow.into())

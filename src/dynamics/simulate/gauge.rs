@@ -18,7 +18,7 @@ use crate::elements::body::{Body, Branches, NodalField, Part};
 use crate::elements::mesh::Selection;
 use crate::scene::constraint::{ConstraintRow, PhaseStart};
 use crate::scene::forces::FluidForce;
-use crate::scene::timeline::{DeviceRow, Scene};
+use crate::scene::timeline::{DeviceMultipliers, Scene};
 
 /// Reads a quantity, or NaN where it is undefined.
 pub(super) type Gauge = Box<dyn Fn(&View, &Sample) -> Value + Send + Sync>;
@@ -79,12 +79,15 @@ impl Reading {
             ReadingKind::OfDevice(output, name) => {
                 let device = scene.device_number(name, "device")?;
                 let number = scene.output_number(device, output.word)?;
-                let multipliers = multipliers_of_device(scene, device)?;
+                let rows = rows_of_device(scene, device)?;
                 let (is_vector, is_angle) = (output.is_vector, output.is_angle());
                 let unit = if is_angle { self.full_turn() / TAU } else { 1.0 };
                 Box::new(move |view, sample| {
-                    let multipliers = multipliers(view, sample);
-                    let value = view.device_value(device, number, Some(&multipliers));
+                    let rows = rows.as_ref().and_then(|rows| rows(view, sample));
+                    let multipliers = rows
+                        .as_ref()
+                        .map(|rows| DeviceMultipliers { rows, all: &sample.multipliers });
+                    let value = view.device_value(device, number, multipliers);
                     if is_vector { Value::Vector(value) } else { Value::Number(unit * value[0]) }
                 })
             }
@@ -365,36 +368,20 @@ fn constraint_sum(
     }))
 }
 
-/// Reads the multipliers (N) of the rows of a device, 0 of those that follow from others.
-type Multipliers = Box<dyn Fn(&View, &Sample) -> Vec<f64> + Send + Sync>;
-
-/// The function that reads the multipliers of a device.
-fn multipliers_of_device(scene: &Scene, device: usize) -> Result<Multipliers, InputError> {
-    let own = scene.rows_of_device(device)?;
+/// The function that finds the rows of a device among those in force, none of those that follow from others; none of a device without
+/// rows.
+fn rows_of_device(
+    scene: &Scene,
+    device: usize,
+) -> Result<Option<OfRows<Vec<Option<usize>>>>, InputError> {
+    let own = scene.terms_of_device(device)?;
     if own.is_empty() {
-        return Ok(Box::new(|_, _| Vec::new()));
+        return Ok(None);
     }
-    let d = scene.body().dimension();
-    let with_dofs = |row: &DeviceRow| {
-        let mut terms: Vec<(usize, f64)> =
-            row.iter().map(|&(node, axis, c)| ((node - 1) * d + axis.index(), c)).collect();
-        terms.sort_unstable_by_key(|&(dof, _)| dof);
-        terms
-    };
-    let own: Vec<Vec<(usize, f64)>> = own.iter().map(with_dofs).collect();
-    let count = own.len();
     let numbers = move |rows: &[ConstraintRow]| -> Vec<Option<usize>> {
         own.iter().map(|terms| rows.iter().position(|row| row.terms == *terms)).collect()
     };
-    let in_force = of_rows_in_force(scene, numbers)?;
-    Ok(Box::new(move |view, sample| {
-        let Some(numbers) = in_force(view, sample) else { return vec![f64::NAN; count] };
-        let multiplier = |number: &Option<usize>| match number {
-            None => 0.0,
-            Some(row) => sample.multipliers.get(*row).copied().unwrap_or(f64::NAN),
-        };
-        numbers.iter().map(multiplier).collect()
-    }))
+    of_rows_in_force(scene, numbers).map(Some)
 }
 
 /// Finds something on the rows in force at a sample.

@@ -12,7 +12,7 @@ use crate::dynamics::system::{Energy, PhaseSystem, System};
 use crate::dynamics::trajectory::{Commanded, Sample};
 use crate::integrators::ode::Failure;
 use crate::scene::constraint::ConstraintRow;
-use crate::scene::settings::{Method, Settings};
+use crate::scene::settings::{MotionForm, Settings};
 use crate::scene::timeline::{Phase, Scene};
 
 /// Sample from `state` at `time` alone, without constraint forces, energies that have to be
@@ -93,7 +93,7 @@ pub(super) fn project(
     time: f64,
     state: &mut [f64],
 ) {
-    if phase.projects_velocity || settings.method == Method::IdaIndexTwo {
+    if phase.projects_velocity || settings.method.information().form == MotionForm::IndexTwo {
         project_now(system, time, state);
     }
 }

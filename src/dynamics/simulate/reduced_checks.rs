@@ -8,7 +8,7 @@
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use crate::base::vector::largest;
-use crate::dynamics::report::{ReducedReport, ToldReading};
+use crate::dynamics::report::{ReducedReport, SensorErrorEstimate};
 use crate::dynamics::system::{MissingDisplacement, ResidualSnapshot, System};
 use crate::scene::reduced_model::ReducedModel;
 use crate::scene::timeline::Scene;
@@ -42,7 +42,7 @@ impl ReducedChecks {
         &mut self,
         number: usize,
         equations: impl FnOnce() -> Option<System>,
-        change: impl Fn(&ResidualSnapshot, &[f64]) -> Vec<ToldReading>,
+        change: impl Fn(&ResidualSnapshot, &[f64]) -> Vec<SensorErrorEstimate>,
     ) {
         if self.left_over.is_empty() {
             return;

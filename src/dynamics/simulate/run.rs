@@ -27,7 +27,7 @@ use crate::dynamics::error::Error;
 use crate::dynamics::indicators::{self, Follower};
 use crate::dynamics::matrices::Matrices;
 use crate::dynamics::phase::{Failed, Integrable, Start};
-use crate::dynamics::report::{PhaseReport, Report, ToldReading, creation};
+use crate::dynamics::report::{PhaseReport, Report, SensorErrorEstimate, creation};
 use crate::dynamics::state::{Layout, State};
 use crate::dynamics::system::{PhaseSystem, ResidualSnapshot, System};
 use crate::dynamics::trajectory::{IntegrationFailure, Interrupted, Leap, Sample, Trajectory};
@@ -119,10 +119,9 @@ impl Run {
         let full = scene.system(&matrices, phase, forces, &start, settings.alpha)?;
         let mut equations = scene.phase_system(full, &phase.name)?;
         let system = equations.full();
-        if system.relaxation_rate() > 0.0 && !settings.method.takes_branches() {
-            let takes = Method::ALL.into_iter().filter(|method| method.takes_branches());
-            let takes: Vec<&str> = takes.map(Method::name).collect();
-            let help = format!("bodies with Maxwell branches are for {}", takes.join(", "));
+        if system.relaxation_rate() > 0.0 && !settings.method.information().has_internal_unknowns {
+            let takes = Method::names(|row| row.has_internal_unknowns);
+            let help = format!("bodies with Maxwell branches are for {takes}");
             return Err(InputError::new("method", settings.method, help).into());
         }
         indicators::overlap::check_start(scene)?;
@@ -496,7 +495,7 @@ impl Run {
     }
 
     /// Changes of the readings of nodal positions under additional displacements (m) of a state.
-    fn changes_by(&self, at: &ResidualSnapshot, displacements: &[f64]) -> Vec<ToldReading> {
+    fn changes_by(&self, at: &ResidualSnapshot, displacements: &[f64]) -> Vec<SensorErrorEstimate> {
         if !self.sensors.read_places() {
             return Vec::new();
         }

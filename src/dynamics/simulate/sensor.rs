@@ -11,7 +11,7 @@ use super::output::Value;
 use super::reading::Reading;
 use super::view::View;
 use crate::base::input::InputError;
-use crate::dynamics::report::ToldReading;
+use crate::dynamics::report::SensorErrorEstimate;
 use crate::dynamics::trajectory::{Quantity, Sample};
 use crate::scene::timeline::Scene;
 
@@ -149,7 +149,7 @@ impl Sensors {
     }
 
     /// Differences between two states of the readings that depend on nodal positions.
-    pub(super) fn changes(&self, states: [(&View, &Sample); 2]) -> Vec<ToldReading> {
+    pub(super) fn changes(&self, states: [(&View, &Sample); 2]) -> Vec<SensorErrorEstimate> {
         let mut changes = Vec::new();
         for (number, columns) in &self.of_places {
             let read = |(view, sample): (&View, &Sample)| {
@@ -164,7 +164,11 @@ impl Sensors {
                     angle.full_turn * ((other - one) / angle.full_turn).round()
                 });
                 let Quantity { name, unit } = self.quantities[column].clone();
-                changes.push(ToldReading { name, unit, error: (other - one - whole).abs() });
+                changes.push(SensorErrorEstimate {
+                    name,
+                    unit,
+                    error: (other - one - whole).abs(),
+                });
             }
         }
         changes

@@ -57,13 +57,11 @@ pub(crate) struct DaeForm {
     index: Index,
     /// u' - v
     mismatch: Vec<f64>,
-    /// Where each entry that [`visit_jacobian`](Self::visit_jacobian) visits is in the pattern; empty until that is asked for.
-    pub(super) slots: Vec<usize>,
 }
 
 impl DaeForm {
     pub(crate) fn new(system: System, index: Index) -> Self {
-        Self { mismatch: vec![0.0; system.dofs()], system, index, slots: Vec::new() }
+        Self { mismatch: vec![0.0; system.dofs()], system, index }
     }
 
     /// Number of multipliers of rows and edges.
@@ -203,26 +201,6 @@ impl Dae for DaeForm {
                 }
             }
         }
-        Ok(())
-    }
-
-    fn sparse_jacobian(
-        &mut self,
-        t: f64,
-        cj: f64,
-        y: &[f64],
-        yp: &[f64],
-        values: &mut [f64],
-    ) -> Result<(), Failure> {
-        self.linearize_edges(y, yp);
-        let State { u, v, .. } = self.system.layout.of(y);
-        self.system.update_tangents(t, u, v, false);
-        let mut slots = self.slots.iter();
-        self.visit_jacobian(cj, |_, _, value| {
-            if let Some(&slot) = slots.next() {
-                values[slot] += value;
-            }
-        });
         Ok(())
     }
 

@@ -1,33 +1,13 @@
-//! The sparse Jacobian of the differential-algebraic form of index 1, for linear solvers that take the whole of it.
+//! The whole Jacobian of the differential-algebraic form of index 1, with which tests compare the structured solver.
 //!
-//! It is a sum of parts, since a force on a dependent node is in the rows of a whole frame. KLU keeps a
-//! Jacobian while pieces turn, and takes up to three times as many steps with rigid pieces.
+//! It is a sum of parts, since a force on a dependent node is in the rows of a whole frame.
 
-#[cfg(test)]
 mod tests;
 
 use super::System;
 use super::dae::DaeForm;
 
 impl DaeForm {
-    /// The pattern of the Jacobian: where its columns begin, and the rows of their entries, ascending. It
-    /// also sets the slots of the entries that [`visit_jacobian`](Self::visit_jacobian) visits.
-    pub(crate) fn sparse_pattern(&mut self) -> (Vec<usize>, Vec<usize>) {
-        let mut visited = Vec::new();
-        self.visit_jacobian(1.0, |row, column, _| visited.push((column, row)));
-        let mut entries = visited.clone();
-        entries.sort_unstable();
-        entries.dedup();
-        let slot = |entry: &(usize, usize)| entries.partition_point(|other| other < entry);
-        self.slots = visited.iter().map(slot).collect();
-        let mut offsets = vec![0; self.size() + 1];
-        entries.iter().for_each(|(column, _)| offsets[column + 1] += 1);
-        for column in 0..self.size() {
-            offsets[column + 1] += offsets[column];
-        }
-        (offsets, entries.into_iter().map(|(_, row)| row).collect())
-    }
-
     /// Visits all parts of the entries of dF/dy + cj dF/dy' as (row, column, value); the same ones at every call. An entry
     /// is the sum of its parts.
     pub(super) fn visit_jacobian(&self, cj: f64, mut visit: impl FnMut(usize, usize, f64)) {

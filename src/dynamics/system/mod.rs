@@ -33,6 +33,7 @@
 
 mod at_rest;
 mod dae;
+#[cfg(test)]
 mod dae_jacobian;
 mod differences;
 mod ends;

@@ -297,7 +297,7 @@ fn index_one_jacobian_is_the_derivative_of_the_residual() {
     let [by_y, by_yp] = residual_derivatives(&mut equations, &y, &yp, 1e-5);
     let cj = 50.0;
     let mut jacobian = Mat::<f64>::zeros(y.len(), y.len());
-    equations.sparse_jacobian(0.1, cj, &y, &yp, &mut []).unwrap();
+    equations.newton_setup(0.1, cj, &y, &yp).unwrap();
     equations.visit_jacobian(cj, |i, j, value| jacobian[(i, j)] += value);
     for j in 0..y.len() {
         for i in (0..y.len()).filter(|i| !(2 * n..2 * n + ENERGIES).contains(i)) {

@@ -23,11 +23,14 @@ pub(crate) use grown::{GrownLaw, Stretches, along_cell};
 pub(crate) use hooke::Hooke;
 pub use hooke::{Lame, Plane};
 pub(crate) use law::{Block, Blocks, ElasticLaw};
+pub(crate) use laws::LAWS;
 pub(crate) use laws::{
     ByPoint, Elastic, Fibre, Hookean, Linear, Maxwell, ObjectiveViscosity, Sprung, ViscousLaw,
     with_law,
 };
-pub use laws::{Hill, Law, OwnEnergy, Strain, StrainEnergy, Viscosity};
+pub use laws::{
+    Hill, Law, LawConstant, LawInformation, OwnEnergy, Strain, StrainEnergy, Viscosity,
+};
 pub(crate) use response::axes;
 pub use rigid_mass::{Moments, RigidMass};
 pub use substance::Substance;

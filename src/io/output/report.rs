@@ -8,7 +8,7 @@ use super::write_file;
 use crate::dynamics::equilibrium::{Equilibrium, MeshEstimate, NoEquilibrium, Stability};
 use crate::dynamics::error::Error;
 use crate::dynamics::report::{
-    Achieved, Counts, Indicator, PhaseReport, ReducedReport, Report, SlipEvent, ToldReading,
+    Achieved, Counts, Indicator, PhaseReport, ReducedReport, Report, SensorErrorEstimate, SlipEvent,
 };
 use crate::dynamics::trajectory::{IntegrationFailure, Quantity, Trajectory};
 use crate::integrators::sundials;
@@ -199,15 +199,15 @@ table! {
             => reduced.checked_error;
         "is_estimate", "", "whether that is what its own runs told, as it was checked with none of all unknowns" => reduced.is_estimate;
         "within", "1", "the error that was wanted of it" => reduced.within;
-        "told_error", "1", "the error that this run tells" => reduced.told_error;
-        "readings" [OfToldReading], "", "the errors that this run tells of sensors which follow from the places of nodes"
+        "estimated_error", "1", "the error that this run estimates" => reduced.estimated_error;
+        "readings" [OfSensorErrorEstimate], "", "estimates of the errors of sensors that follow from positions of nodes"
             => reduced.readings.iter();
         "outside", "1", "how far the motion was outside of those learned from, in parts of their range" => reduced.outside;
     }
 }
 
 table! {
-    OfToldReading(told: &ToldReading) {
+    OfSensorErrorEstimate(told: &SensorErrorEstimate) {
         "name", "", "name of the sensor" => told.name;
         "unit", "", "its unit" => told.unit;
         "error", "its own", "the largest error" => told.error;

@@ -4,9 +4,10 @@ use std::collections::BTreeMap;
 
 use super::cells::{BOX, CELLS, GROUP, cells};
 use super::contents::AutoRequest;
+use super::generators::AutoCells;
 use super::keys::{AUTO, Key, TableKeys, ValueType};
 use super::material::{MATERIAL, substance};
-use super::mesh::{self, AutoCells, MESH};
+use super::mesh::{self, MESH};
 use super::table::Table;
 use super::value::Value;
 use crate::base::input::{find, positive};

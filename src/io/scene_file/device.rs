@@ -21,18 +21,41 @@ use crate::scene::timeline::{Device, DeviceInput, Input, Phase, Quantity, Scene,
 /// A table of scene files for devices of one kind, which another crate defines.
 ///
 /// `serde` reads it: keys are the fields of the type, and its attributes say which are optional and refuse all others
-/// (`#[serde(deny_unknown_fields)]`). Given to [`SceneFile::read_with_devices`](crate::SceneFile::read_with_devices).
+/// (`#[serde(deny_unknown_fields)]`). A [`SceneReader`](crate::SceneReader) reads it, and the
+/// [command](crate::command::main_with) of a program.
 #[derive(Debug, Clone, Copy)]
 pub struct DeviceTable {
-    word: &'static str,
+    pub(super) word: &'static str,
+    pub(super) about: &'static str,
+    pub(super) keys: &'static [DeviceKey],
     read: fn(ValueDeserializer<'_>) -> Result<Arc<dyn Device>, toml::de::Error>,
 }
 
 impl DeviceTable {
     /// The table `[[word]]`, or tables, of devices of the type `T`.
     pub fn of<T: Device + DeserializeOwned + 'static>(word: &'static str) -> Self {
-        Self { word, read: |table| Ok(Arc::new(T::deserialize(table)?)) }
+        let read = |table: ValueDeserializer<'_>| -> Result<Arc<dyn Device>, _> {
+            Ok(Arc::new(T::deserialize(table)?))
+        };
+        Self { word, about: "A device of this program.", keys: &[], read }
     }
+
+    /// With words for reference and schema: what it is, a sentence in Markdown, and its keys, all of them.
+    #[must_use]
+    pub fn described(self, about: &'static str, keys: &'static [DeviceKey]) -> Self {
+        Self { about, keys, ..self }
+    }
+}
+
+/// A key of a [`DeviceTable`], for reference and schema.
+#[derive(Debug, Clone, Copy)]
+pub struct DeviceKey {
+    /// Its name.
+    pub name: &'static str,
+    /// Its unit; empty for words.
+    pub unit: &'static str,
+    /// Its meaning, in words.
+    pub meaning: &'static str,
 }
 
 /// Devices of other crates in a file, which are taken out of its `entries`.
@@ -45,7 +68,7 @@ pub(super) fn take_devices(
     tables: &[DeviceTable],
 ) -> Result<Vec<Arc<dyn Device>>, Error> {
     let mut devices = Vec::new();
-    for DeviceTable { word, read } in tables {
+    for DeviceTable { word, read, .. } in tables {
         let Some(value) = entries.remove(*word) else { continue };
         let all = match value.get_ref() {
             DeValue::Array(list) => list.iter().cloned().collect(),

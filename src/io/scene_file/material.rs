@@ -5,7 +5,8 @@ use super::table::Table;
 use super::value::Value;
 use crate::dynamics::error::Error;
 use crate::elements::material::{
-    FibreDirection, Fibres, Law, Material, MaxwellBranch, Moments, RigidMass, Substance,
+    FibreDirection, Fibres, LAWS, Law, LawConstant, LawInformation, Material, MaxwellBranch,
+    Moments, RigidMass, Substance,
 };
 
 pub(super) const MATERIAL: TableKeys = TableKeys::new(
@@ -120,51 +121,46 @@ pub(super) const LAW: TableKeys = TableKeys::new(
     &[],
     "material = { density = 1070.0, poisson = 0.49, viscosity = 0.0, law = { kind = \"mooney-rivlin\", c1 = 4.0e4, c2 = 1.0e4 } }",
 )
-.kinds(&[
-    Kind {
-        word: "st-venant-kirchhoff",
-        about: "Hooke's law for Green's strain: for small strains and any rotation; it softens under compression, and collapses",
-        keys: &[],
-    },
-    Kind {
-        word: "neo-hookean",
-        about: "W = c1 (I1 - 3) + U, c1 = mu/2: rubber and silicone up to a strain of a half",
-        keys: &[],
-    },
-    Kind {
-        word: "mooney-rivlin",
-        about: "W = c1 (I1 - 3) + c2 (I2 - 3) + U: rubber up to a strain of one; mu = 2 (c1 + c2)",
-        keys: &[C1, Key::number("c2", "the constant of I2", "Pa").required(), BULK],
-    },
-    Kind {
-        word: "yeoh",
-        about: "W = c1 (I1 - 3) + c2 (I1 - 3)^2 + c3 (I1 - 3)^3 + U: rubber that stiffens before it tears; mu = 2 c1",
-        keys: &[
-            C1,
-            Key::number("c2", "the constant of (I1 - 3)^2", "Pa").required(),
-            Key::number("c3", "the constant of (I1 - 3)^3", "Pa").required(),
-            BULK,
-        ],
-    },
-    Kind {
-        word: "ogden",
-        about: "W = sum of mu_p / alpha_p (l1^alpha_p + l2^alpha_p + l3^alpha_p - 3) + U, with the principal stretches l of J^(-2/3) C: rubber over its \
-                whole range; 2 mu = sum of mu_p alpha_p",
-        keys: &[
-            Key::new("moduli", ValueType::List(&ValueType::Number), "mu_p of one to three terms").in_unit("Pa").required(),
-            Key::new("exponents", ValueType::List(&ValueType::Number), "alpha_p of the same terms").in_unit("1").required(),
-            BULK,
-        ],
-    },
-    Kind {
-        word: "corotated",
-        about: "W = mu |U - I|^2 + (lambda/2) tr(U - I)^2 with the stretch U of each point: Hooke's law in a frame that turns along, for \
-                large rotations and small strains; it does not collapse under compression",
-        keys: &[],
-    },
-]);
-const C1: Key = Key::number("c1", "the constant of I1", "Pa").required();
+.kinds(&KINDS);
 const BULK: Key = Key::number("bulk", "the bulk modulus kappa", "Pa").default("that of `poisson`");
+
+/// The most constants of a law, with the bulk modulus.
+const MOST: usize = 4;
+
+/// The keys of each law, with those of the bulk modulus behind them.
+static KEYS: [[Key; MOST]; LAWS.len()] = {
+    let mut keys = [[BULK; MOST]; LAWS.len()];
+    let mut law = 0;
+    while law < LAWS.len() {
+        let mut number = 0;
+        while number < LAWS[law].constants.len() {
+            keys[law][number] = key(&LAWS[law].constants[number]);
+            number += 1;
+        }
+        law += 1;
+    }
+    keys
+};
+
+const KINDS: [Kind; LAWS.len()] = {
+    let mut kinds = [Kind { word: "", about: "", keys: &[] }; LAWS.len()];
+    let mut law = 0;
+    while law < LAWS.len() {
+        let LawInformation { name, about, constants, .. } = *LAWS[law];
+        let count = if constants.is_empty() { 0 } else { constants.len() + 1 };
+        kinds[law] = Kind { word: name, about, keys: KEYS[law].split_at(count).0 };
+        law += 1;
+    }
+    kinds
+};
+
+const fn key(constant: &LawConstant) -> Key {
+    let holds = match constant.is_list {
+        true => ValueType::List(&ValueType::Number),
+        false => ValueType::Number,
+    };
+    Key::new(constant.name, holds, constant.meaning).in_unit(constant.unit).required()
+}
 
 /// A law as a file has it, with the moduli (Pa) at small strains that follow from its constants.
 struct Constants {
@@ -276,58 +272,24 @@ fn moments(value: &Value) -> Result<Moments, Error> {
 
 fn law(value: &Value) -> Result<Constants, Error> {
     let table = value.table(&LAW)?;
-    let number = |key: &str| table.required(key, Value::number);
-    let (law, shear) = match table.kind() {
-        "st-venant-kirchhoff" => (Law::StVenantKirchhoff, None),
-        "neo-hookean" => (Law::NeoHookean, None),
-        "corotated" => (Law::Corotated, None),
-        "ogden" => {
-            let (law, shear) = ogden(&table)?;
-            (law, Some(shear))
-        }
-        "mooney-rivlin" => {
-            let (c1, c2) = (number("c1")?, number("c2")?);
-            positive(&table, "c1 + c2", c1 + c2)?;
-            (Law::MooneyRivlin { second: c2 / (c1 + c2) }, Some(2.0 * (c1 + c2)))
-        }
-        _ => {
-            let c1 = number("c1")?;
-            positive(&table, "c1", c1)?;
-            let law = Law::Yeoh { second: number("c2")? / c1, third: number("c3")? / c1 };
-            (law, Some(2.0 * c1))
-        }
+    let row = LAWS.into_iter().find(|row| row.name == table.kind()).unwrap_or(LAWS[0]);
+    let read = |constant: &LawConstant| match constant.is_list {
+        true => table.required(constant.name, Value::numbers),
+        false => Ok(vec![table.required(constant.name, Value::number)?]),
     };
+    let constants = row.constants.iter().map(read).collect::<Result<Vec<_>, Error>>()?;
+    let made = (row.of_constants)(&constants);
+    let (law, shear) = made.map_err(|message| table.error(message))?;
     law.validate().map_err(|error| table.error(error))?;
     let bulk = match shear {
         Some(_) => table.optional("bulk", Value::number)?,
         None => None,
     };
-    if let Some(bulk) = bulk {
-        // so that Poisson's ratio is above -1
-        positive(&table, "bulk", bulk)?;
+    // so that Poisson's ratio is above -1
+    if let Some(bulk) = bulk.filter(|bulk| !(*bulk > 0.0 && bulk.is_finite())) {
+        return Err(table.error(format!("bulk = {bulk:e} Pa: it has to be above 0")));
     }
     Ok(Constants { law, shear, bulk })
-}
-
-/// Ogden's law and its shear modulus (Pa).
-fn ogden(table: &Table<'_>) -> Result<(Law, f64), Error> {
-    let moduli = table.required("moduli", Value::numbers)?;
-    let exponents = table.required("exponents", Value::numbers)?;
-    if moduli.len() != exponents.len() || !(1..=3).contains(&moduli.len()) {
-        let (moduli, exponents) = (moduli.len(), exponents.len());
-        let message = format!(
-            "{moduli} `moduli` and {exponents} `exponents`: give one of each for one to three terms"
-        );
-        return Err(table.error(message));
-    }
-    let products = moduli.iter().zip(&exponents).map(|(modulus, exponent)| modulus * exponent);
-    let mut terms = [0.0; 3];
-    terms.iter_mut().zip(products).for_each(|(term, product)| *term = product);
-    let twice: f64 = terms.iter().sum();
-    positive(table, "the sum of moduli times exponents", twice)?;
-    let mut powers = [1.0; 3];
-    powers[..exponents.len()].copy_from_slice(&exponents);
-    Ok((Law::Ogden { exponents: powers, shares: terms.map(|term| term / twice) }, twice / 2.0))
 }
 
 /// Which way fibres run.
@@ -349,11 +311,4 @@ fn fibres(table: &Table<'_>) -> Result<Fibres, Error> {
     let fibres = Fibres { course, young, stiffening };
     fibres.validate().map_err(|error| table.blame(error))?;
     Ok(fibres)
-}
-
-fn positive(table: &Table<'_>, name: &str, value: f64) -> Result<(), Error> {
-    match value > 0.0 && value.is_finite() {
-        true => Ok(()),
-        false => Err(table.error(format!("{name} = {value:e} Pa: it has to be above 0"))),
-    }
 }

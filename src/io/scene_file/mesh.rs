@@ -1,14 +1,14 @@
-//! `mesh` of `[body]`: generators and files.
+//! `mesh` of `[body]`: a generator or a file (`generators.rs`), put in its place and made finer.
 
+use super::generators::{AutoCells, KINDS, generate};
 use super::keys::{AUTO, Key, Kind, TableKeys, ValueType};
-use super::listed::{self, listed};
 use super::selection::selection;
 use super::table::Table;
 use super::value::Value;
-use crate::base::input::{InputError, positive};
+use crate::base::input::InputError;
 use crate::dynamics::error::Error;
 use crate::elements::body::CellSelection;
-use crate::elements::mesh::{Cells, Mesh, SolidCells};
+use crate::elements::mesh::Mesh;
 use crate::scene::timeline::Scene;
 
 pub(super) const MESH: TableKeys = TableKeys::new(
@@ -45,57 +45,7 @@ pub(super) const MESH: TableKeys = TableKeys::new(
     ],
     "mesh = { kind = \"ring\", inner = 0.04, outer = 0.05, nodes = [32, 3], cells = \"crossed\", origin = [0.0, 0.05] }",
 )
-.kinds(&[
-    Kind {
-        word: "bar",
-        about: "segments along x",
-        keys: &[
-            Key::number("length", "the length", "m").required(),
-            Key::new("nodes", ValueType::Count, "the number of nodes").required(),
-        ],
-    },
-    Kind { word: "rectangle", about: "a grid along x and y", keys: &[SIZE, NODES, CELLS, grading(2)] },
-    Kind { word: "ring", about: "a grid around a circle", keys: ROUND },
-    Kind { word: "half-ring", about: "its upper half", keys: ROUND },
-    Kind {
-        word: "cuboid",
-        about: "a grid along x, y and z",
-        keys: &[
-            Key::new("size", ValueType::Array(&ValueType::Number, 3), "lengths along x, y and z")
-                .in_unit("m")
-                .required(),
-            Key::new("nodes", ValueType::Array(&ValueType::Count, 3), "corner nodes along x, y and z")
-                .required(),
-            Key::new(
-                "cells",
-                ValueType::Word(|| words(&solid_cells(AutoCells::default()))),
-                "how the grid is divided",
-            )
-            .note("`auto` is `tetrahedra10`, quadratic; for a Poisson's ratio of 0.45 or more it is `hexahedra27` with \
-                  `dilatation = \"linear\"`, as of silicone.")
-            .required(),
-            grading(3),
-        ],
-    },
-    Kind {
-        word: "gmsh",
-        about: "a file of Gmsh, of version 4.1 or 2.2; coordinates are metres",
-        keys: &[Key::new("file", ValueType::Text, "the path of a Gmsh mesh, relative to the scene file")
-            .required()],
-    },
-    Kind {
-        word: "surface",
-        about: "the closed surface of a rigid solid, of triangles: a file STL (text or binary), OBJ or Gmsh",
-        keys: &[
-            Key::new("file", ValueType::Text, "the path of a file .stl, .obj or .msh, relative to the scene file")
-                .required(),
-            Key::number("scale", "the length of which the coordinates are multiples", "m")
-                .note("0.001 of a drawing in millimetres.")
-                .default("1"),
-        ],
-    },
-    Kind { word: "listed", about: "node by node, as programs hand meshes over", keys: listed::KEYS },
-]);
+.kinds(&KINDS);
 
 const HALVED_IN: TableKeys = TableKeys::new(
     "halved_in",
@@ -116,74 +66,6 @@ const HALVED_IN: TableKeys = TableKeys::new(
 const FINER: &str = "Triangles, tetrahedra and hexahedra; quadrilaterals are divided into triangles first. Numbers of nodes in the file are \
      those of the mesh without this; new nodes of rings are on their circles; where several nodes are held, moved or under tractions, those between them are, too. Forces \
      on each node stay at the nodes that there were, and stiffness and damping of obstacles per node are shared out.";
-
-const SIZE: Key = Key::new("size", ValueType::Array(&ValueType::Number, 2), "width and height")
-    .in_unit("m")
-    .required();
-const NODES: Key =
-    Key::new("nodes", ValueType::Array(&ValueType::Count, 2), "corner nodes along x and y")
-        .required();
-const CELLS: Key = Key::new(
-    "cells",
-    ValueType::Word(|| words(&plane_cells(AutoCells::default()))),
-    "how the grid is divided",
-)
-.note("Linear `triangles` are too stiff in bending, `crossed` ones less so; `triangles6`, quadratic, bend well, and \
-      `auto` is those; for a Poisson's ratio of 0.45 or more in plane strain it is `rectangles9` with `dilatation = \"linear\"`, \
-      as of silicone.")
-.required();
-const fn grading(axes: usize) -> Key {
-    let about = "the length of the last cell along each axis by that of the first one";
-    Key::new("grading", ValueType::Array(&ValueType::Number, axes), about)
-        .in_unit("1")
-        .note("Within 1e-4 and 1e4; each cell is longer than the one before it by the same factor. Put the fine end where \
-              stress is: a clamp on the left asks for a number above 1.")
-        .default("1 along each axis: equal cells")
-}
-const ROUND: &[Key] = &[
-    Key::number("inner", "the inner radius", "m").required(),
-    Key::number("outer", "the outer radius", "m").required(),
-    Key::new(
-        "nodes",
-        ValueType::Array(&ValueType::Count, 2),
-        "corner nodes around and along the radius",
-    )
-    .required(),
-    CELLS,
-];
-
-/// Cells chosen by `auto`, in the plane and in space: quadratic cells, which are not too stiff in bending.
-#[derive(Clone, Copy)]
-pub(super) struct AutoCells {
-    plane: Cells,
-    solid: SolidCells,
-}
-
-impl Default for AutoCells {
-    fn default() -> Self {
-        Self { plane: Cells::Triangles6, solid: SolidCells::Tetrahedra10 }
-    }
-}
-
-impl AutoCells {
-    /// Those that keep their volume without locking, with a linear dilatation. A membrane has none.
-    pub(super) fn of_silicone(is_membrane: bool) -> Self {
-        let plane = if is_membrane { Cells::Triangles6 } else { Cells::Rectangles9 };
-        Self { plane, solid: SolidCells::Hexahedra27 }
-    }
-}
-
-fn plane_cells(auto: AutoCells) -> Vec<(&'static str, Cells)> {
-    let named = Cells::ALL.map(|cells| (cells.name(), cells));
-    named.into_iter().chain([(AUTO, auto.plane)]).collect()
-}
-fn solid_cells(auto: AutoCells) -> Vec<(&'static str, SolidCells)> {
-    let named = SolidCells::ALL.map(|cells| (cells.name(), cells));
-    named.into_iter().chain([(AUTO, auto.solid)]).collect()
-}
-fn words<T>(named: &[(&'static str, T)]) -> Vec<&'static str> {
-    named.iter().map(|(word, _)| *word).collect()
-}
 
 /// The mesh that `value` describes, in a space of `dimension` (default: its own).
 pub(super) fn mesh(
@@ -281,61 +163,13 @@ pub(super) fn gets_mid_nodes(value: &Value) -> Result<(bool, bool), Error> {
 /// Whether the cells of a generated mesh are left to be chosen.
 pub(super) fn has_auto_cells(value: &Value) -> Result<bool, Error> {
     let table = value.table(&MESH)?;
-    match table.kind() {
-        "bar" | "gmsh" | "listed" | "surface" => Ok(false),
-        _ => Ok(table.optional("cells", Value::string)? == Some(AUTO)),
+    let has_cells =
+        |kind: &Kind| kind.word == table.kind() && kind.keys.iter().any(|key| key.name == "cells");
+    if !KINDS.iter().any(has_cells) {
+        return Ok(false);
     }
-}
-
-fn generate(table: &Table, dimension: Option<&Value>, auto: AutoCells) -> Result<Mesh, Error> {
-    let number = |key: &str| table.required(key, Value::number);
-    let cells = |value: &Value| value.word(&plane_cells(auto));
-    Ok(match table.kind() {
-        "bar" => Mesh::bar(number("length")?, table.required("nodes", Value::count)?)?,
-        "rectangle" => Mesh::graded_rectangle(
-            table.required("size", Value::array)?,
-            table.required("nodes", Value::counts)?,
-            table.optional("grading", Value::array)?.unwrap_or([1.0; 2]),
-            table.required("cells", cells)?,
-        )?,
-        round @ ("ring" | "half-ring") => {
-            let (inner, outer) = (number("inner")?, number("outer")?);
-            let nodes = table.required("nodes", Value::counts)?;
-            let cells = table.required("cells", cells)?;
-            match round {
-                "ring" => Mesh::ring(inner, outer, nodes, cells)?,
-                _ => Mesh::half_ring(inner, outer, nodes, cells)?,
-            }
-        }
-        "cuboid" => Mesh::graded_cuboid(
-            table.required("size", Value::array)?,
-            table.required("nodes", Value::counts)?,
-            table.optional("grading", Value::array)?.unwrap_or([1.0; 3]),
-            table.required("cells", |value| value.word(&solid_cells(auto)))?,
-        )?,
-        "listed" => listed(table)?,
-        "surface" => {
-            let mesh = table.required("file", |value| {
-                let file = value.source.beside(value.string()?);
-                Mesh::read_surface(file).map_err(|error| value.error(error))
-            })?;
-            match table.optional("scale", Value::number)? {
-                Some(scale) => {
-                    positive("scale", scale, "m").map_err(|error| table.blame(error))?;
-                    mesh.mapped(|x| [0, 1, 2].map(|i| scale * x[i]))?
-                }
-                None => mesh,
-            }
-        }
-        _ => table.required("file", |value| {
-            let file = value.source.beside(value.string()?);
-            let mesh = match dimension {
-                Some(dimension) => Mesh::read_gmsh_in(file, dimension.count()?),
-                None => Mesh::read_gmsh(file),
-            };
-            mesh.map_err(|error| value.error(error))
-        })?,
-    })
+    let word = table.get("cells").and_then(|cells| cells.string().ok());
+    Ok(word == Some(AUTO))
 }
 
 /// The mesh in a space of `dimension`: along its first axes, where the mesh has fewer of its own.

@@ -46,6 +46,7 @@ mod device;
 mod fluid;
 mod friction;
 mod gas;
+mod generators;
 mod growth;
 mod initial;
 mod joint;
@@ -92,18 +93,17 @@ use toml::de::DeTable;
 pub use self::contents::{
     AccuracyRequest, AutoRequest, Format, OutputRequest, SceneFile, StaticsRequest,
 };
-pub use self::device::DeviceTable;
 use self::device::take_devices;
+pub use self::device::{DeviceKey, DeviceTable};
 #[cfg(any(feature = "fit", feature = "sweep"))]
 pub(crate) use self::overrides::problem;
 use self::overrides::{as_toml, merge};
 pub use self::overrides::{override_of, toml_of};
+pub use self::reference::laws;
 #[cfg(feature = "sweep")]
 pub use self::reference::study_reference;
-pub use self::reference::{laws, reference};
 #[cfg(feature = "play")]
 pub(crate) use self::rewrite::{Rewritten, rewritten};
-pub use self::schema::schema;
 pub use self::set_value::SetValue;
 pub(crate) use self::source::text_of;
 use self::source::{SourceText, no_toml};
@@ -134,21 +134,7 @@ impl SceneFile {
     /// # Errors
     /// As [`read`](Self::read); [`Error::Input`] for an override that is no key and value.
     pub fn read_with(path: impl AsRef<Path>, overrides: &[String]) -> Result<Self, Error> {
-        let path = path.as_ref();
-        parse(text_of(path)?, path, overrides, &[])
-    }
-
-    /// As [`read_with`](Self::read_with), with tables of [devices](crate::Device) that the calling crate defines.
-    ///
-    /// # Errors
-    /// As [`read_with`](Self::read_with).
-    pub fn read_with_devices(
-        path: impl AsRef<Path>,
-        overrides: &[String],
-        devices: &[DeviceTable],
-    ) -> Result<Self, Error> {
-        let path = path.as_ref();
-        parse(text_of(path)?, path, overrides, devices)
+        SceneReader::default().read_with(path, overrides)
     }
 
     /// The text of a scene file, with the values of `overrides`, as those of [`read_with`](Self::read_with),
@@ -225,7 +211,64 @@ impl SceneFile {
     /// # Errors
     /// As there.
     pub fn parse_with(text: &str, path: &Path, overrides: &[String]) -> Result<Self, Error> {
-        parse(text.into(), path, overrides, &[])
+        SceneReader::default().parse_with(text, path, overrides)
+    }
+}
+
+/// A reader of scene files that may have tables of [devices](crate::Device) which other crates define.
+///
+/// ```
+/// use pliant::SceneReader;
+///
+/// let file = SceneReader::new(&[]).read_with("scenes/beam-bend.toml", &[])?;
+/// assert_eq!(file.scene.end(), 1.0);
+/// # Ok::<(), pliant::Error>(())
+/// ```
+#[derive(Debug, Clone, Default)]
+pub struct SceneReader {
+    devices: Vec<DeviceTable>,
+}
+
+impl SceneReader {
+    /// A reader of files that may have these tables, too.
+    pub fn new(devices: &[DeviceTable]) -> Self {
+        Self { devices: devices.into() }
+    }
+
+    /// As [`SceneFile::read_with`].
+    ///
+    /// # Errors
+    /// As there.
+    pub fn read_with(
+        &self,
+        path: impl AsRef<Path>,
+        overrides: &[String],
+    ) -> Result<SceneFile, Error> {
+        let path = path.as_ref();
+        parse(text_of(path)?, path, overrides, &self.devices)
+    }
+
+    /// As [`SceneFile::parse_with`].
+    ///
+    /// # Errors
+    /// As there.
+    pub fn parse_with(
+        &self,
+        text: &str,
+        path: &Path,
+        overrides: &[String],
+    ) -> Result<SceneFile, Error> {
+        parse(text.into(), path, overrides, &self.devices)
+    }
+
+    /// All tables and keys of its scene files in Markdown, with types, units, defaults and examples.
+    pub fn reference(&self) -> String {
+        reference::reference(&self.devices)
+    }
+
+    /// The JSON Schema (draft 7) of its scene files, for editors that check TOML by it.
+    pub fn schema(&self) -> serde_json::Value {
+        schema::schema(&self.devices)
     }
 }
 

@@ -2,13 +2,24 @@
 
 use std::fmt::Write;
 
+use super::device::{DeviceKey, DeviceTable};
 use super::keys::{Default, Key, TableKeys, ValueType};
 use super::material::LAW;
 use super::top::TOP;
 
-/// All tables and keys of scene files in Markdown, with types, units, defaults and examples.
-pub fn reference() -> String {
-    sections(VALUES, &tables())
+/// All tables and keys of scene files in Markdown, with types, units, defaults and examples, those of `devices` at the end.
+pub(super) fn reference(devices: &[DeviceTable]) -> String {
+    let mut page = sections(VALUES, &tables());
+    for DeviceTable { word, about, keys, .. } in devices {
+        page += &format!("\n### `[[{word}]]`\n\n{about}\n");
+        if !keys.is_empty() {
+            page += "\n| key | unit | meaning |\n| --- | --- | --- |\n";
+        }
+        for DeviceKey { name, unit, meaning } in *keys {
+            page += &format!("| `{name}` | {unit} | {meaning} |\n");
+        }
+    }
+    page
 }
 
 /// The same of study files.

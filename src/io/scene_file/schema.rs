@@ -2,14 +2,20 @@
 
 use serde_json::{Map, Value, json};
 
+use super::device::{DeviceKey, DeviceTable};
 use super::keys::{Default, Key, TableKeys, ValueType};
 use super::reference::tables;
 use super::selection::BOX;
 use super::top::TOP;
 
-/// The JSON Schema (draft 7) of scene files, for editors that check TOML by it.
-pub fn schema() -> Value {
+/// The JSON Schema (draft 7) of scene files, those of `devices` among their tables.
+pub(super) fn schema(devices: &[DeviceTable]) -> Value {
     let mut root = object(&TOP);
+    for table in devices {
+        let definition = of_device(table);
+        let list = json!({ "type": "array", "items": definition });
+        root["properties"][table.word] = json!({ "anyOf": [definition, list] });
+    }
     let inner = tables().into_iter().skip(1).map(|keys| (keys.name.into(), object(keys)));
     let mut definitions: Map<String, Value> = inner.collect();
     definitions.insert(BOX.name.into(), object(&BOX));
@@ -20,6 +26,21 @@ pub fn schema() -> Value {
     root["title"] = json!("Scene file of pliant");
     root["definitions"] = definitions.into();
     root
+}
+
+/// The schema of a table of another crate, which alone knows the types of its values.
+fn of_device(table: &DeviceTable) -> Value {
+    let key = |key: &DeviceKey| {
+        let unit = if key.unit.is_empty() { String::new() } else { format!(" ({})", key.unit) };
+        (key.name.into(), json!({ "description": format!("{}{unit}", key.meaning) }))
+    };
+    let properties: Map<String, Value> = table.keys.iter().map(key).collect();
+    json!({
+        "type": "object",
+        "description": table.about,
+        "additionalProperties": properties.is_empty(),
+        "properties": properties,
+    })
 }
 
 /// Kinds of values that many keys have.

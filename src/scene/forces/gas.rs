@@ -10,8 +10,8 @@
 //! reservoir of springs, and sum mu q of the flows q is supplied, so that the energy balance closes with and
 //! without flow.
 //!
-//! As a constant, m makes the gas a force with a potential: statics, spectra, central differences and the
-//! Jacobian of `ida-klu` need no code of their own (`Scene::with_fixed_amounts`, `fixed_amount.rs`, `chamber_fluid.rs`). Its
+//! As a constant, m makes the gas a force with a potential: statics, spectra and central differences need no
+//! code of their own (`Scene::with_fixed_amounts`, `fixed_amount.rs`, `chamber_fluid.rs`). Its
 //! tangent -(p - p_a) V'' + (n p/V) V' V'^T is full over the nodes of the walls, and so is the pattern. As unknowns,
 //! for all other methods, amounts stand behind the strains of Maxwell branches, y = (u, v, G, m, E_d, E_s),
 //! in a `Flow` (`elements/force.rs`) that `dynamics/linear/flow_matrix.rs` eliminates.

@@ -23,7 +23,7 @@ use crate::integrators::ode::Failure;
 /// constant ([`first_order`](Self::first_order)), one of two ([`rise_and_fall`](Self::rise_and_fall)), or that of muscles ([`activation`](Self::activation)). A
 /// [heated](Self::heated) actuator is commanded by a power.
 ///
-/// It is an unknown under error control, for all methods but `ida-klu` and `central-difference`; equilibria have it where it comes to rest.
+/// It is an unknown under error control, for all methods but `central-difference`; equilibria have it where it comes to rest.
 ///
 /// ```
 /// use pliant::simulate::Reading;

@@ -1,14 +1,13 @@
-//! The settings that are words: integration methods, and how contact events are handled.
+//! The settings that are words: integration methods with their facts, one row for each, and how contact events are handled.
 
 use std::borrow::Cow;
 use std::fmt;
-use std::ops::RangeInclusive;
 use std::str::FromStr;
 
 use crate::base::input::InputError;
 use crate::scene::timeline::Scene;
 
-/// An integration method.
+/// An integration method: [`information`](Self::information) has the facts of each.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[non_exhaustive]
 pub enum Method {
@@ -16,41 +15,92 @@ pub enum Method {
     /// it runs, and goes on with another method if necessary. The report says what was chosen and why.
     #[default]
     Auto,
-    /// CVODE, backward differentiation formulas of order 1 to 5: for stiff motion.
+    /// CVODE, backward differentiation formulas: for stiff motion.
     CvodeBdf,
-    /// CVODE, Adams-Moulton formulas of order 1 to 12: for motion that is hardly damped.
+    /// CVODE, Adams-Moulton formulas: for motion that is hardly damped.
     CvodeAdams,
     /// IDA on the index-1 form, with the structured Newton matrix.
     Ida,
-    /// IDA on the index-1 form, with KLU on the sparse Jacobian of the whole system.
-    IdaKlu,
     /// IDA on the stabilized index-2 form (Gear, Gupta, Leimkuhler): positions and velocities meet the
     /// constraints at each step, within the tolerances, without alpha; where a phase begins, velocities jump
     /// to values that the constraints allow.
     IdaIndexTwo,
-    /// ARKODE, diagonally implicit Runge-Kutta methods of order 2 to 5, L-stable: for vibrations that steps
-    /// need not resolve. `max_order` is their order; default: 4.
+    /// ARKODE, diagonally implicit Runge-Kutta methods, L-stable: for vibrations that steps need not resolve.
     Arkode,
-    /// The internal Rosenbrock methods of order 3 and 4, implicit without an iteration, L-stable: for
-    /// vibrations that steps need not resolve, and for commands at equal times. `max_order` is their order; default: 4; with 3
-    /// one factorization serves many commands.
+    /// The internal Rosenbrock methods, implicit without an iteration, L-stable: for vibrations that steps need not
+    /// resolve, and for commands at equal times; with order 3 one factorization serves many commands.
     Rosenbrock,
     /// The internal explicit Runge-Kutta method, Dormand-Prince 5(4): for motion that is not stiff,
     /// and as a check of the others.
     Rk,
-    /// Explicit central differences, order 2: for bodies with lumped inertia that are hardly damped.
+    /// Explicit central differences: for bodies with lumped inertia that are hardly damped.
     /// Steps are as long as stability allows, so that at a loose `rtol` errors are far below it.
     CentralDifference,
 }
 
+/// Facts of a [`Method`]. Words of scene files and flags, messages, the reference page, and lines and colours of charts
+/// follow from them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct MethodInformation {
+    /// Name in scene files, flags and reports.
+    pub name: &'static str,
+    /// The method in full.
+    pub long_name: &'static str,
+    /// Motion that it suits, in words.
+    pub purpose: &'static str,
+    /// Lowest and highest order that [`Settings::max_order`](crate::Settings::max_order) may name.
+    pub orders: [u32; 2],
+    /// Order, the highest of a multistep method, where none is named.
+    pub default_order: Option<u32>,
+    /// The form of the equations that it integrates.
+    pub form: MotionForm,
+    /// Whether it solves linear systems, with the Newton matrix; else stability bounds its steps.
+    pub is_implicit: bool,
+    /// Whether it has unknowns besides displacements and velocities: strains of Maxwell branches, amounts of gas and liquids,
+    /// states of lags.
+    pub has_internal_unknowns: bool,
+    /// When [`Method::Auto`] takes it; empty if never.
+    pub automatic: &'static str,
+    /// Orders that charts compare with that by default.
+    pub(crate) charted_orders: &'static [u32],
+    /// Number of its colour in charts: methods of one integrator share it.
+    pub(crate) colour: usize,
+}
+
+/// A form of the equations of motion.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum MotionForm {
+    /// Ordinary differential equations of first order; constraints are eliminated.
+    Ode,
+    /// Differential-algebraic equations of index 1, multipliers among the unknowns.
+    IndexOne,
+    /// Stabilized differential-algebraic equations of index 2.
+    IndexTwo,
+    /// Ordinary differential equations of second order; constraints are eliminated.
+    SecondOrder,
+}
+
+impl MotionForm {
+    /// The form, in words.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Ode => "ODE",
+            Self::IndexOne => "DAE of index 1",
+            Self::IndexTwo => "DAE of index 2",
+            Self::SecondOrder => "ODE of second order",
+        }
+    }
+}
+
 impl Method {
     /// All methods.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 9] = [
         Self::Auto,
         Self::CvodeBdf,
         Self::CvodeAdams,
         Self::Ida,
-        Self::IdaKlu,
         Self::IdaIndexTwo,
         Self::Arkode,
         Self::Rosenbrock,
@@ -58,101 +108,181 @@ impl Method {
         Self::CentralDifference,
     ];
 
-    /// Whether it integrates bodies with [Maxwell branches](crate::MaxwellBranch).
-    pub(crate) fn takes_branches(self) -> bool {
-        !matches!(self, Self::IdaKlu | Self::CentralDifference)
-    }
-
-    /// Name of the method: `auto`, `cvode-bdf`, `cvode-adams`, `ida`, `ida-klu`,
-    /// `ida-index-2`, `arkode`, `rosenbrock`, `rk`, `central-difference`.
-    pub fn name(self) -> &'static str {
+    /// The facts of the method, its row.
+    pub fn information(self) -> &'static MethodInformation {
         match self {
-            Self::Auto => "auto",
-            Self::CvodeBdf => "cvode-bdf",
-            Self::CvodeAdams => "cvode-adams",
-            Self::Ida => "ida",
-            Self::IdaKlu => "ida-klu",
-            Self::IdaIndexTwo => "ida-index-2",
-            Self::Arkode => "arkode",
-            Self::Rosenbrock => "rosenbrock",
-            Self::Rk => "rk",
-            Self::CentralDifference => "central-difference",
+            Self::Auto => &MethodInformation {
+                name: "auto",
+                long_name: "automatic choice",
+                purpose: "one of the others, chosen for each phase and revised while it runs",
+                orders: [1, 5],
+                default_order: None,
+                form: MotionForm::Ode,
+                is_implicit: true,
+                has_internal_unknowns: true,
+                automatic: "",
+                charted_orders: &[],
+                colour: 6,
+            },
+            Self::CvodeBdf => &MethodInformation {
+                name: "cvode-bdf",
+                long_name: "CVODE, backward differentiation formulas",
+                purpose: "stiff motion: damped bodies, hard contact, fine meshes",
+                orders: [1, 5],
+                default_order: Some(5),
+                form: MotionForm::Ode,
+                is_implicit: true,
+                has_internal_unknowns: true,
+                automatic: "the lowest vibration is strongly damped",
+                charted_orders: &[2],
+                colour: 0,
+            },
+            Self::CvodeAdams => &MethodInformation {
+                name: "cvode-adams",
+                long_name: "CVODE, Adams-Moulton formulas",
+                purpose: "motion that is hardly damped",
+                orders: [1, 12],
+                default_order: Some(12),
+                form: MotionForm::Ode,
+                is_implicit: true,
+                has_internal_unknowns: true,
+                automatic: "",
+                charted_orders: &[],
+                colour: 1,
+            },
+            Self::Ida => &MethodInformation {
+                name: "ida",
+                long_name: "IDA, backward differentiation formulas",
+                purpose: "a check of CVODE: constraint forces are unknowns, too",
+                orders: [1, 5],
+                default_order: Some(5),
+                form: MotionForm::IndexOne,
+                is_implicit: true,
+                has_internal_unknowns: true,
+                automatic: "",
+                charted_orders: &[],
+                colour: 3,
+            },
+            Self::IdaIndexTwo => &MethodInformation {
+                name: "ida-index-2",
+                long_name: "IDA, backward differentiation formulas",
+                purpose: "constraints met at each step, without alpha",
+                orders: [1, 5],
+                default_order: Some(5),
+                form: MotionForm::IndexTwo,
+                is_implicit: true,
+                has_internal_unknowns: true,
+                automatic: "",
+                charted_orders: &[],
+                colour: 3,
+            },
+            Self::Arkode => &MethodInformation {
+                name: "arkode",
+                long_name: "ARKODE, diagonally implicit Runge-Kutta methods",
+                purpose: "bodies that vibrate with little damping",
+                orders: [2, 5],
+                default_order: Some(4),
+                form: MotionForm::Ode,
+                is_implicit: true,
+                has_internal_unknowns: true,
+                automatic: "the lowest vibration is lightly damped",
+                charted_orders: &[3, 5],
+                colour: 4,
+            },
+            Self::Rosenbrock => &MethodInformation {
+                name: "rosenbrock",
+                long_name: "Rosenbrock methods, linearly implicit",
+                purpose: "bodies that vibrate, without iterations; commands at equal times",
+                orders: [3, 4],
+                default_order: Some(4),
+                form: MotionForm::Ode,
+                is_implicit: true,
+                has_internal_unknowns: true,
+                automatic: "commands change forces again and again",
+                charted_orders: &[3],
+                colour: 7,
+            },
+            Self::Rk => &MethodInformation {
+                name: "rk",
+                long_name: "Dormand-Prince 5(4), explicit",
+                purpose: "motion that is not stiff: light damping, small alpha",
+                orders: [5, 5],
+                default_order: Some(5),
+                form: MotionForm::Ode,
+                is_implicit: false,
+                has_internal_unknowns: true,
+                automatic: "accuracy asks for steps little longer than its longest stable ones",
+                charted_orders: &[],
+                colour: 2,
+            },
+            Self::CentralDifference => &MethodInformation {
+                name: "central-difference",
+                long_name: "central differences, explicit",
+                purpose: "bodies of lumped inertia without much damping",
+                orders: [2, 2],
+                default_order: Some(2),
+                form: MotionForm::SecondOrder,
+                is_implicit: false,
+                has_internal_unknowns: false,
+                automatic: "with lumped inertia, where its stable steps cost less",
+                charted_orders: &[],
+                colour: 5,
+            },
         }
     }
 
-    /// Why it has no equations for what is in a scene, if it has none.
+    /// Name of the method in scene files, flags and reports.
+    pub fn name(self) -> &'static str {
+        self.information().name
+    }
+
+    /// Whether `max_order` chooses among several orders.
+    pub(crate) fn has_orders(self) -> bool {
+        let [lowest, highest] = self.information().orders;
+        lowest < highest
+    }
+
+    /// The first method of the same colour in charts.
+    pub(crate) fn family(self) -> Self {
+        let colour = self.information().colour;
+        let shares_it = |method: &Self| method.information().colour == colour;
+        Self::ALL.into_iter().find(shares_it).unwrap_or(self)
+    }
+
+    /// Names of the methods that `suits`, for messages.
+    pub(crate) fn names(suits: impl Fn(&MethodInformation) -> bool) -> String {
+        let rows = Self::ALL.into_iter().map(Self::information).filter(|row| suits(row));
+        rows.map(|row| row.name).collect::<Vec<_>>().join(", ")
+    }
+
+    /// Why it has no equations for a scene, if it has none.
     pub(crate) fn why_not(self, scene: &Scene) -> Option<&'static str> {
-        match self {
-            Self::IdaKlu if !scene.touches().is_empty() => Some(
-                "its Jacobian has a fixed pattern, and bodies that touch couple ever other nodes: take ida",
-            ),
-            Self::IdaKlu | Self::CentralDifference if !scene.orifices().is_empty() => Some(
+        if self.information().has_internal_unknowns {
+            return None;
+        }
+        if !scene.orifices().is_empty() {
+            Some(
                 "it has no unknowns for the amounts of gas that flow through orifices: take another method, or auto",
-            ),
-            Self::IdaKlu | Self::CentralDifference if scene.pours() => Some(
+            )
+        } else if scene.pours() {
+            Some(
                 "it has no unknowns for the amounts of liquids that flow into chambers or through pipes: take another method, or auto",
-            ),
-            Self::IdaKlu | Self::CentralDifference if scene.lags().len() > 0 => Some(
+            )
+        } else if scene.lags().len() > 0 {
+            Some(
                 "it has no unknowns for the states of actuators that lag: take another method, or auto",
-            ),
-            _ => None,
+            )
+        } else {
+            None
         }
     }
 
     /// A scene as it has equations for it: with constant amounts of gas and liquids where it has no unknowns for them.
     pub(crate) fn equations_of(self, scene: &Scene) -> Cow<'_, Scene> {
-        match self {
-            Self::IdaKlu | Self::CentralDifference
-                if scene.orifices().is_empty() && !scene.pours() =>
-            {
-                scene.with_fixed_amounts()
-            }
-            _ => Cow::Borrowed(scene),
-        }
-    }
-
-    /// Purpose of the method, in words.
-    pub fn purpose(self) -> &'static str {
-        match self {
-            Self::Auto => {
-                "choosing one of the others for each phase, by what it asks for and how it goes"
-            }
-            Self::CvodeBdf => {
-                "stiff motion: damped bodies, hard contact, fine meshes (CVODE, BDF of order 1 to 5)"
-            }
-            Self::CvodeAdams => {
-                "motion that is hardly damped (CVODE, Adams-Moulton of order 1 to 12)"
-            }
-            Self::Ida => {
-                "a check of CVODE: constraint forces are unknowns, too (IDA on the index-1 form)"
-            }
-            Self::IdaKlu => {
-                "a check of the structured linear solver: IDA with KLU on the whole Jacobian"
-            }
-            Self::IdaIndexTwo => {
-                "constraints met at each step, without alpha (IDA on the stabilized index-2 form)"
-            }
-            Self::Arkode => {
-                "bodies that vibrate with little damping (ARKODE, diagonally implicit, order 2 to 5)"
-            }
-            Self::Rosenbrock => {
-                "bodies that vibrate, without iterations (Rosenbrock methods, linearly implicit, order 3 and 4)"
-            }
-            Self::Rk => {
-                "motion that is not stiff: light damping, small alpha (Dormand-Prince 5(4))"
-            }
-            Self::CentralDifference => {
-                "bodies of lumped inertia without much damping (explicit central differences)"
-            }
-        }
-    }
-
-    pub(super) fn orders(self) -> RangeInclusive<u32> {
-        match self {
-            Self::CvodeAdams => 1..=12,
-            Self::Arkode => 2..=5,
-            Self::Rosenbrock => 3..=4,
-            _ => 1..=5,
+        let is_constant = scene.orifices().is_empty() && !scene.pours();
+        match self.information().has_internal_unknowns || !is_constant {
+            true => Cow::Borrowed(scene),
+            false => scene.with_fixed_amounts(),
         }
     }
 }
@@ -168,8 +298,8 @@ impl FromStr for Method {
 
     fn from_str(name: &str) -> Result<Self, InputError> {
         Self::ALL.into_iter().find(|method| method.name() == name).ok_or_else(|| {
-            let known = Self::ALL.map(Self::name).join(", ");
-            InputError::new("method", format!("\"{name}\""), format!("it is one of {known}"))
+            let help = format!("it is one of {}", Self::names(|_| true));
+            InputError::new("method", format!("\"{name}\""), help)
         })
     }
 }

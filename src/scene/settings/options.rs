@@ -87,9 +87,9 @@ impl SettingsOption {
         },
         Self {
             key: "max_order",
-            meaning: "highest order of a multistep method, order of `arkode` and `rosenbrock`",
+            meaning: "order of the method, the highest one of a multistep method",
             unit: "",
-            default: "5; `cvode-adams`: 12, `arkode`, `rosenbrock`: 4",
+            default: "that of the method: see \"pliant methods\"",
             value_name: "ORDER",
             value: SettingsValue::Count(|settings, order| {
                 settings.max_order = Some(u32::try_from(order).unwrap_or(u32::MAX));

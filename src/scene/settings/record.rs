@@ -34,8 +34,8 @@ pub struct Settings {
     /// drift; it costs implicit methods and central differences nothing, but limits the steps of `rk` to
     /// 3.3/alpha.
     pub alpha: f64,
-    /// Highest order of a multistep method (default: 5, Adams: 12); order of ARKODE's and Rosenbrock methods
-    /// (default: 4).
+    /// Order of the method, the highest one of a multistep method. Default: that of
+    /// [`Method::information`].
     pub max_order: Option<u32>,
     /// Whether CVODE's BDF detects where the stability of its orders above 2 limits the steps, and lowers the
     /// order there (`CVodeSetStabLimDet`).
@@ -88,14 +88,13 @@ impl Settings {
         self.atol_velocity.map_or(Ok(1.0), |atol| positive("atol_velocity", atol, "m/s"))?;
         self.max_step.map_or(Ok(1.0), |step| positive("max_step", step, "s"))?;
         self.max_time.map_or(Ok(1.0), |time| positive("max_time", time, "s"))?;
-        let orders = self.method.orders();
+        let [lowest, highest] = self.method.information().orders;
         match self.max_order {
-            Some(order) if matches!(self.method, Method::Rk | Method::CentralDifference) => {
+            Some(order) if !self.method.has_orders() => {
                 let help = format!("{} has one order only: leave it out", self.method);
                 Err(InputError::new("max_order", order, help))
             }
-            Some(order) if !orders.contains(&order) => {
-                let (lowest, highest) = (orders.start(), orders.end());
+            Some(order) if !(lowest..=highest).contains(&order) => {
                 let help = format!("{} has the orders {lowest} to {highest}", self.method);
                 Err(InputError::new("max_order", order, help))
             }

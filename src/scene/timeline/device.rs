@@ -192,10 +192,28 @@ pub struct DeviceState<'a> {
     pub u: &'a [f64],
     /// Velocities (m/s), likewise.
     pub v: &'a [f64],
-    /// Multipliers (N) of its [rows](Device::rows), 0 of those that follow from others; not known at the start, and without a sample.
-    pub multipliers: Option<&'a [f64]>,
+    /// Multipliers of its [rows](Device::rows); not known without a sample.
+    pub multipliers: Option<DeviceMultipliers<'a>>,
     pub(super) device: &'a dyn Device,
     pub(super) phase: &'a Phase,
+}
+
+/// Multipliers of the rows of a device.
+#[derive(Debug, Clone, Copy)]
+pub struct DeviceMultipliers<'a> {
+    /// The number of each row among those in force; none of those that follow from others.
+    pub(crate) rows: &'a [Option<usize>],
+    pub(crate) all: &'a [f64],
+}
+
+impl<'a> DeviceMultipliers<'a> {
+    /// The multipliers (N), row by row: 0 of rows that follow from others, NaN where none are known, as at the start.
+    pub fn iter(self) -> impl Iterator<Item = f64> + 'a {
+        self.rows.iter().map(move |row| match row {
+            None => 0.0,
+            Some(row) => self.all.get(*row).copied().unwrap_or(f64::NAN),
+        })
+    }
 }
 
 impl DeviceState<'_> {

@@ -36,7 +36,8 @@ use std::sync::Arc;
 
 pub(crate) use contacts::ContactReader;
 pub use device::{
-    Device, DeviceGauge, DeviceRow, DeviceSignals, DeviceSite, DeviceState, DeviceValue,
+    Device, DeviceGauge, DeviceMultipliers, DeviceRow, DeviceSignals, DeviceSite, DeviceState,
+    DeviceValue,
 };
 pub(crate) use device_rows::STEER;
 pub use device_rows::{DeviceInput, DeviceOutput, InputLimit};

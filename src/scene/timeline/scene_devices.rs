@@ -59,6 +59,21 @@ impl Scene {
         self.devices[number].rows(&self.device_site())
     }
 
+    /// The same by degrees of freedom, ascending, as rows in force have them.
+    pub(crate) fn terms_of_device(
+        &self,
+        number: usize,
+    ) -> Result<Vec<Vec<(usize, f64)>>, InputError> {
+        let d = self.body.dimension();
+        let by_dofs = |row: DeviceRow| {
+            let terms = row.into_iter().map(|(node, axis, c)| ((node - 1) * d + axis.index(), c));
+            let mut terms: Vec<(usize, f64)> = terms.collect();
+            terms.sort_unstable_by_key(|&(dof, _)| dof);
+            terms
+        };
+        Ok(self.rows_of_device(number)?.into_iter().map(by_dofs).collect())
+    }
+
     /// Whether the device with a name has rows.
     pub(crate) fn joins(&self, name: &str) -> bool {
         let number = self.devices.iter().position(|device| device.name() == name);

@@ -44,7 +44,7 @@ impl Advice {
                 let (unknowns, time) = (candidate.unknowns, time_text(candidate.seconds));
                 let differs = if self.mesh.is_some() { "away" } else { "off" };
                 reasons.push(match error {
-                    0.0 => format!("{mesh}: {unknowns} unknowns; what all are compared with"),
+                    0.0 => format!("{mesh}: {unknowns} unknowns; the reference"),
                     _ => {
                         let off = self.off(error, differs);
                         format!("{mesh}: {unknowns} unknowns, {off}, {time}")
@@ -195,8 +195,7 @@ impl fmt::Display for Advice {
             writeln!(f, "- {less}{}", indicator.text)?;
         }
         let written = ("as written", &self.written);
-        let others =
-            [("what is enough", &self.enough), ("what all are compared with", &self.truth)];
+        let others = [("what is enough", &self.enough), ("the reference", &self.truth)];
         let others = others.iter().filter_map(|(name, run)| Some((*name, run.as_ref()?)));
         let mut told: Vec<&str> = Vec::new();
         for (name, candidate) in others.chain([written]) {

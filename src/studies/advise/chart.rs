@@ -38,7 +38,7 @@ impl Advice {
         let parts = [
             (Some(&self.written), "as written"),
             (self.enough.as_ref(), "enough"),
-            (self.truth.as_ref(), "what all are compared with"),
+            (self.truth.as_ref(), "the reference"),
         ];
         let own = parts.iter().filter(|(one, _)| one.is_some_and(|one| one.is(candidate)));
         own.map(|(_, name)| *name).collect()

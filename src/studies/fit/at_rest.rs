@@ -10,7 +10,7 @@ use super::rows::{Columns, Rows};
 use crate::base::input::{InputError, unknown_among};
 use crate::dynamics::error::Error;
 use crate::dynamics::trajectory::Quantity;
-use crate::io::scene_file::{SceneFile, SetValue, problem};
+use crate::io::scene_file::{SceneFile, SceneReader, SetValue, problem};
 
 /// The equilibria of a table, whose columns with names of sensors, `known`, were measured; the others are keys of the scene.
 ///
@@ -18,10 +18,10 @@ use crate::io::scene_file::{SceneFile, SetValue, problem};
 /// A column that is neither, or stands twice; no column of a sensor; columns of different lengths; a reading that is no number; a value
 /// that the scene does not take.
 pub(super) fn equilibria(
+    reader: &SceneReader,
     (text, path): (&str, &Path),
     overrides: &[String],
-    measured: &MeasuredAtRest,
-    known: &[Quantity],
+    (measured, known): (&MeasuredAtRest, &[Quantity]),
 ) -> Result<(Rows, Columns), Error> {
     let count = measured.columns.first().map_or(0, |(_, values)| values.len());
     let (mut keys, mut columns) = (Vec::new(), Vec::new());
@@ -45,7 +45,7 @@ pub(super) fn equilibria(
     let one = |row: usize| -> Vec<String> {
         keys.iter().map(|(key, values)| format!("{key}={}", values[row])).collect()
     };
-    let read = |set: &[String]| SceneFile::parse_with(text, path, &[overrides, set].concat());
+    let read = |set: &[String]| reader.parse_with(text, path, &[overrides, set].concat());
     let set: Vec<Vec<String>> = (0..count).map(one).collect();
     for (row, set) in set.iter().enumerate() {
         let Err(error) = read(set) else { continue };

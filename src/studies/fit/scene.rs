@@ -15,7 +15,7 @@ use crate::dynamics::error::Error;
 use crate::dynamics::simulate::Sampling;
 use crate::dynamics::trajectory::{Quantity, Trajectory};
 use crate::io::output::Chart;
-use crate::io::scene_file::{SceneFile, text_of};
+use crate::io::scene_file::{SceneFile, SceneReader, text_of};
 
 /// A scene file, and what was measured of the scene.
 ///
@@ -24,6 +24,7 @@ use crate::io::scene_file::{SceneFile, text_of};
 /// measured in their unit.
 #[derive(Debug, Clone)]
 pub struct SceneFit {
+    reader: SceneReader,
     text: String,
     path: PathBuf,
     overrides: Vec<String>,
@@ -69,21 +70,22 @@ impl SceneFit {
         measured: &Measured,
     ) -> Result<Self, Error> {
         let path = path.into();
-        Self::of_text(text_of(&path)?, path, overrides, measured)
+        Self::of_text(&SceneReader::default(), text_of(&path)?, path, overrides, measured)
     }
 
-    /// As [`new`](Self::new), of the `text` of a file at `path`.
+    /// As [`new`](Self::new), of the `text` of a file at `path`, which `reader` reads.
     ///
     /// # Errors
     /// As there.
     pub fn of_text(
+        reader: &SceneReader,
         text: impl Into<String>,
         path: impl Into<PathBuf>,
         overrides: &[String],
         measured: &Measured,
     ) -> Result<Self, Error> {
         let (text, path) = (text.into(), path.into());
-        let file = SceneFile::parse_with(&text, &path, overrides)?;
+        let file = reader.parse_with(&text, &path, overrides)?;
         let end = file.scene.end();
         let mut rows: Vec<usize> = (0..measured.times.len())
             .filter(|&row| (0.0..=end).contains(&measured.times[row]))
@@ -116,7 +118,8 @@ impl SceneFit {
         let (overrides, rows, precision) =
             (overrides.into(), Rows::Times(times), file.settings.rtol);
         let scales = scales(&columns);
-        Ok(Self { text, path, overrides, rows, columns, scales, precision })
+        let reader = reader.clone();
+        Ok(Self { reader, text, path, overrides, rows, columns, scales, precision })
     }
 
     /// A fit of the scene file at `path` to equilibria, each at other values of its keys, as
@@ -150,26 +153,28 @@ impl SceneFit {
         measured: &MeasuredAtRest,
     ) -> Result<Self, Error> {
         let path = path.into();
-        Self::at_rest_of_text(text_of(&path)?, path, overrides, measured)
+        Self::at_rest_of_text(&SceneReader::default(), text_of(&path)?, path, overrides, measured)
     }
 
-    /// As [`at_rest`](Self::at_rest), of the `text` of a file at `path`.
+    /// As [`at_rest`](Self::at_rest), of the `text` of a file at `path`, which `reader` reads.
     ///
     /// # Errors
     /// As there.
     pub fn at_rest_of_text(
+        reader: &SceneReader,
         text: impl Into<String>,
         path: impl Into<PathBuf>,
         overrides: &[String],
         measured: &MeasuredAtRest,
     ) -> Result<Self, Error> {
         let (text, path) = (text.into(), path.into());
-        let file = SceneFile::parse_with(&text, &path, overrides)?;
+        let file = reader.parse_with(&text, &path, overrides)?;
         let known = sensors(&file)?;
-        let (rows, columns) = equilibria((&text, &path), overrides, measured, &known)?;
+        let (rows, columns) = equilibria(reader, (&text, &path), overrides, (measured, &known))?;
         let (overrides, precision) = (overrides.into(), file.statics.options.rtol);
         let scales = scales(&columns);
-        Ok(Self { text, path, overrides, rows, columns, scales, precision })
+        let reader = reader.clone();
+        Ok(Self { reader, text, path, overrides, rows, columns, scales, precision })
     }
 
     /// Fits keys of the file, as `body.material.young`. `tell` is as in [`least_squares`].
@@ -225,7 +230,7 @@ impl SceneFit {
 
     /// Readings of the sensors in a motion at some times (s).
     fn in_motion(&self, overrides: &[String], times: &[f64]) -> Result<Vec<Vec<f64>>, Error> {
-        let file = SceneFile::parse_with(&self.text, &self.path, overrides)?;
+        let file = self.reader.parse_with(&self.text, &self.path, overrides)?;
         let last = times.last().copied().unwrap_or_default();
         let scene = match last > 0.0 {
             true => file.scene.clone().ended_at(last),
@@ -245,7 +250,7 @@ impl SceneFit {
 
     /// Readings of the sensors in an equilibrium.
     fn in_equilibrium(&self, overrides: &[String]) -> Result<Vec<f64>, Error> {
-        let found = SceneFile::parse_with(&self.text, &self.path, overrides)?.equilibrium()?;
+        let found = self.reader.parse_with(&self.text, &self.path, overrides)?.equilibrium()?;
         let places = self.places(found.trajectory())?;
         Ok(places.into_iter().map(|place| found.sample().sensors[place]).collect())
     }

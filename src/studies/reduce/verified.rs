@@ -34,7 +34,8 @@ pub fn verify(scene: &Scene, model: &ReducedModel, settings: &Settings) -> Resul
     let (full, full_seconds) = timed(&whole, settings, SAMPLES, &mut observer)?;
     let (error, told, seconds) = match timed(&short, settings, SAMPLES, &mut observer) {
         Ok((motion, seconds)) => {
-            let told = motion.report().reduced.as_ref().map_or(0.0, |report| report.told_error);
+            let told =
+                motion.report().reduced.as_ref().map_or(0.0, |report| report.estimated_error);
             (distance(&full, &motion) / travel(&full).max(model.travel), told, seconds)
         }
         Err(Error::Integration(_)) => (f64::INFINITY, f64::INFINITY, f64::NAN),

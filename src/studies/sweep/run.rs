@@ -10,7 +10,7 @@ use super::row::{Cost, Row, RowVerdict};
 use crate::base::input::InputError;
 use crate::dynamics::error::{Error, guarded};
 use crate::dynamics::simulate::Simulation;
-use crate::io::scene_file::{SceneFile, StudyFile, problem};
+use crate::io::scene_file::{SceneFile, SceneReader, StudyFile, problem};
 use crate::studies::work_precision::quantity::Quantity;
 use crate::studies::work_precision::timing::Budget;
 
@@ -43,6 +43,7 @@ use crate::studies::work_precision::timing::Budget;
 pub struct Sweep {
     file: StudyFile,
     plan: Plan,
+    reader: SceneReader,
 }
 
 /// A run of a point.
@@ -72,7 +73,13 @@ impl Sweep {
             return Err(InputError::new("accuracy of equilibria", accuracy.0, help).into());
         }
         let plan = Plan::new(&file, is_meant)?;
-        Ok(Self { file, plan })
+        Ok(Self { file, plan, reader: SceneReader::default() })
+    }
+
+    /// With scenes that `reader` reads, as those with devices of a program.
+    #[must_use]
+    pub fn read_by(self, reader: SceneReader) -> Self {
+        Self { reader, ..self }
     }
 
     /// Contents of the study file.
@@ -96,7 +103,12 @@ impl Sweep {
     /// As [`SceneFile::read_with`].
     pub fn scene(&self, point: &Point) -> Result<SceneFile, Error> {
         let set = self.file.set.iter().map(|written| written.text.clone());
-        SceneFile::read_with(&self.file.scene, &set.chain(point.set()).collect::<Vec<_>>())
+        self.read(&set.chain(point.set()).collect::<Vec<_>>())
+    }
+
+    /// The scene with these values.
+    pub(super) fn read(&self, set: &[String]) -> Result<SceneFile, Error> {
+        self.reader.read_with(&self.file.scene, set)
     }
 
     /// Checks that the scene of the first point can be run, with its keys and quantities. Returns the units of these.
@@ -137,15 +149,15 @@ impl Sweep {
     /// An override, or a key of the first point, that the scene does not take.
     fn check_keys(&self, first: &Point) -> Result<(), Error> {
         let mut set = Vec::new();
-        SceneFile::read_with(&self.file.scene, &set)?;
+        self.read(&set)?;
         for written in &self.file.set {
             set.push(written.text.clone());
-            let read = SceneFile::read_with(&self.file.scene, &set);
+            let read = self.read(&set);
             read.map_err(|error| self.at(written.line, "set", error))?;
         }
         for (key, one) in first.keys.iter().zip(first.set()) {
             set.push(one);
-            let read = SceneFile::read_with(&self.file.scene, &set);
+            let read = self.read(&set);
             read.map_err(|error| self.at(self.line(key), key, error))?;
         }
         Ok(())

@@ -20,7 +20,6 @@ use super::run::Sweep;
 use crate::base::input::InputError;
 use crate::dynamics::error::Error;
 use crate::io::file::write_file;
-use crate::io::scene_file::SceneFile;
 use crate::studies::work_precision::fingerprint::{of_scene, of_text};
 
 /// A directory that holds the rows of one study.
@@ -215,7 +214,7 @@ impl Identity {
     fn of(sweep: &Sweep) -> Result<Self, Error> {
         let file = sweep.file();
         let set: Vec<String> = file.set.iter().map(|written| written.text.clone()).collect();
-        let scene = SceneFile::read_with(&file.scene, &set)?;
+        let scene = sweep.read(&set)?;
         let solver = match file.is_static {
             true => format!("{:?}", scene.statics),
             false => format!("{:?} {:?}", scene.settings, scene.accuracy),

@@ -8,6 +8,7 @@ use super::{Findings, LineFindings};
 use crate::base::input::InputError;
 use crate::dynamics::error::Error;
 use crate::io::output::{COLOURS, DASHES, Figure, Mark, Panel, Series, Theme};
+use crate::scene::settings::Method;
 
 /// Width of the page, and height of the field (px).
 const SIZE: [f64; 2] = [980.0, 436.0];
@@ -19,10 +20,6 @@ const SHAPES: [&str; 5] = [
     "m0 -5.4 l5.2 8.8 h-10.4 z",
     "m0 5.4 l5.2 -8.8 h-10.4 z",
 ];
-/// Families that have the same colour in all charts, by their place here; others take the colours that are
-/// left.
-const FAMILIES: [&str; 8] =
-    ["cvode-bdf", "cvode-adams", "rk", "ida", "arkode", "central-difference", "auto", "rosenbrock"];
 
 impl Findings {
     /// Draws error over time, both logarithmic, one line per line of the study, to an SVG or PNG
@@ -86,9 +83,9 @@ impl Findings {
     }
 }
 
-/// The number of the colour of each family: its own, or the first that no other has.
+/// The number of the colour of each family: that of the method, or the first that no other has.
 fn colours<'a>(families: impl Iterator<Item = &'a str> + Clone) -> BTreeMap<&'a str, usize> {
-    let own = |family: &str| FAMILIES.iter().position(|known| *known == family);
+    let own = |family: &str| Some(family.parse::<Method>().ok()?.information().colour);
     let mut colours: BTreeMap<_, _> =
         families.clone().filter_map(|family| Some((family, own(family)?))).collect();
     for family in families {
@@ -104,20 +101,22 @@ mod tests {
     use std::collections::BTreeSet;
 
     use super::*;
-    use crate::scene::settings::Method;
 
     /// As long as there are colours, no two families share one, whichever comes first, and methods keep
     /// theirs.
     #[test]
     fn families_have_colours_of_their_own() {
-        let is_family = |method: &Method| !matches!(method, Method::IdaKlu | Method::IdaIndexTwo);
+        let is_family = |method: &Method| method.family() == *method;
         let methods: Vec<_> = Method::ALL.into_iter().filter(is_family).map(Method::name).collect();
         for families in [methods.clone(), vec!["own", "rosenbrock", "other", "rk", "cvode-bdf"]] {
             let colours = colours(families.iter().copied());
             let distinct: BTreeSet<_> = colours.values().map(|&number| COLOURS[number]).collect();
             assert_eq!(distinct.len(), families.len(), "{colours:?}");
             for family in families.iter().filter(|family| methods.contains(family)) {
-                assert_eq!(FAMILIES[colours[family]], *family);
+                assert_eq!(
+                    Ok(colours[family]),
+                    family.parse().map(|own: Method| own.information().colour)
+                );
             }
         }
     }

@@ -102,11 +102,7 @@ impl Scenes {
     /// Adds a line: the scene by `settings`, tolerance by tolerance. Its method is its family.
     #[must_use]
     pub fn line(self, name: impl Into<String>, settings: Settings) -> Self {
-        let family = match settings.method {
-            Method::IdaKlu | Method::IdaIndexTwo => Method::Ida,
-            method => method,
-        };
-        self.by_tolerance(name.into(), family.name(), 0, settings)
+        self.by_tolerance(name.into(), settings.method.family().name(), 0, settings)
     }
 
     /// Adds a line for each of [`all_methods`].
@@ -218,23 +214,15 @@ impl Scenes {
     }
 }
 
-/// Name and settings of all methods: each of [`Method::ALL`]; for CVODE's BDF one more with orders up to 2
-/// only, which suits motion that is hardly damped, and one that detects the stability limits of higher
-/// orders; for ARKODE one for each of the orders 3 and 5 in addition to 4, for Rosenbrock methods one for
-/// order 3.
+/// Name and settings of all methods: each of [`Method::ALL`], of some with further orders, and CVODE's BDF also with detection
+/// of the stability limits of its higher orders.
 #[must_use]
 pub fn all_methods() -> Vec<(String, Settings)> {
     let mut lines = Vec::new();
     for method in Method::ALL {
         let settings = Settings { method, ..Settings::default() };
         lines.push((method.name().to_owned(), settings.clone()));
-        let orders: &[u32] = match method {
-            Method::CvodeBdf => &[2],
-            Method::Arkode => &[3, 5],
-            Method::Rosenbrock => &[3],
-            _ => &[],
-        };
-        for order in orders {
+        for order in method.information().charted_orders {
             let settings = Settings { max_order: Some(*order), ..settings.clone() };
             lines.push((format!("{method}, order {order}"), settings));
         }

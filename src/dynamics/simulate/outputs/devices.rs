@@ -3,7 +3,7 @@
 use super::super::reading::{Reading, ReadingKind};
 use super::super::view::View;
 use crate::base::input::InputError;
-use crate::scene::timeline::DeviceOutput;
+use crate::scene::timeline::{DeviceMultipliers, DeviceOutput};
 
 impl View<'_> {
     /// An output of a [device](crate::Device), by the name of the one and the word of the other.
@@ -23,7 +23,7 @@ impl View<'_> {
         &self,
         device: usize,
         output: usize,
-        multipliers: Option<&[f64]>,
+        multipliers: Option<DeviceMultipliers<'_>>,
     ) -> [f64; 3] {
         let own = &*self.scene.devices()[device];
         let mut state = self.scene.device_state(own, self.phase, self.time, [self.u, self.v]);

@@ -59,16 +59,9 @@ fn index_one_jacobian_is_the_derivative_of_the_residual() {
     let (y, yp) = equations.consistent(0.1, &state).unwrap();
     let [by_y, by_yp] = residual_derivatives(&mut equations, &y, &yp, 1e-5);
     let cj = 50.0;
-    let (offsets, rows) = equations.sparse_pattern();
-    let mut values = vec![0.0; rows.len()];
-    equations.sparse_jacobian(0.1, cj, &y, &yp, &mut values).unwrap();
     let mut jacobian = Mat::<f64>::zeros(y.len(), y.len());
-    for column in 0..y.len() {
-        for at in offsets[column]..offsets[column + 1] {
-            jacobian[(rows[at], column)] = values[at];
-            assert!(at == offsets[column] || rows[at - 1] < rows[at]);
-        }
-    }
+    equations.newton_setup(0.1, cj, &y, &yp).unwrap();
+    equations.visit_jacobian(cj, |i, j, value| jacobian[(i, j)] += value);
     for j in 0..y.len() {
         for i in (0..y.len()).filter(|i| !(2 * n..2 * n + ENERGIES).contains(i)) {
             let expected = by_y[(i, j)] + cj * by_yp[(i, j)];

@@ -10,7 +10,7 @@ use crate::base::vector::padded;
 use crate::elements::body::Body;
 use crate::elements::mesh::Selection;
 use crate::scene::constraint::Axis;
-use crate::scene::timeline::DeviceRow;
+use crate::scene::timeline::{DeviceMultipliers, DeviceRow};
 
 /// Distance of sides at the start, relative to their size and place, that is round-off of a file.
 const APART: f64 = 1e-6;
@@ -264,10 +264,14 @@ impl Assembly {
 
     /// The force (N) on the second side, and the moment (N m) about the place of the joint, of the rows with these multipliers (N), under the
     /// displacements `u` (m).
-    pub(super) fn reaction(&self, multipliers: &[f64], u: &[f64]) -> [Vector3<f64>; 2] {
+    pub(super) fn reaction(
+        &self,
+        multipliers: DeviceMultipliers<'_>,
+        u: &[f64],
+    ) -> [Vector3<f64>; 2] {
         let [mut force, mut moment] = [Vector3::zeros(); 2];
-        for (row, multiplier) in self.rows.iter().zip(multipliers) {
-            let part = -*multiplier * row.direction;
+        for (row, multiplier) in self.rows.iter().zip(multipliers.iter()) {
+            let part = -multiplier * row.direction;
             match row.is_of_vector {
                 true => moment += row.ends[0].at(u, self.dimension).cross(&part),
                 false => force += part,

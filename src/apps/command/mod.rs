@@ -1,4 +1,15 @@
 //! The command `pliant`: soft bodies from scene files, without a line of Rust.
+//!
+//! A program with [devices](crate::Device) of its own has the whole command, with their tables in scene files, reference and
+//! schema, by one line:
+//!
+//! ```text
+//! fn main() -> ExitCode {
+//!     pliant::command::main_with(&[DeviceTable::of::<Fan>("fan")])
+//! }
+//! ```
+//!
+//! The example `own_device` does so.
 
 mod accuracy;
 mod advise;
@@ -31,7 +42,10 @@ use std::io::{self, Write};
 use std::process::ExitCode;
 
 use clap::{CommandFactory, Parser, Subcommand};
-use failure::Failure;
+use pliant::{DeviceTable, SceneReader};
+
+use self::failure::Failure;
+use self::scene::SceneArguments;
 
 /// Dynamics of soft elastic bodies, from scene files.
 ///
@@ -73,8 +87,33 @@ enum Command {
     Schema(schema::Arguments),
 }
 
-fn main() -> ExitCode {
-    let result = match Cli::parse().command {
+impl Command {
+    /// The scene file that it is about.
+    fn scene(&mut self) -> Option<&mut SceneArguments> {
+        Some(match self {
+            Self::Run(arguments) => &mut arguments.scene,
+            #[cfg(feature = "play")]
+            Self::Play(arguments) => &mut arguments.scene,
+            Self::Static(arguments) => &mut arguments.scene,
+            Self::Advise(arguments) => &mut arguments.scene,
+            Self::Fit(arguments) => &mut arguments.scene,
+            Self::Reduce(arguments) => &mut arguments.scene,
+            Self::Check(arguments) => &mut arguments.scene,
+            Self::Chart(arguments) => &mut arguments.scene,
+            _ => return None,
+        })
+    }
+}
+
+/// The command, by the arguments of the process, whose scene files may have these tables of devices. Returns what the process
+/// ends with.
+pub fn main_with(devices: &[DeviceTable]) -> ExitCode {
+    let reader = SceneReader::new(devices);
+    let mut command = Cli::parse().command;
+    if let Some(scene) = command.scene() {
+        scene.reader = reader.clone();
+    }
+    let result = match command {
         Command::Run(arguments) => run::run(&arguments),
         #[cfg(feature = "play")]
         Command::Play(arguments) => play::run(&arguments),
@@ -84,14 +123,14 @@ fn main() -> ExitCode {
         Command::Beside(arguments) => beside::run(&arguments),
         Command::Fit(arguments) => fit::run(&arguments),
         Command::Reduce(arguments) => reduce::run(&arguments),
-        Command::Sweep(arguments) => sweep::run(&arguments),
+        Command::Sweep(arguments) => sweep::run(&arguments, reader),
         Command::Check(arguments) => check::run(&arguments),
         Command::Chart(arguments) => chart::run(&arguments),
         Command::Laws(arguments) => laws::run(&arguments),
         Command::Methods(arguments) => methods::run(&arguments),
         Command::New(arguments) => new::run(&arguments),
-        Command::Reference(arguments) => reference::run(&arguments, Cli::command()),
-        Command::Schema(arguments) => schema::run(&arguments),
+        Command::Reference(arguments) => reference::run(&arguments, Cli::command(), &reader),
+        Command::Schema(arguments) => schema::run(&arguments, &reader),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,
