@@ -295,7 +295,7 @@ fn springs() {
     says(with(Spring::between([1], "hub")), &["node set = \"hub\"", "the node sets"]);
     says(with(Spring::between([1], [1])), &["distance of its ends = 0 m", "no direction"]);
     let run = |phase| simulate(&scene().spring(good()).phase(phase));
-    says(run(phase().actuate(["A2"], 1.0)), &["phase \"walk\"", "\"A2\"", "springs \"A1\""]);
+    says(run(phase().actuate(["A2"], 1.0)), &["phase \"walk\"", "\"A2\"", "actuators \"A1\""]);
     says(run(phase().actuate(["A1"], f64::NAN)), &["actuation of phase \"walk\"", "NaN"]);
     says(
         run(phase().actuate_with(["A1"], |t| if t < 0.05 { 0.0 } else { f64::NAN })),

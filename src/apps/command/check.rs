@@ -142,44 +142,35 @@ fn surroundings(scene: &Scene) -> Result<(), Failure> {
     if let Some(gravity) = scene.acceleration() {
         line("gravity", &format!("{gravity:?} m/s^2"))?;
     }
-    let of_kind = |is_cable: bool| {
-        let own = scene.springs().iter().filter(|spring| spring.is_cable() == is_cable);
-        own.map(|spring| spring.name()).collect()
-    };
-    let (springs, cables) = (of_kind(false), of_kind(true));
-    let muscles = scene.muscles().iter().map(|muscle| muscle.name()).collect();
-    let growths = scene.growths().iter().map(|growth| growth.name()).collect();
-    let lags = scene.lags().map(|(name, _)| name).collect();
+    let mut actuators: Vec<(String, Vec<&str>)> = Vec::new();
+    for (kind, name) in scene.actuator_names() {
+        let label = format!("{kind}s");
+        match actuators.iter_mut().find(|(own, _)| *own == label) {
+            Some((_, names)) => names.push(name),
+            None => actuators.push((label, vec![name])),
+        }
+    }
     let magnets = scene.magnets().iter().map(|magnet| format!("{:?} T", magnet.remanence()));
     let magnets: Vec<String> = magnets.collect();
-    let chambers = scene.chambers().iter().map(|chamber| chamber.name()).collect();
-    let orifices = scene.orifices().iter().map(|orifice| orifice.name()).collect();
-    let liquids = scene.liquids().iter().map(|liquid| liquid.chamber()).collect();
-    let pipes = scene.pipes().iter().map(|pipe| pipe.name()).collect();
-    let fluids = scene.fluids().iter().map(|fluid| fluid.name()).collect();
     let mut devices: BTreeMap<String, Vec<&str>> = BTreeMap::new();
     for device in scene.devices() {
         devices.entry(format!("{}s", device.kind())).or_default().push(device.name());
     }
-    let obstacles = scene.obstacles().iter().map(|obstacle| obstacle.name()).collect();
     let of_bodies = [
-        ("springs", springs),
-        ("cables", cables),
-        ("muscles", muscles),
-        ("growths", growths),
-        ("lags of", lags),
-        ("magnets", magnets.iter().map(String::as_str).collect()),
+        ("lags of", scene.lags().map(|(name, _)| name).collect()),
+        ("magnets", magnets.iter().map(String::as_str).collect::<Vec<_>>()),
     ];
     let others = [
-        ("chambers", chambers),
-        ("orifices", orifices),
-        ("liquids", liquids),
-        ("pipes", pipes),
-        ("fluids", fluids),
-        ("obstacles", obstacles),
+        ("chambers", scene.chambers().iter().map(|chamber| chamber.name()).collect()),
+        ("orifices", scene.orifices().iter().map(|orifice| orifice.name()).collect()),
+        ("liquids", scene.liquids().iter().map(|liquid| liquid.chamber()).collect()),
+        ("pipes", scene.pipes().iter().map(|pipe| pipe.name()).collect()),
+        ("fluids", scene.fluids().iter().map(|fluid| fluid.name()).collect()),
+        ("obstacles", scene.obstacles().iter().map(|obstacle| obstacle.name()).collect()),
     ];
     let devices = devices.iter().map(|(label, names)| (label.as_str(), names.clone()));
-    for (label, names) in of_bodies.into_iter().chain(devices).chain(others) {
+    let actuators = actuators.iter().map(|(label, names)| (label.as_str(), names.clone()));
+    for (label, names) in actuators.chain(of_bodies).chain(devices).chain(others) {
         if !names.is_empty() {
             line(label, &names.join(", "))?;
         }

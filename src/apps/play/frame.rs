@@ -30,10 +30,8 @@ pub(super) fn of(present: &Present, colours: Option<usize>, since: Option<f64>) 
     let report = if playing { simulation.settled_report() } else { simulation.report() };
     let (body, u) = (view.body(), view.displacements());
     let values = sliders.iter().map(|slider| slider.value(simulation));
-    // the forces of all springs are shown, also of those without a slider
-    let actuations = simulation.scene().springs().iter();
-    let actuations =
-        actuations.map(|spring| simulation.view().actuation(spring.name()).unwrap_or(f64::NAN));
+    // the forces along all lines are shown, also of those without a slider
+    let actuations = picture.drives(&view);
     let phase = report.phases.last();
     let counts = phase.map(|phase| &phase.counts);
     let method = phase.map_or(report.method, |phase| phase.method);
@@ -52,7 +50,7 @@ pub(super) fn of(present: &Present, colours: Option<usize>, since: Option<f64>) 
         "everywhere": Picture::everywhere(&view),
         "remanence": picture.remanence(&view),
         "lines": picture.lines(&view),
-        "actuations": actuations.collect::<Vec<_>>(),
+        "actuations": actuations,
         "pull": hand.map(Hand::to_json),
         "speed": pace.speed,
         "factor": pace.factor(),

@@ -1,5 +1,4 @@
-//! Sliders for pressures of chambers, flows of liquids, openings of orifices, actuation of springs, cables, muscles and growths,
-//! loads, magnetic fields, inputs of devices.
+//! Sliders for pressures of chambers, flows of liquids, openings of orifices, actuators, loads, magnetic fields, inputs of devices.
 //!
 //! A slider changes its value along a straight line and not by a jump, so that the table in the saved file is
 //! exactly the signal that acted (`io/scene_file/rewrite.rs`). A load has a slider for each component, each
@@ -12,7 +11,7 @@ use serde_json::{Value, json};
 use crate::dynamics::simulate::Simulation;
 use crate::elements::body::{Body, Part};
 use crate::elements::mesh::Selection;
-use crate::scene::forces::Chamber;
+use crate::scene::forces::{Chamber, Drive, Lag};
 use crate::scene::timeline::{self, Device, DeviceInput, LoadKind, Phase, Quantity, Scene};
 
 /// The input that a slider sets, or a component of it.
@@ -75,35 +74,28 @@ impl Slider {
             let range = [target.largest_in(scene), pumped];
             Self::new(target, "flow".into(), range, "m^3/s")
         });
-        let heated = |name: &str| scene.lag_of(name)?.loss();
-        let heaters = scene.actuators().filter_map(|name| Some((name, heated(name)?)));
-        let heaters = heaters.map(|(name, loss)| {
-            let target = Target::of(Quantity::Actuation, name);
-            let most = round_up(2.0 * target.largest_in(scene).max(loss * USUAL_WARMTH));
-            Self { target, least: 0.0, most, what: "power".into(), unit: "W" }
-        });
-        let is_cold = |name: &str| heated(name).is_none();
-        let springs = scene.springs().iter().filter(|spring| is_cold(spring.name()));
-        let springs = springs.map(|spring| {
-            let target = Target::of(Quantity::Actuation, spring.name());
-            let (what, usual, unit) = match (spring.is_winch(), spring.is_cable()) {
-                (true, _) => ("drawn in", USUAL * scene.body().size(), "m"),
-                (_, true) => ("tension", force, "N"),
-                _ => ("actuator", force, "N"),
-            };
-            let range = [target.largest_in(scene), usual];
-            Self::new(target, what.into(), range, unit)
-        });
-        let muscles = scene.muscles().iter().filter(|muscle| is_cold(muscle.name()));
-        let muscles = muscles.map(|muscle| {
-            let target = Target::of(Quantity::Actuation, muscle.name());
-            let what = "stress".into();
-            if let Some(hill) = muscle.law() {
-                return Self { target, least: 0.0, most: hill.largest, what, unit: "Pa" };
+        let (mut actuators, mut heaters) = (Vec::new(), Vec::new());
+        for actuator in scene.actuators() {
+            let target = Target::of(Quantity::Actuation, actuator.name());
+            let (kind, largest) = (actuator.kind(), target.largest_in(scene));
+            if let Some(loss) = scene.lag_of(actuator.name()).and_then(Lag::loss) {
+                let most = round_up(2.0 * largest.max(loss * USUAL_WARMTH));
+                heaters.push(Self { target, least: 0.0, most, what: "power".into(), unit: "W" });
+                continue;
             }
-            let range = [target.largest_in(scene), pressure];
-            Self::new(target, what, range, "Pa")
-        });
+            let (what, unit) = (kind.label.into(), kind.drive.unit());
+            if let Some(hill) = actuator.hill() {
+                actuators.push(Self { target, least: 0.0, most: hill.largest, what, unit });
+                continue;
+            }
+            let usual = match kind.drive {
+                Drive::Force => force,
+                Drive::Length => USUAL * scene.body().size(),
+                Drive::Stress => pressure,
+                Drive::Strain => USUAL,
+            };
+            actuators.push(Self::new(target, what, [largest, usual], unit));
+        }
         let mut loaded: Vec<&Selection> = Vec::new();
         for (nodes, ..) in scene.phases().iter().flat_map(Phase::loads) {
             if !loaded.contains(&nodes) {
@@ -112,12 +104,6 @@ impl Slider {
         }
         let loads =
             loaded.into_iter().flat_map(|nodes| Self::of_load(scene, nodes, [force, pressure]));
-        let growths = scene.growths().iter().filter(|growth| is_cold(growth.name()));
-        let growths = growths.map(|growth| {
-            let target = Target::of(Quantity::Actuation, growth.name());
-            let range = [target.largest_in(scene), USUAL];
-            Self::new(target, "growth".into(), range, "1")
-        });
         let of = timeline::Target::Everything;
         let field = Target { quantity: Quantity::Field, of, axis: None };
         let field = Some(field).filter(|_| !scene.magnets().is_empty());
@@ -127,9 +113,7 @@ impl Slider {
         chambers
             .chain(orifices)
             .chain(flows)
-            .chain(springs)
-            .chain(muscles)
-            .chain(growths)
+            .chain(actuators)
             .chain(heaters)
             .chain(fields)
             .chain(Self::of_devices(scene))

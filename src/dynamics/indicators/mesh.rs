@@ -149,8 +149,11 @@ fn pieces_of(pieces: &[usize], first_node: usize) -> Option<Indicator> {
 /// Pairs of nodes that are joined, but not by cells.
 fn joints(scene: &Scene) -> Vec<[usize; 2]> {
     let body = scene.body();
-    let springs = scene.springs().iter().filter_map(|spring| spring.gauge(body.mesh()).ok());
-    let mut joints: Vec<[usize; 2]> = springs.flat_map(|spring| spring.couplings()).collect();
+    let mut joints = Vec::new();
+    for line in scene.actuators().iter().filter_map(|own| own.line(body.mesh()).ok()) {
+        let nodes = line.iter().flat_map(|point| &point.shares).map(|share| share.0);
+        joints.extend(nodes.clone().zip(nodes.skip(1)).map(|(one, other)| [one, other]));
+    }
     joints.extend(scene.other_forces().iter().flat_map(|force| force.couplings()));
     let start = PhaseStart { time: 0.0, u: scene.initial_displacements() };
     let rows = scene.phases().iter().filter_map(|phase| scene.rows(phase, &start).ok());

@@ -6,7 +6,9 @@ use crate::base::input::{InputError, finite};
 use crate::dynamics::error::Error;
 use crate::elements::mesh::Selection;
 use crate::scene::constraint::{Axes, Axis, Constrained, Constraint, Motion};
-use crate::scene::forces::{SharedValue, Signal, Signals, TimeTable, VectorSignal, WrenchKind};
+use crate::scene::forces::{
+    Drive, SharedValue, Signal, Signals, TimeTable, VectorSignal, WrenchKind,
+};
 use crate::scene::timeline::{DeviceValue, Input, LoadKind, Phase, Quantity, Scene, Target};
 
 /// Commands. Each takes effect at the present time and stays in force until another one replaces it or the
@@ -59,11 +61,8 @@ impl Simulation {
     /// have.
     pub fn actuate(&mut self, spring: &str, force: impl Into<Signal>) -> Result<(), Error> {
         let force = force.into();
-        self.scene().actuator_number(spring, "actuation")?;
-        let muscle = self.scene().muscles().iter().find(|muscle| muscle.name() == spring);
-        if let (Some(muscle), Some(stress)) = (muscle, force.value()) {
-            muscle.check_stress(stress)?;
-        }
+        let number = self.scene().actuator_number(spring, "actuation")?;
+        force.value().map_or(Ok(()), |value| self.scene().actuators()[number].check(value))?;
         self.set_named(Quantity::Actuation, spring, force)
     }
 
@@ -258,12 +257,12 @@ impl Simulation {
     /// Sets an input, in place of the present ones of its quantity on its target.
     pub(crate) fn set(&mut self, input: Input) -> Result<(), Error> {
         let Input { quantity, target, signal } = input;
-        // the strain of a growth is a part of the energy of its cells
-        let grows = |target: &Target| {
-            let mut growths = self.scene().growths().iter();
-            growths.any(|growth| *target == Target::one(growth.name()))
+        // a strain is a part of the energy of its cells
+        let strains = |name: &String| {
+            let actuator = self.scene().actuator_named(name);
+            actuator.is_some_and(|own| own.kind().drive == Drive::Strain)
         };
-        if quantity == Quantity::Actuation && grows(&target) {
+        if quantity == Quantity::Actuation && target.names().iter().any(strains) {
             return self.command(Change::Stores, |phase, _| {
                 phase.set(Input { quantity, target, signal });
                 Ok(())

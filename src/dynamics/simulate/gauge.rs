@@ -73,7 +73,7 @@ impl Reading {
                 let (output, number) = (*output, output.find(scene, name)?);
                 // the component is there
                 Box::new(move |view, _| {
-                    (output.read)(view, number).unwrap_or(Value::Number(f64::NAN))
+                    output.value(view, number).unwrap_or(Value::Number(f64::NAN))
                 })
             }
             ReadingKind::OfDevice(output, name) => {

@@ -26,11 +26,16 @@ pub(crate) struct Output {
     pub(crate) about: &'static str,
     pub(crate) unit: &'static str,
     pub(crate) of: Kind,
-    pub(crate) is_vector: bool,
-    /// Whether it follows from the positions of nodes alone.
-    pub(crate) is_of_positions: bool,
     /// Its value for the component of a number (from 0).
-    pub(super) read: fn(&View<'_>, usize) -> Result<Value, InputError>,
+    pub(super) read: Read,
+}
+
+/// The function that reads the value for a component.
+pub(crate) enum Read {
+    Number(fn(&View<'_>, usize) -> Result<f64, InputError>),
+    /// A number that follows from the positions of nodes alone.
+    OfPositions(fn(&View<'_>, usize) -> Result<f64, InputError>),
+    Vector(fn(&View<'_>, usize) -> Result<[f64; 3], InputError>),
 }
 
 /// A kind of components that have the quantity.
@@ -44,6 +49,13 @@ pub(crate) struct Kind {
 }
 
 impl Output {
+    pub(super) fn value(&self, view: &View, number: usize) -> Result<Value, InputError> {
+        Ok(match self.read {
+            Read::Number(read) | Read::OfPositions(read) => Value::Number(read(view, number)?),
+            Read::Vector(read) => Value::Vector(read(view, number)?),
+        })
+    }
+
     pub(super) fn find(&self, scene: &Scene, name: &str) -> Result<usize, InputError> {
         (self.of.find)(scene, name, self.of.key)
     }
@@ -53,8 +65,7 @@ impl Output {
     /// # Errors
     /// A name that no such component has; a quantity that is undefined.
     pub(super) fn number(&self, view: &View, name: &str) -> Result<f64, InputError> {
-        let value = (self.read)(view, self.find(view.scene, name)?)?;
-        Ok(value.part(Component::X))
+        Ok(self.value(view, self.find(view.scene, name)?)?.part(Component::X))
     }
 }
 

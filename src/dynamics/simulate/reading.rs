@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 use std::iter::repeat_n;
 
 use super::component::Component;
-use super::output::Output;
+use super::output::{Output, Read};
 use super::spot::Spot;
 use crate::base::input::InputError;
 use crate::dynamics::trajectory::DEGREES;
@@ -374,7 +374,7 @@ impl Reading {
     pub(super) fn is_of_places(&self) -> bool {
         use ReadingKind::*;
         match &self.what {
-            Of(output, _) => output.is_of_positions,
+            Of(output, _) => matches!(output.read, Read::OfPositions(_)),
             Position(_) | Displacement(_) | Distance(_) | Angle(_) => true,
             CentreOfMass | Rotation(_) | Strain(_) => true,
             _ => false,
@@ -433,7 +433,8 @@ impl Reading {
                 _,
             )
             | (
-                ReadingKind::FluidForce(..) | ReadingKind::Of(Output { is_vector: true, .. }, _),
+                ReadingKind::FluidForce(..)
+                | ReadingKind::Of(Output { read: Read::Vector(_), .. }, _),
                 _,
             )
             | (ReadingKind::OfDevice(DeviceOutput { is_vector: true, .. }, _), _) => {

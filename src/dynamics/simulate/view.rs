@@ -5,10 +5,12 @@ use std::sync::Arc;
 
 use crate::base::input::InputError;
 use crate::dynamics::trajectory::Sample;
-use crate::elements::body::{Body, CellField, Grown, Strands};
+use crate::elements::body::{Body, CellField, Grown};
 use crate::elements::force::{Force, Forces, NodalForces};
 use crate::elements::mesh::Selection;
-use crate::scene::forces::{ChamberForce, Contact, GasInChamber, LiquidInChamber, SpringGauge};
+use crate::scene::forces::{
+    ActuatorGauge, ActuatorState, ChamberForce, Contact, GasInChamber, LiquidInChamber,
+};
 use crate::scene::timeline::{Amounts, DeviceGauge, LoadKind, Phase, Quantity, Scene};
 #[cfg(feature = "play")]
 use crate::scene::{forces::NodalContact, timeline::ContactReader};
@@ -27,15 +29,15 @@ pub struct View<'a> {
     pub(super) accelerations: &'a [f64],
 }
 
-/// The forces by which chambers, springs and muscles are measured, in the order of the scene.
+/// The forces and functions by which components are measured, in the order of the scene.
 pub(super) struct Gauges {
     pub(super) chambers: Vec<Arc<ChamberForce>>,
-    pub(super) springs: Vec<SpringGauge>,
+    /// The functions that read the outputs of each actuator.
+    pub(super) actuators: Vec<ActuatorGauge>,
     pub(super) gases: Vec<GasInChamber>,
     pub(super) liquids: Vec<LiquidInChamber>,
     /// Their masses at the start (kg), of gases and then of liquids.
     masses: Vec<f64>,
-    pub(super) muscles: Vec<Strands>,
     /// By which the positions of nodes make the magnetic moment (A m); empty without magnets.
     poles: Vec<f64>,
     /// The functions that read the outputs of each device.
@@ -47,16 +49,14 @@ impl Gauges {
         let body = scene.body();
         let chambers = scene.chambers().iter();
         let chambers = chambers.map(|chamber| chamber.force(body, Vec::new()).map(Arc::new));
-        let springs = scene.springs().iter().map(|spring| spring.gauge(body.mesh()));
-        let muscles = scene.muscles().iter().map(|muscle| muscle.strands(body));
+        let actuators = scene.actuators().iter().map(|actuator| actuator.gauge(body));
         let (gases, liquids) = (scene.filled()?, scene.poured(None)?);
         Ok(Self {
             chambers: chambers.collect::<Result<_, _>>()?,
-            springs: springs.collect::<Result<_, _>>()?,
+            actuators: actuators.collect::<Result<_, _>>()?,
             masses: scene.starting_masses(&gases, &liquids),
             gases,
             liquids,
-            muscles: muscles.collect::<Result<_, _>>()?,
             poles: scene.magnetization()?.map_or_else(Vec::new, |magnets| magnets.poles),
             devices: scene.device_gauges()?,
         })
@@ -196,8 +196,7 @@ impl<'a> View<'a> {
     /// # Errors
     /// A name that no spring, no muscle and no growth has.
     pub fn actuation(&self, spring: &str) -> Result<f64, InputError> {
-        self.scene.actuator_number(spring, "spring")?;
-        Ok(self.actuation_with_rate(spring)[0])
+        Ok(self.drive(self.scene.actuator_number(spring, "spring")?)[0])
     }
 
     /// Command of an actuator by phases and commands (see [`Phase::actuate`]): a power (W) if it is
@@ -210,8 +209,16 @@ impl<'a> View<'a> {
         Ok(self.phase.command(actuator, self.time)[0])
     }
 
-    pub(super) fn actuation_with_rate(&self, spring: &str) -> [f64; 2] {
-        self.scene.drive_at(spring, self.phase, self.time, self.amounts)
+    /// Input of the actuator of that number, and its rate.
+    pub(super) fn drive(&self, actuator: usize) -> [f64; 2] {
+        let actuator = &*self.scene.actuators()[actuator];
+        self.scene.drive_at(actuator, self.phase, self.time, self.amounts)
+    }
+
+    /// An output of an actuator, both by number.
+    pub(super) fn actuator_value(&self, actuator: usize, output: usize) -> f64 {
+        let state = ActuatorState { u: self.u, v: self.v, drive: self.drive(actuator) };
+        (self.gauges.actuators[actuator])(output, &state)
     }
 
     /// Force (N) on each of the nodes of `selection`, as the mean over them, one component per dimension.

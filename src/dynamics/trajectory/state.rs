@@ -37,8 +37,9 @@ impl Trajectory {
         let liquids = scene.liquids().iter().map(Liquid::chamber);
         let liquids = liquids.zip(masses).map(|(name, x)| named(name, x)).collect();
         let lags = phase.into_iter().flat_map(|phase| {
-            let state = |name: &str| scene.drive_at(name, phase, sample.time, &sample.amounts)[0];
-            scene.lags().map(move |(name, _)| (name.to_owned(), state(name)))
+            let named = |(name, _)| Some((name, scene.actuator_named(name)?));
+            let state = |own| scene.drive_at(own, phase, sample.time, &sample.amounts)[0];
+            scene.lags().filter_map(named).map(move |(name, own)| (name.to_owned(), state(own)))
         });
         let pipes = scene
             .pipes()

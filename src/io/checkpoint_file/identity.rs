@@ -43,13 +43,14 @@ impl Identity {
         let cells: Vec<&[usize]> = mesh.cells().collect();
         // a simulation has started with them, so there is no error
         let start = scene.initial_velocities().unwrap_or_default();
+        let actuators = |list: &str| scene.actuators_in(list).collect::<Vec<_>>();
         let parts = [
             ("positions of the nodes", of_numbers([mesh.positions()])),
             ("cells", of_text(&(mesh.kind(), cells))),
             ("sets of nodes", of_text(mesh.sets())),
             ("materials", of_numbers(matrices) ^ of_text(&body)),
             ("accelerations of gravity", of_text(&scene.acceleration())),
-            ("springs", of_text(scene.springs())),
+            ("springs", of_text(&actuators("springs"))),
             ("chambers", of_text(scene.chambers())),
             (
                 "displacements and velocities at the start",
@@ -69,8 +70,8 @@ impl Identity {
             ("liquids", of_list(scene.liquids())),
             ("pipes", of_list(scene.pipes())),
             ("ties", of_list(&tied)),
-            ("muscles", of_list(scene.muscles())),
-            ("growths", of_list(scene.growths())),
+            ("muscles", of_list(&actuators("muscles"))),
+            ("growths", of_list(&actuators("growths"))),
             ("lags", of_list(&lags)),
             ("magnets", of_list(scene.magnets())),
         ];

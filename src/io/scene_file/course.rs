@@ -6,14 +6,22 @@ use crate::base::input::InputError;
 use crate::dynamics::error::Error;
 use crate::scene::forces::{Signal, TimeTable, VectorSignal};
 
-/// The signal of the key `one`, a number or formula, or of the keys `times` and `many`, lists of numbers.
+/// The key of values at times, of the key `word` of one value.
+pub(super) fn plural(word: &str) -> String {
+    match word {
+        "stress" => "stresses".into(),
+        word => format!("{word}s"),
+    }
+}
+
+/// The signal of the key `word`, a number or formula, or of the keys `times` and the plural of `word`, lists of numbers.
 /// A table may be repeated up to the time `until` (s).
-pub(super) fn course(table: &Table, until: f64, one: &str, many: &str) -> Result<Signal, Error> {
-    let signal = match table.optional(one, Value::signal)? {
+pub(super) fn course(table: &Table, until: f64, word: &str) -> Result<Signal, Error> {
+    let signal = match table.optional(word, Value::signal)? {
         Some(signal) => signal,
         None => Signal::table(
             table.required("times", Value::numbers)?,
-            table.required(many, Value::numbers)?,
+            table.required(&plural(word), Value::numbers)?,
         ),
     };
     repeated(table, signal, |signal, period| signal.repeated(period, until))

@@ -3,11 +3,11 @@
 use super::cells::{BOX, CELLS, GROUP, cells};
 use super::keys::{Key, TableKeys, ValueType};
 use super::material::{AXIS, course};
-use super::surroundings::unique;
+use super::surroundings::actuator_name;
 use super::table::Table;
 use super::value::Value;
 use crate::dynamics::error::Error;
-use crate::scene::forces::{Growth, Muscle, Spring};
+use crate::scene::forces::{Actuator, Growth};
 use crate::scene::timeline::Scene;
 
 pub(super) const GROWTH: TableKeys = TableKeys::new(
@@ -36,17 +36,13 @@ pub(super) const GROWTH: TableKeys = TableKeys::new(
 /// The scene with the growth that `value` describes.
 pub(super) fn add_growth(scene: Scene, value: &Value) -> Result<Scene, Error> {
     let table = &value.table(&GROWTH)?;
-    let name = table.optional("name", Value::string)?;
-    let name = name.map_or_else(|| format!("growth {}", scene.growths().len() + 1), Into::into);
-    let others = scene.springs().iter().map(Spring::name);
-    let others = others.chain(scene.muscles().iter().map(Muscle::name));
-    unique(table, &name, others.chain(scene.growths().iter().map(Growth::name)))?;
+    let name = actuator_name(table, &scene, "growth")?;
     let growth = match cells(table, scene.body().mesh())? {
         Some(cells) => Growth::within(cells),
         None => Growth::everywhere(),
     };
     let growth = directed(growth.named(name), table)?;
-    growth.growing(scene.body()).map_err(|error| table.blame(error))?;
+    growth.driven(scene.body(), Vec::new()).map_err(|error| table.blame(error))?;
     Ok(scene.growth(growth))
 }
 

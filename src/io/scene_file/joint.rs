@@ -133,7 +133,7 @@ pub(super) fn motor(mut phase: Phase, table: &Table, scene: &Scene) -> Result<Ph
     let words = ["torque", "angle", "speed", "force", "displacement"];
     for word in words.into_iter().filter(|word| given(word)) {
         let input = scene.device_row(&name, word).map_err(|error| table.blame(error))?;
-        let value = course(table, phase.end(), word, &format!("{word}s"))?;
+        let value = course(table, phase.end(), word)?;
         phase = phase.device_input(&*name, input, value);
     }
     Ok(phase)

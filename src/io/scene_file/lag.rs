@@ -31,7 +31,7 @@ pub(super) const LAG: TableKeys = TableKeys::new(
 /// The scene with the lags that `value` describes.
 pub(super) fn add_lag(scene: Scene, value: &Value) -> Result<Scene, Error> {
     let table = &value.table(&LAG)?;
-    let known: Vec<&str> = scene.actuators().collect();
+    let known: Vec<&str> = scene.actuator_names().map(|(_, name)| name).collect();
     let actuators = table.required("actuators", |value| names(value, &known))?;
     let number = |key: &str| table.optional(key, Value::number);
     let is_activation = table.optional("activation", Value::flag)?.unwrap_or(false);

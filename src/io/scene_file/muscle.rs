@@ -3,11 +3,11 @@
 use super::cells::{BOX, CELLS, GROUP, cells};
 use super::keys::{Key, TableKeys, ValueType};
 use super::material::{ALONG, AXIS, CENTRE, PITCH, course};
-use super::surroundings::unique;
+use super::surroundings::actuator_name;
 use super::value::Value;
 use crate::dynamics::error::Error;
 use crate::elements::material::Hill;
-use crate::scene::forces::{Muscle, Spring};
+use crate::scene::forces::{Actuator, Muscle};
 use crate::scene::timeline::Scene;
 
 pub(super) const MUSCLE: TableKeys = TableKeys::new(
@@ -76,10 +76,7 @@ fn hill(value: &Value) -> Result<Hill, Error> {
 /// The scene with the muscle that `value` describes.
 pub(super) fn add_muscle(scene: Scene, value: &Value) -> Result<Scene, Error> {
     let table = &value.table(&MUSCLE)?;
-    let name = table.optional("name", Value::string)?;
-    let name = name.map_or_else(|| format!("muscle {}", scene.muscles().len() + 1), Into::into);
-    let others = scene.springs().iter().map(Spring::name);
-    unique(table, &name, others.chain(scene.muscles().iter().map(Muscle::name)))?;
+    let name = actuator_name(table, &scene, "muscle")?;
     let mut muscle = Muscle::new(course(table)?).named(name);
     if let Some(cells) = cells(table, scene.body().mesh())? {
         muscle = muscle.within(cells);
@@ -87,6 +84,6 @@ pub(super) fn add_muscle(scene: Scene, value: &Value) -> Result<Scene, Error> {
     if let Some(law) = table.optional("hill", hill)? {
         muscle = muscle.hill(law);
     }
-    muscle.strands(scene.body()).map_err(|error| table.blame(error))?;
+    muscle.driven(scene.body(), Vec::new()).map_err(|error| table.blame(error))?;
     Ok(scene.muscle(muscle))
 }

@@ -2,7 +2,7 @@
 
 use toml::de::DeValue;
 
-use super::course::{course, vectors_until};
+use super::course::{course, plural, vectors_until};
 use super::device::{DRIVE, drive};
 use super::joint::{MOTOR, motor};
 use super::keys::TableKeys;
@@ -19,7 +19,7 @@ use crate::base::vector::norm;
 use crate::dynamics::error::Error;
 use crate::elements::mesh::Selection;
 use crate::scene::constraint::Axis;
-use crate::scene::forces::{Signals, WrenchKind};
+use crate::scene::forces::{ACTUATORS, Drive, Signals, WrenchKind};
 use crate::scene::timeline::{Input, Phase, Quantity, Row, Scene, Target};
 
 /// Adds a table inside of a phase.
@@ -223,7 +223,7 @@ fn steer(phase: Phase, table: &Table, scene: &Scene) -> Result<Phase, Error> {
     let word = table.required("input", Value::string)?;
     let input = scene.device_row(&device, word).map_err(|error| table.blame(error))?;
     if !input.is_vector {
-        let value = course(table, phase.end(), "value", "values")?;
+        let value = course(table, phase.end(), "value")?;
         return Ok(phase.device_input(device, input, value));
     }
     let value = vectors_until(table, phase.end(), "value", scene.body().dimension())?;
@@ -233,29 +233,29 @@ fn steer(phase: Phase, table: &Table, scene: &Scene) -> Result<Phase, Error> {
 }
 
 fn pressure(phase: Phase, table: &Table, scene: &Scene) -> Result<Phase, Error> {
-    let end = phase.end();
     let known: Vec<&str> = scene.chambers().iter().map(|chamber| chamber.name()).collect();
     let chamber = table.required("chamber", |v| named(v, &known))?;
-    Ok(phase.pressure(chamber, course(table, end, "value", "values")?))
+    let signal = course(table, phase.end(), "value")?;
+    Ok(phase.pressure(chamber, signal))
 }
 
 fn pressure_on(phase: Phase, table: &Table, scene: &Scene) -> Result<Phase, Error> {
     let (nodes, end) = (nodes(table, scene)?, phase.end());
-    Ok(phase.pressure_on(nodes, course(table, end, "value", "values")?))
+    Ok(phase.pressure_on(nodes, course(table, end, "value")?))
 }
 
 fn open(phase: Phase, table: &Table, scene: &Scene) -> Result<Phase, Error> {
-    let end = phase.end();
     let known: Vec<&str> = scene.orifices().iter().map(|orifice| orifice.name()).collect();
     let orifice = table.required("orifice", |v| named(v, &known))?;
-    Ok(phase.open(orifice, course(table, end, "opening", "openings")?))
+    let signal = course(table, phase.end(), "opening")?;
+    Ok(phase.open(orifice, signal))
 }
 
 fn flow(phase: Phase, table: &Table, scene: &Scene) -> Result<Phase, Error> {
-    let end = phase.end();
     let known: Vec<&str> = scene.liquids().iter().map(|liquid| liquid.chamber()).collect();
     let chamber = table.required("chamber", |v| named(v, &known))?;
-    Ok(phase.flow(chamber, course(table, end, "rate", "rates")?))
+    let signal = course(table, phase.end(), "rate")?;
+    Ok(phase.flow(chamber, signal))
 }
 
 fn actuate(phase: Phase, table: &Table, scene: &Scene) -> Result<Phase, Error> {
@@ -263,45 +263,28 @@ fn actuate(phase: Phase, table: &Table, scene: &Scene) -> Result<Phase, Error> {
     let heated: Vec<&str> =
         scene.lags().filter(|(_, lag)| lag.per_kelvin().is_some()).map(|(name, _)| name).collect();
     if let Some(actuators) = table.optional("heated", |value| names(value, &heated))? {
-        return Ok(phase.actuate(actuators, course(table, end, "power", "powers")?));
+        return Ok(phase.actuate(actuators, course(table, end, "power")?));
     }
-    let by_other = |names: &[String]| match names.iter().find(|name| heated.contains(&&***name)) {
-        None => Ok(()),
-        Some(name) => {
-            let help = "it is heated: give a power, { heated = ..., power = ... }";
-            Err(table.blame(InputError::new("actuation", format!("of \"{name}\""), help)))
+    let mut lists = ACTUATORS.iter().map(|kind| kind.list);
+    let list = lists.find(|list| table.get(list).is_some());
+    let list = list.unwrap_or(Quantity::Actuation.row().keys[1]);
+    let known: Vec<&str> = scene.actuators_in(list).map(|own| own.name()).collect();
+    let names = table.required(list, |value| names(value, &known))?;
+    if let Some(name) = names.iter().find(|name| heated.contains(&&***name)) {
+        let help = "it is heated: give a power, { heated = ..., power = ... }";
+        return Err(table.blame(InputError::new("actuation", format!("of \"{name}\""), help)));
+    }
+    let mut word = Drive::Force.word();
+    for actuator in names.iter().filter_map(|name| scene.actuator_named(name)) {
+        word = actuator.kind().drive.word();
+        if table.get(word).or(table.get(&plural(word))).is_none() {
+            let (kind, name) = (actuator.kind().name, actuator.name());
+            let help = format!("it is driven by a {word}: give {word} or {}", plural(word));
+            let input = format!("actuation of {kind}");
+            return Err(table.blame(InputError::new(input, format!("\"{name}\""), help)));
         }
-    };
-    let muscles: Vec<&str> = scene.muscles().iter().map(|muscle| muscle.name()).collect();
-    if let Some(muscles) = table.optional("muscles", |value| names(value, &muscles))? {
-        by_other(&muscles)?;
-        return Ok(phase.actuate(muscles, course(table, end, "stress", "stresses")?));
     }
-    let growths: Vec<&str> = scene.growths().iter().map(|growth| growth.name()).collect();
-    if let Some(growths) = table.optional("growths", |value| names(value, &growths))? {
-        by_other(&growths)?;
-        return Ok(phase.actuate(growths, course(table, end, "strain", "strains")?));
-    }
-    let known: Vec<&str> = scene.springs().iter().map(|spring| spring.name()).collect();
-    let springs = table.required("springs", |value| names(value, &known))?;
-    by_other(&springs)?;
-    let is_length = ["length", "lengths"].into_iter().any(|key| table.get(key).is_some());
-    let is_winch = |name: &String| {
-        scene.springs().iter().any(|spring| spring.name() == name && spring.is_winch())
-    };
-    if let Some(name) = springs.iter().find(|name| is_winch(name) != is_length) {
-        let help = match is_length {
-            true => "it has no winch: give a force (or winch = true in its [[cable]])",
-            false => "its winch draws in a length: give length or lengths",
-        };
-        return Err(table.blame(InputError::new(
-            "actuation of cable",
-            format!("\"{name}\""),
-            help,
-        )));
-    }
-    let keys = if is_length { ["length", "lengths"] } else { ["force", "forces"] };
-    Ok(phase.actuate(springs, course(table, end, keys[0], keys[1])?))
+    Ok(phase.actuate(names, course(table, end, word)?))
 }
 
 fn contact(phase: Phase, value: &Value, scene: &Scene) -> Result<Phase, Error> {

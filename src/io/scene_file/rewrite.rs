@@ -6,6 +6,7 @@ use std::ops::Range;
 
 use toml::de::{DeTable, DeValue};
 
+use super::course::plural;
 use super::set_value::quoted;
 use super::written::insertion;
 use crate::elements::mesh::Selection;
@@ -136,18 +137,12 @@ fn inputs(phase: &Phase, key: &str, scene: &Scene) -> String {
 
 /// The key of actuators with these names, and of the value for them.
 fn actuator(names: &[String], scene: &Scene) -> (&'static str, &'static str) {
-    let are = |name: &str| names.iter().any(|other| other == name);
-    let is_heated = |(name, lag): (&str, &Lag)| lag.per_kelvin().is_some() && are(name);
-    if scene.lags().any(is_heated) {
-        ("heated", "power")
-    } else if scene.muscles().iter().any(|muscle| are(muscle.name())) {
-        ("muscles", "stress")
-    } else if scene.growths().iter().any(|growth| are(growth.name())) {
-        ("growths", "strain")
-    } else if scene.springs().iter().any(|spring| spring.is_winch() && are(spring.name())) {
-        ("springs", "length")
-    } else {
-        ("springs", "force")
+    let mut own = names.iter().filter_map(|name| scene.actuator_named(name));
+    let heats = |lag: &Lag| lag.per_kelvin().is_some();
+    match own.next() {
+        Some(own) if scene.lag_of(own.name()).is_some_and(heats) => ("heated", "power"),
+        Some(own) => (own.kind().list, own.kind().drive.word()),
+        None => ("springs", "force"),
     }
 }
 
@@ -179,14 +174,6 @@ fn course(signal: &Signal, word: &str) -> String {
     }
     let values: Vec<f64> = times.iter().map(|t| signal.at(*t)).collect();
     format!("times = {times:?}, {} = {values:?}", plural(word))
-}
-
-/// The key of the values at times, of that of one value.
-fn plural(word: &str) -> String {
-    match word {
-        "stress" => "stresses".into(),
-        word => format!("{word}s"),
-    }
 }
 
 #[cfg(test)]

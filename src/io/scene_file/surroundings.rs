@@ -7,7 +7,7 @@ use super::table::Table;
 use super::value::Value;
 use crate::base::input::InputError;
 use crate::dynamics::error::Error;
-use crate::scene::forces::{Chamber, Guide, Spring};
+use crate::scene::forces::{Actuator, Chamber, Guide, Spring};
 use crate::scene::timeline::Scene;
 
 pub(super) const SPRING: TableKeys = TableKeys::new(
@@ -112,9 +112,7 @@ pub(super) const CHAMBER: TableKeys = TableKeys::new(
 pub(super) fn add_spring(scene: Scene, value: &Value) -> Result<Scene, Error> {
     let table = &value.table(&SPRING)?;
     let body = scene.body();
-    let name = table.optional("name", Value::string)?;
-    let name = name.map_or_else(|| format!("spring {}", scene.springs().len() + 1), Into::into);
-    unique(table, &name, scene.springs().iter().map(Spring::name))?;
+    let name = actuator_name(table, &scene, "spring")?;
     let mut spring = table.required("ends", |value| {
         let list = value.list()?;
         let [first, second] = &list[..] else { return Err(value.unexpected("two ends")) };
@@ -126,13 +124,11 @@ pub(super) fn add_spring(scene: Scene, value: &Value) -> Result<Scene, Error> {
             (Some(_), Some(_)) => return Err(value.unexpected("one node at least")),
         };
         let spring = spring.named(name);
-        spring.gauge(body.mesh()).map_err(|error| value.error(error))?;
+        spring.driven(body, Vec::new()).map_err(|error| value.error(error))?;
         Ok(spring)
     })?;
-    spring = table.added(spring, "stiffness", Value::number, Spring::stiffness)?;
-    spring = table.added(spring, "length", Value::number, Spring::length)?;
-    spring = table.added(spring, "damping", Value::number, Spring::damping)?;
-    spring.gauge(body.mesh()).map_err(|error| table.blame(error))?;
+    spring = elastic(spring, table)?;
+    spring.driven(body, Vec::new()).map_err(|error| table.blame(error))?;
     Ok(scene.spring(spring))
 }
 
@@ -140,9 +136,7 @@ pub(super) fn add_spring(scene: Scene, value: &Value) -> Result<Scene, Error> {
 pub(super) fn add_cable(scene: Scene, value: &Value) -> Result<Scene, Error> {
     let table = &value.table(&CABLE)?;
     let body = scene.body();
-    let name = table.optional("name", Value::string)?;
-    let name = name.map_or_else(|| format!("spring {}", scene.springs().len() + 1), Into::into);
-    unique(table, &name, scene.springs().iter().map(Spring::name))?;
+    let name = actuator_name(table, &scene, "spring")?;
     let mut cable = table.required("path", |value| {
         let place = |place: &Value| {
             if place.entries().is_some_and(|entries| entries.contains_key("inside")) {
@@ -158,12 +152,10 @@ pub(super) fn add_cable(scene: Scene, value: &Value) -> Result<Scene, Error> {
         };
         let path = value.list()?.iter().map(place).collect::<Result<Vec<_>, _>>()?;
         let cable = Spring::cable(path).named(name);
-        cable.gauge(body.mesh()).map_err(|error| value.error(error))?;
+        cable.driven(body, Vec::new()).map_err(|error| value.error(error))?;
         Ok(cable)
     })?;
-    cable = table.added(cable, "stiffness", Value::number, Spring::stiffness)?;
-    cable = table.added(cable, "length", Value::number, Spring::length)?;
-    cable = table.added(cable, "damping", Value::number, Spring::damping)?;
+    cable = elastic(cable, table)?;
     if table.flag("winch")? {
         cable = cable.winch();
     }
@@ -171,8 +163,15 @@ pub(super) fn add_cable(scene: Scene, value: &Value) -> Result<Scene, Error> {
         cable = cable.friction_coefficients(at_rest, sliding);
     }
     cable = table.added(cable, "sticking_speed", Value::number, Spring::sticking_speed)?;
-    cable.gauge(body.mesh()).map_err(|error| table.blame(error))?;
+    cable.driven(body, Vec::new()).map_err(|error| table.blame(error))?;
     Ok(scene.spring(cable))
+}
+
+/// A spring or cable with the elasticity and the damping of its table.
+fn elastic(spring: Spring, table: &Table) -> Result<Spring, Error> {
+    let spring = table.added(spring, "stiffness", Value::number, Spring::stiffness)?;
+    let spring = table.added(spring, "length", Value::number, Spring::length)?;
+    table.added(spring, "damping", Value::number, Spring::damping)
 }
 
 /// The point of space at an end of a spring, if that end is not a node.
@@ -212,6 +211,14 @@ pub(super) fn add_chamber(scene: Scene, value: &Value) -> Result<Scene, Error> {
     unique(table, name, scene.chambers().iter().map(Chamber::name))?;
     chamber.force(body, Vec::new()).map_err(|error| table.blame(error))?;
     Ok(scene.chamber(chamber))
+}
+
+/// The name of an actuator that the table describes, which no other one has; `word` and a number where it is given none.
+pub(super) fn actuator_name(table: &Table, scene: &Scene, word: &str) -> Result<String, Error> {
+    let name = table.optional("name", Value::string)?;
+    let name = name.map_or_else(|| scene.next_actuator(word), Into::into);
+    unique(table, &name, scene.actuators().iter().map(|own| own.name()))?;
+    Ok(name)
 }
 
 /// Checks that nothing else of its kind has the `name` of what `table` describes.

@@ -19,11 +19,13 @@ use std::fmt;
 use circles::Circles;
 use enclosure::{Polygon, Surface};
 
+use super::actuator::Placed;
 use super::signal::Signal;
 use crate::base::input::{InputError, positive};
 use crate::base::sparse::BlockMatrix;
+use crate::base::vector::distinct;
 use crate::elements::body::Body;
-use crate::elements::mesh::{Face, Selection};
+use crate::elements::mesh::{Face, Mesh, NodeMap, Selection};
 
 /// A chamber filled with a gas of given pressure p (Pa), which pushes its walls apart, unless it has [gas](crate::Gas) or a
 /// [liquid](crate::Liquid) with a pressure of its own.
@@ -95,18 +97,25 @@ impl Chamber {
         Ok(self)
     }
 
-    /// Its properties but for its name and walls, as a text.
-    pub(crate) fn likeness(&self) -> String {
-        let walls = Walls::Triangles(Vec::new());
-        format!("{:?}", Self { name: String::new(), walls, ..self.clone() })
-    }
-
-    /// The nodes of its walls, if it was given by them.
-    pub(crate) fn nodes(&self) -> Option<&Selection> {
-        match &self.walls {
-            Walls::Nodes(nodes) => Some(nodes),
-            Walls::Triangles(_) => None,
-        }
+    /// Where it is, and where its mirror image is.
+    ///
+    /// # Errors
+    /// Walls that were given by triangles, whose image is not known; nodes that do not exist.
+    pub(crate) fn placed(&self, mesh: &Mesh, map: &NodeMap) -> Result<Placed, InputError> {
+        let Walls::Nodes(walls) = &self.walls else {
+            let help = "half of a chamber within triangles is not known: give its nodes, or leave the scene whole";
+            return Err(InputError::new(self.input("walls"), "triangles", help));
+        };
+        let nodes = mesh.select(walls)?;
+        let numbers = |nodes: Vec<usize>| nodes.into_iter().map(|node| node as f64).collect();
+        let own = distinct(nodes.iter().copied());
+        let (name, walls) = (String::new(), Walls::Triangles(Vec::new()));
+        Ok(Placed {
+            likeness: format!("{:?}", Self { name, walls, ..self.clone() }),
+            at: [own, map.images_of(&nodes).unwrap_or_default()].map(numbers),
+            along: nodes.iter().map(|&node| mesh.position(node)[map.axis]).collect(),
+            is_line: false,
+        })
     }
 
     /// The part of it on one side of a plane of symmetry, which closes it, in space of a `dimension`.

@@ -6,12 +6,16 @@
 //! Forks share their forces, so an evaluation takes buffers for u' and f from a list and returns them: no
 //! lock is held while it runs.
 
+use std::sync::Arc;
+
+use super::actuator::{Actuator, ActuatorGauge, ActuatorKind, ComponentMap, Drive, Placed};
 use super::signal::{self, Signal, finite_at};
 use crate::base::input::{InputError, finite};
 use crate::base::sparse::BlockMatrix;
 use crate::elements::body::{Body, CellSelection, Growing, Grown};
-use crate::elements::force::{Force, NodalForces, Reservoir, Tangents};
+use crate::elements::force::{Force, Forces, NodalForces, Reservoir, Tangents};
 use crate::elements::material::{FibreDirection, Stretches};
+use crate::elements::mesh::NodeMap;
 use crate::integrators::ode::Failure;
 
 /// Cells of a body that grow: by swelling, by heat, or as an active material does.
@@ -132,29 +136,11 @@ impl Growth {
         if self.name.is_empty() { self.named(name) } else { self }
     }
 
-    /// Its properties but for its name, its cells and its course, as a text.
-    pub(crate) fn likeness(&self) -> String {
-        format!("growth {:?}", self.across)
-    }
-
-    /// The direction in which it grows, if that is not alike in all.
-    pub(crate) fn course(&self) -> Option<&FibreDirection> {
-        self.course.as_ref()
-    }
-
-    /// The same with the cells that `change` makes of those it was given.
-    pub(crate) fn with_cells(
-        &self,
-        change: impl Fn(&CellSelection) -> Result<CellSelection, InputError>,
-    ) -> Result<Self, InputError> {
-        Ok(Self { cells: self.cells.as_ref().map(change).transpose()?, ..self.clone() })
-    }
-
     /// The cells that grow, counted from 0.
     ///
     /// # Errors
     /// Cells that the body does not have.
-    pub(crate) fn cells(&self, body: &Body) -> Result<Vec<usize>, InputError> {
+    fn cells(&self, body: &Body) -> Result<Vec<usize>, InputError> {
         let cells = CellSelection::cells_or_all(self.cells.as_ref(), body.mesh());
         cells.map_err(|error| self.blamed(error))
     }
@@ -163,7 +149,7 @@ impl Growth {
     ///
     /// # Errors
     /// Cells that the body does not have, or that cannot grow; a direction that is none there; growth across one that is not given.
-    pub(crate) fn growing(&self, body: &Body) -> Result<Growing, InputError> {
+    fn growing(&self, body: &Body) -> Result<Growing, InputError> {
         let cells = self.cells(body)?;
         let course = self.course.as_ref();
         let growing = self.check_across().and_then(|()| {
@@ -181,11 +167,6 @@ impl Growth {
             (Some(Across::Share(share)), Some(_)) => finite("across", &[*share]),
             _ => Ok(()),
         }
-    }
-
-    /// Its `cells` (counted from 0), as they have grown by a `strain` (1).
-    pub(crate) fn grown(&self, cells: Vec<usize>, strain: f64) -> Grown {
-        Grown { cells, course: self.course.clone(), stretches: self.stretches(strain) }
     }
 
     /// How many times as long what is free is along the direction and across it, after a `strain` (1).
@@ -219,7 +200,7 @@ impl Growth {
     ///
     /// # Errors
     /// As [`growing`](Self::growing).
-    pub(crate) fn force(
+    pub(super) fn force(
         &self,
         body: &Body,
         strain: Vec<Signal>,
@@ -228,8 +209,52 @@ impl Growth {
     }
 }
 
+pub(crate) const GROWTH: ActuatorKind = ActuatorKind {
+    name: "growth",
+    list: "growths",
+    drive: Drive::Strain,
+    label: "growth",
+    is_axisymmetric: false,
+};
+
+impl Actuator for Growth {
+    fn name(&self) -> &str {
+        &self.name
+    }
+
+    fn kind(&self) -> &'static ActuatorKind {
+        &GROWTH
+    }
+
+    fn driven(&self, body: &Body, strain: Vec<Signal>) -> Result<Forces, InputError> {
+        Ok(match strain.is_empty() {
+            true => self.growing(body).map(|_| Forces::new())?,
+            false => vec![Arc::new(self.force(body, strain)?)],
+        })
+    }
+
+    fn gauge(&self, _body: &Body) -> Result<ActuatorGauge, InputError> {
+        Ok(Box::new(|_, now| now.drive[0]))
+    }
+
+    fn grown(&self, body: &Body, strain: f64) -> Result<Option<Grown>, InputError> {
+        let (cells, course) = (self.cells(body)?, self.course.clone());
+        Ok(Some(Grown { cells, course, stretches: self.stretches(strain) }))
+    }
+
+    fn mapped(&self, map: &ComponentMap<'_>) -> Result<Arc<dyn Actuator>, InputError> {
+        let cells = self.cells.as_ref().map(map.cells).transpose()?;
+        Ok(Arc::new(Self { cells, ..self.clone() }))
+    }
+
+    fn placed(&self, body: &Body, map: &NodeMap) -> Result<Placed, InputError> {
+        let (cells, likeness) = (self.cells(body)?, format!("growth {:?}", self.across));
+        Ok(Placed::within(likeness, &cells, self.course.as_ref(), body.mesh(), map))
+    }
+}
+
 /// The elastic force of cells that grow.
-pub(crate) struct GrowthForce {
+pub(super) struct GrowthForce {
     growth: Growth,
     growing: Growing,
     strain: Vec<Signal>,

@@ -1,5 +1,6 @@
 //! Forces on a body from outside: one file per kind of force.
 
+mod actuator;
 mod basin;
 mod chamber;
 mod chamber_fluid;
@@ -39,6 +40,9 @@ mod turned;
 mod wrench;
 mod wrench_kind;
 
+pub(crate) use actuator::{
+    Actuator, ActuatorGauge, ActuatorKind, ActuatorState, ComponentMap, Drive, LinePoint, Placed,
+};
 pub use chamber::Chamber;
 pub(crate) use chamber::{ChamberForce, TURNED};
 pub(crate) use chamber_fluid::ChamberFluid;
@@ -71,8 +75,6 @@ pub use shape::Shape;
 pub use signal::Signal;
 pub(crate) use signal::{SharedValue, SignalKind, VectorSignal, finite_at};
 pub use signals::Signals;
-pub(crate) use spring::SpringGauge;
-pub(crate) use spring::SpringPoint;
 pub use spring::{Guide, Spring};
 pub(crate) use stuck::Stuck;
 pub(crate) use surface::{
@@ -85,3 +87,7 @@ pub use touch::{Touch, TouchDistance};
 pub(crate) use turned::corners;
 pub(crate) use wrench::WrenchForce;
 pub(crate) use wrench_kind::WrenchKind;
+
+/// The kinds of actuators, in the order in which a scene has them, and so adds their forces.
+pub(crate) const ACTUATORS: [&ActuatorKind; 5] =
+    [&spring::SPRING, &spring::CABLE, &spring::WINCH, &muscle::MUSCLE, &growth::GROWTH];

@@ -8,13 +8,16 @@
 //! fibres turn as they lengthen. Power of a muscle that lengthens stays in the same account. The activation
 //! is a signal and no state.
 
+use std::sync::Arc;
+
+use super::actuator::{Actuator, ActuatorGauge, ActuatorKind, ComponentMap, Drive, Placed};
 use super::signal::{self, Signal, finite_at};
 use crate::base::input::InputError;
 use crate::base::sparse::BlockMatrix;
 use crate::elements::body::{Body, CellSelection, Contraction, Strands};
-use crate::elements::force::{Force, NodalForces, Tangents};
+use crate::elements::force::{Force, Forces, NodalForces, Tangents};
 use crate::elements::material::{FibreDirection, Hill};
-use crate::elements::mesh::Mesh;
+use crate::elements::mesh::{Mesh, NodeMap};
 use crate::integrators::ode::Failure;
 
 /// A muscle: fibres through cells of a body, which pull along their course by a stress that phases give
@@ -108,26 +111,8 @@ impl Muscle {
         if self.name.is_empty() { self.named(name) } else { self }
     }
 
-    /// Its properties but for its name and its fibres, as a text.
-    pub(crate) fn likeness(&self) -> String {
-        format!("muscle {:?}", self.hill)
-    }
-
-    /// The course of its fibres.
-    pub(crate) fn course(&self) -> &FibreDirection {
-        &self.course
-    }
-
-    /// The same with the cells that `change` makes of those it was given.
-    pub(crate) fn with_cells(
-        &self,
-        change: impl Fn(&CellSelection) -> Result<CellSelection, InputError>,
-    ) -> Result<Self, InputError> {
-        Ok(Self { cells: self.cells.as_ref().map(change).transpose()?, ..self.clone() })
-    }
-
     /// The cells that it lies in, counted from 0.
-    pub(crate) fn cells(&self, mesh: &Mesh) -> Result<Vec<usize>, InputError> {
+    fn cells(&self, mesh: &Mesh) -> Result<Vec<usize>, InputError> {
         let cells = CellSelection::cells_or_all(self.cells.as_ref(), mesh);
         cells.map_err(|error| self.blamed(error))
     }
@@ -137,7 +122,7 @@ impl Muscle {
     /// # Errors
     /// Cells that the body does not have, that are rigid, or whose strain is Cauchy's; a course that is none there; numbers that are none of
     /// Hill's law.
-    pub(crate) fn strands(&self, body: &Body) -> Result<Strands, InputError> {
+    fn strands(&self, body: &Body) -> Result<Strands, InputError> {
         let cells = self.cells(body.mesh())?;
         self.hill.iter().try_for_each(Hill::validate).map_err(|error| self.blamed(error))?;
         let strands = self.course.validate().and_then(|()| body.strands(&cells, &self.course));
@@ -147,34 +132,76 @@ impl Muscle {
     fn blamed(&self, error: InputError) -> InputError {
         InputError { input: format!("muscle \"{}\" {}", self.name, error.input), ..error }
     }
+}
 
-    /// Checks a stress (Pa) that does not change.
-    ///
-    /// # Errors
-    /// One that Hill's law does not have.
-    pub(crate) fn check_stress(&self, stress: f64) -> Result<(), InputError> {
+pub(crate) const MUSCLE: ActuatorKind = ActuatorKind {
+    name: "muscle",
+    list: "muscles",
+    drive: Drive::Stress,
+    label: "stress",
+    is_axisymmetric: false,
+};
+
+impl Muscle {
+    /// Number of an output: the stress (Pa) by which it pulls, the mean over its volume.
+    pub(crate) const STRESS: usize = 0;
+    /// The mean stretch of its fibres (1).
+    pub(crate) const STRETCH: usize = 1;
+    /// Its activation by Hill's law (1).
+    pub(crate) const ACTIVATION: usize = 2;
+}
+
+impl Actuator for Muscle {
+    fn name(&self) -> &str {
+        &self.name
+    }
+
+    fn kind(&self) -> &'static ActuatorKind {
+        &MUSCLE
+    }
+
+    fn driven(&self, body: &Body, stress: Vec<Signal>) -> Result<Forces, InputError> {
+        let strands = self.strands(body)?;
+        Ok(match stress.is_empty() {
+            true => Forces::new(),
+            false => vec![Arc::new(MuscleForce { muscle: self.clone(), strands, stress })],
+        })
+    }
+
+    fn gauge(&self, body: &Body) -> Result<ActuatorGauge, InputError> {
+        let (strands, hill) = (self.strands(body)?, self.hill.clone());
+        Ok(Box::new(move |output, now| match (output, &hill) {
+            (Self::STRETCH, _) => strands.mean_stretch(now.u),
+            (Self::ACTIVATION, Some(law)) => (now.drive[0] / law.largest).clamp(0.0, 1.0),
+            (_, Some(law)) => {
+                strands.mean_pull(Contraction { law, stress: now.drive[0] }, now.u, now.v)
+            }
+            (_, None) => now.drive[0],
+        }))
+    }
+
+    fn check(&self, stress: f64) -> Result<(), InputError> {
         let checked = self.hill.as_ref().map_or(Ok(()), |hill| hill.check_stress(stress));
         checked.map_err(|error| self.blamed(error))
     }
 
-    /// Its force under the sum of the signals `stress` (Pa).
-    ///
-    /// # Errors
-    /// As [`strands`](Self::strands); a constant stress that Hill's law does not have.
-    pub(crate) fn force(
-        &self,
-        body: &Body,
-        stress: Vec<Signal>,
-    ) -> Result<MuscleForce, InputError> {
-        if let Some(constant) = stress.iter().map(Signal::value).sum() {
-            self.check_stress(constant)?;
-        }
-        Ok(MuscleForce { muscle: self.clone(), strands: self.strands(body)?, stress })
+    fn hill(&self) -> Option<&Hill> {
+        self.law()
+    }
+
+    fn mapped(&self, map: &ComponentMap<'_>) -> Result<Arc<dyn Actuator>, InputError> {
+        let cells = self.cells.as_ref().map(map.cells).transpose()?;
+        Ok(Arc::new(Self { cells, ..self.clone() }))
+    }
+
+    fn placed(&self, body: &Body, map: &NodeMap) -> Result<Placed, InputError> {
+        let (cells, likeness) = (self.cells(body.mesh())?, format!("muscle {:?}", self.hill));
+        Ok(Placed::within(likeness, &cells, Some(&self.course), body.mesh(), map))
     }
 }
 
 /// The force of a muscle.
-pub(crate) struct MuscleForce {
+struct MuscleForce {
     muscle: Muscle,
     strands: Strands,
     stress: Vec<Signal>,
@@ -195,7 +222,7 @@ impl Force for MuscleForce {
             return self.strands.add_forces(stress, u, applied);
         };
         self.muscle
-            .check_stress(stress)
+            .check(stress)
             .map_err(|error| Failure::Fatal(format!("at t = {t} s {error}").into()))?;
         self.strands.contract(Contraction { law, stress }, u, v, applied)
     }

@@ -14,22 +14,25 @@ mod path;
 #[cfg(test)]
 mod tests;
 
+use std::cmp::Ordering;
 use std::sync::Arc;
 
 use cable::{Cable, CableForce};
-use force::{Actuator, Elastic};
+use force::{Driven, Elastic};
 use path::{COLLAPSED, Path};
 
+use super::actuator::{
+    Actuator, ActuatorGauge, ActuatorKind, ComponentMap, Drive, LinePoint, Placed,
+};
 use super::friction::Friction;
 use super::signal::Signal;
 use super::surface::natural;
-#[cfg(feature = "output")]
-use super::surface::weighted;
 use crate::base::input::{InputError, finite, not_negative, positive};
 use crate::base::vector::norm;
 use crate::elements::basis::shares_at;
-use crate::elements::force::Force;
-use crate::elements::mesh::{Mesh, Selection};
+use crate::elements::body::Body;
+use crate::elements::force::{Force, Forces};
+use crate::elements::mesh::{Mesh, NodeMap, Selection};
 
 /// A spring between two nodes, or between a node and a fixed point of space.
 ///
@@ -122,43 +125,7 @@ impl Guide {
     }
 }
 
-/// An end of a spring or a place of a cable: in the mesh, or a point of space.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) struct SpringPoint {
-    /// Its undeformed position (m); components beyond the dimension are 0.
-    pub(crate) at: [f64; 3],
-    /// The nodes with which it moves, counted from 0, and their shares: none of a point of space.
-    pub(crate) shares: Vec<(usize, f64)>,
-}
-
 impl Spring {
-    /// The same spring with the nodes that `change` makes of those that it is joined to.
-    ///
-    /// # Errors
-    /// As `change`.
-    pub(crate) fn with_nodes(
-        mut self,
-        change: impl Fn(&Selection) -> Result<Selection, InputError>,
-    ) -> Result<Self, InputError> {
-        for Guide(place) in &mut self.path {
-            if let Place::Nodes(nodes) = place {
-                *nodes = change(nodes)?;
-            }
-        }
-        Ok(self)
-    }
-
-    /// The same spring with a `share` of its forces but those that drive it.
-    pub(crate) fn share(&self, share: f64) -> Self {
-        let (stiffness, damping) = (share * self.stiffness, share * self.damping);
-        Self { stiffness, damping, ..self.clone() }
-    }
-
-    /// Its properties but for its name and where it runs, as a text.
-    pub(crate) fn likeness(&self) -> String {
-        format!("{:?}", Self { name: String::new(), path: Vec::new(), ..self.clone() })
-    }
-
     /// A spring from the node that `first` selects to the one that `second` selects.
     pub fn between(first: impl Into<Selection>, second: impl Into<Selection>) -> Self {
         Self::new(vec![Guide::nodes(first), Guide::nodes(second)], Kind::Spring)
@@ -278,11 +245,6 @@ impl Spring {
         matches!(self.kind, Kind::Cable { .. })
     }
 
-    /// Whether it is a cable on a winch, whose actuation is the length (m) that is drawn in.
-    pub(crate) fn is_winch(&self) -> bool {
-        matches!(self.kind, Kind::Cable { is_winch: true, .. })
-    }
-
     pub(crate) fn or_named(self, name: String) -> Self {
         if self.name.is_empty() { self.named(name) } else { self }
     }
@@ -291,8 +253,8 @@ impl Spring {
     ///
     /// # Errors
     /// Ends of a spring that are not one node each; less than two places; a point with a wrong number of coordinates.
-    pub(crate) fn joints(&self, mesh: &Mesh) -> Result<Vec<SpringPoint>, InputError> {
-        let mut joints: Vec<SpringPoint> = Vec::new();
+    fn joints(&self, mesh: &Mesh) -> Result<Vec<LinePoint>, InputError> {
+        let mut joints: Vec<LinePoint> = Vec::new();
         for (number, Guide(place)) in (1..).zip(&self.path) {
             let input = |key: &str| match (self.is_cable(), number) {
                 (true, _) => self.input(&format!("place {number}")),
@@ -313,7 +275,7 @@ impl Spring {
                         nodes.sort_by(|a, b| far(*a).total_cmp(&far(*b)));
                     }
                     let joint =
-                        |node| SpringPoint { at: natural(mesh, node), shares: vec![(node, 1.0)] };
+                        |node| LinePoint { at: natural(mesh, node), shares: vec![(node, 1.0)] };
                     joints.extend(nodes.into_iter().map(joint));
                 }
                 Place::Inside(point) | Place::Point(point) => {
@@ -331,7 +293,7 @@ impl Spring {
                         _ => Vec::new(),
                     };
                     let at = std::array::from_fn(|i| point.get(i).copied().unwrap_or(0.0));
-                    joints.push(SpringPoint { at, shares });
+                    joints.push(LinePoint { at, shares });
                 }
             }
         }
@@ -398,6 +360,9 @@ impl Spring {
     }
 
     /// The law of the spring without what drives it.
+    ///
+    /// # Errors
+    /// As [`joints`](Self::joints); places that follow each other and are the same; numbers out of range.
     fn law(&self, mesh: &Mesh) -> Result<Law, InputError> {
         let path = self.checked(mesh)?;
         let (stiffness, damping) = (self.stiffness, self.damping);
@@ -413,47 +378,11 @@ impl Spring {
         Ok(Law::Cable(Cable { path, stiffness, damping, is_winch, friction }))
     }
 
-    /// Gauge of the spring: its law without actuation.
-    ///
-    /// # Errors
-    /// As [`joints`](Self::joints); places that follow each other and are the same; numbers out of range.
-    pub(crate) fn gauge(&self, mesh: &Mesh) -> Result<SpringGauge, InputError> {
-        self.law(mesh).map(SpringGauge)
-    }
-
-    /// Checks the tension of a cable that is driven by the sum of the signals `actuation` in a phase, as far as it is known
-    /// before a run.
-    ///
-    /// # Errors
-    /// A constant, or a table by itself, below 0.
-    pub(crate) fn check_tension(
-        &self,
-        phase: &str,
-        actuation: &[Signal],
-    ) -> Result<(), InputError> {
-        if !self.is_cable() || self.is_winch() {
-            return Ok(());
-        }
-        let sum = || actuation.iter().map(Signal::value).sum::<Option<f64>>();
-        let least = match actuation {
-            [only] => only.least(),
-            _ => sum(),
-        };
-        match least.filter(|least| *least < 0.0) {
-            None => Ok(()),
-            Some(least) => {
-                let input = format!("actuation of cable \"{}\" in phase \"{phase}\"", self.name);
-                let help = "a cable cannot push: its tension (N) is 0 or above";
-                Err(InputError::new(input, format!("{least} N"), help))
-            }
-        }
-    }
-
     /// The forces of the spring, driven by the sum of the signals `actuation`.
     ///
     /// # Errors
-    /// As [`gauge`](Self::gauge).
-    pub(crate) fn forces(
+    /// As [`law`](Self::law).
+    pub(super) fn forces(
         &self,
         mesh: &Mesh,
         actuation: Vec<Signal>,
@@ -462,7 +391,7 @@ impl Spring {
             Law::Cable(cable) => vec![Arc::new(CableForce { cable, drive: actuation })],
             Law::Spring(elastic) if actuation.is_empty() => vec![Arc::new(elastic)],
             Law::Spring(elastic) => {
-                let actuator = Actuator { path: elastic.path.clone(), force: actuation };
+                let actuator = Driven { path: elastic.path.clone(), force: actuation };
                 vec![Arc::new(elastic), Arc::new(actuator)]
             }
         })
@@ -474,28 +403,19 @@ enum Law {
     Cable(Cable),
 }
 
-/// The law by which a spring is measured.
-pub(crate) struct SpringGauge(Law);
-
-impl SpringGauge {
+impl Law {
     /// Length (m) under the displacements `u`.
-    pub(crate) fn length(&self, u: &[f64]) -> f64 {
-        let (Law::Spring(Elastic { path, .. }) | Law::Cable(Cable { path, .. })) = &self.0;
+    fn length(&self, u: &[f64]) -> f64 {
+        let (Self::Spring(Elastic { path, .. }) | Self::Cable(Cable { path, .. })) = self;
         path.length(u)
     }
 
     /// The forces with which the first and the last line of its path pull (N), under an actuation with its rate.
-    pub(crate) fn pulls(&self, u: &[f64], v: &[f64], actuation: [f64; 2]) -> [f64; 2] {
-        match &self.0 {
-            Law::Spring(elastic) => [elastic.pull(u, v) - actuation[0]; 2],
-            Law::Cable(cable) => cable.tensions_at_ends(u, v, actuation),
+    fn pulls(&self, u: &[f64], v: &[f64], actuation: [f64; 2]) -> [f64; 2] {
+        match self {
+            Self::Spring(elastic) => [elastic.pull(u, v) - actuation[0]; 2],
+            Self::Cable(cable) => cable.tensions_at_ends(u, v, actuation),
         }
-    }
-
-    /// Pairs of nodes that it joins.
-    pub(crate) fn couplings(&self) -> Vec<[usize; 2]> {
-        let (Law::Spring(Elastic { path, .. }) | Law::Cable(Cable { path, .. })) = &self.0;
-        path.couplings(false)
     }
 }
 
@@ -503,18 +423,112 @@ fn distance(a: &[f64; 3], b: &[f64; 3]) -> f64 {
     norm(&std::array::from_fn::<f64, 3, _>(|i| a[i] - b[i]))
 }
 
-impl SpringPoint {
-    /// A point that moves with nodes.
-    #[cfg(feature = "output")]
-    pub(crate) fn carried(mesh: &Mesh, shares: Vec<(usize, f64)>) -> Self {
-        Self { at: weighted(shares.iter().copied(), mesh.positions(), mesh.dimension()), shares }
+pub(crate) const SPRING: ActuatorKind = ActuatorKind {
+    name: "spring",
+    list: "springs",
+    drive: Drive::Force,
+    label: "actuator",
+    is_axisymmetric: true,
+};
+
+pub(crate) const CABLE: ActuatorKind =
+    ActuatorKind { name: "cable", label: "tension", is_axisymmetric: false, ..SPRING };
+
+pub(crate) const WINCH: ActuatorKind =
+    ActuatorKind { drive: Drive::Length, label: "drawn in", ..CABLE };
+
+impl Spring {
+    /// Number of an output: the force (N) with which its ends pull each other, of a cable the tension at its first place.
+    pub(crate) const PULL: usize = 0;
+    /// That at its last place.
+    pub(crate) const PULL_AT_END: usize = 1;
+    /// Its length (m).
+    pub(crate) const LENGTH: usize = 2;
+}
+
+impl Actuator for Spring {
+    fn name(&self) -> &str {
+        &self.name
     }
 
-    /// The node that it is, if it is one.
-    pub(crate) fn node(&self) -> Option<usize> {
-        match self.shares[..] {
-            [(node, _)] => Some(node),
-            _ => None,
+    fn kind(&self) -> &'static ActuatorKind {
+        match self.kind {
+            Kind::Spring => &SPRING,
+            Kind::Cable { is_winch: false, .. } => &CABLE,
+            Kind::Cable { is_winch: true, .. } => &WINCH,
         }
+    }
+
+    fn driven(&self, body: &Body, signals: Vec<Signal>) -> Result<Forces, InputError> {
+        self.forces(body.mesh(), signals)
+    }
+
+    fn gauge(&self, body: &Body) -> Result<ActuatorGauge, InputError> {
+        let law = self.law(body.mesh())?;
+        Ok(Box::new(move |output, now| match output {
+            Self::PULL => law.pulls(now.u, now.v, now.drive)[0],
+            Self::PULL_AT_END => law.pulls(now.u, now.v, now.drive)[1],
+            _ => law.length(now.u),
+        }))
+    }
+
+    /// A tension is not below 0, as a constant or in a table by itself.
+    fn check_signals(&self, phase: &str, signals: &[Signal]) -> Result<(), InputError> {
+        if !matches!(self.kind, Kind::Cable { is_winch: false, .. }) {
+            return Ok(());
+        }
+        let least = match signals {
+            [only] => only.least(),
+            _ => signals.iter().map(Signal::value).sum::<Option<f64>>(),
+        };
+        match least.filter(|least| *least < 0.0) {
+            None => Ok(()),
+            Some(least) => {
+                let input = format!("actuation of cable \"{}\" in phase \"{phase}\"", self.name);
+                let help = "a cable cannot push: its tension (N) is 0 or above";
+                Err(InputError::new(input, format!("{least} N"), help))
+            }
+        }
+    }
+
+    fn line(&self, mesh: &Mesh) -> Result<Vec<LinePoint>, InputError> {
+        self.joints(mesh)
+    }
+
+    fn mapped(&self, map: &ComponentMap<'_>) -> Result<Arc<dyn Actuator>, InputError> {
+        let path = self.path.iter().map(|Guide(place)| match place {
+            Place::Nodes(nodes) => (map.nodes)(nodes).map(Guide::nodes),
+            other => Ok(Guide(other.clone())),
+        });
+        let (stiffness, damping) = (map.share * self.stiffness, map.share * self.damping);
+        let path = path.collect::<Result<_, InputError>>()?;
+        Ok(Arc::new(Self { path, stiffness, damping, ..self.clone() }))
+    }
+
+    fn placed(&self, body: &Body, map: &NodeMap) -> Result<Placed, InputError> {
+        let joints = self.joints(body.mesh())?;
+        let numbers = |is_image: bool| {
+            let number = |joint: &LinePoint| {
+                let mut x = joint.at;
+                if is_image {
+                    x[map.axis] = 2.0 * map.ends[0] - x[map.axis];
+                }
+                x.rotate_left((map.axis + 1) % 3);
+                [x[0], x[1], x[2], f64::from(u8::from(joint.shares.is_empty()))]
+            };
+            let mut numbers: Vec<[f64; 4]> = joints.iter().map(number).collect();
+            if !self.is_cable() {
+                // either end may be the first one
+                numbers.sort_by(|a, b| a.partial_cmp(b).unwrap_or(Ordering::Equal));
+            }
+            numbers.concat()
+        };
+        let unnamed = Self { name: String::new(), path: Vec::new(), ..self.clone() };
+        Ok(Placed {
+            likeness: format!("{unnamed:?}"),
+            at: [false, true].map(numbers),
+            along: joints.iter().map(|joint| joint.at[map.axis]).collect(),
+            is_line: true,
+        })
     }
 }

@@ -4,7 +4,7 @@ use super::{Phase, Scene};
 use crate::base::input::InputError;
 use crate::elements::mesh::Selection;
 use crate::scene::constraint::{Axes, Axis, Constrained, Constraint, Motion};
-use crate::scene::forces::{Fluid, Spring, Touch};
+use crate::scene::forces::{Fluid, Touch};
 
 impl Scene {
     /// The nodes on the axis of a body of revolution, held there.
@@ -32,18 +32,14 @@ impl Scene {
                 "an axisymmetric body does not have it: leave it out, or mesh the body in space";
             Err(InputError::new(what, format!("\"{name}\""), help))
         };
-        let cable = self.springs.iter().find(|spring| spring.is_cable()).map(Spring::name);
-        let muscle = self.muscles.first().map(|muscle| muscle.name());
-        let growth = self.growths.first().map(|growth| growth.name());
+        let actuator = self.actuators.iter().find(|own| !own.kind().is_axisymmetric);
         let magnet = self.magnets.first().map(|_| "magnet 1");
         let fluid = self.fluids.first().map(Fluid::name);
         let touch = self.touches.first().map(Touch::name);
         let device = self.devices.first();
         let kind = device.map_or("device", |device| device.kind());
         for (what, name) in [
-            ("cable", cable),
-            ("muscle", muscle),
-            ("growth", growth),
+            (actuator.map_or("actuator", |own| own.kind().name), actuator.map(|own| own.name())),
             ("magnet", magnet),
             ("fluid", fluid),
             ("touch", touch),

@@ -4,13 +4,13 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use super::input::{LoadKind, Quantity, Target};
-use super::{Device, Phase, Scene};
+use super::{Phase, Scene};
 use crate::base::input::{InputError, check_memory};
 use crate::elements::basis::Finer;
-use crate::elements::body::{Body, BodyBuilder, Part};
+use crate::elements::body::{Body, BodyBuilder, CellSelection, Part};
 use crate::elements::mesh::{BYTES_PER_NODE, Mesh, Selection};
 use crate::scene::constraint::Constrained;
-use crate::scene::forces::{Obstacle, Touch};
+use crate::scene::forces::{ComponentMap, Obstacle, Touch};
 
 impl Scene {
     /// The same scene with its body built differently: of another material, with another measure of strain,
@@ -134,50 +134,21 @@ impl Scene {
         let change = Change { body: &self.body, coarse: &coarse, finer: &finer };
         let mut scene = self.clone().unreduced();
         scene.start = change.start(self, &body)?;
-        scene.chambers = self
-            .chambers
-            .iter()
-            .map(|chamber| chamber.clone().with_nodes(|nodes| change.extended(nodes)))
-            .collect::<Result<_, _>>()?;
-        scene.fluids = self
-            .fluids
-            .iter()
-            .map(|fluid| fluid.with_nodes(|nodes| change.extended(nodes)))
-            .collect::<Result<_, _>>()?;
         let nodes = |nodes: &Selection| change.extended(nodes);
-        let finer_device = |device: &Arc<dyn Device>| device.on_finer_mesh(&nodes);
-        scene.devices = self.devices.iter().map(finer_device).collect::<Result<_, _>>()?;
-        scene.muscles = self
-            .muscles
-            .iter()
-            .map(|muscle| muscle.with_cells(|cells| cells.on(&coarse, &finer)))
-            .collect::<Result<_, _>>()?;
-        scene.growths = self
-            .growths
-            .iter()
-            .map(|growth| growth.with_cells(|cells| cells.on(&coarse, &finer)))
-            .collect::<Result<_, _>>()?;
-        scene.magnets = self
-            .magnets
-            .iter()
-            .map(|magnet| magnet.with_cells(|cells| cells.on(&coarse, &finer)))
-            .collect::<Result<_, _>>()?;
-        scene.springs = self
-            .springs
-            .iter()
-            .map(|spring| spring.clone().with_nodes(|nodes| change.moved(nodes)))
-            .collect::<Result<_, _>>()?;
-        scene.ties = self
-            .ties
-            .iter()
-            .map(|tie| tie.on(&body, |nodes| change.extended(nodes)))
-            .collect::<Result<_, _>>()?;
+        let cells = |cells: &CellSelection| cells.on(&coarse, &finer);
+        let map = ComponentMap { nodes: &|nodes| change.moved(nodes), cells: &cells, share: 1.0 };
+        scene.chambers = each(&self.chambers, |own| own.clone().with_nodes(nodes))?;
+        scene.fluids = each(&self.fluids, |own| own.with_nodes(nodes))?;
+        scene.devices = each(&self.devices, |own| own.on_finer_mesh(&nodes))?;
+        scene.actuators = each(&self.actuators, |own| own.mapped(&map))?;
+        scene.magnets = each(&self.magnets, |own| own.with_cells(cells))?;
+        scene.ties = each(&self.ties, |own| own.on(&body, nodes))?;
         let count = |mesh: &Mesh| mesh.boundary_nodes().len() as f64;
         let share = count(&coarse) / count(&finer.mesh);
         let shared = |obstacle: &Obstacle| obstacle.clone().shared_out(share);
         scene.obstacles = self.obstacles.iter().map(shared).collect();
         let as_here = |touch: &Touch| Ok(touch.clone().with_numbers_of(&self.force_of(touch)?));
-        scene.touches = self.touches.iter().map(as_here).collect::<Result<_, InputError>>()?;
+        scene.touches = each(&self.touches, as_here)?;
         for phase in &mut scene.phases {
             change.phase(phase)?;
             phase.redirected = phase.redirected.iter().map(shared).collect();
@@ -185,6 +156,11 @@ impl Scene {
         scene.body = Arc::new(body);
         Ok((scene, finer))
     }
+}
+
+/// What `map` makes of each component.
+fn each<T>(all: &[T], map: impl Fn(&T) -> Result<T, InputError>) -> Result<Vec<T>, InputError> {
+    all.iter().map(map).collect()
 }
 
 /// Carries selections of nodes over to a finer mesh.

@@ -1,22 +1,16 @@
 //! The forces that act in a phase.
 
-use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use super::input::Quantity;
 use super::phase::check_vector;
 use super::{LoadKind, Phase, Scene};
 use crate::base::input::{InputError, finite};
-use crate::elements::body::Grown;
 use crate::elements::force::Forces;
 use crate::elements::mesh::Selection;
 use crate::scene::forces::{
-    Contact, FacePressure, Gravity, Growth, Lagging, Load, Signal, VaryingLoad, VectorSignal,
-    areas, shares,
+    Contact, FacePressure, Gravity, Load, Signal, VaryingLoad, VectorSignal, areas, shares,
 };
-
-/// Builder of the forces of an actuator from its signals.
-type Build<'a> = &'a dyn Fn(Vec<Signal>) -> Result<Forces, InputError>;
 
 impl Scene {
     /// The forces in one phase, except those of constant matrices.
@@ -175,128 +169,16 @@ impl Scene {
         Ok(sum)
     }
 
-    /// Adds the forces of springs, muscles and growths, and returns those that lag, in the order of the lags.
-    fn add_actuators(
-        &self,
-        phase: &Phase,
-        forces: &mut Forces,
-    ) -> Result<Vec<Lagging>, InputError> {
-        let mut lags: Vec<Option<Lagging>> = self.lags().map(|_| None).collect();
-        let mut drive = |name: &str, signals: Vec<Signal>, build: Build| {
-            let Some((number, mut lagging)) = self.lagging(name, &signals)? else {
-                forces.extend(build(signals)?);
-                return Ok::<(), InputError>(());
-            };
-            let driven = build(vec![lagging.signal()])?;
-            // that of its elasticity comes before it
-            driven.last().into_iter().for_each(|force| lagging.drive(force.clone()));
-            forces.extend(driven);
-            lags[number] = Some(lagging);
-            Ok(())
-        };
-        let mut actuations = self.actuation_signals(phase)?.into_iter();
-        for (spring, actuation) in self.springs.iter().zip(&mut actuations) {
-            spring.check_tension(&phase.name, &actuation)?;
-            drive(spring.name(), actuation, &|signals| spring.forces(self.body.mesh(), signals))?;
-        }
-        for (muscle, stress) in self.muscles.iter().zip(&mut actuations) {
-            if !stress.is_empty() {
-                let force = |stress| Ok(vec![Arc::new(muscle.force(&self.body, stress)?) as _]);
-                drive(muscle.name(), stress, &force)?;
-            }
-        }
-        for (growth, strain) in self.growing(phase)? {
-            let force = |strain| Ok(vec![Arc::new(growth.force(&self.body, strain)?) as _]);
-            drive(growth.name(), strain, &force)?;
-        }
-        Ok(lags.into_iter().flatten().collect())
-    }
-
-    /// Growths that are actuated in `phase`, with their strains.
-    ///
-    /// # Errors
-    /// Cells that are part of two growths.
-    fn growing(&self, phase: &Phase) -> Result<Vec<(&Growth, Vec<Signal>)>, InputError> {
-        if self.growths.is_empty() {
-            return Ok(Vec::new());
-        }
-        let signals = self.actuation_signals(phase)?.into_iter();
-        let signals = signals.skip(self.springs.len() + self.muscles.len());
-        let all = self.growths.iter().zip(signals);
-        let all: Vec<(&Growth, Vec<Signal>)> =
-            all.filter(|(_, strain)| !strain.is_empty()).collect();
-        let mut owners = BTreeMap::new();
-        for (growth, _) in &all {
-            for cell in growth.cells(&self.body)? {
-                if let Some(other) = owners.insert(cell, growth.name()) {
-                    let help =
-                        format!("growth \"{other}\" has it, too: give each cells of its own");
-                    let input = format!("growth \"{}\" cell", growth.name());
-                    return Err(InputError::new(input, cell + 1, help));
-                }
-            }
-        }
-        Ok(all)
-    }
-
-    /// The cells that grow in `phase`, counted from 0.
-    ///
-    /// # Errors
-    /// Cells that the body does not have, or that are part of two growths.
-    pub(crate) fn growing_cells(&self, phase: &Phase) -> Result<Vec<usize>, InputError> {
-        let growing = self.growing(phase)?.into_iter();
-        let cells = growing.map(|(growth, _)| growth.cells(&self.body));
-        Ok(cells.collect::<Result<Vec<_>, _>>()?.concat())
-    }
-
-    /// The cells that have grown in `phase` at time `t` (s); `states` as [`drive_at`](Self::drive_at) takes them.
-    pub(crate) fn grown(
-        &self,
-        phase: &Phase,
-        t: f64,
-        states: &[f64],
-    ) -> Result<Vec<Grown>, InputError> {
-        let all = self.growing(phase)?.into_iter();
-        let grown = all.map(|(growth, _)| {
-            let [strain, _] = self.drive_at(growth.name(), phase, t, states);
-            Ok(growth.grown(growth.cells(&self.body)?, strain))
-        });
-        grown.collect()
-    }
-
-    /// Actuation signals of all springs, muscles and growths in `phase`, in that order; for lagged actuators, the
-    /// steady-state input.
-    fn actuation_signals(&self, phase: &Phase) -> Result<Vec<Vec<Signal>>, InputError> {
-        let input = format!("actuation of phase \"{}\"", phase.name);
-        let mut actuations: Vec<Vec<Signal>> = vec![Vec::new(); self.actuators().count()];
-        for (name, force) in phase.signals(Quantity::Actuation) {
-            force.validate(&input)?;
-            actuations[self.actuator_number(name, &input)?].push(force.clone());
-        }
-        let named = self.actuators().zip(actuations);
-        let mut driven: Vec<Vec<Signal>> =
-            named.map(|(name, signals)| self.driven(name, signals)).collect();
-        if self.rises {
-            // stresses of muscles are loads, which statics scales
-            let muscles = self.springs.len()..self.springs.len() + self.muscles.len();
-            let others = driven.iter_mut().enumerate().filter(|(k, _)| !muscles.contains(k));
-            others.flat_map(|(_, signals)| signals).for_each(|s| *s = s.rising(phase.until));
-        }
-        Ok(driven)
-    }
-
     fn add_chambers(&self, phase: &Phase, forces: &mut Forces) -> Result<(), InputError> {
         let input = format!("pressure of phase \"{}\"", phase.name);
         let mut pressures: Vec<Vec<Signal>> = vec![Vec::new(); self.chambers.len()];
         for (name, pressure) in phase.signals(Quantity::Pressure) {
             pressure.validate(&input)?;
             let number = self.chamber_number(name, &input)?;
-            if self.gas_in(name).is_some() {
-                let help = "the gas in it has a pressure of its own: feed it by an orifice, or leave the gas out";
-                return Err(InputError::new(input, format!("in chamber \"{name}\""), help));
-            }
-            if self.liquid_in(name).is_some() {
-                let help = "the liquid in it has a pressure of its own: let it flow in and out, or leave the liquid out";
+            let gas = "the gas in it has a pressure of its own: feed it by an orifice, or leave the gas out";
+            let liquid = "the liquid in it has a pressure of its own: let it flow in and out, or leave the liquid out";
+            let gas = self.gas_in(name).map(|_| gas);
+            if let Some(help) = gas.or(self.liquid_in(name).map(|_| liquid)) {
                 return Err(InputError::new(input, format!("in chamber \"{name}\""), help));
             }
             pressures[number].push(pressure.clone());

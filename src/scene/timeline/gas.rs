@@ -8,7 +8,7 @@ use super::{Phase, Scene, unique};
 use crate::base::input::{InputError, find, not_negative, unknown_among};
 use crate::elements::force::{Force, Forces};
 use crate::scene::forces::{
-    AmountFlow, Chamber, ChamberFluid, End, FixedAmount, Gas, GasInChamber, Lagging,
+    AmountFlow, Chamber, ChamberFluid, End, FixedAmount, Gas, GasInChamber, Lag, Lagging,
     LiquidInChamber, Orifice, OrificeFlow, Signal, Supply,
 };
 
@@ -167,7 +167,8 @@ impl Scene {
             .map(GasInChamber::unloaded)
             .chain(liquids.iter().map(LiquidInChamber::unloaded));
         let masses = unloaded.zip(whole).map(|(from, whole)| from + fraction * (whole - from));
-        let lags = self.lags().map(|(name, _)| self.drive_at(name, acting, phase.until, &[])[0]);
+        let steady = |(name, lag): (&str, &Lag)| lag.gain() * acting.command(name, phase.until)[0];
+        let lags = self.lags().map(steady);
         let pipes = self.pipes.iter().map(|_| 0.0);
         Ok(masses.chain(lags).chain(pipes).collect())
     }

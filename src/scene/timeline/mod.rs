@@ -1,5 +1,6 @@
 //! Scenes: a body, what surrounds it, and a timeline of phases.
 
+mod actuators;
 mod around;
 mod changed;
 mod contacts;
@@ -16,6 +17,7 @@ mod inputs;
 mod lag;
 mod liquid;
 mod loading;
+mod magnet;
 mod phase;
 mod phase_end;
 mod pipe;
@@ -28,7 +30,6 @@ mod start_state;
 mod term;
 mod tie;
 mod varying;
-mod within;
 mod written;
 
 use std::collections::BTreeSet;
@@ -68,8 +69,8 @@ use crate::scene::constraint::{
     Constrained, Constraint, ConstraintRow, PhaseStart, check_rigid_holds, prescribe, rows,
 };
 use crate::scene::forces::{
-    ATMOSPHERE, Chamber, Contact, Fluid, Gas, Growth, Lag, Liquid, Magnet, Muscle, Obstacle,
-    Orifice, Pipe, Spring, Supply, Touch, TouchDistance, TouchForce,
+    ATMOSPHERE, Actuator, Chamber, Contact, Fluid, Gas, Lag, Liquid, Magnet, Obstacle, Orifice,
+    Pipe, Supply, Touch, TouchDistance, TouchForce,
 };
 use crate::scene::reduced_model::ReducedModel;
 
@@ -93,10 +94,9 @@ use crate::scene::reduced_model::ReducedModel;
 pub struct Scene {
     body: Arc<Body>,
     gravity: Option<Vec<f64>>,
-    springs: Vec<Spring>,
-    muscles: Vec<Muscle>,
+    /// In the order of their kinds.
+    actuators: Vec<Arc<dyn Actuator>>,
     magnets: Vec<Magnet>,
-    growths: Vec<Growth>,
     /// By the names of actuators.
     lags: Vec<(String, Lag)>,
     fluids: Vec<Fluid>,
@@ -151,10 +151,8 @@ impl Scene {
             start: Start::rest(&body),
             body: Arc::new(body),
             gravity: None,
-            springs: Vec::new(),
-            muscles: Vec::new(),
+            actuators: Vec::new(),
             magnets: Vec::new(),
-            growths: Vec::new(),
             lags: Vec::new(),
             fluids: Vec::new(),
             chambers: Vec::new(),
@@ -182,13 +180,6 @@ impl Scene {
     /// [their own](Phase::gravity). Default: none.
     pub fn gravity(mut self, acceleration: impl Into<Vec<f64>>) -> Self {
         self.gravity = Some(acceleration.into());
-        self
-    }
-
-    /// Adds a spring between two nodes, which acts in every phase.
-    pub fn spring(mut self, spring: Spring) -> Self {
-        let number = self.springs.len() + 1;
-        self.springs.push(spring.or_named(format!("spring {number}")));
         self
     }
 
@@ -307,11 +298,6 @@ impl Scene {
         self.gravity.as_deref()
     }
 
-    /// The springs.
-    pub fn springs(&self) -> &[Spring] {
-        &self.springs
-    }
-
     /// The chambers.
     pub fn chambers(&self) -> &[Chamber] {
         &self.chambers
@@ -325,16 +311,6 @@ impl Scene {
     /// Number (from 0) of the chamber with a name; `input` is where that was given.
     pub(crate) fn chamber_number(&self, name: &str, input: &str) -> Result<usize, InputError> {
         find(name, self.chambers.iter().map(Chamber::name), input, "chambers")
-    }
-
-    /// Number (from 0) of the spring with a name; `input` is where that was given.
-    pub(crate) fn spring_number(&self, name: &str, input: &str) -> Result<usize, InputError> {
-        let what = match self.springs.iter().filter(|spring| spring.is_cable()).count() {
-            0 => "springs",
-            cables if cables == self.springs.len() => "cables",
-            _ => "springs and cables",
-        };
-        find(name, self.springs.iter().map(Spring::name), input, what)
     }
 
     /// Number (from 0) of the obstacle with a name; `input` is where that was given.
@@ -440,21 +416,15 @@ impl Scene {
             }
             start = phase.until;
         }
-        unique("spring", self.springs.iter().map(Spring::name))?;
-        if !(self.muscles.is_empty() && self.growths.is_empty()) {
-            unique("spring, muscle or growth", self.actuators())?;
+        let mut names = BTreeSet::new();
+        if let Some(own) = self.actuators.iter().find(|own| !names.insert(own.name())) {
+            return Err(taken(own.kind().name, own.name()));
         }
         self.check_lags()?;
         self.check_start_state()?;
         unique("chamber", self.chambers.iter().map(Chamber::name))?;
         unique("obstacle", self.obstacles.iter().map(Obstacle::name))?;
         unique("touch", self.touches.iter().map(Touch::name))?;
-        for muscle in &self.muscles {
-            muscle.strands(&self.body)?;
-        }
-        for growth in &self.growths {
-            growth.growing(&self.body)?;
-        }
         self.magnetization()?;
         for chamber in &self.chambers {
             chamber.check_side(&self.body, &chamber.force(&self.body, Vec::new())?)?;

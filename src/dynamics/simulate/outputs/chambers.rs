@@ -1,6 +1,6 @@
 //! Outputs of chambers.
 
-use super::super::output::{Kind, Output, Value};
+use super::super::output::{Kind, Output, Read};
 use super::super::reading::{Reading, ReadingKind};
 use super::super::view::View;
 use crate::base::input::InputError;
@@ -18,9 +18,7 @@ pub(super) static PRESSURE: Output = Output {
     about: "the gauge pressure in a chamber; of a liquid with weight the mean, of one with a surface that at the lowest point of the walls (Pa)",
     unit: "Pa",
     of: CHAMBER,
-    is_vector: false,
-    is_of_positions: false,
-    read: |view, number| {
+    read: Read::Number(|view, number| {
         let (scene, u) = (view.scene, view.u);
         let chamber = scene.chambers()[number].name();
         let pressure = if let Some(number) = scene.gas_in(chamber) {
@@ -34,8 +32,8 @@ pub(super) static PRESSURE: Output = Output {
         } else {
             Ok(view.input(Quantity::Pressure, chamber))
         };
-        Ok(Value::Number(pressure.unwrap_or(f64::NAN)))
-    },
+        Ok(pressure.unwrap_or(f64::NAN))
+    }),
 };
 
 pub(in crate::dynamics::simulate) static VOLUME: Output = Output {
@@ -43,9 +41,7 @@ pub(in crate::dynamics::simulate) static VOLUME: Output = Output {
     about: "the volume that the walls of a chamber enclose (m^3)",
     unit: "m^3",
     of: CHAMBER,
-    is_vector: false,
-    is_of_positions: true,
-    read: |view, number| Ok(Value::Number(view.gauges.chambers[number].volume(view.u))),
+    read: Read::OfPositions(|view, number| Ok(view.gauges.chambers[number].volume(view.u))),
 };
 
 impl View<'_> {

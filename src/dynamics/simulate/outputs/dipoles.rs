@@ -1,6 +1,6 @@
 //! Dipoles by their own words: sensors, readings and commands, which are those of a device.
 
-use super::super::output::{Kind, Output, Value};
+use super::super::output::{Kind, Output, Read};
 use super::super::reading::{Reading, ReadingKind};
 use super::super::simulation::Simulation;
 use super::super::view::View;
@@ -19,9 +19,7 @@ pub(super) static FORCE: Output = Output {
     about: "the force of a dipole on all magnets; that on the dipole is minus this (N)",
     unit: "N",
     of: DIPOLE,
-    is_vector: true,
-    is_of_positions: false,
-    read: |view, number| read(view, number, "force"),
+    read: Read::Vector(|view, number| read(view, number, "force")),
 };
 
 pub(super) static POSITION: Output = Output {
@@ -29,14 +27,12 @@ pub(super) static POSITION: Output = Output {
     about: "the position of a dipole (m)",
     unit: "m",
     of: DIPOLE,
-    is_vector: true,
-    is_of_positions: false,
-    read: |view, number| read(view, number, "position"),
+    read: Read::Vector(|view, number| read(view, number, "position")),
 };
 
-fn read(view: &View<'_>, number: usize, word: &str) -> Result<Value, InputError> {
+fn read(view: &View<'_>, number: usize, word: &str) -> Result<[f64; 3], InputError> {
     let output = view.scene.output_number(number, word)?;
-    Ok(Value::Vector(view.device_value(number, output, None)))
+    Ok(view.device_value(number, output, None))
 }
 
 impl View<'_> {

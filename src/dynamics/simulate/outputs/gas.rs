@@ -1,6 +1,6 @@
 //! Outputs of gas in chambers, and of what it flows through.
 
-use super::super::output::{Kind, Output, Value};
+use super::super::output::{Kind, Output, Read};
 use super::super::reading::{Reading, ReadingKind};
 use super::super::view::View;
 use crate::base::input::InputError;
@@ -22,9 +22,7 @@ pub(super) static ABSOLUTE_PRESSURE: Output = Output {
     about: "the absolute pressure of the gas in a chamber (Pa)",
     unit: "Pa",
     of: FILLED,
-    is_vector: false,
-    is_of_positions: false,
-    read: |view, number| Ok(Value::Number(view.gas_pressure(number))),
+    read: Read::Number(|view, number| Ok(view.gas_pressure(number))),
 };
 
 pub(super) static AMOUNT: Output = Output {
@@ -32,9 +30,7 @@ pub(super) static AMOUNT: Output = Output {
     about: "the amount of gas in a chamber (kg)",
     unit: "kg",
     of: FILLED,
-    is_vector: false,
-    is_of_positions: false,
-    read: |view, number| Ok(Value::Number(view.gas_mass(number))),
+    read: Read::Number(|view, number| Ok(view.gas_mass(number))),
 };
 
 pub(super) static FLOW: Output = Output {
@@ -42,9 +38,7 @@ pub(super) static FLOW: Output = Output {
     about: "the flow of gas through an orifice, from its first end to its second (kg/s)",
     unit: "kg/s",
     of: ORIFICE,
-    is_vector: false,
-    is_of_positions: false,
-    read: |view, number| {
+    read: Read::Number(|view, number| {
         let flow = view.scene.orifice_flow(number, view.phase)?;
         let gases = &view.gauges.gases;
         let pressures: Vec<f64> = (0..gases.len()).map(|gas| view.gas_pressure(gas)).collect();
@@ -53,8 +47,8 @@ pub(super) static FLOW: Output = Output {
             let name = format!("\"{}\"", view.scene.orifices()[number].name());
             InputError::new("orifice", name, failure.into_error().to_string())
         })?;
-        Ok(Value::Number(rate))
-    },
+        Ok(rate)
+    }),
 };
 
 impl View<'_> {

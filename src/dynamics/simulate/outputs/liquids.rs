@@ -1,6 +1,6 @@
 //! Outputs of liquids in chambers, and of pipes.
 
-use super::super::output::{Kind, Output, Value};
+use super::super::output::{Kind, Output, Read};
 use super::super::reading::{Reading, ReadingKind};
 use super::super::view::View;
 use crate::base::input::InputError;
@@ -27,12 +27,9 @@ pub(super) static VOLUME: Output = Output {
     about: "the volume of the liquid in a chamber, as it is without pressure (m^3)",
     unit: "m^3",
     of: FILLED,
-    is_vector: false,
-    is_of_positions: false,
-    read: |view, number| {
-        let liquid = &view.gauges.liquids[number];
-        Ok(Value::Number(liquid.natural(view.liquid_mass(number))))
-    },
+    read: Read::Number(|view, number| {
+        Ok(view.gauges.liquids[number].natural(view.liquid_mass(number)))
+    }),
 };
 
 pub(super) static FLOW: Output = Output {
@@ -40,12 +37,9 @@ pub(super) static FLOW: Output = Output {
     about: "the flow of liquid into a chamber (m^3/s)",
     unit: "m^3/s",
     of: FILLED,
-    is_vector: false,
-    is_of_positions: false,
-    read: |view, number| {
-        let chamber = view.scene.liquids()[number].chamber();
-        Ok(Value::Number(view.input(Quantity::Flow, chamber)))
-    },
+    read: Read::Number(|view, number| {
+        Ok(view.input(Quantity::Flow, view.scene.liquids()[number].chamber()))
+    }),
 };
 
 pub(super) static LEVEL: Output = Output {
@@ -53,12 +47,9 @@ pub(super) static LEVEL: Output = Output {
     about: "the height of the surface of the liquid in a chamber above the origin, against gravity (m)",
     unit: "m",
     of: WITH_SURFACE,
-    is_vector: false,
-    is_of_positions: false,
-    read: |view, number| {
-        let level = view.with_surface(number)?.level(view.u, view.liquid_mass(number));
-        Ok(Value::Number(level))
-    },
+    read: Read::Number(|view, number| {
+        Ok(view.with_surface(number)?.level(view.u, view.liquid_mass(number)))
+    }),
 };
 
 pub(super) static PIPE_FLOW: Output = Output {
@@ -66,12 +57,9 @@ pub(super) static PIPE_FLOW: Output = Output {
     about: "the flow of liquid through a pipe, from its first end to its second (m^3/s)",
     unit: "m^3/s",
     of: PIPE,
-    is_vector: false,
-    is_of_positions: false,
-    read: |view, number| {
-        let flowing = view.scene.flowing(view.amounts);
-        Ok(Value::Number(flowing.map_or(0.0, |all| all.pipes[number])))
-    },
+    read: Read::Number(|view, number| {
+        Ok(view.scene.flowing(view.amounts).map_or(0.0, |all| all.pipes[number]))
+    }),
 };
 
 impl View<'_> {

@@ -1,12 +1,11 @@
 //! All outputs: a quantity is a row in the file of its components, and stands in this list.
 
+mod actuators;
 mod chambers;
 mod devices;
 mod dipoles;
 mod gas;
 mod liquids;
-mod muscles;
-mod springs;
 
 #[cfg(feature = "study")]
 pub(super) use chambers::VOLUME;
@@ -15,13 +14,13 @@ use super::output::Output;
 
 /// Quantities of components that sensors read, in the order of the reference.
 pub(crate) const OUTPUTS: [&Output; 18] = [
-    &springs::PULL,
-    &springs::TENSION_AT_END,
-    &springs::LENGTH,
-    &muscles::STRESS,
-    &muscles::STRETCH,
-    &muscles::ACTIVATION,
-    &muscles::TEMPERATURE,
+    &actuators::PULL,
+    &actuators::TENSION_AT_END,
+    &actuators::LENGTH,
+    &actuators::STRESS,
+    &actuators::STRETCH,
+    &actuators::ACTIVATION,
+    &actuators::TEMPERATURE,
     &dipoles::FORCE,
     &dipoles::POSITION,
     &chambers::PRESSURE,

@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 
 use super::colours::{Fields, Quantity};
 use super::geometry::{Geometry, in_view};
-use super::{acting, contacts, lines, pack};
+use super::{acting, contacts, pack};
 use crate::base::input::InputError;
 use crate::dynamics::error::Error;
 use crate::dynamics::system::Energy;
@@ -16,7 +16,7 @@ use crate::elements::mesh::Mesh;
 use crate::io::output::acting::Remanence;
 use crate::io::output::role::Role;
 use crate::io::output::svg::{View, displaced, positions};
-use crate::scene::forces::{Obstacle, Shape, ShapeKind, Spring, SpringPoint, corners};
+use crate::scene::forces::{LinePoint, Obstacle, Shape, ShapeKind, corners};
 use crate::scene::timeline::{Phase, Scene};
 
 /// Most samples that a page holds, the bytes that they may take together before encoding, and the number of
@@ -32,8 +32,8 @@ pub(super) fn gather(trajectory: &Trajectory, name: &str) -> Result<Value, Error
     let scene = trajectory.scene();
     let (body, mesh) = (scene.body(), scene.body().mesh());
     let points = point_masses(mesh);
-    let ends = spring_ends(scene)?;
-    let geometry = Geometry::new(body, ends.iter().flatten(), &points);
+    let lines = scene.actuator_lines()?;
+    let geometry = Geometry::new(body, lines.iter().flat_map(|(_, line)| line), &points);
     let remanence = Remanence::of(scene)?;
     let bytes = bytes_per_frame(trajectory, &geometry, &remanence);
     let frames = thinned(trajectory.samples(), bytes);
@@ -52,12 +52,12 @@ pub(super) fn gather(trajectory: &Trajectory, name: &str) -> Result<Value, Error
         "energies": energies(&frames),
         "sensors": sensors(trajectory, &frames),
         "contacts": contacts::resultants(trajectory, &frames)?,
-        "needles": lines::needles(trajectory, &frames)?,
+        "needles": super::lines::needles(trajectory, &frames)?,
         "everywhere": acting::everywhere(trajectory, &frames)?,
         "remanence": acting::arrows(trajectory, &frames, &remanence),
-        "lines": lines::tracks(trajectory, &frames)?,
+        "lines": super::lines::tracks(trajectory, &frames)?,
         "obstacles": obstacles_in(trajectory, &frames)?,
-        "springs": springs(trajectory, &frames, &geometry, &ends)?,
+        "springs": actuators(trajectory, &frames, &geometry, &lines)?,
         "points": geometry.places(&points),
     }))
 }
@@ -307,36 +307,37 @@ fn add_shape(shape: &Shape, courses: &Value, shapes: &mut Vec<Value>) {
     }
 }
 
-/// Joints of each spring, at its ends or along its path.
-pub(super) fn spring_ends(scene: &Scene) -> Result<Vec<Vec<SpringPoint>>, Error> {
-    let mesh = scene.body().mesh();
-    scene.springs().iter().map(|spring| Ok(spring.joints(mesh)?)).collect()
-}
-
-/// Names and ends of the springs, and what drives them at each sample.
-fn springs(
+/// Names and lines of the actuators that have these, and what drives them at each sample.
+fn actuators(
     trajectory: &Trajectory,
     frames: &[&Sample],
     geometry: &Geometry,
-    ends: &[Vec<SpringPoint>],
+    lines: &[(usize, Vec<LinePoint>)],
 ) -> Result<Value, Error> {
     let scene = trajectory.scene();
-    let forces = frames.iter().map(|sample| {
-        let phase = trajectory.phase_of(sample)?;
-        let drive =
-            |spring: &Spring| scene.drive_at(spring.name(), phase, sample.time, &sample.amounts)[0];
-        Ok(scene.springs().iter().map(drive).collect())
+    let packed = lines.iter().map(|line| {
+        let own = &*scene.actuators()[line.0];
+        let drive = |sample: &&Sample| {
+            let phase = trajectory.phase_of(sample)?;
+            Ok(scene.drive_at(own, phase, sample.time, &sample.amounts)[0])
+        };
+        let drives = frames.iter().map(drive).collect::<Result<Vec<f64>, InputError>>()?;
+        let mut packed = line_to_json(scene, line, geometry);
+        packed["forces"] = pack::singles(drives);
+        Ok(packed)
     });
-    let forces: Vec<Vec<f64>> = forces.collect::<Result<_, InputError>>()?;
-    let packed = scene.springs().iter().zip(ends).enumerate().map(|(number, (spring, ends))| {
-        json!({
-            "name": spring.name(),
-            "ends": geometry.ends(ends),
-            "isCable": spring.is_cable(),
-            "forces": pack::singles(forces.iter().map(|forces| forces[number])),
-        })
-    });
-    Ok(packed.collect())
+    packed.collect()
+}
+
+/// The name and the line of an actuator.
+pub(super) fn line_to_json(
+    scene: &Scene,
+    (number, line): &(usize, Vec<LinePoint>),
+    geometry: &Geometry,
+) -> Value {
+    let own = &scene.actuators()[*number];
+    let is_cable = own.kind().name == "cable";
+    json!({ "name": own.name(), "ends": geometry.ends(line), "isCable": is_cable })
 }
 
 /// The nodes that belong to no cell.

@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 use crate::elements::body::Body;
 use crate::elements::mesh::Mesh;
 use crate::io::output::svg::{BAR_WIDTH, around, drawn, through_middle};
-use crate::scene::forces::SpringPoint;
+use crate::scene::forces::LinePoint;
 
 /// The drawn part of a mesh.
 pub(super) struct Geometry {
@@ -14,7 +14,7 @@ pub(super) struct Geometry {
     /// The drawn nodes.
     pub(super) nodes: Vec<usize>,
     /// Ends of springs and places of cables apart from nodes, drawn after those.
-    anchors: Vec<SpringPoint>,
+    anchors: Vec<LinePoint>,
     /// The cell of each face.
     pub(super) cells: Vec<usize>,
     /// The nodes of each face in their order around it, as places among the drawn nodes.
@@ -32,10 +32,10 @@ impl Geometry {
     /// springs are joined to and the nodes `points`.
     pub(super) fn new<'j>(
         body: &Body,
-        joints: impl Iterator<Item = &'j SpringPoint> + Clone,
+        joints: impl Iterator<Item = &'j LinePoint> + Clone,
         points: &[usize],
     ) -> Self {
-        let joined = joints.clone().filter_map(SpringPoint::node);
+        let joined = joints.clone().filter_map(LinePoint::node);
         let besides = joined.chain(points.iter().copied());
         let mesh = body.mesh();
         let (mut bodies, mut faces, mut anchors) = (Vec::new(), Vec::new(), Vec::new());
@@ -54,7 +54,7 @@ impl Geometry {
                 faces.extend(tube.faces.iter().map(moved).collect::<Faces>());
                 anchors.extend(tube.points.into_iter().map(|shares| {
                     let shares = shares.into_iter().map(|(node, share)| (first.1 + node, share));
-                    SpringPoint::carried(mesh, shares.collect())
+                    LinePoint::carried(mesh, shares.collect())
                 }));
                 continue;
             }
@@ -129,8 +129,8 @@ impl Geometry {
     }
 
     /// The places of what a spring joins, or of what a cable runs along.
-    pub(super) fn ends(&self, joints: &[SpringPoint]) -> Vec<usize> {
-        let place = |joint: &SpringPoint| match joint.node() {
+    pub(super) fn ends(&self, joints: &[LinePoint]) -> Vec<usize> {
+        let place = |joint: &LinePoint| match joint.node() {
             Some(node) => self.places[node],
             None => {
                 let among = self.anchors.iter().position(|anchor| anchor == joint);
@@ -142,7 +142,7 @@ impl Geometry {
 
     /// Positions of the anchors in a space of `dimension` under the displacements `u` (m), as they are drawn.
     pub(super) fn anchors(&self, dimension: usize, u: &[f64]) -> impl Iterator<Item = f64> {
-        let drawn = move |joint: &SpringPoint| {
+        let drawn = move |joint: &LinePoint| {
             let mut x = joint.at;
             for &(node, share) in &joint.shares {
                 let own = &u[node * dimension..][..dimension];

@@ -37,6 +37,8 @@ pub(crate) struct Picture {
     quantities: Vec<&'static Quantity>,
     contact: ContactReader,
     remanence: Remanence,
+    /// Numbers of the actuators that are drawn.
+    actuators: Vec<usize>,
 }
 
 impl Picture {
@@ -47,13 +49,12 @@ impl Picture {
     pub(crate) fn new(scene: &Scene) -> Result<(Self, Value), Error> {
         let mesh = scene.body().mesh();
         let points = data::point_masses(mesh);
-        let ends = data::spring_ends(scene)?;
-        let geometry = Geometry::new(scene.body(), ends.iter().flatten(), &points);
+        let drawn = scene.actuator_lines()?;
+        let all = drawn.iter().flat_map(|(_, line)| line);
+        let geometry = Geometry::new(scene.body(), all, &points);
         let quantities = Quantity::of(scene);
         let told = quantities.iter().map(|quantity| quantity.to_json());
-        let springs = scene.springs().iter().zip(&ends);
-        let springs = springs
-            .map(|(spring, ends)| json!({ "name": spring.name(), "ends": geometry.ends(ends), "isCable": spring.is_cable() }));
+        let springs = drawn.iter().map(|line| data::line_to_json(scene, line, &geometry));
         let remanence = Remanence::of(scene)?;
         let start = [scene.initial_displacements(), &scene.initial_velocities()?];
         let fixed = json!({
@@ -71,7 +72,8 @@ impl Picture {
             "points": geometry.places(&points),
         });
         let contact = ContactReader::new(scene)?;
-        Ok((Self { geometry, quantities, contact, remanence }, fixed))
+        let actuators = drawn.into_iter().map(|(number, _)| number).collect();
+        Ok((Self { geometry, quantities, contact, remanence, actuators }, fixed))
     }
 
     /// The page with its own `style`, and with its own scripts before and after those that draw.
@@ -120,6 +122,14 @@ impl Picture {
         })
     }
 
+    /// The inputs of the actuators that are drawn.
+    pub(crate) fn drives(&self, view: &View) -> Vec<f64> {
+        view.with_states(|scene, phase, _, amounts| {
+            let own = self.actuators.iter().map(|&number| &*scene.actuators()[number]);
+            own.map(|own| scene.drive_at(own, phase, view.time(), amounts)[0]).collect()
+        })
+    }
+
     /// Gravity (m/s^2) and the magnetic field (T).
     pub(crate) fn everywhere(view: &View) -> Value {
         let t = view.time();
@@ -157,7 +167,7 @@ fn absent(scene: &Scene) -> Vec<&'static str> {
     let has = [
         ("gravity", scene.phases().iter().any(|phase| scene.gravity_in(phase).is_some())),
         ("contact", !scene.obstacles().is_empty() || !scene.touches().is_empty()),
-        ("springs", !scene.springs().is_empty()),
+        ("springs", scene.actuators().iter().any(|own| own.kind().list == "springs")),
     ];
     has.iter().filter(|(_, has)| !has).map(|(name, _)| *name).collect()
 }

@@ -3,7 +3,7 @@
 use super::obstacle::{Outline, outlines};
 use super::projection::{Point, drawn, positions};
 use crate::dynamics::trajectory::{Sample, Trajectory};
-use crate::scene::forces::SpringPoint;
+use crate::scene::forces::LinePoint;
 use crate::scene::timeline::Scene;
 
 /// Width that a page aims at, its least width, and the limits of a panel (px).
@@ -142,12 +142,12 @@ fn pairs(trajectory: &Trajectory, pairs: Vec<[[f64; 3]; 2]>) -> Vec<[Point; 2]> 
     pairs.into_iter().map(|pair| pair.map(|x| drawn(&x[..d]))).collect()
 }
 
-/// The points of space (m) that springs are joined to, dimension coordinates each.
+/// The points of space (m) that actuators are joined to, dimension coordinates each.
 fn anchors(scene: &Scene) -> Vec<Vec<f64>> {
     let mesh = scene.body().mesh();
-    let joints = scene.springs().iter().filter_map(|spring| spring.joints(mesh).ok());
+    let joints = scene.actuators().iter().filter_map(|actuator| actuator.line(mesh).ok());
     let point =
-        |joint: SpringPoint| joint.shares.is_empty().then(|| joint.at[..mesh.dimension()].to_vec());
+        |joint: LinePoint| joint.shares.is_empty().then(|| joint.at[..mesh.dimension()].to_vec());
     joints.flatten().filter_map(point).collect()
 }
 

@@ -13,7 +13,7 @@ use crate::dynamics::trajectory::{Sample, Trajectory};
 use crate::elements::mesh::{CellKind, Mesh};
 use crate::elements::rod::Tube;
 use crate::io::output::INK;
-use crate::scene::forces::SpringPoint;
+use crate::scene::forces::LinePoint;
 
 /// The edges of cells and the cells of the first body, of the second, and so on; then over again.
 const PAINTS: [Paint; 6] = [
@@ -99,8 +99,9 @@ impl Panel<'_> {
             let path = Path::new().set("class", "lines").set("d", data.0).set("fill", "none");
             panel = panel.add(path.set("stroke", "#0072b2").set("stroke-width", 1.5));
         }
-        if !self.trajectory.scene().springs().is_empty() {
-            panel = panel.add(self.springs(&points));
+        let lines = self.trajectory.scene().actuator_lines().unwrap_or_default();
+        if !lines.is_empty() {
+            panel = panel.add(self.actuators(lines, &points));
         }
         for (&node, mark) in self.marks.iter().filter(|(node, _)| !hidden.contains(*node)) {
             panel = panel.add(mark.draw(points[node][0], points[node][1]));
@@ -181,19 +182,18 @@ impl Panel<'_> {
         group.add(Mark::Held.draw(x, y).set("r", 2.0))
     }
 
-    /// The springs and cables, as straight lines.
-    fn springs(&self, points: &[Point]) -> Path {
+    /// The lines of actuators.
+    fn actuators(&self, lines: Vec<(usize, Vec<LinePoint>)>, points: &[Point]) -> Path {
         let mesh = self.trajectory.body().mesh();
         let mut data = Data::default();
-        for spring in self.trajectory.scene().springs() {
-            let Ok(joints) = spring.joints(mesh) else { continue };
-            let place = |joint: SpringPoint| match &joint.shares[..] {
+        for (_, line) in lines {
+            let place = |joint: LinePoint| match &joint.shares[..] {
                 [] => self.layout.place(self.number, drawn(&joint.at[..mesh.dimension()])),
                 shares => shares.iter().fold([0.0; 2], |sum, &(node, share)| {
                     [0, 1].map(|i| sum[i] + share * points[node][i])
                 }),
             };
-            data.polyline(&joints.into_iter().map(place).collect::<Vec<_>>(), false);
+            data.polyline(&line.into_iter().map(place).collect::<Vec<_>>(), false);
         }
         let path = Path::new().set("class", "springs").set("d", data.0).set("fill", "none");
         path.set("stroke", "#8a5a2b").set("stroke-width", 1.2)

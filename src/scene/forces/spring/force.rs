@@ -15,7 +15,7 @@ pub(super) struct Elastic {
 
 /// The force of an actuator along a spring. It is kept apart from that of the spring itself, as it is a load, which
 /// statics applies in steps.
-pub(super) struct Actuator {
+pub(super) struct Driven {
     pub(super) path: Path,
     pub(super) force: Vec<Signal>,
 }
@@ -84,7 +84,7 @@ impl StepCheck for Elastic {
     }
 }
 
-impl Force for Actuator {
+impl Force for Driven {
     fn add_forces(
         &self,
         t: f64,

@@ -15,7 +15,7 @@ fn cables() {
         let places = [Guide::point(point), Guide::nodes([3]), Guide::nodes([1]), Guide::nodes([2])];
         let cable =
             |places: &[Guide; 4]| Spring::cable(places.clone()).stiffness(20.0).damping(1.5);
-        let (n, length) = (3 * dimension, cable(&places).gauge(&mesh).unwrap().length(&[0.0; 9]));
+        let (n, length) = (3 * dimension, cable(&places).law(&mesh).unwrap().length(&[0.0; 9]));
         let drive = || vec![Signal::constant(9.0), Signal::formula("3*t").unwrap()];
         let short = cable(&places).length(0.6 * length);
         let tension = Spring::cable(places.clone());
@@ -85,7 +85,7 @@ fn a_cable_rubs_around_its_places() {
         let (heat, supplied) = forces.powers(&v);
         assert!((supplied - 2.0 * speed).abs() < 1e-12 && heat >= 0.0);
         assert!((heat - (supplied - behind * speed)).abs() < off, "{heat}");
-        let [first, last] = cable.gauge(&mesh).unwrap().pulls(&u, &v, [2.0, 0.0]);
+        let [first, last] = cable.law(&mesh).unwrap().pulls(&u, &v, [2.0, 0.0]);
         assert!((first - 2.0).abs() < 1e-12 && (last - behind).abs() < off);
     }
 }

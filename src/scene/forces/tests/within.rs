@@ -6,7 +6,7 @@ use crate::elements::force::Force;
 use crate::elements::material::{Law, Plane};
 use crate::elements::mesh::{Cells, Mesh, SolidCells};
 use crate::scene::devices::Dipole;
-use crate::scene::forces::{Growth, Magnet, MagneticField, Signal};
+use crate::scene::forces::{Actuator, Growth, Magnet, MagneticField, Signal};
 use crate::scene::timeline::{Phase, Scene};
 use crate::studies::samples::SQUARE_MATERIAL;
 
@@ -143,7 +143,7 @@ fn growth_by_direction() {
         let power = nodal_forces(&force, 0.7, &u, &v).carried_power;
         println!("{number}: {power} W, off by {:.1e}", power / gain - 1.0);
         assert!(gain.abs() > 0.01 && (power / gain - 1.0).abs() < 1e-7, "{power} {gain}");
-        let fields = body.cell_fields_of(&u, &[growth.grown((0..cells.len()).collect(), 0.31)]);
+        let fields = body.cell_fields_of(&u, &[growth.grown(&body, 0.31).unwrap().unwrap()]);
         let stored =
             fields.iter().zip(body.cell_volumes()).map(|(field, v)| field.energy_density * v);
         let off = stored.sum::<f64>() / force.potential(0.7, &u) - 1.0;

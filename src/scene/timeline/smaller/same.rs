@@ -79,11 +79,13 @@ impl Same<'_> {
         let inputs = scene.phases.iter().flat_map(|phase| &phase.inputs);
         let of_section = |count: usize| if self.map.is_section() { count } else { 0 };
         let unknown_inputs = inputs.filter(|input| !input.quantity.is_known_of_parts());
+        let actuators = scene.actuators.first();
         let unknown = [
-            ("springs", of_section(scene.springs.len())),
-            ("muscles", of_section(scene.muscles.len())),
+            (
+                actuators.map_or("actuators", |own| own.kind().list),
+                of_section(scene.actuators.len()),
+            ),
             ("magnets", scene.magnets.len()),
-            ("growths", of_section(scene.growths.len())),
             ("fluids", scene.fluids.len()),
             ("chambers", of_section(scene.chambers.len())),
             ("gases and liquids in chambers", scene.gases.len() + scene.liquids.len()),
