@@ -80,6 +80,7 @@ mod sticking;
 mod surfaces;
 mod threads;
 mod ticks;
+mod touch_defaults;
 mod touching;
 mod tunnelling;
 mod turned_boxes;

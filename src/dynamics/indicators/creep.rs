@@ -98,7 +98,7 @@ pub(super) fn creep(trajectory: &Trajectory, samples: &[&Sample]) -> Vec<Indicat
             let own = all.entry(format!("obstacle \"{}\"", obstacle.name())).or_default();
             own.add(&stuck, dt, |point| point.slide(&moved, carried, d));
         }
-        for touch in &touches {
+        for touch in touches.iter().filter(|_| phase.has_touch) {
             stuck.clear();
             touch.each_stuck(at, |point| stuck.push(point));
             let own = all.entry(format!("touch \"{}\"", touch.name)).or_default();

@@ -98,6 +98,7 @@ impl Acting {
     fn force(&self, view: &View, sample: &Sample, is_read: Option<&[bool]>) -> Option<[f64; 3]> {
         let (t, u, v) = (sample.time, view.displacements(), view.velocities());
         match self {
+            Self::Touch(_) if !view.phase.has_touch => Some([0.0; 3]),
             Self::Touch(touch) => Some(touch.force(u, v, is_read)),
             Self::Obstacle(obstacle) => {
                 let mut total = [0.0; 3];
@@ -121,6 +122,7 @@ impl Acting {
         let (t, at) = (sample.time, [view.displacements(), view.velocities()]);
         let mut nodal = vec![NodalContact::default(); tributary.node_count()];
         match self {
+            Self::Touch(_) if !view.phase.has_touch => {}
             Self::Touch(touch) => touch.add_nodal(at, tributary, &mut nodal).ok()?,
             Self::Obstacle(obstacle) => obstacle
                 .each(view, sample, |contact| contact.add_nodal(t, at, tributary, &mut nodal))?,

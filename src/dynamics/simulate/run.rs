@@ -601,6 +601,6 @@ impl Run {
 /// The strain energy (J) of a body, the softest of several, under strains of a thousandth; 0 if all are rigid.
 fn least_energy(body: &Body) -> f64 {
     let energy = |Part { body, .. }: Part| 1e-6 * body.material().young * body.volume();
-    let soft = body.parts().filter(|part| !part.body.substances().all(|made_of| made_of.is_rigid));
+    let soft = body.parts().filter(|part| !part.body.is_rigid());
     soft.map(energy).reduce(f64::min).unwrap_or(0.0)
 }

@@ -281,7 +281,7 @@ impl<'a> View<'a> {
     #[cfg(feature = "play")]
     pub(crate) fn nodal_contacts(&self, reader: &ContactReader) -> Option<Vec<NodalContact>> {
         let obstacles = self.scene.contacts(self.phase).ok()?;
-        reader.read(&obstacles, self.time, [self.u, self.v]).ok()
+        reader.read((self.phase, &obstacles), self.time, [self.u, self.v]).ok()
     }
 
     /// The forces of an obstacle (N) on all nodes, dimension components each.

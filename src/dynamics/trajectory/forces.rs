@@ -22,8 +22,10 @@ impl Trajectory {
     /// A sample that is not of this trajectory; a distance function of your own that has changed since the
     /// run and is now undefined.
     pub fn contact_forces(&self, sample: &Sample) -> Result<Vec<f64>, InputError> {
-        let obstacles = self.scene.contacts(self.phase_of(sample)?)?;
-        let touches = self.touch_forces()?.iter().map(|touch| touch as &dyn Force);
+        let phase = self.phase_of(sample)?;
+        let obstacles = self.scene.contacts(phase)?;
+        let touches = self.touch_forces()?.iter().filter(|_| phase.has_touch);
+        let touches = touches.map(|touch| touch as &dyn Force);
         self.forces_of(obstacles.iter().map(|contact| contact as _).chain(touches), sample)
     }
 
@@ -49,8 +51,9 @@ impl Trajectory {
     /// # Errors
     /// As [`contact_forces`](Self::contact_forces); surfaces that lie on each other.
     pub fn nodal_contacts(&self, sample: &Sample) -> Result<Vec<NodalContact>, InputError> {
-        let obstacles = self.scene.contacts(self.phase_of(sample)?)?;
-        let nodal = self.contact()?.read(&obstacles, sample.time, [&sample.u, &sample.v]);
+        let phase = self.phase_of(sample)?;
+        let obstacles = self.scene.contacts(phase)?;
+        let nodal = self.contact()?.read((phase, &obstacles), sample.time, [&sample.u, &sample.v]);
         nodal.map_err(|failure| refused(sample, failure))
     }
 

@@ -193,6 +193,11 @@ impl Body {
         self.dofs() - self.dimension() * dependent
     }
 
+    /// Whether all of it is of rigid substances.
+    pub(crate) fn is_rigid(&self) -> bool {
+        self.substances().all(|substance| substance.is_rigid)
+    }
+
     /// The numbers of its rigid cells (from 0).
     pub(super) fn rigid_cells(&self) -> Vec<usize> {
         let of_body = |Continuum { regions, cells, .. }: &Continuum| {

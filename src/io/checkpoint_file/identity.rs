@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use siphasher::sip::SipHasher13;
 
 use crate::scene::forces::VectorSignal;
-use crate::scene::timeline::{Input, LoadKind, Phase, Quantity, STEER, Scene};
+use crate::scene::timeline::{ContactWith, Input, LoadKind, Phase, Quantity, STEER, Scene};
 
 /// Identity of a scene.
 ///
@@ -175,6 +175,10 @@ impl fmt::Debug for Text<'_> {
             .field("projects_velocity", &phase.projects_velocity)
             .field("contact", &phase.contact)
             .field("redirected", &phase.redirected);
+        let is_free = matches!(&phase.contact, ContactWith::These(names) if names.is_empty());
+        if !phase.has_touch && !is_free {
+            text.field("touch", &false);
+        }
         if let Some(field) = phase.field() {
             text.field("magnetic_field", &Some(field));
         }

@@ -83,6 +83,9 @@ fn add_phase(scene: Scene, value: &Value, check: &Check) -> Result<Scene, Error>
     if let Some(value) = table.get("contact") {
         phase = contact(phase, &value, &scene)?;
     }
+    if let Some(touch) = table.optional("touch", Value::flag)? {
+        phase = phase.touching(touch);
+    }
     let gravity = table.optional("gravity", |value| value.vector(scene.body().dimension()))?;
     if let Some(gravity) = gravity {
         phase = phase.gravity(gravity);

@@ -39,8 +39,14 @@ pub(super) const PHASE: TableKeys = TableKeys::new(
             ValueType::Either(&[ValueType::Flag, ValueType::OneOrMore(&ValueType::Text)]),
             "the obstacles that act",
         )
-        .note("All, none, or those of these names.")
+        .note("All, none, or those of these names; if none, bodies do not touch each other either.")
         .default("true"),
+        Key::new(
+            "touch",
+            ValueType::Flag,
+            "whether bodies touch each other ([`[[touch]]`](#touch))",
+        )
+        .default("as `contact` is not `false`"),
         Key::new(
             "project_velocity",
             ValueType::Flag,

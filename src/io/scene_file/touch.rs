@@ -23,14 +23,14 @@ pub(super) const TOUCH: TableKeys = TableKeys::new(
         Key::new("law", ValueType::Word(|| vec!["barrier", "spring"]), "how the pressure grows")
             .default("barrier"),
         Key::number("stiffness_density", "the stiffness k per area", "N/m^3")
-            .default("a tenth of the least Young's modulus over D; all of it for a spring"),
+            .default("a tenth of the least Young's modulus over D, all of it for a spring; between rigid bodies less, by their weight and initial speeds"),
         Key::number("distance", "the distance D from which on nothing acts", "m")
-            .default("a tenth of the mean edge of the surfaces"),
+            .default("a tenth of the mean edge of the surfaces and of the thickness 2 V/A of the thinnest body, and no more than the gap of undeformed bodies, down to a hundredth of that"),
         Key::number("damping_density", "the damping along the normal, per area", "N s/m^3")
             .default("0"),
         FRICTION_COEFFICIENT,
         Key::number("sticking_speed", "the speed below which friction sticks", "m/s")
-            .default("a thousandth of the size of the bodies per second"),
+            .default("a thousandth of the size of the bodies per second, or of the differences of their initial velocities"),
     ],
     "[[touch]]\ndistance = 5.0e-4\nfriction_coefficient = 0.6",
 );

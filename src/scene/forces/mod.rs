@@ -81,8 +81,8 @@ pub(crate) use surface::{
     SurfacePoint, boundary_nodes, edge_points, face_centre, natural, pieces, thickness, weighted,
 };
 pub(crate) use time_table::TimeTable;
-pub(crate) use touch::TouchForce;
 pub use touch::{Touch, TouchDistance};
+pub(crate) use touch::{TouchForce, TouchSite, way};
 #[cfg(feature = "output")]
 pub(crate) use turned::corners;
 pub(crate) use wrench::WrenchForce;

@@ -37,6 +37,7 @@ mod near;
 mod nodal;
 mod pair;
 mod passing;
+mod site;
 mod spec;
 mod surfaces;
 #[cfg(test)]
@@ -45,5 +46,6 @@ mod told;
 mod window;
 
 pub(crate) use force::TouchForce;
+pub(crate) use site::{TouchSite, way};
 pub use spec::Touch;
 pub use told::TouchDistance;

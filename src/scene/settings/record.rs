@@ -6,6 +6,7 @@
 
 use super::method::{ContactEvents, Method};
 use crate::base::input::{InputError, positive};
+use crate::scene::forces::way;
 use crate::scene::timeline::Scene;
 
 /// How a scene is integrated.
@@ -160,7 +161,8 @@ impl Scales {
         let body = scene.body();
         let size = body.size();
         let obstacles = scene.obstacles().iter().filter_map(|obstacle| obstacle.sticks_below(size));
-        let touches = scene.touches().iter().filter_map(|touch| touch.sticks_below(size));
+        let way = way(body, &scene.initial_velocities().unwrap_or_default());
+        let touches = scene.touches().iter().filter_map(|touch| touch.sticks_below(way));
         Self {
             size,
             young: body.largest_young(),

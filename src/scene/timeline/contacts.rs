@@ -1,8 +1,9 @@
 //! Nodal contact quantities of a scene.
 
-use super::Scene;
+use super::{Phase, Scene};
 use crate::base::input::InputError;
 use crate::integrators::ode::Failure;
+use crate::scene::constraint::Constrained;
 use crate::scene::forces::{Contact, NodalContact, TouchForce, Tributary};
 
 /// Reads what contact does at the nodes: what does not change from sample to sample.
@@ -17,14 +18,13 @@ impl ContactReader {
         Ok(Self { touches, tributary })
     }
 
-    /// Contact quantities of each node at time `t` (s), by the `contacts` with obstacles and by all touches, at the
-    /// displacements and velocities `[u, v]` (m, m/s).
+    /// Contact quantities of each node at time `t` (s) in a phase, by the `contacts` with obstacles and by touches, at the displacements and velocities `[u, v]` (m, m/s).
     ///
     /// # Errors
     /// A user's distance function that is undefined; surfaces that lie on each other.
     pub(crate) fn read(
         &self,
-        contacts: &[Contact],
+        (phase, contacts): (&Phase, &[Contact]),
         t: f64,
         [u, v]: [&[f64]; 2],
     ) -> Result<Vec<NodalContact>, Failure> {
@@ -32,10 +32,36 @@ impl ContactReader {
         for contact in contacts {
             contact.add_nodal(t, [u, v], &self.tributary, &mut nodal)?;
         }
-        for touch in &self.touches {
+        for touch in self.touches.iter().filter(|_| phase.has_touch) {
             touch.add_nodal([u, v], &self.tributary, &mut nodal)?;
         }
         self.tributary.even_out(&mut nodal);
         Ok(nodal)
+    }
+}
+
+impl Scene {
+    /// The nodes (from 0, ascending) of each [plane of symmetry](super::Phase::symmetry) that all phases have: faces between them are
+    /// inside of a whole of which the body is a half.
+    ///
+    /// # Errors
+    /// Nodes that do not exist.
+    pub(super) fn planes_of_symmetry(&self) -> Result<Vec<Vec<usize>>, InputError> {
+        let planes = |phase: usize| {
+            let constraints = self.phases.get(phase).into_iter().flat_map(|it| &it.constraints);
+            constraints.filter_map(|constraint| match &constraint.what {
+                Constrained::Along(nodes, normal) => Some((nodes, normal)),
+                _ => None,
+            })
+        };
+        let mut all = Vec::new();
+        for plane in planes(0) {
+            if (1..self.phases.len()).all(|phase| planes(phase).any(|other| other == plane)) {
+                let mut nodes = self.body.mesh().select(plane.0)?;
+                nodes.sort_unstable();
+                all.push(nodes);
+            }
+        }
+        Ok(all)
     }
 }

@@ -60,7 +60,7 @@ impl Scene {
         for contact in self.contacts(phase)? {
             forces.push(Arc::new(contact));
         }
-        for touch in self.touch_forces()? {
+        for touch in self.touches_in(phase)? {
             forces.push(Arc::new(touch));
         }
         forces.extend_from_slice(&self.forces);

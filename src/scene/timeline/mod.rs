@@ -60,7 +60,7 @@ pub(crate) use varying::Varying;
 use written::WrittenKeys;
 
 use crate::base::input::{InputError, find, finite};
-use crate::base::vector::largest;
+use crate::base::vector::{largest, norm};
 use crate::elements::body::Body;
 use crate::elements::force::{Force, Forces, NodalForces};
 use crate::elements::mesh::Selection;
@@ -70,7 +70,7 @@ use crate::scene::constraint::{
 };
 use crate::scene::forces::{
     ATMOSPHERE, Actuator, Chamber, Contact, Fluid, Gas, Lag, Liquid, Magnet, Obstacle, Orifice,
-    Pipe, Supply, Touch, TouchDistance, TouchForce,
+    Pipe, Supply, Touch, TouchDistance, TouchForce, TouchSite,
 };
 use crate::scene::reduced_model::ReducedModel;
 
@@ -464,6 +464,11 @@ impl Scene {
         self.touches.iter().map(|touch| self.force_of(touch)).collect()
     }
 
+    /// The forces of those that act in a phase.
+    pub(crate) fn touches_in(&self, phase: &Phase) -> Result<Vec<TouchForce>, InputError> {
+        if phase.has_touch { self.touch_forces() } else { Ok(Vec::new()) }
+    }
+
     /// The forces of the touch `name`; `input` is where that was given.
     pub(crate) fn touch_force(&self, name: &str, input: &str) -> Result<TouchForce, InputError> {
         let number = find(name, self.touches.iter().map(Touch::name), input, "touches")?;
@@ -474,7 +479,15 @@ impl Scene {
     pub(crate) fn force_of(&self, touch: &Touch) -> Result<TouchForce, InputError> {
         let of_devices = self.device_constraints()?;
         let glued = self.bodies_joined_by(self.tied()?.into_iter().chain(&of_devices));
-        touch.force(&self.body, &glued, self.initial_displacements())
+        let gravity = self.phases.iter().filter_map(|phase| self.gravity_in(phase));
+        touch.force(&TouchSite {
+            body: &self.body,
+            glued: &glued,
+            planes: &self.planes_of_symmetry()?,
+            u: self.initial_displacements(),
+            v: &self.initial_velocities()?,
+            gravity: gravity.map(norm).fold(0.0, f64::max),
+        })
     }
 
     /// The pairs of numbers of bodies that devices join.

@@ -27,6 +27,8 @@ pub struct Phase {
     pub(crate) inputs: Vec<Input>,
     pub(crate) projects_velocity: bool,
     pub(crate) contact: ContactWith,
+    /// Whether bodies touch each other.
+    pub(crate) has_touch: bool,
     /// Obstacles that move otherwise than in the scene.
     pub(crate) redirected: Vec<Obstacle>,
     /// Change of the magnetic field in space, beside its uniform part.
@@ -72,6 +74,7 @@ impl Phase {
             inputs: Vec::new(),
             projects_velocity: false,
             contact: ContactWith::All,
+            has_touch: true,
             redirected: Vec::new(),
             gradient: None,
         }
@@ -296,9 +299,15 @@ impl Phase {
         phase
     }
 
-    /// No obstacle acts in this phase.
+    /// No obstacle acts in this phase, and bodies do not [touch](crate::Touch).
     pub fn without_contact(self) -> Self {
-        self.contact_with::<String>([])
+        self.contact_with::<String>([]).touching(false)
+    }
+
+    /// Whether bodies [touch](crate::Touch) each other in this phase (default: they do). Where they lie in each other as they begin to, the
+    /// run ends with an error.
+    pub fn touching(self, touch: bool) -> Self {
+        Self { has_touch: touch, ..self }
     }
 
     /// Only the named obstacles act in this phase.

@@ -98,8 +98,7 @@ fn turn_round(own: &Part, to: &Part, rows: &mut Rows) -> Result<(), InputError> 
     faces.retain(|face| face.iter().all(|node| rows.contains_key(&(first + node))));
     let named: BTreeSet<usize> = faces.iter().flatten().map(|node| first + node).collect();
     let followers = facing(own.body, &faces, to.body);
-    let [own_is_rigid, to_is_rigid] =
-        [own, to].map(|part| part.body.substances().all(|substance| substance.is_rigid));
+    let [own_is_rigid, to_is_rigid] = [own, to].map(|part| part.body.is_rigid());
     let are_to_follow = match (own_is_rigid, to_is_rigid) {
         (true, false) => !followers.is_empty(),
         (false, false) => followers.len() > named.len(),

@@ -27,7 +27,8 @@ pub(super) fn resultants(trajectory: &Trajectory, frames: &[&Sample]) -> Result<
     let everywhere = 0..scene.body().mesh().node_count();
     let mut tracks = vec![(Vec::new(), Vec::new()); scene.obstacles().len() + bodies.len()];
     for sample in frames {
-        let acting = scene.contacts(trajectory.phase_of(sample)?)?;
+        let phase = trajectory.phase_of(sample)?;
+        let acting = scene.contacts(phase)?;
         let x = displaced(trajectory, sample);
         let of_obstacle = |obstacle: &Obstacle| {
             let of_it = acting.iter().filter(|acting| acting.obstacle().name() == obstacle.name());
@@ -38,7 +39,8 @@ pub(super) fn resultants(trajectory: &Trajectory, frames: &[&Sample]) -> Result<
             of_all.push((of_obstacle(obstacle)?, everywhere.clone()));
         }
         if !bodies.is_empty() {
-            let nodal = trajectory.forces_of(touches.iter().map(|touch| touch as _), sample)?;
+            let touching = touches.iter().filter(|_| phase.has_touch);
+            let nodal = trajectory.forces_of(touching.map(|touch| touch as _), sample)?;
             of_all.extend(bodies.iter().map(|nodes| (nodal.clone(), nodes.clone())));
         }
         for ((nodal, nodes), (at, forces)) in of_all.into_iter().zip(&mut tracks) {

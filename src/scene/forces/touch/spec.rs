@@ -4,9 +4,10 @@ use super::edge_pairs::Edges;
 use super::force::TouchForce;
 use super::law::{Kind, Law};
 use super::near::{Near, NearPair};
+use super::site::{Parts, TouchSite};
 use super::surfaces::Surfaces;
 use crate::base::input::{InputError, not_negative, positive};
-use crate::elements::body::{Body, Part};
+use crate::elements::body::Body;
 use crate::scene::forces::friction::Friction;
 
 /// Contact of bodies with each other, or of a body with itself.
@@ -55,14 +56,10 @@ pub struct Touch {
     friction: Friction,
 }
 
-/// Default of D, over the mean side of facets, and over the size of bodies in one dimension.
-const DISTANCE: f64 = 0.1;
-const DISTANCE_OF_BARS: f64 = 0.01;
-/// Default of k D over Young's modulus.
-const BARRIER: f64 = 0.1;
-const SPRING: f64 = 1.0;
 /// How near bodies may begin, over D.
 const LEAST: f64 = 1e-3;
+/// How much farther than D pairs are looked for, at least, over the mean side of facets.
+const MARGIN: f64 = 0.2;
 
 impl Touch {
     /// All bodies of a scene touch each other, and each of them itself.
@@ -96,14 +93,17 @@ impl Touch {
     }
 
     /// Stiffness k (N/m^3), above 0. Default: a tenth of the least of Young's moduli over D; all of it for a
-    /// [`spring`](Self::spring).
+    /// [`spring`](Self::spring). Between rigid bodies k D is not above 40 times their weight over a quarter of their surface, and what
+    /// stops their initial speeds within two thirds of D: a stiffer contact would move by less than what a run resolves.
     pub fn stiffness_density(mut self, stiffness: f64) -> Self {
         self.stiffness = Some(stiffness);
         self
     }
 
     /// The distance D (m) from which on nothing acts, above 0: bodies come to rest at a part of it from each other.
-    /// Default: a tenth of the mean edge of the surfaces; of bars in one dimension, a hundredth of their size.
+    /// Default: a tenth of the mean edge of the surfaces and of the thickness (2 V/A) of the thinnest body; of bars in one dimension, a
+    /// hundredth of their size. Undeformed bodies that are nearer than that to each other have their gap as D, down to a hundredth of
+    /// it, so that nothing presses them apart at the start.
     pub fn distance(mut self, distance: f64) -> Self {
         self.distance = Some(distance);
         self
@@ -128,7 +128,7 @@ impl Touch {
     }
 
     /// The sliding speed v0 (m/s) below which friction sticks, above 0; with friction coefficients only. Default: a
-    /// thousandth of the size of the bodies per second.
+    /// thousandth of the size of the bodies per second, and of the differences of their initial velocities.
     pub fn sticking_speed(mut self, speed: f64) -> Self {
         self.friction.sticking_speed = Some(speed);
         self
@@ -139,9 +139,9 @@ impl Touch {
         &self.name
     }
 
-    /// v0 (m/s) on bodies of `size` (m); `None` without friction.
-    pub(crate) fn sticks_below(&self, size: f64) -> Option<f64> {
-        let coulomb = self.friction.coulomb(size).filter(|_| self.friction.acts());
+    /// v0 (m/s), by default of a `way` (m) in a second; `None` without friction.
+    pub(crate) fn sticks_below(&self, way: f64) -> Option<f64> {
+        let coulomb = self.friction.coulomb(way).filter(|_| self.friction.acts());
         coulomb.map(|coulomb| coulomb.sticking_speed)
     }
 
@@ -174,22 +174,35 @@ impl Touch {
         self
     }
 
-    /// Its forces on the bodies of a scene that begins with the displacements `u` (m), with the numbers of those that are
-    /// `glued` to each other: they do not touch where they are near each other undeformed.
+    /// Its forces on the bodies of a scene.
     ///
     /// # Errors
     /// Names that are not there, numbers that make no sense, bodies without a surface or that lie on each other.
-    pub(crate) fn force(
-        &self,
-        body: &Body,
-        glued: &[[usize; 2]],
-        u: &[f64],
-    ) -> Result<TouchForce, InputError> {
-        let input = |key: &str| format!("touch \"{}\" {key}", self.name);
+    pub(crate) fn force(&self, site: &TouchSite<'_>) -> Result<TouchForce, InputError> {
+        let parts = self.parts(site.body)?;
+        let surfaces = Surfaces::new(site, &parts.numbers, parts.itself).ok_or_else(|| {
+            let help = "a string has no surface: name the other bodies";
+            InputError::new(self.input("bodies"), "a string among them", help)
+        })?;
+        let usual = site.usual_distance(&surfaces, &parts);
+        let mut force =
+            self.force_within(site, &parts, surfaces, self.distance.unwrap_or(usual))?;
+        if self.distance.is_none()
+            && let Some((gap, _)) = force.nearest(&vec![0.0; site.body.dofs()])
+        {
+            let nearer = TouchSite::distance_of_gap(gap, usual);
+            force = self.force_within(site, &parts, force.surfaces, nearer)?;
+        }
+        self.check_start(site.body, &force, site.u)?;
+        Ok(force)
+    }
+
+    /// The numbers of the bodies that touch.
+    fn parts(&self, body: &Body) -> Result<Parts, InputError> {
         let parts: Vec<_> = body.parts().collect();
         let mut numbers = Vec::new();
         for name in &self.bodies {
-            let nodes = body.part_named(name, &input("bodies"))?.nodes;
+            let nodes = body.part_named(name, &self.input("bodies"))?.nodes;
             numbers.extend(parts.iter().position(|part| part.nodes == nodes));
         }
         if self.bodies.is_empty() {
@@ -198,53 +211,48 @@ impl Touch {
         numbers.sort_unstable();
         numbers.dedup();
         let itself = self.bodies.is_empty() || numbers.len() == 1;
-        let mut surfaces = Surfaces::new(body, &numbers, itself).ok_or_else(|| {
-            let help = "a string has no surface: name the other bodies";
-            InputError::new(input("bodies"), "a string among them", help)
-        })?;
-        let (side, [distance, stiffness]) = self.numbers(&surfaces, &parts, &numbers);
+        Ok(Parts { numbers, itself })
+    }
+
+    /// The forces of `surfaces` that feel each other within a `distance` (m).
+    fn force_within(
+        &self,
+        site: &TouchSite<'_>,
+        parts: &Parts,
+        mut surfaces: Surfaces,
+        distance: f64,
+    ) -> Result<TouchForce, InputError> {
+        let input = |key: &str| self.input(key);
+        let stiffness = self
+            .stiffness
+            .unwrap_or_else(|| site.usual_stiffness(&surfaces, parts, self.kind, distance));
         positive(&input("distance"), distance, "m")?;
         positive(&input("stiffness_density"), stiffness, "N/m^3")?;
         not_negative(&input("damping_density"), self.damping, "N s/m^3")?;
         self.friction.validate(&input)?;
         let law = Law { kind: self.kind, stiffness, damping: self.damping, distance };
         let mut edges = Edges::new(&surfaces, &law);
-        if itself || !glued.is_empty() {
-            let rest = vec![0.0; body.dofs()];
+        surfaces.feel_all();
+        if parts.itself || !site.glued.is_empty() {
+            let rest = vec![0.0; site.body.dofs()];
             let near = Near::new(&surfaces, &edges, &rest, 2.0 * distance);
-            let is_joined =
-                |[a, b]: [usize; 2]| a == b || glued.contains(&[a, b]) || glued.contains(&[b, a]);
             let is_left_out = |near: &NearPair| {
-                is_joined(surfaces.bodies(near.point, near.feature))
+                site.is_joined(surfaces.bodies(near.point, near.feature))
                     && surfaces.is_facet(near.feature)
                     && surfaces.apart(near.point, near.feature, &rest) <= 2.0 * distance
             };
             let pairs = near.pairs.into_iter().filter(is_left_out);
             let pairs: Vec<[usize; 2]> = pairs.map(|near| [near.point, near.feature]).collect();
-            edges.leave_out(&surfaces, &near.edges, is_joined);
+            edges.leave_out(&surfaces, &near.edges, |bodies| site.is_joined(bodies));
             surfaces.leave_out(&pairs);
         }
-        let coulomb = self.friction.coulomb(body.size());
-        let margin = distance.max(2.0 * side);
-        let force = TouchForce::new(self.name.clone(), (surfaces, edges), law, coulomb, margin, u);
-        self.check_start(body, &force, u)?;
-        Ok(force)
+        let coulomb = self.friction.coulomb(site.way());
+        let margin = distance.max(MARGIN * surfaces.mean_side());
+        Ok(TouchForce::new(self.name.clone(), (surfaces, edges), law, coulomb, margin, site.u))
     }
 
-    /// The default of D (m), and D and k (N/m^3) as they are given or by default.
-    fn numbers(&self, surfaces: &Surfaces, parts: &[Part], numbers: &[usize]) -> (f64, [f64; 2]) {
-        let side = match surfaces.mean_side() {
-            0.0 => DISTANCE_OF_BARS * parts.iter().map(|part| part.body.size()).fold(0.0, f64::max),
-            side => DISTANCE * side,
-        };
-        let distance = self.distance.unwrap_or(side);
-        let young = numbers.iter().map(|&number| parts[number].body.material().young);
-        let hard = match self.kind {
-            Kind::Barrier => BARRIER,
-            Kind::Spring => SPRING,
-        };
-        let default = || hard * young.fold(f64::INFINITY, f64::min) / distance;
-        (side, [distance, self.stiffness.unwrap_or_else(default)])
+    fn input(&self, key: &str) -> String {
+        format!("touch \"{}\" {key}", self.name)
     }
 
     fn check_start(&self, body: &Body, force: &TouchForce, u: &[f64]) -> Result<(), InputError> {
@@ -262,10 +270,6 @@ impl Touch {
             nodes[1] + 1,
             names[1]
         );
-        Err(InputError::new(
-            format!("touch \"{}\" distance at the start", self.name),
-            format!("{apart:.1e} m"),
-            help,
-        ))
+        Err(InputError::new(self.input("distance at the start"), format!("{apart:.1e} m"), help))
     }
 }

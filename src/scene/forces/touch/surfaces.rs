@@ -3,9 +3,9 @@
 use std::collections::BTreeMap;
 
 use super::hull::Hull;
+use super::site::TouchSite;
 use crate::base::vector::{cross, difference, dot, norm, padded};
 use crate::elements::basis::{MOST_NODES, Place, control_points, is_affine, nearest, reach};
-use crate::elements::body::Body;
 use crate::elements::mesh::FaceKind;
 use crate::scene::forces::surface::{SurfacePoint, closed_points, pieces};
 
@@ -48,7 +48,8 @@ pub(super) struct Feature {
 
 impl Surfaces {
     /// The surfaces of the bodies with these numbers; `None` for a string, which has no surface.
-    pub(super) fn new(body: &Body, bodies: &[usize], itself: bool) -> Option<Self> {
+    pub(super) fn new(site: &TouchSite<'_>, bodies: &[usize], itself: bool) -> Option<Self> {
+        let body = site.body;
         let dimension = body.dimension();
         let mut surfaces = Self {
             dimension,
@@ -62,8 +63,9 @@ impl Surfaces {
         let parts: Vec<_> = body.parts().map(|part| part.nodes).collect();
         let faces = body.mesh().boundary_faces();
         for &number in bodies {
-            let own: Vec<Vec<usize>> =
-                faces.iter().filter(|face| parts[number].contains(&face[0])).cloned().collect();
+            let is_own =
+                |face: &&Vec<usize>| parts[number].contains(&face[0]) && !site.is_cut(face);
+            let own: Vec<Vec<usize>> = faces.iter().filter(is_own).cloned().collect();
             let points = closed_points(body, &own)?.into_iter();
             surfaces.points.extend(points.map(|on| Point { on, body: number, unfelt: Vec::new() }));
             for face in &own {
@@ -115,6 +117,11 @@ impl Surfaces {
         for number in 0..self.features.len() {
             self.features[number].weight = self.weight_among(number, |_| true);
         }
+    }
+
+    /// Has all points feel all facets of other bodies.
+    pub(super) fn feel_all(&mut self) {
+        self.points.iter_mut().for_each(|point| point.unfelt.clear());
     }
 
     /// Has points not feel the facets that share a node with a facet they lie on, and the `pairs` of
@@ -188,6 +195,12 @@ impl Surfaces {
     /// The numbers of the bodies of a point and of a feature.
     pub(super) fn bodies(&self, point: usize, feature: usize) -> [usize; 2] {
         [self.points[point].body, self.features[feature].body]
+    }
+
+    /// Area (m^2) of the surface of the body with a number.
+    pub(super) fn area(&self, body: usize) -> f64 {
+        let own = self.points.iter().filter(|point| point.body == body);
+        own.map(|point| point.on.area).sum()
     }
 
     /// Mean length (m) of the sides of the facets, of half a side where there is a mid node; 0 without any.
@@ -298,6 +311,11 @@ impl Surfaces {
 }
 
 impl Feature {
+    /// No place on it moves farther than this times its nodes.
+    pub(super) fn reach(&self) -> f64 {
+        reach(self.kind)
+    }
+
     /// A box around it, with its nodes `at` these positions (m), if its nearest place takes much longer to find: if it is a
     /// curved face.
     pub(super) fn hull(&self, at: &[[f64; 3]; MOST_NODES]) -> Option<Hull> {

@@ -2,6 +2,7 @@ use std::sync::Arc;
 
 use super::Touch;
 use super::force::TouchForce;
+use super::site::TouchSite;
 use super::surfaces::Surfaces;
 use crate::base::sparse::BlockMatrix;
 use crate::base::vector::{cross, dot, largest, noise, norm};
@@ -105,6 +106,11 @@ fn edges_that_cross_have_exact_tangents() {
     }
 }
 
+/// Bodies at rest, away from gravity.
+fn alone<'a>(body: &'a Body, u: &'a [f64]) -> TouchSite<'a> {
+    TouchSite { body, glued: &[], planes: &[], u, v: &[], gravity: 0.0 }
+}
+
 /// As the second half of the nodes moves down at a `speed` (m/s).
 fn assert_derivatives(body: &Body, touch: &Touch, speed: f64) {
     let (dofs, dimension) = (body.dofs(), body.dimension());
@@ -113,7 +119,7 @@ fn assert_derivatives(body: &Body, touch: &Touch, speed: f64) {
     let u: Vec<f64> = noise(dofs, 7).iter().map(|x| 4e-4 * x).collect();
     let mut v: Vec<f64> = noise(dofs, 3).iter().map(|x| 0.2 * x).collect();
     v[dofs / 2..].iter_mut().skip(1).step_by(dimension).for_each(|v| *v -= speed);
-    let force = touch.force(body, &[], &u).unwrap();
+    let force = touch.force(&alone(body, &u)).unwrap();
     let conservative = forces_at(&force, &u, &v).conservative;
     assert!(norm(&conservative) > 0.1, "{dimension}: nothing touches");
     let pattern = body.inertia().pattern();
@@ -161,7 +167,7 @@ fn momentum_is_exchanged_and_energy_lost() {
         let touch = Touch::all().distance(8e-3).damping_density(1e4).friction_coefficient(0.5);
         let u: Vec<f64> = noise(body.dofs(), 5).iter().map(|x| 4e-4 * x).collect();
         let v: Vec<f64> = noise(body.dofs(), 4).iter().map(|x| 0.2 * x).collect();
-        let force = touch.force(&body, &[], &u).unwrap();
+        let force = touch.force(&alone(&body, &u)).unwrap();
         let forces = forces_at(&force, &u, &v);
         assert!(dot(&forces.dissipative, &v) < 0.0);
         for part in [&forces.conservative, &forces.dissipative] {
@@ -182,7 +188,7 @@ fn edges_push_where_no_point_is_near() {
     let body = bars_on_edge(std::f64::consts::FRAC_PI_2, gap);
     let still = vec![0.0; body.dofs()];
     let touch = Touch::all().distance(reach).stiffness_density(k);
-    let force = touch.force(&body, &[], &still).unwrap();
+    let force = touch.force(&alone(&body, &still)).unwrap();
     // a third of two triangles of 10 x 2 cm, their geometric mean, a quarter of it; at a fifth of edges of 10 cm from an end
     let area = 0.25 * 2.0 * 1e-3 / 3.0;
     let (along, slope) = (0.8 * 0.8 * (3.0 - 2.0 * 0.8), 6.0 * 0.8 * (1.0 - 0.8) / 0.25 / 0.1);
@@ -238,7 +244,7 @@ fn a_step_through_an_edge_is_seen() {
 fn a_convex_surface_is_felt_once() {
     for kind in Kind::SOME {
         let (body, dimension) = (blocks(kind), kind.dimension());
-        let surfaces = Surfaces::new(&body, &[0, 1], false).unwrap();
+        let surfaces = Surfaces::new(&alone(&body, &[]), &[0, 1], false).unwrap();
         let still = vec![0.0; body.dofs()];
         let (from, to, reach) = ([0.02, 0.0, 0.014], [0.12, 0.05, 0.094], 0.02);
         let of_other = |&point: &usize| surfaces.bodies(point, 0)[0] == 1;
