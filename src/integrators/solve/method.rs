@@ -1,20 +1,14 @@
-//! The methods, and the integrators behind them.
+//! The methods, what they take, and the options of the integrators behind them.
 
-use super::{
-    auto::AutoEngine,
-    engine::{DaeEngine, Engine, OdeEngine},
-    options::Options,
-    problem::Equations,
-};
+use super::{options::Options, problem::Equations};
 use crate::base::input::InputError;
 use crate::integrators::{
     common::{Error, StepOptions, Tolerances},
     ode::Boxed,
-    rk,
-    rosenbrock::{self, Rosenbrock},
+    rk, rosenbrock,
     sundials::{
-        Arkode, ArkodeOptions, ButcherTable, Cvode, CvodeOptions, Ida, IdaOptions, Jacobian,
-        LinearSolver, MassForm, Multistep, OfMultistep, SolverOptions,
+        ButcherTable, CvodeOptions, IdaOptions, Jacobian, LinearSolver, MassForm, Multistep,
+        OfMultistep, SolverOptions,
     },
 };
 
@@ -26,7 +20,11 @@ fn steps(options: &Options, sign: f64) -> StepOptions {
 }
 
 /// Options that all integrators of SUNDIALS have.
-fn shared<O>(mut built: SolverOptions<O>, options: &Options, sign: f64) -> SolverOptions<O> {
+pub(super) fn shared<O>(
+    mut built: SolverOptions<O>,
+    options: &Options,
+    sign: f64,
+) -> SolverOptions<O> {
     built.steps = steps(options, sign);
     built = options.min_step.into_iter().fold(built, SolverOptions::min_step);
     built = options.linear_solver.iter().cloned().fold(built, SolverOptions::newton);
@@ -227,45 +225,6 @@ impl Method {
             return refused("project", "true".into(), "does not project: take Bdf");
         }
         Ok(())
-    }
-
-    /// An integrator for `equations` from the time `t` and state `y` towards `end`.
-    pub(super) fn engine<'a>(
-        self,
-        equations: Equations<'a>,
-        (t, end): (f64, f64),
-        y: &[f64],
-        options: &Options,
-    ) -> Result<Box<dyn Engine + 'a>, Error> {
-        let sign = (end - t).signum();
-        let Tolerances { rtol, atol } = options.tolerances.clone();
-        let system = match self.take(equations, t, y.len(), options)? {
-            Equations::Dae { system, yp, differential } => {
-                let options = self.ida(options, sign, differential);
-                let integrator = Ida::new(Boxed(system), t, y, &yp, &options)?;
-                return Ok(Box::new(DaeEngine { integrator, options }));
-            }
-            Equations::Ode(system) => Boxed(system),
-        };
-        Ok(match self {
-            Self::RungeKutta(table) => {
-                let built = shared(ArkodeOptions::new(rtol, atol).table(table), options, sign);
-                Box::new(OdeEngine { integrator: Arkode::new(system, t, y, &built)? })
-            }
-            Self::Auto => Box::new(AutoEngine::new(system, (t, end), y, options)?),
-            Self::DormandPrince => {
-                let integrator = rk::DormandPrince::new(system, t, y, &options.explicit())?;
-                Box::new(OdeEngine { integrator })
-            }
-            Self::Rosenbrock => {
-                let integrator = Rosenbrock::new(system, t, y, &options.rosenbrock())?;
-                Box::new(OdeEngine { integrator })
-            }
-            _ => {
-                let built = self.cvode(options, sign);
-                Box::new(OdeEngine { integrator: Cvode::new(system, t, y, &built)? })
-            }
-        })
     }
 
     /// The options of CVODE.
