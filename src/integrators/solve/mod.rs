@@ -40,6 +40,7 @@ mod error;
 mod event;
 mod gradient;
 mod history;
+mod integrator_options;
 mod linear_solver;
 mod method;
 mod minimum;

@@ -3,7 +3,8 @@
 use super::{
     auto::AutoEngine,
     engine::{DaeEngine, Engine, OdeEngine},
-    method::{Method, shared},
+    integrator_options::shared,
+    method::Method,
     options::Options,
     problem::Equations,
 };
