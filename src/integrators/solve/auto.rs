@@ -8,10 +8,10 @@ use faer::{MatMut, MatRef};
 
 use super::{
     choice::{Candidate, Costs},
-    diagnosis::{EVALUATIONS, Rate},
     engine::{Engine, OdeEngine},
     method::{Method, MethodUse},
     options::Options,
+    rate::{EVALUATIONS, Rate},
 };
 use crate::integrators::{
     common::{Cause, Error, Integrator, Reached, Statistics},
