@@ -131,15 +131,18 @@ impl Scene {
     ) -> Result<Vec<Lagging>, InputError> {
         let mut lags: Vec<Option<Lagging>> = self.lags().map(|_| None).collect();
         for (actuator, signals) in self.actuators.iter().zip(self.actuation_signals(phase)?) {
-            actuator.check_signals(&phase.name, &signals)?;
-            let Some((number, mut lagging)) = self.lagging(&**actuator, &signals) else {
-                forces.extend(actuator.driven(&self.body, signals)?);
-                continue;
+            let lagging = self.lagging(&**actuator, &signals);
+            let drive = match &lagging {
+                Some((_, lagging)) => vec![lagging.signal()],
+                None => signals.clone(),
             };
-            let driven = actuator.driven(&self.body, vec![lagging.signal()])?;
-            driven.last().into_iter().for_each(|force| lagging.drive(force.clone()));
+            let driven = actuator.driven(&self.body, drive)?;
+            actuator.check_signals(&phase.name, &signals)?;
+            if let Some((number, mut lagging)) = lagging {
+                driven.last().into_iter().for_each(|force| lagging.drive(force.clone()));
+                lags[number] = Some(lagging);
+            }
             forces.extend(driven);
-            lags[number] = Some(lagging);
         }
         Ok(lags.into_iter().flatten().collect())
     }
