@@ -417,6 +417,14 @@ impl Engine for AutoEngine<'_> {
         Ok(())
     }
 
+    fn quadrature_sensitivities_at(&mut self, _: f64, _: MatMut<'_, f64>) -> Result<(), Error> {
+        Ok(())
+    }
+
+    fn integrands(&mut self, _: f64, _: &[f64], _: &[f64], _: &mut [f64]) -> Result<(), Failure> {
+        Ok(())
+    }
+
     fn start_sensitivities(&mut self, _: MatRef<'_, f64>, _: &[f64]) -> Result<(), Error> {
         Ok(())
     }

@@ -6,12 +6,12 @@ use super::{
     differences::Differences,
     ffi,
     progress::{Progress, STRETCH},
-    session::{Memory, Session},
+    session::Session,
     signs::check_state,
     vector::Vector,
 };
 use crate::integrators::common::{
-    Cause, Clock, Error, Integrator, Reached, SHORTEST, Statistics, check_finite, check_length,
+    Clock, Error, Integrator, Reached, SHORTEST, Statistics, check_finite, check_length,
     check_start_time, check_time, number_before,
 };
 

@@ -227,7 +227,7 @@ fn a_step_through_an_edge_is_seen() {
     let (gap, reach) = (3e-3, 2e-3);
     let body = bars_on_edge(std::f64::consts::FRAC_PI_2, gap);
     let still = vec![0.0; body.dofs()];
-    let force = Touch::all().distance(reach).force(&body, &[], &still).unwrap();
+    let force = Touch::all().distance(reach).force(&alone(&body, &still)).unwrap();
     let down: Vec<f64> = (0..body.dofs())
         .map(|k| if k >= body.dofs() / 2 && k % 3 == 1 { -2.0 * gap } else { 0.0 })
         .collect();
