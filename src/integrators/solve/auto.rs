@@ -58,7 +58,7 @@ enum Stop {
 
 enum Current<'a> {
     Explicit(OdeEngine<DormandPrince<System<'a>>>),
-    Rosenbrock(OdeEngine<Rosenbrock<System<'a>>>),
+    Rosenbrock(Box<OdeEngine<Rosenbrock<System<'a>>>>),
     Bdf(OdeEngine<Cvode<System<'a>>>),
 }
 
@@ -103,7 +103,7 @@ impl<'a> Current<'a> {
             }
             Candidate::Rosenbrock => {
                 let integrator = Rosenbrock::new(system, t, y, &options.rosenbrock())?;
-                Self::Rosenbrock(OdeEngine { integrator })
+                Self::Rosenbrock(Box::new(OdeEngine { integrator }))
             }
             Candidate::Bdf => {
                 let integrator = Cvode::new(system, t, y, &Method::Bdf.cvode(options, 1.0))?;
@@ -115,7 +115,7 @@ impl<'a> Current<'a> {
     fn engine(&self) -> &dyn Engine {
         match self {
             Self::Explicit(engine) => engine,
-            Self::Rosenbrock(engine) => engine,
+            Self::Rosenbrock(engine) => &**engine,
             Self::Bdf(engine) => engine,
         }
     }
@@ -123,7 +123,7 @@ impl<'a> Current<'a> {
     fn engine_mut(&mut self) -> &mut dyn Engine {
         match self {
             Self::Explicit(engine) => engine,
-            Self::Rosenbrock(engine) => engine,
+            Self::Rosenbrock(engine) => &mut **engine,
             Self::Bdf(engine) => engine,
         }
     }

@@ -237,7 +237,7 @@ mod tests {
                     let [mut v, mut w] = [&ours, &theirs].map(|v| v.each_ref().map(Vector::raw));
                     // SAFETY: the vectors are alive and of equal length.
                     unsafe {
-                        let (c, count) = (c.as_mut_ptr(), count as i32);
+                        let c = c.as_mut_ptr();
                         ffi::N_VLinearCombination(count, c, v.as_mut_ptr(), z[0]);
                         ffi::N_VLinearCombination_Serial(count, c, w.as_mut_ptr(), z[1]);
                     }

@@ -169,7 +169,7 @@ impl Actuator for Muscle {
     }
 
     fn gauge(&self, body: &Body) -> Result<ActuatorGauge, InputError> {
-        let (strands, hill) = (self.strands(body)?, self.hill.clone());
+        let (strands, hill) = (self.strands(body)?, self.hill);
         Ok(Box::new(move |output, now| match (output, &hill) {
             (Self::STRETCH, _) => strands.mean_stretch(now.u),
             (Self::ACTIVATION, Some(law)) => (now.drive[0] / law.largest).clamp(0.0, 1.0),

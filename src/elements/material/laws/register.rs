@@ -46,6 +46,9 @@ pub enum Law {
     Own(OwnEnergy),
 }
 
+/// A law with the shear modulus (Pa) that follows from its constants, or why there is none.
+pub(crate) type LawOfConstants = Result<(Law, Option<f64>), String>;
+
 /// Facts of a [`Law`].
 #[derive(Debug, Clone, Copy)]
 #[non_exhaustive]
@@ -57,7 +60,7 @@ pub struct LawInformation {
     /// Its constants in scene files; none where Young's modulus and Poisson's ratio are its constants.
     pub constants: &'static [LawConstant],
     /// The law of these values of its constants, with the shear modulus (Pa) that follows; else why there is none.
-    pub(crate) of_constants: fn(&[Vec<f64>]) -> Result<(Law, Option<f64>), String>,
+    pub(crate) of_constants: fn(&[Vec<f64>]) -> LawOfConstants,
     /// Whether it is one of rubber.
     pub is_rubber: bool,
     /// Relative difference of its stress from that of rubber, in multiples of the strain.
