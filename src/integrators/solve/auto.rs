@@ -57,7 +57,7 @@ enum Stop {
 }
 
 enum Current<'a> {
-    Explicit(OdeEngine<DormandPrince<System<'a>>>),
+    Explicit(Box<OdeEngine<DormandPrince<System<'a>>>>),
     Rosenbrock(Box<OdeEngine<Rosenbrock<System<'a>>>>),
     Bdf(OdeEngine<Cvode<System<'a>>>),
 }
@@ -99,7 +99,7 @@ impl<'a> Current<'a> {
         Ok(match candidate {
             Candidate::Explicit => {
                 let integrator = DormandPrince::new(system, t, y, &options.explicit())?;
-                Self::Explicit(OdeEngine { integrator })
+                Self::Explicit(Box::new(OdeEngine { integrator }))
             }
             Candidate::Rosenbrock => {
                 let integrator = Rosenbrock::new(system, t, y, &options.rosenbrock())?;
@@ -114,7 +114,7 @@ impl<'a> Current<'a> {
 
     fn engine(&self) -> &dyn Engine {
         match self {
-            Self::Explicit(engine) => engine,
+            Self::Explicit(engine) => &**engine,
             Self::Rosenbrock(engine) => &**engine,
             Self::Bdf(engine) => engine,
         }
@@ -122,7 +122,7 @@ impl<'a> Current<'a> {
 
     fn engine_mut(&mut self) -> &mut dyn Engine {
         match self {
-            Self::Explicit(engine) => engine,
+            Self::Explicit(engine) => &mut **engine,
             Self::Rosenbrock(engine) => &mut **engine,
             Self::Bdf(engine) => engine,
         }
