@@ -163,7 +163,7 @@ fn measure(scene: &Scene, case: &Case, method: Method) -> Result<Ticks, Box<dyn 
         path.push(ticking.view().displacements().to_vec());
     }
     each.sort();
-    let told = ticking.report().reduced.map(|reduced| reduced.told_error);
+    let told = ticking.report().reduced.map(|reduced| reduced.estimated_error);
     let clock = Instant::now();
     drive.whole(&mut free)?;
     free.advance_to(start + f64::from(TICKS) * PERIOD)?;

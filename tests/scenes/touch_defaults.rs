@@ -3,8 +3,8 @@
 
 use pliant::simulate::{Component, Reading};
 use pliant::{
-    Axis, Body, Cells, Material, Mesh, Method, Phase, Sampling, Scene, Settings, Statics,
-    Substance, Touch,
+    Body, Cells, Material, Mesh, Method, Phase, Sampling, Scene, Settings, Statics, Substance,
+    Touch,
 };
 
 use crate::common::settings;
@@ -41,7 +41,7 @@ fn what_begins_near_is_not_thrown() {
     let scene = above_floor(1e-4, Touch::all()).phase(Phase::until(0.3).hold("floor"));
     let distances = scene.touch_distances().unwrap();
     assert!((distances[0].distance - 1e-4).abs() < 1e-12, "{}", distances[0]);
-    let height = Reading::displacement("block").component(Component::Axis(Axis::Y));
+    let height = Reading::displacement("block").component(Component::Y);
     let motion = scene
         .simulate(&settings(Method::Auto, 1e-6), &Sampling::every(0.005).read("height", height))
         .unwrap();
@@ -72,10 +72,9 @@ fn a_pushed_rigid_block_slides_and_stays_down() {
     let force = 2.0 * mu * mass * G;
     let scene = above_floor(gap, Touch::all().friction_coefficient(mu))
         .phase(Phase::until(0.4).hold("floor").load_total("block", [force, 0.0]));
-    let read = |component| {
-        Reading::centre_of_mass().of_body("block").component(Component::Axis(component))
-    };
-    let sampling = Sampling::every(0.01).read("x", read(Axis::X)).read("y", read(Axis::Y));
+    let read = |component| Reading::centre_of_mass().of_body("block").component(component);
+    let sampling =
+        Sampling::every(0.01).read("x", read(Component::X)).read("y", read(Component::Y));
     let motion = scene.simulate(&Settings::default(), &sampling).unwrap();
     let samples = motion.samples();
     let start = samples[0].sensors[1];
@@ -93,7 +92,7 @@ fn a_pushed_rigid_block_slides_and_stays_down() {
 fn phases_may_leave_out_the_touch() {
     let fall = |phase: Phase| {
         let scene = above_floor(1e-3, Touch::all()).phase(phase.hold("floor"));
-        let height = Reading::displacement("block").component(Component::Axis(Axis::Y));
+        let height = Reading::displacement("block").component(Component::Y);
         let force = Reading::touch_force("touch").of_body("block");
         let sampling = Sampling::phase_ends().read("height", height).read("force", force);
         let motion = scene.simulate(&settings(Method::Auto, 1e-7), &sampling).unwrap();
