@@ -411,7 +411,7 @@ fn bad_commands_are_named_and_change_nothing() {
     let attempts: [(Attempt, &[&str]); 14] = [
         (&mut |beam| beam.pressure("outside", 1.0), &["chamber", "\"outside\"", "inside"]),
         (&mut |beam| beam.pressure("inside", f64::NAN), &["pressure", "NaN"]),
-        (&mut |beam| beam.actuate("string", 1.0), &["spring", "\"string\"", "tendon"]),
+        (&mut |beam| beam.actuate("string", 1.0), &["actuation", "\"string\"", "tendon"]),
         (
             &mut |beam| beam.actuate("tendon", Signal::table([0.2, 0.1], [0.0, 1.0])),
             &["times", "0.1"],

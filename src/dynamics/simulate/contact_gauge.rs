@@ -64,7 +64,8 @@ impl ContactGauge {
         let mut is_read = vec![false; count];
         nodes.iter().for_each(|&node| is_read[node] = true);
         let is_read = is_read.contains(&false).then_some(is_read);
-        Ok(Self { acting, nodes, is_read, tributary: Tributary::new(body) })
+        let tributary = Tributary::new(body, &scene.planes_of_symmetry()?);
+        Ok(Self { acting, nodes, is_read, tributary })
     }
 
     /// Force (N) on the nodes together; NaN where it is undefined.

@@ -104,6 +104,9 @@ pub(super) struct Troubles {
 /// The error of the user's system, for the integrator's own error.
 pub(super) type ErrorSource = Option<Box<dyn error::Error + Send + Sync>>;
 
+/// Length for which messages of SUNDIALS have room, so that steps do not allocate: limits of steps are among them.
+const MESSAGE: usize = 256;
+
 /// Most requests for a smaller step at the same time.
 const MOST_STUCK: u32 = 30;
 
@@ -206,7 +209,7 @@ impl<S> Host<S> {
         clock: Clock,
         linear_solver: Option<LinearSolver>,
     ) -> Self {
-        let troubles = Troubles::default();
+        let troubles = Troubles { message: String::with_capacity(MESSAGE), ..Troubles::default() };
         Self {
             system,
             n,

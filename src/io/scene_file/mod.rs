@@ -220,8 +220,8 @@ impl SceneFile {
 /// ```
 /// use pliant::SceneReader;
 ///
-/// let file = SceneReader::new(&[]).read_with("scenes/beam-bend.toml", &[])?;
-/// assert_eq!(file.scene.end(), 1.0);
+/// let file = SceneReader::new(&[]).read_with("scenes/beam-bend-green.toml", &[])?;
+/// assert_eq!(file.scene.end(), 6.0);
 /// # Ok::<(), pliant::Error>(())
 /// ```
 #[derive(Debug, Clone, Default)]

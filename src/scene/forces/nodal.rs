@@ -10,7 +10,7 @@
 use std::sync::Arc;
 use std::{iter, mem};
 
-use super::surface::measured_pieces;
+use super::surface::{is_within, measured_pieces};
 use crate::base::vector::{cross, difference, dot, norm};
 use crate::elements::body::Body;
 use crate::elements::mesh::FaceKind;
@@ -142,10 +142,14 @@ struct Piece {
 }
 
 impl Tributary {
-    pub(crate) fn new(body: &Body) -> Self {
+    /// Of all faces but those [within](is_within) planes of symmetry, by the nodes of each plane.
+    pub(crate) fn new(body: &Body, planes: &[Vec<usize>]) -> Self {
         let (mesh, dimension) = (body.mesh(), body.dimension());
         let (mut pieces, mut mids) = (Vec::new(), Vec::new());
         for face in mesh.boundary_faces() {
+            if is_within(&face, planes) {
+                continue;
+            }
             let is_membrane = !body.part_of(face[0]).body.mesh().has_inside();
             let measured = measured_pieces(body, &face).into_iter().flatten();
             let nodes: Arc<[usize]> = Arc::from(&face[..]);

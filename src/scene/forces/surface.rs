@@ -45,6 +45,11 @@ pub(crate) fn weighted(
     sum
 }
 
+/// Whether all nodes of a `face` are among those (ascending) of one of the `planes`.
+pub(super) fn is_within(face: &[usize], planes: &[Vec<usize>]) -> bool {
+    planes.iter().any(|plane| face.iter().all(|node| plane.binary_search(node).is_ok()))
+}
+
 /// Each boundary node by itself, and the points around the cross sections of rods; on a plane of symmetry at which the mesh was cut, half of it, but not on the axis of a body of revolution.
 pub(crate) fn boundary_nodes(body: &Body) -> Vec<SurfacePoint> {
     let mesh = body.mesh();

@@ -14,8 +14,8 @@ pub(crate) struct ContactReader {
 
 impl ContactReader {
     pub(crate) fn new(scene: &Scene) -> Result<Self, InputError> {
-        let (touches, tributary) = (scene.touch_forces()?, Tributary::new(scene.body()));
-        Ok(Self { touches, tributary })
+        let tributary = Tributary::new(scene.body(), &scene.planes_of_symmetry()?);
+        Ok(Self { touches: scene.touch_forces()?, tributary })
     }
 
     /// Contact quantities of each node at time `t` (s) in a phase, by the `contacts` with obstacles and by touches, at the displacements and velocities `[u, v]` (m, m/s).
@@ -46,7 +46,7 @@ impl Scene {
     ///
     /// # Errors
     /// Nodes that do not exist.
-    pub(super) fn planes_of_symmetry(&self) -> Result<Vec<Vec<usize>>, InputError> {
+    pub(crate) fn planes_of_symmetry(&self) -> Result<Vec<Vec<usize>>, InputError> {
         let planes = |phase: usize| {
             let constraints = self.phases.get(phase).into_iter().flat_map(|it| &it.constraints);
             constraints.filter_map(|constraint| match &constraint.what {

@@ -50,13 +50,6 @@ impl TouchSite<'_> {
         a == b || self.glued.contains(&[a, b]) || self.glued.contains(&[b, a])
     }
 
-    /// Whether a face is on a plane of symmetry.
-    pub(super) fn is_cut(&self, face: &[usize]) -> bool {
-        let is_within =
-            |plane: &Vec<usize>| face.iter().all(|node| plane.binary_search(node).is_ok());
-        self.planes.iter().any(is_within)
-    }
-
     /// The default of D (m) where undeformed bodies are apart by more than that.
     pub(super) fn usual_distance(&self, surfaces: &Surfaces, parts: &Parts) -> f64 {
         let own =

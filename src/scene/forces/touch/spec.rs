@@ -180,10 +180,11 @@ impl Touch {
     /// Names that are not there, numbers that make no sense, bodies without a surface or that lie on each other.
     pub(crate) fn force(&self, site: &TouchSite<'_>) -> Result<TouchForce, InputError> {
         let parts = self.parts(site.body)?;
-        let surfaces = Surfaces::new(site, &parts.numbers, parts.itself).ok_or_else(|| {
-            let help = "a string has no surface: name the other bodies";
-            InputError::new(self.input("bodies"), "a string among them", help)
-        })?;
+        let surfaces = Surfaces::new(site.body, &parts.numbers, parts.itself, site.planes)
+            .ok_or_else(|| {
+                let help = "a string has no surface: name the other bodies";
+                InputError::new(self.input("bodies"), "a string among them", help)
+            })?;
         let usual = site.usual_distance(&surfaces, &parts);
         let mut force =
             self.force_within(site, &parts, surfaces, self.distance.unwrap_or(usual))?;

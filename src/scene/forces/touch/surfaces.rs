@@ -3,11 +3,11 @@
 use std::collections::BTreeMap;
 
 use super::hull::Hull;
-use super::site::TouchSite;
 use crate::base::vector::{cross, difference, dot, norm, padded};
 use crate::elements::basis::{MOST_NODES, Place, control_points, is_affine, nearest, reach};
+use crate::elements::body::Body;
 use crate::elements::mesh::FaceKind;
-use crate::scene::forces::surface::{SurfacePoint, closed_points, pieces};
+use crate::scene::forces::surface::{SurfacePoint, closed_points, is_within, pieces};
 
 /// The surfaces of some bodies.
 pub(super) struct Surfaces {
@@ -47,9 +47,14 @@ pub(super) struct Feature {
 }
 
 impl Surfaces {
-    /// The surfaces of the bodies with these numbers; `None` for a string, which has no surface.
-    pub(super) fn new(site: &TouchSite<'_>, bodies: &[usize], itself: bool) -> Option<Self> {
-        let body = site.body;
+    /// The surfaces of the bodies with these numbers, without faces between nodes (ascending) of one of the `planes`; `None` for a string,
+    /// which has no surface.
+    pub(super) fn new(
+        body: &Body,
+        bodies: &[usize],
+        itself: bool,
+        planes: &[Vec<usize>],
+    ) -> Option<Self> {
         let dimension = body.dimension();
         let mut surfaces = Self {
             dimension,
@@ -64,7 +69,7 @@ impl Surfaces {
         let faces = body.mesh().boundary_faces();
         for &number in bodies {
             let is_own =
-                |face: &&Vec<usize>| parts[number].contains(&face[0]) && !site.is_cut(face);
+                |face: &&Vec<usize>| parts[number].contains(&face[0]) && !is_within(face, planes);
             let own: Vec<Vec<usize>> = faces.iter().filter(is_own).cloned().collect();
             let points = closed_points(body, &own)?.into_iter();
             surfaces.points.extend(points.map(|on| Point { on, body: number, unfelt: Vec::new() }));

@@ -244,7 +244,7 @@ fn a_step_through_an_edge_is_seen() {
 fn a_convex_surface_is_felt_once() {
     for kind in Kind::SOME {
         let (body, dimension) = (blocks(kind), kind.dimension());
-        let surfaces = Surfaces::new(&alone(&body, &[]), &[0, 1], false).unwrap();
+        let surfaces = Surfaces::new(&body, &[0, 1], false, &[]).unwrap();
         let still = vec![0.0; body.dofs()];
         let (from, to, reach) = ([0.02, 0.0, 0.014], [0.12, 0.05, 0.094], 0.02);
         let of_other = |&point: &usize| surfaces.bodies(point, 0)[0] == 1;
