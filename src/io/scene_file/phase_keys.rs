@@ -41,12 +41,8 @@ pub(super) const PHASE: TableKeys = TableKeys::new(
         )
         .note("All, none, or those of these names; if none, bodies do not touch each other either.")
         .default("true"),
-        Key::new(
-            "touch",
-            ValueType::Flag,
-            "whether bodies touch each other ([`[[touch]]`](#touch))",
-        )
-        .default("as `contact` is not `false`"),
+        Key::new("touch", ValueType::Flag, "whether bodies touch each other")
+            .default("as `contact` is not `false`"),
         Key::new(
             "project_velocity",
             ValueType::Flag,
