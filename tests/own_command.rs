@@ -41,7 +41,7 @@ fn output(program: &Path, place: &Path, arguments: &[&str]) -> Output {
     command.args(arguments).env(AS_COMMAND, "1").current_dir(place).output().unwrap()
 }
 
-/// What the own command prints, which succeeds.
+/// The output of the own command, which succeeds.
 fn own(place: &Path, arguments: &[&str]) -> String {
     let output = output(&env::current_exe().unwrap(), place, arguments);
     assert_eq!(output.status.code(), Some(0), "{arguments:?}: {output:?}");

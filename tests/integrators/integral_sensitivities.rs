@@ -12,7 +12,7 @@ use pliant::{
 /// y' = -a y, with z = b y as an algebraic unknown of the DAE, and the integrals of b y^2 and of y'.
 struct Decay {
     p: [f64; 2],
-    /// What the integrands do with changed parameters beyond t = 0.5.
+    /// The integrands with changed parameters beyond t = 0.5.
     trouble: Option<fn() -> Result<(), Failure>>,
 }
 

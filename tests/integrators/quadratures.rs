@@ -10,7 +10,7 @@ use pliant::{
 /// y' = -y, z with z = y as an algebraic unknown of the DAE, and the integrals of y and of y^2.
 #[derive(Default)]
 struct Decay {
-    /// What the integrands do beyond t = 0.5.
+    /// The integrands beyond t = 0.5.
     trouble: Option<fn() -> Result<(), Failure>>,
 }
 

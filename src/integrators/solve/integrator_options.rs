@@ -1,4 +1,4 @@
-//! What the methods take, and the options of the integrators behind them.
+//! Options that each method takes, and those of the integrators behind them.
 
 use super::{method::Method, options::Options, problem::Equations};
 use crate::base::input::InputError;

@@ -4,6 +4,8 @@
 //! than a hundredth of the motion is a warning. A method that is asked for by name controls the error of each
 //! step by `rtol`; `Method::Auto` aims at that error of the whole motion (`docs/notes/automatic-choices.md`).
 
+use std::cell::LazyCell;
+
 use super::method::{ContactEvents, Method};
 use crate::base::input::{InputError, positive};
 use crate::scene::forces::way;
@@ -161,8 +163,8 @@ impl Scales {
         let body = scene.body();
         let size = body.size();
         let obstacles = scene.obstacles().iter().filter_map(|obstacle| obstacle.sticks_below(size));
-        let way = way(body, &scene.initial_velocities().unwrap_or_default());
-        let touches = scene.touches().iter().filter_map(|touch| touch.sticks_below(way));
+        let way = LazyCell::new(|| way(body, &scene.initial_velocities().unwrap_or_default()));
+        let touches = scene.touches().iter().filter_map(|touch| touch.sticks_below(*way));
         Self {
             size,
             young: body.largest_young(),

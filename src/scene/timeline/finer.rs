@@ -158,7 +158,7 @@ impl Scene {
     }
 }
 
-/// What `map` makes of each component.
+/// The components that `map` makes of others.
 fn each<T>(all: &[T], map: impl Fn(&T) -> Result<T, InputError>) -> Result<Vec<T>, InputError> {
     all.iter().map(map).collect()
 }

@@ -61,12 +61,8 @@ impl TouchForce {
     /// Passes to `see` each pair that acts under the displacements `u` (m), and what its share of the energy per area
     /// is (m^2).
     pub(super) fn each(&self, u: &[f64], mut see: impl FnMut(&Pair, f64)) {
-        let (known, moved) = self.near(u);
-        let may_act = |near: &&NearPair| {
-            near.distance - moved < self.law.distance
-                && near.distance - known.approach(&self.surfaces, near, u) < self.law.distance
-        };
-        for near in known.pairs.iter().filter(may_act) {
+        let (near, moved) = self.near(u);
+        for near in near.pairs.iter().filter(|near| near.distance - moved < self.law.distance) {
             let x = self.surfaces.point_at(near.point, u);
             let at = self.surfaces.nodes_at(near.feature, u);
             let feature = &self.surfaces.features[near.feature];
@@ -83,7 +79,7 @@ impl TouchForce {
             }
         }
         let acts_from = self.edges.law.distance;
-        for near in known.edges.iter().filter(|near| near.distance - moved < acts_from) {
+        for near in near.edges.iter().filter(|near| near.distance - moved < acts_from) {
             let pair = self.edges.pair(&self.surfaces, near, u);
             if let Some(pair) = pair.filter(|pair| pair.distance < acts_from) {
                 let share = pair.window.as_ref().map_or(0.0, |window| window.value);

@@ -84,22 +84,6 @@ impl Near {
         })
     }
 
-    /// Upper bound of the approach (m) of one pair since then: places on the feature move by means of what its nodes do, of which
-    /// the shares add up to 1.
-    pub(super) fn approach(&self, surfaces: &Surfaces, near: &NearPair, u: &[f64]) -> f64 {
-        let d = surfaces.dimension;
-        let feature = &surfaces.features[near.feature];
-        let mut way = [0.0; 3];
-        for (node, share) in surfaces.points[near.point].on.nodes() {
-            (0..d).for_each(|i| way[i] += share * (u[node * d + i] - self.u[node * d + i]));
-        }
-        let apart = |&node: &usize| {
-            let apart = |i: usize| way[i] - (u[node * d + i] - self.u[node * d + i]);
-            (0..d).map(|i| apart(i).powi(2)).sum::<f64>()
-        };
-        feature.reach() * feature.nodes().iter().map(apart).fold(0.0, f64::max).sqrt()
-    }
-
     /// Whether the pairs include all that are within `distance` (m) once they may have come `nearer` (m).
     pub(super) fn covers(&self, distance: f64, nearer: f64) -> bool {
         distance + nearer <= self.within

@@ -32,8 +32,6 @@ pub(super) struct Parts {
 /// Default of D, over the mean side of facets and the thickness of the thinnest body, and over the size of bodies in one dimension.
 const DISTANCE: f64 = 0.1;
 const DISTANCE_OF_BARS: f64 = 0.01;
-/// The least D of bodies that are near each other undeformed, over that of others.
-const NEAREST: f64 = 0.01;
 /// Default of k D over Young's modulus.
 const BARRIER: f64 = 0.1;
 const SPRING: f64 = 1.0;
@@ -63,11 +61,6 @@ impl TouchSite<'_> {
         }
     }
 
-    /// The default of D (m) of undeformed bodies with this `gap` (m), below the `usual` one.
-    pub(super) fn distance_of_gap(gap: f64, usual: f64) -> f64 {
-        gap.max(NEAREST * usual)
-    }
-
     /// The default of k (N/m^3) for a `distance` D (m).
     pub(super) fn usual_stiffness(
         &self,
@@ -80,6 +73,7 @@ impl TouchSite<'_> {
             Kind::Barrier => BARRIER,
             Kind::Spring => SPRING,
         };
+        let speed = largest_difference(self.v, self.body.dimension());
         let mut young = f64::INFINITY;
         let (mut pressure, mut are_rigid) = (0.0_f64, true);
         for (number, part) in self.body.parts().enumerate() {
@@ -87,7 +81,7 @@ impl TouchSite<'_> {
                 young = young.min(part.body.material().young);
                 are_rigid &= part.body.is_rigid();
                 let mass = part.body.mass() / (0.25 * surfaces.area(number));
-                let energy = 0.5 * mass * self.speed().powi(2);
+                let energy = 0.5 * mass * speed.powi(2);
                 pressure =
                     pressure.max(WEIGHTS * mass * self.gravity).max(energy / (STOPPED * distance));
             }
@@ -95,16 +89,6 @@ impl TouchSite<'_> {
         // without weight and speed nothing is known of what presses
         let most = if are_rigid && pressure > 0.0 { pressure } else { f64::INFINITY };
         (hard * young).min(most) / distance
-    }
-
-    /// The largest difference of initial velocities (m/s).
-    fn speed(&self) -> f64 {
-        largest_difference(self.v, self.body.dimension())
-    }
-
-    /// The way (m) in a second of which the default of the sticking speed is a thousandth.
-    pub(super) fn way(&self) -> f64 {
-        way(self.body, self.v)
     }
 }
 

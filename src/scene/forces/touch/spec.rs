@@ -4,7 +4,7 @@ use super::edge_pairs::Edges;
 use super::force::TouchForce;
 use super::law::{Kind, Law};
 use super::near::{Near, NearPair};
-use super::site::{Parts, TouchSite};
+use super::site::{Parts, TouchSite, way};
 use super::surfaces::Surfaces;
 use crate::base::input::{InputError, not_negative, positive};
 use crate::elements::body::Body;
@@ -58,6 +58,8 @@ pub struct Touch {
 
 /// How near bodies may begin, over D.
 const LEAST: f64 = 1e-3;
+/// The least D of bodies that are near each other undeformed, over that of others.
+const NEAREST: f64 = 0.01;
 /// How much farther than D pairs are looked for, at least, over the mean side of facets.
 const MARGIN: f64 = 0.2;
 
@@ -191,7 +193,7 @@ impl Touch {
         if self.distance.is_none()
             && let Some((gap, _)) = force.nearest(&vec![0.0; site.body.dofs()])
         {
-            let nearer = TouchSite::distance_of_gap(gap, usual);
+            let nearer = gap.max(NEAREST * usual);
             force = self.force_within(site, &parts, force.surfaces, nearer)?;
         }
         self.check_start(site.body, &force, site.u)?;
@@ -247,7 +249,7 @@ impl Touch {
             edges.leave_out(&surfaces, &near.edges, |bodies| site.is_joined(bodies));
             surfaces.leave_out(&pairs);
         }
-        let coulomb = self.friction.coulomb(site.way());
+        let coulomb = self.friction.coulomb(way(site.body, site.v));
         let margin = distance.max(MARGIN * surfaces.mean_side());
         Ok(TouchForce::new(self.name.clone(), (surfaces, edges), law, coulomb, margin, site.u))
     }

@@ -316,11 +316,6 @@ impl Surfaces {
 }
 
 impl Feature {
-    /// No place on it moves farther than this times its nodes.
-    pub(super) fn reach(&self) -> f64 {
-        reach(self.kind)
-    }
-
     /// A box around it, with its nodes `at` these positions (m), if its nearest place takes much longer to find: if it is a
     /// curved face.
     pub(super) fn hull(&self, at: &[[f64; 3]; MOST_NODES]) -> Option<Hull> {
