@@ -21,6 +21,8 @@ pub(super) struct Surfaces {
     pub(super) features: Vec<Feature>,
     /// Whether a body touches itself.
     pub(super) itself: bool,
+    /// Median of the areas (m^2) that points stand for, by the number of their body; 0 of bodies that do not touch.
+    areas_of_points: Vec<f64>,
     /// No point or place on a surface moves farther than this times the nodes: 1 of linear cells.
     pub(super) reach: f64,
 }
@@ -63,6 +65,7 @@ impl Surfaces {
             points: Vec::new(),
             features: Vec::new(),
             itself,
+            areas_of_points: Vec::new(),
             reach: 1.0,
         };
         let parts: Vec<_> = body.parts().map(|part| part.nodes).collect();
@@ -82,6 +85,14 @@ impl Surfaces {
         }
         surfaces.nodes.sort_unstable();
         surfaces.nodes.dedup();
+        let usual = |body: usize| {
+            let own = surfaces.points.iter().filter(|point| point.body == body);
+            let mut areas: Vec<f64> =
+                own.map(|point| point.on.area).filter(|area| *area > 0.0).collect();
+            areas.sort_unstable_by(f64::total_cmp);
+            areas.get(areas.len() / 2).copied().unwrap_or_default()
+        };
+        surfaces.areas_of_points = (0..parts.len()).map(usual).collect();
         surfaces.add_edges_and_corners();
         Some(surfaces)
     }
@@ -162,6 +173,12 @@ impl Surfaces {
     pub(super) fn apart(&self, point: usize, feature: usize, u: &[f64]) -> f64 {
         let (at, x) = (self.nodes_at(feature, u), self.point_at(point, u));
         self.features[feature].nearest(&at, &x).distance(&at, &x)
+    }
+
+    /// The part of the energy that the points of a surface have, opposite a feature: half of it where meshes are alike.
+    pub(super) fn part(&self, point: usize, feature: usize) -> f64 {
+        let [own, opposite] = self.bodies(point, feature).map(|body| self.areas_of_points[body]);
+        opposite / (own + opposite)
     }
 
     /// The weight of a feature for a point; 0 if the point does not feel it.
