@@ -112,6 +112,10 @@ impl TouchForce {
         ))
     }
 
+    pub(crate) fn has_friction(&self) -> bool {
+        self.coulomb.is_some()
+    }
+
     /// The distance (m) from which on nothing acts.
     pub(crate) fn distance(&self) -> f64 {
         self.law.distance

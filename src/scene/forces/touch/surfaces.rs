@@ -9,6 +9,10 @@ use crate::elements::body::Body;
 use crate::elements::mesh::FaceKind;
 use crate::scene::forces::surface::{SurfacePoint, closed_points, is_within, pieces};
 
+/// Ratio of the facets of two surfaces up to which the points of each have half of the energy. Fewer points, which move with the body
+/// that slides, press more evenly than those of the other one, as long as none stands for more than lies over it.
+const ALIKE: f64 = 2.0;
+
 /// The surfaces of some bodies.
 pub(super) struct Surfaces {
     pub(super) dimension: usize,
@@ -21,8 +25,9 @@ pub(super) struct Surfaces {
     pub(super) features: Vec<Feature>,
     /// Whether a body touches itself.
     pub(super) itself: bool,
-    /// Median of the areas (m^2) that points stand for, by the number of their body; 0 of bodies that do not touch.
-    areas_of_points: Vec<f64>,
+    /// Median of the areas of the facets of each body, as lengths in the plane: how far its points are apart; 0 of bodies that do not
+    /// touch.
+    facets: Vec<f64>,
     /// No point or place on a surface moves farther than this times the nodes: 1 of linear cells.
     pub(super) reach: f64,
 }
@@ -65,7 +70,7 @@ impl Surfaces {
             points: Vec::new(),
             features: Vec::new(),
             itself,
-            areas_of_points: Vec::new(),
+            facets: Vec::new(),
             reach: 1.0,
         };
         let parts: Vec<_> = body.parts().map(|part| part.nodes).collect();
@@ -85,14 +90,7 @@ impl Surfaces {
         }
         surfaces.nodes.sort_unstable();
         surfaces.nodes.dedup();
-        let usual = |body: usize| {
-            let own = surfaces.points.iter().filter(|point| point.body == body);
-            let mut areas: Vec<f64> =
-                own.map(|point| point.on.area).filter(|area| *area > 0.0).collect();
-            areas.sort_unstable_by(f64::total_cmp);
-            areas.get(areas.len() / 2).copied().unwrap_or_default()
-        };
-        surfaces.areas_of_points = (0..parts.len()).map(usual).collect();
+        surfaces.facets = (0..parts.len()).map(|body| surfaces.median_of_facets(body)).collect();
         surfaces.add_edges_and_corners();
         Some(surfaces)
     }
@@ -175,10 +173,14 @@ impl Surfaces {
         self.features[feature].nearest(&at, &x).distance(&at, &x)
     }
 
-    /// The part of the energy that the points of a surface have, opposite a feature: half of it where meshes are alike.
+    /// The part of the energy that the points of a surface have, opposite a feature.
     pub(super) fn part(&self, point: usize, feature: usize) -> f64 {
-        let [own, opposite] = self.bodies(point, feature).map(|body| self.areas_of_points[body]);
-        opposite / (own + opposite)
+        let [own, opposite] = self.bodies(point, feature).map(|body| self.facets[body]);
+        let of_coarse = |ratio: f64| 1.0 / (1.0 + (ratio / ALIKE).max(1.0));
+        match own > opposite {
+            true => of_coarse(own / opposite),
+            false => 1.0 - of_coarse(opposite / own),
+        }
     }
 
     /// The weight of a feature for a point; 0 if the point does not feel it.
@@ -223,6 +225,24 @@ impl Surfaces {
     pub(super) fn area(&self, body: usize) -> f64 {
         let own = self.points.iter().filter(|point| point.body == body);
         own.map(|point| point.on.area).sum()
+    }
+
+    /// Median of the areas of the facets of a body (m^2, in the plane m), which are all that there is yet; 0 without any.
+    fn median_of_facets(&self, body: usize) -> f64 {
+        let own = (0..self.features.len()).filter(|&facet| self.features[facet].body == body);
+        let mut areas: Vec<f64> = own
+            .map(|facet| match *self.features[facet].nodes() {
+                [_] => 1.0,
+                [a, b] | [a, b, _] if self.dimension == 2 => {
+                    norm(&difference(&self.at_rest(b), &self.at_rest(a)))
+                }
+                _ => {
+                    self.area_of_triangles(facet) * (self.features[facet].kind.corners() - 2) as f64
+                }
+            })
+            .collect();
+        areas.sort_unstable_by(f64::total_cmp);
+        areas.get(areas.len() / 2).copied().unwrap_or_default()
     }
 
     /// Mean length (m) of the sides of the facets, of half a side where there is a mid node; 0 without any.
