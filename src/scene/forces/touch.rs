@@ -18,8 +18,8 @@
 //! Edges that cross edges between these points have an energy of their own ([`edge_pairs`]).
 //!
 //! The points of each surface have half of the energy where meshes are alike, so that no decision on sides or facets is needed.
-//! Those of a coarse surface, which stand for more than lies over them, have less: 1/(1 + r/2) where its facets are r > 2 times as
-//! large, by the medians of each body.
+//! Those of a coarse surface, which stand for more than lies over them and would press on single nodes, have less: where its
+//! facets are r > 2 times as large, 1/(1 + (r/2)^4).
 //! Facets are as curved as their shape functions make them (`elements/basis/nearest.rs`: Newton's method for
 //! the nearest place within the face, else that of its edges and corners), so that points and the places
 //! opposite them load nodes alike. Damping and friction act pair by pair, with exact derivatives. Distances

@@ -9,7 +9,7 @@ use crate::elements::body::Body;
 use crate::elements::mesh::FaceKind;
 use crate::scene::forces::surface::{SurfacePoint, closed_points, is_within, pieces};
 
-/// Ratio of the facets of two surfaces up to which the points of each have half of the energy. Fewer points, which move with the body
+/// Ratio of the sizes of facets up to which the points of each have half of the energy. Fewer points, which move with the body
 /// that slides, press more evenly than those of the other one, as long as none stands for more than lies over it.
 const ALIKE: f64 = 2.0;
 
@@ -25,9 +25,8 @@ pub(super) struct Surfaces {
     pub(super) features: Vec<Feature>,
     /// Whether a body touches itself.
     pub(super) itself: bool,
-    /// Median of the areas of the facets of each body, as lengths in the plane: how far its points are apart; 0 of bodies that do not
-    /// touch.
-    facets: Vec<f64>,
+    /// Size (m) of the finer facets of each body; 0 of bodies that do not touch.
+    sizes: Vec<f64>,
     /// No point or place on a surface moves farther than this times the nodes: 1 of linear cells.
     pub(super) reach: f64,
 }
@@ -70,7 +69,7 @@ impl Surfaces {
             points: Vec::new(),
             features: Vec::new(),
             itself,
-            facets: Vec::new(),
+            sizes: vec![0.0; body.parts().count()],
             reach: 1.0,
         };
         let parts: Vec<_> = body.parts().map(|part| part.nodes).collect();
@@ -87,12 +86,32 @@ impl Surfaces {
                 surfaces.features.push(Feature::new(kind, face, number));
             }
             surfaces.nodes.extend(own.concat());
+            surfaces.sizes[number] = surfaces.usual_size(number);
         }
         surfaces.nodes.sort_unstable();
         surfaces.nodes.dedup();
-        surfaces.facets = (0..parts.len()).map(|body| surfaces.median_of_facets(body)).collect();
         surfaces.add_edges_and_corners();
         Some(surfaces)
+    }
+
+    /// A size (m) that a quarter of the facets of a body do not reach, where facets are all that there is yet; 0 without any.
+    fn usual_size(&self, body: usize) -> f64 {
+        let own = (0..self.features.len()).filter(|&facet| self.features[facet].body == body);
+        let mut sizes: Vec<f64> = own.map(|facet| self.size_of(facet)).collect();
+        sizes.sort_unstable_by(f64::total_cmp);
+        sizes.get(sizes.len() / 4).copied().unwrap_or_default()
+    }
+
+    /// Length (m) of a facet in the plane, the root of its area in space; 1 in one dimension.
+    fn size_of(&self, facet: usize) -> f64 {
+        match (self.dimension, self.features[facet].nodes()) {
+            (2, &[a, b, ..]) => norm(&difference(&self.at_rest(b), &self.at_rest(a))),
+            (3, _) => {
+                let triangles = (self.features[facet].kind.corners() - 2) as f64;
+                (self.area_of_triangles(facet) * triangles).sqrt()
+            }
+            _ => 1.0,
+        }
     }
 
     fn add_edges_and_corners(&mut self) {
@@ -175,8 +194,8 @@ impl Surfaces {
 
     /// The part of the energy that the points of a surface have, opposite a feature.
     pub(super) fn part(&self, point: usize, feature: usize) -> f64 {
-        let [own, opposite] = self.bodies(point, feature).map(|body| self.facets[body]);
-        let of_coarse = |ratio: f64| 1.0 / (1.0 + (ratio / ALIKE).max(1.0));
+        let [own, opposite] = self.bodies(point, feature).map(|body| self.sizes[body]);
+        let of_coarse = |ratio: f64| 1.0 / (1.0 + (ratio / ALIKE).max(1.0).powi(4));
         match own > opposite {
             true => of_coarse(own / opposite),
             false => 1.0 - of_coarse(opposite / own),
@@ -225,24 +244,6 @@ impl Surfaces {
     pub(super) fn area(&self, body: usize) -> f64 {
         let own = self.points.iter().filter(|point| point.body == body);
         own.map(|point| point.on.area).sum()
-    }
-
-    /// Median of the areas of the facets of a body (m^2, in the plane m), which are all that there is yet; 0 without any.
-    fn median_of_facets(&self, body: usize) -> f64 {
-        let own = (0..self.features.len()).filter(|&facet| self.features[facet].body == body);
-        let mut areas: Vec<f64> = own
-            .map(|facet| match *self.features[facet].nodes() {
-                [_] => 1.0,
-                [a, b] | [a, b, _] if self.dimension == 2 => {
-                    norm(&difference(&self.at_rest(b), &self.at_rest(a)))
-                }
-                _ => {
-                    self.area_of_triangles(facet) * (self.features[facet].kind.corners() - 2) as f64
-                }
-            })
-            .collect();
-        areas.sort_unstable_by(f64::total_cmp);
-        areas.get(areas.len() / 2).copied().unwrap_or_default()
     }
 
     /// Mean length (m) of the sides of the facets, of half a side where there is a mid node; 0 without any.
