@@ -1,5 +1,5 @@
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test python bench baseline advice charts stability validation peers pictures docs valgrind miri clean
+.PHONY: help setup demo test python bench baseline advice charts stability validation peers pictures docs package features semver valgrind miri clean
 
 VALGRIND := valgrind --leak-check=full --error-exitcode=1 \
 	--errors-for-leak-kinds=definite,indirect
@@ -85,6 +85,24 @@ pictures: ## docs/pictures/play.png, the page of `pliant play`
 docs: setup ## Documentation of the library
 	cargo doc --no-deps
 	@echo "Open $(CURDIR)/target/doc/pliant/index.html"
+
+package: ## The package for a registry, built by itself from what is in it, and its documentation as docs.rs builds it
+	@scripts/setup.sh cmake
+	cargo package -p pliant
+	DOCS_RS=1 RUSTDOCFLAGS=-Dwarnings cargo doc -p pliant --no-deps --features play,png,study,vendored $(READ)
+	@ls -l target/package/*.crate
+
+# None, each alone, all; `-D warnings` of clippy is for pliant alone, where that of the compiler would build all dependencies anew.
+features: ## The library with none, each alone and all of its features: no warnings
+	@scripts/setup.sh cmake
+	@set -e; for feature in "" $$(sed -n '/^\[features\]/,/^\[dep/s/^\([a-z0-9-]*\) = .*/\1/p' Cargo.toml); do \
+		echo "feature: $$feature"; \
+		cargo clippy --quiet -p pliant --lib --no-default-features --features "$$feature" $(READ) -- -D warnings; done
+	cargo clippy --quiet -p pliant --lib --bins --all-features $(READ) -- -D warnings
+
+semver: ## What the public interface changes since the last commit, by cargo-semver-checks (cargo install cargo-semver-checks)
+	@scripts/setup.sh
+	cargo semver-checks -p pliant --baseline-rev HEAD
 
 # The runner of the test binary is valgrind; PLIANT_LIFECYCLES sets the rounds of 30 solvers.
 valgrind: export PLIANT_LIFECYCLES ?= 100

@@ -1,77 +1,69 @@
-//! Finds SUNDIALS and SuiteSparse KLU, checks that they are what the crate was written for, and
-//! generates the bindings that `sundials-sys` lacks: ARKODE, the KLU linear solver, versions.
+//! Finds SUNDIALS and SuiteSparse KLU, checks that they are what the crate was written for, and has them linked.
 //!
-//! `SUNDIALS_INCLUDE_DIR` and `SUNDIALS_LIBRARY_DIR` (the names that `sundials-sys` reads too)
-//! point to an installation in an unusual place, `SUITESPARSE_INCLUDE_DIR` to KLU's headers.
+//! `SUNDIALS_INCLUDE_DIR` and `SUNDIALS_LIBRARY_DIR` (the names that `sundials-sys` reads too) point to an installation in
+//! an unusual place. With the feature `vendored` `sundials-sys` and `klu_sys` build what is linked.
 
 use std::{
-    env, fs, panic,
+    env, fs,
     path::{Path, PathBuf},
     process::exit,
 };
 
-use bindgen::callbacks::{IntKind, ParseCallbacks};
-
 const PACKAGES: &str = "On Debian and Ubuntu, install what the build needs with\n\n    \
     apt-get install libsundials-dev libsuitesparse-dev libclang-dev pkg-config\n\n\
-    For another installation, set SUNDIALS_INCLUDE_DIR, SUNDIALS_LIBRARY_DIR and \
-    SUITESPARSE_INCLUDE_DIR (see vendor-notes.md).";
+    For another installation, set SUNDIALS_INCLUDE_DIR and SUNDIALS_LIBRARY_DIR (see vendor-notes.md); or build SUNDIALS and \
+    KLU from their sources, by the feature `vendored`.";
 
-/// The headers that `sundials-sys` does not bind.
-const HEADERS: &str = "\
-#include <arkode/arkode.h>
-#include <arkode/arkode_ls.h>
-#include <arkode/arkode_arkstep.h>
-#include <arkode/arkode_mristep.h>
-#include <sundials/sundials_version.h>
-#include <sunlinsol/sunlinsol_klu.h>
-#include <SuiteSparse_config.h>
-";
+/// The SUNDIALS that `sundials-sys` carries is a 7.
+const VENDORED_MAJOR: &str = "7";
 
 fn main() {
     println!("cargo::rerun-if-changed=build.rs");
-    for name in ["SUNDIALS_INCLUDE_DIR", "SUNDIALS_LIBRARY_DIR", "SUITESPARSE_INCLUDE_DIR"] {
+    for name in ["SUNDIALS_INCLUDE_DIR", "SUNDIALS_LIBRARY_DIR"] {
         println!("cargo::rerun-if-env-changed={name}");
     }
-
-    let sundials = include_dir("SUNDIALS_INCLUDE_DIR", &[""], "sundials/sundials_config.h");
-    let major = check_configuration(&sundials.join("sundials/sundials_config.h"));
     println!("cargo::rustc-check-cfg=cfg(sundials_major, values(\"6\", \"7\"))");
+
+    let major = if env::var_os("CARGO_FEATURE_VENDORED").is_some() {
+        VENDORED_MAJOR.into()
+    } else {
+        link_installed()
+    };
     println!("cargo::rustc-cfg=sundials_major=\"{major}\"");
-    if !sundials.join("sunlinsol/sunlinsol_klu.h").is_file() {
+}
+
+/// Has the libraries linked that are installed, and returns the first number of the version of SUNDIALS.
+fn link_installed() -> String {
+    let headers = include_dir();
+    let major = check_configuration(&headers.join("sundials/sundials_config.h"));
+    if !headers.join("sunlinsol/sunlinsol_klu.h").is_file() {
         fail("This SUNDIALS was built without KLU: sunlinsol/sunlinsol_klu.h is missing.");
     }
-    let suitesparse = include_dir("SUITESPARSE_INCLUDE_DIR", &["", "suitesparse"], "klu.h");
-
-    generate_bindings(&[&sundials, &suitesparse]);
-
     if let Some(directory) = env::var_os("SUNDIALS_LIBRARY_DIR") {
         println!("cargo::rustc-link-search=native={}", Path::new(&directory).display());
     }
     for library in ["sundials_arkode", "sundials_sunlinsolklu", "klu", "suitesparseconfig"] {
         println!("cargo::rustc-link-lib={library}");
     }
+    major
 }
 
-/// The directory that holds `header`: what the environment variable says, else the usual places.
-fn include_dir(variable: &str, subdirectories: &[&str], header: &str) -> PathBuf {
-    let roots = match env::var_os(variable) {
+/// The directory that holds the headers of SUNDIALS: what the environment variable says, else one of the usual places.
+fn include_dir() -> PathBuf {
+    let roots = match env::var_os("SUNDIALS_INCLUDE_DIR") {
         Some(directory) => vec![PathBuf::from(directory)],
         None => ["/usr/include", "/usr/local/include", "/opt/homebrew/include"]
             .iter()
             .map(PathBuf::from)
             .collect(),
     };
-    for root in &roots {
-        for subdirectory in subdirectories {
-            let directory = root.join(subdirectory);
-            if directory.join(header).is_file() {
-                return directory;
-            }
-        }
-    }
-    let places: Vec<_> = roots.iter().map(|root| root.display().to_string()).collect();
-    fail(&format!("The header {header} is not in {}.", places.join(", ")))
+    let header = "sundials/sundials_config.h";
+    let found = roots.iter().find(|root| root.join(header).is_file());
+    let Some(root) = found else {
+        let places: Vec<_> = roots.iter().map(|root| root.display().to_string()).collect();
+        fail(&format!("The header {header} is not in {}.", places.join(", ")))
+    };
+    root.clone()
 }
 
 /// Stops unless the configuration header says: SUNDIALS 6 or 7, double precision, 64-bit indices. Returns the first number of
@@ -109,48 +101,6 @@ fn check_configuration(header: &Path) -> String {
         ));
     }
     major
-}
-
-fn generate_bindings(include_directories: &[&Path]) {
-    let builder = bindgen::Builder::default()
-        .header_contents("sundials_extra.h", HEADERS)
-        .clang_args(include_directories.iter().map(|path| format!("-I{}", path.display())))
-        .rust_target(bindgen::RustTarget::stable(88, 0).unwrap_or_default())
-        .rust_edition(bindgen::RustEdition::Edition2024)
-        .ctypes_prefix("libc")
-        .parse_callbacks(Box::new(SignedConstants))
-        // Whatever these declarations refer to is defined by `sundials-sys`.
-        .allowlist_recursively(false)
-        .allowlist_function("(ARKStep|MRIStep|ARKode)\\w+")
-        .allowlist_function("SUNLinSol_KLU|SUNLinSol_KLUSetOrdering")
-        .allowlist_function("SUNDIALSGetVersion|SuiteSparse_version")
-        .allowlist_type("ARK\\w+|_?ARKodeButcherTable\\w*|_?MRI\\w+")
-        .allowlist_var("ARK_\\w+|ARKODE_\\w+")
-        .allowlist_var("SUITESPARSE_(MAIN|SUB)_VERSION")
-        .layout_tests(false)
-        .generate_comments(false);
-    // bindgen panics when it does not find libclang.
-    panic::set_hook(Box::new(|_| ()));
-    match panic::catch_unwind(panic::AssertUnwindSafe(|| builder.generate())) {
-        Ok(Ok(bindings)) => {
-            let file = PathBuf::from(env::var_os("OUT_DIR").unwrap()).join("sundials_extra.rs");
-            if let Err(error) = bindings.write_to_file(&file) {
-                fail(&format!("{} can not be written: {error}", file.display()));
-            }
-        }
-        Ok(Err(error)) => fail(&format!("The SUNDIALS headers can not be translated: {error}")),
-        Err(_) => fail("libclang, which bindgen needs to read C headers, was not found."),
-    }
-}
-
-/// Return codes and tasks are C `int`s.
-#[derive(Debug)]
-struct SignedConstants;
-
-impl ParseCallbacks for SignedConstants {
-    fn int_macro(&self, name: &str, _value: i64) -> Option<IntKind> {
-        name.starts_with("ARK").then_some(IntKind::Int)
-    }
 }
 
 fn fail(what: &str) -> ! {

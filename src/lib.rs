@@ -29,6 +29,8 @@
 //! SI units throughout. Formulas follow S. Hirai, *Computing Dynamic Deformation*; numbers in
 //! brackets are its equations.
 
+// docs.rs marks what needs a feature.
+#![cfg_attr(docsrs, feature(doc_cfg))]
 // Upper rooms use more of lower ones than these do by themselves.
 #![cfg_attr(
     not(all(feature = "cli", feature = "play")),

@@ -14,6 +14,8 @@ mod cvode;
 mod dae_adjoint;
 mod failures;
 mod golden_counts;
+#[cfg(not(feature = "vendored"))]
+mod headers;
 mod ida;
 mod imex;
 mod index;

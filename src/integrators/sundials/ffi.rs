@@ -1,17 +1,8 @@
-//! The C interface: what `sundials-sys` binds, and what `build.rs` adds (ARKODE, KLU, versions).
-
-#![allow(
-    non_upper_case_globals,
-    non_camel_case_types,
-    non_snake_case,
-    unused_imports,
-    dead_code,
-    clippy::all
-)]
+//! The C interface: the bindings of `sundials-sys`, and declarations of what it lacks.
 
 pub use sundials_sys::*;
 
-include!(concat!(env!("OUT_DIR"), "/sundials_extra.rs"));
+pub use super::arkode_ffi::*;
 
 /// The code of a linear solver for a failure that no retry mends, by its name in SUNDIALS 6.
 #[cfg(not(sundials_major = "6"))]

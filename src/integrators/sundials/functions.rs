@@ -57,7 +57,7 @@ pub(super) type Solve =
     Named<unsafe fn(*mut c_void, f64, *mut f64, ffi::N_Vector, ffi::N_Vector, i32) -> i32>;
 
 /// The right-hand sides of ARKODE, explicit and implicit; the other integrators keep theirs.
-pub(super) type Stages = [ffi::ARKRhsFn; 2];
+pub(super) type Stages = [ffi::CVRhsFn; 2];
 
 /// Starts again: (memory, right-hand sides, time, y, y'). An ODE has null for y'.
 type Reinit = Named<unsafe fn(*mut c_void, Stages, f64, ffi::N_Vector, ffi::N_Vector) -> i32>;

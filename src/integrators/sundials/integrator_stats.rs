@@ -71,21 +71,17 @@ integrator_stats! {
         }
     }
 
-    /// The same for multirate methods: those of the slow steps, which all have one size.
+    /// The same for multirate methods: those of the slow steps, which all have one size. The order is left as it is.
     fn multirate_integrator_stats(memory, at) {
         let [mut explicit, mut implicit] = [0; 2];
-        let mut coupling = ptr::null_mut();
-        // SAFETY: as above; a coupling that is there lives as long as the memory, too.
+        // SAFETY: as above.
         unsafe {
             ffi::MRIStepGetNumSteps(memory, at.steps);
             ffi::MRIStepGetNumRhsEvals(memory, &raw mut explicit, &raw mut implicit);
             ffi::MRIStepGetNumLinSolvSetups(memory, at.setups);
-            ffi::MRIStepGetCurrentCoupling(memory, &raw mut coupling);
             ffi::MRIStepGetLastStep(memory, at.last_step);
             (*at.evaluations, *at.error_test_failures) = (explicit + implicit, 0);
             (*at.current_step, *at.initial_step) = (*at.last_step, *at.last_step);
-            let order = coupling.as_ref().map_or(0, |coupling| coupling.q);
-            at.orders.into_iter().for_each(|place| *place = order);
             ffi::MRIStepGetCurrentTime(memory, at.current_time)
         }
     }

@@ -2,6 +2,10 @@
 
 use std::{ffi::c_void, ptr};
 
+#[cfg(not(feature = "vendored"))]
+use super::ffi::SUNLinSol_KLU;
+#[cfg(feature = "vendored")]
+use super::klu::SUNLinSol_KLU;
 use super::{
     context::Context,
     dense::DenseFactors,
@@ -53,7 +57,7 @@ impl Linear {
                 ("SUNLinSol_Band", unsafe { ffi::SUNLinSol_Band(y, m, c) })
             }
             // SAFETY: as above.
-            LinearSolver::Klu { .. } => ("SUNLinSol_KLU", unsafe { ffi::SUNLinSol_KLU(y, m, c) }),
+            LinearSolver::Klu { .. } => ("SUNLinSol_KLU", unsafe { SUNLinSol_KLU(y, m, c) }),
             // SAFETY: vector and context are alive; the numbers were checked.
             LinearSolver::Krylov(options) => unsafe { krylov(options, y, c) },
             // SAFETY: the context is alive; the caller vouches for `data`.

@@ -45,6 +45,7 @@
 
 mod adjoint;
 mod arkode;
+mod arkode_ffi;
 mod auxiliary;
 mod callbacks;
 mod colouring;
@@ -65,6 +66,8 @@ mod index;
 mod integrator_stats;
 mod jacobian;
 mod kernels;
+#[cfg(feature = "vendored")]
+mod klu;
 mod krylov;
 mod linear;
 mod linear_solver;

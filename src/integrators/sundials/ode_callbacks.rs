@@ -12,7 +12,7 @@ callbacks! {
         host.guard_output(Callback::Rhs, t, ydot, |system, ydot| call::rhs(system, t, y, ydot))
     }
 
-    /// `ARKRhsFn` of the explicit part.
+    /// `CVRhsFn` of the explicit part.
     fn explicit_rhs<S: Ode>(t: (time host), y: read, ydot: write, host: (data S)) {
         let call = |system: &mut S, ydot: &mut [f64]| call::explicit_rhs(system, t, y, ydot);
         host.guard_output(Callback::ExplicitRhs, t, ydot, call)

@@ -26,7 +26,7 @@ callbacks! {
         }
     }
 
-    /// `ARKLsLinSysFn`: as [`newton_setup`], with an argument for the mass matrix; there is none here.
+    /// `CVLsLinSysFn`: as [`newton_setup`], with an argument for the mass matrix; there is none here.
     fn newton_setup_with_mass<S: Ode>(
         t: (time host), y: read, ydot: read, _: (ffi::SUNMatrix), _: (ffi::SUNMatrix), reuse: i32, current: (result i32),
         gamma: f64, host: (data S), _: vector, _: vector, _: vector

@@ -96,8 +96,8 @@ impl<K, S> Session<K, S> {
         s.evaluations = evaluations as u64;
         s.linear_setups = setups as u64;
         s.error_test_failures = error_fails as u64;
-        s.last_order = last_order as u32;
-        s.current_order = current_order as u32;
+        s.last_order = self.known_order.unwrap_or(last_order as u32);
+        s.current_order = self.known_order.unwrap_or(current_order as u32);
         s
     }
 

@@ -71,6 +71,8 @@ pub(super) struct Session<K, S> {
     pub(super) max_steps: u32,
     pub(super) stop_time: StopTime,
     pub(super) progress: Progress,
+    /// The order of a method that does not report it: the structure of C that has the order of a multirate one differs by versions.
+    pub(super) known_order: Option<u32>,
     /// Size of the first step, if it is not estimated.
     pub(super) initial_step: Option<f64>,
     /// Whether all steps have the same size.
@@ -172,6 +174,7 @@ impl<K, S> Session<K, S> {
             stop_time: StopTime::default(),
             progress: Progress::default(),
             initial_step: None,
+            known_order: None,
             has_fixed_step: false,
             has_step: false,
             failed_within: false,

@@ -52,17 +52,17 @@ impl Coupling {
     }
 
     /// Its number in C.
-    pub(super) fn id(self) -> ffi::ARKODE_MRITableID {
+    pub(super) fn id(self) -> i32 {
         match self {
-            Self::MisKw3 => ffi::ARKODE_MRITableID_ARKODE_MIS_KW3,
-            Self::Erk33a => ffi::ARKODE_MRITableID_ARKODE_MRI_GARK_ERK33a,
-            Self::Erk45a => ffi::ARKODE_MRITableID_ARKODE_MRI_GARK_ERK45a,
-            Self::Irk21a => ffi::ARKODE_MRITableID_ARKODE_MRI_GARK_IRK21a,
-            Self::Esdirk34a => ffi::ARKODE_MRITableID_ARKODE_MRI_GARK_ESDIRK34a,
-            Self::Esdirk46a => ffi::ARKODE_MRITableID_ARKODE_MRI_GARK_ESDIRK46a,
-            Self::ImEx3a => ffi::ARKODE_MRITableID_ARKODE_IMEX_MRI_GARK3a,
-            Self::ImEx3b => ffi::ARKODE_MRITableID_ARKODE_IMEX_MRI_GARK3b,
-            Self::ImEx4 => ffi::ARKODE_MRITableID_ARKODE_IMEX_MRI_GARK4,
+            Self::MisKw3 => ffi::ARKODE_MIS_KW3,
+            Self::Erk33a => ffi::ARKODE_MRI_GARK_ERK33a,
+            Self::Erk45a => ffi::ARKODE_MRI_GARK_ERK45a,
+            Self::Irk21a => ffi::ARKODE_MRI_GARK_IRK21a,
+            Self::Esdirk34a => ffi::ARKODE_MRI_GARK_ESDIRK34a,
+            Self::Esdirk46a => ffi::ARKODE_MRI_GARK_ESDIRK46a,
+            Self::ImEx3a => ffi::ARKODE_IMEX_MRI_GARK3a,
+            Self::ImEx3b => ffi::ARKODE_IMEX_MRI_GARK3b,
+            Self::ImEx4 => ffi::ARKODE_IMEX_MRI_GARK4,
         }
     }
 }

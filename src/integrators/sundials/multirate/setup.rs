@@ -82,6 +82,7 @@ impl<S: Ode> Session<MultirateKind, S> {
         };
         slow.stages = stages;
         slow.has_fixed_step = true;
+        slow.known_order = Some(coupling.order());
         slow.host.get_mut().step_end = Some(slow.elapsed);
         slow.configure(options)?;
         // Hermite polynomials of degree 3 are those of slopes at the ends of steps alone. SUNDIALS 7.1.1 has a wrong slope
