@@ -24,7 +24,9 @@ pub struct MethodUse {
 #[non_exhaustive]
 pub enum Method {
     /// The method that leads farthest for its work, which is counted, never measured, and changes with the solution: that of Dormand and Prince;
-    /// where stability limits its steps a Rosenbrock method or BDF, by tolerance and number of unknowns; and back.
+    /// where stability limits its steps a Rosenbrock method or BDF, by tolerance and number of unknowns; and back. (Where stability limits them by
+    /// fast vibrations that are not damped, it stays with explicit steps, which excite these up to the tolerances: name an implicit method
+    /// if they are not to be followed.)
     /// [`Solution::methods`](super::Solution::methods) tells which, when and why.
     ///
     /// Where only one method can do what is asked for, it is that one: IDA for DAEs and mass matrices; BDF for sensitivities, integrals,
