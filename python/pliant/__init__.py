@@ -15,6 +15,7 @@ from .adjoint import Gradient, gradient
 from .dae import solve_dae
 from .equations import OdeResult
 from .errors import Error, FileError, InputError, IntegrationError, ModelWarning, NoEquilibrium, SceneError
+from .events import Event, Jump
 from .ivp import solve_ivp
 from .mesh import Mesh
 from .motion import Equilibrium, Motion
@@ -28,10 +29,12 @@ __version__ = "0.1.0"
 __all__ = [
     "Equilibrium",
     "Error",
+    "Event",
     "FileError",
     "Gradient",
     "InputError",
     "IntegrationError",
+    "Jump",
     "Mesh",
     "ModelWarning",
     "Motion",

@@ -6,7 +6,8 @@ import numpy as np
 
 from . import _pliant
 from .dae import equations_of
-from .equations import NOTHING, Arguments, Complex, tolerances, unknowns, watched_events
+from .equations import NOTHING, Arguments, Complex, tolerances, unknowns
+from .events import event_list, watched_events
 from .ivp import compiled, engine_method
 from .matrices import newton
 
@@ -55,7 +56,7 @@ def gradient(
     args : tuple of numbers and arrays
         The parameters.
     method : str
-        ``"bdf"``, ``"adams"`` or ``"ida"``.
+        ``"bdf"``, ``"adams"`` or ``"ida"``; ``"auto"`` is the first or, with a mass matrix, the last.
     terminal, running : callable
         ``terminal(t, y, *args)`` and ``running(t, y, *args)`` return a number, whose derivatives are then taken by central
         differences; or a number, its derivatives by y, and those by the numbers in `args`.
@@ -76,13 +77,14 @@ def gradient(
     if terminal is None and running is None:
         raise ValueError("give `terminal` or `running`, whose gradient is wanted")
     start, end = map(float, t_span)
-    name, _ = engine_method(method)
-    if name not in ("bdf", "adams", "ida"):
+    facts = engine_method(method)
+    name = facts.name
+    if not facts.has_sensitivities:
         raise ValueError(f"{method!r} has no gradient: take \"bdf\", \"adams\" or \"ida\"")
     y0, parts = unknowns(y0)
     if isinstance(parts, Complex):
         raise ValueError("the unknowns of a gradient are real numbers: give real and imaginary parts")
-    if mass is not None and name != "ida":
+    if mass is not None and not facts.takes_mass:
         raise ValueError(f"{method!r} takes no mass matrix: take \"ida\"")
     given = Arguments(args, True)
     if name == "ida" and mass is None:
@@ -102,7 +104,7 @@ def gradient(
             **newton(slopes, first, jac_sparsity, None, None, parts, mass, given, start),
         )
     rtol, atol = tolerances(rtol, atol, parts)
-    watched = watched_events(events, given, parts) or []
+    watched = watched_events(event_list(events), given, parts) or []
     asked = NOTHING | equations | dict(span=(start, end), rtol=rtol, atol=atol, events=watched, max_steps=max_steps)
     adjoint_atol = min(atol) if adjoint_atol is None else float(adjoint_atol)
     return Gradient(*_pliant.gradient(asked, _valued(terminal, given), _valued(running, given), adjoint_atol))

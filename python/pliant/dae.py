@@ -5,15 +5,18 @@ import numpy as np
 from .equations import (
     Arguments,
     Complex,
+    engine_breaks,
+    nonnegative_places,
     result_of,
     run_of,
     step_limits,
     tolerances,
     unknowns,
+    wanted_integrals,
     wanted_sensitivities,
     wanted_times,
-    watched_events,
 )
+from .events import event_list, have_actions, watched_events
 from .matrices import newton
 
 
@@ -41,6 +44,10 @@ def solve_dae(
     max_steps=1_000_000,
     sensitivities=None,
     initial_sensitivities=None,
+    integrands=None,
+    breaks=None,
+    nonnegative=None,
+    check_jacobian=True,
 ):
     """Integrates F(t, y, y') = 0 from `t_span[0]` to `t_span[1]` by IDA; for equations of index 1 or 0.
 
@@ -58,8 +65,12 @@ def solve_dae(
     args : tuple, optional
         Further arguments of `fun`, `jac` and `events`.
     events : callable, or list of them, optional
-        ``event(t, y)``, otherwise as of :func:`solve_ivp`.
-    t_eval, dense_output, rtol, atol, jac_sparsity, lband, uband, first_step, min_step, max_step, max_order, max_steps
+        ``event(t, y)``, otherwise as of :func:`solve_ivp`. After an action the algebraic unknowns and the derivatives are corrected, if
+        `differential` is given.
+    integrands : callable, optional
+        ``integrands(t, y, yp)``, otherwise as of :func:`solve_ivp`.
+    t_eval, dense_output, rtol, atol, jac_sparsity, lband, uband, first_step, min_step, max_step, max_order, max_steps, breaks,
+    nonnegative, check_jacobian
         As of :func:`solve_ivp`. `jac_sparsity` tells where dF/dy or dF/dy' has entries.
     sensitivities, initial_sensitivities
         As of :func:`solve_ivp`; those of the algebraic unknowns at the start are corrected, too.
@@ -80,7 +91,8 @@ def solve_dae(
     if hasattr(fun, "address"):
         raise TypeError("the residual is a function of Python: compiled ones are right-hand sides, for solve_ivp")
     is_sensitive = sensitivities is not None and sensitivities is not False
-    given = Arguments(args, is_sensitive)
+    events = event_list(events)
+    given = Arguments(args, is_sensitive or have_actions(events))
     y0, parts = unknowns(y0)
     residual = equations_of(fun, y0, parts, yp0, differential, jac, jac_sparsity, lband, uband, given, start)
     limits = step_limits(start, end, first_step, min_step, max_step)
@@ -96,9 +108,13 @@ def solve_dae(
         times=None if t_eval is None or dense_output else t_eval.tolist(),
         max_order=max_order,
         max_steps=max_steps,
+        breaks=engine_breaks(breaks),
+        check_jacobian=bool(check_jacobian),
         **residual,
         **limits,
         **wanted,
+        **nonnegative_places(nonnegative, parts),
+        **wanted_integrals(integrands, given, (start, y0, np.array(residual["yp0"])), lambda *at: at, t_eval, dense_output),
     )
     return result_of(run, parts, "ida", 1.0, np.sign(end - start), t_eval, dense_output, watched, jac, is_sensitive, last_yp=run.last_yp)
 

@@ -1,6 +1,7 @@
 """What :func:`solve_ivp`, :func:`solve_dae` and :func:`gradient` have in common: their arguments, and their result."""
 
 import warnings
+from typing import NamedTuple
 
 import numpy as np
 
@@ -12,12 +13,25 @@ MESSAGES = {
 }
 
 
+class MethodUse(NamedTuple):
+    """A method at work, from a time on."""
+
+    #: Time of its start.
+    t: float
+    #: The method.
+    method: str
+    #: Why it is used.
+    reason: str
+
+
 class OdeResult(dict):
     """The result of :func:`solve_ivp` and :func:`solve_dae`: a dict whose keys are attributes, too, as SciPy's.
 
     `t`, `y` [unknown, time], `sol` (a function of time, or None), `t_events`, `y_events`, `nfev`, `njev`, `nlu`, `nsteps`,
     `status` (0: the end is reached, 1: an event has ended it, -1: it failed), `message`, `success`; `sensitivities`
-    [unknown, parameter, time] if they are wanted, and `last_yp`, y' at the last time, of :func:`solve_dae`.
+    [unknown, parameter, time] if they are wanted, and `last_yp`, y' at the last time, of :func:`solve_dae`; `integrals`
+    [integral, time] and `integral_sensitivities` [integral, parameter, time] if they are wanted; `methods`, a list of
+    :class:`MethodUse`, several with the method ``"auto"``; `parameters`, the numbers in `args` at the end, if they are parameters.
     """
 
     def __getattr__(self, name):
@@ -167,8 +181,8 @@ def tolerances(rtol, atol, parts):
 #: What equations need not have: keys for the engine.
 NOTHING = dict.fromkeys(
     ["yp0", "differential", "jac", "sparsity", "band", "mass", "times", "first_step", "min_step", "max_step", "max_order"]
-    + ["sensitivities", "initial_sensitivities"]
-)
+    + ["sensitivities", "initial_sensitivities", "integrands", "integral_count"]
+) | dict(nonnegative=[], breaks=[], check_jacobian=True)
 
 
 def run_of(**keys):
@@ -202,14 +216,19 @@ def wanted_times(t_eval, start, end):
     return t_eval
 
 
+def _check_times(what, t_eval, dense_output):
+    """Refuses what no polynomial between the steps gives."""
+    if t_eval is not None and dense_output:
+        raise ValueError(f"`{what}` are known at the steps or at `t_eval`: leave out `t_eval` or `dense_output`")
+
+
 def wanted_sensitivities(sensitivities, initial, count, parts, t_eval, dense_output):
     """Places among `count` parameters, and the sensitivities at the start, one column after the other: keys for the engine."""
     if sensitivities is None or sensitivities is False:
         if initial is not None:
             raise ValueError("`initial_sensitivities` belong to `sensitivities`: give both")
         return {}
-    if t_eval is not None and dense_output:
-        raise ValueError("`sensitivities` are known at the steps or at `t_eval`: leave out `t_eval` or `dense_output`")
+    _check_times("sensitivities", t_eval, dense_output)
     places = list(range(count)) if sensitivities is True else [int(place) for place in np.ravel(sensitivities)]
     if not places:
         raise ValueError("`sensitivities` are derivatives by the numbers in `args`, of which there are none")
@@ -225,27 +244,37 @@ def wanted_sensitivities(sensitivities, initial, count, parts, t_eval, dense_out
     return dict(sensitivities=places, initial_sensitivities=columns.tolist())
 
 
-def watched_events(events, given, parts):
-    """Events as functions with a direction and the number of the one that ends the run; None if there are none."""
-    if events is None:
-        return None
-    events = [events] if callable(events) else list(events)
-    watched = []
-    for event in events:
-        last = getattr(event, "terminal", None)
-        if last is None or last is False or last == 0:
-            last = 0
-        elif int(last) == last and last > 0:
-            last = int(last)
-        else:
-            raise ValueError("The `terminal` attribute of each event must be a boolean or positive integer.")
-        direction = int(np.sign(getattr(event, "direction", 0) or 0))
-        watched.append((_number(given.of(event), parts), direction, last))
-    return watched
+def engine_breaks(breaks, sign=1.0):
+    """Times at which equations jump, along the time `sign` t."""
+    return [] if breaks is None else (sign * np.atleast_1d(np.asarray(breaks, dtype=float))).tolist()
 
 
-def _number(function, parts):
-    return lambda t, y, *p: float(np.ravel(function(t, parts.whole(y), *p))[0])
+def nonnegative_places(places, parts):
+    """Places of unknowns that stay at 0 or above: key for the engine."""
+    if places is None:
+        return {}
+    if isinstance(parts, Complex):
+        raise ValueError("`nonnegative` goes with real unknowns")
+    places = [int(place) for place in np.ravel(places)]
+    if any(not 0 <= place < parts.count for place in places):
+        raise ValueError(f"`nonnegative` are places among the {parts.count} unknowns, from 0: not {places}")
+    return dict(nonnegative=places)
+
+
+def wanted_integrals(function, given, first, whole, t_eval, dense_output):
+    """The integrands as a function of the engine's arguments, and their number: keys for the engine.
+
+    `first` are the arguments at the start; `whole` makes arguments of `function` of those of the engine.
+    """
+    if function is None:
+        return {}
+    _check_times("integrals", t_eval, dense_output)
+    bound = given.of(function)
+
+    def values(*at):
+        return np.ravel(np.asarray(bound(*whole(*at)), dtype=float))
+
+    return dict(integrands=values, integral_count=len(values(*first, *given.last)))
 
 
 def result_of(run, parts, method, sign, direction, t_eval, dense_output, watched, jac, is_sensitive, **more):
@@ -255,11 +284,18 @@ def result_of(run, parts, method, sign, direction, t_eval, dense_output, watched
     kept = slice(None)
     if t_eval is not None:
         times = t_eval[direction * t_eval <= direction * t[-1]]
-        kept = np.searchsorted(direction * t, direction * times)
+        # where the solution jumps, the state after that
+        kept = np.searchsorted(direction * t, direction * times, side="right") - 1
         y = parts.unpack(run.at((sign * times).tolist())) if dense_output else y[kept]
         t = times
     if is_sensitive:
         more["sensitivities"] = parts.unpack(run.sensitivities[kept]).T
+    if run.integral_count > 0:
+        more["integrals"] = run.integrals[kept].T
+        if is_sensitive:
+            more["integral_sensitivities"] = run.integral_sensitivities[kept].T
+    if run.parameters.size > 0:
+        more["parameters"] = run.parameters
     t_events = y_events = None
     if watched is not None:
         t_events = [[] for _ in watched]
@@ -275,6 +311,7 @@ def result_of(run, parts, method, sign, direction, t_eval, dense_output, watched
         t_events=t_events,
         y_events=y_events,
         method=method,
+        methods=[MethodUse(sign * t, *use) for t, *use in run.methods],
         nfev=run.evaluations,
         njev=run.jacobian_evaluations if jac is None or callable(jac) else 0,
         nlu=run.factorizations,

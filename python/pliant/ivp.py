@@ -1,44 +1,51 @@
 """Initial value problems with the signature of SciPy."""
 
+from typing import NamedTuple
+
 import numpy as np
 
+from . import _pliant
 from .equations import (
     MESSAGES,
     Arguments,
     Complex,
+    MethodUse,
     OdeResult,
+    engine_breaks,
+    nonnegative_places,
     result_of,
     run_of,
     step_limits,
     tolerances,
     unknowns,
+    wanted_integrals,
     wanted_sensitivities,
     wanted_times,
-    watched_events,
 )
+from .events import event_list, have_actions, watched_events
 from .matrices import newton
 
-#: Methods by pliant's names and by SciPy's, where they mean the same: the name for the engine, whether it is implicit.
-_METHODS = {
-    "bdf": ("bdf", True),
-    "adams": ("adams", True),
-    "ida": ("ida", True),
-    "rosenbrock": ("rosenbrock", True),
-    "esdirk": ("ESDIRK436L2SA_6_3_4", True),
-    "dormand-prince": ("dormand-prince", False),
-    "BDF": ("bdf", True),
-    "LSODA": ("bdf", True),
-    "Radau": ("ESDIRK547L2SA_7_4_5", True),
-    "RK45": ("dormand-prince", False),
-    "RK23": ("BOGACKI_SHAMPINE_4_2_3", False),
-    "DOP853": ("VERNER_8_5_6", False),
+#: Other names of methods, SciPy's among them, and the names of the library for methods of the same kind.
+_SYNONYMS = {
+    "esdirk": "ESDIRK436L2SA_6_3_4",
+    "BDF": "bdf",
+    "LSODA": "bdf",
+    "Radau": "ESDIRK547L2SA_7_4_5",
+    "RK45": "dormand-prince",
+    "RK23": "BOGACKI_SHAMPINE_4_2_3",
+    "DOP853": "VERNER_8_5_6",
 }
 
-#: Methods that integrate forward only.
-_FORWARD = ("dormand-prince", "rosenbrock")
 
-#: Methods that have sensitivities.
-_SENSITIVE = ("bdf", "adams", "ida")
+class EngineMethod(NamedTuple):
+    """The facts of a method, from the library."""
+
+    name: str
+    is_implicit: bool
+    goes_backward: bool
+    takes_mass: bool
+    takes_singular_mass: bool
+    has_sensitivities: bool
 
 
 def solve_ivp(
@@ -66,6 +73,10 @@ def solve_ivp(
     mass=None,
     sensitivities=None,
     initial_sensitivities=None,
+    integrands=None,
+    breaks=None,
+    nonnegative=None,
+    check_jacobian=True,
 ):
     """Integrates y' = fun(t, y) from `t_span[0]` to `t_span[1]`, with the arguments and the result of SciPy's `solve_ivp`.
 
@@ -76,13 +87,14 @@ def solve_ivp(
         ``void(float64, CPointer(float64), CPointer(float64), CPointer(float64))``, that takes t, y, where to write y', and
         `args` as numbers, is called without Python.
     method : str
-        ``"RK45"`` (default, as in SciPy), or better for stiff equations ``"bdf"``; ``"adams"``, also of CVODE, ``"esdirk"`` or any table of ARKODE by its name, ``"rosenbrock"``, and
-        ``"dormand-prince"``. Names of SciPy stand for methods of the same kind: ``"BDF"`` and ``"LSODA"`` are ``"bdf"``,
+        ``"RK45"`` (default, as in SciPy), or better for stiff equations ``"bdf"``; ``"auto"``, which changes between explicit and
+        implicit methods with the solution; ``"adams"``, also of CVODE, ``"esdirk"`` or any table of ARKODE by its name, ``"rosenbrock"``,
+        and ``"dormand-prince"``. Names of SciPy stand for methods of the same kind: ``"BDF"`` and ``"LSODA"`` are ``"bdf"``,
         ``"Radau"`` is an ESDIRK method of order 5, ``"RK45"`` is ``"dormand-prince"``, ``"RK23"`` Bogacki and Shampine's
         method, ``"DOP853"`` Verner's of order 6.
     t_eval, dense_output, events, vectorized, args, rtol, atol, jac, jac_sparsity, lband, uband, first_step, min_step, max_step
         As in SciPy. An event may have the attributes `terminal` (True, or the number of the event that ends the run) and
-        `direction`.
+        `direction`; or is an :class:`Event`, which may have an action that changes the state, or be a clock.
     max_order : int, optional
         Highest order of ``"bdf"``, ``"adams"``, ``"ida"`` and ``"rosenbrock"``.
     max_steps : int
@@ -97,12 +109,24 @@ def solve_ivp(
         the derivatives are right across these, and a switch that is none ends the run.
     initial_sensitivities : array, optional
         Those of `y0` [unknown, parameter]; zeros by default.
+    integrands : callable, optional
+        ``integrands(t, y)`` returns numbers whose integrals over time are computed along, with sensitivities if these are wanted, by the
+        methods that have those.
+    breaks : sequence of float, optional
+        Times at which `fun` jumps or has a kink: a step ends just before each.
+    nonnegative : sequence of int, optional
+        Places of unknowns that stay at 0 or above; not by ``"rosenbrock"`` and ``"dormand-prince"``.
+    check_jacobian : bool
+        Whether `jac`, `jac_sparsity`, `lband` and `uband` are compared with differences now and then; switch it off for what is meant to be
+        an approximation.
 
     Returns
     -------
     OdeResult
         As in SciPy, with `nsteps` and `method` in addition, the method that ran by the name it has here (such as
-        "dormand-prince" for SciPy's "RK45", or the table of ARKODE); and with `sensitivities` [unknown, parameter, time] if they are wanted.
+        "dormand-prince" for SciPy's "RK45", or the table of ARKODE); `methods`, with times and reasons, where ``"auto"`` changes between
+        several; and `sensitivities` [unknown, parameter, time], `integrals` [integral, time] and `integral_sensitivities`
+        [integral, parameter, time] if they are wanted.
 
     >>> import pliant
     >>> solution = pliant.solve_ivp(lambda t, y: -50.0 * y, (0.0, 1.0), [1.0], rtol=1e-8, atol=1e-10)
@@ -113,12 +137,14 @@ def solve_ivp(
     True
     """
     start, end = map(float, t_span)
-    name, implicit = engine_method(method)
+    facts = engine_method(method)
+    name, implicit = facts.name, facts.is_implicit
     is_sensitive = sensitivities is not None and sensitivities is not False
-    _check(name, method, mass, is_sensitive)
+    _check(facts, method, mass, is_sensitive)
+    events = event_list(events)
     y0, parts = unknowns(y0)
     is_compiled = hasattr(fun, "address")
-    given = Arguments(args, is_sensitive or is_compiled)
+    given = Arguments(args, is_sensitive or is_compiled or have_actions(events))
     function = compiled(fun, parts) if is_compiled else parts.function(given.of(fun))
     jac = given.of(jac)
     limits = step_limits(start, end, first_step, min_step, max_step)
@@ -126,22 +152,23 @@ def solve_ivp(
     t_eval = wanted_times(t_eval, start, end)
     times = None if t_eval is None or dense_output else t_eval.tolist()
     wanted = wanted_sensitivities(sensitivities, initial_sensitivities, len(given.parameters), parts, t_eval, dense_output)
-    watched = watched_events(events, given, parts)
+    # what goes forward only goes back along s = -t
+    sign = -1.0 if end < start and not facts.goes_backward else 1.0
+    watched = watched_events(events, given, parts, sign)
     if (start == end or parts.count == 0) and not is_sensitive:
         return _at_once(start, end, parts.unpack(parts.pack(y0)[None, :]), t_eval, dense_output, watched, name)
-    # what goes forward only goes back along s = -t
-    sign = -1.0 if end < start and name in _FORWARD else 1.0
     if sign < 0.0:
         if is_compiled:
             raise ValueError(f"{method!r} goes forward in time: take \"bdf\" or \"esdirk\" for a compiled function")
-        function, watched, times = _reversed(function, watched, times)
+        function = (lambda fun: lambda t, y, *p: -np.asarray(fun(-t, y, *p), dtype=float))(function)
+        times = None if times is None else [-t for t in times]
         jac = (lambda slopes: lambda t, y, *p: slopes(-t, y, *p))(jac) if callable(jac) else jac
     matrices = {}
     if implicit or mass is not None:
         first = jac(sign * start, y0, *given.last) if implicit and callable(jac) else jac
         matrices = newton(jac if implicit else None, first, jac_sparsity, lband, uband, parts, mass, given, start)
         if sign < 0.0 and matrices["jac"] is not None:
-            matrices["jac"] = (lambda slopes: lambda t, y: -slopes(t, y))(matrices["jac"])
+            matrices["jac"] = (lambda slopes: lambda t, y, *p: -slopes(t, y, *p))(matrices["jac"])
     run = run_of(
         fun=function,
         is_compiled=is_compiled,
@@ -153,31 +180,35 @@ def solve_ivp(
         atol=atol,
         events=watched or [],
         times=times,
+        breaks=engine_breaks(breaks, sign),
         max_order=max_order,
         max_steps=max_steps,
+        check_jacobian=bool(check_jacobian),
         **limits,
         **wanted,
         **matrices,
+        **nonnegative_places(nonnegative, parts),
+        **wanted_integrals(integrands, given, (start, y0), lambda t, y, *p: (t, parts.whole(y), *p), t_eval, dense_output),
     )
     return result_of(run, parts, name, sign, np.sign(end - start), t_eval, dense_output, watched, jac, is_sensitive)
 
 
 def engine_method(method):
-    """The name of a method for the engine, and whether it is implicit."""
+    """The facts of a method."""
     method = getattr(method, "__name__", method)  # a solver class of SciPy
     if not isinstance(method, str):
-        raise ValueError(f"`method` must be one of {sorted(_METHODS)} or a table of ARKODE by its name, not {method!r}")
-    return _METHODS.get(method, (method, True))
+        raise ValueError(f"`method` is a name, such as {sorted(_SYNONYMS)}, or a table of ARKODE by its name, not {method!r}")
+    return EngineMethod(*_pliant.method(_SYNONYMS.get(method, method)))
 
 
-def _check(name, method, mass, is_sensitive):
+def _check(facts, method, mass, is_sensitive):
     """Refuses what the method does not have."""
-    if mass is None and name == "ida":
+    if mass is None and facts.name == "ida":
         raise ValueError("\"ida\" goes with a mass matrix here: give `mass`, take \"bdf\", or call solve_dae")
-    if mass is not None and name in ("bdf", "adams", *_FORWARD):
+    if mass is not None and not facts.takes_mass:
         raise ValueError(f"{method!r} takes no mass matrix: take \"ida\", also for a singular one, or \"esdirk\"")
-    if is_sensitive and name not in _SENSITIVE:
-        raise ValueError(f"{method!r} has no sensitivities: take one of {_SENSITIVE}")
+    if is_sensitive and not facts.has_sensitivities:
+        raise ValueError(f"{method!r} has no sensitivities: take one of \"auto\", \"bdf\", \"adams\", \"ida\"")
 
 
 def compiled(fun, parts):
@@ -190,15 +221,6 @@ def compiled(fun, parts):
             f"the signature of a compiled function is void(float64, CPointer(float64), CPointer(float64), CPointer(float64)), not {signature}"
         )
     return fun.address
-
-
-def _reversed(function, watched, times):
-    """Function, events and times along s = -t."""
-    def back(t, y):
-        return -np.asarray(function(-t, y), dtype=float)
-
-    turned = [((lambda g: lambda t, y: g(-t, y))(event), -direction, last) for event, direction, last in watched or []]
-    return back, None if watched is None else turned, None if times is None else [-t for t in times]
 
 
 def _at_once(t, end, y, t_eval, dense_output, watched, name):
@@ -215,5 +237,5 @@ def _at_once(t, end, y, t_eval, dense_output, watched, name):
 
     return OdeResult(
         t=times, y=states, sol=Constant() if dense_output else None, t_events=nothing, y_events=nothing,
-        method=name, nfev=0, njev=0, nlu=0, nsteps=0, status=0, message=MESSAGES[0], success=True,
+        method=name, methods=[MethodUse(t, name, "as asked for")], nfev=0, njev=0, nlu=0, nsteps=0, status=0, message=MESSAGES[0], success=True,
     )

@@ -11,6 +11,7 @@ import pytest
 import pliant
 import pliant.adjoint
 import pliant.dae
+import pliant.events
 import pliant.ivp
 import pliant.scene
 
@@ -27,7 +28,7 @@ def test_blocks_of_the_page(number, tmp_path, monkeypatch):
         exec(compile(BLOCKS[number], f"block {number + 1} of docs/python.md", "exec"), {})
 
 
-@pytest.mark.parametrize("module", [pliant.scene, pliant.ivp, pliant.dae, pliant.adjoint])
+@pytest.mark.parametrize("module", [pliant.scene, pliant.ivp, pliant.dae, pliant.adjoint, pliant.events])
 def test_docstrings(module):
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", pliant.ModelWarning)

@@ -4,7 +4,10 @@ use std::{f64::consts::PI, fmt::Debug};
 
 use faer::{Mat, MatMut};
 use pliant::{
-    ode::{BandMut, Borrowed, Failure, MassKind, MassMatrix, Ode, with_jacobian, with_mass},
+    automatic::{Number, RightHandSide, automatic},
+    ode::{
+        BandMut, Borrowed, Dae, Failure, MassKind, MassMatrix, Ode, check, with_jacobian, with_mass,
+    },
     rk::{self, DormandPrince},
     samples::Robertson,
     sundials::{
@@ -384,4 +387,37 @@ fn a_new_start_takes_the_mass_matrix_anew() {
     let error = (solver.y()[0] - exact[0]).hypot(solver.y()[1] - exact[1]);
     println!("{error:.1e}");
     assert!(error < 1e-7);
+}
+
+/// Two equations, written over a number type.
+struct Coupled;
+
+impl RightHandSide for Coupled {
+    fn rhs<T: Number>(&mut self, t: f64, y: &[T], p: &[T], f: &mut [T]) -> Result<(), Failure> {
+        f[0] = y[1] * y[1] - p[0] * y[0] * t;
+        f[1] = y[1] - p[1] * y[0] * y[0];
+        Ok(())
+    }
+}
+
+/// Jacobians, products and derivatives by parameters of M y' - f, for a matrix M that is singular and not symmetric, against differences and against
+/// each other.
+#[test]
+fn derivatives_pass_through_a_mass_matrix() {
+    let mass = Mat::from_fn(2, 2, |i, j| [[1.0, 0.5], [0.0, 0.0]][i][j]);
+    let system = with_mass(automatic(Coupled, [2.0, 0.5]), mass);
+    let mut system = MassForm::new(system, 2, &DENSE).unwrap();
+    let (t, cj, y, yp) = (0.7, 3.0, [1.2, -0.4], [0.3, 2.0]);
+    let (v, w) = ([0.6, -1.3], [-0.8, 0.5]);
+    check::dae_jacobian(&mut system, t, cj, &y, &yp, check::Storage::Dense).unwrap();
+    check::sensitivity_residual(&mut system, t, (&y, &yp), (&v, &w)).unwrap();
+    check::adjoint_residual(&mut system, t, (&y, &yp), (&v, &w)).unwrap();
+    check::dae_adjoint_parameters(&mut system, t, (&y, &yp), &v).unwrap();
+    let (mut matrix, mut product) = (Mat::zeros(2, 2), [0.0; 2]);
+    system.dense_jacobian(t, cj, &y, &yp, matrix.as_mut()).unwrap();
+    system.jacobian_times(t, cj, &y, &yp, &v, &mut product).unwrap();
+    for i in 0..2 {
+        let expected = matrix[(i, 0)] * v[0] + matrix[(i, 1)] * v[1];
+        assert!((product[i] - expected).abs() < 1e-14);
+    }
 }

@@ -87,3 +87,24 @@ fn the_method_is_chosen_for_ticks() {
     assert_eq!(method, Method::Rosenbrock);
     assert!(reason.contains("shorter than the time between commands"), "{reason}");
 }
+
+/// Multistep methods start again in their own memory, and go where new integrators go, those of forks, to the last bit; their costs add up.
+#[test]
+fn a_new_start_in_the_same_memory_is_a_new_start() {
+    for method in [Method::CvodeBdf, Method::CvodeAdams] {
+        let settings = Settings { method, rtol: 1e-4, ..Settings::default() };
+        let mut again = beam().start(&settings).unwrap();
+        for tick in 1..=30 {
+            let mut fork = again.fork().unwrap();
+            for simulation in [&mut again, &mut fork] {
+                simulation.pressure("inside", 40.0 * f64::from(tick % 7)).unwrap();
+                simulation.advance_to(f64::from(tick) * PERIOD).unwrap();
+            }
+            let [one, other] = [&again, &fork].map(|simulation| simulation.view());
+            assert_eq!(one.displacements(), other.displacements(), "{method} {tick}");
+        }
+        let report = again.report();
+        assert_eq!(report.steps(), again.steps(), "{method}");
+        assert!(report.phases[0].counts.evaluations > report.steps(), "{method}");
+    }
+}

@@ -3,8 +3,8 @@
 
 use pliant::simulate::{Component, Reading};
 use pliant::{
-    Body, Cells, Material, Mesh, Method, Phase, Sampling, Scene, Settings, Statics, Substance,
-    Touch,
+    Axis, Body, Cells, Material, Mesh, Method, Phase, Sampling, Scene, Settings, Statics,
+    Substance, Touch,
 };
 
 use crate::common::settings;
@@ -30,8 +30,8 @@ fn soft() -> Material {
 fn above_floor(gap: f64, touch: Touch) -> Scene {
     let rigid = || Material::rigid(1000.0);
     let upper = block("block", [0.02, 0.05], [3, 3], [0.0, gap], rigid());
-    // cells about as wide as the block's: points of wide ones stand for more than lies over them
-    let floor = block("floor", [1.0, 0.01], [101, 2], [-0.2, -0.01], rigid());
+    // a single cell, whose points stand for far more than lies over them, and have a small part of the energy
+    let floor = block("floor", [1.0, 0.01], [2, 2], [-0.2, -0.01], rigid());
     Scene::new(Body::join([upper, floor]).unwrap()).gravity([0.0, -G]).touch(touch)
 }
 
@@ -138,4 +138,21 @@ fn faces_on_planes_of_symmetry_do_not_touch() {
     // the point of the plate at the plane counts wholly beside the half (3.3 %)
     assert!((half.1 / whole.1 - 1.0).abs() < 0.05, "{half:?} {whole:?}");
     assert!((half.2 / whole.2 - 1.0).abs() < 1e-3, "{half:?} {whole:?}");
+}
+
+/// A block on a plate with friction: statics, which knows no friction, tells so; not without friction.
+#[test]
+fn statics_tells_of_the_friction_that_it_leaves_out() {
+    let lying = |coefficient: f64| {
+        let upper = block("block", [0.02, 0.02], [5, 5], [0.0, 1.9e-4], soft());
+        let plate =
+            block("plate", [0.06, 0.004], [13, 3], [-0.02, -0.004], Material::rigid(1000.0));
+        let touch = Touch::all().distance(2e-4).friction_coefficient(coefficient);
+        let scene = Scene::new(Body::join([upper, plate]).unwrap()).gravity([0.0, -G]).touch(touch);
+        let held = Phase::until(1.0).hold("plate").hold_axes("block/left", [Axis::X]);
+        let rest = scene.phase(held).equilibrium(&Statics::default()).unwrap();
+        let said = rest.trajectory().report().warnings().concat();
+        said.contains("touch \"touch\" has friction, which does not act in statics")
+    };
+    assert!(lying(0.5) && !lying(0.0));
 }

@@ -2,7 +2,9 @@
 
 use pliant::{
     ode::{Failure, Ode, dae_with_parameters, with_parameters},
-    samples::{Brusselator, Hires, Oregonator, Pollution, Reference, Robertson, VanDerPol},
+    samples::{
+        Brusselator, HeatedSquare, Hires, Oregonator, Pollution, Reference, Robertson, VanDerPol,
+    },
     solve::{Event, Method, Options, Output, Problem, Run, Solution, gradient, solve},
     sundials::{AdjointOptions, Jacobian, LinearSolver, Sensitivities, Sign},
 };
@@ -78,6 +80,51 @@ fn standard_problems_are_solved_by_the_method_that_costs_least() {
     let (y0, reference) = (brusselator.y0(), Brusselator::REFERENCE_20);
     let all = [1e-3, 1e-6, 1e-9].map(|rtol| (rtol, DormandPrince));
     check(&brusselator, &y0, reference, &band, 25.0, all);
+}
+
+/// Heat in a square of 1600 points begins with BDF, whose steps cost no more than explicit ones that stability limits, and takes its steps and little
+/// more; over so short a time that few of those are left, or where the fastest rate is that of waves, it begins with explicit ones.
+#[test]
+fn many_unknowns_with_few_entries_may_begin_with_bdf() {
+    let square = HeatedSquare::new(40);
+    let klu = LinearSolver::Klu { pattern: square.pattern().clone(), jacobian: Jacobian::Supplied };
+    for rtol in [1e-3, 1e-6] {
+        let options = Options::new(rtol, rtol).linear_solver(klu.clone()).output(Output::End);
+        let run = |method, t| {
+            solve(Problem::ode(square.clone(), square.exact(0.0)), method, (0.0, t), &options)
+                .unwrap()
+        };
+        let (auto, bdf) = (run(Method::Auto, 1.0), run(Method::Bdf, 1.0));
+        assert_eq!(methods(&auto), [Method::Bdf], "{:?}", auto.methods());
+        assert!(auto.methods()[0].reason.contains("stability limits"));
+        let [[evaluations, factorizations], most] = [work(&auto), work(&bdf)];
+        println!("{rtol:e} {evaluations} {factorizations} {most:?}");
+        assert!(evaluations <= most[0] + 13 + most[0] / 4 && factorizations <= most[1]);
+        let exact = square.exact(1.0);
+        let error = auto.last().iter().zip(&exact).fold(0.0_f64, |e, (a, b)| e.max((a - b).abs()));
+        assert!(error < 30.0 * rtol, "{error:e}");
+        assert_eq!(methods(&run(Method::Auto, 1e-3)), [Method::DormandPrince]);
+    }
+    // waves on a string of 1000 points, by displacements and speeds
+    let n = 1000;
+    let string = move |_t: f64, y: &[f64], ydot: &mut [f64]| {
+        for i in 0..n {
+            let at = |k: usize| if (1..=n).contains(&k) { y[2 * (k - 1)] } else { 0.0 };
+            ydot[2 * i] = y[2 * i + 1];
+            ydot[2 * i + 1] = (at(i) - 2.0 * at(i + 1) + at(i + 2)) * ((n + 1) as f64).powi(2);
+        }
+        Ok(())
+    };
+    let y: Vec<f64> = (0..2 * n)
+        .map(|k| {
+            let x = (k / 2 + 1) as f64 / (n + 1) as f64;
+            if k % 2 == 0 { (std::f64::consts::PI * x).sin() } else { 0.0 }
+        })
+        .collect();
+    let band = LinearSolver::Band { lower: 3, upper: 3, jacobian: Jacobian::DifferenceQuotients };
+    let options = Options::new(1e-5, 1e-5).linear_solver(band).output(Output::End);
+    let waves = solve(Problem::ode(string, y), Method::Auto, (0.0, 1.0), &options).unwrap();
+    assert_eq!(methods(&waves)[0], Method::DormandPrince, "{:?}", waves.methods());
 }
 
 /// y' = -k(t) (y - sin t) + cos t has the solution sin t, whatever k is: 1, a million from 10 to 20, and 1 again.

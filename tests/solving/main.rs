@@ -17,6 +17,7 @@ mod interpolation;
 mod limits;
 mod patterns;
 mod refusals;
+mod resizing;
 mod resuming;
 mod rosenbrock;
 mod sensitivities;

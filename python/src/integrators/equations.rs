@@ -56,6 +56,13 @@ pub enum MassValues {
     Function(Py<PyAny>),
 }
 
+/// The integrands of integrals along the solution.
+pub struct Integrands {
+    /// A function of the arguments of the equations.
+    pub function: Py<PyAny>,
+    pub count: usize,
+}
+
 /// Storage for the first exception of a Python function.
 #[derive(Default)]
 pub struct Raised(Mutex<Option<PyErr>>);
@@ -77,6 +84,7 @@ pub struct Equations<'a> {
     pub function: Function,
     pub jacobian: Jacobian,
     pub mass: Option<Mass>,
+    pub integrands: Option<Integrands>,
     pub parameters: Vec<f64>,
     pub raised: &'a Raised,
 }
@@ -180,6 +188,17 @@ impl Equations<'_> {
         self.call(function, at, values, "jac")
     }
 
+    fn integral_count(&self) -> usize {
+        self.integrands.as_ref().map_or(0, |integrands| integrands.count)
+    }
+
+    fn write_integrands(&self, t: f64, arrays: &[&[f64]], out: &mut [f64]) -> Result<(), Failure> {
+        let Some(Integrands { function, .. }) = &self.integrands else {
+            return Err(fatal("there are no integrands".into()));
+        };
+        self.call(function, (t, arrays, None), out, "integrands")
+    }
+
     /// Calls `write` with the number, row, column and value of each entry of the mass matrix.
     fn write_mass(
         &self,
@@ -265,6 +284,14 @@ impl Ode for Equations<'_> {
         self.write_mass(t, |i, _, value| values[places[i]] += value)
     }
 
+    fn quadrature_count(&self) -> usize {
+        self.integral_count()
+    }
+
+    fn quadratures(&mut self, t: f64, y: &[f64], qdot: &mut [f64]) -> Result<(), Failure> {
+        self.write_integrands(t, &[y], qdot)
+    }
+
     fn parameters(&self) -> &[f64] {
         &self.parameters
     }
@@ -308,6 +335,20 @@ impl Dae for Equations<'_> {
         values: &mut [f64],
     ) -> Result<(), Failure> {
         self.sparse((t, &[y, yp], Some(cj)), values)
+    }
+
+    fn quadrature_count(&self) -> usize {
+        self.integral_count()
+    }
+
+    fn quadratures(
+        &mut self,
+        t: f64,
+        y: &[f64],
+        yp: &[f64],
+        qdot: &mut [f64],
+    ) -> Result<(), Failure> {
+        self.write_integrands(t, &[y, yp], qdot)
     }
 
     fn parameters(&self) -> &[f64] {

@@ -1,20 +1,26 @@
 //! Initial value problems by `pliant::solve`, with functions of Python or of C.
 
 mod equations;
+mod events;
 mod run;
+
+use std::ops::ControlFlow;
 
 use numpy::PyArray1;
 use pliant::solve::{
-    Error, Event, Method, Options, Output, Problem, Reason, gradient as gradient_of,
+    Error, MassMatrices, Method, Options, Output, Problem, Reason, gradient as gradient_of,
     solve as solve_problem,
 };
 use pliant::sundials::{
-    AdjointOptions, ButcherTable, Jacobian as Source, LinearSolver, Pattern, Sensitivities,
+    AdjointOptions, Jacobian as Source, LinearSolver, Pattern, Sensitivities, Sign,
 };
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-use self::equations::{Equations, Function, Jacobian, Mass, MassValues, Raised, Sought, arguments};
+use self::equations::{
+    Equations, Function, Integrands, Jacobian, Mass, MassValues, Raised, Sought,
+};
+use self::events::AskedEvent;
 pub use self::run::Run;
 use crate::errors::{made, raised};
 
@@ -40,14 +46,21 @@ pub struct Asked {
     band: Option<(usize, usize)>,
     /// Rows and columns of the entries of the mass matrix, and their values.
     mass: Option<(Vec<usize>, Vec<usize>, MassValues)>,
-    /// A function of (t, y), a direction (-1, 0, 1), and the number of the event that ends the run (0: none does).
-    events: Vec<(Py<PyAny>, i32, u32)>,
+    events: Vec<AskedEvent>,
+    /// Times at which the equations jump.
+    breaks: Vec<f64>,
+    /// A function as `fun`, which returns the integrands, and their number.
+    integrands: Option<Py<PyAny>>,
+    integral_count: Option<usize>,
     times: Option<Vec<f64>>,
     first_step: Option<f64>,
     min_step: Option<f64>,
     max_step: Option<f64>,
     max_order: Option<u32>,
     max_steps: u64,
+    check_jacobian: bool,
+    /// Places of unknowns that are not negative.
+    nonnegative: Vec<usize>,
     /// Places of parameters.
     sensitivities: Option<Vec<usize>>,
     /// One column after the other.
@@ -56,14 +69,7 @@ pub struct Asked {
 
 impl Asked {
     fn method(&self) -> PyResult<Method> {
-        Ok(match self.method.as_str() {
-            "bdf" => Method::Bdf,
-            "adams" => Method::Adams,
-            "ida" => Method::Ida,
-            "dormand-prince" => Method::DormandPrince,
-            "rosenbrock" => Method::Rosenbrock,
-            table => Method::RungeKutta(table.parse::<ButcherTable>().map_err(raised)?),
-        })
+        self.method.parse().map_err(raised)
     }
 
     /// The equations, their events, and the options.
@@ -85,8 +91,16 @@ impl Asked {
             }
             None => None,
         };
-        let equations =
-            Equations { function, jacobian, mass, parameters: self.parameters, raised: error };
+        let integrands = self.integrands.zip(self.integral_count);
+        let integrands = integrands.map(|(function, count)| Integrands { function, count });
+        let equations = Equations {
+            function,
+            jacobian,
+            mass,
+            integrands,
+            parameters: self.parameters,
+            raised: error,
+        };
         let mut problem = match self.yp0 {
             None => Problem::ode(equations, self.y0),
             Some(yp0) => Problem::dae(equations, self.y0, yp0),
@@ -94,23 +108,19 @@ impl Asked {
         problem = self.differential.into_iter().fold(problem, Problem::differential);
         let given = self.initial_sensitivities.into_iter();
         problem = given.fold(problem, Problem::initial_sensitivities);
-        for (function, direction, last) in self.events {
-            let mut event = Event::with_parameters(move |t, y, p| {
-                let value = Python::attach(|py| {
-                    let returned = function.bind(py).call1(arguments(py, t, &[y], None, p)?)?;
-                    returned.call_method0("__float__")?.extract()
-                });
-                value.unwrap_or_else(|raised: PyErr| {
-                    error.keep(raised);
-                    f64::NAN
-                })
+        for event in self.events {
+            problem = problem.event(event.event(error)?);
+        }
+        problem = problem.breaks(self.breaks);
+        if self.is_compiled {
+            // Python's own functions meet signals by themselves
+            problem = problem.observed_by(move |_| match Python::attach(|py| py.check_signals()) {
+                Ok(()) => ControlFlow::Continue(()),
+                Err(signal) => {
+                    error.keep(signal);
+                    ControlFlow::Break(())
+                }
             });
-            event = match direction {
-                1.. => event.rising(),
-                0 => event,
-                _ => event.falling(),
-            };
-            problem = problem.event(if last > 0 { event.terminal_after(last) } else { event });
         }
         Ok((problem, options))
     }
@@ -126,6 +136,15 @@ impl Asked {
             options = value.into_iter().fold(options, set);
         }
         options = self.max_order.into_iter().fold(options, Options::max_order);
+        options = options.check_jacobian(self.check_jacobian);
+        if !self.nonnegative.is_empty() {
+            let mut signs = vec![Sign::Free; self.y0.len()];
+            for &place in &self.nonnegative {
+                *signs.get_mut(place).ok_or_else(|| PyValueError::new_err("nonnegative"))? =
+                    Sign::NonNegative;
+            }
+            options = options.sign_constraints(signs);
+        }
         let jacobian =
             if self.jac.is_some() { Source::Supplied } else { Source::DifferenceQuotients };
         let solver = match (&self.sparsity, self.band) {
@@ -140,7 +159,10 @@ impl Asked {
             (None, None) => self.jac.is_some().then_some(LinearSolver::Dense(jacobian)),
         };
         options = solver.into_iter().fold(options, Options::linear_solver);
-        let sensitivities = self.sensitivities.clone().map(Sensitivities::of);
+        let mut sensitivities = self.sensitivities.clone().map(Sensitivities::of);
+        if self.integrands.is_some() {
+            sensitivities = sensitivities.map(Sensitivities::integrals);
+        }
         Ok(sensitivities.into_iter().fold(options, Options::sensitivities))
     }
 }
@@ -164,6 +186,17 @@ fn places(
             })
     };
     rows.iter().zip(columns).map(place).collect()
+}
+
+/// The facts of the method of this name: its name, whether it is implicit, goes backward in time, takes a mass matrix and a singular one, and
+/// has sensitivities.
+#[pyfunction]
+pub fn method(name: &str) -> PyResult<(&'static str, bool, bool, bool, bool, bool)> {
+    let facts = name.parse::<Method>().map_err(raised)?.information();
+    let takes_mass = facts.mass != MassMatrices::None;
+    let takes_singular_mass = facts.mass == MassMatrices::Singular;
+    let (implicit, backward) = (facts.is_implicit, facts.goes_backward);
+    Ok((facts.name, implicit, backward, takes_mass, takes_singular_mass, facts.has_sensitivities))
 }
 
 /// Integrates equations.

@@ -1,5 +1,6 @@
 //! Results of a run as arrays.
 
+use faer::MatRef;
 use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods};
 use pliant::solve::{End, Solution};
 use pyo3::prelude::*;
@@ -12,6 +13,21 @@ pub struct Run {
     pub solution: Solution,
     pub unknowns: usize,
     pub failure: Option<String>,
+}
+
+impl Run {
+    /// The matrices of all times: [time, column, row].
+    fn stacked<'py, 's>(
+        &'s self,
+        py: Python<'py>,
+        matrix: impl Fn(usize) -> MatRef<'s, f64>,
+    ) -> PyResult<Bound<'py, PyArray3<f64>>> {
+        let times = self.solution.t().len();
+        let [rows, columns] = [matrix(0).nrows(), matrix(0).ncols()];
+        let all = (0..times).flat_map(|k| matrix(k).col_iter().collect::<Vec<_>>());
+        let numbers: Vec<f64> = all.flat_map(|column| column.iter().copied()).collect();
+        PyArray1::from_vec(py, numbers).reshape([times, columns, rows])
+    }
 }
 
 #[pymethods]
@@ -38,11 +54,40 @@ impl Run {
     /// The sensitivities at the times: [time, parameter, unknown].
     #[getter]
     fn sensitivities<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray3<f64>>> {
+        self.stacked(py, |k| self.solution.sensitivities(k))
+    }
+
+    /// How many integrals there are.
+    #[getter]
+    fn integral_count(&self) -> usize {
+        self.solution.quadratures(0).len()
+    }
+
+    /// The integrals at the times: [time, integral].
+    #[getter]
+    fn integrals<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let times = self.solution.t().len();
-        let parameters = self.solution.sensitivities(0).ncols();
-        let all = (0..times).flat_map(|k| self.solution.sensitivities(k).col_iter());
-        let numbers: Vec<f64> = all.flat_map(|column| column.iter().copied()).collect();
-        PyArray1::from_vec(py, numbers).reshape([times, parameters, self.unknowns])
+        let all = (0..times).flat_map(|k| self.solution.quadratures(k)).copied();
+        PyArray1::from_vec(py, all.collect()).reshape([times, self.integral_count()])
+    }
+
+    /// Their sensitivities: [time, parameter, integral].
+    #[getter]
+    fn integral_sensitivities<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray3<f64>>> {
+        self.stacked(py, |k| self.solution.quadrature_sensitivities(k))
+    }
+
+    /// The methods: the time of the start of each, its name, and why it is used.
+    #[getter]
+    fn methods(&self) -> Vec<(f64, String, String)> {
+        let uses = self.solution.methods().iter();
+        uses.map(|used| (used.t, used.method.to_string(), used.reason.clone())).collect()
+    }
+
+    /// The parameters at the end.
+    #[getter]
+    fn parameters<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        PyArray1::from_slice(py, self.solution.parameters())
     }
 
     /// States at any times within the run: [time, unknown].

@@ -23,7 +23,7 @@
 //! | [`touch`]: how deep nodes are inside obstacles, at the start and later | half a cell, 2 % of the body; half of the thickness of the body, a quarter of that of the obstacle |
 //! | [`touch`]: points that went past the middle of an obstacle | none |
 //! | [`touch`]: how deep the surface between nodes is inside obstacles | as nodes |
-//! | [`touch`]: obstacles with friction that are touched in statics, where it does not act | none |
+//! | [`touch`]: friction where bodies or obstacles touch in statics, where it does not act | none |
 //! | [`touch`]: obstacles that act and are never touched | none |
 //! | [`creep`]: how far surfaces creep that friction holds | 1 % of the distance that nodes travel |
 //! | [`start`]: unknowns that the scene or the state from which it starts does not have | none |
@@ -219,11 +219,13 @@ pub(crate) fn of_motion(trajectory: &Trajectory) -> Vec<Indicator> {
 pub(crate) fn of_equilibrium(trajectory: &Trajectory, is_found: bool) -> Vec<Indicator> {
     let samples = [trajectory.last()];
     let meetings = touch::meetings(trajectory, &samples);
+    let on_the_way: Vec<&Sample> = trajectory.samples().iter().collect();
+    let on_the_way = touch::meetings(trajectory, &on_the_way);
     let measured = trajectory.scene().indicators().into_iter();
     let measured = measured.chain(of_cells(trajectory, &samples));
     let measured = measured.chain(touch::depths(trajectory.scene(), &meetings));
     let measured = measured.chain(overlaps(trajectory));
-    let measured = measured.chain(touch::slippery(trajectory, &meetings));
+    let measured = measured.chain(touch::slippery(trajectory, &on_the_way));
     let measured = measured.chain(chamber::volumes(trajectory.scene(), trajectory.samples()));
     measured
         .chain(is_found.then(|| touch::missed(&meetings, touch::Reach::NONE)).into_iter().flatten())

@@ -228,26 +228,32 @@ pub(super) fn begun_inside(scene: &Scene) -> Vec<Indicator> {
     contacts.iter().filter_map(of_contact).collect()
 }
 
-/// Obstacles that touch and would hold the body by friction, in an equilibrium, where friction does not act.
-pub(super) fn slippery(
-    trajectory: &Trajectory,
-    meetings: &[Meeting],
-) -> impl Iterator<Item = Indicator> {
-    let obstacles = trajectory.scene().obstacles().iter();
+/// Obstacles and other bodies that touch and would hold the body by friction, on the way to an equilibrium, where friction does not act.
+pub(super) fn slippery(trajectory: &Trajectory, meetings: &[Meeting]) -> Vec<Indicator> {
+    let scene = trajectory.scene();
     let is_met = |name: &str| meetings.iter().any(|met| met.obstacle == name && met.nearest <= 0.0);
-    obstacles.filter(|obstacle| obstacle.has_friction()).map(move |obstacle| {
-        let within = || {
-            let name = obstacle.name();
-            format!("obstacle \"{name}\" has friction, but does not touch (limit: none)")
+    let obstacles = scene.obstacles().iter().filter(|obstacle| obstacle.has_friction());
+    let obstacles = obstacles
+        .map(|obstacle| (format!("obstacle \"{}\"", obstacle.name()), is_met(obstacle.name())));
+    let rub = scene.touches().iter().any(|touch| touch.sticks_below(1.0).is_some());
+    let touches = if rub { scene.touch_forces().unwrap_or_default() } else { Vec::new() };
+    let touches = touches.iter().filter(|touch| touch.has_friction()).map(|touch| {
+        let states = trajectory.samples().iter().map(|sample| &sample.u[..]);
+        let mut states = states.chain([scene.initial_displacements()]);
+        (format!("touch \"{}\"", touch.name), states.any(|u| touch.gap(u) < touch.distance()))
+    });
+    let told = |(name, is_met): (String, bool)| {
+        let within = || format!("{name} has friction, but nothing touches there (limit: none)");
+        let beyond = || {
+            format!(
+                "{name} has friction, which does not act in statics (limit: none): the body slides as if there were none; \
+                 run the scene until it is at rest instead"
+            )
         };
-        let beyond = || format!(
-            "obstacle \"{}\" has friction, which does not act in statics (limit: none): the body slides as if there were \
-             none; run the scene until it is at rest instead",
-            obstacle.name()
-        );
-        let value = if is_met(obstacle.name()) { 1.0 } else { 0.0 };
+        let value = if is_met { 1.0 } else { 0.0 };
         Indicator::trusted("friction-in-statics", (value, ""), [0.0, 0.0], within, beyond)
-    })
+    };
+    obstacles.chain(touches).map(told).collect()
 }
 
 /// Obstacles that acted, and from which the body was always farther away than it may move between samples.

@@ -4,13 +4,16 @@
 //! Nodal rows of A^T are eliminated: their components of x are known at once, and what remains is a Cholesky
 //! solve with the free part of X. General rows, of which there are few, are satisfied by a Schur complement
 //! of the size of their number. Nodes of rigid pieces (`elements/body/rigid.rs`) that move with others, x = W q, are
-//! eliminated as well: what is factorized is W^T X W.
+//! eliminated as well: what is factorized is W^T X W. Where there are many pieces, they move by their
+//! [rigid motions](super::rigid_motions).
 //!
 //! X may be singular without the general rows: oblique planes of symmetry may be all that holds a body. So
 //! where X itself is factorized, springs with the stiffness rho of its diagonal are added along the rows g of
 //! single nodes, which fit into its pattern: X + rho g g^T has the same solution where g.x = d, with a
 //! multiplier that is rho d larger.
 
+#[cfg(test)]
+mod pieces;
 #[cfg(test)]
 mod tests;
 
@@ -19,11 +22,14 @@ use std::sync::Arc;
 use faer::sparse::SymbolicSparseColMat;
 
 use super::cholesky::Indefinite;
+use super::edge_component::Coupled;
 use super::edge_solver::EdgeSolver;
-use super::edges::Edge;
+use super::edges::Edges;
 use super::entry_source::{Coupling, EntrySource};
+use super::free_matrix::FreeMatrix;
 use super::general_rows::{GeneralRow, GeneralRows};
 use super::gradients::Gradients;
+use super::rigid_motions::{MANY, RigidMotions};
 use super::symmetric::Symmetric;
 use crate::base::sparse::NodePattern;
 use crate::dynamics::matrices::Matrices;
@@ -35,8 +41,7 @@ pub(crate) const EXACT: f64 = 1e-13;
 
 /// Solver for one X and one set of constraints.
 pub(crate) struct ConstrainedSolver {
-    /// The free part of X.
-    symmetric: Symmetric,
+    kernel: Kernel,
     /// Entries of X between a free row (position in `free`) and a fixed column (dof), with their share.
     border: Vec<(usize, usize, EntrySource, f64)>,
     border_values: Vec<f64>,
@@ -53,6 +58,23 @@ pub(crate) struct ConstrainedSolver {
     gathered: Vec<f64>,
 }
 
+/// The free part of X, with what solves its systems.
+enum Kernel {
+    Symmetric(Symmetric),
+    /// Together with edges and general rows.
+    RigidMotions(Box<RigidMotions>),
+}
+
+impl Kernel {
+    /// The free degrees of freedom, ascending.
+    fn free(&self) -> &[usize] {
+        match self {
+            Self::Symmetric(symmetric) => symmetric.free(),
+            Self::RigidMotions(motions) => motions.free(),
+        }
+    }
+}
+
 /// A spring along a general row of a single node.
 struct Spring {
     /// Number of the row among the general ones.
@@ -67,8 +89,29 @@ impl ConstrainedSolver {
     pub(crate) fn new(
         matrices: &Matrices,
         rows: &[ConstraintRow],
-        edges: &[Edge],
+        edges: &Edges,
         coupling: Coupling,
+    ) -> Self {
+        Self::with_motions(matrices, rows, edges, coupling, false)
+    }
+
+    /// For the Newton matrix of a phase, in which rigid pieces that touch feel each other: many of them move by their rigid motions.
+    pub(crate) fn of_newton_matrix(
+        matrices: &Matrices,
+        rows: &[ConstraintRow],
+        edges: &Edges,
+    ) -> Self {
+        let pieces = matrices.rigid.as_ref().map_or(0, |rigid| rigid.frames().len());
+        let by_motions = pieces >= MANY && !edges.list.is_empty();
+        Self::with_motions(matrices, rows, edges, Coupling::AllAxes, by_motions)
+    }
+
+    fn with_motions(
+        matrices: &Matrices,
+        rows: &[ConstraintRow],
+        edges: &Edges,
+        coupling: Coupling,
+        by_motions: bool,
     ) -> Self {
         let (pattern, dimension) = (matrices.pattern(), matrices.dimension);
         let dofs = pattern.nodes() * dimension;
@@ -98,7 +141,7 @@ impl ConstrainedSolver {
                 _ => {}
             }
         });
-        let general = GeneralRows::new(rows, &position, rigid.as_deref(), dimension);
+        let mut general = GeneralRows::new(rows, &position, rigid.as_deref(), dimension);
         let entry = |row: usize, column: usize| {
             let [start, end] = [offsets[column], offsets[column + 1]];
             (start..end).find(|&at| row_indices[at] == row)
@@ -165,21 +208,35 @@ impl ConstrainedSolver {
         let order = dissection.map(of_nodes);
         // they know nothing of nodes that move with others
         let gradients = rigid.is_none().then_some(|| Gradients::new(matrices, rows, coupling));
-        let edges = (!edges.is_empty()).then(|| {
-            let sizes = [free.len(), general.rows.len()];
-            EdgeSolver::new(edges, dimension, |dof| position[dof], sizes)
+        let work = vec![0.0; free.len()];
+        let matrix = FreeMatrix::new(free, sources, carried);
+        let of_edges = (!edges.list.is_empty()).then(|| match by_motions {
+            true => EdgeSolver::without_responses(edges),
+            false => {
+                let coupled = Coupled { pattern: &lower, general: &general.dofs() };
+                EdgeSolver::new(edges, dimension, |dof| position[dof], coupled)
+            }
         });
+        let kernel = match &rigid {
+            Some(rigid) if by_motions => {
+                let frames = rigid.frames();
+                let motions =
+                    RigidMotions::new(matrix, lower, frames, edges, dimension, &mut general);
+                Kernel::RigidMotions(Box::new(motions))
+            }
+            _ => Kernel::Symmetric(Symmetric::new(matrix, lower, order, gradients)),
+        };
         Self {
             border_values: vec![0.0; border.len()],
             general,
             stiffening: Vec::with_capacity(springs.iter().map(|spring| spring.entries.len()).sum()),
             springs,
-            work: vec![0.0; free.len()],
+            work,
             gathered: vec![0.0; if rigid.is_some() { dofs } else { 0 }],
-            symmetric: Symmetric::new(free, sources, carried, lower, order, gradients),
+            kernel,
             border,
             rigid,
-            edges,
+            edges: of_edges,
         }
     }
 
@@ -193,9 +250,12 @@ impl ConstrainedSolver {
     ) -> Result<(), Indefinite> {
         // prescribed components are only as accurate as the solutions of the systems
         let accuracy = if self.general.rows.is_empty() { accuracy } else { EXACT };
-        self.assemble_border(&value);
+        Self::assemble_border(&self.border, &mut self.border_values, &value);
         self.general.rows.iter_mut().for_each(|row| row.spring = 0.0);
-        self.symmetric.begin(accuracy, value)?;
+        match &mut self.kernel {
+            Kernel::Symmetric(symmetric) => symmetric.begin(accuracy, value)?,
+            Kernel::RigidMotions(motions) => motions.begin(accuracy, value),
+        }
         self.eliminate(true)
     }
 
@@ -205,45 +265,47 @@ impl ConstrainedSolver {
         &mut self,
         value: impl Fn(EntrySource) -> f64,
     ) -> Result<(), Indefinite> {
-        self.assemble_border(&value);
+        let Kernel::Symmetric(symmetric) = &mut self.kernel else {
+            return self.begin(EXACT, value);
+        };
+        Self::assemble_border(&self.border, &mut self.border_values, &value);
         self.stiffening.clear();
         for Spring { row, entries, diagonal } in &self.springs {
             let stiffness: f64 = diagonal.iter().map(|&source| value(source).abs()).sum();
             self.general.rows[*row].spring = stiffness;
             self.stiffening.extend(entries.iter().map(|&(at, product)| (at, stiffness * product)));
         }
-        self.symmetric.factorize(value, &self.stiffening)?;
+        symmetric.factorize(value, &self.stiffening)?;
         self.eliminate(true)
     }
 
     /// Factorizes the X last given, which has turned out not to be positive definite.
     pub(crate) fn factorize_indefinite(&mut self) -> Result<(), Indefinite> {
-        self.symmetric.factorize_indefinite()?;
+        if let Kernel::Symmetric(symmetric) = &mut self.kernel {
+            symmetric.factorize_indefinite()?;
+        }
         self.eliminate(false)
     }
 
     /// Prepares what the general rows and the edges need of the X in force, `definite` or not.
     fn eliminate(&mut self, definite: bool) -> Result<(), Indefinite> {
-        self.general.factorize(&mut self.symmetric, definite)?;
-        let Some(edges) = &mut self.edges else { return Ok(()) };
-        for column in 0..edges.frames.len() {
-            let z = edges.z.col_as_slice_mut(column);
-            z.fill(0.0);
-            z[edges.frames[column]] = 1.0;
-            self.symmetric.solve(z);
-            edges.inverse_diagonal[column] = z[edges.frames[column]];
-            self.general.right.fill(0.0);
-            self.general.correct(z);
-            edges.of_rows.col_as_slice_mut(column).copy_from_slice(&self.general.right);
+        // rigid motions are not known yet
+        let Kernel::Symmetric(symmetric) = &mut self.kernel else { return Ok(()) };
+        self.general.factorize(|x| symmetric.solve(x), definite)?;
+        if let Some(edges) = &mut self.edges {
+            edges.respond(&mut self.work, symmetric, &mut self.general);
         }
-        edges.divide();
         Ok(())
     }
 
-    fn assemble_border(&mut self, value: impl Fn(EntrySource) -> f64) {
-        self.border_values
+    fn assemble_border(
+        border: &[(usize, usize, EntrySource, f64)],
+        values: &mut [f64],
+        value: impl Fn(EntrySource) -> f64,
+    ) {
+        values
             .iter_mut()
-            .zip(&self.border)
+            .zip(border)
             .for_each(|(x, &(_, _, source, share))| *x = share * value(source));
     }
 
@@ -271,16 +333,29 @@ impl ConstrainedSolver {
                 &self.gathered
             }
         };
-        self.work.iter_mut().zip(self.symmetric.free()).for_each(|(work, &dof)| *work = f[dof]);
+        let Self { kernel, general, edges, work, .. } = self;
+        work.iter_mut().zip(kernel.free()).for_each(|(work, &dof)| *work = f[dof]);
         for (&(row, column, ..), value) in self.border.iter().zip(&self.border_values) {
-            self.work[row] -= value * x[column];
+            work[row] -= value * x[column];
         }
-        self.symmetric.solve(&mut self.work);
-        self.general.solve(rows, d, x, &mut self.work, mu);
-        if let Some(edges) = &mut self.edges {
-            edges.correct(&mut self.work, self.general.rows.iter().map(|row| row.number), mu);
+        general.demand(d, x);
+        match (kernel, edges) {
+            (Kernel::RigidMotions(motions), Some(edges)) => {
+                motions.solve(edges, general, work);
+                general.write_multipliers(d, x, mu);
+            }
+            (Kernel::Symmetric(symmetric), edges) => {
+                symmetric.solve(work);
+                general.correct(work);
+                general.write_multipliers(d, x, mu);
+                if let Some(edges) = edges {
+                    edges.correct(work, |row| general.rows[row].number, mu);
+                }
+            }
+            // motions are those of edges
+            (Kernel::RigidMotions(_), None) => {}
         }
-        self.work.iter().zip(self.symmetric.free()).for_each(|(work, &dof)| x[dof] = *work);
+        self.work.iter().zip(self.kernel.free()).for_each(|(work, &dof)| x[dof] = *work);
         if let Some(rigid) = &self.rigid {
             rigid.carry(x);
         }
@@ -317,18 +392,26 @@ impl ConstrainedSolver {
         coupling: Coupling,
         iterations: f64,
     ) -> Self {
-        self.symmetric.rent(Gradients::new(matrices, rows, coupling), iterations);
+        if let Kernel::Symmetric(symmetric) = &mut self.kernel {
+            symmetric.rent(Gradients::new(matrices, rows, coupling), iterations);
+        }
         self
     }
 
     /// [What solving has cost](Symmetric::counts).
     pub(crate) fn counts(&self) -> [usize; 3] {
-        self.symmetric.counts()
+        match &self.kernel {
+            Kernel::Symmetric(symmetric) => symmetric.counts(),
+            Kernel::RigidMotions(motions) => [0, 0, motions.indefinite()],
+        }
     }
 
     /// Has these counts from now on.
     pub(crate) fn set_counts(&mut self, counts: [usize; 3]) {
-        self.symmetric.set_counts(counts);
+        match &mut self.kernel {
+            Kernel::Symmetric(symmetric) => symmetric.set_counts(counts),
+            Kernel::RigidMotions(motions) => motions.set_indefinite(counts[2]),
+        }
     }
 
     /// The general row found to follow from the others (its number in the list of all rows).

@@ -63,8 +63,10 @@ pub(crate) fn stabilized(gamma: f64, alpha: f64) -> [f64; 3] {
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Edges {
     pub(crate) list: Vec<Edge>,
+    /// Those that follow from constraints and the others, and are no constraints themselves.
+    implied: Vec<Edge>,
     dimension: usize,
-    /// x, x', x'' of each.
+    /// x, x', x'' of each, then of those that are implied.
     pub(crate) arms: Vec<[f64; 3]>,
     rates: Vec<[f64; 3]>,
     accelerations: Vec<[f64; 3]>,
@@ -86,26 +88,34 @@ impl Edges {
                 }));
             }
         }
-        Self::of(list, dimension)
+        Self::of([list, Vec::new()], dimension)
     }
 
-    fn of(list: Vec<Edge>, dimension: usize) -> Self {
-        let none = vec![[0.0; 3]; list.len()];
+    fn of([list, implied]: [Vec<Edge>; 2], dimension: usize) -> Self {
+        let none = vec![[0.0; 3]; list.len() + implied.len()];
         Self {
             dimension,
-            arms: list.iter().map(|edge| edge.natural).collect(),
+            arms: list.iter().chain(&implied).map(|edge| edge.natural).collect(),
             rates: none.clone(),
             accelerations: none,
             demands: vec![0.0; list.len()],
             multipliers: vec![0.0; list.len()],
             list,
+            implied,
         }
     }
 
-    /// The edges of which `is_kept` is true.
+    /// The edges of which `is_kept` is true as constraints, the others as implied ones.
     pub(crate) fn retained(&self, is_kept: &[bool]) -> Self {
-        let list = self.list.iter().zip(is_kept).filter(|(_, is_kept)| **is_kept);
-        Self::of(list.map(|(edge, _)| *edge).collect(), self.dimension)
+        let (kept, implied): (Vec<_>, Vec<_>) =
+            self.list.iter().zip(is_kept).partition(|(_, is_kept)| **is_kept);
+        let edges = [kept, implied].map(|part| part.into_iter().map(|(edge, _)| *edge).collect());
+        Self::of(edges, self.dimension)
+    }
+
+    /// All edges, those that are implied last, as in [`arms`](Self::arms).
+    pub(crate) fn all(&self) -> impl Iterator<Item = &Edge> {
+        self.list.iter().chain(&self.implied)
     }
 
     /// Becomes the same as the `other` ones of the same list.
@@ -118,19 +128,20 @@ impl Edges {
 
     /// Moves on to displacements `u` (m) and velocities `v` (m/s), with the stabilization rate `alpha` (1/s).
     pub(crate) fn move_to(&mut self, alpha: f64, u: &[f64], v: &[f64]) {
-        for (k, edge) in self.list.iter().enumerate() {
+        for (k, edge) in self.list.iter().chain(&self.implied).enumerate() {
             let (x, rate) =
                 (edge.at(u, self.dimension), difference_at(edge.nodes, self.dimension, v));
             let off = 0.5 * (dot(&x, &x) - dot(&edge.natural, &edge.natural));
-            self.demands[k] =
-                -dot(&rate, &rate) - 2.0 * alpha * dot(&x, &rate) - alpha * alpha * off;
+            if let Some(demand) = self.demands.get_mut(k) {
+                *demand = -dot(&rate, &rate) - 2.0 * alpha * dot(&x, &rate) - alpha * alpha * off;
+            }
             (self.arms[k], self.rates[k]) = (x, rate);
         }
     }
 
     /// Moves the edges on to displacements `u` (m), without their rates.
     pub(crate) fn place(&mut self, u: &[f64]) {
-        for (arm, edge) in self.arms.iter_mut().zip(&self.list) {
+        for (arm, edge) in self.arms.iter_mut().zip(self.list.iter().chain(&self.implied)) {
             *arm = edge.at(u, self.dimension);
         }
     }
@@ -152,7 +163,7 @@ impl Edges {
 
     /// Takes the accelerations `a` (m/s^2).
     pub(crate) fn accelerate(&mut self, a: &[f64]) {
-        for (k, Edge { nodes, .. }) in self.list.iter().enumerate() {
+        for (k, Edge { nodes, .. }) in self.list.iter().chain(&self.implied).enumerate() {
             self.accelerations[k] = difference_at(*nodes, self.dimension, a);
         }
     }

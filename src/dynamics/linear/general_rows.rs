@@ -4,7 +4,6 @@ use faer::Mat;
 
 use super::cholesky::Indefinite;
 use super::schur::Schur;
-use super::symmetric::Symmetric;
 use crate::elements::body::RigidPieces;
 use crate::scene::constraint::{ConstraintRow, independent_terms};
 
@@ -25,6 +24,13 @@ pub(super) struct GeneralRow {
     fixed: Vec<(usize, f64)>,
     /// Stiffness of the spring along it in the X in force.
     pub(super) spring: f64,
+}
+
+impl GeneralRow {
+    /// The part of fixed components.
+    fn of_fixed(&self, x: &[f64]) -> f64 {
+        self.fixed.iter().map(|&(dof, c)| c * x[dof]).sum()
+    }
 }
 
 impl GeneralRows {
@@ -58,10 +64,21 @@ impl GeneralRows {
         }
     }
 
-    /// Prepares for the X in force, `definite` or not.
+    /// Free degrees of freedom of each row.
+    pub(super) fn dofs(&self) -> Vec<Vec<usize>> {
+        self.rows.iter().map(|row| row.free.iter().map(|term| term.0).collect()).collect()
+    }
+
+    /// Returns the free terms of each row. The rows are to be given terms for other unknowns, so many, before each factorization from now on.
+    pub(super) fn take_terms(&mut self, unknowns: usize) -> Vec<Vec<(usize, f64)>> {
+        self.inverse_g = Mat::zeros(unknowns, self.rows.len());
+        self.rows.iter_mut().map(|row| std::mem::take(&mut row.free)).collect()
+    }
+
+    /// Prepares for the X in force, `definite` or not, whose systems `solve` solves.
     pub(super) fn factorize(
         &mut self,
-        symmetric: &mut Symmetric,
+        mut solve: impl FnMut(&mut [f64]),
         definite: bool,
     ) -> Result<(), Indefinite> {
         if self.rows.is_empty() {
@@ -70,8 +87,8 @@ impl GeneralRows {
         for (k, row) in self.rows.iter().enumerate() {
             let column = self.inverse_g.col_as_slice_mut(k);
             column.fill(0.0);
-            row.free.iter().for_each(|&(at, coefficient)| column[at] = coefficient);
-            symmetric.solve(column);
+            row.free.iter().for_each(|&(at, coefficient)| column[at] += coefficient);
+            solve(column);
         }
         for (i, row) in self.rows.iter().enumerate() {
             for j in 0..self.rows.len() {
@@ -88,27 +105,17 @@ impl GeneralRows {
         if lost.is_some() { Err(Indefinite) } else { Ok(()) }
     }
 
-    /// Corrects `free` = X^-1 f so that the rows hold.
-    pub(super) fn solve(
-        &mut self,
-        all: &[ConstraintRow],
-        d: &[f64],
-        x: &[f64],
-        free: &mut [f64],
-        mu: &mut [f64],
-    ) {
-        if self.rows.is_empty() {
-            return;
-        }
-        debug_assert_eq!(all.len(), d.len());
+    /// Asks for the values `d`, one for each of all rows, where fixed components are those of `x`.
+    pub(super) fn demand(&mut self, d: &[f64], x: &[f64]) {
         for (right, row) in self.right.iter_mut().zip(&self.rows) {
-            let fixed: f64 = row.fixed.iter().map(|&(dof, c)| c * x[dof]).sum();
-            *right = d[row.number] - fixed;
+            *right = d[row.number] - row.of_fixed(x);
         }
-        self.correct(free);
+    }
+
+    /// Writes the multipliers, where `d` was demanded, among those of all rows.
+    pub(super) fn write_multipliers(&self, d: &[f64], x: &[f64], mu: &mut [f64]) {
         for (multiplier, row) in self.right.iter().zip(&self.rows) {
-            let fixed: f64 = row.fixed.iter().map(|&(dof, c)| c * x[dof]).sum();
-            mu[row.number] = *multiplier - row.spring * (d[row.number] - fixed);
+            mu[row.number] = *multiplier - row.spring * (d[row.number] - row.of_fixed(x));
         }
     }
 

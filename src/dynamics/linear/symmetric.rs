@@ -17,6 +17,7 @@ use faer::sparse::SymbolicSparseColMat;
 
 use super::cholesky::{Cholesky, Indefinite};
 use super::entry_source::EntrySource;
+use super::free_matrix::FreeMatrix;
 use super::gradients::Gradients;
 
 /// Operations of a factorization, which uses dense blocks, in the time of one operation of an iteration.
@@ -30,13 +31,7 @@ const LEAST_TRUST: f64 = 0.1;
 
 /// A symmetric matrix X at the free degrees of freedom, with what solves its systems.
 pub(super) struct Symmetric {
-    /// Free degrees of freedom, ascending.
-    free: Vec<usize>,
-    /// Sources of the entries of the lower triangle.
-    sources: Vec<EntrySource>,
-    /// Contributions of nodes that move with others: entry, source and weight.
-    carried: Vec<(usize, EntrySource, f64)>,
-    values: Vec<f64>,
+    matrix: FreeMatrix,
     cholesky: Cholesky,
     /// None where a factor is cheap.
     rented: Option<BudgetedCg>,
@@ -64,22 +59,19 @@ impl Symmetric {
     /// For the lower triangle `pattern`, which is analysed as in [`Cholesky::new`]. `gradients` creates the
     /// iterative solver, if that may pay.
     pub(super) fn new(
-        free: Vec<usize>,
-        sources: Vec<EntrySource>,
-        carried: Vec<(usize, EntrySource, f64)>,
+        matrix: FreeMatrix,
         pattern: SymbolicSparseColMat<usize>,
         order: Option<Vec<usize>>,
         gradients: Option<impl FnOnce() -> Gradients>,
     ) -> Self {
-        let values = vec![0.0; sources.len()];
         let cholesky = Cholesky::new(pattern, order);
         // one product and some vectors; a solve passes twice over the factor
-        let iteration = (4 * values.len() + 12 * free.len()) as f64;
+        let iteration = (4 * matrix.values.len() + 12 * matrix.free.len()) as f64;
         let rent = cholesky.work() / DENSE_SPEED / iteration;
         let saved = 4.0 * cholesky.entries() as f64 / iteration;
         let gradients = gradients.filter(|_| rent >= WORTH_ITERATING);
         let rented = gradients.map(|gradients| BudgetedCg::new(gradients(), rent, saved));
-        Self { free, sources, carried, values, cholesky, rented }
+        Self { matrix, cholesky, rented }
     }
 
     /// Has iterations tried before a factor, up to so many more than solves with the factor would cost.
@@ -109,18 +101,15 @@ impl Symmetric {
         more: &[(usize, f64)],
     ) -> Result<(), Indefinite> {
         self.rented.iter_mut().for_each(|rented| rented.is_open = false);
-        self.values.iter_mut().zip(&self.sources).for_each(|(x, &source)| *x = value(source));
-        for &(at, source, share) in &self.carried {
-            self.values[at] += share * value(source);
-        }
-        more.iter().for_each(|&(at, more)| self.values[at] += more);
-        self.cholesky.factorize(&self.values)
+        self.matrix.assemble(value);
+        more.iter().for_each(|&(at, more)| self.matrix.values[at] += more);
+        self.cholesky.factorize(&self.matrix.values)
     }
 
     /// Factorizes the matrix in force, which has turned out not to be positive definite.
     pub(super) fn factorize_indefinite(&mut self) -> Result<(), Indefinite> {
         self.end_iterations();
-        self.cholesky.factorize_indefinite(&self.values)
+        self.cholesky.factorize_indefinite(&self.matrix.values)
     }
 
     /// Ends iterations, and copies the matrix in force to where it is factorized.
@@ -129,8 +118,8 @@ impl Symmetric {
             && std::mem::take(is_open)
         {
             *matrices = matrices.saturating_sub(1);
-            let values = self.values.iter_mut().zip(&self.sources);
-            values.for_each(|(x, &source)| *x = gradients.entry(source));
+            // no node moves with others here
+            self.matrix.assemble(|source| gradients.entry(source));
         }
     }
 
@@ -139,11 +128,11 @@ impl Symmetric {
         if let Some(rented) = &mut self.rented
             && rented.is_open
         {
-            if rented.solve(&self.free, x) {
+            if rented.solve(&self.matrix.free, x) {
                 return;
             }
             self.end_iterations();
-            let factorized = self.cholesky.factorize(&self.values);
+            let factorized = self.cholesky.factorize(&self.matrix.values);
             if factorized.or_else(|_| self.factorize_indefinite()).is_err() {
                 return x.fill(f64::NAN);
             }
@@ -153,7 +142,7 @@ impl Symmetric {
 
     /// The free degrees of freedom, ascending.
     pub(super) fn free(&self) -> &[usize] {
-        &self.free
+        &self.matrix.free
     }
 
     /// Matrices that were never factorized, iterations for them and others, and factorizations of matrices that were not positive

@@ -33,6 +33,16 @@ impl<I: Integrator<System: Form> + Send> Stepper for I {
         Ok(state.len() == self.y().len() && Integrator::resume(self, t, state)?)
     }
 
+    fn restart(&mut self, t: f64, state: &[f64]) -> Result<Option<Counts>, Failed> {
+        if !I::System::IS_ODE || state.len() != self.y().len() {
+            return Ok(None);
+        }
+        let counts = Stepper::counts(self);
+        Integrator::reinit(self, t, state)?;
+        Integrator::system_mut(self).forget_counts();
+        Ok(Some(counts))
+    }
+
     fn interpolate(&mut self, t: f64, state: &mut [f64]) -> Result<(), Failed> {
         Integrator::interpolate(self, t, 0, state)?;
         Integrator::system_mut(self).full_mut().settle(t, state);

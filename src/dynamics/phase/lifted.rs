@@ -52,6 +52,17 @@ impl<I: Integrator<System = ReducedSystem>> Lifted<I> {
         self.seen.copy_from_slice(self.integrator.y());
         self.integrator.system_mut().lift(t, &self.seen, &mut self.state);
     }
+
+    /// Sees the unknowns of the model in `state` at time `t` (s); `false` if it has none there.
+    fn see(&mut self, t: f64, state: &[f64]) -> bool {
+        // mostly where the last step has led to
+        if t == self.integrator.t() && state == self.state {
+            self.seen.copy_from_slice(self.integrator.y());
+            return true;
+        }
+        let unknowns = self.integrator.system_mut().unknowns_of(t, state);
+        unknowns.inspect(|unknowns| self.seen.copy_from_slice(unknowns)).is_some()
+    }
 }
 
 impl<I: Integrator<System = ReducedSystem> + Send> Stepper for Lifted<I> {
@@ -66,17 +77,22 @@ impl<I: Integrator<System = ReducedSystem> + Send> Stepper for Lifted<I> {
     }
 
     fn resume(&mut self, t: f64, state: &[f64]) -> Result<bool, Failed> {
-        // mostly where the last step has led to
-        let y = match t == self.integrator.t() && state == self.state {
-            true => Some(self.integrator.y().to_vec()),
-            false => self.integrator.system_mut().unknowns_of(t, state),
-        };
-        let Some(y) = y else { return Ok(false) };
-        let goes_on = self.integrator.resume(t, &y)?;
+        let goes_on = self.see(t, state) && self.integrator.resume(t, &self.seen)?;
         if goes_on {
             self.state.copy_from_slice(state);
         }
         Ok(goes_on)
+    }
+
+    fn restart(&mut self, t: f64, state: &[f64]) -> Result<Option<Counts>, Failed> {
+        if !self.see(t, state) {
+            return Ok(None);
+        }
+        let counts = self.counts();
+        self.integrator.reinit(t, &self.seen)?;
+        self.integrator.system_mut().forget_counts();
+        self.state.copy_from_slice(state);
+        Ok(Some(counts))
     }
 
     fn interpolate(&mut self, t: f64, state: &mut [f64]) -> Result<(), Failed> {

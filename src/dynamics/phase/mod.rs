@@ -45,9 +45,12 @@ pub(crate) trait Stepper: Send {
     /// Lets the steps end at time `t` (s), exactly.
     fn stop_at(&mut self, t: f64) -> Result<(), Failed>;
 
-    /// Continues from `state` at time `t` (s) after a change of the forces; `false` if that needs a new
-    /// integrator.
+    /// Continues from `state` at time `t` (s) after a change of the forces; `false` if that needs a new start.
     fn resume(&mut self, t: f64, state: &[f64]) -> Result<bool, Failed>;
+
+    /// Starts again from `state` at time `t` (s), as a new integrator would, and returns the statistics until then; nothing if that needs a
+    /// new integrator.
+    fn restart(&mut self, t: f64, state: &[f64]) -> Result<Option<Counts>, Failed>;
 
     /// The state at a time within the last step.
     fn interpolate(&mut self, t: f64, state: &mut [f64]) -> Result<(), Failed>;

@@ -3,10 +3,10 @@
 //! A command edits a copy of the phase in force: new forces go into the existing equations, new constraints
 //! make new equations, and the run goes on from the state at that time. A number that a command has set once
 //! is shared by forces and phase (`SharedValue`): the next command sets it and builds nothing, so that ticks of a
-//! controller allocate nothing under methods without a new start. Checkpoints, forks and samples hold a
+//! controller allocate nothing under methods for ODEs. Checkpoints, forks and samples hold a
 //! frozen copy; each sample refers to the phase in force at its time.
 //!
-//! One-step methods keep their step size (`Integrator::resume`), multistep methods start anew: a history that
+//! One-step methods keep their step size (`Integrator::resume`), multistep methods start anew in their own memory: a history that
 //! is kept does not see a jump below the tolerance at the start of a step, and errors grow
 //! (`docs/notes/commands.md`).
 
@@ -16,7 +16,7 @@ use std::sync::Arc;
 use super::auto::Plan;
 use super::checkpoint::{Checkpoint, Kept, Record};
 use super::interval::Ending;
-use super::phase_run::{Integration, MeanSteps, PhaseRun};
+use super::phase_run::{GoesOn, Integration, MeanSteps, PhaseRun};
 use super::records::{self, energy, project};
 use super::reduced_checks::locked;
 use super::run::Run;
@@ -220,26 +220,24 @@ impl Run {
         Ok(())
     }
 
-    /// Lets the integrator continue after a jump of the forces, if one is running and can do so.
+    /// Lets the integrator continue after a jump of the forces, or start again, if one is running and can do so.
     fn keep_on(&mut self) -> Result<bool, Error> {
         let (Integration::Running(work), None) = (&mut self.integration, &self.phase_run.ended)
         else {
             return Ok(false);
         };
         work.stepper.system_mut().forget_tangents();
-        match work.stepper.resume(self.time, &self.state) {
-            Ok(true) => {
-                work.stop = f64::NAN;
-                let (system, located) =
-                    (work.stepper.system().full(), self.phase_run.plan.locates());
-                self.phase_run.interval.events.begin(system, self.time, &self.state, located);
-                self.follower.begin(&self.scene, &self.phase);
-                self.remember();
-                Ok(true)
-            }
-            Ok(false) => Ok(false),
-            Err(source) => Err(self.failure(source, 0.0)),
+        match work.go_on(self.time, &self.state) {
+            Ok(GoesOn::Here) => {}
+            Ok(GoesOn::Anew(counts)) => self.phase_run.restart(counts),
+            Ok(GoesOn::Not) => return Ok(false),
+            Err(source) => return Err(self.failure(source, 0.0)),
         }
+        let (system, located) = (work.stepper.system().full(), self.phase_run.plan.locates());
+        self.phase_run.interval.events.begin(system, self.time, &self.state, located);
+        self.follower.begin(&self.scene, &self.phase);
+        self.remember();
+        Ok(true)
     }
 
     /// A state to return to.

@@ -6,7 +6,7 @@ use super::auto::{LONG, Plan, TRIALS};
 use super::events::Events;
 use super::interval::{Ending, Interval};
 use super::sampling::Schedule;
-use crate::dynamics::phase::{Integrable, Stepper};
+use crate::dynamics::phase::{Failed, Integrable, Stepper};
 use crate::dynamics::report::{Counts, PhaseReport};
 use crate::scene::settings::Method;
 use crate::scene::timeline::Phase;
@@ -60,6 +60,16 @@ pub(super) struct Running {
     pub(super) means: [f64; TRIALS],
 }
 
+/// How an integrator goes on after a change of the forces.
+pub(super) enum GoesOn {
+    /// With the step that it had.
+    Here,
+    /// From a new start, after these statistics.
+    Anew(Counts),
+    /// Not at all: a new one is needed.
+    Not,
+}
+
 /// The mean size of the steps of a plan, whatever intervals they lie in: of the last ones, and of those since the last review.
 #[derive(Default)]
 pub(super) struct MeanSteps {
@@ -101,6 +111,16 @@ impl Running {
         Self { stepper, stop, sample, steps: 0, trial_began: time, means: [f64::INFINITY; TRIALS] }
     }
 
+    /// Goes on from `state` at time `t` (s) after a change of the forces.
+    pub(super) fn go_on(&mut self, t: f64, state: &[f64]) -> Result<GoesOn, Failed> {
+        let goes_on = match self.stepper.resume(t, state)? {
+            true => GoesOn::Here,
+            false => self.stepper.restart(t, state)?.map_or(GoesOn::Not, GoesOn::Anew),
+        };
+        self.stop = f64::NAN;
+        Ok(goes_on)
+    }
+
     /// Size of the next step (s), if it is known.
     pub(super) fn next_step(&self) -> Option<f64> {
         Some(self.stepper.next_step()).filter(|h| h.is_finite() && *h > 0.0)
@@ -131,6 +151,12 @@ impl PhaseRun {
     pub(super) fn follow(&mut self, plan: Plan) {
         (self.plan, self.mean_steps) = (plan, MeanSteps::default());
         self.counts.notice = None;
+    }
+
+    /// Counts the cost of an integrator that has started again.
+    pub(super) fn restart(&mut self, counts: Counts) {
+        self.counts.add(counts);
+        self.mean_steps = MeanSteps::default();
     }
 
     /// Ends an integrator and returns its equations.

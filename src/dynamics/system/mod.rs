@@ -150,14 +150,14 @@ impl System {
         };
         let mut edges = Edges::new(matrices.rigid.as_deref(), &matrices.positions, dimension);
         let all_edges = edges.clone();
-        let mut inertia = ConstrainedSolver::new(&matrices, &rows, &edges.list, coupling);
+        let mut inertia = ConstrainedSolver::new(&matrices, &rows, &edges, coupling);
         let values = &matrices.inertia.values;
         let mut begun = inertia.begin(EXACT, |source| values[source.entry()]);
         if let (Some(solver), Ok(())) = (&mut inertia.edges, &begun) {
             let is_kept = solver.independent(&edges);
             if is_kept.contains(&false) {
                 edges = edges.retained(&is_kept);
-                inertia = ConstrainedSolver::new(&matrices, &rows, &edges.list, coupling);
+                inertia = ConstrainedSolver::new(&matrices, &rows, &edges, coupling);
                 begun = inertia.begin(EXACT, |source| values[source.entry()]);
             }
         }
@@ -175,8 +175,7 @@ impl System {
                 ),
             });
         }
-        let mut newton =
-            NewtonMatrix::new(&matrices, &rows, &edges.list, follows(&matrices, &forces));
+        let mut newton = NewtonMatrix::new(&matrices, &rows, &edges, follows(&matrices, &forces));
         let (of_rigid, flow, forces) = parted(forces);
         let amounts = flow_of(&flow).map_or(0, |flow| flow.start().len());
         let strains = matrices.branches.as_ref().map_or(0, Branches::unknowns);

@@ -134,7 +134,7 @@ impl System {
         };
         pairs.retain(|&[a, b]| matrices.pattern().find(a, b).is_none());
         self.matrices = Arc::new(matrices.with_pairs(&pairs));
-        self.newton.move_to(&self.matrices, &self.rows, &self.edges.list);
+        self.newton.move_to(&self.matrices, &self.rows, &self.edges);
     }
 
     /// Adds to Kt, just updated, the tangent of Maxwell branches in a step of the parameter `gamma`: the

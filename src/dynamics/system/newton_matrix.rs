@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::differences::Differences;
 use crate::base::sparse::BlockMatrix;
-use crate::dynamics::linear::{ConstrainedSolver, Coupling, Edge, FlowMatrix};
+use crate::dynamics::linear::{ConstrainedSolver, Edges, FlowMatrix};
 use crate::dynamics::matrices::Matrices;
 use crate::scene::constraint::ConstraintRow;
 
@@ -92,12 +92,12 @@ impl NewtonMatrix {
     pub(super) fn new(
         matrices: &Matrices,
         rows: &[ConstraintRow],
-        edges: &[Edge],
+        edges: &Edges,
         follows: bool,
     ) -> Self {
         let dofs = matrices.dofs();
         Self {
-            solver: ConstrainedSolver::new(matrices, rows, edges, Coupling::AllAxes),
+            solver: ConstrainedSolver::of_newton_matrix(matrices, rows, edges),
             stiffness: Tangent::new(matrices, &matrices.stiffness, follows),
             damping: Tangent::new(matrices, &matrices.damping, follows),
             differences: Differences::new(matrices.scales),
@@ -122,8 +122,8 @@ impl NewtonMatrix {
     }
 
     /// Continues with matrices on another pattern, without tangents yet.
-    pub(super) fn move_to(&mut self, matrices: &Matrices, rows: &[ConstraintRow], edges: &[Edge]) {
-        let mut solver = ConstrainedSolver::new(matrices, rows, edges, Coupling::AllAxes);
+    pub(super) fn move_to(&mut self, matrices: &Matrices, rows: &[ConstraintRow], edges: &Edges) {
+        let mut solver = ConstrainedSolver::of_newton_matrix(matrices, rows, edges);
         solver.set_counts(self.solver.counts());
         self.solver = solver;
         self.stiffness = Tangent::new(matrices, &matrices.stiffness, self.follows);

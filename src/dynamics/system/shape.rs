@@ -6,7 +6,7 @@
 
 use super::System;
 use crate::base::vector::largest;
-use crate::dynamics::linear::Edges;
+use crate::dynamics::linear::{ConstrainedSolver, Edges};
 use crate::integrators::ode::Failure;
 
 /// Round-off tolerance for the velocities of a rigid piece, relative to the largest.
@@ -70,7 +70,8 @@ impl System {
         self.forces.append(&mut self.of_rigid);
         self.edges = Edges::default();
         self.inertia.edges = None;
-        self.newton.solver.edges = None;
+        self.newton.solver =
+            ConstrainedSolver::of_newton_matrix(&self.matrices, &self.rows, &self.edges);
     }
 
     /// Whether rigid pieces move in it.

@@ -183,7 +183,7 @@ impl System {
             return Vec::new();
         }
         let mut solver =
-            ConstrainedSolver::new(&self.matrices, &self.rows, &self.edges.list, Coupling::AllAxes);
+            ConstrainedSolver::new(&self.matrices, &self.rows, &self.edges, Coupling::AllAxes);
         let mut shift = SHIFT * highest;
         // Kt may have become indefinite by compression
         while !self.shift(&mut solver, shift) {

@@ -103,7 +103,7 @@ pub fn with_mass<S: Ode>(system: S, mass: impl Into<MassMatrix>) -> WithMass<S> 
 }
 
 impl<S: Ode> Ode for WithMass<S> {
-    delegate!(Ode in system: equations, companions, explicit_part);
+    delegate!(Ode in system: equations, companions, explicit_part, own_derivatives);
 
     fn mass_kind(&self) -> MassKind {
         MassKind::Constant

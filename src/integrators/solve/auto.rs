@@ -1,6 +1,7 @@
 //! The engine of [`Method::Auto`]: one method at a time, from step to step the one that leads farther for its work.
 //!
-//! It begins with the explicit method, which notices where stability limits its steps. An implicit one is then tried for some steps, if as
+//! It begins with the explicit method, which notices where stability limits its steps; or with the implicit one where its steps cost no more, as
+//! those of many unknowns with few entries, and the fastest rate at the start shows that stability would limit the others. An implicit one is then tried for some steps, if as
 //! many are left that this may pay, and kept if it leads farther for its work ([`Costs`]). Where the explicit method is the better one again,
 //! it is tried in turn. A trial that is lost makes the next one twice as dear. Where a method cannot go on, another one is tried.
 
@@ -151,13 +152,31 @@ impl<'a> AutoEngine<'a> {
         options: &Options,
     ) -> Result<Self, Error> {
         let costs = Costs::new(y.len(), options.linear_solver.as_ref(), options.tolerances.rtol);
-        // made once, so that its options are refused before the first step
-        let system = Current::new(costs.implicit, system, (t, y), options)?.into_system();
-        let candidate = Candidate::Explicit;
-        let current = Some(Current::new(candidate, system, (t, y), options)?);
-        let reason = "its steps cost least, and show whether stability limits them".into();
+        // made in any case, so that its options are refused before the first step
+        let mut current = Current::new(costs.implicit, system, (t, y), options)?;
+        let mut past = Statistics::default();
+        let mut stable = None;
+        if costs.may_begin_implicit() {
+            let rate = Rate::of(current.engine_mut(), &options.tolerances, t, y);
+            past.evaluations = EVALUATIONS;
+            stable = rate.filter(|rate| !rate.oscillates).map(|rate| REACH / rate.size);
+        }
+        let limited = stable.filter(|step| costs.tries_implicit(0.0, (end - t) / step, 0));
+        let (candidate, reason) = match limited {
+            Some(step) => {
+                let reason =
+                    format!("stability limits explicit steps to {step:.1e}, which cost no less");
+                (costs.implicit, reason)
+            }
+            None => {
+                let system = current.into_system();
+                current = Current::new(Candidate::Explicit, system, (t, y), options)?;
+                let reason = "its steps cost least, and show whether stability limits them";
+                (Candidate::Explicit, reason.into())
+            }
+        };
         Ok(Self {
-            current,
+            current: Some(current),
             candidate,
             options: options.clone(),
             costs,
@@ -171,7 +190,7 @@ impl<'a> AutoEngine<'a> {
             lost: [0; 3],
             next_look: FIRST_LOOK,
             stop: None,
-            past: Statistics::default(),
+            past,
             uses: vec![MethodUse { t, method: candidate.method(), reason }],
         })
     }

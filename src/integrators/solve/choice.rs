@@ -73,6 +73,11 @@ impl Costs {
         }
     }
 
+    /// Whether steps of the implicit method cost no more than explicit ones, so that a run may as well begin with it.
+    pub(super) fn may_begin_implicit(&self) -> bool {
+        self.of(self.implicit) <= self.explicit
+    }
+
     /// The steps of a trial of this method.
     pub(super) fn trial(candidate: Candidate) -> u64 {
         if candidate == Candidate::Bdf { TRIAL_OF_BDF } else { TRIAL }
@@ -132,6 +137,17 @@ mod tests {
             assert_eq!(implicit(1000, Some(&klu), rtol), Bdf, "{rtol:e}");
         }
         assert_eq!(implicit(2, Some(&LinearSolver::Custom), 1e-3), Bdf);
+    }
+
+    /// Those of many unknowns, few of which occur in each equation; not of few, nor where all depend on all.
+    #[test]
+    fn implicit_steps_that_cost_no_more_may_be_the_first() {
+        let begins = |n: usize, solver: Option<&LinearSolver>| {
+            Costs::new(n, solver, 1e-5).may_begin_implicit()
+        };
+        let band = LinearSolver::Band { lower: 1, upper: 1, jacobian: Jacobian::Supplied };
+        assert!([8, 40, 1000].iter().all(|&n| !begins(n, None)));
+        assert!(begins(1000, Some(&band)) && !begins(20, Some(&band)));
     }
 
     /// Few limited steps that are left are made; more of them ask for a trial, and after a lost one for twice as many.

@@ -105,30 +105,28 @@ impl Method {
             };
             return refused("method", format!("{self:?}"), help);
         }
-        let multistep = matches!(self, Self::Bdf | Self::Adams | Self::Ida);
-        // those written in Rust
-        let internal = matches!(self, Self::DormandPrince | Self::Rosenbrock);
-        if let (Some(order), false) = (options.max_order, multistep || self == Self::Rosenbrock) {
-            return refused("max_order", order.to_string(), "has one order, that of its table");
+        let facts = self.information();
+        if let (Some(order), false) = (options.max_order, facts.has_orders) {
+            return refused("max_order", order.to_string(), "has one order");
         }
-        if let (Some(solver), true) = (&options.linear_solver, self.is_explicit()) {
+        if let (Some(solver), false) = (&options.linear_solver, facts.is_implicit) {
             return refused(
                 "linear_solver",
                 format!("{solver:?}"),
                 "is explicit and solves no linear systems",
             );
         }
-        if options.sensitivities.is_some() && !multistep {
+        if options.sensitivities.is_some() && !facts.has_sensitivities {
             return refused("sensitivities", "given".into(), "has none: take Bdf, Adams or Ida");
         }
-        if equations.quadrature_count() > 0 && !multistep {
+        if equations.quadrature_count() > 0 && !facts.has_sensitivities {
             let help = "computes none: make them unknowns, or take Bdf, Adams or Ida";
             return refused("integrals", equations.quadrature_count().to_string(), help);
         }
-        if let (Some(h), true) = (options.min_step, internal) {
+        if let (Some(h), false) = (options.min_step, facts.has_bounds) {
             return refused("min_step", h.to_string(), "has no such limit");
         }
-        if !options.sign_constraints.is_empty() && internal {
+        if !options.sign_constraints.is_empty() && !facts.has_bounds {
             return refused("sign_constraints", "given".into(), "keeps no signs: take another one");
         }
         if options.project && self != Self::Bdf {

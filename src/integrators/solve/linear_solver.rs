@@ -26,7 +26,8 @@ impl Options {
         t: f64,
         y: &[f64],
     ) -> Result<Cow<'_, Self>, InputError> {
-        if method.is_explicit() || self.linear_solver.is_some() || equations.has_mass() {
+        if !method.information().is_implicit || self.linear_solver.is_some() || equations.has_mass()
+        {
             return Ok(Cow::Borrowed(self));
         }
         let supplied = match &*equations {

@@ -1,5 +1,8 @@
-//! The methods.
+//! The methods, each with its facts in one row.
 
+use std::{fmt, str::FromStr};
+
+use crate::base::input::InputError;
 use crate::integrators::sundials::ButcherTable;
 
 /// A method at work, from a time on.
@@ -15,13 +18,15 @@ pub struct MethodUse {
     pub reason: String,
 }
 
-/// An integration method.
+/// An integration method: [`information`](Self::information) has the facts of each, and a method is read from its word there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum Method {
     /// The method that leads farthest for its work, which is counted, never measured, and changes with the solution: that of Dormand and Prince;
-    /// where stability limits its steps a Rosenbrock method or BDF, by tolerance and number of unknowns; and back.
+    /// where stability limits its steps a Rosenbrock method or BDF, by tolerance and number of unknowns; and back. (Where stability limits them by
+    /// fast vibrations that are not damped, it stays with explicit steps, which excite these up to the tolerances: name an implicit method
+    /// if they are not to be followed.)
     /// [`Solution::methods`](super::Solution::methods) tells which, when and why.
     ///
     /// Where only one method can do what is asked for, it is that one: IDA for DAEs and mass matrices; BDF for sensitivities, integrals,
@@ -46,6 +51,42 @@ pub enum Method {
     Ida,
 }
 
+/// Facts of a [`Method`]: words, refusals and messages follow from them, here and in the Python module.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct MethodInformation {
+    /// The word for it, from which it is read, and by which [`Display`](fmt::Display) writes it; for a Runge-Kutta method the name of its table.
+    pub name: &'static str,
+    /// Its name in error messages.
+    pub long_name: &'static str,
+    /// Whether it solves linear systems; else stability bounds its steps.
+    pub is_implicit: bool,
+    /// Whether it integrates backward in time, too.
+    pub goes_backward: bool,
+    /// The mass matrices M that it takes, in M y' = f(t, y).
+    pub mass: MassMatrices,
+    /// Whether it is a multistep method of SUNDIALS, and so computes integrals, sensitivities and gradients.
+    pub has_sensitivities: bool,
+    /// Whether it has a choice of orders: [`Options::max_order`](super::Options::max_order).
+    pub has_orders: bool,
+    /// Whether it has a lower bound of steps and keeps signs of unknowns.
+    pub(super) has_bounds: bool,
+    /// The limit of its steps for ODEs without a mass matrix.
+    pub(super) limit: Limit,
+}
+
+/// Mass matrices that a method takes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum MassMatrices {
+    /// None but the identity.
+    None,
+    /// Regular ones.
+    Regular,
+    /// Singular ones, too.
+    Singular,
+}
+
 /// The limit of the steps of a method, besides accuracy.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Limit {
@@ -60,36 +101,125 @@ pub(super) enum Limit {
 }
 
 impl Method {
-    /// The limit of its steps for ODEs without a mass matrix.
-    pub(super) fn limit(self) -> Limit {
+    /// The methods that are no tables of ARKODE.
+    const NAMED: [Self; 6] =
+        [Self::Auto, Self::Bdf, Self::Adams, Self::DormandPrince, Self::Rosenbrock, Self::Ida];
+
+    /// The facts of the method, its row.
+    #[must_use]
+    pub fn information(self) -> MethodInformation {
+        // what most have
+        let multistep = MethodInformation {
+            name: "bdf",
+            long_name: "CVODE's BDF",
+            is_implicit: true,
+            goes_backward: true,
+            mass: MassMatrices::None,
+            has_sensitivities: true,
+            has_orders: true,
+            has_bounds: true,
+            limit: Limit::Oscillations,
+        };
+        let internal = MethodInformation {
+            goes_backward: false,
+            has_sensitivities: false,
+            has_bounds: false,
+            ..multistep
+        };
         match self {
-            Self::Bdf => Limit::Oscillations,
-            Self::Adams => Limit::FastModes,
-            Self::DormandPrince => Limit::Watched,
-            method if method.is_explicit() => Limit::FastModes,
-            _ => Limit::None,
+            Self::Auto => MethodInformation {
+                name: "auto",
+                long_name: "the automatic choice",
+                mass: MassMatrices::Singular,
+                limit: Limit::None,
+                ..multistep
+            },
+            Self::Bdf => multistep,
+            Self::Adams => MethodInformation {
+                name: "adams",
+                long_name: "CVODE's Adams methods",
+                limit: Limit::FastModes,
+                ..multistep
+            },
+            Self::RungeKutta(table) => MethodInformation {
+                name: table.name(),
+                long_name: table.name(),
+                is_implicit: table.is_implicit(),
+                mass: MassMatrices::Regular,
+                has_sensitivities: false,
+                has_orders: false,
+                limit: if table.is_implicit() { Limit::None } else { Limit::FastModes },
+                ..multistep
+            },
+            Self::DormandPrince => MethodInformation {
+                name: "dormand-prince",
+                long_name: "Dormand-Prince",
+                is_implicit: false,
+                has_orders: false,
+                limit: Limit::Watched,
+                ..internal
+            },
+            Self::Rosenbrock => MethodInformation {
+                name: "rosenbrock",
+                long_name: "the Rosenbrock method",
+                limit: Limit::None,
+                ..internal
+            },
+            Self::Ida => MethodInformation {
+                name: "ida",
+                long_name: "IDA",
+                mass: MassMatrices::Singular,
+                limit: Limit::None,
+                ..multistep
+            },
         }
     }
 
     /// Its name in error messages.
     #[must_use]
     pub fn name(self) -> String {
-        match self {
-            Self::Auto => "the automatic choice".into(),
-            Self::Bdf => "CVODE's BDF".into(),
-            Self::Adams => "CVODE's Adams methods".into(),
-            Self::RungeKutta(table) => format!("ARKODE's {}", table.name()),
-            Self::DormandPrince => "Dormand-Prince".into(),
-            Self::Rosenbrock => "the Rosenbrock method".into(),
-            Self::Ida => "IDA".into(),
-        }
+        let name = self.information().long_name;
+        if matches!(self, Self::RungeKutta(_)) { format!("ARKODE's {name}") } else { name.into() }
     }
+}
 
-    /// Whether it solves no linear systems.
-    pub(super) fn is_explicit(self) -> bool {
-        match self {
-            Self::RungeKutta(table) => !table.is_implicit(),
-            method => method == Self::DormandPrince,
+impl fmt::Display for Method {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.information().name)
+    }
+}
+
+impl FromStr for Method {
+    type Err = InputError;
+
+    /// Reads the [name](MethodInformation::name) of a method, or of a table of ARKODE.
+    fn from_str(name: &str) -> Result<Self, InputError> {
+        if let Some(method) = Self::NAMED.into_iter().find(|m| m.information().name == name) {
+            return Ok(method);
         }
+        name.parse().map(Self::RungeKutta).map_err(|_| {
+            let names = Self::NAMED.map(|method| method.information().name).join(", ");
+            let help = format!(
+                "it is one of {names}, or a table of ARKODE, such as {}",
+                ButcherTable::default()
+            );
+            InputError::new("method", format!("\"{name}\""), help)
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_are_read_as_they_are_written() {
+        let tables = ButcherTable::ALL.into_iter().chain(ButcherTable::IMEX);
+        let all = Method::NAMED.into_iter().chain(tables.map(Method::RungeKutta));
+        for method in all {
+            assert_eq!(method.to_string().parse::<Method>(), Ok(method));
+        }
+        let error = "RK5".parse::<Method>().unwrap_err().to_string();
+        assert!(error.contains("RK5") && error.contains("rosenbrock") && error.contains("ARKODE"));
     }
 }

@@ -49,7 +49,7 @@ use crate::integrators::common::{
 pub struct Run<'a> {
     pub(super) engine: Box<dyn Engine + 'a>,
     /// The method, unless the engine changes between several.
-    method: MethodUse,
+    pub(super) method: MethodUse,
     pub(super) events: Vec<Event<'a>>,
     pub(super) watches: Vec<EventTracker>,
     pub(super) counts: Vec<u32>,
@@ -205,7 +205,7 @@ impl<'a> Run<'a> {
             equations = surfaces.keep(equations);
             sides = Some(surfaces.sides().clone());
         }
-        let limit = if equations.has_mass() { Limit::None } else { method.limit() };
+        let limit = if equations.has_mass() { Limit::None } else { method.information().limit };
         let mut engine = method.engine(equations, span, &y, options)?;
         let jumps = events.iter().any(Event::may_go_on) || !breaks.is_empty();
         if options.sensitivities.is_some() && jumps && !engine.can_be_consistent() {

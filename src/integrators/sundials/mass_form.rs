@@ -5,7 +5,7 @@ use faer::MatMut;
 use super::{linear_solver::LinearSolver, stored_matrix::StoredMatrix};
 use crate::integrators::{
     common::{Error, check_whole},
-    ode::{BandMut, Dae, Failure, MassKind, Ode, call, delegate::delegate},
+    ode::{BandMut, Dae, Failure, MassKind, Ode, Storage, call, delegate::delegate},
 };
 
 /// The DAE M y' - f(t, y) = 0 of an [`Ode`] with a mass matrix, for [`Ida`](super::Ida).
@@ -13,7 +13,8 @@ use crate::integrators::{
 /// M may be singular: M = diag(1, 1, 0) makes the third equation a constraint, 0 = f3(t, y). The equations
 /// have to be of index 1, that is, M with the derivatives of the constraints has to be regular.
 ///
-/// Its Jacobians dF/dy + cj dF/dy' = cj M - df/dy are made of those of the system.
+/// Its Jacobians dF/dy + cj dF/dy' = cj M - df/dy are made of those of the system; so are, for an M that parameters do not change, the
+/// derivatives that sensitivities and adjoint gradients take.
 ///
 /// ```
 /// use pliant::{
@@ -123,6 +124,7 @@ impl<S: Ode> Dae for MassForm<S> {
         fn root_count() -> usize;
         fn quadrature_count() -> usize;
         fn parameters() -> &[f64];
+        fn supplied_jacobian() -> Option<Storage<'_>>;
     }
 
     fn residual(
@@ -134,7 +136,7 @@ impl<S: Ode> Dae for MassForm<S> {
     ) -> Result<(), Failure> {
         self.update(t)?;
         call::rhs(&mut self.system, t, y, residual)?;
-        residual.iter_mut().for_each(|r| *r = -*r);
+        negate(residual);
         self.mass.each(|i, j, value| residual[i] += value * yp[j]);
         Ok(())
     }
@@ -183,6 +185,22 @@ impl<S: Ode> Dae for MassForm<S> {
         Ok(())
     }
 
+    fn jacobian_times(
+        &mut self,
+        t: f64,
+        cj: f64,
+        y: &[f64],
+        _yp: &[f64],
+        v: &[f64],
+        jv: &mut [f64],
+    ) -> Result<(), Failure> {
+        self.prepare(t, y)?;
+        call::jacobian_times(&mut self.system, t, y, &self.f, v, jv)?;
+        negate(jv);
+        self.mass.each(|i, j, value| jv[i] += cj * value * v[j]);
+        Ok(())
+    }
+
     fn roots(&mut self, t: f64, y: &[f64], _yp: &[f64], g: &mut [f64]) -> Result<(), Failure> {
         call::roots(&mut self.system, t, y, g)
     }
@@ -197,8 +215,58 @@ impl<S: Ode> Dae for MassForm<S> {
         call::quadratures(&mut self.system, t, y, qdot)
     }
 
+    fn sensitivity_residual(
+        &mut self,
+        t: f64,
+        y: &[f64],
+        _yp: &[f64],
+        parameter: usize,
+        s: &[f64],
+        sp: &[f64],
+        residual: &mut [f64],
+    ) -> Result<(), Failure> {
+        self.prepare(t, y)?;
+        call::sensitivity_rhs(&mut self.system, t, y, &self.f, parameter, s, residual)?;
+        negate(residual);
+        self.mass.each(|i, j, value| residual[i] += value * sp[j]);
+        Ok(())
+    }
+
+    fn adjoint_residual(
+        &mut self,
+        t: f64,
+        y: &[f64],
+        _yp: &[f64],
+        lambda: &[f64],
+        mu: &[f64],
+        out: &mut [f64],
+    ) -> Result<(), Failure> {
+        self.update(t)?;
+        call::adjoint_rhs(&mut self.system, t, y, lambda, out)?;
+        negate(out);
+        self.mass.add_transposed_times(1.0, mu, out);
+        Ok(())
+    }
+
+    fn adjoint_parameters(
+        &mut self,
+        t: f64,
+        y: &[f64],
+        _yp: &[f64],
+        lambda: &[f64],
+        out: &mut [f64],
+    ) -> Result<(), Failure> {
+        call::adjoint_parameters(&mut self.system, t, y, lambda, out)?;
+        negate(out);
+        Ok(())
+    }
+
     fn set_parameters(&mut self, values: &[f64]) {
         self.known = false;
         self.system.set_parameters(values);
     }
+}
+
+fn negate(numbers: &mut [f64]) {
+    numbers.iter_mut().for_each(|number| *number = -*number);
 }

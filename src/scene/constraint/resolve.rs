@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::ptr;
 
 use super::prescribed::Prescribed;
+use super::rigid_holds::with_directions;
 use super::row::{ConstraintRow, NOTHING_NEW, RowMotion, independent_terms};
 use super::start::PhaseStart;
 use super::turn::Turning;
@@ -75,6 +76,8 @@ pub(crate) fn rows<'a>(
         row.is_of_rigid = row.terms.iter().any(|(dof, _)| rigid.contains(dof / dimension));
     }
     let rows = without_repetitions(rows, dimension, phase)?;
+    let rows = without_rigid_repetitions(rows, rigid, dimension, phase, start.time)?;
+    let rows = with_directions(rows, body, rigid, start);
     without_rigid_repetitions(rows, rigid, dimension, phase, start.time)
 }
 

@@ -4,10 +4,15 @@
 //! between them changes by the square of the angle. No equations of motion have such a constraint, and the row, or an edge of
 //! the piece, would be left out of them as if it were implied. Where what follows for small motions follows for large
 //! ones, too, as between two nodes of an axis, nothing is lost.
+//!
+//! Two nodes that are held, or moved alike, along the line through both keep its direction, so that rows of that direction take the
+//! place of the second one ([`with_directions`]). Other rows that are lost are refused.
+
+use std::ptr;
 
 use nalgebra::{DMatrix, DVector, Rotation3, Vector3};
 
-use super::row::{ConstraintRow, NOTHING_NEW, independent_terms};
+use super::row::{ConstraintRow, NOTHING_NEW, RowMotion, independent_terms};
 use super::start::PhaseStart;
 use crate::base::input::InputError;
 use crate::base::vector::{dot, norm};
@@ -23,6 +28,77 @@ const TRIED: f64 = 0.1;
 const IMPLIED: f64 = 1e-6;
 /// Rounds of the search for a motion that the other rows allow. Each leaves a tenth or so.
 const ROUNDS: usize = 30;
+
+/// Part of the distance of two nodes by which the line through both may be off the axis along which they are held.
+const ALIGNED: f64 = 1e-5;
+
+/// The rows with those of the direction of a line in the place of rows along it that are lost otherwise: two nodes of a rigid piece at a
+/// distance r along n, held along n or moved alike, keep the components of r across n.
+pub(super) fn with_directions(
+    mut rows: Vec<ConstraintRow>,
+    body: &Body,
+    pieces: &RigidPieces,
+    start: &PhaseStart,
+) -> Vec<ConstraintRow> {
+    for frame in pieces.frames() {
+        loop {
+            let piece = Piece::new(frame, &rows, (body, pieces), start.u);
+            let lost = piece.lost_row().and_then(|(row, _)| {
+                let own = rows.iter().position(|other| ptr::eq(other, row))?;
+                let of_piece = piece.rows.iter().map(|(other, _)| *other);
+                Some((own, directions(row, of_piece, body, start)?))
+            });
+            let Some((own, directions)) = lost else { break };
+            rows.splice(own..=own, directions);
+        }
+    }
+    rows
+}
+
+/// The rows of the direction of the line from the node of another one of the rows of a piece to that of `row`, which is along both; `None`
+/// if there is no such row.
+fn directions<'a>(
+    row: &ConstraintRow,
+    mut of_piece: impl Iterator<Item = &'a ConstraintRow>,
+    body: &Body,
+    start: &PhaseStart,
+) -> Option<Vec<ConstraintRow>> {
+    let d = body.dimension();
+    let along = |row: &ConstraintRow| {
+        let mut along = Vector3::zeros();
+        row.terms.iter().for_each(|(dof, c)| along[dof % d] = *c);
+        along.normalize()
+    };
+    let place = |node: usize| {
+        let x = body.mesh().position(node);
+        Vector3::from_fn(|i, _| if i < d { x[i] + start.u[node * d + i] } else { 0.0 })
+    };
+    let (node, own) = (row.node(d)?, along(row));
+    let other = of_piece.find_map(|other| {
+        let from = other.node(d).filter(|from| *from != node)?;
+        let arm = place(node) - place(from);
+        let is_along = |n: &Vector3<f64>| arm.cross(n).norm() < ALIGNED * arm.norm();
+        (is_along(&own) && is_along(&along(other)) && other.motion.is_same(&row.motion))
+            .then_some(from)
+    })?;
+    // the axes that are most across it, less their parts along it
+    let mut axes: Vec<usize> = (0..d).collect();
+    axes.sort_by(|a, b| own[*a].abs().total_cmp(&own[*b].abs()));
+    let across = axes[..d - 1].iter().map(|&axis| {
+        let unit = Vector3::from_fn(|i, _| if i == axis { 1.0 } else { 0.0 });
+        let across = unit - own * own[axis];
+        let of_node = |node: usize, sign: f64| {
+            let components = (0..d).filter(move |&i| across[i] != 0.0);
+            components.map(move |i| (node * d + i, sign * across[i]))
+        };
+        let mut terms: Vec<_> = of_node(node, 1.0).chain(of_node(other, -1.0)).collect();
+        terms.sort_unstable_by_key(|(dof, _)| *dof);
+        let at = terms.iter().map(|(dof, c)| c * start.u[*dof]).sum();
+        let motion = RowMotion::Linear { start: at, since: start.time, velocity: 0.0 };
+        ConstraintRow { terms, motion, is_of_rigid: true }
+    });
+    Some(across.collect())
+}
 
 /// # Errors
 /// Rows on one rigid piece that others imply for small motions, and not for large ones.

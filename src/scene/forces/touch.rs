@@ -4,11 +4,12 @@
 //! The energy is an integral over both surfaces. At a quadrature point x of a surface, which stands for the area a,
 //!
 //! ```text
-//! (a/2) sum_i w_i phi(d_i(x))
+//! p a sum_i w_i phi(d_i(x))
 //! ```
 //!
-//! with the distances d_i from the facets (segments in the plane, triangles in space), edges and corners of the other
-//! surface, and the [law](law::Law) phi, 0 from the contact distance on. The weights are those of inclusion and
+//! with the part p that the points of its surface have, the distances d_i from the facets (segments in the plane, triangles
+//! in space), edges and corners of the other surface, and the [law](law::Law) phi, 0 from
+//! the contact distance on. The weights are those of inclusion and
 //! exclusion: 1 for a facet, 1 less the number of its facets for an edge, and what makes the sum 1 for a corner. Where
 //! the surface is flat or convex all terms but that of the nearest point cancel, so that a point which slides over an
 //! edge is pushed as by a smooth surface (M. Li, Z. Ferguson, T. Schneider et al., *Convergent incremental potential
@@ -16,7 +17,9 @@
 //!
 //! Edges that cross edges between these points have an energy of their own ([`edge_pairs`]).
 //!
-//! Half of the energy is from the points of each surface, so that no decision on sides or facets is needed.
+//! The points of each surface have half of the energy where meshes are alike, so that no decision on sides or facets is needed.
+//! Those of a coarse surface, which stand for more than lies over them and would press on single nodes, have less: where its
+//! facets are r > 2 times as large, 1/(1 + (r/2)^4).
 //! Facets are as curved as their shape functions make them (`elements/basis/nearest.rs`: Newton's method for
 //! the nearest place within the face, else that of its edges and corners), so that points and the places
 //! opposite them load nodes alike. Damping and friction act pair by pair, with exact derivatives. Distances

@@ -3,7 +3,7 @@
 use faer::Mat;
 use faer::prelude::Solve;
 
-use super::{ConstrainedSolver, Coupling, EXACT, EntrySource, nodal_multipliers};
+use super::{ConstrainedSolver, Coupling, EXACT, Edges, EntrySource, nodal_multipliers};
 use crate::scene::constraint::{Axis, ConstraintRow, PhaseStart};
 use crate::studies::samples::SQUARE_MATERIAL;
 use crate::{Body, Cells, Inertia, Mesh, Phase, Scene, Strain};
@@ -44,7 +44,7 @@ fn compare(scene: &Scene, coupling: Coupling, [mass, stiffness]: [f64; 2]) -> bo
     let natural = vec![0.0; n];
     let rows: Vec<ConstraintRow> =
         scene.rows(&scene.phases()[0], &PhaseStart { time: 0.0, u: &natural }).unwrap();
-    let mut reduced = ConstrainedSolver::new(&matrices, &rows, &[], coupling);
+    let mut reduced = ConstrainedSolver::new(&matrices, &rows, &Edges::default(), coupling);
     let value = |source: EntrySource| {
         let (entry, transposed, axes) = (source.entry(), source.transposed(), source.axes());
         let own = if axes[0] == axes[1] { mass * matrices.inertia.values[entry] } else { 0.0 };
@@ -92,7 +92,7 @@ fn compare(scene: &Scene, coupling: Coupling, [mass, stiffness]: [f64; 2]) -> bo
 
     // and by iterations, in place of a factor or before it
     for iterations in [1e4, 2.0] {
-        let new = ConstrainedSolver::new(&matrices, &rows, &[], coupling);
+        let new = ConstrainedSolver::new(&matrices, &rows, &Edges::default(), coupling);
         let mut iterating = new.rent(&matrices, &rows, coupling, iterations);
         for _ in 0..2 {
             if iterating.begin(EXACT, value).is_err() {
@@ -152,7 +152,8 @@ fn rows_that_follow_from_others_are_found() {
         let natural = vec![0.0; scene.body().dofs()];
         let start = PhaseStart { time: 0.0, u: &natural };
         let rows = scene.rows(&scene.phases()[0], &start).unwrap();
-        let mut reduced = ConstrainedSolver::new(&matrices, &rows, &[], Coupling::SameAxis);
+        let mut reduced =
+            ConstrainedSolver::new(&matrices, &rows, &Edges::default(), Coupling::SameAxis);
         assert!(reduced.factorize(|source| matrices.inertia.values[source.entry()]).is_err());
         assert_eq!(reduced.dependent_row(), Some(expected));
     }
@@ -179,15 +180,16 @@ fn iterations_meet_directions_of_negative_curvature() {
         solver.solve(&rows, &f, &vec![0.0; rows.len()], &mut x, &mut mu);
         (x, solver.counts())
     };
-    let mut direct = ConstrainedSolver::new(&matrices, &rows, &[], Coupling::AllAxes);
+    let mut direct = ConstrainedSolver::new(&matrices, &rows, &Edges::default(), Coupling::AllAxes);
     assert!(direct.factorize(value).is_err());
     direct.factorize_indefinite().unwrap();
-    let mut iterating = ConstrainedSolver::new(&matrices, &rows, &[], Coupling::AllAxes).rent(
+    let mut iterating = ConstrainedSolver::new(
         &matrices,
         &rows,
+        &Edges::default(),
         Coupling::AllAxes,
-        1e4,
-    );
+    )
+    .rent(&matrices, &rows, Coupling::AllAxes, 1e4);
     iterating.begin(1e-6, value).unwrap();
     let ((direct, _), (found, counts)) = (solution(direct), solution(iterating));
     assert_eq!(direct, found, "LU of the same matrix");

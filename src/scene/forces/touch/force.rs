@@ -88,10 +88,9 @@ impl TouchForce {
         }
     }
 
-    /// Half of the area that a point stands for, as the other surface has the other half, times the weight of the
-    /// feature.
+    /// The area that a point stands for, times the weight of the feature.
     fn share(&self, near: &NearPair) -> f64 {
-        0.5 * self.surfaces.points[near.point].on.area * near.weight
+        self.surfaces.points[near.point].on.area * near.weight
     }
 
     /// Contact action in a pair at the nodal velocities `v` (m/s).
@@ -111,6 +110,10 @@ impl TouchForce {
         Failure::Recoverable(format!(
             "surfaces of \"{name}\" lie on each other (a stiffer contact keeps them apart)"
         ))
+    }
+
+    pub(crate) fn has_friction(&self) -> bool {
+        self.coulomb.is_some()
     }
 
     /// The distance (m) from which on nothing acts.

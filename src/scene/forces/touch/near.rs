@@ -29,6 +29,7 @@ pub(super) struct Near {
 pub(super) struct NearPair {
     pub(super) point: usize,
     pub(super) feature: usize,
+    /// The weight of the feature, times the part of the energy that the side of the point has.
     pub(super) weight: f64,
     /// Their distance (m) in that state; no more than that from a curved face.
     pub(super) distance: f64,
@@ -58,7 +59,7 @@ impl Near {
                     if bound.is_some_and(|bound| bound > within) {
                         return;
                     }
-                    let weight = surfaces.weight(point, feature);
+                    let weight = surfaces.part(point, feature) * surfaces.weight(point, feature);
                     if weight == 0.0 {
                         return;
                     }

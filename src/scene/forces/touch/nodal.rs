@@ -7,8 +7,8 @@ use crate::scene::forces::nodal::{NodalContact, Tributary};
 use crate::scene::forces::stuck::Stuck;
 
 impl TouchForce {
-    /// Adds what the surfaces do at the nodes of both to `nodal`: each half of the area in touch is that of the points of
-    /// one surface, and both surfaces have the same.
+    /// Adds what the surfaces do at the nodes of both to `nodal`: the points of each surface have a part of the area in touch, and
+    /// both surfaces have the same.
     ///
     /// # Errors
     /// Surfaces that lie on each other.

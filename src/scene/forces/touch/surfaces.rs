@@ -9,6 +9,10 @@ use crate::elements::body::Body;
 use crate::elements::mesh::FaceKind;
 use crate::scene::forces::surface::{SurfacePoint, closed_points, is_within, pieces};
 
+/// Ratio of the sizes of facets up to which the points of each have half of the energy. Fewer points, which move with the body
+/// that slides, press more evenly than those of the other one, as long as none stands for more than lies over it.
+const ALIKE: f64 = 2.0;
+
 /// The surfaces of some bodies.
 pub(super) struct Surfaces {
     pub(super) dimension: usize,
@@ -21,6 +25,8 @@ pub(super) struct Surfaces {
     pub(super) features: Vec<Feature>,
     /// Whether a body touches itself.
     pub(super) itself: bool,
+    /// Size (m) of the finer facets of each body; 0 of bodies that do not touch.
+    sizes: Vec<f64>,
     /// No point or place on a surface moves farther than this times the nodes: 1 of linear cells.
     pub(super) reach: f64,
 }
@@ -63,6 +69,7 @@ impl Surfaces {
             points: Vec::new(),
             features: Vec::new(),
             itself,
+            sizes: vec![0.0; body.parts().count()],
             reach: 1.0,
         };
         let parts: Vec<_> = body.parts().map(|part| part.nodes).collect();
@@ -79,11 +86,32 @@ impl Surfaces {
                 surfaces.features.push(Feature::new(kind, face, number));
             }
             surfaces.nodes.extend(own.concat());
+            surfaces.sizes[number] = surfaces.usual_size(number);
         }
         surfaces.nodes.sort_unstable();
         surfaces.nodes.dedup();
         surfaces.add_edges_and_corners();
         Some(surfaces)
+    }
+
+    /// A size (m) that a quarter of the facets of a body do not reach, where facets are all that there is yet; 0 without any.
+    fn usual_size(&self, body: usize) -> f64 {
+        let own = (0..self.features.len()).filter(|&facet| self.features[facet].body == body);
+        let mut sizes: Vec<f64> = own.map(|facet| self.size_of(facet)).collect();
+        sizes.sort_unstable_by(f64::total_cmp);
+        sizes.get(sizes.len() / 4).copied().unwrap_or_default()
+    }
+
+    /// Length (m) of a facet in the plane, the root of its area in space; 1 in one dimension.
+    fn size_of(&self, facet: usize) -> f64 {
+        match (self.dimension, self.features[facet].nodes()) {
+            (2, &[a, b, ..]) => norm(&difference(&self.at_rest(b), &self.at_rest(a))),
+            (3, _) => {
+                let triangles = (self.features[facet].kind.corners() - 2) as f64;
+                (self.area_of_triangles(facet) * triangles).sqrt()
+            }
+            _ => 1.0,
+        }
     }
 
     fn add_edges_and_corners(&mut self) {
@@ -162,6 +190,16 @@ impl Surfaces {
     pub(super) fn apart(&self, point: usize, feature: usize, u: &[f64]) -> f64 {
         let (at, x) = (self.nodes_at(feature, u), self.point_at(point, u));
         self.features[feature].nearest(&at, &x).distance(&at, &x)
+    }
+
+    /// The part of the energy that the points of a surface have, opposite a feature.
+    pub(super) fn part(&self, point: usize, feature: usize) -> f64 {
+        let [own, opposite] = self.bodies(point, feature).map(|body| self.sizes[body]);
+        let of_coarse = |ratio: f64| 1.0 / (1.0 + (ratio / ALIKE).max(1.0).powi(4));
+        match own > opposite {
+            true => of_coarse(own / opposite),
+            false => 1.0 - of_coarse(opposite / own),
+        }
     }
 
     /// The weight of a feature for a point; 0 if the point does not feel it.
