@@ -60,7 +60,7 @@ pub(crate) struct ConstrainedSolver {
 
 /// The free part of X, with what solves its systems.
 enum Kernel {
-    Symmetric(Symmetric),
+    Symmetric(Box<Symmetric>),
     /// Together with edges and general rows.
     RigidMotions(Box<RigidMotions>),
 }
@@ -224,7 +224,7 @@ impl ConstrainedSolver {
                     RigidMotions::new(matrix, lower, frames, edges, dimension, &mut general);
                 Kernel::RigidMotions(Box::new(motions))
             }
-            _ => Kernel::Symmetric(Symmetric::new(matrix, lower, order, gradients)),
+            _ => Kernel::Symmetric(Symmetric::new(matrix, lower, order, gradients).into()),
         };
         Self {
             border_values: vec![0.0; border.len()],
