@@ -119,6 +119,8 @@ fn every_kind_reads_what_the_api_reads() -> Result<(), Error> {
             r#"kind = "angular-acceleration", nodes = "top""#,
             Reading::angular_acceleration().on("top"),
         ),
+        (r#"kind = "accelerometer", nodes = "top""#, Reading::accelerometer().on("top")),
+        (r#"kind = "gyroscope""#, Reading::gyroscope()),
         (r#"kind = "acceleration", nodes = [8, 9]"#, Reading::acceleration([8, 9])),
         (
             r#"kind = "velocity", inside = [0.01, 0.02]"#,
@@ -149,7 +151,7 @@ fn every_kind_reads_what_the_api_reads() -> Result<(), Error> {
     // vectors of two and tensors of four components
     let columns = [
         2, 1, 2, 1, 2, 2, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 4, 4, 4, 1, 1, 1, 1, 1, 1,
-        1, 2, 2, 1, 1,
+        1, 2, 1, 2, 2, 1, 1,
     ];
     assert_eq!(motion.sensors().len(), columns.iter().sum::<usize>());
     assert!(motion.last().sensors.iter().all(|number| number.is_finite()));

@@ -40,7 +40,10 @@ fn a_rigid_bar_in_flight() {
         .read("lamp", Reading::position(lamp()))
         .read("way", Reading::displacement(lamp()))
         .read("speed", Reading::velocity(lamp()))
-        .read("lamp'", Reading::acceleration(lamp()));
+        .read("lamp'", Reading::acceleration(lamp()))
+        .read("felt", Reading::accelerometer())
+        .read("side felt", Reading::accelerometer().on("right"))
+        .read("gyro", Reading::gyroscope().on("right"));
     for method in [Method::CvodeBdf, Method::Rosenbrock, Method::Ida] {
         let settings = Settings { method, rtol: 1e-9, ..Settings::default() };
         let motion = scene.simulate(&settings, &sampling).unwrap();
@@ -71,6 +74,12 @@ fn a_rigid_bar_in_flight() {
                 ("speed.y", drift[1] + along[1], 3e-5),
                 ("lamp'.x", GRAVITY[0] - SPIN * SPIN * out[0], 6e-4),
                 ("lamp'.y", GRAVITY[1] - SPIN * SPIN * out[1], 6e-4),
+                // in free fall nothing but the turn is felt, towards the middle in axes of the body
+                ("felt.x", 0.0, 2e-5),
+                ("felt.y", 0.0, 2e-5),
+                ("side felt.x", -SPIN * SPIN * 0.05, 4e-4),
+                ("side felt.y", 0.0, 4e-4),
+                ("gyro", SPIN, 4e-5),
             ];
             for (name, expected, tolerance) in expected {
                 let apart = (series(&motion, name)[number] - expected).abs();
@@ -105,6 +114,44 @@ fn a_tumbling_box() {
         assert!((at("change", 0) - change).abs() < 1e-9, "{axis}: {}", at("change", 0) - change);
         // the spin changes by 4e-3 rad/s until then
         assert!((at("turn", 1) - 1e-4 * spin[i]).abs() < 5e-7, "{axis}: {}", at("turn", 1));
+    }
+}
+
+/// A square plate that spins freely: in its own axes the angular velocity goes around the axis of symmetry at (I3 - I1)/I1 of the spin about
+/// that; in space it does so about the angular momentum, at another rate.
+#[test]
+fn a_gyroscope_turns_with_the_body() {
+    const SIZE: [f64; 3] = [0.02, 0.02, 0.01];
+    let [across, along] = [3.0, 10.0];
+    let mesh = Mesh::cuboid(SIZE, [2, 2, 2], SolidCells::Hexahedra).unwrap();
+    let body = Body::new(mesh, Material::rigid(2000.0)).build().unwrap();
+    let scene = Scene::new(body)
+        .gravity([0.0, 0.0, -9.8])
+        .spin([across, 0.0, along])
+        .phase(Phase::until(0.3));
+    let sampling = Sampling::every(0.1)
+        .read("own", Reading::gyroscope())
+        .read("top felt", Reading::accelerometer().on("top"));
+    let settings = Settings { method: Method::Rosenbrock, rtol: 1e-9, ..Settings::default() };
+    let motion = scene.simulate(&settings, &sampling).unwrap();
+    let [first, third] = [SIZE[1] * SIZE[1] + SIZE[2] * SIZE[2], 2.0 * SIZE[0] * SIZE[0]];
+    let rate = (third - first) / first * along;
+    for (number, sample) in motion.samples().iter().enumerate() {
+        let (sine, cosine) = (rate * sample.time).sin_cos();
+        let own = [across * cosine, across * sine, along];
+        // w x (w x r) + w' x r of the top, r = (0, 0, h), w' = (-rate w_y, rate w_x, 0)
+        let h = 0.5 * SIZE[2];
+        let felt = [
+            h * (own[2] * own[0] + rate * own[0]),
+            h * (own[2] * own[1] + rate * own[1]),
+            -h * across * across,
+        ];
+        for (i, axis) in ["x", "y", "z"].into_iter().enumerate() {
+            let at = |name: &str| series(&motion, &format!("{name}.{axis}"))[number];
+            assert!((at("own") - own[i]).abs() < 1e-5, "{axis}: {} {}", at("own"), own[i]);
+            let apart = (at("top felt") - felt[i]).abs();
+            assert!(apart < 1e-4, "{axis}: {} {}", at("top felt"), felt[i]);
+        }
     }
 }
 

@@ -119,6 +119,8 @@ impl Reading {
             ReadingKind::AngularAcceleration(nodes) => {
                 turning(self.fit(scene, nodes.as_ref())?, d, |turning| turning.acceleration)
             }
+            ReadingKind::Accelerometer(nodes) => self.accelerometer_gauge(scene, nodes.as_ref())?,
+            ReadingKind::Gyroscope(nodes) => self.gyroscope_gauge(scene, nodes.as_ref())?,
             ReadingKind::Angle(_) | ReadingKind::Rotation(_) => {
                 let angle = self.angle_gauge(scene)?;
                 Box::new(move |view, _| Value::Number(angle(view)))
@@ -172,7 +174,7 @@ impl Reading {
     }
 
     /// The first node of the body that was named.
-    fn first_node(&self, scene: &Scene) -> Result<Option<usize>, InputError> {
+    pub(super) fn first_node(&self, scene: &Scene) -> Result<Option<usize>, InputError> {
         let Some(name) = &self.body else { return Ok(None) };
         Ok(Some(scene.body().part_named(name, "body")?.nodes.start))
     }
@@ -207,7 +209,11 @@ impl Reading {
     }
 
     /// The rigid motion of `nodes`, or else of the body that was named, or of all.
-    fn fit(&self, scene: &Scene, nodes: Option<&Selection>) -> Result<RigidFit, InputError> {
+    pub(super) fn fit(
+        &self,
+        scene: &Scene,
+        nodes: Option<&Selection>,
+    ) -> Result<RigidFit, InputError> {
         scene.body().refuse_around("sensor", "rotation")?;
         let mesh = scene.body().mesh();
         match (nodes, &self.body) {
@@ -222,7 +228,11 @@ impl Reading {
 }
 
 /// The function that reads a rate of a rotation: in the plane a number, in space a vector.
-fn turning(fit: RigidFit, dimension: usize, rate: fn(&Turning) -> Vector3<f64>) -> Gauge {
+pub(super) fn turning(
+    fit: RigidFit,
+    dimension: usize,
+    rate: fn(&Turning) -> Vector3<f64>,
+) -> Gauge {
     Box::new(move |view, _| match rate(&fit.turning(view)) {
         rate if dimension == 2 => Value::Number(rate.z),
         rate => Value::Vector(rate.into()),
@@ -230,7 +240,7 @@ fn turning(fit: RigidFit, dimension: usize, rate: fn(&Turning) -> Vector3<f64>) 
 }
 
 /// The body with this first node, or all together.
-fn part(body: &Body, first_node: Option<usize>) -> Part<'_> {
+pub(super) fn part(body: &Body, first_node: Option<usize>) -> Part<'_> {
     first_node.map_or_else(|| body.whole(), |node| body.part_of(node))
 }
 

@@ -15,6 +15,7 @@ mod derivative;
 mod events;
 mod failure;
 mod gauge;
+mod inertial;
 mod interval;
 mod output;
 mod outputs;

@@ -56,6 +56,8 @@ pub(super) enum ReadingKind {
     Rotation(Option<Selection>),
     AngularVelocity(Option<Selection>),
     AngularAcceleration(Option<Selection>),
+    Accelerometer(Option<Selection>),
+    Gyroscope(Option<Selection>),
 }
 
 /// Quantity of a contact.
@@ -197,7 +199,9 @@ impl Reading {
         | FluidForce(_, on)
         | Rotation(on)
         | AngularVelocity(on)
-        | AngularAcceleration(on) = &mut self.what
+        | AngularAcceleration(on)
+        | Accelerometer(on)
+        | Gyroscope(on) = &mut self.what
         {
             *on = Some(nodes.into());
         }
@@ -285,6 +289,19 @@ impl Reading {
         ReadingKind::AngularAcceleration(None).into()
     }
 
+    /// The reading of an accelerometer (m/s^2) that is fixed to a body, or to [some nodes](Self::on), in axes that turn with these: R^T (a - g)
+    /// with their [rotation](Self::rotation) R and the acceleration a of their middle, of a body its centre of mass. What falls freely reads
+    /// 0, what is at rest g upwards.
+    pub fn accelerometer() -> Self {
+        ReadingKind::Accelerometer(None).into()
+    }
+
+    /// The reading of a gyroscope (rad/s) that is fixed to a body, or to [some nodes](Self::on): their [angular
+    /// velocity](Self::angular_velocity) in axes that turn with them.
+    pub fn gyroscope() -> Self {
+        ReadingKind::Gyroscope(None).into()
+    }
+
     /// Momentum of all bodies, or of one [of them](Self::of_body) (kg m/s).
     pub fn momentum() -> Self {
         ReadingKind::Momentum.into()
@@ -325,8 +342,8 @@ impl Reading {
             ReadingKind::OfDevice(..) if self.in_degrees => DEGREES,
             ReadingKind::OfDevice(output, _) => output.unit,
             ReadingKind::Velocity(_) => "m/s",
-            ReadingKind::Acceleration(_) => "m/s^2",
-            ReadingKind::AngularVelocity(_) => "rad/s",
+            ReadingKind::Acceleration(_) | ReadingKind::Accelerometer(_) => "m/s^2",
+            ReadingKind::AngularVelocity(_) | ReadingKind::Gyroscope(_) => "rad/s",
             ReadingKind::AngularAcceleration(_) => "rad/s^2",
             ReadingKind::Momentum => "kg m/s",
             ReadingKind::MagneticMoment => "A m^2",
@@ -367,7 +384,8 @@ impl Reading {
 
     /// Whether it reads accelerations, which take one, too.
     pub(super) fn is_of_accelerations(&self) -> bool {
-        matches!(self.what, ReadingKind::Acceleration(_) | ReadingKind::AngularAcceleration(_))
+        use ReadingKind::*;
+        matches!(self.what, Acceleration(_) | AngularAcceleration(_) | Accelerometer(_))
     }
 
     /// Whether it follows from the places of nodes alone.
@@ -409,6 +427,8 @@ impl Reading {
                 | ReadingKind::Rotation(_)
                 | ReadingKind::AngularVelocity(_)
                 | ReadingKind::AngularAcceleration(_)
+                | ReadingKind::Accelerometer(_)
+                | ReadingKind::Gyroscope(_)
                 | ReadingKind::Momentum
                 | ReadingKind::Contact(_, ContactSource::Touch(_), _)
                 | ReadingKind::FluidForce(..)
@@ -427,6 +447,7 @@ impl Reading {
             (ReadingKind::Strain(_), _) => (&[XX, YY, ZZ, XY, YZ, XZ], None),
             (ReadingKind::Position(_) | ReadingKind::Displacement(_), _)
             | (ReadingKind::Velocity(_) | ReadingKind::Acceleration(_), _)
+            | (ReadingKind::Accelerometer(_), _)
             | (ReadingKind::ConstraintForce(_) | ReadingKind::Contact(OfContact::Force, ..), _)
             | (
                 ReadingKind::CentreOfMass | ReadingKind::Momentum | ReadingKind::MagneticMoment,
@@ -442,7 +463,9 @@ impl Reading {
             }
             (ReadingKind::ConstraintMoment(_, Lever { axis: None, .. }), 3)
             | (ReadingKind::Rotation(_) | ReadingKind::AngularVelocity(_), 3)
-            | (ReadingKind::AngularAcceleration(_), 3) => (&[X, Y, Z], Some(Norm)),
+            | (ReadingKind::AngularAcceleration(_) | ReadingKind::Gyroscope(_), 3) => {
+                (&[X, Y, Z], Some(Norm))
+            }
             _ => (&[], None),
         };
         let Some(one) = self.component else { return Ok(all.to_vec()) };

@@ -25,7 +25,7 @@ pub(super) const SENSOR: TableKeys = TableKeys::new(
 .kinds(&KINDS);
 
 /// Quantities of places, contacts, fields and bodies.
-const OWN: [Kind; 22] = [
+const OWN: [Kind; 24] = [
     Kind {
         word: "position",
         about: "where nodes, a point of a body or a marker are (m)",
@@ -154,6 +154,16 @@ const OWN: [Kind; 22] = [
         about: "the rate of that angular velocity (rad/s^2)",
         keys: &[TURNED, BODY],
     },
+    Kind {
+        word: "accelerometer",
+        about: "acceleration less gravity in axes that turn with a body or nodes (m/s^2), at their middle: 0 in free fall, g upwards at rest",
+        keys: &[TURNED, BODY],
+    },
+    Kind {
+        word: "gyroscope",
+        about: "the angular velocity in axes that turn with a body or nodes (rad/s)",
+        keys: &[TURNED, BODY],
+    },
 ];
 
 /// The key of the component of each output.
@@ -280,6 +290,8 @@ pub(super) fn sensor(value: &Value, scene: &Scene) -> Result<(String, Reading), 
         "momentum" => of_body(&table, Reading::momentum())?,
         "angular-velocity" => turning(&table, mesh, Reading::angular_velocity())?,
         "angular-acceleration" => turning(&table, mesh, Reading::angular_acceleration())?,
+        "accelerometer" => turning(&table, mesh, Reading::accelerometer())?,
+        "gyroscope" => turning(&table, mesh, Reading::gyroscope())?,
         "rotation" => turning(&table, mesh, in_unit(&table, Reading::rotation())?)?,
         word => match OUTPUTS.iter().find(|output| output.word == word) {
             Some(output) => Reading::of(output, named(output.of.key)?),
