@@ -219,13 +219,11 @@ pub(crate) fn of_motion(trajectory: &Trajectory) -> Vec<Indicator> {
 pub(crate) fn of_equilibrium(trajectory: &Trajectory, is_found: bool) -> Vec<Indicator> {
     let samples = [trajectory.last()];
     let meetings = touch::meetings(trajectory, &samples);
-    let on_the_way: Vec<&Sample> = trajectory.samples().iter().collect();
-    let on_the_way = touch::meetings(trajectory, &on_the_way);
     let measured = trajectory.scene().indicators().into_iter();
     let measured = measured.chain(of_cells(trajectory, &samples));
     let measured = measured.chain(touch::depths(trajectory.scene(), &meetings));
     let measured = measured.chain(overlaps(trajectory));
-    let measured = measured.chain(touch::slippery(trajectory, &on_the_way));
+    let measured = measured.chain(touch::slippery(trajectory));
     let measured = measured.chain(chamber::volumes(trajectory.scene(), trajectory.samples()));
     measured
         .chain(is_found.then(|| touch::missed(&meetings, touch::Reach::NONE)).into_iter().flatten())

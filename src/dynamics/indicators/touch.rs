@@ -7,7 +7,7 @@ use crate::base::input::four_digits;
 use crate::base::vector::norm;
 use crate::dynamics::report::Indicator;
 use crate::dynamics::trajectory::{Deepest, DepthLimit, Sample, Trajectory};
-use crate::scene::forces::Contact;
+use crate::scene::forces::{Contact, Obstacle};
 use crate::scene::timeline::{Phase, Scene};
 
 /// The name of the indicator of how deep a body begins inside an obstacle.
@@ -229,8 +229,12 @@ pub(super) fn begun_inside(scene: &Scene) -> Vec<Indicator> {
 }
 
 /// Obstacles and other bodies that touch and would hold the body by friction, on the way to an equilibrium, where friction does not act.
-pub(super) fn slippery(trajectory: &Trajectory, meetings: &[Meeting]) -> Vec<Indicator> {
+pub(super) fn slippery(trajectory: &Trajectory) -> Vec<Indicator> {
     let scene = trajectory.scene();
+    let meetings = match scene.obstacles().iter().any(Obstacle::has_friction) {
+        true => meetings(trajectory, &trajectory.samples().iter().collect::<Vec<_>>()),
+        false => Vec::new(),
+    };
     let is_met = |name: &str| meetings.iter().any(|met| met.obstacle == name && met.nearest <= 0.0);
     let obstacles = scene.obstacles().iter().filter(|obstacle| obstacle.has_friction());
     let obstacles = obstacles
@@ -238,9 +242,8 @@ pub(super) fn slippery(trajectory: &Trajectory, meetings: &[Meeting]) -> Vec<Ind
     let rub = scene.touches().iter().any(|touch| touch.sticks_below(1.0).is_some());
     let touches = if rub { scene.touch_forces().unwrap_or_default() } else { Vec::new() };
     let touches = touches.iter().filter(|touch| touch.has_friction()).map(|touch| {
-        let states = trajectory.samples().iter().map(|sample| &sample.u[..]);
-        let mut states = states.chain([scene.initial_displacements()]);
-        (format!("touch \"{}\"", touch.name), states.any(|u| touch.gap(u) < touch.distance()))
+        let is_met = |sample: &Sample| touch.gap(&sample.u) < touch.distance();
+        (format!("touch \"{}\"", touch.name), trajectory.samples().iter().any(is_met))
     });
     let told = |(name, is_met): (String, bool)| {
         let within = || format!("{name} has friction, but nothing touches there (limit: none)");

@@ -1,4 +1,4 @@
-//! What an inertial measurement unit that is fixed to a body reads, in axes that turn with the body.
+//! Readings of an inertial measurement unit that is fixed to a body, in axes that turn with the body.
 
 use nalgebra::Vector3;
 

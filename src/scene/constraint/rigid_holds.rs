@@ -69,14 +69,10 @@ fn directions<'a>(
         row.terms.iter().for_each(|(dof, c)| along[dof % d] = *c);
         along.normalize()
     };
-    let place = |node: usize| {
-        let x = body.mesh().position(node);
-        Vector3::from_fn(|i, _| if i < d { x[i] + start.u[node * d + i] } else { 0.0 })
-    };
     let (node, own) = (row.node(d)?, along(row));
     let other = of_piece.find_map(|other| {
         let from = other.node(d).filter(|from| *from != node)?;
-        let arm = place(node) - place(from);
+        let arm = place(body, start.u, node) - place(body, start.u, from);
         let is_along = |n: &Vector3<f64>| arm.cross(n).norm() < ALIGNED * arm.norm();
         (is_along(&own) && is_along(&along(other)) && other.motion.is_same(&row.motion))
             .then_some(from)
@@ -124,6 +120,12 @@ pub(crate) fn check_rigid_holds(
     Ok(())
 }
 
+/// Where a node is under the displacements `u` (m); 0 beyond the dimension.
+fn place(body: &Body, u: &[f64], node: usize) -> Vector3<f64> {
+    let (d, x) = (body.dimension(), body.mesh().position(node));
+    Vector3::from_fn(|i, _| if i < d { x[i] + u[node * d + i] } else { 0.0 })
+}
+
 /// A rigid piece with the rows on it alone.
 struct Piece<'a> {
     dimension: usize,
@@ -142,11 +144,7 @@ impl<'a> Piece<'a> {
         u: &[f64],
     ) -> Self {
         let d = body.dimension();
-        let place = |&node: &usize| {
-            let x = body.mesh().position(node);
-            Vector3::from_fn(|i, _| if i < d { x[i] + u[node * d + i] } else { 0.0 })
-        };
-        let mut arms: Vec<Vector3<f64>> = frame.iter().map(place).collect();
+        let mut arms: Vec<Vector3<f64>> = frame.iter().map(|&node| place(body, u, node)).collect();
         let mean = arms.iter().sum::<Vector3<f64>>() / arms.len() as f64;
         arms.iter_mut().for_each(|arm| *arm -= mean);
         let size = arms.iter().map(Vector3::norm).fold(0.0, f64::max);
@@ -205,6 +203,9 @@ impl<'a> Piece<'a> {
 
     /// The first row that others imply for small motions and not for large ones, with what it changes by (m).
     fn lost_row(&self) -> Option<(&'a ConstraintRow, f64)> {
+        if self.rows.len() < 2 {
+            return None;
+        }
         let (count, all) = (self.freedoms(), self.derivatives());
         let (mut kept, mut implied): (Vec<usize>, Vec<usize>) = Default::default();
         let mut known: Vec<Vec<f64>> = Vec::new();
