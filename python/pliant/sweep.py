@@ -12,6 +12,9 @@ from .plain import as_json
 from .progress import bar
 from .scene import Scene
 
+#: Rows in a task of HyperQueue: to start its process takes as long as some hundred small runs.
+ROWS_IN_TASK = 10
+
 
 class Sweep:
     """The rows of a study, in a directory with table.csv, plot.svg and sweep.html."""
@@ -76,8 +79,10 @@ def sweep(
         Whether each point is an equilibrium of the scene, as :meth:`Scene.static` finds it, and not a run; quantities are ``["tip.y"]`` then.
     accuracy, sample : optional
         As in study files.
-    client : dask.distributed.Client, optional
-        Where the rows are computed: one task each. Its workers have to see `directory`. Default: on the cores of this machine.
+    client : dask.distributed.Client or hyperqueue.Client, optional
+        Where the rows are computed: a task each by Dask, ten in a task by HyperQueue, whose tasks are processes. Its workers have to see
+        `directory` and, of HyperQueue, to find `pliant`: ``cluster.client(python_env=PythonEnv(sys.executable))``. Default: on the
+        cores of this machine.
     directory : path, optional
         Where rows and results are. Default: ``out/NAME-sweep``; of a scene, a temporary one that is there as long as the :class:`Sweep`.
     cores : int, optional
@@ -112,7 +117,8 @@ def sweep(
         if client is None:
             _here(opened, numbers, cores, show)
         else:
-            _there(client, study, directory, numbers, show)
+            by_hyperqueue = type(client).__module__.split(".")[0] == "hyperqueue"
+            (_by_hyperqueue if by_hyperqueue else _by_dask)(client, study, directory, numbers, show)
     return Sweep(directory, *opened.gather(), kept)
 
 
@@ -167,17 +173,40 @@ def _here(opened, numbers, cores, show):
         raise failure[0]
 
 
-def compute_row(study, directory, number):
-    """One row, by a worker somewhere."""
-    return _pliant.Sweep(study, directory, True).compute([number], 1)
+def compute_rows(study, directory, numbers):
+    """Some rows, by a worker somewhere."""
+    return _pliant.Sweep(study, directory, True).compute(numbers, 1)
 
 
-def _there(client, study, directory, numbers, show):
-    """By the workers of a client of Dask."""
+def _by_dask(client, study, directory, numbers, show):
+    """A task for each row; a row whose worker has died is given to another one."""
     from dask.distributed import as_completed
 
-    tasks = client.map(compute_row, [study] * len(numbers), [directory] * len(numbers), numbers, pure=False)
+    tasks = client.map(compute_rows, [study] * len(numbers), [directory] * len(numbers), [[number] for number in numbers], pure=False)
     for done, task in enumerate(as_completed(tasks), 1):
         task.result()
+        if show:
+            show(done)
+
+
+def _by_hyperqueue(client, study, directory, numbers, show):
+    """Tasks of several rows, as each is a process of its own; what a killed one leaves is submitted again."""
+    from hyperqueue import Job
+
+    opened, done = _pliant.Sweep(study, directory, True), 0
+    while numbers:
+        job = Job(name="pliant-sweep", max_fails=None)
+        for first in range(0, len(numbers), ROWS_IN_TASK):
+            rows = numbers[first : first + ROWS_IN_TASK]
+            job.function(compute_rows, args=(study, directory, rows), stdout=None, stderr=None)
+        submitted = client.submit(job)
+        client.wait_for_jobs([submitted], raise_on_error=False)
+        open_now = set(opened.open())
+        left = [number for number in numbers if number in open_now]
+        if len(left) == len(numbers):
+            errors = [task.error for task in client.get_failed_tasks(submitted).values()]
+            raise RuntimeError(f"HyperQueue has computed none of {len(left)} rows: {errors[0] if errors else 'its tasks wrote no row'}")
+        done += len(numbers) - len(left)
+        numbers = left
         if show:
             show(done)

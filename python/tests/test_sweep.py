@@ -1,7 +1,11 @@
-"""Studies on the cores of this machine, and by Dask."""
+"""Studies on the cores of this machine, by Dask and by HyperQueue."""
 
+import contextlib
 import os
 import signal
+import sys
+import threading
+import time
 from pathlib import Path
 
 import numpy as np
@@ -110,12 +114,81 @@ def test_bad_studies(study, tmp_path):
     assert not (tmp_path / "rows").exists()
 
 
-def test_dask_computes_each_row_once_though_a_worker_is_killed(study, tmp_path):
+@pytest.fixture
+def many(study):
+    """A study of 200 rows."""
+    study.write_text(STUDY.replace("count = 12", "count = 200"))
+    return study
+
+
+@contextlib.contextmanager
+def killed_in_the_middle(rows, process):
+    """Kills a process, whose number is called for when 50 files of `rows` are there, while the block goes on."""
+    killed = []
+
+    def kill():
+        while len(list(rows.glob("*.json"))) < 50 and not ended.is_set():
+            time.sleep(0.01)
+        while not killed and not ended.is_set():
+            with contextlib.suppress(ProcessLookupError, StopIteration):
+                number = next(process())
+                os.kill(number, signal.SIGKILL)
+                killed.append(number)
+
+    ended = threading.Event()
+    thread = threading.Thread(target=kill)
+    thread.start()
+    try:
+        yield killed
+    finally:
+        ended.set()
+        thread.join()
+
+
+def has_each_row_once(swept, rows, killed):
+    """All of 200 rows are there, and a process was killed before the last one was."""
+    assert len(killed) == 1
+    assert (swept.rows, swept.missing) == (200, 0)
+    assert len(set(swept.table["id"])) == 200 and len(list(rows.glob("*.json"))) == 200
+
+
+def test_dask_computes_each_row_once_though_a_worker_is_killed(many, tmp_path):
     distributed = pytest.importorskip("dask.distributed")
+    rows = tmp_path / "rows/rows"
     with distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as cluster:
         with distributed.Client(cluster) as client:
-            first = next(iter(client.run(os.getpid).values()))
-            os.kill(first, signal.SIGKILL)
-            swept = pliant.sweep(study, client, directory=tmp_path / "rows")
-    assert (swept.rows, swept.missing) == (12, 0)
-    assert len(set(swept.table["id"])) == 12 and len(list(Path(tmp_path / "rows/rows").glob("*.json"))) == 12
+            workers = list(client.run(os.getpid).values())
+            with killed_in_the_middle(rows, lambda: iter(workers)) as killed:
+                swept = pliant.sweep(many, client, directory=tmp_path / "rows")
+    has_each_row_once(swept, rows, killed)
+
+
+def tasks_of_hyperqueue():
+    """Numbers of the processes in which tasks of HyperQueue's workers run."""
+    for path in Path("/proc").glob("[0-9]*/cmdline"):
+        with contextlib.suppress(OSError):
+            if b"hyperqueue.task.function" in path.read_bytes():
+                yield int(path.parent.name)
+
+
+def test_hyperqueue_computes_each_row_once_though_a_task_is_killed(many, tmp_path):
+    hyperqueue = pytest.importorskip("hyperqueue")
+    cluster_of, function = pytest.importorskip("hyperqueue.cluster"), pytest.importorskip("hyperqueue.task.function")
+    rows = tmp_path / "rows/rows"
+    with hyperqueue.LocalCluster(tmp_path / "server") as cluster:
+        for _ in range(2):
+            cluster.start_worker(cluster_of.WorkerConfig(cores=1))
+        client = cluster.client(python_env=function.PythonEnv(sys.executable))
+        with killed_in_the_middle(rows, tasks_of_hyperqueue) as killed:
+            swept = pliant.sweep(many, client, directory=tmp_path / "rows")
+    has_each_row_once(swept, rows, killed)
+
+
+def test_tasks_of_hyperqueue_that_fail(study, tmp_path):
+    """A client whose tasks run in a Python without `pliant` ends with the reason, not with rows that lack."""
+    hyperqueue = pytest.importorskip("hyperqueue")
+    cluster_of, function = pytest.importorskip("hyperqueue.cluster"), pytest.importorskip("hyperqueue.task.function")
+    with hyperqueue.LocalCluster(tmp_path / "server", cluster_of.WorkerConfig(cores=1)) as cluster:
+        client = cluster.client(python_env=function.PythonEnv("no-python"))
+        with pytest.raises(RuntimeError, match="none of 12 rows"):
+            pliant.sweep(study, client, directory=tmp_path / "rows")
