@@ -2,9 +2,9 @@
 
 use pliant::body::BodyBuilder;
 use pliant::{
-    Axis, Body, CellSelection, Cells, Chamber, Growth, Guide, Inertia, InputError, Lag, Material,
-    Mesh, Muscle, Obstacle, Phase, Sampling, Scene, Selection, Settings, Signal, SolidCells,
-    Spring,
+    Axis, Body, CellSelection, Cells, Chamber, Gas, Growth, Guide, Inertia, InputError, Lag,
+    Material, Mesh, Muscle, Obstacle, Orifice, Phase, Sampling, Scene, Selection, Settings, Signal,
+    SolidCells, Spring,
 };
 
 const RUBBER: Material = Material { density: 1000.0, young: 1e5, poisson: 0.3, viscosity: 20.0 };
@@ -207,6 +207,58 @@ fn chambers_press_on_the_half() {
     let body = Body::new(hollow(&mesh, std::slice::from_ref(&room)), RUBBER).build().unwrap();
     let scene = Scene::new(body).chamber(Chamber::within("room", around(&room)));
     let scene = scene.phase(Phase::until(0.03).pressure("room", Signal::ramp(0.0, 4e3, 0.0, 0.03)));
+    agrees(&scene, Axis::X);
+}
+
+/// Gas in a chamber that the plane cuts and in two that are images of each other, with a pump, valves and orifices between them.
+#[test]
+fn gas_flows_in_the_half() {
+    let around = |from: f64, to: f64| Selection::Box {
+        min: vec![from - 1e-6, 0.01 - 1e-6],
+        max: vec![to + 1e-6, 0.02 + 1e-6],
+    };
+    let rooms = [(0.01, 0.02), (0.03, 0.05), (0.06, 0.07)];
+    let boxes = rooms.map(|(from, to)| [vec![from, 0.01], vec![to, 0.02]]);
+    let mesh = Mesh::rectangle([0.08, 0.03], [9, 4], Cells::Rectangles).unwrap();
+    let body = Body::new(hollow(&mesh, &boxes), RUBBER).thickness(0.02).build().unwrap();
+    let mut scene = Scene::new(body).supply("pump", 1.1e5);
+    for (name, (from, to)) in ["left", "middle", "right"].into_iter().zip(rooms) {
+        scene = scene
+            .chamber(Chamber::within(name, around(from, to)))
+            .gas(Gas::in_chamber(name).exponent(1.2));
+    }
+    let scene = scene
+        .orifice(Orifice::nozzle("inlet", "pump", "middle", 1e-7))
+        .orifice(Orifice::new("to left", "middle", "left", 2e-9))
+        .orifice(Orifice::new("to right", "right", "middle", 2e-9))
+        .orifice(Orifice::new("across", "left", "right", 1e-9))
+        .orifice(Orifice::new("left valve", "left", "atmosphere", 1e-9));
+    let phase = |own: f64| {
+        Phase::until(0.03)
+            .open("inlet", Signal::ramp(0.0, 1.0, 0.0, 0.02))
+            .open("left valve", 0.3)
+            .open("right valve", own)
+    };
+    let whole = scene.clone().orifice(Orifice::new("right valve", "right", "atmosphere", 1e-9));
+    agrees(&whole.clone().phase(phase(0.3)), Axis::X);
+    let half = whole.clone().phase(phase(0.3)).symmetric_half(Axis::X).unwrap();
+    let left: Vec<&str> = half.orifices().iter().map(Orifice::name).collect();
+    assert_eq!(left, ["inlet", "to left", "left valve"]);
+    assert!(refusal(&whole.phase(phase(0.5)), Axis::X).contains("left valve"));
+    let other = scene.orifice(Orifice::new("right valve", "right", "atmosphere", 2e-9));
+    assert!(refusal(&other.phase(phase(0.3)), Axis::X).contains("orifice"));
+}
+
+/// A rigid plate that the plane cuts, on a soft block that falls onto a floor.
+#[test]
+fn rigid_cells_move_as_their_half() {
+    let plate = CellSelection::inside([0.0, 0.07], [0.2, 0.1]);
+    let floor = Obstacle::half_plane([0.0, -0.001], [0.0, 1.0]).stiffness_density(1e6);
+    let body = block(|body| body.region(plate, Material::rigid(2000.0)));
+    let scene = Scene::new(body)
+        .gravity([0.0, -9.8])
+        .obstacle(floor)
+        .phase(Phase::until(0.05).load_total("top", [0.0, -2.0]));
     agrees(&scene, Axis::X);
 }
 

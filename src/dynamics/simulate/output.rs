@@ -49,6 +49,11 @@ pub(crate) struct Kind {
 }
 
 impl Output {
+    /// Whether half of the component that a plane of symmetry cuts has the same value: no force, volume, mass or flow has.
+    pub(super) fn is_the_same_in_halves(&self) -> bool {
+        ["Pa", "1", "K"].contains(&self.unit)
+    }
+
     pub(super) fn value(&self, view: &View, number: usize) -> Result<Value, InputError> {
         Ok(match self.read {
             Read::Number(read) | Read::OfPositions(read) => Value::Number(read(view, number)?),

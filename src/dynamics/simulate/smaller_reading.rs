@@ -75,8 +75,12 @@ impl Reading {
             {
                 what.clone()
             }
+            what @ ReadingKind::Of(output, _) if output.is_the_same_in_halves() => what.clone(),
             _ => {
-                let more = ["", ", momenta, constraint forces and forces of obstacles"];
+                let more = [
+                    ", pressures, stresses and stretches of components",
+                    ", momenta, constraint forces and forces of obstacles",
+                ];
                 let help = format!(
                     "the smaller scene has positions, displacements, velocities, centres of mass{}: name one of them",
                     more[usize::from(map.is_section())]

@@ -85,6 +85,11 @@ impl Gas {
         self.pressure
     }
 
+    /// Absolute pressure p_0 (Pa) and exponent n.
+    pub(crate) fn law(&self) -> [f64; 2] {
+        [self.pressure, self.exponent]
+    }
+
     /// Exponent n: 1 isothermal (slow, the default), 1.4 adiabatic (fast), between them polytropic.
     pub fn exponent(mut self, exponent: f64) -> Self {
         self.exponent = exponent;

@@ -187,6 +187,11 @@ impl Scene {
         })
     }
 
+    /// Absolute pressure (Pa) and exponent of the gas in a chamber, if there is any.
+    pub(super) fn gas_of(&self, chamber: &str) -> Option<[f64; 2]> {
+        self.gas_in(chamber).map(|gas| self.gases[gas].law())
+    }
+
     /// Number (from 0) of the gas in a chamber, if there is any.
     pub(crate) fn gas_in(&self, chamber: &str) -> Option<usize> {
         self.gases.iter().position(|gas| gas.chamber == chamber)

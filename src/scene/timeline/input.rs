@@ -182,7 +182,10 @@ impl Quantity {
 
     /// Whether halves and sections of a body know it.
     pub(super) fn is_known_of_parts(self) -> bool {
-        matches!(self, Self::FacePressure | Self::Load(_) | Self::Actuation | Self::Pressure)
+        matches!(
+            self,
+            Self::FacePressure | Self::Load(_) | Self::Actuation | Self::Pressure | Self::Opening
+        )
     }
 
     /// Whether a command for it replaces `other` on the same target: a load replaces loads of all kinds.

@@ -5,6 +5,7 @@
 
 mod components;
 mod made;
+mod orifices;
 mod same;
 
 use std::fmt;
@@ -73,8 +74,8 @@ impl Scene {
     /// by round-off out of an unstable place. Nodes on the plane slide in it ([`Phase::symmetry`](crate::Phase::symmetry)), with half of their loads, point masses and
     /// contact stiffness per node; the cut is no surface. Energies and forces are half of those of the whole scene.
     ///
-    /// Springs, cables, muscles, growths and chambers are each their own mirror images or that of another one that is driven alike, of which one is left. A
-    /// spring or cable in the plane has half of its forces, and the plane closes a chamber that it cuts.
+    /// Springs, cables, muscles, growths, chambers and orifices are each their own mirror images or that of another one that is driven alike, of which one is left. A
+    /// spring or cable in the plane has half of its forces, and the plane closes a chamber that it cuts, whose gas is half of the whole, as are flows.
     ///
     /// ```
     /// use pliant::{Axis, Body, Cells, Material, Mesh, Obstacle, Phase, Scene};
@@ -95,8 +96,8 @@ impl Scene {
     /// # Errors
     /// Scenes that [`validate`](Self::validate) refuses. A mesh in which a node has no mirror image, or a cell lies
     /// across the plane; anything else that is not symmetric: materials, prescribed displacements, loads, pressures on
-    /// faces, gravity, the start, obstacles, actuators. Unsupported features: several bodies, rigid and fibrous materials, springs
-    /// that cross the plane, gas and liquids, magnets, fluids, bodies that touch, forces that are not of this crate.
+    /// faces, gravity, the start, obstacles, actuators. Unsupported features: several bodies, fibrous materials, springs
+    /// that cross the plane, liquids, magnets, fluids, bodies that touch, forces that are not of this crate.
     pub fn symmetric_half(&self, axis: Axis) -> Result<Self, InputError> {
         Ok(self.by_map(self.map_across(Shrink::Half, axis, false)?)?.scene)
     }

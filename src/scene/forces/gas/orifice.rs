@@ -40,7 +40,7 @@ pub struct Orifice {
 }
 
 /// How large it is.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 enum Opening {
     /// C (m^3/(s Pa))
     Conductance(f64),
@@ -89,6 +89,18 @@ impl Orifice {
     /// Name of the orifice.
     pub fn name(&self) -> &str {
         &self.name
+    }
+
+    /// An orifice through which a `share` of that flows.
+    pub(crate) fn times(mut self, share: f64) -> Self {
+        let (Opening::Conductance(size) | Opening::Nozzle(size, _)) = &mut self.opening;
+        *size *= share;
+        self
+    }
+
+    /// Whether as much flows through `other` between the same ends.
+    pub(crate) fn is_like(&self, other: &Self) -> bool {
+        self.opening == other.opening && self.critical_ratio == other.critical_ratio
     }
 
     /// Its flow between `ends`, open by the sum of `opening`, or wholly without any.

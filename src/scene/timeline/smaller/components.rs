@@ -1,9 +1,8 @@
-//! Springs, cables, muscles, growths and chambers of a scene in its half: each is its own mirror image or that of another one.
+//! Springs, cables, muscles, growths, chambers and orifices of a scene in its half: each is its own mirror image or that of another one.
 //!
 //! Of two images one is left. A line in the plane of symmetry has half of its forces. Cells keep those on this side, and a
-//! chamber is closed by the plane, in which the force of that wall is held.
-
-use std::iter;
+//! chamber is closed by the plane, in which the force of that wall is held; what flows into its gas does so through half of an
+//! orifice (`orifices.rs`).
 
 use super::super::{Input, Phase, Quantity, Scene, Target};
 use super::same::{SAME, Same, times};
@@ -14,15 +13,14 @@ use crate::scene::forces::{ComponentMap, Drive, Placed};
 
 /// A component of a scene, and what its half has of it.
 pub(super) struct Component<'a> {
-    name: &'a str,
-    quantity: Quantity,
+    pub(super) name: &'a str,
+    pub(super) quantity: Quantity,
     /// Whether its signals are forces, of which the half has a share.
-    is_force: bool,
-    placed: Placed,
+    pub(super) is_force: bool,
     /// Its mirror image: itself or another one.
-    image: &'a str,
-    /// Share of it that the half has: half of a line in the plane; none of what is on the other side.
-    share: Option<f64>,
+    pub(super) image: &'a str,
+    /// Share of it that the half has: half of a line or an orifice in the plane; none of what is on the other side.
+    pub(super) share: Option<f64>,
 }
 
 impl<'s> Same<'s> {
@@ -34,7 +32,7 @@ impl<'s> Same<'s> {
         let (scene, body) = (self.scene, &self.scene.body);
         let whole = |name, quantity, is_force, placed: Result<Placed, InputError>| {
             let (image, share) = (name, Some(1.0));
-            placed.map(|placed| Component { name, quantity, is_force, placed, image, share })
+            placed.map(|placed| (Component { name, quantity, is_force, image, share }, placed))
         };
         let actuators = scene.actuators.iter().map(|own| {
             let is_force = own.kind().drive == Drive::Force;
@@ -43,11 +41,13 @@ impl<'s> Same<'s> {
         let chambers = scene.chambers.iter().map(|own| {
             whole(own.name(), Quantity::Pressure, false, own.placed(body.mesh(), self.map))
         });
-        let mut all = actuators.chain(chambers).collect::<Result<Vec<_>, _>>()?;
-        let found = all.iter().map(|own| self.image(own, &all)).collect::<Result<Vec<_>, _>>()?;
-        for (own, (image, share)) in all.iter_mut().zip(found) {
-            (own.image, own.share) = (image, share);
-        }
+        let placed = actuators.chain(chambers).collect::<Result<Vec<_>, _>>()?;
+        let images = placed.iter().map(|own| self.image(own, &placed));
+        let images = images.collect::<Result<Vec<_>, _>>()?;
+        let placed = placed.into_iter().zip(images);
+        let mut all: Vec<Component> =
+            placed.map(|((own, _), (image, share))| Component { image, share, ..own }).collect();
+        all.extend(self.orifices(&all)?);
         self.check_driven(&all)?;
         Ok(all)
     }
@@ -55,29 +55,32 @@ impl<'s> Same<'s> {
     /// The mirror image of a component among `all`, and the share of it that the half has.
     fn image(
         &self,
-        own: &Component<'s>,
-        all: &[Component<'s>],
+        own: &(Component<'s>, Placed),
+        all: &[(Component<'s>, Placed)],
     ) -> Result<(&'s str, Option<f64>), InputError> {
         let (at, tolerance) = (self.map.ends[0], SAME * self.scene.body.size());
         let (d, kept) = (self.map.mesh.dimension(), self.map.mesh.positions());
         let is_upper = kept.iter().skip(self.map.axis).step_by(d).any(|x| *x > at + tolerance);
-        let lag = |name: &str| self.scene.lag_of(name);
-        let is_image = |other: &&Component| {
-            let numbers = own.placed.at[1].iter().zip(&other.placed.at[0]);
-            own.placed.likeness == other.placed.likeness
-                && format!("{:?}", lag(own.name)) == format!("{:?}", lag(other.name))
-                && own.placed.at[1].len() == other.placed.at[0].len()
+        let beside_it = |name: &str| (self.scene.lag_of(name), self.scene.gas_of(name));
+        let (own, placed) = own;
+        let is_image = |(other, at): &&(Component, Placed)| {
+            let numbers = placed.at[1].iter().zip(&at.at[0]);
+            placed.likeness == at.likeness
+                && format!("{:?}", beside_it(own.name)) == format!("{:?}", beside_it(other.name))
+                && placed.at[1].len() == at.at[0].len()
                 && numbers.into_iter().all(|(a, b)| (a - b).abs() <= tolerance)
         };
         let name = format!("\"{}\"", own.name);
         // of several in one place each is its own
-        let image = iter::once(own).chain(all).find(is_image);
-        let image = image.ok_or_else(|| self.refused("component", &name))?.name;
-        let beside = own.placed.along.iter().filter(|x| (*x - at).abs() > tolerance);
+        let image = all.iter().filter(|(other, _)| other.name == own.name).chain(all);
+        let image = image.into_iter().find(is_image);
+        let (image, _) = image.ok_or_else(|| self.refused("component", &name))?;
+        let image = image.name;
+        let beside = placed.along.iter().filter(|x| (*x - at).abs() > tolerance);
         let sides: Vec<bool> = beside.map(|x| (*x > at) == is_upper).collect();
-        let share = match (image == own.name, own.placed.is_line) {
+        let share = match (image == own.name, placed.is_line) {
             (true, false) => Some(1.0),
-            (true, true) if sides.is_empty() && lag(own.name).is_none() => Some(0.5),
+            (true, true) if sides.is_empty() && self.scene.lag_of(own.name).is_none() => Some(0.5),
             (false, _) if sides.iter().all(|side| *side) => Some(1.0),
             (false, _) if !sides.contains(&true) => None,
             _ => {
@@ -131,7 +134,8 @@ impl<'s> Same<'s> {
         scene: &mut Scene,
     ) -> Result<(), InputError> {
         let (whole, map, mesh) = (self.scene, self.map, self.scene.body.mesh());
-        let (actuators, chambers) = components.split_at(whole.actuators.len());
+        let (actuators, others) = components.split_at(whole.actuators.len());
+        let (chambers, orifices) = others.split_at(whole.chambers.len());
         let nodes = |selection: &Selection| match selection {
             Selection::Numbers(_) => {
                 let nodes = mesh.select(selection)?.into_iter();
@@ -158,6 +162,10 @@ impl<'s> Same<'s> {
             false => whole.clone().with_nodes(nodes),
         });
         scene.chambers = chambers.collect::<Result<_, InputError>>()?;
+        scene.gases.retain(|gas| scene.chambers.iter().any(|own| own.name() == gas.chamber));
+        let orifices = whole.orifices.iter().zip(orifices);
+        let kept = orifices.filter_map(|(whole, own)| Some(whole.clone().times(own.share?)));
+        scene.orifices = kept.collect();
         Ok(())
     }
 }

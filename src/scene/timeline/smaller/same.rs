@@ -88,13 +88,16 @@ impl Same<'_> {
             ("magnets", scene.magnets.len()),
             ("fluids", scene.fluids.len()),
             ("chambers", of_section(scene.chambers.len())),
-            ("gases and liquids in chambers", scene.gases.len() + scene.liquids.len()),
+            ("liquids in chambers", scene.liquids.len()),
             ("touches", scene.touches.len()),
             ("moments, followers and other inputs of phases", unknown_inputs.count()),
             ("ties", scene.ties.len()),
             ("devices", scene.devices.len()),
             ("forces that are not of this crate", scene.forces.len()),
-            ("rigid materials", body.substances().filter(|made_of| made_of.is_rigid).count()),
+            (
+                "rigid materials",
+                of_section(body.substances().filter(|made_of| made_of.is_rigid).count()),
+            ),
             ("families of fibres", body.substances().map(|made_of| made_of.fibres.len()).sum()),
         ];
         match unknown.iter().find(|(_, count)| *count > 0) {
