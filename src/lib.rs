@@ -129,6 +129,8 @@ pub use io::scene_file;
 pub use scene::constraint;
 #[cfg(feature = "fit")]
 pub use studies::fit;
+#[cfg(feature = "gradient")]
+pub use studies::gradient;
 #[cfg(feature = "bodies")]
 pub use studies::reduce;
 pub use studies::samples;

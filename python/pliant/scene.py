@@ -167,15 +167,37 @@ class Scene:
         if static:
             values = [(str(name), [as_json(value) for value in column]) for name, column in dict(measured).items()]
             return Fit._of(self._scene.fit_at_rest(values, limits))
-        columns = {str(name): np.asarray(values, dtype=float).tolist() for name, values in dict(measured).items()}
-        times = [columns.pop(name) for name in ("t", "time") if name in columns]
-        if hasattr(measured, "index") and not times:
-            times = [np.asarray(measured.index, dtype=float).tolist()]
-        if len(times) != 1:
-            raise ValueError("measurements have their times (s) in one column, t or time")
-        if any(len(values) != len(times[0]) for values in columns.values()):
-            raise ValueError("all columns of measurements are as long as their times")
-        return Fit._of(self._scene.fit(times[0], list(columns.items()), limits))
+        return Fit._of(self._scene.fit(*_measurements(measured), limits))
+
+    def gradient(self, of=None, by=(), *, measured=None, static=False, method=None, check=False):
+        """Derivatives of what the scene does by some of its numbers, as `pliant gradient` finds them: a :class:`SceneGradient`.
+
+        Parameters
+        ----------
+        of : str
+            The quantity: ``"tip.y"``, which is its value at the end, ``"tip.y:max"``, ``"com.y:frequency"``.
+        by : list of str
+            Keys of the numbers: ``["body.material.young", "phase.push.load.force.2"]``.
+        measured : dict of arrays, or a DataFrame
+            In place of a quantity the sum of the squares of what sensors read less this, as in :meth:`fit`.
+        static : bool
+            Of the equilibrium.
+        method : str, optional
+            ``"same-steps"`` or ``"differences"``.
+        check : bool
+            With differences of whole runs beside the derivatives.
+        """
+        if (of is None) == (measured is None):
+            raise ValueError("a gradient is of a quantity, as of='tip.y', or of squares by measured={...}")
+        if measured is not None and static:
+            raise ValueError("squares of equilibria are for the command: pliant gradient --static --data")
+        times, columns = ([], []) if measured is None else _measurements(measured)
+        by = [by] if isinstance(by, str) else [str(key) for key in by]
+        text, data = self._scene.gradient(of, times, columns, bool(static), by, method, bool(check))
+        found = SceneGradient(text, json.loads(data))
+        for key, warning in found.warnings.items():
+            warnings.warn(f"the derivative by {key} means little: {warning}", ModelWarning, stacklevel=2)
+        return found
 
     def chart(self, directory, methods=None, rtol=(1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8), repetitions=3):
         """Charts speed against accuracy, as `pliant chart` does: chart.svg, .png, .md and .csv in `directory`.
@@ -253,6 +275,51 @@ class Fit:
 
     def __str__(self):
         return self.text
+
+
+@dataclass(frozen=True)
+class SceneGradient:
+    """Derivatives of an objective by numbers of a scene: in words (`text`, printed), and as `data`, with the keys of gradient.json.
+
+    ``float(gradient["body.material.young"])`` is one of them; `derivatives`, `errors` and `at` are arrays in the order of `by`.
+    """
+
+    text: str
+    data: dict
+
+    def __str__(self):
+        return self.text
+
+    def __getitem__(self, key):
+        return self.data["gradient"][key]["value"]
+
+    value = property(lambda self: self.data["value"], doc="The objective.")
+    unit = property(lambda self: self.data["unit"], doc="Its unit.")
+    by = property(lambda self: list(self.data["gradient"]), doc="The keys of the numbers.")
+    derivatives = property(lambda self: self._column("value"), doc="The derivatives.")
+    errors = property(lambda self: self._column("error"), doc="Their estimated errors.")
+    at = property(lambda self: self._column("at"), doc="The numbers.")
+
+    @property
+    def warnings(self):
+        """Why derivatives mean little, by keys, where they do."""
+        return {key: one["warning"] for key, one in self.data["gradient"].items() if one["warning"]}
+
+    def _column(self, word):
+        return np.array([one[word] for one in self.data["gradient"].values()])
+
+
+def _measurements(measured):
+    """Times (s), and columns with their names."""
+    columns = {str(name): np.asarray(values, dtype=float).tolist() for name, values in dict(measured).items()}
+    times = [columns.pop(name) for name in ("t", "time") if name in columns]
+    if hasattr(measured, "index") and not times:
+        times = [np.asarray(measured.index, dtype=float).tolist()]
+    if len(times) != 1:
+        raise ValueError("measurements have their times (s) in one column, t or time")
+    if any(len(values) != len(times[0]) for values in columns.values()):
+        raise ValueError("all columns of measurements are as long as their times")
+    return times[0], list(columns.items())
 
 
 def _values(values):

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pliant::fit::{Measured, MeasuredAtRest, SceneFit, Unknown};
+use pliant::gradient::{Objective, SceneGradient};
 use pliant::scene_file::{SetValue, override_of, toml_of as toml_of_scene};
 use pliant::study::{Adviser, Quantity, Scenes, Study, Verification, all_methods};
 use pliant::{Error, Mesh, Part, ReducedModel, SceneFile, SceneReader, Settings, Trajectory};
@@ -285,6 +286,44 @@ impl Scene {
             )
         };
         fitted(py, fit, unknowns)
+    }
+
+    /// Derivatives by the numbers of the keys `by`, of a quantity or of squares of what is left over of measurements. The answer in words
+    /// and as JSON.
+    #[allow(clippy::too_many_arguments, reason = "keywords of Python")]
+    fn gradient(
+        &self,
+        py: Python<'_>,
+        of: Option<String>,
+        times: Vec<f64>,
+        columns: Vec<(String, Vec<f64>)>,
+        is_at_rest: bool,
+        by: Vec<String>,
+        method: Option<String>,
+        check: bool,
+    ) -> PyResult<(String, String)> {
+        if self.model.is_some() {
+            let help = "its reduced model is in no file: write it, and take scene.reduced(path)";
+            return Err(PyValueError::new_err(help));
+        }
+        let objective = match (of, is_at_rest) {
+            (Some(of), false) => Objective::Quantity(of),
+            (Some(of), true) => Objective::QuantityAtRest(of),
+            (None, _) => Objective::LeastSquares(Measured { times, columns }),
+        };
+        let found = py.detach(|| {
+            let (reader, text, path) = (SceneReader::default(), &*self.text, &self.path);
+            let mut gradient =
+                SceneGradient::of_text(&reader, text, path, &self.overrides, objective, &by)?;
+            if let Some(method) = method {
+                gradient = gradient.by_method(method.parse()?)?;
+            }
+            if check {
+                gradient = gradient.checked();
+            }
+            gradient.find(&mut |_| {})
+        });
+        found.map(|found| (found.to_string(), found.to_json().to_string())).map_err(raised)
     }
 
     /// Charts speed against accuracy of methods at tolerances, into a directory. Returns the table of the fastest.

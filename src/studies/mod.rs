@@ -1,11 +1,12 @@
 //! Many runs for one answer: speed against accuracy, what to choose, unknowns fitted to measurements, a scene for
-//! many values of its keys; and
-//! problems with trusted answers to try them on.
+//! many values of its keys, derivatives by the numbers of a scene; and problems with trusted answers to try them on.
 
 #[cfg(feature = "study")]
 pub mod advise;
 #[cfg(feature = "fit")]
 pub mod fit;
+#[cfg(feature = "gradient")]
+pub mod gradient;
 #[cfg(feature = "bodies")]
 pub mod reduce;
 pub mod samples;

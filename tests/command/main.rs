@@ -2,6 +2,7 @@
 
 mod beside;
 mod fit;
+mod gradient;
 mod printed;
 mod reduce;
 mod statics;

@@ -1,6 +1,7 @@
 //! Studies: errors against closed forms, the reference, files, failures, charts.
 
 mod advise;
+mod gradient;
 mod look;
 mod mesh_estimate;
 mod page;

@@ -20,6 +20,7 @@ mod engine;
 mod failure;
 mod files;
 mod fit;
+mod gradient;
 mod laws;
 mod methods;
 mod new;
@@ -76,6 +77,8 @@ enum Command {
     Beside(beside::Arguments),
     #[command(allow_negative_numbers = true)]
     Fit(fit::Arguments),
+    #[command(allow_negative_numbers = true)]
+    Gradient(gradient::Arguments),
     Reduce(reduce::Arguments),
     Sweep(sweep::Arguments),
     Check(check::Arguments),
@@ -97,6 +100,7 @@ impl Command {
             Self::Static(arguments) => &mut arguments.scene,
             Self::Advise(arguments) => &mut arguments.scene,
             Self::Fit(arguments) => &mut arguments.scene,
+            Self::Gradient(arguments) => &mut arguments.scene,
             Self::Reduce(arguments) => &mut arguments.scene,
             Self::Check(arguments) => &mut arguments.scene,
             Self::Chart(arguments) => &mut arguments.scene,
@@ -122,6 +126,7 @@ pub fn main_with(devices: &[DeviceTable]) -> ExitCode {
         Command::Advise(arguments) => advise::run(&arguments),
         Command::Beside(arguments) => beside::run(&arguments),
         Command::Fit(arguments) => fit::run(&arguments),
+        Command::Gradient(arguments) => gradient::run(&arguments),
         Command::Reduce(arguments) => reduce::run(&arguments),
         Command::Sweep(arguments) => sweep::run(&arguments, reader),
         Command::Check(arguments) => check::run(&arguments),

@@ -131,7 +131,7 @@ fn compression(indefinite: usize) -> Option<String> {
 impl Integrable for System {
     fn start(self: Box<Self>, start: &Start) -> Result<Box<dyn Stepper>, Failed> {
         let mut system = *self;
-        let Start { settings, atol, state, time: t, first } = *start;
+        let Start { settings, atol, state, time: t, first, .. } = *start;
         let layout = system.layout();
         let mut tolerances = vec![atol.position; layout.dofs];
         tolerances.resize(layout.motion().end, atol.velocity);
@@ -184,11 +184,13 @@ pub(super) fn ode<S: IntoStepper>(
             let options = rosenbrock_options(settings, tolerances, equations.full(), is_linear);
             let options = options.max_step(longest);
             let options = first.into_iter().fold(options, rosenbrock::Options::initial_step);
+            let options = if start.prescribed { options.prescribed() } else { options };
             S::into_stepper(Rosenbrock::new(equations, t, y, &options)?)
         }
         Method::Rk => {
             let options = rk::Options::new(settings.rtol, tolerances).max_step(longest);
             let options = first.into_iter().fold(options, rk::Options::initial_step);
+            let options = if start.prescribed { options.prescribed() } else { options };
             S::into_stepper(DormandPrince::new(equations, t, y, &options)?)
         }
         // a plan never has `Auto`, and other methods take other equations

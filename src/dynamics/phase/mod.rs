@@ -35,6 +35,8 @@ pub(crate) struct Start<'a> {
     pub(crate) time: f64,
     /// Size of the first step (s), if it is known.
     pub(crate) first: Option<f64>,
+    /// Whether one-step methods take the steps that the run prescribes.
+    pub(crate) prescribed: bool,
 }
 
 /// An integrator at work on the equations of one phase.

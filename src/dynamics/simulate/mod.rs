@@ -36,6 +36,7 @@ mod smaller_reading;
 mod spot;
 mod spot_gauge;
 mod stalled;
+mod step_list;
 mod steps;
 mod view;
 mod watch;
@@ -64,6 +65,7 @@ use run::Run;
 pub use sampling::Sampling;
 pub use simulation::Simulation;
 pub use spot::Spot;
+pub use step_list::StepList;
 use view::Gauges;
 pub use view::View;
 

@@ -21,6 +21,7 @@ use super::reduced_checks::{ReducedChecks, locked};
 use super::resolution::Resolution;
 use super::sampling::Sampling;
 use super::sensor::Sensors;
+use super::step_list::Prescribed;
 use super::view::{Gauges, View};
 use crate::base::input::InputError;
 use crate::dynamics::error::Error;
@@ -94,6 +95,8 @@ pub(super) struct Run {
     pub(super) least_energy: f64,
     /// A time (s) at which steps end, though no interval does.
     pub(super) pause: Option<f64>,
+    /// The steps of another run, if it follows them.
+    pub(super) prescribed: Option<Prescribed>,
     /// The bounds of the steps of the interval, and how many times as often as its tolerance takes functions of programs are looked at for
     /// them.
     resolution: Resolution,
@@ -188,6 +191,7 @@ impl Run {
             trajectory,
             least_energy: least_energy(scene.body()),
             pause: None,
+            prescribed: None,
             resolution: Resolution::default(),
             looks: 1.0,
             reduced: scene.reduced_model().map(|model| {
@@ -293,6 +297,7 @@ impl Run {
             state: &self.state,
             time: self.time,
             first,
+            prescribed: self.prescribed.is_some(),
         };
         let started = system.start(&start).and_then(|mut stepper| {
             stepper.stop_at(end)?;
@@ -321,6 +326,9 @@ impl Run {
             end if end == stop => self.resolution.end(),
             end => end,
         };
+        if let Some(prescribed) = &mut self.prescribed {
+            return prescribed.end(self.time, stop, end);
+        }
         // a step that is known may be stretched towards its end
         let until = next.map_or(end, |next| end.min(self.time + AHEAD * next));
         self.resolution.bound(self.time, until).unwrap_or(end)
@@ -459,6 +467,7 @@ impl Run {
             balance: self.balance,
             least_energy: self.least_energy,
             pause: None,
+            prescribed: None,
             resolution: Resolution::default(),
             looks: self.looks,
             reduced: self.reduced.as_ref().map(|checks| Mutex::new(locked(checks).clone())),

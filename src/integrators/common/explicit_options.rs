@@ -45,6 +45,8 @@ pub(crate) fn check_stop_time(stop: f64, reached: f64, t: f64) -> Result<(), Inp
 pub struct ExplicitOptions {
     pub(crate) tolerances: Tolerances,
     pub(crate) steps: StepOptions,
+    /// Whether steps end at stop times alone.
+    pub(crate) prescribed: bool,
 }
 
 impl Default for ExplicitOptions {
@@ -61,10 +63,23 @@ impl ExplicitOptions {
     /// `rtol` is at least 1e-14, below which rounding errors drown the error estimate, or 0, where `atol` alone counts. `atol` is positive: the
     /// size below which a value is noise.
     pub fn new(rtol: f64, atol: impl Into<AbsoluteTolerance>) -> Self {
-        Self { tolerances: Tolerances::new(rtol, atol), steps: StepOptions::default() }
+        Self {
+            tolerances: Tolerances::new(rtol, atol),
+            steps: StepOptions::default(),
+            prescribed: false,
+        }
     }
 
     step_options!(steps);
+
+    /// Prescribed steps: as long as a stop time is set the step ends there, whatever its error estimate says. With the steps of an
+    /// earlier integration the result is a smooth function of initial values and parameters. A step whose equations cannot be
+    /// evaluated or solved is still divided.
+    #[cfg(feature = "bodies")]
+    pub(crate) fn prescribed(mut self) -> Self {
+        self.prescribed = true;
+        self
+    }
 
     pub(crate) fn check(&self, y0: &[f64]) -> Result<(), InputError> {
         self.tolerances.check(y0)?;

@@ -190,9 +190,11 @@ impl<S: Ode, M: StepMethod> OneStep<S, M> {
         if !self.march.slope_known {
             self.evaluate_slope()?;
         }
-        let planned = match self.march.next_step {
-            Some(step) => step,
-            None => self.estimate_initial_step()?,
+        let prescribed = self.march.stop_time.filter(|_| self.march.options.prescribed);
+        let planned = match (prescribed, self.march.next_step) {
+            (Some(stop), _) => stop - self.march.t,
+            (None, Some(step)) => step,
+            (None, None) => self.estimate_initial_step()?,
         };
         let mut h = planned.min(self.max_step());
         self.start_roots(self.march.stop_time.map_or(h, |stop| h.min(stop - self.march.t)))?;
@@ -208,6 +210,7 @@ impl<S: Ode, M: StepMethod> OneStep<S, M> {
             let t_new = stop.unwrap_or(march.t + h);
             let step = t_new - march.t;
             let error = match method.try_step(march, t_new, step)? {
+                Ok(error) if prescribed.is_some() && error < f64::MAX => error.min(1.0),
                 Ok(error) => error,
                 Err(reason) => {
                     march.statistics.refused_steps += 1;

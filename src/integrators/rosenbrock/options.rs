@@ -89,6 +89,15 @@ impl Options {
 
     step_options!(forward.steps);
 
+    /// Prescribed steps: as long as a stop time is set the step ends there, whatever its error estimate says. With the steps of an
+    /// earlier integration the result is a smooth function of initial values and parameters. A step whose equations cannot be
+    /// evaluated or solved is still divided.
+    #[cfg(feature = "bodies")]
+    pub(crate) fn prescribed(mut self) -> Self {
+        self.forward.prescribed = true;
+        self
+    }
+
     /// The method of that order.
     pub(super) fn tableau(&self) -> Result<&'static Tableau, InputError> {
         let steps = self.steps_between_jacobians;

@@ -47,7 +47,7 @@ impl LinearlyImplicit {
             // Finite slopes whose solution overflows: the step is far too long.
             return Ok(Ok(f64::MAX));
         }
-        if error <= 1.0
+        if (error <= 1.0 || march.options.prescribed)
             && let Some(cause) = self.finish(march, t_new, h)?
         {
             return Ok(Err(cause));

@@ -198,6 +198,22 @@ impl SceneFile {
         Ok(Self::places(text, path, keys)?.iter().map(|place| TOP.unit(place)).collect())
     }
 
+    /// The value of a key, as one of [`read_with`](Self::read_with), in the `text` of a scene file with other values for some keys;
+    /// none if it is not stated there.
+    ///
+    /// # Errors
+    /// A text that is not TOML; as of [`read_with`](Self::read_with) for overrides.
+    #[cfg(feature = "gradient")]
+    pub(crate) fn value_of(
+        text: &str,
+        path: &Path,
+        overrides: &[String],
+        key: &str,
+    ) -> Result<Option<SetValue>, Error> {
+        let source = SourceText { path, text, own: text.len(), notes: RefCell::default() };
+        overrides::value_of(text, overrides, key, |error| no_toml(&source, &error))
+    }
+
     /// As [`read`](Self::read), from the `text` of a file at `path`.
     ///
     /// # Errors

@@ -7,6 +7,8 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use super::set_value::quoted;
+#[cfg(feature = "gradient")]
+use super::set_value::{SetValue, canonical};
 use crate::base::input::{InputError, unknown};
 use crate::dynamics::error::Error;
 
@@ -183,6 +185,39 @@ pub(super) fn place(document: &DeTable, key: &str) -> Vec<String> {
         };
     }
     place
+}
+
+/// The value that a key has in the `text` of a scene file with other values for some keys.
+///
+/// # Errors
+/// An override that is no key and value, or that has no place.
+#[cfg(feature = "gradient")]
+pub(super) fn value_of(
+    text: &str,
+    overrides: &[String],
+    key: &str,
+    no_toml: impl Fn(toml::de::Error) -> Error,
+) -> Result<Option<SetValue>, Error> {
+    let overrides = overrides.iter().map(|text| as_toml(text)).collect::<Result<Vec<_>, _>>()?;
+    let mut document = DeTable::parse(text).map_err(&no_toml)?.into_inner();
+    for over in &overrides {
+        merge(&mut document, DeTable::parse(over).map_err(&no_toml)?.into_inner(), over)?;
+    }
+    let words = place(&document, key);
+    let mut here = DeValue::Table(document);
+    for word in words {
+        let next = match here {
+            DeValue::Table(mut table) => table.remove(&word[..]),
+            DeValue::Array(list) => {
+                let at = word.parse::<usize>().ok().and_then(|number| number.checked_sub(1));
+                at.and_then(|at| list.into_iter().nth(at))
+            }
+            _ => None,
+        };
+        let Some(next) = next else { return Ok(None) };
+        here = next.into_inner();
+    }
+    Ok(Some(SetValue::of(&here, &canonical(&here))))
 }
 
 pub(super) fn name_of<'t>(value: &'t Spanned<DeValue>) -> Option<&'t str> {

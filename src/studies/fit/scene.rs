@@ -16,6 +16,10 @@ use crate::dynamics::simulate::Sampling;
 use crate::dynamics::trajectory::{Quantity, Trajectory};
 use crate::io::output::Chart;
 use crate::io::scene_file::{SceneFile, SceneReader, text_of};
+use crate::scene::timeline::Scene;
+
+/// The run of a scene, with the settings of its file.
+type Run<'a> = &'a mut dyn FnMut(&SceneFile, &Scene, &Sampling) -> Result<Trajectory, Error>;
 
 /// A scene file, and what was measured of the scene.
 ///
@@ -177,6 +181,35 @@ impl SceneFit {
         Ok(Self { reader, text, path, overrides, rows, columns, scales, precision })
     }
 
+    /// The sum of the squares of all residuals, with other values for some keys, of the motion that `run` gives, or of
+    /// equilibria.
+    ///
+    /// # Errors
+    /// As [`SceneFile::read_with`]; those of runs and equilibria.
+    #[cfg(feature = "gradient")]
+    pub(crate) fn sum_of_squares(&self, set: &[String], run: Run) -> Result<f64, Error> {
+        let overrides = [&self.overrides[..], set].concat();
+        let weighed = self.columns.iter().zip(&self.scales);
+        let residuals = self.residuals_with(&overrides, run)?;
+        let terms = residuals.iter().zip(weighed).flat_map(|(column, (_, scale))| {
+            column.iter().map(move |residual| (residual / scale).powi(2))
+        });
+        Ok(terms.sum())
+    }
+
+    /// The unit of the residuals, if it is one.
+    #[cfg(feature = "gradient")]
+    pub(crate) fn unit(&self) -> Option<&str> {
+        let first = self.columns.first().map(|(quantity, _)| &quantity.unit[..]);
+        first.filter(|unit| self.columns.iter().all(|(quantity, _)| quantity.unit == **unit))
+    }
+
+    /// Whether it is of equilibria.
+    #[cfg(feature = "gradient")]
+    pub(crate) fn is_at_rest(&self) -> bool {
+        matches!(self.rows, Rows::Equilibria { .. })
+    }
+
     /// Fits keys of the file, as `body.material.young`. `tell` is as in [`least_squares`].
     ///
     /// # Errors
@@ -212,11 +245,18 @@ impl SceneFit {
     fn residuals(&self, unknowns: &[Unknown], values: &[f64]) -> Result<Vec<Vec<f64>>, Error> {
         let set = unknowns.iter().zip(values).map(|(unknown, value)| set(&unknown.name, *value));
         let overrides: Vec<String> = self.overrides.iter().cloned().chain(set).collect();
+        self.residuals_with(&overrides, &mut |file, scene, sampling| {
+            scene.simulate(&file.settings, sampling)
+        })
+    }
+
+    /// The same with these values for keys, of the motion that `run` gives.
+    fn residuals_with(&self, overrides: &[String], run: Run) -> Result<Vec<Vec<f64>>, Error> {
         let read = match &self.rows {
-            Rows::Times(times) => self.in_motion(&overrides, times)?,
+            Rows::Times(times) => self.in_motion(overrides, times, run)?,
             Rows::Equilibria { set, .. } => {
                 let rows =
-                    set.par_iter().map(|set| self.in_equilibrium(&[&overrides[..], set].concat()));
+                    set.par_iter().map(|set| self.in_equilibrium(&[overrides, set].concat()));
                 // of several errors the first one, whichever was found first
                 let rows: Vec<_> = rows.collect();
                 rows.into_iter().collect::<Result<Vec<Vec<f64>>, Error>>()?
@@ -229,7 +269,12 @@ impl SceneFit {
     }
 
     /// Readings of the sensors in a motion at some times (s).
-    fn in_motion(&self, overrides: &[String], times: &[f64]) -> Result<Vec<Vec<f64>>, Error> {
+    fn in_motion(
+        &self,
+        overrides: &[String],
+        times: &[f64],
+        run: Run,
+    ) -> Result<Vec<Vec<f64>>, Error> {
         let file = self.reader.parse_with(&self.text, &self.path, overrides)?;
         let last = times.last().copied().unwrap_or_default();
         let scene = match last > 0.0 {
@@ -242,7 +287,7 @@ impl SceneFit {
             .sensors
             .iter()
             .fold(sampling, |sampling, (name, reading)| sampling.read(name, reading.clone()));
-        let motion = scene.simulate(&file.settings, &sampling)?;
+        let motion = run(&file, &scene, &sampling)?;
         let places = self.places(&motion)?;
         let row = |time: &f64| places.iter().map(|place| read(&motion, *time, *place)).collect();
         Ok(times.iter().map(row).collect())

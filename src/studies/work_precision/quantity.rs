@@ -386,7 +386,7 @@ pub(crate) struct Seen {
     /// Components of a point.
     pub(super) dimension: usize,
     /// Time by time; point by point.
-    pub(super) values: Vec<Vec<f64>>,
+    pub(crate) values: Vec<Vec<f64>>,
     /// Scale of relative errors.
     pub(crate) scale: f64,
 }

@@ -1,0 +1,22 @@
+//! Derivatives of what a scene does by the numbers that it says, each with its estimated error.
+//!
+//! A [`SceneGradient`] is of one [`Objective`] and any numbers of a scene file. Two methods:
+//!
+//! - [`Method::SameSteps`]: a run by an own one-step method lists its steps, and runs with another number take the same ones. What these
+//!   lead to is a smooth function of the number, so that central differences of a thousandth, extrapolated, are the derivative of the
+//!   computed motion to eight digits or more. How far that is from the derivative of the motion itself is seen from a second tolerance.
+//! - [`Method::Differences`]: whole runs or equilibria at a tight tolerance with several steps, extrapolated by Ridders' tableau. For
+//!   everything: equilibria, phases that sensors end, numbers on which the number of unknowns or of steps depends.
+//!
+//! A derivative is [doubtful](Derivative::doubt) where the two tolerances disagree about it: nearby motions part faster than
+//! any derivative says, by bounces or chaos.
+
+mod answer;
+mod number;
+mod objective;
+mod scene;
+mod tableau;
+
+pub use answer::{Check, Derivative, Doubt, Gradient};
+pub use objective::Objective;
+pub use scene::{Method, SceneGradient};

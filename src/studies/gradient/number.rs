@@ -1,0 +1,100 @@
+//! Numbers of a scene file by which derivatives are taken.
+
+use std::path::Path;
+
+use crate::base::input::InputError;
+use crate::dynamics::error::Error;
+use crate::io::scene_file::{SceneFile, SceneReader, problem};
+
+/// A number of a scene: its key, its value there, and its unit.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Number {
+    pub(super) key: String,
+    pub(super) value: f64,
+    pub(super) unit: &'static str,
+    /// Sides on which the scene takes values next to it.
+    sides: Sides,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Sides {
+    Both,
+    /// One side: 1 above, -1 below.
+    One(i8),
+}
+
+/// Part of a number, or of 1 in its unit where it is 0, within which a scene has to take other values on one side at least.
+const NEXT_TO: f64 = 1e-3;
+
+impl Number {
+    /// The number that `key` has in the scene of a `text` with other values for some keys.
+    ///
+    /// # Errors
+    /// A key that the scene does not have or does not state; a value that is not a number, or beside which there is no other.
+    pub(super) fn of(
+        key: &str,
+        reader: &SceneReader,
+        (text, path): (&str, &Path),
+        overrides: &[String],
+    ) -> Result<Self, Error> {
+        let bad = |value: String, help: String| Error::from(InputError::new(key, value, help));
+        let with = |value: f64| {
+            let set = [overrides, &[set(key, value)]].concat();
+            reader.parse_with(text, path, &set)
+        };
+        let stated = SceneFile::value_of(text, path, overrides, key)?;
+        let Some(stated) = stated else {
+            // an unknown key is an error of the reader
+            with(1.0).map_err(|error| bad("a number".into(), problem(error)))?;
+            let help = format!(
+                "the scene file does not say it: write it there, or give it a value by --set {key}=VALUE"
+            );
+            return Err(bad("its default".into(), help));
+        };
+        let value = stated.number().ok_or_else(|| {
+            let help =
+                "a derivative is by a number: name one, in a list by its place, as gravity.2";
+            bad(stated.to_string(), help.into())
+        })?;
+        let unit = SceneFile::units(text, path, &[key])?.first().copied().unwrap_or_default();
+        let step = NEXT_TO * scale(value);
+        let sides = match [with(value + step), with(value - step)] {
+            [Ok(_), Ok(_)] => Sides::Both,
+            [Ok(_), Err(_)] => Sides::One(1),
+            [Err(_), Ok(_)] => Sides::One(-1),
+            [Err(error), Err(_)] => {
+                let help = format!("it takes no value next to this one: {}", problem(error));
+                return Err(bad(stated.to_string(), help));
+            }
+        };
+        Ok(Self { key: key.into(), value, unit, sides })
+    }
+
+    /// The size of its steps is in parts of this.
+    pub(super) fn scale(&self) -> f64 {
+        scale(self.value)
+    }
+
+    /// The two values whose difference quotient has the `step`, the larger one first.
+    pub(super) fn ends(&self, step: f64) -> [f64; 2] {
+        match self.sides {
+            Sides::Both => [self.value + step, self.value - step],
+            Sides::One(1) => [self.value + step, self.value],
+            Sides::One(_) => [self.value, self.value - step],
+        }
+    }
+
+    /// The power of the step in the error of difference quotients.
+    pub(super) fn order(&self) -> i32 {
+        if self.sides == Sides::Both { 2 } else { 1 }
+    }
+}
+
+fn scale(value: f64) -> f64 {
+    if value == 0.0 { 1.0 } else { value.abs() }
+}
+
+/// The override that gives a key this value.
+pub(super) fn set(key: &str, value: f64) -> String {
+    format!("{key}={value:?}")
+}

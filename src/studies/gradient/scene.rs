@@ -1,0 +1,624 @@
+//! The gradient of an objective of a scene file: its runs, and what they tell.
+
+use std::fmt;
+use std::path::{Path, PathBuf};
+use std::str::FromStr;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use rayon::prelude::*;
+
+use super::answer::{Check, Derivative, Doubt, Gradient};
+use super::number::{Number, set};
+use super::objective::{self, Objective, Seen, part_of_time};
+use super::tableau::{Extrapolated, extrapolated};
+use crate::base::input::InputError;
+use crate::dynamics::error::Error;
+use crate::dynamics::simulate::{Sampling, StepList};
+use crate::dynamics::trajectory::Trajectory;
+use crate::io::scene_file::{SceneFile, SceneReader, text_of};
+use crate::scene::settings::{ContactEvents, Settings};
+use crate::scene::timeline::Scene;
+use crate::studies::fit::SceneFit;
+
+/// How derivatives are found.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Method {
+    /// Differences of runs that take the same steps.
+    SameSteps,
+    /// Differences of whole runs, or of equilibria, at a tight tolerance.
+    Differences,
+}
+
+/// The derivatives of an objective by numbers of a scene file.
+///
+/// ```
+/// use pliant::gradient::{Objective, SceneGradient};
+///
+/// # let place = tempfile::tempdir().unwrap();
+/// # let scene = place.path().join("bar.toml");
+/// # std::fs::write(&scene, r#"
+/// #     body = { mesh = { kind = "bar", length = 0.1, nodes = 2 }, area = 1e-4, strain = "cauchy", material = { density = 1e3, young = 1e5, poisson = 0.0, viscosity = 0.0 } }
+/// #     phase = { name = "pull", until = 1.0, hold = { nodes = "left" }, load = { nodes = "right", force = [0.1] } }
+/// #     sensor = { name = "tip", kind = "displacement", nodes = "right" }
+/// # "#).unwrap();
+/// // a bar, stretched by F L / (E A)
+/// let stretch = Objective::QuantityAtRest("tip.x".into());
+/// let gradient = SceneGradient::new(&scene, &[], stretch, &["body.material.young"])?.find(&mut |_| {})?;
+/// let by_young = &gradient.derivatives[0];
+/// assert!((by_young.value + gradient.value / 1e5).abs() < by_young.error + 1e-15);
+/// # Ok::<(), pliant::Error>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct SceneGradient {
+    reader: SceneReader,
+    text: String,
+    path: PathBuf,
+    overrides: Vec<String>,
+    of: String,
+    target: Target,
+    unit: String,
+    numbers: Vec<Number>,
+    method: Option<Method>,
+    is_checked: bool,
+    /// The relative tolerance of the file, of motions or of equilibria.
+    rtol: f64,
+    /// Why runs do not take the steps of another one.
+    refused: Option<String>,
+}
+
+/// An objective in a scene.
+#[derive(Debug, Clone)]
+enum Target {
+    Quantity(String),
+    QuantityAtRest(String),
+    LeastSquares(Box<SceneFit>),
+}
+
+/// How runs are made, and which steps differences have.
+struct Scheme {
+    method: Method,
+    /// Relative tolerances: that of the derivative, and the larger one that it is compared with.
+    rtols: [f64; 2],
+    /// The first step of differences, as a part of a number, and how many there are, each half as long as the one before.
+    first: f64,
+    rows: usize,
+}
+
+/// A run without differences, at one tolerance.
+struct Base {
+    rtol: f64,
+    seen: Seen,
+    steps: Option<StepList>,
+}
+
+/// The derivative by one number, from differences.
+struct Found {
+    slope: Extrapolated,
+    /// The quotients of the second step at both tolerances.
+    quotients: [Vec<f64>; 2],
+    /// Whether any run saw another value.
+    is_constant: bool,
+}
+
+/// Why there is no derivative.
+enum Stop {
+    /// A run by the steps of another one needed others.
+    OtherSteps,
+    Failed(Error),
+}
+
+impl From<Error> for Stop {
+    fn from(error: Error) -> Self {
+        Self::Failed(error)
+    }
+}
+
+/// Relative error of the differences from which on other steps are tried, and the factors of these.
+const ROUGH: f64 = 1e-5;
+const FACTORS: [f64; 2] = [16.0, 1.0 / 16.0];
+
+/// Part of a derivative by which results of both tolerances may differ.
+const MEANINGFUL: f64 = 0.1;
+/// Changes of the objective below this part of it, for a change of a number by itself, count as none.
+const NOTHING: f64 = 1e-9;
+/// Relative differences of results that are the same.
+const ROUND_OFF: f64 = 4.0 * f64::EPSILON;
+
+impl Method {
+    /// All methods.
+    pub const ALL: [Self; 2] = [Self::SameSteps, Self::Differences];
+
+    /// Its word: `same-steps`, `differences`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::SameSteps => "same-steps",
+            Self::Differences => "differences",
+        }
+    }
+}
+
+impl fmt::Display for Method {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.name())
+    }
+}
+
+impl FromStr for Method {
+    type Err = InputError;
+
+    fn from_str(name: &str) -> Result<Self, InputError> {
+        Self::ALL.into_iter().find(|method| method.name() == name).ok_or_else(|| {
+            let help = format!("it is one of {}", Self::ALL.map(Self::name).join(", "));
+            InputError::new("method of the gradient", format!("\"{name}\""), help)
+        })
+    }
+}
+
+impl SceneGradient {
+    /// The gradient of an objective of the scene file at `path` by the numbers of the keys `by`, with other values as
+    /// [`SceneFile::read_with`] takes them.
+    ///
+    /// # Errors
+    /// As [`SceneFile::read_with`] and, for measurements, as [`SceneFit::new`]; an objective that the scene does not have or that is
+    /// no single number; no key, a key that stands twice, or that is not a number which may change.
+    pub fn new(
+        path: impl Into<PathBuf>,
+        overrides: &[String],
+        objective: Objective,
+        by: &[impl AsRef<str>],
+    ) -> Result<Self, Error> {
+        let path = path.into();
+        Self::of_text(&SceneReader::default(), text_of(&path)?, path, overrides, objective, by)
+    }
+
+    /// As [`new`](Self::new), of the `text` of a file at `path`, which `reader` reads.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn of_text(
+        reader: &SceneReader,
+        text: impl Into<String>,
+        path: impl Into<PathBuf>,
+        overrides: &[String],
+        objective: Objective,
+        by: &[impl AsRef<str>],
+    ) -> Result<Self, Error> {
+        let (text, path) = (text.into(), path.into());
+        let file = reader.parse_with(&text, &path, overrides)?;
+        let squares = |fit: SceneFit| {
+            let unit = fit.unit().map_or_else(|| "1".into(), |unit| format!("{unit}^2"));
+            ("squares of what is left over".to_owned(), Target::LeastSquares(Box::new(fit)), unit)
+        };
+        let (of, target, unit) = match objective {
+            Objective::Quantity(text) => {
+                let quantity = objective::quantity(&text, &file, false)?;
+                (quantity.to_string(), Target::Quantity(text), quantity.unit().into())
+            }
+            Objective::QuantityAtRest(text) => {
+                let unit = objective::quantity(&text, &file, true)?.unit().into();
+                (text.clone(), Target::QuantityAtRest(text), unit)
+            }
+            Objective::LeastSquares(measured) => {
+                squares(SceneFit::of_text(reader, &*text, &*path, overrides, &measured)?)
+            }
+            Objective::LeastSquaresAtRest(measured) => {
+                squares(SceneFit::at_rest_of_text(reader, &*text, &*path, overrides, &measured)?)
+            }
+        };
+        let numbers = numbers(by, reader, (&text, &path), overrides)?;
+        let is_at_rest = match &target {
+            Target::Quantity(_) => false,
+            Target::QuantityAtRest(_) => true,
+            Target::LeastSquares(fit) => fit.is_at_rest(),
+        };
+        let ends = || file.scene.phases().iter().find(|phase| phase.ends.is_some());
+        let refused = match is_at_rest {
+            true => {
+                file.check_equilibrium()?;
+                Some("equilibria have no steps".to_owned())
+            }
+            false => {
+                // all that is wrong with the scene
+                _ = file.scene.start(&file.settings)?;
+                ends().map(|phase| format!("phase \"{}\" ends by a sensor", phase.name()))
+            }
+        };
+        let rtol = if is_at_rest { file.statics.options.rtol } else { file.settings.rtol };
+        let (reader, overrides) = (reader.clone(), overrides.into());
+        let (method, is_checked) = (None, false);
+        Ok(Self {
+            reader,
+            text,
+            path,
+            overrides,
+            of,
+            target,
+            unit,
+            numbers,
+            method,
+            is_checked,
+            rtol,
+            refused,
+        })
+    }
+
+    /// By this method. Default: [`Method::SameSteps`] where runs can take the same steps.
+    ///
+    /// # Errors
+    /// A method that the scene does not allow.
+    pub fn by_method(mut self, method: Method) -> Result<Self, InputError> {
+        if let (Method::SameSteps, Some(why)) = (method, &self.refused) {
+            let help = format!("{why}: take {}", Method::Differences);
+            return Err(InputError::new("method of the gradient", method, help));
+        }
+        self.method = Some(method);
+        Ok(self)
+    }
+
+    /// With a [`Check`] of each derivative: differences of whole runs, by steps of their own.
+    #[must_use]
+    pub fn checked(mut self) -> Self {
+        self.is_checked = true;
+        self
+    }
+
+    /// The value and the derivatives. `tell` is given the number of runs, now and then.
+    ///
+    /// # Errors
+    /// [`Error::Integration`] and [`Error::Statics`] of a run that fails; with a [method](Self::by_method), a run that needs other steps.
+    pub fn find(&self, tell: &mut dyn FnMut(usize)) -> Result<Gradient, Error> {
+        let differences = |first| Scheme {
+            method: Method::Differences,
+            rtols: match self.target.is_at_rest() {
+                true => [1e-13, 1e-12],
+                false => {
+                    let fine = (1e-5 * self.rtol).max(1e-10).min(0.1 * self.rtol);
+                    [fine, 10.0 * fine]
+                }
+            },
+            first,
+            rows: 4,
+        };
+        let fine = (0.01 * self.rtol).max(1e-10).min(0.1 * self.rtol);
+        let same_steps =
+            Scheme { method: Method::SameSteps, rtols: [fine, 10.0 * fine], first: 1e-4, rows: 2 };
+        let why = match (self.method, &self.refused) {
+            (Some(Method::Differences), _) => None,
+            (_, Some(refused)) => Some(refused.clone()),
+            (method, None) => match (self.find_by(&same_steps, tell), method) {
+                (Ok(gradient), _) => return self.with_check(gradient, &differences(0.007), tell),
+                (Err(Stop::Failed(error)), Some(_)) => return Err(error),
+                (Err(Stop::OtherSteps), Some(method)) => {
+                    let help = format!("{OTHER_STEPS}: take {}", Method::Differences);
+                    return Err(InputError::new("method of the gradient", method, help).into());
+                }
+                (Err(Stop::OtherSteps), None) => Some(OTHER_STEPS.to_owned()),
+                (Err(Stop::Failed(error)), None) => Some(error.to_string()),
+            },
+        };
+        match self.find_by(&differences(0.02), tell) {
+            Ok(gradient) => {
+                self.with_check(Gradient { reason: why, ..gradient }, &differences(0.007), tell)
+            }
+            Err(Stop::Failed(error)) => Err(error),
+            Err(Stop::OtherSteps) => Err(InputError::new("steps", "others", OTHER_STEPS).into()),
+        }
+    }
+
+    /// Adds checks, if that is asked for.
+    fn with_check(
+        &self,
+        mut gradient: Gradient,
+        scheme: &Scheme,
+        tell: &mut dyn FnMut(usize),
+    ) -> Result<Gradient, Error> {
+        if !self.is_checked {
+            return Ok(gradient);
+        }
+        let before = gradient.runs;
+        match self.find_by(scheme, &mut |runs| tell(before + runs)) {
+            Ok(by_differences) => {
+                let pairs = gradient.derivatives.iter_mut().zip(&by_differences.derivatives);
+                for (derivative, by_differences) in pairs {
+                    let Derivative { value, error, .. } = *by_differences;
+                    derivative.check = Some(Check { value, error });
+                }
+                Ok(gradient)
+            }
+            Err(Stop::Failed(error)) => Err(error),
+            Err(Stop::OtherSteps) => Ok(gradient),
+        }
+    }
+
+    fn find_by(&self, scheme: &Scheme, tell: &mut dyn FnMut(usize)) -> Result<Gradient, Stop> {
+        let costs = Costs::default();
+        let base = |rtol: f64| -> Result<Base, Stop> {
+            let (seen, steps) = self.observe(None, rtol, scheme.method, None, &costs)?;
+            Ok(Base { rtol, seen, steps })
+        };
+        let [fine, coarse] = scheme.rtols;
+        let bases = [base(fine)?, base(coarse)?];
+        let all: Vec<usize> = (0..self.numbers.len()).collect();
+        let mut found = self.differences(scheme, &bases, &all, 1.0, &costs)?;
+        tell(costs.runs());
+        for factor in FACTORS {
+            let is_rough = |found: &Found| found.slope.error > ROUGH * found.slope.slope().abs();
+            let rough: Vec<usize> =
+                all.iter().copied().filter(|&at| is_rough(&found[at])).collect();
+            // a scene may not take numbers so far away
+            let others = self.differences(scheme, &bases, &rough, factor, &costs);
+            for (at, other) in rough.into_iter().zip(others.into_iter().flatten()) {
+                if other.slope.error < found[at].slope.error || found[at].is_constant {
+                    found[at] = other;
+                }
+            }
+            tell(costs.runs());
+        }
+        let seen = &bases[0].seen;
+        let derivatives = self.numbers.iter().zip(found);
+        let derivatives =
+            derivatives.map(|(number, found)| self.derivative(number, found, seen, scheme));
+        let steps = seen.steps.max(1);
+        Ok(Gradient {
+            of: self.of.clone(),
+            value: seen.value(),
+            unit: self.unit.clone(),
+            is_at_rest: self.target.is_at_rest(),
+            method: scheme.method,
+            reason: None,
+            rtols: scheme.rtols.map(rounded),
+            derivatives: derivatives.collect(),
+            runs: costs.runs(),
+            cost: costs.steps.load(Ordering::Relaxed) as f64 / steps as f64,
+        })
+    }
+
+    /// Differences by some of the numbers, with steps of so many times the usual ones.
+    fn differences(
+        &self,
+        scheme: &Scheme,
+        bases: &[Base; 2],
+        numbers: &[usize],
+        factor: f64,
+        costs: &Costs,
+    ) -> Result<Vec<Found>, Stop> {
+        // the second step at both tolerances, the others at the first
+        let rows = (0..scheme.rows).map(|row| (row, &bases[0])).chain([(1, &bases[1])]);
+        let jobs: Vec<(&Number, f64, &Base)> = numbers
+            .iter()
+            .flat_map(|&at| {
+                let number = &self.numbers[at];
+                let first = factor * scheme.first * number.scale();
+                rows.clone()
+                    .map(move |(row, base)| (number, first * 0.5_f64.powi(row as i32), base))
+            })
+            .collect();
+        let quotient = |(number, step, base): (&Number, f64, &Base)| {
+            let at = |value: f64| match value == number.value {
+                true => Ok(base.seen.values.clone()),
+                false => {
+                    let (method, steps) = (scheme.method, base.steps.as_ref());
+                    let seen = self.observe(Some((number, value)), base.rtol, method, steps, costs);
+                    seen.map(|(seen, _)| seen.values)
+                }
+            };
+            let ends = number.ends(step);
+            let [high, low] = [at(ends[0])?, at(ends[1])?];
+            let width = ends[0] - ends[1];
+            let own = base.seen.value();
+            let is_constant = [&high, &low].iter().all(|values| {
+                values.last().is_some_and(|value| (value - own).abs() <= ROUND_OFF * own.abs())
+            });
+            let quotient = high.iter().zip(&low).map(|(high, low)| (high - low) / width);
+            Ok((quotient.collect::<Vec<f64>>(), is_constant))
+        };
+        // of several errors the first one, whichever was found first
+        let quotients: Vec<Result<_, Stop>> = jobs.into_par_iter().map(quotient).collect();
+        let quotients = quotients.into_iter().collect::<Result<Vec<_>, Stop>>()?;
+        let of_number = |(at, quotients): (&usize, &[(Vec<f64>, bool)])| {
+            let is_constant = quotients.iter().all(|(_, is_constant)| *is_constant);
+            let mut quotients: Vec<Vec<f64>> =
+                quotients.iter().map(|(quotient, _)| quotient.clone()).collect();
+            let coarse = quotients.pop()?;
+            let slope = extrapolated(&quotients, self.numbers[*at].order())?;
+            Some(Found { slope, quotients: [quotients.swap_remove(1), coarse], is_constant })
+        };
+        Ok(numbers.iter().zip(quotients.chunks(scheme.rows + 1)).filter_map(of_number).collect())
+    }
+
+    fn derivative(
+        &self,
+        number: &Number,
+        found: Found,
+        seen: &Seen,
+        scheme: &Scheme,
+    ) -> Derivative {
+        let Found { slope, quotients: [fine, coarse], is_constant } = found;
+        let value = slope.slope();
+        let apart = |k: usize| (fine[k] - coarse[k]).abs();
+        let last = fine.len().min(coarse.len()).saturating_sub(1);
+        let by_tolerance = apart(last);
+        let error = slope.error + by_tolerance;
+        let size = seen.values.iter().fold(seen.scale, |size, value| size.max(value.abs()));
+        let nothing = NOTHING * size / number.scale();
+        let mut doubt = None;
+        if error > (MEANINGFUL * value.abs()).max(nothing) || !value.is_finite() {
+            let mut largest = nothing;
+            let parted = (0..last).find(|&k| {
+                largest = largest.max(MEANINGFUL * fine[k].abs());
+                apart(k) > largest
+            });
+            doubt = Some(Doubt {
+                by_tolerance: by_tolerance >= slope.error,
+                since: parted.map(part_of_time).map(|part| part * self.end()),
+                rtols: scheme.rtols.map(rounded),
+            });
+        }
+        Derivative {
+            key: number.key.clone(),
+            at: number.value,
+            at_unit: number.unit,
+            value,
+            error,
+            by_steps: slope.error,
+            by_tolerance,
+            is_constant,
+            doubt,
+            check: None,
+        }
+    }
+
+    /// The end of the scene (s).
+    fn end(&self) -> f64 {
+        let file = self.reader.parse_with(&self.text, &self.path, &self.overrides);
+        file.map_or(f64::NAN, |file| file.scene.end())
+    }
+
+    /// The objective with another value for a number, and the steps that led there if they were not those of another run.
+    fn observe(
+        &self,
+        other: Option<(&Number, f64)>,
+        rtol: f64,
+        method: Method,
+        by: Option<&StepList>,
+        costs: &Costs,
+    ) -> Result<(Seen, Option<StepList>), Stop> {
+        let mut own: Vec<String> =
+            other.into_iter().map(|(number, value)| set(&number.key, value)).collect();
+        if self.target.is_at_rest() {
+            own.push(set("statics.rtol", rtol));
+        }
+        let read = || {
+            self.reader.parse_with(&self.text, &self.path, &[&self.overrides[..], &own].concat())
+        };
+        let mut list = None;
+        let mut has_other_steps = false;
+        let mut run = |file: &SceneFile, scene: &Scene, sampling: &Sampling| {
+            let settings = settings(&file.settings, rtol, method);
+            if method == Method::Differences {
+                return scene.simulate(&settings, sampling);
+            }
+            let mut simulation = scene.start(&settings)?;
+            simulation.record(sampling)?;
+            let Some(by) = by else {
+                let (motion, steps) = simulation.finish_with_steps()?;
+                list = Some(steps);
+                return Ok(motion);
+            };
+            simulation.finish_by_steps(by)?.ok_or_else(|| {
+                has_other_steps = true;
+                InputError::new("steps", "others", OTHER_STEPS).into()
+            })
+        };
+        let seen = match &self.target {
+            Target::Quantity(text) => read().and_then(|file| {
+                let quantity = objective::quantity(text, &file, false)?;
+                let sampling = objective::sampling(&quantity, file.scene.end());
+                objective::seen(&quantity, &run(&file, &file.scene, &sampling)?)
+            }),
+            Target::QuantityAtRest(text) => read().and_then(|file| {
+                let quantity = objective::quantity(text, &file, true)?;
+                let mut found = file.equilibrium()?;
+                found.read(&quantity.read_by(Sampling::phase_ends()))?;
+                let seen = objective::seen(&quantity, &found.trajectory().at_end())?;
+                Ok(Seen { steps: found.iterations, ..seen })
+            }),
+            Target::LeastSquares(fit) => {
+                let mut steps = 1;
+                let mut counted = |file: &SceneFile, scene: &Scene, sampling: &Sampling| {
+                    let motion: Trajectory = run(file, scene, sampling)?;
+                    steps = motion.report().steps();
+                    Ok(motion)
+                };
+                let sum = fit.sum_of_squares(&own, &mut counted);
+                sum.map(|sum| Seen { values: vec![sum], scale: sum, steps })
+            }
+        };
+        match seen {
+            _ if has_other_steps => Err(Stop::OtherSteps),
+            Ok(seen) => {
+                costs.add(seen.steps);
+                Ok((seen, list))
+            }
+            Err(error) => Err(Stop::Failed(error)),
+        }
+    }
+}
+
+/// Why the steps of one run are not those of another.
+const OTHER_STEPS: &str = "a run with another value needs other steps";
+
+impl Target {
+    fn is_at_rest(&self) -> bool {
+        match self {
+            Self::Quantity(_) => false,
+            Self::QuantityAtRest(_) => true,
+            Self::LeastSquares(fit) => fit.is_at_rest(),
+        }
+    }
+}
+
+/// Runs so far, and their steps.
+#[derive(Default)]
+struct Costs {
+    runs: AtomicUsize,
+    steps: AtomicUsize,
+}
+
+impl Costs {
+    fn add(&self, steps: usize) {
+        self.runs.fetch_add(1, Ordering::Relaxed);
+        self.steps.fetch_add(steps, Ordering::Relaxed);
+    }
+
+    fn runs(&self) -> usize {
+        self.runs.load(Ordering::Relaxed)
+    }
+}
+
+/// The settings of a file at another tolerance; of runs that take the same steps with a method that can, and without events, of which the
+/// times would be those of another motion.
+fn settings(of_file: &Settings, rtol: f64, method: Method) -> Settings {
+    use crate::scene::settings::Method::{Rk, Rosenbrock};
+    let tight = of_file.tightened(rtol / of_file.rtol);
+    match (method, of_file.method) {
+        (Method::Differences, _) => tight,
+        (Method::SameSteps, Rk | Rosenbrock) => {
+            Settings { contact_events: ContactEvents::StepOver, ..tight }
+        }
+        (Method::SameSteps, _) => Settings {
+            method: Rosenbrock,
+            max_order: None,
+            stability_limit_detection: false,
+            contact_events: ContactEvents::StepOver,
+            ..tight
+        },
+    }
+}
+
+/// A tolerance without the digits of its product.
+fn rounded(rtol: f64) -> f64 {
+    format!("{rtol:.2e}").parse().unwrap_or(rtol)
+}
+
+/// The numbers of the keys `by`.
+fn numbers(
+    by: &[impl AsRef<str>],
+    reader: &SceneReader,
+    (text, path): (&str, &Path),
+    overrides: &[String],
+) -> Result<Vec<Number>, Error> {
+    if by.is_empty() {
+        let help = "name a number at least, as body.material.young";
+        return Err(InputError::new("numbers of the gradient", "none", help).into());
+    }
+    let mut numbers: Vec<Number> = Vec::new();
+    for key in by.iter().map(AsRef::as_ref) {
+        if numbers.iter().any(|number| number.key == key) {
+            return Err(InputError::new(key, "twice", "name each number once").into());
+        }
+        numbers.push(Number::of(key, reader, (text, path), overrides)?);
+    }
+    Ok(numbers)
+}

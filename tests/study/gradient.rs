@@ -1,0 +1,173 @@
+//! Derivatives of scenes: against closed forms, by different methods, and where they mean little.
+
+use std::path::Path;
+
+use pliant::fit::Measured;
+use pliant::gradient::{Derivative, Gradient, Method, Objective, SceneGradient};
+use pliant::{Error, SceneReader};
+
+/// A bar of one element, pulled from rest by a constant force: an oscillator with one degree of freedom.
+const BAR: &str = r#"
+body = { mesh = { kind = "bar", length = 0.1, nodes = 2 }, area = 1e-4, strain = "cauchy", material = { density = 1e3, young = 1e5, poisson = 0.0, viscosity = 20.0 } }
+phase = { name = "pull", until = 0.05, hold = { nodes = "left" }, load = { nodes = "right", force = [0.1] } }
+sensor = { name = "tip", kind = "displacement", nodes = "right" }
+"#;
+
+/// The numbers of that scene, and its tip (m) by them: a damped oscillator of stiffness E A / L, mass rho A L / 3 (consistent inertia
+/// of a linear element) and damping eta A / L, from rest under a step of the force.
+const NUMBERS: [(&str, f64); 7] = [
+    ("body.material.young", 1e5),
+    ("body.material.density", 1e3),
+    ("body.material.viscosity", 20.0),
+    ("body.mesh.length", 0.1),
+    ("body.area", 1e-4),
+    ("phase.pull.load.force.1", 0.1),
+    ("phase.pull.until", 0.05),
+];
+
+fn tip([young, density, viscosity, length, area, force, time]: [f64; 7]) -> f64 {
+    let (stiffness, mass) = (young * area / length, density * area * length / 3.0);
+    let rate = viscosity * area / length / (2.0 * mass);
+    let frequency = (stiffness / mass - rate * rate).sqrt();
+    let (sin, cos) = (frequency * time).sin_cos();
+    force / stiffness * (1.0 - (-rate * time).exp() * (cos + rate / frequency * sin))
+}
+
+/// Its derivative by one of the numbers, to ten digits: central differences of the closed form, extrapolated once.
+fn tip_by(number: usize) -> f64 {
+    let quotient = |part: f64| {
+        let at = |sign: f64| {
+            let mut numbers = NUMBERS.map(|(_, value)| value);
+            numbers[number] *= 1.0 + sign * part;
+            tip(numbers)
+        };
+        (at(1.0) - at(-1.0)) / (2.0 * part * NUMBERS[number].1)
+    };
+    (4.0 * quotient(5e-4) - quotient(1e-3)) / 3.0
+}
+
+fn gradient(scene: &str, set: &[&str], of: Objective, by: &[&str]) -> Result<SceneGradient, Error> {
+    let set: Vec<String> = set.iter().map(|set| (*set).to_owned()).collect();
+    SceneGradient::of_text(&SceneReader::default(), scene, Path::new("scene.toml"), &set, of, by)
+}
+
+fn found(scene: &str, set: &[&str], of: &str, by: &[&str]) -> Gradient {
+    let gradient = gradient(scene, set, Objective::Quantity(of.into()), by).unwrap();
+    gradient.find(&mut |_| {}).unwrap()
+}
+
+fn by<'a>(gradient: &'a Gradient, key: &str) -> &'a Derivative {
+    gradient.derivatives.iter().find(|derivative| derivative.key == key).unwrap()
+}
+
+/// All numbers of the bar, among them its length and the end of its phase, by steps of the run with the number unchanged: estimated errors hold,
+/// and are below 1e-5 at the default tolerance and 1e-7 at a tight one.
+#[test]
+fn derivatives_are_those_of_the_closed_form() {
+    let keys = NUMBERS.map(|(key, _)| key);
+    for (rtol, most) in [("1e-5", 1e-5), ("1e-8", 1e-7)] {
+        let found = found(BAR, &[&format!("solver.rtol={rtol}")], "tip.x", &keys);
+        assert_eq!((found.method, &found.reason), (Method::SameSteps, &None));
+        for (number, derivative) in found.derivatives.iter().enumerate() {
+            let exact = tip_by(number);
+            let Derivative { key, value, error, doubt, .. } = derivative;
+            let off = (value - exact).abs();
+            assert!(off <= error + 1e-10 * exact.abs(), "{key}: {off:e} {error:e}");
+            assert!(
+                *error < most * exact.abs() && doubt.is_none(),
+                "{key}: {error:e} of {exact:e}"
+            );
+        }
+    }
+}
+
+/// Whole runs agree with the same steps within both errors; they are what is left where a phase ends by a sensor.
+#[test]
+fn methods_agree() {
+    let keys = ["body.material.young", "body.material.viscosity"];
+    let same = gradient(BAR, &[], Objective::Quantity("tip.x".into()), &keys).unwrap().checked();
+    for Derivative { value, error, check, .. } in same.find(&mut |_| {}).unwrap().derivatives {
+        let check = check.unwrap();
+        assert!((value - check.value).abs() <= error + check.error, "{value:e} {check:?}");
+        assert!(check.error < 1e-5 * value.abs(), "{check:?}");
+    }
+    let cut =
+        BAR.replace("until = 0.05,", "until = 0.05, end = { sensor = \"tip.x\", above = 1e-3 },");
+    let cut = gradient(&cut, &[], Objective::Quantity("tip.x".into()), &keys).unwrap();
+    assert!(cut.clone().by_method(Method::SameSteps).is_err());
+    // the end is where the sensor is, whatever the material
+    let cut = cut.find(&mut |_| {}).unwrap();
+    assert_eq!(cut.method, Method::Differences);
+    let young = by(&cut, keys[0]);
+    assert!(young.value.abs() * 1e5 < 1e-8, "{young:?}");
+}
+
+/// The tip of a linear beam in equilibrium goes as 1 / E and as the load; Poisson's ratio 0 has values above it alone.
+#[test]
+fn equilibria_follow_their_scaling() {
+    let beam = r#"
+        body = { mesh = { kind = "rectangle", size = [0.1, 0.02], nodes = [5, 2], cells = "triangles6" }, thickness = 0.01, strain = "cauchy", material = { density = 1000.0, young = 1e5, poisson = 0.0, viscosity = 1.0 } }
+        phase = { name = "load", until = 1.0, hold = { nodes = "left" }, load = { nodes = "right", total = [0.0, -0.01] } }
+        sensor = { name = "tip", kind = "displacement", nodes = "right" }
+    "#;
+    let keys = [
+        "body.material.young",
+        "phase.load.load.total.2",
+        "body.material.poisson",
+        "body.material.density",
+    ];
+    let of = Objective::QuantityAtRest("tip.y".into());
+    let found = gradient(beam, &[], of, &keys).unwrap().find(&mut |_| {}).unwrap();
+    let [young, load] = [by(&found, keys[0]), by(&found, keys[1])];
+    for (derivative, exact) in [(young, -found.value / 1e5), (load, found.value / -0.01)] {
+        let off = (derivative.value / exact - 1.0).abs();
+        assert!(off < 1e-9 && derivative.error < 1e-8 * exact.abs(), "{derivative:?} {exact:e}");
+    }
+    let poisson = by(&found, keys[2]);
+    assert!(!poisson.is_constant && poisson.error < 1e-5 * poisson.value.abs(), "{poisson:?}");
+    // nothing is heavy
+    let density = by(&found, keys[3]);
+    assert!(density.is_constant && density.value == 0.0, "{density:?}");
+    assert!(found.to_string().contains("nothing depends on it"), "{found}");
+}
+
+/// The gradient of squares is twice the residuals times their derivatives.
+#[test]
+fn squares_have_the_gradient_of_their_residuals() {
+    let key = "body.material.young";
+    let [early, late] = ["0.02", "0.05"].map(|end| {
+        let found = found(BAR, &[&format!("phase.pull.until={end}")], "tip.x", &[key]);
+        (found.value, by(&found, key).value)
+    });
+    let measured =
+        Measured { times: vec![0.02, 0.05], columns: vec![("tip.x".into(), vec![1e-3, 1e-3])] };
+    let squares = gradient(BAR, &[], Objective::LeastSquares(measured), &[key]).unwrap();
+    let squares = squares.find(&mut |_| {}).unwrap();
+    let exact: f64 = [early, late].iter().map(|(tip, slope)| 2.0 * (tip - 1e-3) * slope).sum();
+    let derivative = by(&squares, key);
+    assert!((derivative.value / exact - 1.0).abs() < 1e-4, "{derivative:?} {exact:e}");
+    assert_eq!(squares.unit, "m^2");
+}
+
+/// What has no derivative is told by its key before anything runs.
+#[test]
+fn numbers_that_are_none_are_refused() {
+    let of = |of: &str, by: &[&str]| {
+        gradient(BAR, &[], Objective::Quantity(of.into()), by).unwrap_err().to_string()
+    };
+    let young = "body.material.young";
+    for (text, words) in [
+        (of("tipp.x", &[young]), "tipp.x"),
+        (of("tip.z", &[young]), "tip.z"),
+        (of("motion", &[young]), "no single number"),
+        (of("tip.x", &[]), "name a number"),
+        (of("tip.x", &[young, young]), "once"),
+        (of("tip.x", &["body.material.yuong"]), "young"),
+        (of("tip.x", &["body.strain"]), "derivative is by a number"),
+        (of("tip.x", &["phase.pull.load.force"]), "by its place"),
+        (of("tip.x", &["solver.alpha"]), "--set solver.alpha=VALUE"),
+        (of("tip.x", &["body.mesh.nodes"]), "no value next to this one"),
+    ] {
+        assert!(text.contains(words), "{text}");
+    }
+}
