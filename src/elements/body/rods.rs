@@ -1,5 +1,6 @@
 //! Rods as bodies: their forces, their options, their nodes.
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use super::assembled::Body;
@@ -9,7 +10,7 @@ use crate::base::sparse::BlockMatrix;
 use crate::elements::force::{Force, NodalForces, Reservoir, Tangents};
 use crate::elements::material::{Strain, Viscosity};
 use crate::elements::mesh::Selection;
-use crate::elements::rod::{CrossSection, RodElements, RodPoint, Tube};
+use crate::elements::rod::{CrossSection, RodElements, RodPoint, Tube, TubePiece};
 use crate::integrators::ode::Failure;
 
 /// The elastic and viscous forces of all rods.
@@ -90,6 +91,12 @@ impl Body {
     /// Points around the cross sections of rods: nodes with their shares, and the area (m^2) for which each stands.
     pub(crate) fn around_rods(&self) -> impl Iterator<Item = (RodPoint, f64)> {
         self.continua.iter().filter_map(|own| own.rod.as_ref()).flat_map(|rod| rod.around())
+    }
+
+    /// The [pieces](RodElements::tube_pieces) of the rod with these nodes, if it is one.
+    pub(crate) fn tube_pieces(&self, nodes: &Range<usize>) -> Option<Option<Vec<TubePiece>>> {
+        let own = self.continua.iter().find(|own| own.nodes == *nodes)?;
+        own.rod.as_ref().map(|rod| rod.tube_pieces())
     }
 
     /// The surface of a single body that is a rod.

@@ -23,7 +23,7 @@ use nodes::Nodes;
 pub use path::RodPath;
 pub use section::{RodSection, SectionNumbers};
 use strain::{Deformed, Section};
-pub(crate) use tube::{RodPoint, Tube};
+pub(crate) use tube::{RodPoint, Spokes, Tube, TubePiece};
 pub(crate) use turning::{CrossSection, SectionLoad};
 
 use super::material::Material;

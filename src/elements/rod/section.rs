@@ -35,7 +35,7 @@ pub enum RodSection {
 }
 
 /// Points around a round section: a polygon of so many sides lies within 2 % of its radius.
-const AROUND: usize = 16;
+pub(super) const AROUND: usize = 16;
 
 /// Area and moments of a cross section, whose centroid and centre of shear are on the axis of the rod.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use super::elements::{RodElement, RodElements};
 use super::end::End;
+use super::section::AROUND;
 
 /// A point that moves with a cross section: nodes with their shares.
 pub(crate) type RodPoint = Vec<(usize, f64)>;
@@ -15,7 +16,52 @@ pub(crate) struct Tube {
     pub(crate) faces: Vec<(usize, Vec<usize>)>,
 }
 
+/// An element of a round rod, as a straight piece of a tube.
+pub(crate) struct TubePiece {
+    /// The nodes of the axis at its ends, and their [`Spokes`].
+    pub(crate) ends: [(usize, Spokes); 2],
+    /// The radii there (m).
+    pub(crate) radii: [f64; 2],
+    /// Undeformed length, and the width of the tube as it is seen from aside (m).
+    pub(crate) length: f64,
+    pub(crate) width: f64,
+}
+
+/// The directors of a cross section: their nodes, as many as there are, and their arms (m).
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Spokes {
+    pub(crate) count: usize,
+    pub(crate) nodes: [usize; 2],
+    pub(crate) arms: [f64; 2],
+}
+
 impl RodElements {
+    /// Its pieces as a tube; `None` if its sections are not round. In the plane every section is two sides.
+    pub(crate) fn tube_pieces(&self) -> Option<Vec<TubePiece>> {
+        let is_plane = self.dimension == 2;
+        let is_round = |end: &End| (end.arms[0] - end.arms[1]).abs() <= 1e-9 * end.arms[0];
+        let piece = |element: &RodElement| {
+            let RodElement { ends, length, .. } = element;
+            let has_corners = self.outline.len() != AROUND;
+            if !is_plane && (has_corners || !ends.iter().all(is_round)) {
+                return None;
+            }
+            let spokes = |End { nodes: [_, first, second], arms, .. }: &End| Spokes {
+                count: self.dimension - 1,
+                nodes: [*first, *second],
+                arms: *arms,
+            };
+            let across = usize::from(is_plane);
+            Some(TubePiece {
+                ends: ends.map(|end| (end.nodes[0], spokes(&end))),
+                radii: ends.map(|end| end.arms[0]),
+                length: *length,
+                width: ends[0].arms[across] + ends[1].arms[across],
+            })
+        };
+        self.elements.iter().map(piece).collect()
+    }
+
     /// Points around its cross sections, and the area (m^2) for which each stands.
     pub(crate) fn around(&self) -> impl Iterator<Item = (RodPoint, f64)> {
         let mut lengths: BTreeMap<usize, (End, f64)> = BTreeMap::new();
