@@ -74,20 +74,6 @@ impl Body {
         self.continua.iter().any(|own| own.rod.is_some() && own.nodes.contains(&node))
     }
 
-    /// # Errors
-    /// Cells (from 0) of rods, on which what `input` names does not act.
-    pub(crate) fn refuse_rods(&self, input: &str, cells: &[usize]) -> Result<(), InputError> {
-        let mut rods = self.continua.iter().filter(|own| own.rod.is_some());
-        let of = rods.find(|own| cells.iter().any(|cell| own.cells.contains(cell)));
-        match of.map(|own| own.recipe.name.as_deref().unwrap_or("rod")) {
-            None => Ok(()),
-            Some(name) => {
-                let help = "it does not act on rods yet: name cells or nodes of other bodies";
-                Err(InputError::new(input, format!("of rod \"{name}\""), help))
-            }
-        }
-    }
-
     /// Points around the cross sections of rods: nodes with their shares, and the area (m^2) for which each stands.
     pub(crate) fn around_rods(&self) -> impl Iterator<Item = (RodPoint, f64)> {
         self.continua.iter().filter_map(|own| own.rod.as_ref()).flat_map(|rod| rod.around())

@@ -6,6 +6,7 @@
 mod chain;
 mod elements;
 mod end;
+mod growth;
 mod nodes;
 mod path;
 mod screw;
@@ -19,6 +20,7 @@ mod turning;
 use elements::RodElement;
 pub(crate) use elements::RodElements;
 use end::End;
+pub(crate) use growth::RodGrowth;
 use nodes::Nodes;
 pub use path::RodPath;
 pub use section::{RodSection, SectionNumbers};

@@ -46,14 +46,9 @@ impl RodElements {
             if !is_plane && (has_corners || !ends.iter().all(is_round)) {
                 return None;
             }
-            let spokes = |End { nodes: [_, first, second], arms, .. }: &End| Spokes {
-                count: self.dimension - 1,
-                nodes: [*first, *second],
-                arms: *arms,
-            };
             let across = usize::from(is_plane);
             Some(TubePiece {
-                ends: ends.map(|end| (end.nodes[0], spokes(&end))),
+                ends: ends.map(|end| (end.nodes[0], self.spokes_of(&end))),
                 radii: ends.map(|end| end.arms[0]),
                 length: *length,
                 width: ends[0].arms[across] + ends[1].arms[across],
@@ -62,28 +57,53 @@ impl RodElements {
         self.elements.iter().map(piece).collect()
     }
 
-    /// Points around its cross sections, and the area (m^2) for which each stands.
+    fn spokes_of(&self, End { nodes: [_, first, second], arms, .. }: &End) -> Spokes {
+        Spokes { count: self.dimension - 1, nodes: [*first, *second], arms: *arms }
+    }
+
+    /// The nodes of the axis at the ends of element `number`, with their directors.
+    pub(crate) fn spokes(&self, number: usize) -> [(usize, Spokes); 2] {
+        self.elements[number].ends.map(|end| (end.nodes[0], self.spokes_of(&end)))
+    }
+
+    /// The mass of element `number` (kg).
+    pub(crate) fn mass(&self, number: usize) -> f64 {
+        self.elements[number].mass[0] * self.elements[number].length
+    }
+
+    /// Points around its cross sections and between these, in the middle of elements, and the area (m^2) for which each stands.
     pub(crate) fn around(&self) -> impl Iterator<Item = (RodPoint, f64)> {
         let mut lengths: BTreeMap<usize, (End, f64)> = BTreeMap::new();
         for RodElement { ends, length, .. } in &self.elements {
             for end in ends {
-                lengths.entry(end.nodes[0]).or_insert((*end, 0.0)).1 += 0.5 * length;
+                lengths.entry(end.nodes[0]).or_insert((*end, 0.0)).1 += 0.25 * length;
             }
         }
-        let count = self.outline.len();
-        lengths.into_values().flat_map(move |(end, length)| {
-            let side = move |k: usize| {
-                let [from, to] = [self.outline[k % count], self.outline[(k + 1) % count]];
-                (end.arms[0] * (to[0] - from[0])).hypot(end.arms[1] * (to[1] - from[1]))
-            };
-            (0..count).map(move |k| {
-                // in the plane the section reaches along d_2 to both sides
-                let width = match self.dimension {
-                    2 => 2.0 * end.arms[1],
-                    _ => 0.5 * (side(k + count - 1) + side(k)),
-                };
-                (self.point(&end, k), width * length)
+        let at_sections = lengths.into_values().flat_map(move |(end, length)| {
+            self.widths([end, end]).map(move |(k, width)| (self.point(&end, k), width * length))
+        });
+        let between = self.elements.iter().flat_map(move |RodElement { ends, length, .. }| {
+            self.widths(*ends).map(move |(k, width)| {
+                let both = ends.iter().flat_map(|end| self.point(end, k));
+                let halved = both.map(|(node, share)| (node, 0.5 * share)).collect();
+                (halved, width * 0.5 * length)
             })
+        });
+        at_sections.chain(between)
+    }
+
+    /// The points around a section in the middle of two, and the width (m) of the surface for which each stands.
+    fn widths(&self, ends: [End; 2]) -> impl Iterator<Item = (usize, f64)> {
+        let arms = [0, 1].map(|k| 0.5 * (ends[0].arms[k] + ends[1].arms[k]));
+        let count = self.outline.len();
+        let side = move |k: usize| {
+            let [from, to] = [self.outline[k % count], self.outline[(k + 1) % count]];
+            (arms[0] * (to[0] - from[0])).hypot(arms[1] * (to[1] - from[1]))
+        };
+        (0..count).map(move |k| match self.dimension {
+            // in the plane the section reaches along d_2 to both sides
+            2 => (k, 2.0 * arms[1]),
+            _ => (k, 0.5 * (side(k + count - 1) + side(k))),
         })
     }
 

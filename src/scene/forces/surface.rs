@@ -64,7 +64,8 @@ pub(crate) fn boundary_nodes(body: &Body) -> Vec<SurfacePoint> {
     }
     let nodes = mesh.boundary_nodes().iter().filter(|node| !body.is_of_rod(**node));
     let nodes = nodes.map(|&node| point(&[node], &[1.0], parts[node]));
-    nodes.chain(body.around_rods().map(|(at, _)| point_of(at, 1.0))).collect()
+    // those of sections and those between them are as many
+    nodes.chain(body.around_rods().map(|(at, _)| point_of(at, 0.5))).collect()
 }
 
 /// Points along an edge of the boundary, between its nodes: two ends, and the middle of a quadratic one. They
