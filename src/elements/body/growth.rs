@@ -257,6 +257,11 @@ impl Body {
                 Some(_) if course.is_some() => {
                     return wrong("direction", "given", "rods grow along their axis: leave it out");
                 }
+                Some(rod) if rod.relaxes() => {
+                    let help =
+                        "what relaxes does not know of growth: leave the Maxwell branches out";
+                    return wrong("material.branch", "given", help);
+                }
                 Some(rod) => {
                     rods.push(RodGrowth::new(rod.clone(), &cells, bends));
                     continue;

@@ -8,9 +8,9 @@ use super::recipe::Recipe;
 use crate::base::input::InputError;
 use crate::base::sparse::BlockMatrix;
 use crate::elements::force::{Force, NodalForces, Reservoir, Tangents};
-use crate::elements::material::{Strain, Viscosity};
+use crate::elements::material::{MaxwellBranch, Strain, Viscosity};
 use crate::elements::mesh::Selection;
-use crate::elements::rod::{CrossSection, RodElements, RodPoint, Tube, TubePiece};
+use crate::elements::rod::{Bend, CrossSection, RodElements, RodPoint, Tube, TubePiece};
 use crate::integrators::ode::Failure;
 
 /// The elastic and viscous forces of all rods.
@@ -85,6 +85,11 @@ impl Body {
         own.rod.as_ref().map(|rod| rod.tube_pieces())
     }
 
+    /// The [sharpest bend](RodElements::sharpest_bend) of a single body that is a rod.
+    pub(crate) fn sharpest_bend(&self) -> Option<Bend> {
+        self.continua[0].rod.as_ref().and_then(|rod| rod.sharpest_bend())
+    }
+
     /// The surface of a single body that is a rod.
     #[cfg(feature = "output")]
     pub(crate) fn tube(&self) -> Option<Tube> {
@@ -118,7 +123,10 @@ impl Recipe {
             self.name.as_deref().map_or_else(|| "rod".into(), |name| format!("rod \"{name}\""));
         let given = [
             ("law", substance.law.is_some()),
-            ("Maxwell branches", !substance.branches.is_empty()),
+            (
+                "yield stress of a Maxwell branch",
+                substance.branches.iter().any(|branch| branch.yield_stress > 0.0),
+            ),
             ("fibres", !substance.fibres.is_empty()),
             ("rigid material", substance.is_rigid),
             ("regions", !self.regions.is_empty()),
@@ -129,11 +137,12 @@ impl Recipe {
             ("natural viscosity", self.viscosity == Some(Viscosity::Natural)),
         ];
         if let Some((option, _)) = given.iter().find(|(_, is_given)| *is_given) {
-            let help = "its law is linear in stretch, shear, bending and twist, which it has from the moduli, the section and the viscosity: \
-                        leave it out";
+            let help = "its law is linear in stretch, shear, bending and twist, which it has from the moduli, the section, the viscosity and Maxwell branches without a \
+                        yield stress: leave it out";
             return Err(InputError::new(name, *option, help));
         }
         substance.material.validate()?;
-        rod.elements(&substance.material).map(Some)
+        substance.branches.iter().try_for_each(MaxwellBranch::validate)?;
+        rod.elements(&substance.material, &substance.branches).map(Some)
     }
 }

@@ -32,11 +32,19 @@ pub(super) struct RodElement {
     pub(super) mass: [f64; 3],
 }
 
+/// A Maxwell branch: the share of its stiffness (1), and its relaxation time (s).
+#[derive(Debug, Clone, Copy)]
+pub(super) struct RodBranch {
+    pub(super) share: f64,
+    pub(super) time: f64,
+}
+
 /// The elements of rods, on the nodes of a body of a `dimension`.
 #[derive(Debug, Clone)]
 pub(crate) struct RodElements {
     pub(super) dimension: usize,
     pub(super) elements: Vec<RodElement>,
+    pub(super) branches: Vec<RodBranch>,
     /// Places around its cross sections, in arms along d_1 and d_2.
     pub(super) outline: Vec<[f64; 2]>,
 }

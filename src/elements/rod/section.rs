@@ -145,16 +145,16 @@ impl RodSection {
     /// A size that is not above 0, a tube without a wall.
     pub(super) fn validate(&self, input: &str) -> Result<(), InputError> {
         let check = |key: &str, value: f64, unit: &str| {
-            positive(&format!("{input}.{key}"), value, unit).map(drop)
+            positive(&format!("{input}{key}"), value, unit).map(drop)
         };
         match *self {
             Self::Circle { radius } => check("radius", radius, "m"),
             Self::Ring { radius, inner } => {
                 check("radius", radius, "m")?;
-                not_negative(&format!("{input}.inner"), inner, "m")?;
+                not_negative(&format!("{input}inner"), inner, "m")?;
                 if inner >= radius {
                     let help = format!("it must be below the radius of {radius} m");
-                    return Err(InputError::new(format!("{input}.inner"), inner, help));
+                    return Err(InputError::new(format!("{input}inner"), inner, help));
                 }
                 Ok(())
             }

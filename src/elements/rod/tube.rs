@@ -2,6 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use nalgebra::Vector3;
+
 use super::elements::{RodElement, RodElements};
 use super::end::End;
 use super::section::AROUND;
@@ -35,6 +37,15 @@ pub(crate) struct Spokes {
     pub(crate) arms: [f64; 2],
 }
 
+/// An element that is bent.
+pub(crate) struct Bend {
+    /// Its number (from 0), the angle (rad) between its ends, its length and how far its section reaches (m).
+    pub(crate) element: usize,
+    pub(crate) angle: f64,
+    pub(crate) length: f64,
+    pub(crate) reach: f64,
+}
+
 impl RodElements {
     /// Its pieces as a tube; `None` if its sections are not round. In the plane every section is two sides.
     pub(crate) fn tube_pieces(&self) -> Option<Vec<TubePiece>> {
@@ -64,6 +75,23 @@ impl RodElements {
     /// The nodes of the axis at the ends of element `number`, with their directors.
     pub(crate) fn spokes(&self, number: usize) -> [(usize, Spokes); 2] {
         self.elements[number].ends.map(|end| (end.nodes[0], self.spokes_of(&end)))
+    }
+
+    /// The element whose section reaches farthest beside the radius of its curvature, undeformed.
+    pub(crate) fn sharpest_bend(&self) -> Option<Bend> {
+        let bend = |(element, own): (usize, &RodElement)| {
+            let along = |end: &End| {
+                let [first, second] = end.undeformed.d.map(Vector3::from);
+                first.cross(&second)
+            };
+            let arms = own.ends.iter().flat_map(|end| &end.arms[..self.dimension - 1]);
+            let reach = arms.fold(0.0, |most: f64, arm| most.max(*arm));
+            let angle = along(&own.ends[0]).angle(&along(&own.ends[1]));
+            Bend { element, angle, length: own.length, reach }
+        };
+        let sharp = |bend: &Bend| bend.angle / bend.length * bend.reach;
+        let all = self.elements.iter().enumerate().map(bend);
+        all.max_by(|a, b| sharp(a).total_cmp(&sharp(b)))
     }
 
     /// The mass of element `number` (kg).

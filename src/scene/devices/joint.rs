@@ -10,14 +10,16 @@ mod assembly;
 mod coordinate;
 mod coupling;
 mod force;
+mod geometry;
 mod kind;
 mod law;
 mod side;
 
 use std::sync::Arc;
 
-use self::assembly::{Assembly, Gear, Geometry, Ratio};
+use self::assembly::Assembly;
 use self::force::JointForce;
+use self::geometry::{Gear, Geometry, Ratio};
 pub use self::kind::JointKind;
 use self::law::Law;
 use self::side::is_world;

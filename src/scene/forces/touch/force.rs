@@ -374,7 +374,7 @@ impl TouchForce {
         all: &mut Vec<[usize; 2]>,
     ) {
         let with_directors = |node: usize| {
-            let directors = self.surfaces.tubes.directors(node).iter().copied();
+            let directors = self.surfaces.directors(node).iter().copied();
             std::iter::once(node).chain(directors.filter(|_| self.coulomb.is_some()))
         };
         for a in first.flat_map(with_directors) {

@@ -29,6 +29,8 @@ use crate::scene::forces::friction::Friction;
 /// that part are not held back. Friction is that of [obstacles](crate::Obstacle#friction), with the sliding velocity
 /// between the surfaces.
 ///
+/// Rods touch as round tubes about their axes, from the radius of their section on; in the plane every rod does.
+///
 /// ```
 /// use pliant::{Body, Cells, Material, Mesh, Phase, Sampling, Scene, Settings, Touch};
 ///

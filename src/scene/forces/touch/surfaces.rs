@@ -3,11 +3,11 @@
 use std::collections::BTreeMap;
 
 use super::hull::Hull;
-use super::tubes::Tubes;
 use crate::base::vector::{cross, difference, dot, norm, padded};
 use crate::elements::basis::{MOST_NODES, Place, control_points, is_affine, nearest, reach};
 use crate::elements::body::Body;
 use crate::elements::mesh::FaceKind;
+use crate::elements::rod::Spokes;
 use crate::scene::forces::surface::{SurfacePoint, closed_points, is_within, pieces};
 
 /// Ratio of the sizes of facets up to which the points of each have half of the energy. Fewer points, which move with the body
@@ -35,7 +35,8 @@ pub(super) struct Surfaces {
     pub(super) itself: bool,
     /// Size (m) of the finer facets of each body; 0 of bodies that do not touch.
     sizes: Vec<f64>,
-    pub(super) tubes: Tubes,
+    /// The cross sections of rods, by the nodes of their axes, up to the last of these.
+    pub(super) sections: Vec<Option<Spokes>>,
     /// No point or place on a surface moves farther than this times the nodes: 1 of linear cells.
     pub(super) reach: f64,
 }
@@ -85,7 +86,7 @@ impl Surfaces {
             features: Vec::new(),
             itself,
             sizes: vec![0.0; body.parts().count()],
-            tubes: Tubes::default(),
+            sections: Vec::new(),
             reach: 1.0,
         };
         let parts: Vec<_> = body.parts().map(|part| part.nodes).collect();

@@ -11,27 +11,18 @@ use super::pair::{Levers, Pair};
 use super::surfaces::{Feature, Point, Surfaces};
 use crate::base::vector::{difference, dot};
 use crate::elements::mesh::FaceKind;
-use crate::elements::rod::{Spokes, TubePiece};
+use crate::elements::rod::TubePiece;
 use crate::scene::forces::surface::{HALVED_SIMPSON, SurfacePoint};
 
-/// The cross sections of rods.
-#[derive(Default)]
-pub(super) struct Tubes {
-    /// By nodes of axes, up to the last of these.
-    sections: Vec<Option<Spokes>>,
-}
-
-impl Tubes {
-    /// The nodes at the directors of the section at a node, if it is one of an axis.
+impl Surfaces {
+    /// The nodes at the directors of the section at a node, if it is one of a rod's axis.
     pub(super) fn directors(&self, node: usize) -> &[usize] {
         match self.sections.get(node) {
             Some(Some(spokes)) => &spokes.nodes[..spokes.count],
             _ => &[],
         }
     }
-}
 
-impl Surfaces {
     /// Adds the points and the pieces of a tube. Returns its size (m), as that of [facets](Surfaces::part).
     pub(super) fn add_tube(&mut self, body: usize, pieces: &[TubePiece]) -> f64 {
         let mut size = f64::INFINITY;
@@ -40,9 +31,9 @@ impl Surfaces {
         for piece in pieces {
             let ends = piece.ends.map(|(node, _)| node);
             for &(node, spokes) in &piece.ends {
-                let known = self.tubes.sections.len().max(node + 1);
-                self.tubes.sections.resize(known, None);
-                self.tubes.sections[node] = Some(spokes);
+                let known = self.sections.len().max(node + 1);
+                self.sections.resize(known, None);
+                self.sections[node] = Some(spokes);
             }
             for (shares, part) in HALVED_SIMPSON {
                 let area = part * piece.length * piece.width;
@@ -75,7 +66,7 @@ impl Surfaces {
             let is_of_point = base < pair.of_point;
             // towards the other one
             let radius = if is_of_point { -radii[0] } else { radii[1] };
-            let Some(Some(spokes)) = self.tubes.sections.get(pair.nodes[base]) else { continue };
+            let Some(Some(spokes)) = self.sections.get(pair.nodes[base]) else { continue };
             for k in 0..spokes.count {
                 let (node, arm) = (spokes.nodes[k], spokes.arms[k]);
                 let along = difference(&self.node_at(node, u), &self.node_at(pair.nodes[base], u));
