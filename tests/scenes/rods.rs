@@ -2,8 +2,9 @@
 
 use std::f64::consts::PI;
 
+use pliant::simulate::Reading;
 use pliant::{
-    Body, Equilibrium, Material, Method, Phase, Rod, RodPath, RodSection, Sampling, Scene,
+    Axis, Body, Equilibrium, Material, Method, Phase, Rod, RodPath, RodSection, Sampling, Scene,
     Settings, Stability, Statics,
 };
 
@@ -200,6 +201,38 @@ fn a_soft_rod_falls() {
     }
 }
 
+/// A rod that is pulled along a ramp has the force E A (r t + g r tau (1 - exp(-t/tau))) of a Maxwell branch beside its elasticity, and at rest E A e; what relaxes
+/// is heat.
+#[test]
+fn a_branch_relaxes() {
+    let (share, time, rate, length) = (0.8, 0.2, 0.05, 0.1);
+    // viscosity damps the waves that the start of the ramp makes, and has 5e-4 of the force
+    let of = Material { viscosity: 300.0, ..material(1e6, 0.3) }.maxwell(share, time);
+    for d in [2, 3] {
+        let path = [[0.0; 3], [length, 0.0, 0.0]].map(|x| x[..d].to_vec());
+        let rod = Rod::new(path.to_vec(), 3, RodSection::Circle { radius: 0.005 });
+        let body = Body::rod(rod, of.clone()).unwrap().build().unwrap();
+        let ramp = Phase::until(0.5).hold("start-section");
+        let ramp = ramp.move_axis("end", Axis::X, rate * length);
+        let rests = Phase::until(3.0).hold("start-section").hold("end");
+        let scene = Scene::new(body).phase(ramp).phase(rests);
+        let settings = Settings { method: Method::CvodeBdf, rtol: 1e-7, ..Settings::default() };
+        let read = Sampling::phase_ends().read("force", Reading::constraint_force("end"));
+        let motion = scene.simulate(&settings, &read).unwrap();
+        let hard = 1e6 * PI * 0.005_f64.powi(2) * rate;
+        let relaxing = |t: f64| share * time * (1.0 - (-t / time).exp());
+        let expected =
+            [hard * (0.5 + relaxing(0.5)), hard * (0.5 + relaxing(0.5) * (-12.5_f64).exp())];
+        for (sample, expected) in motion.samples()[1..].iter().zip(expected) {
+            println!("{d} {}: {:?} of {expected}", sample.time, sample.sensors);
+            assert!((sample.sensors[0] / expected - 1.0).abs() < 2e-3);
+        }
+        let last = &motion.last().energy;
+        let off = last.supplied - last.dissipated - last.strain;
+        assert!(off.abs() < 1e-4 * last.supplied, "{last:?}");
+    }
+}
+
 /// Bad input of rods is refused before anything runs, with the number that is wrong and what to do.
 #[test]
 fn what_is_no_rod_is_refused() {
@@ -228,10 +261,20 @@ fn what_is_no_rod_is_refused() {
         (Rod::new(straight, 3, circle(0.0)), ["radius = 0", "above 0"]),
         (Rod::new(straight, 3, RodSection::Ring { radius: 0.01, inner: 0.01 }), ["inner", "below"]),
         (rod(&straight, 3).end(RodSection::Ellipse { radii: [0.01; 2] }), ["end", "same kind"]),
+        (rod(&straight, 3).end(circle(-0.01)), ["section.end_radius = -0.01", "above 0"]),
     ] {
         let message = Body::rod(rod, of).err().map(|error| error.to_string()).unwrap();
         println!("{message}");
         assert!(words.iter().all(|word| message.contains(word)), "{message}");
+    }
+    // told, as a mesh of short elements along a corner is meant at times
+    let corner = [[0.0; 3], [0.1, 0.0, 0.0], [0.1, 0.1, 0.0]];
+    for (radius, is_told) in [(0.002, false), (0.02, true)] {
+        let bent = Rod::new(corner, 20, circle(radius));
+        let scene = Scene::new(Body::rod(bent, of).unwrap().build().unwrap());
+        let scene = scene.phase(Phase::until(1.0).hold("start-section"));
+        let told = scene.warnings().iter().any(|told| told.contains("turns by 45 degrees along"));
+        assert_eq!(told, is_told, "{:?}", scene.warnings());
     }
     let body =
         |of: pliant::Substance| Body::rod(rod(&straight, 3), of).unwrap().named("arm").build();

@@ -12,6 +12,7 @@
 //! | [`mesh`]: Poisson's ratio of linear cells | 0.45 |
 //! | [`mesh`]: pieces that nothing joins | one piece |
 //! | [`arched`]: cells of curved walls of one layer, beside sqrt(R t) | 1 |
+//! | [`kinked`]: reach of a rod's section over the radius of curvature in an element | 1 |
 //! | [`faceted`]: what facets of a mesh from a file leave out of the curves that they stand for | 2 % |
 //! | [`conformity`]: hanging nodes, and nodes in the same position that are not one | none |
 //! | [`overlap`]: how deep the body overlaps itself, as drawn and as it moves | a twentieth of a cell |
@@ -73,6 +74,7 @@ mod faceted;
 mod felt;
 mod flat_face;
 mod gas;
+mod kinked;
 mod mesh;
 pub(crate) mod overlap;
 mod pace;
@@ -134,6 +136,7 @@ impl Scene {
             let facets = faceted::faceted(part.body).into_iter().collect();
             let measured = measured.chain(units::as_meant(self, facets));
             let measured = measured.chain(arched::arched(part.body));
+            let measured = measured.chain(kinked::kinked(part.body));
             named(part.name, body, measured.chain(conformity::conformity(part.body)))
         };
         let each = body.parts().flat_map(of_body);

@@ -3,6 +3,8 @@
 //! Where they grow alike in all directions, G = g I, F_e = F / g is the gradient of the positions x / g, so that forces, tangents and energies are those of
 //! the elements as they are, at the displacements u' = x / g - X, times powers of g: g^3 U(u') has the forces g^2 f(u') and the tangents g K(u').
 //!
+//! Rods change the strains in which they are free of stress (`elements/rod/growth.rs`).
+//!
 //! Where they grow by direction, or are pressed across their plane as they grow, they have a [law](crate::elements::material::GrownLaw) of
 //! that.
 //!
@@ -28,6 +30,7 @@ use crate::base::sparse::{BlockMatrix, NodePattern};
 use crate::base::vector::dot;
 use crate::elements::force::NodalForces;
 use crate::elements::material::{FibreDirection, Plane, Strain, Stretches};
+use crate::elements::rod::RodGrowth;
 use crate::integrators::ode::Failure;
 
 /// The elasticity of some cells of a body, which grow.
@@ -35,6 +38,7 @@ pub(crate) struct Growing {
     /// Bodies with the elasticity of those of these cells alone that grow alike in all directions.
     bodies: Vec<Continuum>,
     oriented: Vec<OrientedPart>,
+    rods: Vec<RodGrowth>,
     /// Undeformed positions of the nodes (m).
     positions: Vec<f64>,
     pattern: Arc<NodePattern>,
@@ -81,6 +85,8 @@ impl Growing {
     pub(crate) fn energy(&self, stretches: Stretches, u: &[f64]) -> f64 {
         let parts = self.oriented.iter();
         let oriented: f64 = parts.map(|part| part.cells.energy(part.grown(stretches), u)).sum();
+        let of_rods = self.rods.iter().map(|rod| rod.energy(stretches.along - 1.0, u));
+        let oriented = oriented + of_rods.sum::<f64>();
         if self.bodies.is_empty() {
             return oriented;
         }
@@ -106,6 +112,13 @@ impl Growing {
             if rates != [0.0; 2] {
                 let by_themselves = [rates[0] / stretches.along, rates[1] / stretches.across];
                 forces.carried_power += part.cells.power(grown, by_themselves, u);
+            }
+        }
+        for rod in &self.rods {
+            let strain = stretches.along - 1.0;
+            rod.add_forces(strain, u, &mut forces.conservative);
+            if rates[0] != 0.0 {
+                forces.carried_power += rod.power([strain, rates[0]], u);
             }
         }
         if self.bodies.is_empty() {
@@ -154,6 +167,9 @@ impl Growing {
     ) {
         for part in &self.oriented {
             part.cells.add_tangents(part.grown(stretches), u, stiffness, damping);
+        }
+        for rod in &self.rods {
+            rod.add_tangents(stretches.along - 1.0, u, stiffness);
         }
         if self.bodies.is_empty() {
             return;
@@ -216,7 +232,8 @@ impl Continuum {
 }
 
 impl Body {
-    /// The elasticity of `cells` (counted from 0), which grow along and across the directions of a `course`, or alike in all directions.
+    /// The elasticity of `cells` (counted from 0), which grow along and across the directions of a `course`, or alike in all directions; of rods, which get longer,
+    /// or bend and twist by these curvatures and this twist (1/m) per strain.
     ///
     /// # Errors
     /// Cells that are rigid, whose strain is Cauchy's, or whose material relaxes; a course that is none there.
@@ -224,10 +241,10 @@ impl Body {
         &self,
         cells: &[usize],
         course: Option<&FibreDirection>,
+        bends: Option<[f64; 3]>,
     ) -> Result<Growing, InputError> {
-        self.refuse_rods("growth", cells)?;
         let grows = self.marked(cells);
-        let (mut bodies, mut oriented) = (Vec::new(), Vec::new());
+        let (mut bodies, mut oriented, mut rods) = (Vec::new(), Vec::new(), Vec::new());
         for own in &self.continua {
             let inside = |cell: usize| grows[own.cells.start + cell];
             let cells: Vec<usize> = (0..own.cells.len()).filter(|cell| inside(*cell)).collect();
@@ -236,6 +253,24 @@ impl Body {
             }
             let wrong =
                 |input: &str, value: &str, help: &str| Err(InputError::new(input, value, help));
+            match &own.rod {
+                Some(_) if course.is_some() => {
+                    return wrong("direction", "given", "rods grow along their axis: leave it out");
+                }
+                Some(rod) if rod.relaxes() => {
+                    let help =
+                        "what relaxes does not know of growth: leave the Maxwell branches out";
+                    return wrong("material.branch", "given", help);
+                }
+                Some(rod) => {
+                    rods.push(RodGrowth::new(rod.clone(), &cells, bends));
+                    continue;
+                }
+                None if bends.is_some() => {
+                    return wrong("bend", "given", "rods alone have curvatures: name their cells");
+                }
+                None => {}
+            }
             if own.strain == Strain::Cauchy {
                 return wrong("strain", "Cauchy", "growth is not small: measure strain by Green's");
             }
@@ -267,7 +302,7 @@ impl Body {
             true => Vec::new(),
             false => vec![Scratch::new(&pattern, positions.len())],
         };
-        Ok(Growing { bodies, oriented, positions, pattern, free: free.into() })
+        Ok(Growing { bodies, oriented, rods, positions, pattern, free: free.into() })
     }
 
     /// The elastic and viscous forces that have no constant matrix, without those of rigid pieces and without the elasticity of `cells` (counted from 0).

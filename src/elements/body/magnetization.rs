@@ -3,6 +3,7 @@
 use super::assembled::Body;
 use super::magnetized_points::MagnetizedPoints;
 use super::magnets::Magnets;
+use super::rod_magnets;
 use crate::base::input::InputError;
 use crate::base::sparse::NodeMatrix;
 
@@ -26,7 +27,13 @@ impl Body {
         for own in &self.continua {
             let inside = cells.iter().filter(|cell| own.cells.contains(cell));
             let inside: Vec<usize> = inside.map(|cell| cell - own.cells.start).collect();
-            own.elements.add_magnets(&inside, remanence, magnets)?;
+            match &own.rod {
+                None => own.elements.add_magnets(&inside, remanence, magnets)?,
+                Some(rod) => {
+                    let strength = (remanence, own.material.density);
+                    rod_magnets::add_magnets((rod, &inside), strength, &self.mesh, magnets);
+                }
+            }
         }
         Ok(())
     }
@@ -44,7 +51,14 @@ impl Body {
             if !inside.is_empty() {
                 let first = own.cells.start;
                 let elements = &own.elements;
-                points.push(elements.magnetized_points(&self.mesh, first, &inside, remanence));
+                points.push(match &own.rod {
+                    None => elements.magnetized_points(&self.mesh, first, &inside, remanence),
+                    Some(rod) => {
+                        let (of, strength) =
+                            ((&**rod, &inside[..], first), (remanence, own.material.density));
+                        rod_magnets::points(of, strength, &self.mesh, self.inertia.pattern())
+                    }
+                });
             }
         }
     }

@@ -118,29 +118,29 @@ pub(crate) trait MagnetizedPoints: Send + Sync {
 }
 
 /// Magnetized cells of `N` nodes and `Q` points in a space of dimension `D`.
-struct Magnetized<const N: usize, const D: usize, const Q: usize> {
-    cells: Vec<MagnetizedCell<N, D, Q>>,
+pub(super) struct Magnetized<const N: usize, const D: usize, const Q: usize> {
+    pub(super) cells: Vec<MagnetizedCell<N, D, Q>>,
     /// Shape functions at the points.
-    values: [[f64; N]; Q],
+    pub(super) values: [[f64; N]; Q],
 }
 
-struct MagnetizedCell<const N: usize, const D: usize, const Q: usize> {
+pub(super) struct MagnetizedCell<const N: usize, const D: usize, const Q: usize> {
     /// Its number in the whole body.
-    number: usize,
-    nodes: [usize; N],
+    pub(super) number: usize,
+    pub(super) nodes: [usize; N],
     /// The entries of the pairs of its nodes in the pattern of the body.
-    entries: [[u32; N]; N],
-    points: [MagnetizedPoint<N, D>; Q],
+    pub(super) entries: [[u32; N]; N],
+    pub(super) points: [MagnetizedPoint<N, D>; Q],
     /// The least distance (m) of a dipole from a point.
-    reach: f64,
+    pub(super) reach: f64,
 }
 
-struct MagnetizedPoint<const N: usize, const D: usize> {
+pub(super) struct MagnetizedPoint<const N: usize, const D: usize> {
     /// p_a (A m)
-    poles: [f64; N],
+    pub(super) poles: [f64; N],
     /// Undeformed place (m) and moment (A m^2).
-    place: [f64; D],
-    moment: [f64; D],
+    pub(super) place: [f64; D],
+    pub(super) moment: [f64; D],
 }
 
 impl<const N: usize, const D: usize, const Q: usize> Magnetized<N, D, Q> {

@@ -39,6 +39,7 @@ mod reinforcement;
 mod relaxing;
 mod revolved;
 mod rigid;
+mod rod_magnets;
 mod rods;
 mod sample;
 mod section;

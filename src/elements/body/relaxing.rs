@@ -7,13 +7,14 @@ use nalgebra::Matrix3;
 
 use super::assembly::Elements;
 use super::branch_modes::{BranchModes, Found};
-use super::branch_state::BranchState;
+use super::branch_state::{BranchCells, BranchState};
 use super::continuum::Continuum;
 use super::fields::Probe;
 use super::regions::Regions;
 use super::strain_modes::pay;
 use crate::base::sparse::BlockMatrix;
 use crate::elements::material::Relaxing;
+use crate::elements::rod::RodElements;
 
 /// The branches of a body: of each of several bodies that have any, one after the other.
 #[derive(Clone)]
@@ -27,9 +28,20 @@ struct OfBody {
     body: usize,
     elements: Arc<dyn Elements>,
     regions: Arc<Regions>,
+    /// Those of a rod, in the place of its cells'.
+    rod: Option<Arc<RodElements>>,
     /// Its first cell, and its internal strains, among those of all.
     first_cell: usize,
     internal: Range<usize>,
+}
+
+impl OfBody {
+    fn cells(&self) -> Vec<BranchCells> {
+        let Some(rod) = &self.rod else { return self.elements.branch_cells(&self.regions) };
+        let [branches, count] = rod.branch_counts();
+        let variables = vec!["strain of a rod".to_owned(); branches];
+        vec![BranchCells { count, variables, components: rod.internal_of_element() }]
+    }
 }
 
 impl Branches {
@@ -39,11 +51,15 @@ impl Branches {
         let relaxing =
             bodies.enumerate().filter(|(_, body)| body.regions.branches().next().is_some());
         let bodies: Vec<OfBody> = relaxing
-            .map(|(body, Continuum { elements, regions, cells, .. })| {
-                let internal = first..first + elements.internal_strains(regions);
+            .map(|(body, Continuum { elements, regions, rod, cells, .. })| {
+                let count = match rod {
+                    Some(rod) => rod.internal_of_element() * cells.len(),
+                    None => elements.internal_strains(regions),
+                };
+                let internal = first..first + count;
                 first = internal.end;
-                let (elements, regions) = (elements.clone(), regions.clone());
-                OfBody { body, elements, regions, first_cell: cells.start, internal }
+                let (elements, regions, rod) = (elements.clone(), regions.clone(), rod.clone());
+                OfBody { body, elements, regions, rod, first_cell: cells.start, internal }
             })
             .collect();
         (!bodies.is_empty()).then_some(Self { bodies })
@@ -51,6 +67,9 @@ impl Branches {
 
     /// Whether the forces along so many shapes follow from the modes of the strains, in less time than from all cells.
     pub(crate) fn have_modes(&self, shapes: usize) -> bool {
+        if self.bodies.iter().any(|own| own.rod.is_some()) {
+            return false;
+        }
         let times = self.bodies.iter().flat_map(|body| body.regions.branches());
         let mut times: Vec<f64> = times.map(|branch| branch.time).collect();
         times.sort_by(f64::total_cmp);
@@ -80,8 +99,10 @@ impl Branches {
     /// without branches.
     pub(crate) fn state_of(&self, body: usize, internal: &[f64]) -> Option<BranchState> {
         let own = self.bodies.iter().find(|own| own.body == body)?;
-        let cells = own.elements.branch_cells(&own.regions);
-        Some(BranchState { cells, components: internal[own.internal.clone()].to_vec() })
+        Some(BranchState {
+            cells: own.cells(),
+            components: internal[own.internal.clone()].to_vec(),
+        })
     }
 
     /// Whether the body of that number (from 0) has branches.
@@ -92,8 +113,7 @@ impl Branches {
     /// Writes a `state` to the components of that body among `internal`, if its branches are of the same kinds.
     pub(crate) fn set_state(&self, body: usize, state: &BranchState, internal: &mut [f64]) -> bool {
         let Some(own) = self.bodies.iter().find(|own| own.body == body) else { return false };
-        let fits = state.components.len() == own.internal.len()
-            && own.elements.branch_cells(&own.regions) == state.cells;
+        let fits = state.components.len() == own.internal.len() && own.cells() == state.cells;
         if fits {
             internal[own.internal.clone()].copy_from_slice(&state.components);
         }
@@ -109,7 +129,8 @@ impl Branches {
     /// The stress (Pa) of the branches that `probe` reads at the displacements `u` (m).
     pub(crate) fn probed(&self, probe: &Probe, u: &[f64], internal: &[f64]) -> [[f64; 3]; 3] {
         let mut sum = Matrix3::zeros();
-        for OfBody { elements, regions, first_cell, internal: own, .. } in &self.bodies {
+        let solids = self.bodies.iter().filter(|own| own.rod.is_none());
+        for OfBody { elements, regions, first_cell, internal: own, .. } in solids {
             let shares = |cell: usize| probe.shares(first_cell + cell);
             let at = [u, &internal[own.clone()]];
             let mut see = |cell: usize, a: usize, stress: &Matrix3<f64>| {
@@ -122,8 +143,12 @@ impl Branches {
 
     /// Writes the internal strains with which the branches have no stress at the displacements `u` (m).
     pub(crate) fn relax(&self, u: &[f64], internal: &mut [f64]) {
-        for OfBody { elements, regions, internal: own, .. } in &self.bodies {
-            elements.relax(regions, u, &mut internal[own.clone()]);
+        for OfBody { elements, regions, rod, internal: own, .. } in &self.bodies {
+            let internal = &mut internal[own.clone()];
+            match rod {
+                Some(rod) => rod.relax(u, internal),
+                None => elements.relax(regions, u, internal),
+            }
         }
     }
 
@@ -136,17 +161,21 @@ impl Branches {
         forces: &mut [f64],
         rates: &mut [f64],
     ) -> f64 {
-        let of_body = |OfBody { elements, regions, internal: own, .. }: &OfBody| {
+        let of_body = |OfBody { elements, regions, rod, internal: own, .. }: &OfBody| {
             let (internal, rates) = (&internal[own.clone()], &mut rates[own.clone()]);
-            elements.add_branch_forces(regions, u, internal, forces, rates)
+            match rod {
+                Some(rod) => rod.add_branch_forces(u, internal, forces, rates),
+                None => elements.add_branch_forces(regions, u, internal, forces, rates),
+            }
         };
         self.bodies.iter().map(of_body).sum()
     }
 
     /// Strain energy (J).
     pub(crate) fn energy(&self, u: &[f64], internal: &[f64]) -> f64 {
-        let of_body = |OfBody { elements, regions, internal: own, .. }: &OfBody| {
-            elements.branch_energy(regions, u, &internal[own.clone()])
+        let of_body = |OfBody { elements, regions, rod, internal: own, .. }: &OfBody| match rod {
+            Some(rod) => rod.branch_energy(u, &internal[own.clone()]),
+            None => elements.branch_energy(regions, u, &internal[own.clone()]),
         };
         self.bodies.iter().map(of_body).sum()
     }
@@ -160,10 +189,13 @@ impl Branches {
         internal: &[f64],
         stiffness: &mut BlockMatrix,
     ) {
-        for OfBody { elements, regions, internal: own, .. } in &self.bodies {
+        for OfBody { elements, regions, rod, internal: own, .. } in &self.bodies {
             // none means without stress
-            let at = [u, internal.get(own.clone()).unwrap_or_default()];
-            elements.add_branch_tangents(regions, gamma, at, stiffness);
+            let own = internal.get(own.clone()).unwrap_or_default();
+            match rod {
+                Some(rod) => rod.add_branch_tangents(gamma, u, own, stiffness),
+                None => elements.add_branch_tangents(regions, gamma, [u, own], stiffness),
+            }
         }
     }
 
@@ -176,9 +208,12 @@ impl Branches {
         residuals: &[f64],
         right: &mut [f64],
     ) {
-        for OfBody { elements, regions, internal: own, .. } in &self.bodies {
-            let at = [u, &internal[own.clone()]];
-            elements.add_branch_residuals(regions, gamma, at, &residuals[own.clone()], right);
+        for OfBody { elements, regions, rod, internal: own, .. } in &self.bodies {
+            let (at, residuals) = ([u, &internal[own.clone()]], &residuals[own.clone()]);
+            match rod {
+                Some(rod) => rod.add_branch_residuals(gamma, u, residuals, right),
+                None => elements.add_branch_residuals(regions, gamma, at, residuals, right),
+            }
         }
     }
 
@@ -193,9 +228,13 @@ impl Branches {
         xu: &[f64],
         x: &mut [f64],
     ) -> f64 {
-        let of_body = |OfBody { elements, regions, internal: own, .. }: &OfBody| {
+        let of_body = |OfBody { elements, regions, rod, internal: own, .. }: &OfBody| {
             let (at, rates) = ([u, &internal[own.clone()]], &rates[own.clone()]);
-            elements.solve_branches(regions, gamma, at, rates, xu, &mut x[own.clone()])
+            let x = &mut x[own.clone()];
+            match rod {
+                Some(rod) => rod.solve_branches(gamma, u, rates, xu, x),
+                None => elements.solve_branches(regions, gamma, at, rates, xu, x),
+            }
         };
         self.bodies.iter().map(of_body).sum()
     }

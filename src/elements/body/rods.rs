@@ -1,5 +1,6 @@
 //! Rods as bodies: their forces, their options, their nodes.
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use super::assembled::Body;
@@ -7,9 +8,9 @@ use super::recipe::Recipe;
 use crate::base::input::InputError;
 use crate::base::sparse::BlockMatrix;
 use crate::elements::force::{Force, NodalForces, Reservoir, Tangents};
-use crate::elements::material::{Strain, Viscosity};
+use crate::elements::material::{MaxwellBranch, Strain, Viscosity};
 use crate::elements::mesh::Selection;
-use crate::elements::rod::{CrossSection, RodElements, RodPoint, Tube};
+use crate::elements::rod::{Bend, CrossSection, RodElements, RodPoint, Tube, TubePiece};
 use crate::integrators::ode::Failure;
 
 /// The elastic and viscous forces of all rods.
@@ -73,23 +74,20 @@ impl Body {
         self.continua.iter().any(|own| own.rod.is_some() && own.nodes.contains(&node))
     }
 
-    /// # Errors
-    /// Cells (from 0) of rods, on which what `input` names does not act.
-    pub(crate) fn refuse_rods(&self, input: &str, cells: &[usize]) -> Result<(), InputError> {
-        let mut rods = self.continua.iter().filter(|own| own.rod.is_some());
-        let of = rods.find(|own| cells.iter().any(|cell| own.cells.contains(cell)));
-        match of.map(|own| own.recipe.name.as_deref().unwrap_or("rod")) {
-            None => Ok(()),
-            Some(name) => {
-                let help = "it does not act on rods yet: name cells or nodes of other bodies";
-                Err(InputError::new(input, format!("of rod \"{name}\""), help))
-            }
-        }
-    }
-
     /// Points around the cross sections of rods: nodes with their shares, and the area (m^2) for which each stands.
     pub(crate) fn around_rods(&self) -> impl Iterator<Item = (RodPoint, f64)> {
         self.continua.iter().filter_map(|own| own.rod.as_ref()).flat_map(|rod| rod.around())
+    }
+
+    /// The [pieces](RodElements::tube_pieces) of the rod with these nodes, if it is one.
+    pub(crate) fn tube_pieces(&self, nodes: &Range<usize>) -> Option<Option<Vec<TubePiece>>> {
+        let own = self.continua.iter().find(|own| own.nodes == *nodes)?;
+        own.rod.as_ref().map(|rod| rod.tube_pieces())
+    }
+
+    /// The [sharpest bend](RodElements::sharpest_bend) of a single body that is a rod.
+    pub(crate) fn sharpest_bend(&self) -> Option<Bend> {
+        self.continua[0].rod.as_ref().and_then(|rod| rod.sharpest_bend())
     }
 
     /// The surface of a single body that is a rod.
@@ -125,7 +123,10 @@ impl Recipe {
             self.name.as_deref().map_or_else(|| "rod".into(), |name| format!("rod \"{name}\""));
         let given = [
             ("law", substance.law.is_some()),
-            ("Maxwell branches", !substance.branches.is_empty()),
+            (
+                "yield stress of a Maxwell branch",
+                substance.branches.iter().any(|branch| branch.yield_stress > 0.0),
+            ),
             ("fibres", !substance.fibres.is_empty()),
             ("rigid material", substance.is_rigid),
             ("regions", !self.regions.is_empty()),
@@ -136,11 +137,12 @@ impl Recipe {
             ("natural viscosity", self.viscosity == Some(Viscosity::Natural)),
         ];
         if let Some((option, _)) = given.iter().find(|(_, is_given)| *is_given) {
-            let help = "its law is linear in stretch, shear, bending and twist, which it has from the moduli, the section and the viscosity: \
-                        leave it out";
+            let help = "its law is linear in stretch, shear, bending and twist, which it has from the moduli, the section, the viscosity and Maxwell branches without a \
+                        yield stress: leave it out";
             return Err(InputError::new(name, *option, help));
         }
         substance.material.validate()?;
-        rod.elements(&substance.material).map(Some)
+        substance.branches.iter().try_for_each(MaxwellBranch::validate)?;
+        rod.elements(&substance.material, &substance.branches).map(Some)
     }
 }

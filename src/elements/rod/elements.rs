@@ -32,16 +32,24 @@ pub(super) struct RodElement {
     pub(super) mass: [f64; 3],
 }
 
+/// A Maxwell branch: the share of its stiffness (1), and its relaxation time (s).
+#[derive(Debug, Clone, Copy)]
+pub(super) struct RodBranch {
+    pub(super) share: f64,
+    pub(super) time: f64,
+}
+
 /// The elements of rods, on the nodes of a body of a `dimension`.
 #[derive(Debug, Clone)]
 pub(crate) struct RodElements {
     pub(super) dimension: usize,
     pub(super) elements: Vec<RodElement>,
+    pub(super) branches: Vec<RodBranch>,
     /// Places around its cross sections, in arms along d_1 and d_2.
     pub(super) outline: Vec<[f64; 2]>,
 }
 
-type Dual = DualSVec64<UNKNOWNS>;
+pub(super) type Dual = DualSVec64<UNKNOWNS>;
 
 impl RodElement {
     /// The elastic forces on both ends, with the sign of those that the nodes exert.
@@ -185,9 +193,24 @@ impl RodElements {
     }
 
     /// The state of the ends of an element at `u` (m), or their velocities.
-    fn state(&self, element: &RodElement, u: &[f64], natural: bool) -> [Section<f64>; 2] {
+    pub(super) fn state(
+        &self,
+        element: &RodElement,
+        u: &[f64],
+        natural: bool,
+    ) -> [Section<f64>; 2] {
         let d = self.dimension;
         element.ends.map(|end| end.section(d, natural, |v, i| u[end.nodes[v] * d + i]))
+    }
+
+    /// The state of the ends at `u` (m), with derivatives by all of its unknowns.
+    pub(super) fn dual_state(&self, element: &RodElement, u: &[f64]) -> [Section<Dual>; 2] {
+        let d = self.dimension;
+        [0, 1].map(|end| {
+            let nodes = element.ends[end].nodes;
+            let value = |w: usize, i: usize| dual(u[nodes[w] * d + i], own(d, [end, w, i]));
+            element.ends[end].section(d, true, value)
+        })
     }
 
     /// Adds the elastic forces at displacements `u` (m) to `elastic`, and the viscous ones at velocities `v` (m/s) to `viscous`.
@@ -244,14 +267,9 @@ impl RodElements {
         damping: &mut BlockMatrix,
     ) {
         let d = self.dimension;
-        let own = |end: usize, v: usize, i: usize| (end * d + v) * d + i;
         for element in &self.elements {
             let ends = element.ends;
-            let place = |end: usize| {
-                let nodes = ends[end].nodes;
-                ends[end].section(d, true, |w, i| dual(u[nodes[w] * d + i], own(end, w, i)))
-            };
-            let at = [place(0), place(1)];
+            let at = self.dual_state(element, u);
             let still = self.state(element, v, false).map(constant);
             let deformed = Deformed::new(element.length, at);
             let (elastic, viscous) =
@@ -261,7 +279,9 @@ impl RodElements {
                     end.scatter(d, &on, |v, i, force| {
                         let slopes = force.eps.unwrap_generic(Const::<UNKNOWNS>, Const::<1>);
                         let row = end.nodes[v];
-                        add_row(stiffness, &ends, d, row, i, |end, w, j| slopes[own(end, w, j)]);
+                        add_row(stiffness, &ends, d, row, i, |end, w, j| {
+                            slopes[own(d, [end, w, j])]
+                        });
                     });
                 }
             }
@@ -270,13 +290,15 @@ impl RodElements {
             element.each_damper(&deformed, &at, |factor, forces| {
                 let mut all = [0.0; UNKNOWNS];
                 for (number, (end, on)) in ends.iter().zip(forces).enumerate() {
-                    end.scatter(d, &on, |v, i, force| all[own(number, v, i)] += force);
+                    end.scatter(d, &on, |v, i, force| all[own(d, [number, v, i])] += force);
                 }
                 for (number, end) in ends.iter().enumerate() {
                     for (v, i) in (0..d).flat_map(|v| (0..d).map(move |i| (v, i))) {
-                        let value = factor * all[own(number, v, i)];
+                        let value = factor * all[own(d, [number, v, i])];
                         let row = end.nodes[v];
-                        add_row(damping, &ends, d, row, i, |end, w, j| value * all[own(end, w, j)]);
+                        add_row(damping, &ends, d, row, i, |end, w, j| {
+                            value * all[own(d, [end, w, j])]
+                        });
                     }
                 }
             });
@@ -309,7 +331,7 @@ impl RodElements {
 }
 
 /// Adds the `entries` of a row, component `i` of a node, to a `matrix`: for each end its vectors with their components.
-fn add_row(
+pub(super) fn add_row(
     matrix: &mut BlockMatrix,
     ends: &[End; 2],
     d: usize,
@@ -323,6 +345,11 @@ fn add_row(
             (0..d).for_each(|j| block[i * d + j] += entries(end, w, j));
         }
     }
+}
+
+/// The number of an unknown of an element in a space of a `dimension`: of an end, a node of it, a component.
+pub(super) fn own(dimension: usize, [end, node, i]: [usize; 3]) -> usize {
+    (end * dimension + node) * dimension + i
 }
 
 /// A section of numbers without derivatives.

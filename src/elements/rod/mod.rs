@@ -3,9 +3,11 @@
 //! Each cross section stays plane and keeps its shape; it moves and turns by any amount. A [`Rod`] is a path with a section along it, of which
 //! [`Body::rod`](crate::Body::rod) makes a body. What it leaves out is what the section itself does: warping, ovalization, local buckling.
 
+mod branches;
 mod chain;
 mod elements;
 mod end;
+mod growth;
 mod nodes;
 mod path;
 mod screw;
@@ -16,17 +18,18 @@ mod tests;
 mod tube;
 mod turning;
 
-use elements::RodElement;
 pub(crate) use elements::RodElements;
+use elements::{RodBranch, RodElement};
 use end::End;
+pub(crate) use growth::RodGrowth;
 use nodes::Nodes;
 pub use path::RodPath;
 pub use section::{RodSection, SectionNumbers};
 use strain::{Deformed, Section};
-pub(crate) use tube::{RodPoint, Tube};
+pub(crate) use tube::{Bend, RodPoint, Spokes, Tube, TubePiece};
 pub(crate) use turning::{CrossSection, SectionLoad};
 
-use super::material::Material;
+use super::material::{Material, MaxwellBranch};
 use super::mesh::{CellKind, Mesh};
 use crate::base::input::InputError;
 
@@ -124,7 +127,7 @@ impl Rod {
 
     /// The nodes, those of the path along which it is free of stress if that is another one, and the section at each node.
     fn laid_out(&self) -> Result<(Nodes, Option<Nodes>, Vec<RodSection>), InputError> {
-        self.section.validate("section")?;
+        self.section.validate("section.")?;
         let nodes = self.path.nodes(self.elements, self.normal)?;
         let nodes = nodes.twisted(self.twist, self.dimension())?;
         let reach = self.section.numbers(0.0).reach;
@@ -148,14 +151,18 @@ impl Rod {
             let all = vec![self.section; nodes.x.len()];
             return Ok((nodes, natural, all));
         };
-        end.validate("end of the section")?;
+        end.validate("section.end_")?;
         let (along, length) = nodes.distances();
         let sections = along.iter().map(|s| self.section.towards(&end, s / length));
         Ok((nodes, natural, sections.collect::<Result<_, _>>()?))
     }
 
-    /// Its elements of a material.
-    pub(crate) fn elements(&self, material: &Material) -> Result<RodElements, InputError> {
+    /// Its elements of a material, with Maxwell branches.
+    pub(crate) fn elements(
+        &self,
+        material: &Material,
+        branches: &[MaxwellBranch],
+    ) -> Result<RodElements, InputError> {
         let (nodes, natural, sections) = self.laid_out()?;
         let natural = natural.as_ref().unwrap_or(&nodes);
         let (dimension, count) = (self.dimension(), nodes.x.len());
@@ -176,7 +183,13 @@ impl Rod {
             let mean = SectionNumbers::mean(along.map(|section| section.numbers(material.poisson)));
             elements.push(element(ends, free, own, &mean, material));
         }
-        Ok(RodElements { dimension, elements, outline: self.section.outline(dimension) })
+        let of_rod = |branch: &MaxwellBranch| RodBranch { share: branch.share, time: branch.time };
+        Ok(RodElements {
+            dimension,
+            elements,
+            branches: branches.iter().map(of_rod).collect(),
+            outline: self.section.outline(dimension),
+        })
     }
 
     /// The mean area of its section (m^2).

@@ -35,7 +35,7 @@ pub enum RodSection {
 }
 
 /// Points around a round section: a polygon of so many sides lies within 2 % of its radius.
-const AROUND: usize = 16;
+pub(super) const AROUND: usize = 16;
 
 /// Area and moments of a cross section, whose centroid and centre of shear are on the axis of the rod.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -145,16 +145,16 @@ impl RodSection {
     /// A size that is not above 0, a tube without a wall.
     pub(super) fn validate(&self, input: &str) -> Result<(), InputError> {
         let check = |key: &str, value: f64, unit: &str| {
-            positive(&format!("{input}.{key}"), value, unit).map(drop)
+            positive(&format!("{input}{key}"), value, unit).map(drop)
         };
         match *self {
             Self::Circle { radius } => check("radius", radius, "m"),
             Self::Ring { radius, inner } => {
                 check("radius", radius, "m")?;
-                not_negative(&format!("{input}.inner"), inner, "m")?;
+                not_negative(&format!("{input}inner"), inner, "m")?;
                 if inner >= radius {
                     let help = format!("it must be below the radius of {radius} m");
-                    return Err(InputError::new(format!("{input}.inner"), inner, help));
+                    return Err(InputError::new(format!("{input}inner"), inner, help));
                 }
                 Ok(())
             }

@@ -39,7 +39,7 @@ fn displaced(mesh: &Mesh, most: f64) -> Vec<f64> {
 fn forces_are_the_slope_of_the_energy() {
     for dimension in [2, 3] {
         let rod = bent(dimension);
-        let elements = rod.elements(&RUBBER).unwrap();
+        let elements = rod.elements(&RUBBER, &[]).unwrap();
         for most in [2e-4, 2e-3] {
             let u = displaced(&rod.mesh().unwrap(), most);
             let (mut forces, mut none) = (vec![0.0; u.len()], vec![0.0; u.len()]);
@@ -68,7 +68,7 @@ fn tangents_are_the_slopes_of_the_forces() {
     for dimension in [2, 3] {
         let rod = bent(dimension);
         let body = Body::rod(rod.clone(), RUBBER).unwrap().build().unwrap();
-        let elements = rod.elements(&RUBBER).unwrap();
+        let elements = rod.elements(&RUBBER, &[]).unwrap();
         let u = displaced(body.mesh(), 2e-3);
         let v = scattered(u.len(), 0.7);
         let pattern = body.inertia().pattern();

@@ -27,8 +27,15 @@ pub(super) fn everywhere(scene: &Scene, phase: &Phase, t: f64) -> [Vec<f64>; 2] 
 /// Arrows along the remanence in some of the cells that magnets consist of, in their middles, as long as it is strong and as the cells are turned and stretched:
 /// along F b.
 pub(super) struct Remanence {
-    /// Nodes of each cell, with the factors by which their positions add up to the arrow.
-    arrows: Vec<Vec<(usize, f64)>>,
+    arrows: Vec<Arrow>,
+}
+
+/// The magnetization of a cell.
+struct Arrow {
+    /// Its nodes.
+    cell: Vec<usize>,
+    /// Nodes, of rods those of the directors among them, with the factors by which their positions add up to the arrow.
+    poles: Vec<(usize, f64)>,
 }
 
 impl Remanence {
@@ -57,17 +64,18 @@ impl Remanence {
                 body.magnetize(&[cell], own, &mut magnetized)?;
                 remanence.iter_mut().zip(*own).for_each(|(sum, own)| *sum += own);
             }
-            let taken = |&node: &usize| (node, take(&mut magnetized.poles[node]));
-            let mut poles: Vec<(usize, f64)> = all[cell].iter().map(taken).collect();
+            let taken = magnetized.poles.iter_mut().map(take).enumerate();
+            let mut poles: Vec<(usize, f64)> = taken.filter(|(_, pole)| *pole != 0.0).collect();
             let moment = norm(&sum(&poles, |node| mesh.position(node).to_vec()));
             let strength = norm(&remanence);
             if moment > 0.0 && strength > 0.0 {
                 strongest = strongest.max(strength);
                 poles.iter_mut().for_each(|(_, pole)| *pole *= LENGTH * apart * strength / moment);
-                arrows.push(poles);
+                arrows.push(Arrow { cell: all[cell].to_vec(), poles });
             }
         }
-        arrows.iter_mut().flatten().for_each(|(_, pole)| *pole /= strongest);
+        let poles = arrows.iter_mut().flat_map(|arrow| &mut arrow.poles);
+        poles.for_each(|(_, pole)| *pole /= strongest);
         Ok(Self { arrows })
     }
 
@@ -81,12 +89,13 @@ impl Remanence {
         let position = |node: usize| -> Vec<f64> {
             mesh.position(node).iter().zip(&u[node * d..]).map(|(x, u)| x + u).collect()
         };
-        let middle = |poles: &[(usize, f64)]| {
-            let share = 1.0 / poles.len() as f64;
-            let shares: Vec<_> = poles.iter().map(|&(node, _)| (node, share)).collect();
+        let middle = |cell: &[usize]| {
+            let share = 1.0 / cell.len() as f64;
+            let shares: Vec<_> = cell.iter().map(|&node| (node, share)).collect();
             sum(&shares, position)
         };
-        self.arrows.iter().map(|poles| [middle(poles), sum(poles, position)]).collect()
+        let arrows = self.arrows.iter();
+        arrows.map(|arrow| [middle(&arrow.cell), sum(&arrow.poles, position)]).collect()
     }
 }
 

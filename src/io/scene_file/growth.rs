@@ -14,7 +14,7 @@ pub(super) const GROWTH: TableKeys = TableKeys::new(
     "[[growth]]",
     "Cells that swell, expand by heat or change their shape as active materials do, by the strain that `actuate` in a phase gives: what is free gets 1 + strain times as long, \
      without stress. Alike in all directions, or along a vector or around an axis, as fibres run; across that they keep their size, or change it by a share of the strain \
-     or so that their volume stays. All of the body, or the cells of a `box`, a `group` or a list. For Green's strain with any law.",
+     or so that their volume stays. All of the body, or the cells of a `box`, a `group` or a list. For Green's strain with any law. Rods get longer, or `bend` and `twist`.",
     &[
         Key::new("name", ValueType::Text, "the name of the growth, which no spring and no muscle has")
             .default("growth 1, growth 2, ..."),
@@ -26,6 +26,10 @@ pub(super) const GROWTH: TableKeys = TableKeys::new(
         Key::number("across", "growth across the direction, by that along it: 0 is none, 1 is alike", "1").default("0"),
         Key::new("keeps_volume", ValueType::Flag, "whether they get thinner across the direction as they grow along it, and keep their volume")
             .default("false"),
+        Key::new("bend", ValueType::Array(&ValueType::Number, 2), "of rods: curvatures about d_1 and d_2 that a strain of 1 adds to those in which they are free of stress, in place of length")
+            .in_unit("1/m")
+            .note("In the plane the second one bends."),
+        Key::number("twist", "of rods: the twist that a strain of 1 adds, in place of length", "rad/m").default("0"),
         BOX,
         GROUP,
         CELLS,
@@ -56,6 +60,10 @@ fn directed(mut growth: Growth, table: &Table<'_>) -> Result<Growth, Error> {
         growth = growth.along_course(course(table)?);
     }
     growth = table.added(growth, "across", Value::number, Growth::across)?;
+    if has("bend") || has("twist") {
+        let bend = table.optional("bend", Value::array)?.unwrap_or_default();
+        growth = growth.bending(bend, table.optional("twist", Value::number)?.unwrap_or_default());
+    }
     match (table.flag("keeps_volume")?, has("across")) {
         (true, true) => Err(table.error("expected one alone of across and keeps_volume")),
         (true, false) => Ok(growth.keeping_volume()),

@@ -1,5 +1,7 @@
 //! `[[joint]]`, and `motor` in phases.
 
+use std::any::Any;
+
 use super::course::course;
 use super::device::device_name;
 use super::keys::{Key, PERIOD, TIMES, TableKeys, ValueType};
@@ -9,14 +11,16 @@ use super::value::{Value, named};
 use crate::dynamics::error::Error;
 use crate::elements::mesh::Selection;
 use crate::scene::devices::{Joint, JointKind};
-use crate::scene::timeline::{Phase, Scene};
+use crate::scene::timeline::{Device, Phase, Scene};
 use toml::de::DeValue;
 
-const KINDS: [(&str, JointKind); 4] = [
+const KINDS: [(&str, JointKind); 6] = [
     ("spherical", JointKind::Spherical),
     ("revolute", JointKind::Revolute),
     ("prismatic", JointKind::Prismatic),
     ("fixed", JointKind::Fixed),
+    ("screw", JointKind::Screw),
+    ("universal", JointKind::Universal),
 ];
 
 fn kinds() -> Vec<&'static str> {
@@ -26,8 +30,8 @@ fn kinds() -> Vec<&'static str> {
 pub(super) const JOINT: TableKeys = TableKeys::new(
     "[[joint]]",
     "A joint between two sides: rigid bodies or inserts, cross sections of rods, faces of solids, or the world. `spherical` keeps the place of both together, \
-     `revolute` an axis through it as well (in the plane it is a pin), `prismatic` lets the second side slide along an axis of the world without turning, `fixed` \
-     lets nothing move. Along the angle or the displacement of the second side from the first act a spring, damping, friction, stops and a motor, \
+     `revolute` an axis through it as well (in the plane it is a pin), `prismatic` lets the second side slide along an axis of the first without turning, `fixed` \
+     lets nothing move, `screw` turns along an axis of the world with a `lead`, `universal` has a cross of two axes. Along the angle or the displacement of the second side from the first act a spring, damping, friction, stops and a motor, \
      which phases command by `motor`.",
     &[
         Key::new("name", ValueType::Text, "the name of the joint").default("joint 1, joint 2, ..."),
@@ -36,7 +40,12 @@ pub(super) const JOINT: TableKeys = TableKeys::new(
             .note("The name of a rigid body, a node on the axis of a rod, nodes of a face, or `world`, which is fixed in space.")
             .required(),
         Key::vector("at", "its place in the undeformed shape", "m").required(),
-        Key::vector("axis", "its axis, of a hinge in space and of a slider", "1"),
+        Key::vector("axis", "its axis, of a hinge in space, of a slider and of a screw; of a universal joint that of the cross in the first side", "1"),
+        Key::vector("second_axis", "the axis of the cross of a universal joint in the second side", "1"),
+        Key::number("lead", "the displacement of a screw for a turn; negative of a left-handed thread", "m"),
+        Key::number("bearing_stiffness", "the stiffness of a thread, of a cross, or of a guide between two bodies, by which these hold", "N m/rad or N/m"),
+        Key::number("bearing_damping", "their damping", "N m s or N s/m").default("0"),
+        Key::new("gear", ValueType::Table(&GEAR), "teeth that couple it with another joint"),
         Key::number("stiffness", "the stiffness of the spring along it", "N m/rad or N/m").default("0"),
         Key::number("rest", "the angle or displacement at which that is relaxed", "rad or m").default("0"),
         Key::number("damping", "the damping along it", "N m s or N s/m").default("0"),
@@ -87,6 +96,49 @@ pub(super) const MOTOR: TableKeys = TableKeys::new(
     &["times", "displacements"],
 ]);
 
+pub(super) const GEAR: TableKeys = TableKeys::new(
+    "gear",
+    "Teeth, a belt, a rack or a spindle between a revolute joint that stands before this one in the file, and this one.",
+    &[
+        Key::new("joint", ValueType::Text, "the name of that joint").required(),
+        Key::new("teeth", ValueType::Array(&ValueType::Number, 2), "the teeth of the wheels on that joint and on this one")
+            .note("The wheels turn against each other; with a negative number, that of a ring or of a belt, alike."),
+        Key::number("lead", "the displacement of this joint, which slides, for a turn of that one", "m"),
+        Key::number("stiffness", "the stiffness of the teeth at this joint", "N m/rad or N/m").required(),
+        Key::number("damping", "their damping", "N m s or N s/m").default("0"),
+    ],
+    "gear = { joint = \"motor\", teeth = [12, 60], stiffness = 1.0e3 }",
+)
+.one_of(&[&["teeth"], &["lead"]]);
+
+/// The joint, geared to an earlier one as `value` says.
+fn geared(joint: Joint, value: &Value, scene: &Scene) -> Result<Joint, Error> {
+    let table = &value.table(&GEAR)?;
+    let joints = scene.devices().iter().filter_map(|device| {
+        let device: &dyn Any = &**device;
+        device.downcast_ref::<Joint>()
+    });
+    let joints: Vec<&Joint> = joints.collect();
+    let known: Vec<&str> = joints.iter().map(|joint| joint.name()).collect();
+    let name = table.required("joint", |value| named(value, &known))?;
+    let Some(other) = joints.into_iter().find(|joint| joint.name() == name) else {
+        return Ok(joint);
+    };
+    let stiffness = table.required("stiffness", Value::number)?;
+    let damping = table.optional("damping", Value::number)?.unwrap_or_default();
+    if let Some(lead) = table.optional("lead", Value::number)? {
+        return Ok(joint.driven(other, lead, stiffness, damping));
+    }
+    let whole =
+        |number: f64| (number.fract() == 0.0 && number.abs() < 1e6).then_some(number as i32);
+    let teeth = table.required("teeth", |value| {
+        let teeth: [f64; 2] = value.array()?;
+        let [a, b] = teeth.map(whole);
+        a.zip(b).ok_or_else(|| value.unexpected("two whole numbers"))
+    })?;
+    Ok(joint.geared(other, teeth.into(), stiffness, damping))
+}
+
 /// The scene with the joint that `value` describes.
 pub(super) fn add_joint(scene: Scene, value: &Value) -> Result<Scene, Error> {
     let table = &value.table(&JOINT)?;
@@ -106,7 +158,15 @@ pub(super) fn add_joint(scene: Scene, value: &Value) -> Result<Scene, Error> {
     let vector = |value: &Value| value.vector(dimension);
     let mut joint = Joint::new(kind, name, between, table.required("at", vector)?);
     joint = table.added(joint, "axis", vector, Joint::axis)?;
+    joint = table.added(joint, "second_axis", vector, Joint::second_axis)?;
+    joint = table.added(joint, "lead", Value::number, Joint::lead)?;
     let number = |key: &str| table.optional(key, Value::number);
+    let damping = number("bearing_damping")?.unwrap_or_default();
+    joint = table
+        .added(joint, "bearing_stiffness", Value::number, |joint, k| joint.bearing(k, damping))?;
+    if let Some(value) = table.get("gear") {
+        joint = geared(joint, &value, &scene)?;
+    }
     let rest = number("rest")?.unwrap_or_default();
     joint = table.added(joint, "stiffness", Value::number, |joint, k| joint.spring(k, rest))?;
     joint = table.added(joint, "damping", Value::number, Joint::damping)?;

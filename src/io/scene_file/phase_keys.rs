@@ -199,7 +199,7 @@ pub(super) const LOAD: TableKeys = TableKeys::new(
             .note("Spread evenly over the faces that the nodes make up; nodes without faces share it equally."),
         Key::new("traction", ValueType::ChangingVector, "the force per undeformed area of the faces")
             .in_unit("N/m^2"),
-        Key::new("moment", ValueType::ChangingVector, "a moment as of `moment`, alone or beside a force")
+        Key::new("moment", ValueType::Either(&[ValueType::Changing, ValueType::ChangingVector]), "a moment as of `moment`, alone or beside a force")
             .in_unit("N m"),
         TIMES,
         PERIOD,
@@ -235,7 +235,7 @@ pub(super) const MOMENT: TableKeys = TableKeys::new(
      of a rigid body. Moments of a table are interpolated linearly, and constant before and after.",
     &[
         NODES,
-        Key::new("moment", ValueType::ChangingVector, "the moment")
+        Key::new("moment", ValueType::Either(&[ValueType::Changing, ValueType::ChangingVector]), "the moment")
             .in_unit("N m")
             .note("In the plane a number, counter-clockwise; in space a vector."),
         TIMES,
@@ -253,7 +253,7 @@ pub(super) const FOLLOWER: TableKeys = TableKeys::new(
     &[
         NODES,
         Key::new("force", ValueType::ChangingVector, "the force on all nodes together").in_unit("N"),
-        Key::new("moment", ValueType::ChangingVector, "the moment, in the plane a number")
+        Key::new("moment", ValueType::Either(&[ValueType::Changing, ValueType::ChangingVector]), "the moment, in the plane a number")
             .in_unit("N m"),
         TIMES,
         PERIOD,

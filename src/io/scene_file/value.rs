@@ -218,6 +218,10 @@ impl<'a> Value<'a> {
 
     /// A vector, or formulas of its components.
     pub(super) fn vector_signal(&self, dimension: usize) -> Result<VectorSignal, Error> {
+        // in the plane a moment is a number
+        if dimension == 1 && matches!(self.value, DeValue::Float(_) | DeValue::Integer(_)) {
+            return Ok(VectorSignal::Constant(vec![self.finite()?]));
+        }
         let items = self.one_or_more()?;
         if !items.iter().any(|item| matches!(item.value, DeValue::String(_))) {
             return Ok(VectorSignal::Constant(self.vector(dimension)?));

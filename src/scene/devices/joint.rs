@@ -1,20 +1,25 @@
 //! Joints between bodies, and motors in them.
 //!
+//! What a joint cannot keep by linear rows, teeth, threads and crosses, holds by a stiffness ([`coupling`]).
+//!
 //! The rows of a joint are linear in the displacements: that two points, or two directions, of its sides stay together. On rigid bodies one of the
 //! rows of a direction follows from the others, as both keep their lengths; the solver leaves out edges of a piece that follow from rows
 //! (`dynamics/linear/edge_solver.rs`), so that such rows, and closed chains of bodies, do no harm.
 
 mod assembly;
 mod coordinate;
+mod coupling;
 mod force;
+mod geometry;
 mod kind;
 mod law;
 mod side;
 
 use std::sync::Arc;
 
-use self::assembly::{Assembly, Geometry};
+use self::assembly::Assembly;
 use self::force::JointForce;
+use self::geometry::{Gear, Geometry, Ratio};
 pub use self::kind::JointKind;
 use self::law::Law;
 use self::side::is_world;
@@ -132,7 +137,17 @@ impl Joint {
     ) -> Self {
         let (name, between, at) = (name.into(), between.map(Into::into), at.into());
         Self {
-            geometry: Geometry { name, kind, between, at, axis: Vec::new() },
+            geometry: Geometry {
+                name,
+                kind,
+                between,
+                at,
+                axis: Vec::new(),
+                second_axis: Vec::new(),
+                lead: None,
+                bearing: None,
+                gear: None,
+            },
             law: Law::default(),
         }
     }
@@ -155,7 +170,7 @@ impl Joint {
         Self::new(JointKind::Revolute, name, between, at)
     }
 
-    /// A slider along an [axis](Self::axis), without turning.
+    /// A slider along an [axis](Self::axis), without turning; on a body that moves its guide [holds](Self::bearing).
     pub fn prismatic<S: Into<Selection>>(
         name: impl Into<String>,
         between: [S; 2],
@@ -171,6 +186,72 @@ impl Joint {
         at: impl Into<Vec<f64>>,
     ) -> Self {
         Self::new(JointKind::Fixed, name, between, at)
+    }
+
+    /// A screw along an [axis](Self::axis) in the world: its angle, and for each turn a [lead](Self::lead), by a thread that [holds](Self::bearing).
+    pub fn screw<S: Into<Selection>>(
+        name: impl Into<String>,
+        between: [S; 2],
+        at: impl Into<Vec<f64>>,
+        lead: f64,
+    ) -> Self {
+        let mut joint = Self::new(JointKind::Screw, name, between, at);
+        joint.geometry.lead = Some(lead);
+        joint
+    }
+
+    /// A universal joint (Hooke, Cardan): a cross with an axis in the first side and one in the second, at right angles, that [holds](Self::bearing).
+    ///
+    /// Between shafts at the angle beta, with the first axis across both of them at first, tan a_2 = tan a_1/cos beta.
+    pub fn universal<S: Into<Selection>>(
+        name: impl Into<String>,
+        between: [S; 2],
+        at: impl Into<Vec<f64>>,
+        axes: [[f64; 3]; 2],
+    ) -> Self {
+        let joint = Self::new(JointKind::Universal, name, between, at);
+        joint.axis(axes[0]).second_axis(axes[1])
+    }
+
+    /// The axis of the cross of a universal joint in the second side; [`axis`](Self::axis) is that in the first.
+    pub fn second_axis(mut self, axis: impl Into<Vec<f64>>) -> Self {
+        self.geometry.second_axis = axis.into();
+        self
+    }
+
+    /// The displacement (m) of a screw for a turn; below 0 of a left-handed thread.
+    pub fn lead(mut self, lead: f64) -> Self {
+        self.geometry.lead = Some(lead);
+        self
+    }
+
+    /// Stiffness and damping by which a thread (N/m, N s/m), the cross of a universal joint (N m/rad, N m s) or a guide on a body that moves (N/m,
+    /// N s/m) holds.
+    pub fn bearing(mut self, stiffness: f64, damping: f64) -> Self {
+        self.geometry.bearing = Some([stiffness, damping]);
+        self
+    }
+
+    /// Couples its angle with that of another joint by a pair of wheels with so many `teeth`, the other one's first: they turn against each other, with a
+    /// negative number, of a ring, alike. The teeth have a stiffness (N m/rad) and a damping (N m s) at this joint.
+    pub fn geared(mut self, other: &Self, teeth: [i32; 2], stiffness: f64, damping: f64) -> Self {
+        self.geometry.gear = Some(Gear {
+            first: Box::new(other.geometry.clone()),
+            ratio: Ratio::Teeth(teeth),
+            bearing: [stiffness, damping],
+        });
+        self
+    }
+
+    /// Couples its displacement with the angle of another joint, a `lead` (m) for a turn: a pinion of the radius lead/(2 pi) on a rack, a spindle
+    /// in a nut. Teeth or thread have a stiffness (N/m) and a damping (N s/m).
+    pub fn driven(mut self, other: &Self, lead: f64, stiffness: f64, damping: f64) -> Self {
+        self.geometry.gear = Some(Gear {
+            first: Box::new(other.geometry.clone()),
+            ratio: Ratio::Lead(lead),
+            bearing: [stiffness, damping],
+        });
+        self
     }
 
     /// The axis of a hinge in space, of a slider in the plane and in space; of any length.
@@ -229,7 +310,7 @@ impl Joint {
     pub(crate) fn check(&self, body: &Body) -> Result<(), InputError> {
         let Geometry { name, kind, .. } = &self.geometry;
         Assembly::new(&self.geometry, body)?;
-        self.law.validate(name, kind.moves(), *kind == JointKind::Revolute)
+        self.law.validate(name, kind.moves(), kind.turns())
     }
 }
 
@@ -251,11 +332,13 @@ impl Device for Joint {
 
     fn inputs(&self) -> &'static [DeviceInput] {
         match self.geometry.kind {
-            JointKind::Revolute => &[Self::TORQUE, Self::TARGET_ANGLE, Self::TARGET_SPEED],
+            JointKind::Revolute | JointKind::Screw => {
+                &[Self::TORQUE, Self::TARGET_ANGLE, Self::TARGET_SPEED]
+            }
             JointKind::Prismatic => {
                 &[Self::FORCE, Self::TARGET_DISPLACEMENT, Self::TARGET_VELOCITY]
             }
-            JointKind::Spherical | JointKind::Fixed => &[],
+            JointKind::Spherical | JointKind::Fixed | JointKind::Universal => &[],
         }
     }
 
@@ -277,8 +360,9 @@ impl Device for Joint {
         inputs: DeviceSignals,
     ) -> Result<Arc<dyn Force>, InputError> {
         self.check(site.body)?;
-        let coordinate = Assembly::new(&self.geometry, site.body)?.coordinate;
-        Ok(Arc::new(JointForce::new(&self.geometry.name, coordinate, self.law.clone(), inputs)))
+        let Assembly { coordinate, couplings, .. } = Assembly::new(&self.geometry, site.body)?;
+        let (name, held) = (&self.geometry.name, (coordinate, couplings));
+        Ok(Arc::new(JointForce::new(name, held, self.law.clone(), inputs)))
     }
 
     fn check_start(&self, site: &DeviceSite<'_>, now: &DeviceState<'_>) -> Result<(), InputError> {
@@ -314,10 +398,10 @@ impl Device for Joint {
         nodes: &dyn Fn(&Selection) -> Result<Selection, InputError>,
     ) -> Result<Arc<dyn Device>, InputError> {
         let mut finer = self.clone();
-        for side in &mut finer.geometry.between {
-            if !is_world(side) {
-                *side = nodes(side)?;
-            }
+        let other = finer.geometry.gear.as_mut().map(|gear| &mut gear.first.between);
+        let sides = other.into_iter().flatten().chain(&mut finer.geometry.between);
+        for side in sides.filter(|side| !is_world(side)) {
+            *side = nodes(side)?;
         }
         Ok(Arc::new(finer))
     }

@@ -13,6 +13,7 @@
 //! faces, and M would not be constant. The body's own mass (weight, momentum, mass damping) is not changed.
 
 mod force;
+mod rods;
 #[cfg(test)]
 mod tests;
 mod traction;
@@ -20,6 +21,7 @@ mod traction;
 use std::collections::BTreeMap;
 
 pub(crate) use force::FluidForce;
+use rods::RodDrag;
 use traction::{Depth, Drag};
 
 use super::faces::{loaded_faces, on_no_face};
@@ -27,9 +29,10 @@ use super::followed::FollowedFaces;
 use super::signal::VectorSignal;
 use super::time_table::TimeTable;
 use crate::base::input::{InputError, finite, not_negative, positive};
-use crate::base::vector::{cross, norm};
+use crate::base::vector::{cross, norm, padded};
 use crate::elements::body::{Body, Inertia};
 use crate::elements::mesh::Selection;
+use crate::elements::rod::TubePiece;
 
 /// A fluid at rest, or one that flows everywhere alike, around the bodies of a scene: what it does to the faces of their boundary, each by itself.
 ///
@@ -40,6 +43,8 @@ use crate::elements::mesh::Selection;
 ///   traction -(rho/2) (C_n |w_n| w_n n + C_t |w_t| w_t).
 /// - [Added mass](Self::added_mass): a mass per area that moves along with the faces, in all directions alike.
 /// - Pressure by depth below a [level](Self::level): rho g times the depth, 0 above.
+///
+/// Rods with a round section are dragged by their diameter, with 4/3 C_n across, and carry added mass on their surface; pressure by depth does not act on them.
 ///
 /// Drag takes energy out as heat, and what a current carries along is supplied. Over a closed surface pressure by depth has an energy, which counts as
 /// gravitational; on other faces its work counts as supplied.
@@ -209,7 +214,9 @@ impl Fluid {
                 help,
             ));
         }
-        let faces = self.faces(body)?;
+        let (nodes, of_rods) = self.nodes_on(body)?;
+        let faces = self.faces(body, &nodes, !of_rods.is_empty())?;
+        let pieces = self.pieces(body, &of_rods)?;
         let depth = match self.level {
             None => None,
             Some(level) => {
@@ -228,7 +235,8 @@ impl Fluid {
         Ok(FluidForce {
             input: input("velocity"),
             is_closed: depth.is_some() && faces.is_closed(&rest),
-            carried: self.carried(body, &faces, &rest),
+            carried: [self.carried(body, &faces, &rest), self.carried_by(&pieces, body)].concat(),
+            rods: self.rods(body, &pieces),
             drag: Drag::new(density, self.drag),
             velocity: self.velocity.clone(),
             depth,
@@ -236,28 +244,83 @@ impl Fluid {
         })
     }
 
-    /// The faces that it acts on.
-    fn faces(&self, body: &Body) -> Result<FollowedFaces, InputError> {
-        let (mesh, input) = (body.mesh(), || format!("fluid \"{}\" nodes", self.name));
-        let boundary = mesh.boundary_nodes();
-        let nodes = match &self.nodes {
+    /// The nodes that it acts on: of faces, and of the axes of rods.
+    fn nodes_on(&self, body: &Body) -> Result<(Vec<usize>, Vec<usize>), InputError> {
+        let boundary = body.mesh().boundary_nodes();
+        let mut nodes = match &self.nodes {
             None => boundary.to_vec(),
-            Some(nodes) => {
-                let mut nodes = mesh.select(nodes).map_err(|error| self.blamed(error))?;
-                nodes.retain(|node| boundary.binary_search(node).is_ok());
-                nodes
-            }
+            Some(nodes) => body.mesh().select(nodes).map_err(|error| self.blamed(error))?,
         };
-        if let Some(node) = nodes.iter().find(|node| body.is_of_rod(**node)) {
-            let help = "it does not act on rods yet: name nodes of other bodies";
-            return Err(InputError::new(input(), format!("node {} of a rod", node + 1), help));
+        nodes.retain(|node| boundary.binary_search(node).is_ok());
+        Ok(nodes.into_iter().partition(|node| !body.is_of_rod(*node)))
+    }
+
+    /// The elements of rods with both ends among these nodes of their axes.
+    ///
+    /// # Errors
+    /// A rod that is not round, a rod below a level.
+    fn pieces(&self, body: &Body, on: &[usize]) -> Result<Vec<TubePiece>, InputError> {
+        let mut pieces = Vec::new();
+        let is_on = |node: &usize| on.contains(node);
+        for part in body.parts().filter(|part| part.nodes.clone().any(|node| is_on(&node))) {
+            let refused = |word: &str, help: &str| {
+                let input = format!("fluid \"{}\" {word}", self.name);
+                Err(InputError::new(input, format!("on rod \"{}\"", part.name), help))
+            };
+            if self.level.is_some() {
+                return refused(
+                    "level",
+                    "pressure by depth does not act on rods: give them a fluid of their own, without a level",
+                );
+            }
+            let Some(Some(own)) = body.tube_pieces(&part.nodes) else {
+                return refused(
+                    "nodes",
+                    "rods are dragged by their diameter, and this one is not round: leave it out of the nodes",
+                );
+            };
+            let own = own.into_iter();
+            pieces.extend(own.filter(|piece| piece.ends.iter().all(|(node, _)| is_on(node))));
         }
+        Ok(pieces)
+    }
+
+    /// The drag on pieces of rods.
+    fn rods(&self, body: &Body, pieces: &[TubePiece]) -> Vec<RodDrag> {
+        let drag = |piece: &TubePiece| {
+            let places = piece.ends.map(|(node, _)| padded(body.mesh().position(node)));
+            RodDrag::new(piece, places, body.dimension(), self.density, self.drag)
+        };
+        pieces.iter().filter(|_| self.drag != [0.0; 2]).map(drag).collect()
+    }
+
+    /// The mass (kg) that moves along with nodes of rods: half of that of each piece with each of its ends.
+    fn carried_by(&self, pieces: &[TubePiece], body: &Body) -> Vec<([usize; 2], f64)> {
+        let around = if body.dimension() == 2 { 2.0 } else { std::f64::consts::PI };
+        let carried = pieces.iter().filter(|_| self.added_mass > 0.0).flat_map(|piece| {
+            let mass = 0.5 * self.added_mass * around * piece.width * piece.length;
+            piece.ends.map(|(node, _)| ([node; 2], mass))
+        });
+        carried.collect()
+    }
+
+    /// The faces between `nodes` that it acts on; there may be none if it acts on rods.
+    fn faces(
+        &self,
+        body: &Body,
+        nodes: &[usize],
+        has_rods: bool,
+    ) -> Result<FollowedFaces, InputError> {
+        let (mesh, input) = (body.mesh(), || format!("fluid \"{}\" nodes", self.name));
         let said = || self.nodes.as_ref().map_or_else(|| "all".into(), |nodes| nodes.to_string());
         let bad = |help: String| InputError::new(input(), said(), help);
-        if nodes.is_empty() {
+        if nodes.is_empty() && !has_rods {
             return Err(bad("none of them is on the boundary, which the fluid touches".into()));
         }
-        let loaded = loaded_faces(body, &nodes).map_err(|loose| bad(on_no_face(&loose)))?;
+        let loaded = match nodes.is_empty() {
+            true => Vec::new(),
+            false => loaded_faces(body, nodes).map_err(|loose| bad(on_no_face(&loose)))?,
+        };
         let faces = FollowedFaces::new(mesh, loaded);
         faces.map_err(|help| {
             bad(format!("{help}, as bars and strings have none: name those of other bodies"))

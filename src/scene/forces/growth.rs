@@ -30,6 +30,8 @@ use crate::integrators::ode::Failure;
 /// 455-467; of muscles "active strain": D. Ambrosi, S. Pezzuto, Journal of Elasticity 107 (2012) 199-212). Energy added by growth counts
 /// as supplied. Mass stays, and so do fibres and viscosity.
 ///
+/// Rods get longer along their axis, or [bend](Self::bending).
+///
 /// For Green's strain with any law; not with Maxwell branches. In plane strain what grows across the plane is pressed there; in plane stress, membranes and
 /// strings it gets thicker.
 ///
@@ -55,6 +57,8 @@ pub struct Growth {
     cells: Option<CellSelection>,
     course: Option<FibreDirection>,
     across: Option<Across>,
+    /// Curvatures and twist (1/m) of rods per strain.
+    bends: Option<[f64; 3]>,
 }
 
 /// How what grows along a direction changes across it.
@@ -69,7 +73,7 @@ enum Across {
 impl Growth {
     /// Growth of the whole body.
     pub fn everywhere() -> Self {
-        Self { name: String::new(), cells: None, course: None, across: None }
+        Self { name: String::new(), cells: None, course: None, across: None, bends: None }
     }
 
     /// Growth of these cells.
@@ -122,6 +126,12 @@ impl Growth {
         Self { across: Some(Across::KeepsVolume), ..self }
     }
 
+    /// Growth of rods by bending and twisting in place of length: a strain e adds e times these curvatures (1/m) about the axes d_1 and d_2 of their sections,
+    /// and this twist (rad/m), to those in which they are free of stress. In the plane the second one is in use.
+    pub fn bending(self, curvatures: [f64; 2], twist: f64) -> Self {
+        Self { bends: Some([curvatures[0], curvatures[1], twist]), ..self }
+    }
+
     /// Name of the growth (default: "growth 1", "growth 2", ... in the order of the scene). Springs and muscles have other names.
     pub fn named(self, name: impl Into<String>) -> Self {
         Self { name: name.into(), ..self }
@@ -154,7 +164,8 @@ impl Growth {
         let course = self.course.as_ref();
         let growing = self.check_across().and_then(|()| {
             course.map_or(Ok(()), FibreDirection::validate)?;
-            body.growing(&cells, course)
+            finite("bend and twist", &self.bends.unwrap_or_default())?;
+            body.growing(&cells, course, self.bends)
         });
         growing.map_err(|error| self.blamed(error))
     }
@@ -238,6 +249,10 @@ impl Actuator for Growth {
     }
 
     fn grown(&self, body: &Body, strain: f64) -> Result<Option<Grown>, InputError> {
+        // no cell changes its size
+        if self.bends.is_some() {
+            return Ok(None);
+        }
         let (cells, course) = (self.cells(body)?, self.course.clone());
         Ok(Some(Grown { cells, course, stretches: self.stretches(strain) }))
     }

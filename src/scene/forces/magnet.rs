@@ -103,9 +103,7 @@ impl Magnet {
     /// Cells that the body does not have.
     pub(crate) fn cells_in(&self, body: &Body, number: usize) -> Result<Vec<usize>, InputError> {
         let cells = CellSelection::cells_or_all(self.cells.as_ref(), body.mesh());
-        let cells = cells.map_err(|error| blamed(number, error))?;
-        body.refuse_rods("cells", &cells).map_err(|error| blamed(number, error))?;
-        Ok(cells)
+        cells.map_err(|error| blamed(number, error))
     }
 }
 

@@ -19,6 +19,11 @@ pub(crate) struct SurfacePoint {
 }
 
 impl SurfacePoint {
+    /// A point between some nodes, with their `shares` in it and the area (m^2) for which it stands.
+    pub(super) fn between(nodes: &[usize], shares: &[f64], area: f64) -> Self {
+        point(nodes, shares, area)
+    }
+
     /// The nodes that it moves with (counted from 0), and their shares in it, which add up to 1.
     pub(crate) fn nodes(&self) -> impl Iterator<Item = (usize, f64)> + Clone {
         let nodes = self.nodes[..self.count].iter().copied();
@@ -59,7 +64,8 @@ pub(crate) fn boundary_nodes(body: &Body) -> Vec<SurfacePoint> {
     }
     let nodes = mesh.boundary_nodes().iter().filter(|node| !body.is_of_rod(**node));
     let nodes = nodes.map(|&node| point(&[node], &[1.0], parts[node]));
-    nodes.chain(body.around_rods().map(|(at, _)| point_of(at, 1.0))).collect()
+    // those of sections and those between them are as many
+    nodes.chain(body.around_rods().map(|(at, _)| point_of(at, 0.5))).collect()
 }
 
 /// Points along an edge of the boundary, between its nodes: two ends, and the middle of a quadratic one. They
@@ -116,9 +122,14 @@ pub(super) fn gauss_points(body: &Body) -> Option<Vec<SurfacePoint>> {
     Some(points)
 }
 
-/// Thickness (m) of a single body, 2 V/A of a band, a plate or the wall of a ring; strings and membranes have none here.
+/// Thickness (m) of a single body, 2 V/A of a band, a plate or the wall of a ring, the least diameter of a round rod; strings and membranes
+/// have none here.
 pub(crate) fn thickness(body: &Body) -> Option<f64> {
     let d = body.dimension();
+    if let Some(pieces) = body.tube_pieces(&(0..body.mesh().node_count())) {
+        let radii = pieces?.into_iter().flat_map(|piece| piece.radii);
+        return Some(2.0 * radii.fold(f64::INFINITY, f64::min));
+    }
     let points = gauss_points(body).filter(|_| d > 1 && body.mesh().kind().dimension() == d)?;
     let area: f64 = points.iter().map(|point| point.area).sum();
     Some(2.0 * body.volume() / area)
@@ -236,7 +247,7 @@ const GAUSS_TRIANGLE: [(&[f64], f64); 3] = [
     (&[1.0 / 6.0, 2.0 / 3.0, 1.0 / 6.0], THIRD),
     (&[1.0 / 6.0, 1.0 / 6.0, 2.0 / 3.0], THIRD),
 ];
-const HALVED_SIMPSON: [(&[f64], f64); 5] = [
+pub(super) const HALVED_SIMPSON: [(&[f64], f64); 5] = [
     (&[1.0, 0.0], 1.0 / 12.0),
     (&[0.75, 0.25], 1.0 / 3.0),
     (&[0.5, 0.5], 1.0 / 6.0),

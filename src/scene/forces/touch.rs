@@ -15,7 +15,7 @@
 //! edge is pushed as by a smooth surface (M. Li, Z. Ferguson, T. Schneider et al., *Convergent incremental potential
 //! contact*, arXiv 2307.15908 (2023)). Forces are continuous, and have an energy and exact tangents ([`pair`]).
 //!
-//! Edges that cross edges between these points have an energy of their own ([`edge_pairs`]).
+//! Edges that cross edges between these points have an energy of their own ([`edge_pairs`]). Rods are tubes ([`tubes`]).
 //!
 //! The points of each surface have half of the energy where meshes are alike, so that no decision on sides or facets is needed.
 //! Those of a coarse surface, which stand for more than lies over them and would press on single nodes, have less: where its
@@ -46,6 +46,7 @@ mod surfaces;
 #[cfg(test)]
 mod tests;
 mod told;
+mod tubes;
 mod window;
 
 pub(crate) use force::TouchForce;

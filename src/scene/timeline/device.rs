@@ -4,6 +4,7 @@
 //! and needles by which it is drawn. Inputs are quantities as all others are (`input.rs`): phases and commands set them, tables and formulas of
 //! time end steps at their breaks, statics scale them, checkpoints hold them. Nothing else in the crate knows of a single device.
 
+use std::any::Any;
 use std::cell::OnceCell;
 use std::fmt;
 use std::sync::Arc;
@@ -25,7 +26,7 @@ use crate::scene::forces::{Magnet, Signal, Signals};
 /// [outputs](DeviceOutput) to sensors ([`Reading::device`](crate::simulate::Reading::device)), has it in checkpoints and on finer
 /// meshes, and draws it in pictures. Scene files have a table for a device that `serde` can read: see
 /// [`DeviceTable`](crate::DeviceTable). The example `own_device` has all of it.
-pub trait Device: fmt::Debug + Send + Sync {
+pub trait Device: Any + fmt::Debug + Send + Sync {
     /// The name by which phases, commands and sensors know it.
     fn name(&self) -> &str;
 

@@ -537,7 +537,9 @@ impl Scene {
         let (tied, on_axis) = (self.tied()?, self.held_on_axis());
         let of_devices = self.device_constraints()?;
         let all = phase.constraints.iter().chain(tied).chain(&on_axis).chain(&of_devices);
-        rows(all, &self.body, &phase.name, start)
+        let rows = rows(all, &self.body, &phase.name, start)?;
+        self.check_driven(phase, &rows)?;
+        Ok(rows)
     }
 }
 

@@ -11,7 +11,7 @@ use super::input::{Input, InputSignal, Quantity, Target};
 use super::{Phase, Scene, taken};
 use crate::base::input::{InputError, find};
 use crate::elements::force::Forces;
-use crate::scene::constraint::{Constrained, Constraint, Motion};
+use crate::scene::constraint::{Constrained, Constraint, ConstraintRow, Motion};
 
 impl Scene {
     /// Adds a device, which acts in all phases.
@@ -78,6 +78,36 @@ impl Scene {
     pub(crate) fn joins(&self, name: &str) -> bool {
         let number = self.devices.iter().position(|device| device.name() == name);
         number.is_some_and(|number| self.rows_of_device(number).is_ok_and(|own| !own.is_empty()))
+    }
+
+    /// Checks that what a phase drives can move under its `rows`.
+    ///
+    /// # Errors
+    /// A joint that is driven, of which each node is held.
+    pub(super) fn check_driven(
+        &self,
+        phase: &Phase,
+        rows: &[ConstraintRow],
+    ) -> Result<(), InputError> {
+        let is_driven = |device: &dyn Device| {
+            (0..device.inputs().len())
+                .any(|number| phase.device_signals(device, number).next().is_some())
+        };
+        let held =
+            |dof: usize| rows.iter().any(|row| matches!(row.terms[..], [(own, _)] if own == dof));
+        for (number, device) in
+            self.devices.iter().enumerate().filter(|(_, own)| is_driven(&***own))
+        {
+            let own = self.terms_of_device(number)?;
+            let mut dofs = own.iter().flatten().map(|(dof, _)| *dof);
+            if !own.is_empty() && dofs.all(held) {
+                let input =
+                    format!("{} \"{}\" in phase \"{}\"", device.kind(), device.name(), phase.name);
+                let help = "both of its sides are held there, so that nothing moves: hold one of them, or leave the command out";
+                return Err(InputError::new(input, "driven", help));
+            }
+        }
+        Ok(())
     }
 
     /// The constraints of all devices.

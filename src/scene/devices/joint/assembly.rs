@@ -1,34 +1,27 @@
 //! A joint on the nodes of its sides: the rows of its constraints, its coordinate, and what its multipliers say.
 
+use std::f64::consts::TAU;
+
 use nalgebra::Vector3;
 
-use super::coordinate::{Coordinate, CoordinateKind};
+use super::coordinate::Coordinate;
+use super::coupling::Coupling;
+use super::geometry::{Gear, Geometry, Ratio, across};
 use super::kind::JointKind;
 use super::side::{NodalVector, Side};
-use crate::base::input::{InputError, finite};
-use crate::base::vector::padded;
+use crate::base::input::{InputError, not_negative, positive};
 use crate::elements::body::Body;
-use crate::elements::mesh::Selection;
 use crate::scene::constraint::Axis;
 use crate::scene::timeline::{DeviceMultipliers, DeviceRow};
 
 /// Distance of sides at the start, relative to their size and place, that is round-off of a file.
 const APART: f64 = 1e-6;
 
-/// A joint as it is given.
-#[derive(Debug, Clone)]
-pub(super) struct Geometry {
-    pub(super) name: String,
-    pub(super) kind: JointKind,
-    pub(super) between: [Selection; 2],
-    pub(super) at: Vec<f64>,
-    pub(super) axis: Vec<f64>,
-}
-
 /// A joint on the nodes of its sides.
 pub(super) struct Assembly {
     rows: Vec<Row>,
     pub(super) coordinate: Option<Coordinate>,
+    pub(super) couplings: Vec<Coupling>,
     /// Its place, on a side that moves, and its axis, if it has one there.
     pub(super) place: NodalVector,
     pub(super) axis: Option<NodalVector>,
@@ -70,126 +63,6 @@ impl Row {
     }
 }
 
-impl Geometry {
-    fn label(&self) -> String {
-        format!("joint \"{}\"", self.name)
-    }
-
-    /// The name of an input of it.
-    fn input(&self, word: &str) -> String {
-        format!("{word} of {}", self.label())
-    }
-
-    fn sides_in_words(&self) -> String {
-        format!("{} and {}", self.between[0], self.between[1])
-    }
-
-    /// The unit vector of the axis: of a pin in the plane that out of it.
-    fn direction(&self, dimension: usize) -> Result<Vector3<f64>, InputError> {
-        let (input, value) = (self.input("axis"), format!("{:?}", self.axis));
-        let is_pin = dimension == 2 && self.kind == JointKind::Revolute;
-        if is_pin || !self.kind.moves() {
-            return match self.axis.is_empty() {
-                true => Ok(Vector3::z()),
-                false => Err(InputError::new(input, value, "it has none: leave it out")),
-            };
-        }
-        finite(&input, &self.axis)?;
-        if self.axis.len() != dimension {
-            let help = format!("it needs {dimension} components");
-            return Err(InputError::new(input, value, help));
-        }
-        let axis = Vector3::from(padded(&self.axis)).try_normalize(0.0);
-        axis.ok_or_else(|| InputError::new(input, value, "it must have a direction"))
-    }
-
-    /// Both sides, and the place.
-    fn sides(&self, body: &Body) -> Result<([Side; 2], Vector3<f64>), InputError> {
-        let (input, dimension) = (self.input("between"), body.dimension());
-        let side = |k: usize| Side::new(body, &self.between[k], &input);
-        let sides = [side(0)?, side(1)?];
-        let refused = |help: &str| Err(InputError::new(&*input, self.sides_in_words(), help));
-        if sides.iter().all(Side::is_world) {
-            return refused("one of them must be a body: nothing moves");
-        }
-        if sides[0].meets(&sides[1]) {
-            return refused(
-                "they are of one rigid piece, or have nodes in common: join different ones",
-            );
-        }
-        if self.kind == JointKind::Prismatic && !sides.iter().any(Side::is_world) {
-            return refused("one side of a prismatic joint must be the \"world\"");
-        }
-        let (input, value) = (self.input("at"), format!("{:?}", self.at));
-        if dimension == 1 {
-            return Err(InputError::new(input, value, "nothing turns on a line: use a tie"));
-        }
-        if self.at.len() != dimension {
-            return Err(InputError::new(
-                input,
-                value,
-                format!("it needs {dimension} components (m)"),
-            ));
-        }
-        finite(&input, &self.at)?;
-        Ok((sides, padded(&self.at).into()))
-    }
-
-    /// The directions that the sides keep in common.
-    fn common(
-        &self,
-        sides: &[Side; 2],
-        axis: Vector3<f64>,
-        dimension: usize,
-    ) -> Result<Vec<Vector3<f64>>, InputError> {
-        match self.kind {
-            JointKind::Spherical => Ok(Vec::new()),
-            JointKind::Revolute if dimension == 2 => Ok(Vec::new()),
-            JointKind::Revolute => match sides.iter().all(|side| side.vector(axis).is_some()) {
-                true => Ok(vec![axis]),
-                false => Err(self.lacks_direction("along it")),
-            },
-            JointKind::Prismatic | JointKind::Fixed => {
-                let is_first = sides[0].span.len() <= sides[1].span.len();
-                let [few, many] = if is_first { [0, 1] } else { [1, 0] };
-                let span = sides[few].span.iter().copied();
-                let common: Vec<Vector3<f64>> =
-                    span.filter(|way| sides[many].vector(*way).is_some()).collect();
-                if common.len() + 1 >= dimension {
-                    return Ok(common);
-                }
-                let help = "their nodes lie on a line, or in planes that differ, and do not say how they are turned: name others";
-                Err(InputError::new(self.input("between"), self.sides_in_words(), help))
-            }
-        }
-    }
-
-    fn lacks_direction(&self, which: &str) -> InputError {
-        let help = format!(
-            "a side has no direction {which}: a section of a rod has those of its plane, a face of a solid those along it"
-        );
-        InputError::new(self.input("axis"), format!("{:?}", self.axis), help)
-    }
-
-    /// The angle from the first to the second side, about the axis.
-    fn angle(
-        &self,
-        sides: &[Side; 2],
-        axis: Vector3<f64>,
-        dimension: usize,
-    ) -> Result<Coordinate, InputError> {
-        let of_side = |side: &Side| side.vector(axis).filter(|_| dimension == 3);
-        let along = of_side(&sides[0]).or_else(|| of_side(&sides[1]));
-        let along = along.unwrap_or_else(|| NodalVector::constant(axis));
-        match sides.each_ref().map(|side| side.across(axis)) {
-            [Some(first), Some(second)] => {
-                Ok(Coordinate::new(CoordinateKind::Angle, [along, first, second], dimension))
-            }
-            _ => Err(self.lacks_direction("across it")),
-        }
-    }
-}
-
 impl Assembly {
     /// # Errors
     /// Nodes that do not exist, sides that are the same or both of them the world, a place or an axis that a side does not have.
@@ -206,7 +79,10 @@ impl Assembly {
         let of_points =
             |direction: Vector3<f64>| Row { ends: points.clone(), direction, is_of_vector: false };
         match geometry.kind {
-            JointKind::Prismatic => rows.extend(across(axis, dimension).into_iter().map(of_points)),
+            JointKind::Prismatic if !sides.iter().any(Side::is_world) => {}
+            JointKind::Prismatic | JointKind::Screw => {
+                rows.extend(across(axis, dimension).into_iter().map(of_points));
+            }
             _ => rows.extend(ways().map(of_points)),
         }
         for common in geometry.common(&sides, axis, dimension)? {
@@ -219,24 +95,69 @@ impl Assembly {
             }));
         }
         let coordinate = match geometry.kind {
-            JointKind::Spherical | JointKind::Fixed => None,
-            JointKind::Revolute => Some(geometry.angle(&sides, axis, dimension)?),
-            JointKind::Prismatic => {
-                let [first, second] = points.clone();
-                let vectors = [NodalVector::constant(axis), first, second];
-                Some(Coordinate::new(CoordinateKind::Displacement, vectors, dimension))
+            JointKind::Spherical | JointKind::Fixed | JointKind::Universal => None,
+            JointKind::Revolute | JointKind::Screw => {
+                Some(geometry.angle(&sides, axis, dimension)?)
             }
+            JointKind::Prismatic => Some(geometry.displacement(&sides, &points, axis, dimension)?),
         };
+        let mut couplings = geometry.couplings(&sides, &points, axis, dimension)?;
+        if let Some(gear) = &geometry.gear {
+            couplings.push(Self::geared(geometry, gear, coordinate.as_ref(), body)?);
+        }
         let moving = usize::from(sides[0].is_world());
-        let has_axis = geometry.kind.moves() && !geometry.axis.is_empty();
+        let has_axis = !geometry.axis.is_empty();
         Ok(Self {
             rows,
             coordinate,
+            couplings,
             axis: sides[moving].vector(axis).filter(|_| has_axis),
             place: points.into_iter().nth(moving).unwrap_or_else(|| NodalVector::constant(at)),
             size,
             dimension,
         })
+    }
+
+    /// The coupling of its `coordinate` with the angle of another joint.
+    fn geared(
+        geometry: &Geometry,
+        gear: &Gear,
+        coordinate: Option<&Coordinate>,
+        body: &Body,
+    ) -> Result<Coupling, InputError> {
+        let input = geometry.input("gear");
+        let refused = |value: String, help: &str| Err(InputError::new(&*input, value, help));
+        let first =
+            Assembly::new(&gear.first, body)?.coordinate.filter(|_| gear.first.kind.turns());
+        let (Some(first), Some(own)) = (first, coordinate) else {
+            let value = format!("of {} and {}", gear.first.label(), geometry.label());
+            return refused(value, "it couples a revolute joint with one that turns or slides");
+        };
+        let [stiffness, damping] = gear.bearing;
+        positive(&format!("stiffness in {input}"), stiffness, "")?;
+        not_negative(&format!("damping in {input}"), damping, "")?;
+        let (share, period) = match gear.ratio {
+            Ratio::Teeth([a, b]) if a != 0 && b != 0 && geometry.kind.turns() => {
+                (f64::from(a) / f64::from(b), TAU / f64::from(b).abs())
+            }
+            Ratio::Teeth(teeth) => {
+                return refused(
+                    format!("{teeth:?} teeth"),
+                    "both wheels need teeth, and both joints an angle: a slider has a lead",
+                );
+            }
+            Ratio::Lead(lead) if lead.is_finite() && lead != 0.0 && !geometry.kind.turns() => {
+                (-lead / TAU, lead.abs())
+            }
+            Ratio::Lead(lead) => {
+                return refused(
+                    format!("lead of {lead} m"),
+                    "a slider needs the displacement for a turn, not 0: two angles are coupled by teeth",
+                );
+            }
+        };
+        let parts = vec![(own.clone(), 1.0), (first, share)];
+        Ok(Coupling { parts, stiffness, damping, period: Some(period) })
     }
 
     /// The rows of its constraints.
@@ -279,13 +200,4 @@ impl Assembly {
         }
         [force, moment]
     }
-}
-
-/// The directions across an axis: one in the plane, two in space.
-fn across(axis: Vector3<f64>, dimension: usize) -> Vec<Vector3<f64>> {
-    if dimension == 2 {
-        return vec![Vector3::new(-axis.y, axis.x, 0.0)];
-    }
-    let first = axis.cross(&Vector3::ith(axis.iamin(), 1.0)).normalize();
-    vec![first, axis.cross(&first)]
 }

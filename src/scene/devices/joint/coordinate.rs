@@ -7,7 +7,8 @@
 //! q = atan2(s, t),   s = a . (b x c),   t = b . c,
 //! ```
 //!
-//! and the displacement of a point p_2 of the second side along an axis a from a point p_1 of the first is q = a . (p_2 - p_1). A force Q on the
+//! the displacement of a point p_2 of the second side along an axis a from a point p_1 of the first is q = a . (p_2 - p_1), and the sine of what is missing
+//! to a right angle between an axis a of the first and b of the second is q = a . b. A force Q on the
 //! coordinate acts on nodes by Q dq/du, which does the work Q dq and, as q does not change as all turns together, has no resultant.
 
 use std::f64::consts::{PI, TAU};
@@ -24,6 +25,8 @@ pub(super) enum CoordinateKind {
     Angle,
     /// Of the vectors a, p_1, p_2.
     Displacement,
+    /// Of the unit vectors a and b; the third is not used.
+    Slant,
 }
 
 type Nine = SVector<f64, 9>;
@@ -82,7 +85,7 @@ impl Coordinate {
     pub(super) fn wrapped(&self, difference: f64) -> f64 {
         match self.kind {
             CoordinateKind::Angle => difference - TAU * (difference / TAU).round(),
-            CoordinateKind::Displacement => difference,
+            CoordinateKind::Displacement | CoordinateKind::Slant => difference,
         }
     }
 
@@ -103,6 +106,16 @@ impl Coordinate {
                     hessian
                 });
                 (x.dot(&(z - y)), joined([z - y, -x, x]), hessian)
+            }
+            CoordinateKind::Slant => {
+                let hessian = wanted.then(|| {
+                    let mut hessian = Square::zeros();
+                    for i in 0..3 {
+                        (hessian[(i, 3 + i)], hessian[(3 + i, i)]) = (1.0, 1.0);
+                    }
+                    hessian
+                });
+                (x.dot(&y), joined([y, x, Vector3::zeros()]), hessian)
             }
         };
         At { value, rate: gradient.dot(&rates), gradient, hessian, rates }
@@ -130,15 +143,31 @@ impl Coordinate {
         let (g, hessian) = (&at.gradient, at.hessian.unwrap_or_else(Square::zeros));
         let square = g * g.transpose();
         let turned = g * (hessian * at.rates).transpose();
-        self.spread(&-(square * by_value + turned * by_rate + hessian * q), stiffness);
-        self.spread(&-(square * by_rate), damping);
+        self.spread(self, &-(square * by_value + turned * by_rate + hessian * q), stiffness);
+        self.spread(self, &-(square * by_rate), damping);
     }
 
-    /// Adds a matrix over the three vectors to that of the nodes.
-    fn spread(&self, matrix: &Square, to: &mut BlockMatrix) {
+    /// Adds the tangents of a force on it by another coordinate, with the slopes -dQ/dq and -dQ/dq' of that.
+    pub(super) fn add_shared_tangents(
+        &self,
+        at: &At,
+        (other, of_other): (&Self, &At),
+        [by_value, by_rate]: [f64; 2],
+        stiffness: &mut BlockMatrix,
+        damping: &mut BlockMatrix,
+    ) {
+        let square = at.gradient * of_other.gradient.transpose();
+        let hessian = of_other.hessian.unwrap_or_else(Square::zeros);
+        let turned = at.gradient * (hessian * of_other.rates).transpose();
+        self.spread(other, &(square * by_value + turned * by_rate), stiffness);
+        self.spread(other, &(square * by_rate), damping);
+    }
+
+    /// Adds a matrix over its three vectors, and those of another one or itself, to that of the nodes.
+    fn spread(&self, columns: &Self, matrix: &Square, to: &mut BlockMatrix) {
         let d = self.dimension;
         for (row, of_row) in &self.nodes {
-            for (column, of_column) in &self.nodes {
+            for (column, of_column) in &columns.nodes {
                 let Some(block) = to.block_mut(*row, *column) else { continue };
                 for (place, entry) in block.iter_mut().enumerate() {
                     let [i, j] = [place / d, place % d];
@@ -189,11 +218,11 @@ fn angle([a, b, c]: [Vector3<f64>; 3], natural: f64, wanted: bool) -> (f64, Nine
 mod tests {
     use super::*;
 
-    /// First and second derivatives of both coordinates against central differences: off by h^2 times derivatives of order 1, and round-off over h.
+    /// First and second derivatives of all coordinates against central differences: off by h^2 times derivatives of order 1, and round-off over h.
     #[test]
     fn derivatives_are_those_of_differences() {
         let place = [0.3, -0.2, 0.9, 0.8, 0.4, -0.1, -0.5, 0.7, 0.2];
-        for kind in [CoordinateKind::Angle, CoordinateKind::Displacement] {
+        for kind in [CoordinateKind::Angle, CoordinateKind::Displacement, CoordinateKind::Slant] {
             let vectors = std::array::from_fn(|k| NodalVector {
                 natural: Vector3::new(place[3 * k], place[3 * k + 1], place[3 * k + 2]),
                 terms: vec![(k, 1.0)],

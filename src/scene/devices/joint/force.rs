@@ -1,6 +1,7 @@
 //! The force of what acts along the coordinate of a joint.
 
 use super::coordinate::{At, Coordinate};
+use super::coupling::Coupling;
 use super::law::{Law, Part};
 use crate::base::sparse::BlockMatrix;
 use crate::elements::force::{Force, NodalForces, Reservoir, Tangents};
@@ -8,11 +9,12 @@ use crate::integrators::ode::Failure;
 use crate::scene::forces::finite_at;
 use crate::scene::timeline::DeviceSignals;
 
-/// Spring, stops, damping, friction and motor of a joint.
+/// Spring, stops, damping, friction and motor of a joint, and the couplings by which it holds.
 pub(super) struct JointForce {
     name: String,
     /// The coordinate, if anything acts along it.
     coordinate: Option<Coordinate>,
+    couplings: Vec<Coupling>,
     law: Law,
     inputs: DeviceSignals,
 }
@@ -20,12 +22,22 @@ pub(super) struct JointForce {
 impl JointForce {
     pub(super) fn new(
         name: &str,
-        coordinate: Option<Coordinate>,
+        (coordinate, couplings): (Option<Coordinate>, Vec<Coupling>),
         law: Law,
         inputs: DeviceSignals,
     ) -> Self {
         let acts = law.is_of_state() || inputs.are_set();
-        Self { name: name.into(), coordinate: coordinate.filter(|_| acts), law, inputs }
+        let coordinate = coordinate.filter(|_| acts);
+        Self { name: name.into(), coordinate, couplings, law, inputs }
+    }
+
+    fn all_nodes(&self) -> Vec<usize> {
+        let own = self.coordinate.iter().flat_map(Coordinate::nodes);
+        let mut nodes: Vec<usize> =
+            own.chain(self.couplings.iter().flat_map(Coupling::nodes)).collect();
+        nodes.sort_unstable();
+        nodes.dedup();
+        nodes
     }
 
     /// The forces by their effect on the energy: elastic, resisting, of the motor.
@@ -48,6 +60,7 @@ impl Force for JointForce {
         v: &[f64],
         forces: &mut NodalForces,
     ) -> Result<(), Failure> {
+        self.couplings.iter().for_each(|coupling| coupling.add_forces(u, v, forces));
         let Some(coordinate) = &self.coordinate else { return Ok(()) };
         let at = coordinate.at(u, v, false);
         let [elastic, resisting, motor] = self.parts(coordinate, &at, t);
@@ -66,6 +79,9 @@ impl Force for JointForce {
         stiffness: &mut BlockMatrix,
         damping: &mut BlockMatrix,
     ) -> Tangents {
+        for coupling in &self.couplings {
+            coupling.add_tangents(u, v, stiffness, damping);
+        }
         let Some(coordinate) = &self.coordinate else { return Tangents::Added };
         let at = coordinate.at(u, v, true);
         let parts = self.parts(coordinate, &at, t);
@@ -76,14 +92,15 @@ impl Force for JointForce {
     }
 
     fn is_nonlinear(&self) -> bool {
-        self.coordinate.is_some()
+        self.coordinate.is_some() || !self.couplings.is_empty()
     }
 
     fn potential(&self, _t: f64, u: &[f64]) -> f64 {
-        let Some(coordinate) = &self.coordinate else { return 0.0 };
+        let held: f64 = self.couplings.iter().map(|coupling| coupling.potential(u)).sum();
+        let Some(coordinate) = &self.coordinate else { return held };
         // the value needs no velocities: those of the displacements do as well as any
         let value = coordinate.at(u, u, false).value;
-        self.law.potential(value, |difference| coordinate.wrapped(difference))
+        held + self.law.potential(value, |difference| coordinate.wrapped(difference))
     }
 
     fn reservoir(&self) -> Reservoir {
@@ -91,16 +108,11 @@ impl Force for JointForce {
     }
 
     fn nodes(&self) -> Option<Vec<usize>> {
-        Some(
-            self.coordinate
-                .as_ref()
-                .map_or_else(Vec::new, |coordinate| coordinate.nodes().collect()),
-        )
+        Some(self.all_nodes())
     }
 
     fn couplings(&self) -> Vec<[usize; 2]> {
-        let Some(coordinate) = &self.coordinate else { return Vec::new() };
-        let nodes: Vec<usize> = coordinate.nodes().collect();
+        let nodes = self.all_nodes();
         let pairs = |k: usize| nodes[..k].iter().map(move |&other| (other, k));
         let pairs = (0..nodes.len()).flat_map(pairs);
         pairs.map(|(other, k)| [other, nodes[k]]).collect()

@@ -59,7 +59,7 @@ impl Law {
     ) -> Result<(), InputError> {
         let input = |word: &str| format!("{word} of joint \"{name}\"");
         if !moves && *self != Self::default() {
-            let help = "revolute and prismatic joints alone have springs, damping, stops, friction and motors";
+            let help = "revolute, prismatic and screw joints alone have springs, damping, stops, friction and motors";
             return Err(InputError::new(input("kind"), "without a coordinate", help));
         }
         not_negative(&input("stiffness"), self.stiffness, "")?;

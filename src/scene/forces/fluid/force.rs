@@ -11,6 +11,7 @@
 //! the weight of the fluid in the place of the body wherever the rule integrates d n exactly, as it does on faces that are below the surface.
 //! On faces that are not closed, they are those of p at the quadrature points.
 
+use super::rods::RodDrag;
 use super::traction::{Depth, Drag, Matrix};
 use crate::base::sparse::BlockMatrix;
 use crate::base::vector::{cross, dot};
@@ -24,6 +25,7 @@ pub(crate) struct FluidForce {
     /// Where its velocity was given.
     pub(super) input: String,
     pub(super) faces: FollowedFaces,
+    pub(super) rods: Vec<RodDrag>,
     pub(super) drag: Option<Drag>,
     pub(super) depth: Option<Depth>,
     /// Whether the faces are a closed surface.
@@ -53,6 +55,9 @@ impl FluidForce {
     ) -> f64 {
         let d = self.faces.dimension;
         let mut power = 0.0;
+        for rod in &self.rods {
+            power += rod.each(&current, [u, v], d, |node, force| see(Kind::Drag, node, force));
+        }
         self.faces.each_point(u, |at| {
             let facing = at.facing();
             let nodes = || at.nodes.iter().copied().zip(at.point.values);
@@ -175,6 +180,12 @@ impl Force for FluidForce {
         damping: &mut BlockMatrix,
     ) -> Tangents {
         let (d, current) = (self.faces.dimension, self.current(t));
+        for rod in &self.rods {
+            rod.each_tangent(&current, [u, v], d, |pair, [by_u, by_velocity]| {
+                add_block(stiffness, pair, 1.0, &by_u);
+                add_block(damping, pair, 1.0, &by_velocity);
+            });
+        }
         self.faces.each_point(u, |at| {
             let facing = at.facing();
             let [mut by_facing, mut by_velocity, mut by_place] = [[[0.0; 3]; 3]; 3];

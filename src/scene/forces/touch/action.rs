@@ -1,7 +1,7 @@
 //! Contact action between two nearby surfaces: pressure, damping, friction.
 
 use super::law::Law;
-use super::pair::Pair;
+use super::pair::{MOST, Pair};
 use crate::base::vector::{dot, norm};
 use crate::scene::forces::friction::{Coulomb, Drag};
 
@@ -32,8 +32,8 @@ impl Action {
     ) -> Self {
         let rate = dot(&pair.normal, &velocity);
         let sliding: [f64; 3] = std::array::from_fn(|i| velocity[i] - rate * pair.normal[i]);
-        let pressure = law.pressure(pair.distance);
-        let damping = law.damping_time() * law.curvature(pair.distance);
+        let pressure = law.pressure(pair.gap);
+        let damping = law.damping_time() * law.curvature(pair.gap);
         let drag = coulomb.map(|coulomb| coulomb.drag(norm(&sliding)));
         let (elastic, damping) = (share * pressure, share * damping);
         let presses = pressure * share.abs() >= damping.abs() * rate;
@@ -43,6 +43,11 @@ impl Action {
     /// The normal force (N) on the point.
     pub(super) fn pressing(&self) -> f64 {
         self.elastic - self.damping * self.rate
+    }
+
+    /// The shares of the nodes in that force: at the surfaces, or where nothing is left of the normal force as this.
+    pub(super) fn braked<'a>(&self, pair: &'a Pair) -> &'a [f64; MOST] {
+        if self.presses { &pair.grips } else { &pair.shares }
     }
 
     /// Force on the point (N) of damping and friction.

@@ -30,32 +30,40 @@ pub(super) struct Ways<'a> {
     count: usize,
     /// Ratio of the largest displacement of surfaces to that of nodes.
     reach: f64,
+    /// By which the surfaces are nearer than these (m).
+    radii: f64,
 }
 
 impl<'a> Ways<'a> {
-    pub(super) fn to_facet(facet: &'a Feature, paths: [Path; MOST_NODES], reach: f64) -> Self {
-        Self { facet: Some(facet), paths, count: facet.nodes().len(), reach }
+    pub(super) fn to_facet(
+        facet: &'a Feature,
+        paths: [Path; MOST_NODES],
+        reach: f64,
+        radii: f64,
+    ) -> Self {
+        Self { facet: Some(facet), paths, count: facet.nodes().len(), reach, radii }
     }
 
-    pub(super) fn of_edges(paths: [Path; 4]) -> Self {
-        Self { facet: None, paths: std::array::from_fn(|k| paths[k.min(3)]), count: 4, reach: 1.0 }
+    pub(super) fn of_edges(paths: [Path; 4], radii: f64) -> Self {
+        let paths = std::array::from_fn(|k| paths[k.min(3)]);
+        Self { facet: None, paths, count: 4, reach: 1.0, radii }
     }
 
     fn distance(&self, at: impl Fn(&Path) -> &[f64; 3]) -> f64 {
         let Some(facet) = self.facet else {
             let [a, b, c] = [0, 1, 2].map(|k| *at(&self.paths[k]));
-            return Pair::edges_apart(&[a, b], &[[0.0; 3], difference(&a, &c)]);
+            return Pair::edges_apart(&[a, b], &[[0.0; 3], difference(&a, &c)]) - self.radii;
         };
         let nodes: [[f64; 3]; MOST_NODES] = std::array::from_fn(|k| at(&self.paths[k]).map(|x| -x));
         let place = facet.nearest(&nodes, &[0.0; 3]);
-        place.distance(&nodes, &[0.0; 3])
+        place.distance(&nodes, &[0.0; 3]) - self.radii
     }
 
     /// Whether the point stays farther than `distance` (m) from a curved facet, as the hull of its way tells.
     pub(super) fn stay_beyond(&self, distance: f64) -> bool {
         let nodes = |k: usize| self.paths.map(|path| path.controls()[k].map(|x| -x));
         let hull = self.facet.and_then(|facet| facet.hull_along(nodes));
-        hull.is_some_and(|hull| hull.distance(&[0.0; 3]) > distance)
+        hull.is_some_and(|hull| hull.distance(&[0.0; 3]) > distance + self.radii)
     }
 
     /// The distances (m) at both ends.

@@ -22,6 +22,8 @@
 //! d/sqrt(c) for each angle, c = |a x b|^2; F therefore falls as c^2, from where edges of undeformed lengths
 //! a and b part by less than D over these, c < D^2 a b, so that their ends are within D of the other one.
 //!
+//! Pieces of the axes of tubes are edges, too, whose surfaces are nearer by their radii.
+//!
 //! Forces are internal, as F depends on the four nodes alone: momentum is kept. Edges are those of facets, in
 //! two straight halves where they have a mid node; those that share a node with facets beside each other, are
 //! glued, or lie within 3/2 D of each other in the undeformed shape of a body do not act. They add no area to
@@ -55,6 +57,8 @@ struct Edge {
     /// A third of the undeformed areas (m^2) of triangles beside it, and its undeformed length (m).
     area: f64,
     length: f64,
+    /// Of the tube whose axis it is (m), or 0.
+    radius: f64,
 }
 
 /// Two edges, by their numbers.
@@ -115,19 +119,21 @@ impl Edges {
             ends.iter().map(|[a, b]| std::array::from_fn(|i| 0.5 * (a[i] + b[i]))).collect();
         let halves: Vec<f64> = ends.iter().map(|[a, b]| 0.5 * norm(&difference(a, b))).collect();
         let longest = halves.iter().copied().fold(0.0, f64::max);
+        let widest = self.edges.iter().map(|edge| edge.radius).fold(0.0, f64::max);
         let grid = Grid::new(&middles);
         for (a, middle) in middles.iter().enumerate() {
-            let reach = halves[a] + longest + within;
+            let reach = halves[a] + longest + within + self.edges[a].radius + widest;
             let corners = [-reach, reach].map(|reach| middle.map(|x| x + reach));
             grid.each_within(&corners, |b| {
-                let apart = || norm(&difference(middle, &middles[b]));
+                let radii = self.edges[a].radius + self.edges[b].radius;
+                let apart = || norm(&difference(middle, &middles[b])) - radii;
                 if b <= a
                     || apart() > halves[a] + halves[b] + within
                     || !self.acts(surfaces, [a, b])
                 {
                     return;
                 }
-                let distance = Pair::edges_apart(&ends[a], &ends[b]);
+                let distance = Pair::edges_apart(&ends[a], &ends[b]) - radii;
                 if distance <= within {
                     pairs.push(NearEdges { edges: [a, b], distance });
                 }
@@ -162,7 +168,12 @@ impl Edges {
     /// The distance (m) of two edges under the displacements `u` (m).
     pub(super) fn apart(&self, surfaces: &Surfaces, near: &NearEdges, u: &[f64]) -> f64 {
         let [a, b] = near.edges.map(|edge| self.ends(surfaces, edge, u));
-        Pair::edges_apart(&a, &b)
+        Pair::edges_apart(&a, &b) - self.radii(near).iter().sum::<f64>()
+    }
+
+    /// The radii (m) of two edges.
+    pub(super) fn radii(&self, near: &NearEdges) -> [f64; 2] {
+        near.edges.map(|edge| self.edges[edge].radius)
     }
 
     /// The pair under the displacements `u` (m), whose [window](Pair::window) is its share of the energy per area (m^2);
@@ -183,7 +194,8 @@ impl Edges {
         }
         let area = 0.25 * (of_a.area * of_b.area).sqrt();
         let window = Window::new(places, [whole / unit, unit], area);
-        Some(Pair::of_edges([(of_a.nodes, &a), (of_b.nodes, &b)], places, window))
+        let radii = of_a.radius + of_b.radius;
+        Some(Pair::of_edges([(of_a.nodes, &a), (of_b.nodes, &b)], places, window, radii))
     }
 
     /// The ways of two edges relative to each other in a step.
@@ -198,7 +210,7 @@ impl Edges {
             };
             Path::new(apart(&ends), apart(&speeds), duration)
         });
-        Ways::of_edges(paths)
+        Ways::of_edges(paths, self.radii(near).iter().sum())
     }
 }
 
@@ -206,11 +218,18 @@ impl Edge {
     /// The part of an edge of a surface that is between two nodes.
     fn new(surfaces: &Surfaces, feature: usize, nodes: [usize; 2], part: f64) -> Self {
         let (mut around, mut area) = (Vec::new(), 0.0);
+        let radius = surfaces.features[feature].radius;
+        let [a, b] = nodes.map(|node| surfaces.at_rest(node));
+        let length = norm(&difference(&a, &b));
+        if surfaces.is_facet(feature) {
+            // a tube: as wide as its points are
+            let area = 2.0 * radius * length;
+            return Self { feature, nodes, around: nodes.to_vec(), area, length, radius };
+        }
         for &facet in &surfaces.features[feature].facets {
             around.extend_from_slice(surfaces.features[facet].nodes());
             area += part * surfaces.area_of_triangles(facet) / 3.0;
         }
-        let [a, b] = nodes.map(|node| surfaces.at_rest(node));
-        Self { feature, nodes, around, area, length: norm(&difference(&a, &b)) }
+        Self { feature, nodes, around, area, length, radius }
     }
 }

@@ -4,7 +4,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use super::action::{Action, changed};
 use super::edge_pairs::Edges;
-use super::law::Law;
+use super::law::{Kind, Law};
 use super::near::{Near, NearPair};
 use super::pair::Pair;
 use super::surfaces::Surfaces;
@@ -66,25 +66,37 @@ impl TouchForce {
             let x = self.surfaces.point_at(near.point, u);
             let at = self.surfaces.nodes_at(near.feature, u);
             let feature = &self.surfaces.features[near.feature];
-            if self.surfaces.is_beyond(near.feature, &at, &x, self.law.distance) {
+            let within = self.law.distance + self.surfaces.radii(near.point, near.feature);
+            if self.surfaces.is_beyond(near.feature, &at, &x, within) {
                 continue;
             }
             let place = feature.nearest(&at, &x);
             let shape = place.shape();
             let offset = place.offset(&shape, &at, &x);
-            if norm(&offset) < self.law.distance {
-                let point = (offset, self.surfaces.points[near.point].on.nodes());
-                let pair = Pair::new(point, (feature.nodes(), &at), (&place, &shape));
+            let on = &self.surfaces.points[near.point];
+            let radii = on.radius + feature.radius;
+            if norm(&offset) < self.law.distance + radii {
+                let point = (offset, on.on.nodes());
+                let mut pair = Pair::new(point, (feature.nodes(), &at), (&place, &shape), radii);
+                self.add_levers(&mut pair, [on.radius, feature.radius], u);
                 see(&pair, self.share(near));
             }
         }
         let acts_from = self.edges.law.distance;
         for near in near.edges.iter().filter(|near| near.distance - moved < acts_from) {
             let pair = self.edges.pair(&self.surfaces, near, u);
-            if let Some(pair) = pair.filter(|pair| pair.distance < acts_from) {
+            if let Some(mut pair) = pair.filter(|pair| pair.gap < acts_from) {
+                self.add_levers(&mut pair, self.edges.radii(near), u);
                 let share = pair.window.as_ref().map_or(0.0, |window| window.value);
                 see(&pair, share);
             }
+        }
+    }
+
+    /// Has what acts between tubes act at their surface, where something acts along it.
+    fn add_levers(&self, pair: &mut Pair, radii: [f64; 2], u: &[f64]) {
+        if self.coulomb.is_some() && radii != [0.0; 2] {
+            self.surfaces.add_levers(pair, radii, u);
         }
     }
 
@@ -95,13 +107,18 @@ impl TouchForce {
 
     /// Contact action in a pair at the nodal velocities `v` (m/s).
     pub(super) fn action(&self, pair: &Pair, share: f64, v: &[f64]) -> Action {
-        let velocity = pair.velocity(&pair.shares, v, self.surfaces.dimension);
+        let velocity = pair.velocity(&pair.grips, v, self.surfaces.dimension);
         Action::new(pair, share, velocity, self.law(pair), self.coulomb)
     }
 
     /// The law of a pair.
     fn law(&self, pair: &Pair) -> &Law {
         if pair.window.is_some() { &self.edges.law } else { &self.law }
+    }
+
+    /// Whether the surfaces of a pair lie on each other; those of tubes know when one is inside the other one.
+    pub(super) fn is_passed(&self, pair: &Pair) -> bool {
+        pair.gap == 0.0 || self.law.kind == Kind::Barrier && pair.gap < 0.0
     }
 
     /// Why a state is refused in which surfaces lie on each other.
@@ -132,10 +149,11 @@ impl TouchForce {
         self.each(u, |pair, share| {
             let action = self.action(pair, share, v);
             let braking = action.braking(&pair.normal);
-            let drift = pair.drift(self.law(pair).energy(pair.distance));
+            let drift = pair.drift(self.law(pair).energy(pair.gap));
             for m in (0..pair.count).filter(|&m| is_read.is_none_or(|of| of[pair.nodes[m]])) {
                 for (i, total) in total.iter_mut().enumerate() {
-                    *total += pair.shares[m] * (action.elastic * pair.normal[i] + braking[i]);
+                    *total += pair.shares[m] * action.elastic * pair.normal[i];
+                    *total += action.braked(pair)[m] * braking[i];
                     *total += drift.map_or(0.0, |drift| drift[m][i]);
                 }
             }
@@ -148,8 +166,8 @@ impl TouchForce {
     pub(crate) fn nearest(&self, u: &[f64]) -> Option<(f64, [usize; 2])> {
         let mut nearest: Option<(f64, [usize; 2])> = None;
         self.each(u, |pair, _| {
-            if nearest.is_none_or(|(least, _)| pair.distance < least) {
-                nearest = Some((pair.distance, [pair.nodes[0], pair.nodes[pair.count - 1]]));
+            if nearest.is_none_or(|(least, _)| pair.gap < least) {
+                nearest = Some((pair.gap, pair.ends()));
             }
         });
         for near in &self.near(u).0.edges {
@@ -172,11 +190,11 @@ impl Force for TouchForce {
     ) -> Result<(), Failure> {
         let (d, mut is_passed) = (self.surfaces.dimension, false);
         self.each(u, |pair, share| {
-            is_passed |= pair.distance == 0.0;
+            is_passed |= self.is_passed(pair);
             let action = self.action(pair, share, v);
             let braking = action.braking(&pair.normal);
             let brakes = braking != [0.0; 3];
-            let drift = pair.drift(self.law(pair).energy(pair.distance));
+            let drift = pair.drift(self.law(pair).energy(pair.gap));
             for m in 0..pair.count {
                 let at = pair.nodes[m] * d;
                 if let Some(drift) = &drift {
@@ -185,7 +203,7 @@ impl Force for TouchForce {
                 for (i, (normal, braking)) in pair.normal.iter().zip(braking).enumerate().take(d) {
                     forces.conservative[at + i] += pair.shares[m] * action.elastic * normal;
                     if brakes {
-                        forces.dissipative[at + i] += pair.shares[m] * braking;
+                        forces.dissipative[at + i] += action.braked(pair)[m] * braking;
                     }
                 }
             }
@@ -212,9 +230,9 @@ impl Force for TouchForce {
             if !action.presses {
                 return;
             }
-            let curvature = law.curvature(pair.distance);
+            let curvature = law.curvature(pair.gap);
             let slopes = [-action.elastic, share * curvature];
-            let stiffening = share * law.damping_time() * law.third(pair.distance);
+            let stiffening = share * law.damping_time() * law.third(pair.gap);
             let braking = action.braking(&pair.normal);
             let brakes = action.damping != 0.0 || action.drag.is_some();
             let moving = pair.moving();
@@ -222,19 +240,19 @@ impl Force for TouchForce {
                 for j in 0..d {
                     let braked = brakes.then(|| {
                         let change = moving.change([n, j]);
-                        let carried = pair.velocity(&change.shares, v, d);
+                        let carried = pair.velocity(&change.grips, v, d);
                         let elastic = -action.share * curvature * change.distance;
                         let mut of_u = [elastic, stiffening * change.distance];
                         if pair.window.is_some() {
                             let sharing = moving.sharing([n, j]);
-                            of_u[0] += sharing * law.pressure(pair.distance);
+                            of_u[0] += sharing * law.pressure(pair.gap);
                             of_u[1] += sharing * law.damping_time() * curvature;
                         }
                         let by_place = changed(&action, pair, &carried, &change.normal, of_u);
                         let along =
-                            std::array::from_fn(|i| if i == j { pair.shares[n] } else { 0.0 });
+                            std::array::from_fn(|i| if i == j { pair.grips[n] } else { 0.0 });
                         let by_speed = changed(&action, pair, &along, &[0.0; 3], [0.0; 2]);
-                        (change.shares, by_place, by_speed)
+                        (change.grips, by_place, by_speed)
                     });
                     for m in 0..pair.count {
                         let at = [pair.nodes[m], pair.nodes[n]];
@@ -242,11 +260,11 @@ impl Force for TouchForce {
                         for (i, by_u) in by_u.iter_mut().enumerate().take(d) {
                             *by_u = moving.second(slopes, [m, i], [n, j]);
                         }
-                        if let Some((shares, by_place, by_speed)) = &braked {
+                        if let Some((grips, by_place, by_speed)) = &braked {
                             for i in 0..d {
-                                by_u[i] -= shares[m] * braking[i] + pair.shares[m] * by_place[i];
+                                by_u[i] -= grips[m] * braking[i] + pair.grips[m] * by_place[i];
                             }
-                            add_column(damping, at, j, &by_speed.map(|f| -pair.shares[m] * f));
+                            add_column(damping, at, j, &by_speed.map(|f| -pair.grips[m] * f));
                         }
                         add_column(stiffness, at, j, &by_u);
                     }
@@ -258,7 +276,12 @@ impl Force for TouchForce {
 
     fn potential(&self, _t: f64, u: &[f64]) -> f64 {
         let mut energy = 0.0;
-        self.each(u, |pair, share| energy += share * self.law(pair).energy(pair.distance));
+        self.each(u, |pair, share| {
+            energy += match self.is_passed(pair) {
+                true => f64::INFINITY,
+                false => share * self.law(pair).energy(pair.gap),
+            };
+        });
         energy
     }
 
@@ -329,15 +352,12 @@ impl ContactForce for TouchForce {
         let within = self.law.distance + self.margin;
         let is_near = |near: &&NearPair| self.surfaces.apart(near.point, near.feature, u) <= within;
         for near in near.pairs.iter().filter(is_near) {
-            for (a, _) in self.surfaces.points[near.point].on.nodes() {
-                let feature = self.surfaces.features[near.feature].nodes();
-                all.extend(feature.iter().flat_map(|&b| [[a, b], [b, a]]));
-            }
+            let point = self.surfaces.points[near.point].on.nodes().map(|(node, _)| node);
+            self.couple(point, self.surfaces.features[near.feature].nodes(), &mut all);
         }
         for near in &near.edges {
             let [first, second] = self.edges.nodes(near);
-            let across = first.iter().flat_map(|&a| second.map(|b| [a, b]));
-            all.extend(across.flat_map(|[a, b]| [[a, b], [b, a]]));
+            self.couple(first.into_iter(), &second, &mut all);
         }
         all.sort_unstable();
         all.dedup();
@@ -346,11 +366,28 @@ impl ContactForce for TouchForce {
 }
 
 impl TouchForce {
+    /// Adds the couplings of some nodes with others, and with friction those of the directors of tubes.
+    fn couple(
+        &self,
+        first: impl Iterator<Item = usize>,
+        second: &[usize],
+        all: &mut Vec<[usize; 2]>,
+    ) {
+        let with_directors = |node: usize| {
+            let directors = self.surfaces.directors(node).iter().copied();
+            std::iter::once(node).chain(directors.filter(|_| self.coulomb.is_some()))
+        };
+        for a in first.flat_map(with_directors) {
+            let second = second.iter().copied().flat_map(with_directors);
+            all.extend(second.flat_map(|b| [[a, b], [b, a]]));
+        }
+    }
+
     /// The derivatives of what two edges do because they share less of the energy elsewhere, -d(-phi dF/dz_m)/dz_n, and
     /// of their elastic force as they share more, where they press.
     fn add_drift_tangents(&self, pair: &Pair, action: &Action, stiffness: &mut BlockMatrix) {
         let law = self.law(pair);
-        let [energy, slope] = [law.energy(pair.distance), -law.pressure(pair.distance)];
+        let [energy, slope] = [law.energy(pair.gap), -law.pressure(pair.gap)];
         let moving = pair.moving();
         let of_distance = |[m, i]: [usize; 2]| slope * pair.shares[m] * pair.normal[i];
         for n in 0..pair.count {

@@ -31,7 +31,7 @@ pub(super) struct NearPair {
     pub(super) feature: usize,
     /// The weight of the feature, times the part of the energy that the side of the point has.
     pub(super) weight: f64,
-    /// Their distance (m) in that state; no more than that from a curved face.
+    /// The distance (m) of their surfaces in that state; no more than that from a curved face.
     pub(super) distance: f64,
 }
 
@@ -47,15 +47,19 @@ impl Near {
         let is_finite = places.iter().chain(&at).flatten().all(|x| x.is_finite());
         if is_finite && !places.is_empty() {
             let grid = Grid::new(&places);
+            let widest =
+                surfaces.points.iter().fold(0.0, |most: f64, point| most.max(point.radius));
             for feature in 0..surfaces.features.len() {
                 let at = surfaces.nodes_at(feature, u);
                 let known = &surfaces.features[feature];
                 let [low, high] = surfaces.box_of(feature, &at);
-                let [low, high] = [low.map(|x| x - within), high.map(|x| x + within)];
+                let reach = within + widest + known.radius;
+                let [low, high] = [low.map(|x| x - reach), high.map(|x| x + reach)];
                 let hull = known.hull(&at);
                 grid.each_within(&[low, high], |point| {
                     let x = &places[point];
-                    let bound = hull.as_ref().map(|hull| hull.distance(x));
+                    let radii = surfaces.radii(point, feature);
+                    let bound = hull.as_ref().map(|hull| hull.distance(x) - radii);
                     if bound.is_some_and(|bound| bound > within) {
                         return;
                     }
@@ -63,7 +67,7 @@ impl Near {
                     if weight == 0.0 {
                         return;
                     }
-                    let exact = || known.nearest(&at, x).distance(&at, x);
+                    let exact = || known.nearest(&at, x).distance(&at, x) - radii;
                     let distance = bound.unwrap_or_else(exact);
                     if distance <= within {
                         pairs.push(NearPair { point, feature, weight, distance });

@@ -20,7 +20,7 @@ impl TouchForce {
     ) -> Result<(), Failure> {
         let mut is_passed = false;
         self.each(u, |pair, share| {
-            is_passed |= pair.distance == 0.0;
+            is_passed |= self.is_passed(pair);
             let action = self.action(pair, share, v);
             if !action.presses {
                 return;

@@ -35,9 +35,12 @@ pub(super) struct Pair {
     pub(super) of_point: usize,
     /// c_m
     pub(super) shares: [f64; MOST],
-    /// The unit normal r/|r|, and |r| (m).
+    /// c_m of damping and friction, which act beside the axis of a tube.
+    pub(super) grips: [f64; MOST],
+    /// The unit normal r/|r|, |r| (m), and the distance of the surfaces, less by the radii of tubes.
     pub(super) normal: [f64; 3],
-    pub(super) distance: f64,
+    distance: f64,
+    pub(super) gap: f64,
     /// r (m), r_a and c_m,a; the number of the coordinates xi.
     offset: [f64; 3],
     along: [[f64; 3]; 2],
@@ -47,6 +50,46 @@ pub(super) struct Pair {
     bending: [f64; 3],
     /// Window of two edges; `None` for a point.
     pub(super) window: Option<Window>,
+    levers: Levers,
+}
+
+/// Directors of tubes along which what acts at their surface turns them.
+#[derive(Default)]
+pub(super) struct Levers {
+    count: usize,
+    all: [Lever; MOST_LEVERS],
+}
+
+/// Two at each end of two pieces.
+const MOST_LEVERS: usize = 8;
+
+/// One of them: the place beside the axis moves with the director's node by (o . d)/a, with its offset o = s n from the axis, s the radius with the sign
+/// of the side, d the director and a its arm.
+#[derive(Debug, Clone, Copy, Default)]
+struct Lever {
+    /// Of the node of the axis and of the director in the pair.
+    base: usize,
+    at: usize,
+    radius: f64,
+    arm: f64,
+    director: [f64; 3],
+}
+
+impl Levers {
+    pub(super) fn push(
+        &mut self,
+        base: usize,
+        at: usize,
+        [radius, arm]: [f64; 2],
+        director: [f64; 3],
+    ) {
+        self.all[self.count] = Lever { base, at, radius, arm, director };
+        self.count += 1;
+    }
+
+    fn each(&self) -> &[Lever] {
+        &self.all[..self.count]
+    }
 }
 
 /// How the nearest place of a pair moves, for the derivatives of its forces.
@@ -63,17 +106,18 @@ pub(super) struct Change {
     /// Of the distance (m).
     pub(super) distance: f64,
     pub(super) normal: [f64; 3],
-    /// Of c_m.
-    pub(super) shares: [f64; MOST],
+    /// Of c_m of damping and friction.
+    pub(super) grips: [f64; MOST],
 }
 
 impl Pair {
     /// The pair of a point with the nodes and shares `point`, and a place of the `shape` on a feature of the nodes `of`,
-    /// which are `at` these positions (m), with the offset r from the place (m), which must not be 0.
+    /// which are `at` these positions (m), with the offset r from the place (m), which must not be 0, and the radii (m) of both together.
     pub(super) fn new(
         (r, point): ([f64; 3], impl Iterator<Item = (usize, f64)>),
         (of, at): (&[usize], &[[f64; 3]]),
         (place, shape): (&Place, &FacePoint),
+        radii: f64,
     ) -> Self {
         let distance = norm(&r);
         let mut pair = Self {
@@ -81,14 +125,17 @@ impl Pair {
             count: 0,
             of_point: 0,
             shares: [0.0; MOST],
+            grips: [0.0; MOST],
             normal: r.map(|r| r / distance),
             distance,
+            gap: distance - radii,
             offset: r,
             along: [[0.0; 3]; 2],
             slopes: [[0.0; 2]; MOST],
             free: place.dimension(),
             bending: [0.0; 3],
             window: None,
+            levers: Levers::default(),
         };
         for (node, share) in point {
             (pair.nodes[pair.count], pair.shares[pair.count]) = (node, share);
@@ -111,6 +158,7 @@ impl Pair {
                 bending.for_each(|(bending, second)| *bending -= second * over);
             }
         }
+        pair.grips = pair.shares;
         pair
     }
 
@@ -139,6 +187,7 @@ impl Pair {
         edges: [([usize; 2], &[[f64; 3]; 2]); 2],
         places: [f64; 2],
         window: Window,
+        radii: f64,
     ) -> Self {
         let [a, b] = edges.map(|(_, ends)| *ends);
         let nodes = edges.map(|(nodes, _)| nodes);
@@ -152,20 +201,40 @@ impl Pair {
             count: 4,
             of_point: 2,
             shares: [0.0; MOST],
+            grips: [0.0; MOST],
             normal: r.map(|r| r / distance),
             distance,
+            gap: distance - radii,
             offset: r,
             along,
             slopes: [[0.0; 2]; MOST],
             free: 2,
             bending: [0.0; 3],
             window: Some(window),
+            levers: Levers::default(),
         };
         pair.nodes[..4].copy_from_slice(nodes.as_flattened());
         let shares = [1.0 - places[0], places[0], places[1] - 1.0, -places[1]];
         pair.shares[..4].copy_from_slice(&shares);
         pair.slopes[..4].copy_from_slice(&[[-1.0, 0.0], [1.0, 0.0], [0.0, 1.0], [0.0, -1.0]]);
+        pair.grips = pair.shares;
         pair
+    }
+
+    /// A node of each side.
+    pub(super) fn ends(&self) -> [usize; 2] {
+        [self.nodes[0], self.nodes[self.count - 1 - self.levers.count]]
+    }
+
+    /// Has damping and friction act at the surfaces of tubes.
+    pub(super) fn set_levers(&mut self, levers: Levers) {
+        for lever in levers.each() {
+            let offset = lever.radius * dot(&self.normal, &lever.director);
+            let turned = self.shares[lever.base] * offset / lever.arm;
+            self.grips[lever.at] += turned;
+            self.grips[lever.base] -= turned;
+        }
+        self.levers = levers;
     }
 
     /// The forces (N) on its nodes by which two edges go where they share less of an `energy` per area (J/m^2); `None` of a
@@ -248,7 +317,21 @@ impl Moving<'_> {
         for (share, slopes) in shares.iter_mut().zip(slopes).take(self.pair.count) {
             *share = slopes[0] * places[0] + slopes[1] * places[1];
         }
-        Change { distance, normal, shares }
+        let mut grips = shares;
+        for lever in self.pair.levers.each() {
+            let Lever { base, at, radius, arm, director } = *lever;
+            let by_director = match n {
+                _ if n == at => self.pair.normal[j] / arm,
+                _ if n == base => -self.pair.normal[j] / arm,
+                _ => 0.0,
+            };
+            let offset = radius * dot(&self.pair.normal, &director);
+            let moved = radius * (dot(&normal, &director) + by_director);
+            let turned = (shares[base] * offset + self.pair.shares[base] * moved) / arm;
+            grips[at] += turned;
+            grips[base] -= turned;
+        }
+        Change { distance, normal, grips }
     }
 
     /// dG_00, dG_01 and dG_11 with component `j` of node `n`.

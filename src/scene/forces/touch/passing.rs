@@ -60,7 +60,8 @@ impl TouchForce {
             });
             Path::new(x, v, duration)
         });
-        Ways::to_facet(facet, paths, self.surfaces.reach)
+        let radii = self.surfaces.radii(near.point, near.feature);
+        Ways::to_facet(facet, paths, self.surfaces.reach, radii)
     }
 
     /// The first place before `first` at which a step has to end.

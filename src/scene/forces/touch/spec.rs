@@ -29,6 +29,8 @@ use crate::scene::forces::friction::Friction;
 /// that part are not held back. Friction is that of [obstacles](crate::Obstacle#friction), with the sliding velocity
 /// between the surfaces.
 ///
+/// Rods touch as round tubes about their axes, from the radius of their section on; in the plane every rod does.
+///
 /// ```
 /// use pliant::{Body, Cells, Material, Mesh, Phase, Sampling, Scene, Settings, Touch};
 ///
@@ -183,10 +185,7 @@ impl Touch {
     pub(crate) fn force(&self, site: &TouchSite<'_>) -> Result<TouchForce, InputError> {
         let parts = self.parts(site.body)?;
         let surfaces = Surfaces::new(site.body, &parts.numbers, parts.itself, site.planes)
-            .ok_or_else(|| {
-                let help = "a string has no surface: name the other bodies";
-                InputError::new(self.input("bodies"), "a string among them", help)
-            })?;
+            .map_err(|[value, help]| InputError::new(self.input("bodies"), value, help))?;
         let usual = site.usual_distance(&surfaces, &parts);
         let mut force =
             self.force_within(site, &parts, surfaces, self.distance.unwrap_or(usual))?;

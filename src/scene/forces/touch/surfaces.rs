@@ -1,4 +1,4 @@
-//! The surfaces of bodies: quadrature points, and facets with their edges and corners.
+//! The surfaces of bodies: quadrature points, and facets with their edges and corners. Those of rods are tubes ([`tubes`](super::tubes)).
 
 use std::collections::BTreeMap;
 
@@ -7,11 +7,19 @@ use crate::base::vector::{cross, difference, dot, norm, padded};
 use crate::elements::basis::{MOST_NODES, Place, control_points, is_affine, nearest, reach};
 use crate::elements::body::Body;
 use crate::elements::mesh::FaceKind;
+use crate::elements::rod::Spokes;
 use crate::scene::forces::surface::{SurfacePoint, closed_points, is_within, pieces};
 
 /// Ratio of the sizes of facets up to which the points of each have half of the energy. Fewer points, which move with the body
 /// that slides, press more evenly than those of the other one, as long as none stands for more than lies over it.
 const ALIKE: f64 = 2.0;
+
+/// Refused bodies, and what to do.
+const STRING: [&str; 2] = ["a string among them", "a string has no surface: name the other bodies"];
+const NOT_ROUND: [&str; 2] = [
+    "a rod that is not round among them",
+    "a rod touches other bodies as a round tube: give it the section of a circle or a ring, or name the other bodies",
+];
 
 /// The surfaces of some bodies.
 pub(super) struct Surfaces {
@@ -27,6 +35,8 @@ pub(super) struct Surfaces {
     pub(super) itself: bool,
     /// Size (m) of the finer facets of each body; 0 of bodies that do not touch.
     sizes: Vec<f64>,
+    /// The cross sections of rods, by the nodes of their axes, up to the last of these.
+    pub(super) sections: Vec<Option<Spokes>>,
     /// No point or place on a surface moves farther than this times the nodes: 1 of linear cells.
     pub(super) reach: f64,
 }
@@ -34,7 +44,9 @@ pub(super) struct Surfaces {
 /// A quadrature point.
 pub(super) struct Point {
     pub(super) on: SurfacePoint,
-    body: usize,
+    pub(super) body: usize,
+    /// Of the tube (m) on whose axis it lies; 0 on a surface.
+    pub(super) radius: f64,
     /// Facets that it does not feel, ascending: its neighbours on its own body, and on those it is glued to.
     unfelt: Vec<usize>,
 }
@@ -45,6 +57,8 @@ pub(super) struct Feature {
     nodes: [usize; MOST_NODES],
     count: usize,
     pub(super) body: usize,
+    /// Of the tube (m) whose axis it is; 0 of a surface.
+    pub(super) radius: f64,
     /// The facets that it belongs to, and for a corner its edges.
     pub(super) facets: Vec<usize>,
     edges: Vec<usize>,
@@ -53,14 +67,16 @@ pub(super) struct Feature {
 }
 
 impl Surfaces {
-    /// The surfaces of the bodies with these numbers, without faces between nodes (ascending) of one of the `planes`; `None` for a string,
-    /// which has no surface.
+    /// The surfaces of the bodies with these numbers, without faces between nodes (ascending) of one of the `planes`.
+    ///
+    /// # Errors
+    /// A string, which has no surface, a rod that is not round: the value of the input, and what to do.
     pub(super) fn new(
         body: &Body,
         bodies: &[usize],
         itself: bool,
         planes: &[Vec<usize>],
-    ) -> Option<Self> {
+    ) -> Result<Self, [&'static str; 2]> {
         let dimension = body.dimension();
         let mut surfaces = Self {
             dimension,
@@ -70,20 +86,25 @@ impl Surfaces {
             features: Vec::new(),
             itself,
             sizes: vec![0.0; body.parts().count()],
+            sections: Vec::new(),
             reach: 1.0,
         };
         let parts: Vec<_> = body.parts().map(|part| part.nodes).collect();
         let faces = body.mesh().boundary_faces();
         for &number in bodies {
+            if let Some(pieces) = body.tube_pieces(&parts[number]) {
+                surfaces.sizes[number] = surfaces.add_tube(number, &pieces.ok_or(NOT_ROUND)?);
+                continue;
+            }
             let is_own =
                 |face: &&Vec<usize>| parts[number].contains(&face[0]) && !is_within(face, planes);
             let own: Vec<Vec<usize>> = faces.iter().filter(is_own).cloned().collect();
-            let points = closed_points(body, &own)?.into_iter();
-            surfaces.points.extend(points.map(|on| Point { on, body: number, unfelt: Vec::new() }));
+            let points = closed_points(body, &own).ok_or(STRING)?.into_iter();
+            surfaces.points.extend(points.map(|on| Point::new(on, number, 0.0)));
             for face in &own {
                 let kind = body.mesh().face_kind(face);
                 surfaces.reach = surfaces.reach.max(reach(kind));
-                surfaces.features.push(Feature::new(kind, face, number));
+                surfaces.features.push(Feature::new(kind, face, number, 0.0));
             }
             surfaces.nodes.extend(own.concat());
             surfaces.sizes[number] = surfaces.usual_size(number);
@@ -91,7 +112,7 @@ impl Surfaces {
         surfaces.nodes.sort_unstable();
         surfaces.nodes.dedup();
         surfaces.add_edges_and_corners();
-        Some(surfaces)
+        Ok(surfaces)
     }
 
     /// A size (m) that a quarter of the facets of a body do not reach, where facets are all that there is yet; 0 without any.
@@ -140,11 +161,13 @@ impl Surfaces {
             }
             let body = body(self, facets[0]);
             let kind = if nodes.len() == 2 { FaceKind::Segment } else { FaceKind::Segment3 };
-            self.features.push(Feature { facets, ..Feature::new(kind, &nodes, body) });
+            self.features.push(Feature { facets, ..Feature::new(kind, &nodes, body, 0.0) });
         }
         for (node, [facets, edges]) in corners {
             let body = body(self, facets[0]);
-            let corner = Feature::new(FaceKind::Point, &[node], body);
+            let radii = facets.iter().map(|&facet| self.features[facet].radius);
+            let radius = radii.sum::<f64>() / facets.len() as f64;
+            let corner = Feature::new(FaceKind::Point, &[node], body, radius);
             self.features.push(Feature { facets, edges, ..corner });
         }
         for number in 0..self.features.len() {
@@ -186,10 +209,15 @@ impl Surfaces {
         }
     }
 
-    /// The distance (m) of a point from a feature under the displacements `u` (m).
+    /// The distance (m) of the surfaces at a point and a feature under the displacements `u` (m).
     pub(super) fn apart(&self, point: usize, feature: usize, u: &[f64]) -> f64 {
         let (at, x) = (self.nodes_at(feature, u), self.point_at(point, u));
-        self.features[feature].nearest(&at, &x).distance(&at, &x)
+        self.features[feature].nearest(&at, &x).distance(&at, &x) - self.radii(point, feature)
+    }
+
+    /// The radii (m) of a point and a feature together: their surfaces are so much nearer than they.
+    pub(super) fn radii(&self, point: usize, feature: usize) -> f64 {
+        self.points[point].radius + self.features[feature].radius
     }
 
     /// The part of the energy that the points of a surface have, opposite a feature.
@@ -353,6 +381,12 @@ impl Surfaces {
     }
 }
 
+impl Point {
+    pub(super) fn new(on: SurfacePoint, body: usize, radius: f64) -> Self {
+        Self { on, body, radius, unfelt: Vec::new() }
+    }
+}
+
 impl Feature {
     /// A box around it, with its nodes `at` these positions (m), if its nearest place takes much longer to find: if it is a
     /// curved face.
@@ -373,11 +407,11 @@ impl Feature {
         Some(hull)
     }
 
-    fn new(kind: FaceKind, of: &[usize], body: usize) -> Self {
+    pub(super) fn new(kind: FaceKind, of: &[usize], body: usize, radius: f64) -> Self {
         let mut nodes = [0; MOST_NODES];
         nodes[..of.len()].copy_from_slice(of);
         let (facets, edges) = (Vec::new(), Vec::new());
-        Self { kind, nodes, count: of.len(), body, facets, edges, weight: 0.0 }
+        Self { kind, nodes, count: of.len(), body, radius, facets, edges, weight: 0.0 }
     }
 
     pub(super) fn nodes(&self) -> &[usize] {

@@ -10,6 +10,7 @@ use crate::elements::body::Body;
 use crate::elements::force::{ContactForce, Force, NodalForces, Step};
 use crate::elements::material::Material;
 use crate::elements::mesh::{Cells, Mesh, SolidCells};
+use crate::elements::rod::{Rod, RodSection};
 
 const SOFT: Material = Material { density: 1000.0, young: 1e5, poisson: 0.3, viscosity: 0.0 };
 
@@ -102,6 +103,41 @@ fn edges_that_cross_have_exact_tangents() {
         for touch in [Touch::all(), Touch::all().spring()] {
             // downwards, so that all presses
             assert_derivatives(&body, &touch.distance(4e-3), 0.3);
+        }
+    }
+}
+
+/// The same for rods, whose friction turns them: one that tapers over a block, one across another one, and one in the plane over a block.
+#[test]
+fn tubes_have_exact_tangents() {
+    let rod = |points: [Vec<f64>; 2], radii: [f64; 2], elements: usize, name: &str| {
+        let section = |radius| RodSection::Circle { radius };
+        let rod = Rod::new(points.to_vec(), elements, section(radii[0])).end(section(radii[1]));
+        Body::rod(rod, SOFT).unwrap().named(name).build().unwrap()
+    };
+    let block = |dimension: usize| {
+        let body = match dimension {
+            2 => Body::new(Mesh::rectangle([0.1, 0.05], [3, 2], Cells::Triangles6).unwrap(), SOFT)
+                .thickness(0.01),
+            _ => {
+                let mesh = Mesh::cuboid([0.1, 0.05, 0.1], [3; 3], SolidCells::Hexahedra);
+                Body::new(mesh.unwrap(), SOFT)
+            }
+        };
+        body.named("block").build().unwrap()
+    };
+    let over = [vec![0.01, 0.062, 0.02], vec![0.09, 0.06, 0.08]];
+    let flat = over.clone().map(|x| x[..2].to_vec());
+    let lower = [vec![0.05, 0.04, 0.0], vec![0.05, 0.04, 0.1]];
+    let pairs = [
+        [block(3), rod(over.clone(), [0.009, 0.007], 3, "rod")],
+        [rod(lower, [0.01, 0.01], 3, "lower"), rod(over, [0.009, 0.008], 4, "upper")],
+        [block(2), rod(flat, [0.009, 0.008], 3, "rod")],
+    ];
+    for (bodies, speed) in pairs.into_iter().zip([0.3, 0.3, 0.3]) {
+        let body = Body::join(bodies).unwrap();
+        for touch in [Touch::all(), Touch::all().spring()] {
+            assert_derivatives(&body, &touch.distance(8e-3), speed);
         }
     }
 }

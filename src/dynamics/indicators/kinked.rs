@@ -1,0 +1,29 @@
+//! Rods whose path turns within an element by more than their section allows.
+
+use crate::base::input::{four_digits, short};
+use crate::dynamics::report::Indicator;
+use crate::elements::body::Body;
+
+/// How far a section may reach, over the radius of curvature in an element: to where it meets that beside it.
+const MOST: f64 = 1.0;
+
+/// Sections beside each other that overlap, in a single body that is a rod.
+pub(super) fn kinked(body: &Body) -> Option<Indicator> {
+    let bend = body.sharpest_bend()?;
+    let value = bend.reach * bend.angle / bend.length;
+    let name = body.name().unwrap_or("rod");
+    let said = format!(
+        "rod \"{name}\" turns by {:.0} degrees along element {}, {} m long, where its section reaches {} m: {} times the radius of curvature (limit: {MOST})",
+        bend.angle.to_degrees(),
+        bend.element + 1,
+        short(bend.length),
+        short(bend.reach),
+        four_digits(value),
+    );
+    let beyond = || {
+        format!(
+            "{said}; sections overlap at the inside of the kink, which no rod has: round the path off by an arc, or take longer elements, over which a corner is rounded off"
+        )
+    };
+    Some(Indicator::trusted("rod-curvature", (value, "1"), [0.0, MOST], || said.clone(), beyond))
+}
