@@ -116,7 +116,8 @@ def test_bad_studies(study, tmp_path):
 
 @pytest.fixture
 def many(study):
-    """A study of 200 rows."""
+    """A study of 200 short rows."""
+    (study.parent / "beam.toml").write_text(SCENE.replace("until = 0.05", "until = 0.005"))
     study.write_text(STUDY.replace("count = 12", "count = 200"))
     return study
 
@@ -175,7 +176,7 @@ def test_hyperqueue_computes_each_row_once_though_a_task_is_killed(many, tmp_pat
     hyperqueue = pytest.importorskip("hyperqueue")
     cluster_of, function = pytest.importorskip("hyperqueue.cluster"), pytest.importorskip("hyperqueue.task.function")
     rows = tmp_path / "rows/rows"
-    with hyperqueue.LocalCluster(tmp_path / "server") as cluster:
+    with hyperqueue.LocalCluster() as cluster:
         for _ in range(2):
             cluster.start_worker(cluster_of.WorkerConfig(cores=1))
         client = cluster.client(python_env=function.PythonEnv(sys.executable))
@@ -188,7 +189,7 @@ def test_tasks_of_hyperqueue_that_fail(study, tmp_path):
     """A client whose tasks run in a Python without `pliant` ends with the reason, not with rows that lack."""
     hyperqueue = pytest.importorskip("hyperqueue")
     cluster_of, function = pytest.importorskip("hyperqueue.cluster"), pytest.importorskip("hyperqueue.task.function")
-    with hyperqueue.LocalCluster(tmp_path / "server", cluster_of.WorkerConfig(cores=1)) as cluster:
+    with hyperqueue.LocalCluster(worker_config=cluster_of.WorkerConfig(cores=1)) as cluster:
         client = cluster.client(python_env=function.PythonEnv("no-python"))
         with pytest.raises(RuntimeError, match="none of 12 rows"):
             pliant.sweep(study, client, directory=tmp_path / "rows")
