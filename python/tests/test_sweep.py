@@ -124,11 +124,11 @@ def many(study):
 
 @contextlib.contextmanager
 def killed_in_the_middle(rows, process):
-    """Kills a process, whose number is called for when 50 files of `rows` are there, while the block goes on."""
+    """Kills a process, whose number is called for when 55 files of `rows` are there, in the middle of a task, while the block goes on."""
     killed = []
 
     def kill():
-        while len(list(rows.glob("*.json"))) < 50 and not ended.is_set():
+        while len(list(rows.glob("*.json"))) < 55 and not ended.is_set():
             time.sleep(0.01)
         while not killed and not ended.is_set():
             with contextlib.suppress(ProcessLookupError, StopIteration):
@@ -166,10 +166,11 @@ def test_dask_computes_each_row_once_though_a_worker_is_killed(many, tmp_path):
 
 def tasks_of_hyperqueue():
     """Numbers of the processes in which tasks of HyperQueue's workers run."""
-    for path in Path("/proc").glob("[0-9]*/cmdline"):
+    for number in filter(str.isdigit, os.listdir("/proc")):
+        # others may have ended by now
         with contextlib.suppress(OSError):
-            if b"hyperqueue.task.function" in path.read_bytes():
-                yield int(path.parent.name)
+            if b"hyperqueue.task.function" in Path("/proc", number, "cmdline").read_bytes():
+                yield int(number)
 
 
 def test_hyperqueue_computes_each_row_once_though_a_task_is_killed(many, tmp_path):
