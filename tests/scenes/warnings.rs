@@ -53,6 +53,47 @@ fn round_off_of_what_is_held_is_not_warned_of() {
     }
 }
 
+/// Steps of `rk` that the stabilization of constraints bounds are told as that, and those that viscosity bounds as before.
+#[test]
+fn a_bound_by_alpha_is_no_motion() {
+    let told = |alpha: f64, viscosity: f64| {
+        let body = square(Cells::Triangles, Material { viscosity, ..SOFT }).build().unwrap();
+        let phase = Phase::until(0.02).hold("bottom");
+        let scene = Scene::new(body).gravity([0.0, -9.8]).phase(phase);
+        let settings = Settings { method: Method::Rk, alpha, ..Settings::default() };
+        let motion = scene.simulate(&settings, &Sampling::every(0.01)).unwrap();
+        motion.report().phases[0].counts.notice.clone()
+    };
+    let by_alpha = told(1e5, 0.0).unwrap();
+    assert!(by_alpha.starts_with("alpha") && by_alpha.contains("3.30e-5 s"), "{by_alpha}");
+    let by_viscosity = told(1e3, 5e3).unwrap();
+    assert!(by_viscosity.starts_with("stability, not accuracy"), "{by_viscosity}");
+    assert_eq!(told(1e3, 0.0), None);
+}
+
+/// Waves of 8 cells that run along a bar of bricks are not what a bar that bends is: linear cells are 1.05 times too stiff for them,
+/// (k h)^2/12, and not 1.2 times, as bricks that bend with the same jumps of strains are. The same bar in bending is told of.
+#[test]
+fn waves_are_not_what_bends() {
+    let told = |loads: [f64; 2], poisson: f64| {
+        let mesh = Mesh::rectangle([0.4, 0.02], [41, 3], Cells::Rectangles).unwrap();
+        let body = Body::new(mesh, Material { poisson, ..SOFT }).strain(Strain::Cauchy);
+        let phase = Phase::until(0.04).hold("right");
+        let rate = std::f64::consts::TAU * f64::sqrt(SOFT.young / SOFT.density) / 0.08;
+        let shaken = phase.load_with("left", move |t| loads.map(|load| load * f64::sin(rate * t)));
+        let scene = Scene::new(body.thickness(0.01).build().unwrap()).phase(shaken);
+        let motion = scene.simulate(&Settings::default(), &Sampling::every(0.002)).unwrap();
+        let indicators = motion.report().indicators.clone();
+        indicators.into_iter().find(|told| told.name == "stiffness-of-cells").unwrap()
+    };
+    let along = told([1e-3, 0.0], 0.3);
+    println!("{along}");
+    assert!(!along.is_doubtful() && along.value < 1.15, "{along}");
+    let across = told([0.0, 1e-3], 0.3);
+    println!("{across}");
+    assert!(across.is_doubtful() && across.text.contains("where it bends"), "{across}");
+}
+
 /// Displacements of some micrometres, which count as a millimetre. What the warning says to set is enough.
 #[test]
 fn motions_below_their_tolerance() {
