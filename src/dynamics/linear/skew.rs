@@ -1,4 +1,4 @@
-//! What of a matrix is not symmetric.
+//! The part of a matrix that is not symmetric.
 //!
 //! Friction follows the normal force, and the normal force does not follow friction: N = P + S, with P symmetric and S skew.
 //! P is factorized. Where contact is stiff, S is as large as P, and a step by P alone is none of Newton's. S has few rows, those of what

@@ -17,7 +17,7 @@ pub(super) struct Crawl {
     /// When they began (s), and the failures until then: of Newton's iteration, and of the error test.
     began: f64,
     failures: [usize; 2],
-    /// What has been told of them.
+    /// The notice that was given of them.
     pub(super) told: Option<String>,
 }
 
@@ -81,7 +81,7 @@ impl Crawl {
 mod tests {
     use super::*;
 
-    /// What is told after `steps` of a size (s) in a phase of 1 s, with so many failures of Newton's iteration and of the error test
+    /// The notice after `steps` of a size (s) in a phase of 1 s, with so many failures of Newton's iteration and of the error test
     /// in each thousand of them.
     fn told(steps: usize, step: f64, [of_newton, of_errors]: [usize; 2]) -> Option<String> {
         let mut crawl = Crawl::default();

@@ -80,7 +80,7 @@ pub(super) struct MeanSteps {
     /// When the first one began (s).
     began: f64,
     reviewed: usize,
-    /// What the plan had cost then.
+    /// The cost of the phase then.
     spent: f64,
     /// When the first one of these began (s).
     review_began: f64,
@@ -163,7 +163,7 @@ impl PhaseRun {
         self.begin_review(None);
     }
 
-    /// What the phase has cost so far, with the present integrator.
+    /// The cost of the phase so far, with the present integrator.
     fn spent(&self, stepper: Option<&dyn Stepper>) -> f64 {
         let method = self.plan.settings.method;
         let now = stepper.map_or(0.0, |stepper| cost(method, &stepper.counts()));
@@ -175,7 +175,7 @@ impl PhaseRun {
         (self.mean_steps.reviewed, self.mean_steps.spent) = (0, self.spent(stepper));
     }
 
-    /// What a second of the motion has cost since the last review, up to `time` (s).
+    /// The cost of a second of the motion since the last review, up to `time` (s).
     pub(super) fn cost(&self, time: f64, stepper: &dyn Stepper) -> f64 {
         let MeanSteps { spent, review_began, .. } = self.mean_steps;
         (self.spent(Some(stepper)) - spent) / (time - review_began)

@@ -577,7 +577,7 @@ impl Run {
         }
     }
 
-    /// What has been told of steps that are far too short for the phase.
+    /// The notice of steps that are far too short for the phase.
     pub(super) fn notice(&self) -> Option<&str> {
         self.phase_run.crawl.told.as_deref()
     }

@@ -25,7 +25,7 @@ const LATER: usize = 10;
 /// Failures at one time, of one method after the other, that end a run.
 const MOST_FAILURES: usize = 3;
 
-/// What a method has cost, in evaluations.
+/// The cost of a method, in evaluations.
 pub(super) fn cost(method: Method, counts: &Counts) -> f64 {
     let each = if method.information().is_implicit { SOLVED } else { 1.0 };
     each * counts.evaluations as f64 + FACTORIZED * counts.factorizations as f64

@@ -20,7 +20,7 @@ const SKEW_SOLVED_ONCE: f64 = 1e-9;
 
 pub(super) struct NewtonMatrix {
     pub(super) solver: ConstrainedSolver,
-    /// What the solver leaves out, as it is not symmetric.
+    /// The part that the solver leaves out, as it is not symmetric.
     pub(super) skew: Skew,
     pub(super) stiffness: Tangent,
     pub(super) damping: Tangent,
