@@ -58,8 +58,8 @@ fn round_off_of_what_is_held_is_not_warned_of() {
 fn a_bound_by_alpha_is_no_motion() {
     let told = |alpha: f64, viscosity: f64| {
         let body = square(Cells::Triangles, Material { viscosity, ..SOFT }).build().unwrap();
-        let phase = Phase::until(0.02).hold("bottom");
-        let scene = Scene::new(body).gravity([0.0, -9.8]).phase(phase);
+        let phase = Phase::until(0.02).hold("bottom").move_nodes("top", [0.0, -0.16]);
+        let scene = Scene::new(body).phase(phase);
         let settings = Settings { method: Method::Rk, alpha, ..Settings::default() };
         let motion = scene.simulate(&settings, &Sampling::every(0.01)).unwrap();
         motion.report().phases[0].counts.notice.clone()
@@ -71,26 +71,25 @@ fn a_bound_by_alpha_is_no_motion() {
     assert_eq!(told(1e3, 0.0), None);
 }
 
-/// Waves of 8 cells that run along a bar of bricks are not what a bar that bends is: linear cells are 1.05 times too stiff for them,
-/// (k h)^2/12, and not 1.2 times, as bricks that bend with the same jumps of strains are. The same bar in bending is told of.
+/// Waves of 6 cells along a bar of bricks, of whose energy (k h)^2/12, a tenth, is in jumps between cells (measured: 14 %, as they begin
+/// and end), are not told of as bending. The same bar, shaken across, is.
 #[test]
 fn waves_are_not_what_bends() {
-    let told = |loads: [f64; 2], poisson: f64| {
+    let told = |loads: [f64; 2]| {
         let mesh = Mesh::rectangle([0.4, 0.02], [41, 3], Cells::Rectangles).unwrap();
-        let body = Body::new(mesh, Material { poisson, ..SOFT }).strain(Strain::Cauchy);
+        let body = Body::new(mesh, SOFT).strain(Strain::Cauchy);
         let phase = Phase::until(0.04).hold("right");
-        let rate = std::f64::consts::TAU * f64::sqrt(SOFT.young / SOFT.density) / 0.08;
+        let rate = std::f64::consts::TAU * f64::sqrt(SOFT.young / SOFT.density) / 0.06;
         let shaken = phase.load_with("left", move |t| loads.map(|load| load * f64::sin(rate * t)));
         let scene = Scene::new(body.thickness(0.01).build().unwrap()).phase(shaken);
-        let motion = scene.simulate(&Settings::default(), &Sampling::every(0.002)).unwrap();
+        let settings = Settings { atol_position: Some(1e-9), ..Settings::default() };
+        let motion = scene.simulate(&settings, &Sampling::every(0.002)).unwrap();
         let indicators = motion.report().indicators.clone();
         indicators.into_iter().find(|told| told.name == "stiffness-of-cells").unwrap()
     };
-    let along = told([1e-3, 0.0], 0.3);
-    println!("{along}");
-    assert!(!along.is_doubtful() && along.value < 1.15, "{along}");
-    let across = told([0.0, 1e-3], 0.3);
-    println!("{across}");
+    let along = told([1e-3, 0.0]);
+    assert!(!along.is_doubtful() && (1.1..1.2).contains(&along.value), "{along}");
+    let across = told([0.0, 1e-3]);
     assert!(across.is_doubtful() && across.text.contains("where it bends"), "{across}");
 }
 
