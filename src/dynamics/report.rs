@@ -222,12 +222,11 @@ impl Report {
             Some(("integrator", format!("phase \"{}\": {notice}", phase.name)))
         };
         let mut warnings: Vec<_> = self.phases.iter().filter_map(notice).collect();
-        let doubt = creation(self.energy_created, self.energy_scale).or_else(|| {
-            let part = self.energy_error / self.energy_scale;
-            (part > DOUBTFUL).then(|| {
-                format!("the energy balance is off by {:.1} % of the largest energy", 100.0 * part)
-            })
-        });
+        // the balance is off by the larger of what was created and what was lost
+        let doubt = match self.energy_error > self.energy_created {
+            true => loss(self.energy_error, self.energy_scale),
+            false => creation(self.energy_created, self.energy_scale),
+        };
         warnings.extend(doubt.map(|doubt| {
             let help = "so the motion may be wrong: lower rtol, or choose another method";
             ("energy-balance", format!("{doubt}, {help}"))
@@ -252,6 +251,15 @@ pub(crate) fn creation(created: f64, scale: f64) -> Option<String> {
             "the integrator created {created:.1e} J, {:.1} % of the largest energy",
             100.0 * part
         )
+    })
+}
+
+/// The energy that the integrator has lost, in words, if a fall of the energy balance by `lost` (J) is more than a hundredth of
+/// `scale`, the largest energy (J).
+fn loss(lost: f64, scale: f64) -> Option<String> {
+    let part = lost / scale;
+    (part > DOUBTFUL).then(|| {
+        format!("the integrator lost {lost:.1e} J, {:.1} % of the largest energy", 100.0 * part)
     })
 }
 
@@ -393,5 +401,25 @@ impl Counts {
         self.contact_events += further.contact_events;
         (self.last_step, self.last_order) = (further.last_step, further.last_order);
         self.notice = self.notice.take().or(further.notice);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The balance is told by the larger of what was lost and what was created.
+    #[test]
+    fn energy_is_lost_or_created() {
+        let told = |energy_error, energy_created| {
+            let report =
+                Report { energy_error, energy_created, energy_scale: 1.0, ..Report::default() };
+            report.warnings()
+        };
+        assert!(told(0.009, 0.009).is_empty());
+        let [lost] = &told(0.18, 0.016)[..] else { panic!() };
+        assert!(lost.contains("lost 1.8e-1 J, 18.0 %") && !lost.contains("created"), "{lost}");
+        let [created] = &told(0.18, 0.18)[..] else { panic!() };
+        assert!(created.contains("created 1.8e-1 J, 18.0 %"), "{created}");
     }
 }

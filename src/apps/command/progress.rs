@@ -22,6 +22,8 @@ pub struct RunProgress {
     end: f64,
     /// When the bar was drawn last.
     drawn: Instant,
+    /// The notice that was shown last.
+    noticed: Option<String>,
 }
 
 /// Parts into which the bar divides the time of the scene.
@@ -57,7 +59,7 @@ impl RunProgress {
         };
         ctrlc::set_handler(stop)
             .map_err(|error| Failure::failed(format!("cannot watch for Ctrl-C: {error}")))?;
-        Ok(Self { bar, interrupted, stepping, end, drawn: Instant::now() })
+        Ok(Self { bar, interrupted, stepping, end, drawn: Instant::now(), noticed: None })
     }
 
     /// Called before the directory is made: from then on Ctrl-C waits for the step under way.
@@ -70,6 +72,16 @@ impl RunProgress {
         self.start();
         if self.interrupted.load(Ordering::Relaxed) {
             return ControlFlow::Break(());
+        }
+        let notice = simulation.notice();
+        if notice != self.noticed.as_deref() {
+            self.noticed = notice.map(str::to_owned);
+            if let Some(notice) = notice {
+                let phase = simulation.phase();
+                self.bar.suspend(|| {
+                    let _ = writeln!(io::stderr(), "pliant: WARNING: phase \"{phase}\": {notice}");
+                });
+            }
         }
         if self.drawn.elapsed() > PERIOD && !self.bar.is_hidden() {
             let (time, name) = (simulation.time(), simulation.phase());

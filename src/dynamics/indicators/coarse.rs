@@ -6,6 +6,7 @@
 
 use super::bending::stiffness;
 use super::mesh::quadratic_cells;
+use super::waves;
 use crate::base::input::four_digits;
 use crate::dynamics::report::Indicator;
 use crate::dynamics::trajectory::Sample;
@@ -36,12 +37,16 @@ pub(super) fn coarse(body: &Body, energy_scale: f64, samples: &[&Sample]) -> Opt
         return None;
     }
     let counts = samples.iter().filter(|sample| energy(sample) >= LARGE * largest);
-    let jumps = counts.filter_map(|sample| Some((body.strain_jumps(&sample.u)?, sample.time)));
-    let (jumps, time) = jumps.max_by(|(a, _), (b, _)| a.total_cmp(b))?;
-    let stiff = stiffness(body, jumps);
+    let jumps = counts.filter_map(|sample| Some((body.strain_jumps(&sample.u)?, sample)));
+    let (jumps, sample) = jumps.max_by(|(a, _), (b, _)| a.total_cmp(b))?;
     let [of_simplices, of_bricks] = MOST_STIFF;
     let is_brick = matches!(body.mesh().kind(), CellKind::Quadrilateral | CellKind::Hexahedron);
-    let most = if is_brick { of_bricks } else { of_simplices };
+    // bricks are the stiffer only where they bend
+    let (stiff, most, place) = match waves::explain(body, sample, jumps) {
+        true => (1.0 / (1.0 - jumps.min(0.99)), of_simplices, "along its waves"),
+        false if is_brick => (stiffness(body, jumps), of_bricks, "where it bends"),
+        false => (stiffness(body, jumps), of_simplices, "where it bends"),
+    };
     let within = || {
         format!(
             "cells are fine enough for their strains: the body is some {stiff:.2} times too stiff (limit: {most} times)"
@@ -52,8 +57,8 @@ pub(super) fn coarse(body: &Body, energy_scale: f64, samples: &[&Sample]) -> Opt
         format!(
             "cells are too coarse for their strains: at t = {} s {:.0} % of the strain energy is in jumps between \
              cells, so the body is some {stiff:.2} times too stiff or more (limit: {most} times); take {help}, or a \
-             mesh {:.1} times as fine where it bends",
-            four_digits(time),
+             mesh {:.1} times as fine {place}",
+            four_digits(sample.time),
             100.0 * jumps,
             finer.max(1.1)
         )

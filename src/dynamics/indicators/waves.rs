@@ -20,11 +20,47 @@ const QUADRATIC: f64 = 3.0;
 /// integration error.
 const SEEN: f64 = 1e-4;
 
+/// Factor on the part of the energy that jumps between cells have in a plane wave, up to which jumps are those of waves: waves of
+/// several directions, and of several lengths, have more.
+const OF_WAVES: f64 = 2.0;
+/// Least kinetic energy of a wave over its strain energy: both are the same in one that runs.
+const RUNS: f64 = 0.25;
+
+/// Whether waves explain that this part of the strain energy of a `sample` is in `jumps` between cells: (k h)^2/12 in a wave of
+/// the wave number k along cells of the length h, and far more where a body bends in few layers.
+pub(super) fn explain(body: &Body, sample: &Sample, jumps: f64) -> bool {
+    let runs = sample.energy.kinetic > RUNS * sample.energy.strain;
+    let cells = cells_in_a_wave(body, &[sample]).filter(|_| runs);
+    cells.is_some_and(|cells| jumps < OF_WAVES * (TAU / cells).powi(2) / 12.0)
+}
+
 /// Cells in a wavelength of the motion: 2 pi times the root mean square of its velocity over that of the
 /// change of velocity along the edges of a cell. For a single wave this is exact; for several it lies between
 /// their numbers, nearer to those of the short ones. Where inertia hardly acts (`is_static`), the number is
 /// for information only.
 pub(super) fn resolution(body: &Body, samples: &[&Sample], is_static: bool) -> Option<Indicator> {
+    let (kind, cells) = (body.mesh().kind(), cells_in_a_wave(body, samples)?);
+    if is_static {
+        let told = format!("a wavelength of the slow motion has some {} cells", short(cells));
+        return Some(Indicator::told("cells-in-a-wave", cells, "", told));
+    }
+    let quadratic = kind.is_quadratic();
+    let limit = if quadratic { QUADRATIC } else { LINEAR };
+    let said =
+        format!("a wavelength of the motion has some {} cells (limit: {limit})", short(cells));
+    let beyond = || {
+        let finer = short((limit / cells).max(1.1));
+        let or = quadratic_cells(kind).map_or(String::new(), |cells| format!(", or {cells}"));
+        format!(
+            "{said}: they make its waves too fast or too slow; take a mesh {finer} times as fine{or}"
+        )
+    };
+    let limits = [limit, f64::INFINITY];
+    Some(Indicator::trusted("cells-in-a-wave", (cells, ""), limits, || said.clone(), beyond))
+}
+
+/// See [`resolution`].
+fn cells_in_a_wave(body: &Body, samples: &[&Sample]) -> Option<f64> {
     let (mesh, d) = (body.mesh(), body.dimension());
     let (kind, volumes) = (mesh.kind(), body.cell_volumes());
     let [mut all, mut squares, mut changes] = [0.0; 3];
@@ -54,22 +90,5 @@ pub(super) fn resolution(body: &Body, samples: &[&Sample], is_static: bool) -> O
     if changes == 0.0 || squares <= SEEN * all {
         return None;
     }
-    let cells = TAU * (squares / changes).sqrt();
-    if is_static {
-        let told = format!("a wavelength of the slow motion has some {} cells", short(cells));
-        return Some(Indicator::told("cells-in-a-wave", cells, "", told));
-    }
-    let quadratic = kind.is_quadratic();
-    let limit = if quadratic { QUADRATIC } else { LINEAR };
-    let said =
-        format!("a wavelength of the motion has some {} cells (limit: {limit})", short(cells));
-    let beyond = || {
-        let finer = short((limit / cells).max(1.1));
-        let or = quadratic_cells(kind).map_or(String::new(), |cells| format!(", or {cells}"));
-        format!(
-            "{said}: they make its waves too fast or too slow; take a mesh {finer} times as fine{or}"
-        )
-    };
-    let limits = [limit, f64::INFINITY];
-    Some(Indicator::trusted("cells-in-a-wave", (cells, ""), limits, || said.clone(), beyond))
+    Some(TAU * (squares / changes).sqrt())
 }

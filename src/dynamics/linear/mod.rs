@@ -1,7 +1,7 @@
 //! The linear systems of a phase.
 //!
 //! The free part of a matrix of half the size of the state, the inertia or the Newton matrix, is factorized, or large solids iterate
-//! with it ([`symmetric`]). Constraints ([`ConstrainedSolver`]), edges of rigid pieces ([`edge_solver`]) and what flows
+//! with it ([`symmetric`]); what is not symmetric follows by an iteration ([`Skew`]). Constraints ([`ConstrainedSolver`]), edges of rigid pieces ([`edge_solver`]) and what flows
 //! ([`FlowMatrix`]) add systems of the size of their number. Many pieces are eliminated to their [rigid motions](rigid_motions).
 
 mod cholesky;
@@ -18,6 +18,7 @@ mod motion_groups;
 mod rigid_motions;
 mod schur;
 mod simplex;
+mod skew;
 mod symmetric;
 
 pub(crate) use cholesky::Indefinite;
@@ -25,3 +26,4 @@ pub(crate) use constrained_solver::{ConstrainedSolver, EXACT, nodal_multipliers}
 pub(crate) use edges::{Edges, stabilized};
 pub(crate) use entry_source::{Coupling, EntrySource};
 pub(crate) use flow_matrix::FlowMatrix;
+pub(crate) use skew::Skew;

@@ -104,7 +104,7 @@ pub(super) fn counts<I: Integrator>(integrator: &I, equations: &dyn PhaseSystem)
         last_step: s.last_step,
         last_order: s.last_order,
         // where surfaces turn about each other a few are what contact takes
-        notice: integrator.notice().or_else(|| {
+        notice: stabilization(integrator, system).or_else(|| integrator.notice()).or_else(|| {
             let has_met = system.pattern_changes() > 0;
             let few = if has_met { 2 + s.linear_setups as usize / MANY } else { 0 };
             // where a rigid piece is pressed together, what its edges hold is none of M + gamma^2 Kt
@@ -112,6 +112,21 @@ pub(super) fn counts<I: Integrator>(integrator: &I, equations: &dyn PhaseSystem)
             compression(told)
         }),
     }
+}
+
+/// The rate of what is seen of a double eigenvalue -alpha, over alpha, at most.
+const DOUBLE: f64 = 1.5;
+
+/// A notice if the stabilization of constraints bounds the steps of an explicit method: no motion does.
+fn stabilization<I: Integrator>(integrator: &I, system: &System) -> Option<String> {
+    let (rate, alpha) = (integrator.bounding_rate()?, system.alpha());
+    (system.is_constrained() && rate < DOUBLE * alpha).then(|| {
+        format!(
+            "alpha, by which constraints are stabilized, bounds the steps to 3.3/alpha = {:.2e} s, no motion of the body: lower alpha, or \
+             use another method, which alpha costs nothing",
+            3.3 / alpha
+        )
+    })
 }
 
 /// Factorizations for each one of a matrix that is not positive definite, where bodies have met.

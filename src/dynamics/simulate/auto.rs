@@ -37,16 +37,22 @@ pub(super) struct Plan {
     /// Steps (s) below which, after so many of them, another method is tried; 0 where none is.
     pub(super) expected_step: f64,
     pub(super) patience_of_probes: usize,
+    /// Trials so far.
+    pub(super) trials: usize,
     /// The plan that this one is tried in place of.
     pub(super) probe: Option<Probe>,
+    /// Whether bodies may touch obstacles or each other.
+    pub(super) touches: bool,
+    /// Time (s) at which the last method has failed, and how many have failed there one after the other.
+    pub(super) failed: (f64, usize),
 }
 
 /// A trial of another method.
 #[derive(Clone)]
 pub(super) struct Probe {
-    /// The plan to return to, and the mean of its last steps (s).
+    /// The plan to return to, and what a second of the motion has cost with it.
     pub(super) before: Box<Plan>,
-    pub(super) step: f64,
+    pub(super) cost: f64,
 }
 
 /// Damping ratio of the lowest vibration from which BDF is chosen. Hirai's bodies lie well on both sides:
@@ -119,6 +125,7 @@ pub(super) const LONG: usize = TRIAL * TRIALS;
 /// Steps of a plan after which another method is tried, if as many or more are still to come; twice as many before each
 /// further trial. The first trial of ARKODE costs as much as a third of them.
 pub(super) const PATIENCE: usize = 1024;
+pub(super) const PATIENCE_OF_TOUCHES: usize = 256;
 
 /// Part of the period of the slowest vibration below which steps are far too short for the motion to be the reason. BDF takes
 /// some 100 steps for a period where accuracy bounds them, up to 5000 where nodes come to a floor and leave it, and above 10,000
@@ -145,7 +152,10 @@ impl Plan {
                 implicit_step: 0.0,
                 expected_step: 0.0,
                 patience_of_probes: 0,
+                trials: 0,
                 probe: None,
+                touches: false,
+                failed: (f64::NAN, 0),
             };
         }
         let n = equations.full().dofs();
@@ -161,6 +171,7 @@ impl Plan {
             order => (part(method, asked.rtol), order),
         };
         let relaxation = system.relaxation_rate();
+        let touches = system.touches();
         let is_for_central = system.is_lumped() && system.layout().internal().is_empty();
         Self {
             settings: given(asked, method, max_order, part),
@@ -173,8 +184,11 @@ impl Plan {
             implicit_step: 0.0,
             // steps over light vibrations are long, or as short as accuracy asks for
             expected_step: FAR_TOO_SHORT * period.unwrap_or(0.0),
-            patience_of_probes: PATIENCE,
+            patience_of_probes: if touches { PATIENCE_OF_TOUCHES } else { PATIENCE },
+            trials: 0,
             probe: None,
+            touches,
+            failed: (f64::NAN, 0),
         }
     }
 
@@ -432,7 +446,10 @@ mod tests {
             implicit_step: 0.0,
             expected_step: 0.0,
             patience_of_probes: PATIENCE,
+            trials: 0,
             probe: None,
+            touches: false,
+            failed: (f64::NAN, 0),
         };
         plan.reconsidered(means, TRIAL).map(|plan| plan.settings.method)
     }

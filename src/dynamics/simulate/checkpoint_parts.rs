@@ -38,6 +38,11 @@ pub(crate) struct Choice {
     pub(crate) expected_step: f64,
     #[serde(default)]
     pub(crate) patience_of_probes: usize,
+    /// Trials so far, and whether bodies may touch.
+    #[serde(default)]
+    pub(crate) trials: usize,
+    #[serde(default)]
+    pub(crate) touches: bool,
 }
 
 fn name<S: Serializer>(method: &Method, to: S) -> Result<S::Ok, S::Error> {
@@ -77,6 +82,8 @@ impl Checkpoint {
             implicit_step,
             expected_step,
             patience_of_probes,
+            trials,
+            touches,
             ..
         } = self.plan.settled();
         Some(Choice {
@@ -90,6 +97,8 @@ impl Checkpoint {
             implicit_step: *implicit_step,
             expected_step: *expected_step,
             patience_of_probes: *patience_of_probes,
+            trials: *trials,
+            touches: *touches,
         })
     }
 }
@@ -108,6 +117,8 @@ impl Choice {
             implicit_step,
             expected_step,
             patience_of_probes,
+            trials,
+            touches,
         } = self;
         if method == Method::Auto {
             return Err(InputError::new("chosen method", method, "it must be one of the others"));
@@ -134,7 +145,10 @@ impl Choice {
             implicit_step,
             expected_step,
             patience_of_probes,
+            trials,
             probe: None,
+            touches,
+            failed: (f64::NAN, 0),
         })
     }
 }

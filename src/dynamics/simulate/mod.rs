@@ -10,6 +10,7 @@ mod checkpoint_parts;
 mod commands;
 mod component;
 mod contact_gauge;
+mod crawl;
 #[cfg(feature = "study")]
 mod derivative;
 mod events;

@@ -3,9 +3,11 @@
 use std::time::Instant;
 
 use super::auto::{LONG, Plan, TRIALS};
+use super::crawl::Crawl;
 use super::events::Events;
 use super::interval::{Ending, Interval};
 use super::sampling::Schedule;
+use super::stalled::cost;
 use crate::dynamics::phase::{Failed, Integrable, Stepper};
 use crate::dynamics::report::{Counts, PhaseReport};
 use crate::scene::settings::Method;
@@ -29,6 +31,7 @@ pub(super) struct PhaseRun {
     /// First step of the next integrator (s), if it is known.
     pub(super) first_step: Option<f64>,
     pub(super) mean_steps: MeanSteps,
+    pub(super) crawl: Crawl,
     /// Cost of the integrators that have ended.
     counts: Counts,
     /// Unknowns of the last one.
@@ -77,6 +80,8 @@ pub(super) struct MeanSteps {
     /// When the first one began (s).
     began: f64,
     reviewed: usize,
+    /// The cost of the phase then.
+    spent: f64,
     /// When the first one of these began (s).
     review_began: f64,
 }
@@ -98,10 +103,6 @@ impl MeanSteps {
     /// Steps up to `time` (s) since the last review, or since the plan was chosen, and their mean size (s).
     pub(super) fn since_review(&self, time: f64) -> (usize, f64) {
         (self.reviewed, (time - self.review_began) / self.reviewed.max(1) as f64)
-    }
-
-    pub(super) fn begin_review(&mut self) {
-        self.reviewed = 0;
     }
 }
 
@@ -142,6 +143,7 @@ impl PhaseRun {
             commanded: f64::NAN,
             first_step: None,
             mean_steps: MeanSteps::default(),
+            crawl: Crawl::default(),
             counts: Counts::default(),
             states: 0,
         }
@@ -150,6 +152,7 @@ impl PhaseRun {
     /// Continues with another plan.
     pub(super) fn follow(&mut self, plan: Plan) {
         (self.plan, self.mean_steps) = (plan, MeanSteps::default());
+        self.begin_review(None);
         self.counts.notice = None;
     }
 
@@ -157,6 +160,25 @@ impl PhaseRun {
     pub(super) fn restart(&mut self, counts: Counts) {
         self.counts.add(counts);
         self.mean_steps = MeanSteps::default();
+        self.begin_review(None);
+    }
+
+    /// The cost of the phase so far, with the present integrator.
+    fn spent(&self, stepper: Option<&dyn Stepper>) -> f64 {
+        let method = self.plan.settings.method;
+        let now = stepper.map_or(0.0, |stepper| cost(method, &stepper.counts()));
+        cost(method, &self.counts) + now
+    }
+
+    /// Begins a review of the plan.
+    pub(super) fn begin_review(&mut self, stepper: Option<&dyn Stepper>) {
+        (self.mean_steps.reviewed, self.mean_steps.spent) = (0, self.spent(stepper));
+    }
+
+    /// The cost of a second of the motion since the last review, up to `time` (s).
+    pub(super) fn cost(&self, time: f64, stepper: &dyn Stepper) -> f64 {
+        let MeanSteps { spent, review_began, .. } = self.mean_steps;
+        (self.spent(Some(stepper)) - spent) / (time - review_began)
     }
 
     /// Ends an integrator and returns its equations.
@@ -185,6 +207,9 @@ impl PhaseRun {
         if reason.is_some() && settings.method == Method::Rk {
             // the automatic choice of methods already takes care of what it notices about stability
             counts.notice = None;
+        }
+        if let Some(told) = &self.crawl.told {
+            counts.notice = Some(told.clone());
         }
         PhaseReport {
             name: phase.name.clone(),

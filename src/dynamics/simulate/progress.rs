@@ -20,6 +20,8 @@ pub struct Progress<'a> {
     pub step: f64,
     /// Order of the last step.
     pub order: u32,
+    /// Why steps are far too short for the phase, and what to try, once a thousand of them were.
+    pub notice: Option<&'a str>,
     /// The samples so far. Where a method could not be trusted, the run goes back and its samples are
     /// discarded.
     pub trajectory: &'a Trajectory,

@@ -227,7 +227,7 @@ impl Run {
                     let mut ended = self.try_step(&mut work, bound, observer);
                     self.integration = Integration::Running(work);
                     if let Err(source) = &ended
-                        && let Some(before) = self.phase_run.plan.after_failure(source)
+                        && let Some(before) = self.phase_run.plan.after_failure(source, self.time)
                     {
                         ended = Ok(Some(Ending::Better(before)));
                     }
@@ -584,6 +584,11 @@ impl Run {
             }
             _ => (0.0, 0),
         }
+    }
+
+    /// The notice of steps that are far too short for the phase.
+    pub(super) fn notice(&self) -> Option<&str> {
+        self.phase_run.crawl.told.as_deref()
     }
 
     /// The error of a run that was stopped.

@@ -250,6 +250,11 @@ impl Simulation {
         self.run.last_step()
     }
 
+    /// Why steps are far too short for the present phase, and what to try, once a thousand of them were.
+    pub fn notice(&self) -> Option<&str> {
+        self.run.notice()
+    }
+
     /// Advances time to `t` (s). Returns whether `t` was reached: an action of [`when`](Self::when) may have
     /// stopped it before.
     ///

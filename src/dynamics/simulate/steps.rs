@@ -7,7 +7,7 @@
 //! start, and after a phase that ended out of order from there, so that later phases are judged by their own
 //! errors. (Counted from each checkpoint, small rises could add up unnoticed.)
 
-use super::auto::{LONG, PATIENCE, TRIAL};
+use super::auto::{LONG, TRIAL};
 use super::events::Met;
 use super::failure::{STANDING, crawling, out_of_time, standing_still, too_many_steps};
 use super::interval::{Ending, Outcome, RollbackPoint};
@@ -76,11 +76,17 @@ impl Run {
                 }
             }
         }
+        let (touches, length) = (work.stepper.system().full().touches(), self.phase_length());
+        let counts = || work.stepper.counts();
+        self.phase_run.crawl.add([start, self.time], length, touches, counts);
         self.report_progress(step, work.stepper.last_order(), observer)?;
         let led = self.phase_run.mean_steps.add([start, self.time]);
         let (taken, mean) = self.phase_run.mean_steps.since_review(self.time);
-        if let Some(before) = self.phase_run.plan.settle(taken, mean) {
-            return Ok(Some(Ending::Better(before)));
+        if self.phase_run.plan.is_judged(taken) {
+            let cost = self.phase_run.cost(self.time, &*work.stepper);
+            if let Some(before) = self.phase_run.plan.settle(cost) {
+                return Ok(Some(Ending::Better(before)));
+            }
         }
         if let Some(mean) = led {
             let refusal = work.stepper.system().full().refusal();
@@ -91,12 +97,14 @@ impl Run {
                 return Ok(Some(Ending::Better(other)));
             }
         }
-        if taken >= self.phase_run.plan.patience_of_probes.max(PATIENCE) {
+        let patience = self.phase_run.plan.patience_of_probes;
+        if patience > 0 && taken >= patience {
             let left = self.phase.until - self.time;
-            if let Some(other) = self.phase_run.plan.stalled(mean, taken, left) {
+            let cost = self.phase_run.cost(self.time, &*work.stepper);
+            if let Some(other) = self.phase_run.plan.stalled(mean, taken, left, cost) {
                 return Ok(Some(Ending::Better(other)));
             }
-            self.phase_run.mean_steps.begin_review();
+            self.phase_run.begin_review(Some(&*work.stepper));
         }
         if is_event {
             return Ok(Some(Ending::Event));
@@ -117,6 +125,12 @@ impl Run {
     pub(super) fn created(&self, balance: f64) -> (f64, f64) {
         let scale = self.trajectory.report.energy_scale.max(self.least_energy);
         (balance - self.balance, scale)
+    }
+
+    /// How long the phase lasts (s).
+    fn phase_length(&self) -> f64 {
+        let start = self.number.checked_sub(1).map_or(0.0, |k| self.scene.phases()[k].end());
+        self.phase.until - start
     }
 
     /// Keeps the present state to go back to.
@@ -226,8 +240,7 @@ impl Run {
 
     /// Keeps now and then what a reduced model leaves over.
     fn check_reduced(&mut self, system: &mut dyn PhaseSystem) -> Result<(), Failure> {
-        let start = self.number.checked_sub(1).map_or(0.0, |k| self.scene.phases()[k].end());
-        let phase = [start, self.phase.until];
+        let phase = [self.phase.until - self.phase_length(), self.phase.until];
         let left_over = system.left_over(self.time, &self.state, phase)?;
         let Some(left_over) = left_over else { return Ok(()) };
         let first = &self.trajectory.samples()[0].u;
@@ -280,7 +293,9 @@ impl Run {
         let Self { time, steps, number, .. } = *self;
         let name = &self.phase.name;
         let (phase, trajectory) = (number, &self.trajectory);
-        let answer = observer(&Progress { time, phase, name, steps, step, order, trajectory });
+        let notice = self.phase_run.crawl.told.as_deref();
+        let answer =
+            observer(&Progress { time, phase, name, steps, step, order, notice, trajectory });
         // after the last step there is nothing left to stop
         if answer.is_break() && time < self.scene.end() { Err(Interrupted.into()) } else { Ok(()) }
     }

@@ -60,12 +60,12 @@ impl System {
     /// Prepares what the Newton matrix, just factorized, lacks of gas that flows.
     pub(super) fn condense_flow(&mut self) {
         let newton = &mut self.newton;
+        if newton.flow.is_none() {
+            return;
+        }
+        newton.demand_nothing();
         let Some(matrix) = &mut newton.flow else { return };
         matrix.condense(newton.gamma);
-        newton.demands.fill(0.0);
-        if let Some(edges) = &mut newton.solver.edges {
-            edges.demands.fill(0.0);
-        }
         let (dofs, k) = (matrix.column.len(), matrix.rooms);
         for column in 0..k {
             if !matrix.is_stiff(column) {

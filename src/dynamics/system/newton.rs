@@ -10,7 +10,8 @@
 //! xu = ru + gamma xv
 //! ```
 //!
-//! This needs one sparse symmetric matrix N of half the size; alpha costs nothing, however large.
+//! This needs one sparse matrix N of half the size; alpha costs nothing, however large. Its symmetric part is factorized, and what is left
+//! of it follows by an iteration (`linear/skew.rs`).
 //!
 //! Maxwell branches are eliminated point by point (`elements/body/branches.rs`), so that Kt includes their
 //! effect in a step of gamma. Amounts of gas are eliminated as well; what they add to Kt is of the rank of their number,
@@ -32,7 +33,7 @@ use super::System;
 use super::newton_matrix::{ITERATED, NewtonMatrix, SOLVED_ONCE};
 use crate::base::sparse::BlockMatrix;
 use crate::base::vector::{dot, largest};
-use crate::dynamics::linear::{EntrySource, Indefinite, nodal_multipliers, stabilized};
+use crate::dynamics::linear::{EntrySource, Indefinite, Skew, nodal_multipliers, stabilized};
 use crate::dynamics::matrices::Matrices;
 use crate::dynamics::state::State;
 use crate::integrators::ode::Failure;
@@ -177,13 +178,21 @@ impl System {
     /// Sets N, positive definite.
     fn begin_newton(&mut self, gamma: f64) -> Result<(), Indefinite> {
         self.newton.gamma = gamma;
-        let NewtonMatrix { solver, stiffness, damping, is_damped, accuracy, .. } = &mut self.newton;
+        let NewtonMatrix { solver, skew, stiffness, damping, is_damped, accuracy, follows, .. } =
+            &mut self.newton;
         let (stiffness, damping) = (stiffness.get(), damping.get());
         let inertia = &self.matrices.inertia;
+        if *follows {
+            let block = (&**stiffness.pattern(), stiffness.dimension());
+            let size = block.1 * block.1;
+            skew.set(block, &self.rows, |entry, at| {
+                let at = entry * size + at;
+                gamma * (damping.values[at] + gamma * stiffness.values[at])
+            });
+        }
         solver.begin(*accuracy, |source: EntrySource| {
             let (entry, transposed, axes) = (source.entry(), source.transposed(), source.axes());
             let mass = if axes[0] == axes[1] { inertia.values[entry] } else { 0.0 };
-            // the symmetric part: tangents of viscosity and contact need not be symmetric
             let part = |matrix: &BlockMatrix| matrix.symmetric(entry, transposed, axes);
             let damped = if *is_damped { part(damping) } else { 0.0 };
             mass + gamma * (damped + gamma * part(stiffness))
@@ -216,6 +225,42 @@ impl System {
 
     /// Sets xv, and mu of general rows, for the right-hand side and the demands, under the resistance of amounts.
     pub(super) fn solve_resisted(&mut self) {
+        let mut skew = std::mem::take(&mut self.newton.skew);
+        if !skew.is_zero() {
+            self.newton.keep(&mut skew.kept);
+        }
+        self.solve_symmetric();
+        if !skew.is_zero() {
+            self.add_skew(&mut skew);
+        }
+        self.newton.skew = skew;
+    }
+
+    /// Corrects the solution by the symmetric part of N where the other part matters.
+    fn add_skew(&mut self, skew: &mut Skew) {
+        let enough = self.newton.enough() * skew.size(&skew.kept[0]);
+        let mut left = skew.begin(&self.newton.xv);
+        if left <= enough {
+            return;
+        }
+        self.newton.demand_nothing();
+        for number in 0..skew.most() {
+            skew.write(number, &mut self.newton.right);
+            self.solve_symmetric();
+            left = skew.extend(number, &self.newton.xv);
+            if left <= enough {
+                break;
+            }
+        }
+        skew.finish();
+        self.newton.restore(&skew.kept);
+        skew.add(1.0, &mut self.newton.right);
+        self.solve_symmetric();
+        skew.add(-1.0, &mut self.newton.right);
+    }
+
+    /// As [`solve_resisted`](Self::solve_resisted), by the symmetric part of N.
+    fn solve_symmetric(&mut self) {
         let NewtonMatrix { solver, right, xv, demands, mu, flow, .. } = &mut self.newton;
         solver.solve(&self.rows, right, demands, xv, mu);
         if let Some(flow) = flow {

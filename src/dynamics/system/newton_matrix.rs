@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::differences::Differences;
 use crate::base::sparse::BlockMatrix;
-use crate::dynamics::linear::{ConstrainedSolver, Edges, FlowMatrix};
+use crate::dynamics::linear::{ConstrainedSolver, Edges, FlowMatrix, Skew};
 use crate::dynamics::matrices::Matrices;
 use crate::scene::constraint::ConstraintRow;
 
@@ -14,8 +14,14 @@ use crate::scene::constraint::ConstraintRow;
 pub(super) const ITERATED: f64 = 1e-5;
 pub(super) const SOLVED_ONCE: f64 = 1e-11;
 
+/// The same for what is not symmetric, which a Newton iteration and a Rosenbrock method of order 4 must know.
+const SKEW_ITERATED: f64 = 1e-3;
+const SKEW_SOLVED_ONCE: f64 = 1e-9;
+
 pub(super) struct NewtonMatrix {
     pub(super) solver: ConstrainedSolver,
+    /// The part that the solver leaves out, as it is not symmetric.
+    pub(super) skew: Skew,
     pub(super) stiffness: Tangent,
     pub(super) damping: Tangent,
     pub(super) differences: Differences,
@@ -98,6 +104,7 @@ impl NewtonMatrix {
         let dofs = matrices.dofs();
         Self {
             solver: ConstrainedSolver::of_newton_matrix(matrices, rows, edges),
+            skew: Skew::default(),
             stiffness: Tangent::new(matrices, &matrices.stiffness, follows),
             damping: Tangent::new(matrices, &matrices.damping, follows),
             differences: Differences::new(matrices.scales),
@@ -133,9 +140,40 @@ impl NewtonMatrix {
         self.patterns += 1;
     }
 
+    /// Residual, relative to the right-hand side, that may be left of what is not symmetric.
+    pub(super) fn enough(&self) -> f64 {
+        if self.iterates() { SKEW_ITERATED } else { SKEW_SOLVED_ONCE }
+    }
+
     /// Whether the residuals of its systems are evaluated again and solutions corrected.
     pub(super) fn iterates(&self) -> bool {
         self.accuracy == ITERATED
+    }
+
+    /// Keeps the right-hand side and the demands, of rows and of edges.
+    pub(super) fn keep(&self, [right, demands, of_edges]: &mut [Vec<f64>; 3]) {
+        right.clone_from(&self.right);
+        demands.clone_from(&self.demands);
+        if let Some(edges) = &self.solver.edges {
+            of_edges.clone_from(&edges.demands);
+        }
+    }
+
+    /// Has those again that were kept.
+    pub(super) fn restore(&mut self, [right, demands, of_edges]: &[Vec<f64>; 3]) {
+        self.right.copy_from_slice(right);
+        self.demands.copy_from_slice(demands);
+        if let Some(edges) = &mut self.solver.edges {
+            edges.demands.copy_from_slice(of_edges);
+        }
+    }
+
+    /// Demands 0 of all constraints.
+    pub(super) fn demand_nothing(&mut self) {
+        self.demands.fill(0.0);
+        if let Some(edges) = &mut self.solver.edges {
+            edges.demands.fill(0.0);
+        }
     }
 
     /// Starts all counts from 0.

@@ -74,9 +74,19 @@ impl System {
             ConstrainedSolver::of_newton_matrix(&self.matrices, &self.rows, &self.edges);
     }
 
+    /// Whether bodies may touch obstacles or each other.
+    pub(crate) fn touches(&self) -> bool {
+        self.forces.iter().any(|force| force.capabilities().contact.is_some())
+    }
+
     /// Whether rigid pieces move in it.
     pub(crate) fn has_edges(&self) -> bool {
         !self.edges.list.is_empty()
+    }
+
+    /// The rate (1/s) by which constraints are stabilized.
+    pub(crate) fn alpha(&self) -> f64 {
+        self.alpha
     }
 
     /// Whether constraints are stabilized, those of rigid pieces included.

@@ -127,6 +127,11 @@ pub trait Integrator {
         None
     }
 
+    /// The rate |lambda| (1/time) that bounds the steps of an explicit method, where stability does, not accuracy.
+    fn bounding_rate(&self) -> Option<f64> {
+        None
+    }
+
     /// The system.
     fn system(&self) -> &Self::System;
 

@@ -132,4 +132,9 @@ pub trait StepMethod: fmt::Debug {
     fn notice(&self) -> Option<String> {
         None
     }
+
+    /// [`Integrator::bounding_rate`](super::Integrator::bounding_rate).
+    fn bounding_rate(&self) -> Option<f64> {
+        None
+    }
 }

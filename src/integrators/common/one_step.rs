@@ -413,6 +413,10 @@ impl<S: Ode, M: StepMethod> Integrator for OneStep<S, M> {
         self.method.notice()
     }
 
+    fn bounding_rate(&self) -> Option<f64> {
+        self.method.bounding_rate()
+    }
+
     fn system(&self) -> &S {
         &self.march.system
     }

@@ -130,6 +130,10 @@ impl StepMethod for Pair {
     fn notice(&self) -> Option<String> {
         self.monitor.limit().map(|limit| limit.to_string())
     }
+
+    fn bounding_rate(&self) -> Option<f64> {
+        self.monitor.limit().map(|limit| limit.rate)
+    }
 }
 
 impl Pair {

@@ -26,8 +26,8 @@
 //! where it began to stick; such an anchor is a memory, and samples, pictures, sensors, forks and
 //! checkpoints, which evaluate forces anew, would all have to carry it
 //! (`docs/decisions/0007-contact-by-an-energy.md`). Tangents are exact and not symmetric: in sliding,
-//! friction follows the normal force with the coupling mu K_p. The Newton matrix has their symmetric part,
-//! positive definite with the inertia (measured in `docs/notes/contact.md`). Friction that falls with the
+//! friction follows the normal force with the coupling mu K_p. The symmetric part of the Newton matrix is factorized,
+//! the rest follows by an iteration (`dynamics/linear/skew.rs`, measured in `docs/notes/contact.md`). Friction that falls with the
 //! speed is negative damping, so that a matrix is factorized by LU now and then. Where the normal force stops
 //! pressing there is a switch, like the cut-off of damping without adhesion. Explicit steps are bounded as if
 //! all sliding points stuck (`ContactForce::add_reserves`): a sticking point is a damper of the rate 3 mu_s N/(2 v0
