@@ -2,8 +2,8 @@
 
 use pliant::simulate::Reading;
 use pliant::{
-    Body, Cells, Joint, Material, Mesh, Method, Moments, Phase, RigidMass, Sample, Sampling, Scene,
-    Settings, SolidCells,
+    Body, Cells, Joint, Material, Mesh, Method, Moments, Phase, RigidMass, Rod, RodSection, Sample,
+    Sampling, Scene, Settings, SolidCells,
 };
 
 const MASS: f64 = 0.3;
@@ -183,12 +183,14 @@ fn what_couples_nothing_is_refused() {
         println!("{message}");
         assert!(words.iter().all(|word| message.contains(word)), "{message}");
     }
-    // a motor between the world and what is held
-    let pin = Joint::revolute("pin", ["world", "a"], [0.0, 0.0]);
-    let scene = Scene::new(wheels().unwrap()).joint(pin);
-    let phase = Phase::until(1.0).hold("a").device_input("pin", &Joint::TORQUE, 1.0);
-    let settings = Settings::default();
-    let message = scene.phase(phase).simulate(&settings, &Sampling::phase_ends());
+    // a motor between the world and a section that is held
+    let section = RodSection::Circle { radius: 0.01 };
+    let steel = Material { density: 1000.0, young: 1e7, poisson: 0.3, viscosity: 0.0 };
+    let rod = Body::rod(Rod::new([[0.0, 0.0], [0.2, 0.0]], 2, section), steel).unwrap();
+    let pin = Joint::revolute("pin", ["world", "start"], [0.0, 0.0]);
+    let scene = Scene::new(rod.build().unwrap()).joint(pin);
+    let phase = Phase::until(1.0).hold("start-section").device_input("pin", &Joint::TORQUE, 1.0);
+    let message = scene.phase(phase).simulate(&Settings::default(), &Sampling::phase_ends());
     let message = message.unwrap_err().to_string();
     assert!(message.contains("joint \"pin\"") && message.contains("held"), "{message}");
 }

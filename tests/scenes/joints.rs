@@ -496,7 +496,11 @@ fn what_is_no_joint_is_refused() {
         (revolute(["bar", "lower"]).axis([0.0, 1.0]), "axis of joint \"elbow\"", "leave it out"),
         (prismatic(["world", "lower"]), "axis of joint \"elbow\"", "2 components"),
         (prismatic(["world", "lower"]).axis([0.0, 0.0]), "axis of joint \"elbow\"", "direction"),
-        (prismatic(["bar", "lower"]).axis([1.0, 0.0]), "between of joint \"elbow\"", "world"),
+        (
+            prismatic(["bar", "lower"]).axis([1.0, 0.0]),
+            "bearing_stiffness of joint \"elbow\"",
+            "give one",
+        ),
         (revolute(["bar", "lower"]).stops([0.5, -0.5], 1.0), "stops of joint", "lower one"),
         (revolute(["bar", "lower"]).stops([-4.0, 4.0], 1.0), "stops of joint", "whole turn"),
         (revolute(["bar", "lower"]).damping(-1.0), "damping of joint", "0 or above"),

@@ -62,7 +62,8 @@ fn a_rod_lies_on_an_obstacle_at_its_radius() {
     let sunk = -motion.last().u[3 * 2 + 2];
     let expected = mass() * G / (stiffness * width * LENGTH);
     println!("{sunk:e} of {expected:e}, {:?} of {}", motion.last().sensors, mass() * G);
-    assert!((sunk / expected - 1.0).abs() < 2e-2);
+    // it bounces on, less and less: 1.2e-3 was found
+    assert!((sunk / expected - 1.0).abs() < 4e-3);
     assert!((motion.last().sensors[2] / (mass() * G) - 1.0).abs() < 1e-3);
 }
 
@@ -95,8 +96,9 @@ fn a_rod_slides_and_rolls_on_a_block() {
             motion.last().sensors,
             motion.report().steps()
         );
-        assert!((motion.last().sensors[2] / weight - 1.0).abs() < 1e-2);
-        assert!(off.abs() < 1e-2, "{speed}");
+        assert!((motion.last().sensors[2] / weight - 1.0).abs() < 1e-3);
+        // it creeps below the sticking speed, and falls on: 1.1e-3 and 4.4e-4 were found
+        assert!(off.abs() < 3e-3, "{speed}");
     }
 }
 

@@ -107,7 +107,9 @@ pub(super) const GEAR: TableKeys = TableKeys::new(
         Key::number("stiffness", "the stiffness of the teeth at this joint", "N m/rad or N/m").required(),
         Key::number("damping", "their damping", "N m s or N s/m").default("0"),
     ],
-    "gear = { joint = \"motor\", teeth = [12, 60], stiffness = 1.0e3 }",
+    "[[joint]]\nname = \"motor\"\nkind = \"revolute\"\nbetween = [\"world\", \"left\"]\nat = [0.0, 0.05]\n\n\
+     [[joint]]\nname = \"wheel\"\nkind = \"revolute\"\nbetween = [\"world\", \"right\"]\nat = [0.1, 0.05]\n\
+     gear = { joint = \"motor\", teeth = [12, 60], stiffness = 1.0e3 }",
 )
 .one_of(&[&["teeth"], &["lead"]]);
 
