@@ -61,12 +61,10 @@ impl Crawl {
         };
         let help = match touches {
             true => {
-                "where bodies touch: raise `sticking_speed`, lower `stiffness_density`, loosen rtol, or take another method \
-                 (rosenbrock, arkode)"
+                "where bodies touch: raise `sticking_speed`, lower `stiffness_density`, loosen rtol, or take another method"
             }
             false => {
-                "look for a contact, spring or damper that is far stiffer than the body; loosen rtol, or take another method \
-                 (rosenbrock, arkode)"
+                "look for a contact, spring or damper that is far stiffer than the body; loosen rtol, or take another method"
             }
         };
         self.told = Some(format!(
