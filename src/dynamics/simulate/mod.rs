@@ -28,6 +28,7 @@ mod reduced_checks;
 mod resolution;
 mod rigid_fit;
 mod run;
+mod same_steps;
 mod sampling;
 mod sensor;
 mod simulation;
