@@ -365,3 +365,27 @@ def test_smaller_models_read_what_the_whole_does():
         assert abs(smaller.run().sensors["end"][-1] - end) < 1e-8 * end
     with pytest.raises(pliant.SceneError, match="solver.plane"):
         scene.in_plane("x")
+
+
+def test_a_gradient():
+    scene = pliant.Scene.from_toml(
+        """
+        body = { mesh = { kind = "bar", length = 0.1, nodes = 2 }, area = 1e-4, strain = "cauchy", material = { density = 1e3, young = 1e5, poisson = 0.0, viscosity = 20.0 } }
+        phase = { name = "pull", until = 0.05, hold = { nodes = "left" }, load = { nodes = "right", force = [0.1] } }
+        sensor = { name = "tip", kind = "displacement", nodes = "right" }
+        """
+    )
+    force, young = "phase.pull.load.force.1", "body.material.young"
+    found = scene.gradient("tip.x", by=[force, young])
+    # the bar is linear
+    assert found.by == [force, young] and abs(found[force] * 0.1 / found.value - 1.0) < 1e-6
+    assert found.derivatives.shape == (2,) and (found.errors < 1e-5 * abs(found.derivatives)).all()
+    assert found.unit == "m" and not found.warnings and "same-steps" in str(found)
+    still = scene.gradient("tip.x", by=young, static=True)
+    assert abs(still[young] + still.value / 1e5) <= still.errors[0] + 1e-17
+    squares = scene.gradient(by=young, measured={"t": [0.05], "tip.x": [0.0]})
+    assert abs(squares[young] / (2.0 * found.value * found[young]) - 1.0) < 1e-5
+    with pytest.raises(pliant.InputError, match="tip.z"):
+        scene.gradient("tip.z", by=young)
+    with pytest.raises(ValueError, match="of a quantity"):
+        scene.gradient(by=young)

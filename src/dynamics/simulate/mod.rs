@@ -29,6 +29,7 @@ mod reduced_checks;
 mod resolution;
 mod rigid_fit;
 mod run;
+mod same_steps;
 mod sampling;
 mod sensor;
 mod simulation;

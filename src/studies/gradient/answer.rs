@@ -5,7 +5,7 @@ use std::path::Path;
 
 use serde_json::{Map, Value, json};
 
-use super::scene::Method;
+use super::method::Method;
 use crate::base::input::four_digits;
 use crate::dynamics::error::Error;
 use crate::io::file::write_file;
@@ -133,6 +133,13 @@ impl Gradient {
 }
 
 impl Derivative {
+    /// That by a number, a value with its unit, on which nothing depends.
+    pub(super) fn constant(key: String, (at, at_unit): (f64, &'static str)) -> Self {
+        let [value, error, by_steps, by_tolerance] = [0.0; 4];
+        let (is_constant, doubt, check) = (true, None, None);
+        Self { key, at, at_unit, value, error, by_steps, by_tolerance, is_constant, doubt, check }
+    }
+
     /// Its unit, of an objective of `unit`.
     fn unit(&self, unit: &str) -> String {
         match (unit, self.at_unit) {

@@ -12,11 +12,14 @@
 //! any derivative says, by bounces or chaos.
 
 mod answer;
+mod method;
 mod number;
 mod objective;
+mod runs;
 mod scene;
 mod tableau;
 
 pub use answer::{Check, Derivative, Doubt, Gradient};
+pub use method::Method;
 pub use objective::Objective;
-pub use scene::{Method, SceneGradient};
+pub use scene::SceneGradient;

@@ -90,6 +90,30 @@ impl Number {
     }
 }
 
+/// The numbers of the keys `by`.
+///
+/// # Errors
+/// No key, a key that stands twice; as [`Number::of`].
+pub(super) fn numbers(
+    by: &[impl AsRef<str>],
+    reader: &SceneReader,
+    (text, path): (&str, &Path),
+    overrides: &[String],
+) -> Result<Vec<Number>, Error> {
+    if by.is_empty() {
+        let help = "name a number at least, as body.material.young";
+        return Err(InputError::new("numbers of the gradient", "none", help).into());
+    }
+    let mut numbers: Vec<Number> = Vec::new();
+    for key in by.iter().map(AsRef::as_ref) {
+        if numbers.iter().any(|number| number.key == key) {
+            return Err(InputError::new(key, "twice", "name each number once").into());
+        }
+        numbers.push(Number::of(key, reader, (text, path), overrides)?);
+    }
+    Ok(numbers)
+}
+
 fn scale(value: f64) -> f64 {
     if value == 0.0 { 1.0 } else { value.abs() }
 }

@@ -52,7 +52,9 @@ pub(super) fn part_of_time(number: usize) -> f64 {
 
 /// The quantity that a `text` names, as a number: at the end if nothing else is said.
 pub(super) fn quantity(text: &str, file: &SceneFile, is_at_rest: bool) -> Result<Quantity, Error> {
-    let quantity = Quantity::named(text, &file.scene, &file.output.sensors)?;
+    // an error about a component knows nothing of the text
+    let named = |InputError { help, .. }| InputError::new("quantity", format!("\"{text}\""), help);
+    let quantity = Quantity::named(text, &file.scene, &file.output.sensors).map_err(named)?;
     let quantity = match quantity.is_over_time() {
         true if !quantity.is_motion() => quantity.part(Part::End),
         true => {
@@ -68,11 +70,13 @@ pub(super) fn quantity(text: &str, file: &SceneFile, is_at_rest: bool) -> Result
     Ok(quantity)
 }
 
-/// The sampling of a motion until `end` (s) for a quantity.
-pub(super) fn sampling(quantity: &Quantity, end: f64) -> Sampling {
+/// The sampling of a motion for a quantity, with the sensors of the file, by which phases may end.
+pub(super) fn sampling(quantity: &Quantity, file: &SceneFile) -> Sampling {
+    let end = file.scene.end();
     let looks = if quantity.is_at_end() { LOOKS } else { MANY_LOOKS };
     let times: Vec<f64> = (1..looks).map(|k| end * (k as f64 / looks as f64)).collect();
-    quantity.read_by(Sampling::at(times))
+    let sensors = file.output.sensors.iter().cloned();
+    quantity.read_by(sensors.fold(Sampling::at(times), |all, (name, own)| all.read(name, own)))
 }
 
 /// A quantity in a motion that was [sampled](sampling) for it, or in an equilibrium.

@@ -1,34 +1,21 @@
 //! The gradient of an objective of a scene file: its runs, and what they tell.
 
-use std::fmt;
-use std::path::{Path, PathBuf};
-use std::str::FromStr;
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::path::PathBuf;
+use std::sync::atomic::Ordering;
 
 use rayon::prelude::*;
 
 use super::answer::{Check, Derivative, Doubt, Gradient};
-use super::number::{Number, set};
+use super::method::Method;
+use super::number::{Number, numbers};
 use super::objective::{self, Objective, Seen, part_of_time};
+use super::runs::{Costs, OTHER_STEPS, Runs, Stop, Target};
 use super::tableau::{Extrapolated, extrapolated};
 use crate::base::input::InputError;
 use crate::dynamics::error::Error;
-use crate::dynamics::simulate::{Sampling, StepList};
-use crate::dynamics::trajectory::Trajectory;
-use crate::io::scene_file::{SceneFile, SceneReader, text_of};
-use crate::scene::settings::{ContactEvents, Settings};
-use crate::scene::timeline::Scene;
+use crate::dynamics::simulate::StepList;
+use crate::io::scene_file::{SceneReader, text_of};
 use crate::studies::fit::SceneFit;
-
-/// How derivatives are found.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum Method {
-    /// Differences of runs that take the same steps.
-    SameSteps,
-    /// Differences of whole runs, or of equilibria, at a tight tolerance.
-    Differences,
-}
 
 /// The derivatives of an objective by numbers of a scene file.
 ///
@@ -51,12 +38,8 @@ pub enum Method {
 /// ```
 #[derive(Debug, Clone)]
 pub struct SceneGradient {
-    reader: SceneReader,
-    text: String,
-    path: PathBuf,
-    overrides: Vec<String>,
+    runs: Runs,
     of: String,
-    target: Target,
     unit: String,
     numbers: Vec<Number>,
     method: Option<Method>,
@@ -65,14 +48,6 @@ pub struct SceneGradient {
     rtol: f64,
     /// Why runs do not take the steps of another one.
     refused: Option<String>,
-}
-
-/// An objective in a scene.
-#[derive(Debug, Clone)]
-enum Target {
-    Quantity(String),
-    QuantityAtRest(String),
-    LeastSquares(Box<SceneFit>),
 }
 
 /// How runs are made, and which steps differences have.
@@ -97,21 +72,8 @@ struct Found {
     slope: Extrapolated,
     /// The quotients of the second step at both tolerances.
     quotients: [Vec<f64>; 2],
-    /// Whether any run saw another value.
+    /// Whether all runs saw the same value.
     is_constant: bool,
-}
-
-/// Why there is no derivative.
-enum Stop {
-    /// A run by the steps of another one needed others.
-    OtherSteps,
-    Failed(Error),
-}
-
-impl From<Error> for Stop {
-    fn from(error: Error) -> Self {
-        Self::Failed(error)
-    }
 }
 
 /// Relative error of the differences from which on other steps are tried, and the factors of these.
@@ -121,46 +83,16 @@ const FACTORS: [f64; 2] = [16.0, 1.0 / 16.0];
 /// Part of a derivative by which results of both tolerances may differ.
 const MEANINGFUL: f64 = 0.1;
 /// Changes of the objective below this part of it, for a change of a number by itself, count as none.
-const NOTHING: f64 = 1e-9;
+const NOTHING: f64 = 1e-6;
 /// Relative differences of results that are the same.
 const ROUND_OFF: f64 = 4.0 * f64::EPSILON;
 
-impl Method {
-    /// All methods.
-    pub const ALL: [Self; 2] = [Self::SameSteps, Self::Differences];
-
-    /// Its word: `same-steps`, `differences`.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::SameSteps => "same-steps",
-            Self::Differences => "differences",
-        }
-    }
-}
-
-impl fmt::Display for Method {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.pad(self.name())
-    }
-}
-
-impl FromStr for Method {
-    type Err = InputError;
-
-    fn from_str(name: &str) -> Result<Self, InputError> {
-        Self::ALL.into_iter().find(|method| method.name() == name).ok_or_else(|| {
-            let help = format!("it is one of {}", Self::ALL.map(Self::name).join(", "));
-            InputError::new("method of the gradient", format!("\"{name}\""), help)
-        })
-    }
-}
-
 impl SceneGradient {
     /// The gradient of an objective of the scene file at `path` by the numbers of the keys `by`, with other values as
-    /// [`SceneFile::read_with`] takes them.
+    /// [`SceneFile::read_with`](crate::SceneFile::read_with) takes them.
     ///
     /// # Errors
-    /// As [`SceneFile::read_with`] and, for measurements, as [`SceneFit::new`]; an objective that the scene does not have or that is
+    /// As [`SceneFile::read_with`](crate::SceneFile::read_with) and, for measurements, as [`SceneFit::new`]; an objective that the scene does not have or that is
     /// no single number; no key, a key that stands twice, or that is not a number which may change.
     pub fn new(
         path: impl Into<PathBuf>,
@@ -228,12 +160,8 @@ impl SceneGradient {
         let (reader, overrides) = (reader.clone(), overrides.into());
         let (method, is_checked) = (None, false);
         Ok(Self {
-            reader,
-            text,
-            path,
-            overrides,
+            runs: Runs { reader, text, path, overrides, target },
             of,
-            target,
             unit,
             numbers,
             method,
@@ -270,7 +198,7 @@ impl SceneGradient {
     pub fn find(&self, tell: &mut dyn FnMut(usize)) -> Result<Gradient, Error> {
         let differences = |first| Scheme {
             method: Method::Differences,
-            rtols: match self.target.is_at_rest() {
+            rtols: match self.runs.target.is_at_rest() {
                 true => [1e-13, 1e-12],
                 false => {
                     let fine = (1e-5 * self.rtol).max(1e-10).min(0.1 * self.rtol);
@@ -282,7 +210,7 @@ impl SceneGradient {
         };
         let fine = (0.01 * self.rtol).max(1e-10).min(0.1 * self.rtol);
         let same_steps =
-            Scheme { method: Method::SameSteps, rtols: [fine, 10.0 * fine], first: 1e-4, rows: 2 };
+            Scheme { method: Method::SameSteps, rtols: [fine, 10.0 * fine], first: 5e-5, rows: 2 };
         let why = match (self.method, &self.refused) {
             (Some(Method::Differences), _) => None,
             (_, Some(refused)) => Some(refused.clone()),
@@ -334,7 +262,7 @@ impl SceneGradient {
     fn find_by(&self, scheme: &Scheme, tell: &mut dyn FnMut(usize)) -> Result<Gradient, Stop> {
         let costs = Costs::default();
         let base = |rtol: f64| -> Result<Base, Stop> {
-            let (seen, steps) = self.observe(None, rtol, scheme.method, None, &costs)?;
+            let (seen, steps) = self.runs.observe(None, rtol, scheme.method, None, &costs)?;
             Ok(Base { rtol, seen, steps })
         };
         let [fine, coarse] = scheme.rtols;
@@ -364,7 +292,7 @@ impl SceneGradient {
             of: self.of.clone(),
             value: seen.value(),
             unit: self.unit.clone(),
-            is_at_rest: self.target.is_at_rest(),
+            is_at_rest: self.runs.target.is_at_rest(),
             method: scheme.method,
             reason: None,
             rtols: scheme.rtols.map(rounded),
@@ -399,7 +327,8 @@ impl SceneGradient {
                 true => Ok(base.seen.values.clone()),
                 false => {
                     let (method, steps) = (scheme.method, base.steps.as_ref());
-                    let seen = self.observe(Some((number, value)), base.rtol, method, steps, costs);
+                    let seen =
+                        self.runs.observe(Some((number, value)), base.rtol, method, steps, costs);
                     seen.map(|(seen, _)| seen.values)
                 }
             };
@@ -435,6 +364,10 @@ impl SceneGradient {
         scheme: &Scheme,
     ) -> Derivative {
         let Found { slope, quotients: [fine, coarse], is_constant } = found;
+        if is_constant {
+            // differences are round-off
+            return Derivative::constant(number.key.clone(), (number.value, number.unit));
+        }
         let value = slope.slope();
         let apart = |k: usize| (fine[k] - coarse[k]).abs();
         let last = fine.len().min(coarse.len()).saturating_sub(1);
@@ -451,7 +384,7 @@ impl SceneGradient {
             });
             doubt = Some(Doubt {
                 by_tolerance: by_tolerance >= slope.error,
-                since: parted.map(part_of_time).map(|part| part * self.end()),
+                since: parted.map(part_of_time).map(|part| part * self.runs.end()),
                 rtols: scheme.rtols.map(rounded),
             });
         }
@@ -463,162 +396,14 @@ impl SceneGradient {
             error,
             by_steps: slope.error,
             by_tolerance,
-            is_constant,
+            is_constant: false,
             doubt,
             check: None,
         }
-    }
-
-    /// The end of the scene (s).
-    fn end(&self) -> f64 {
-        let file = self.reader.parse_with(&self.text, &self.path, &self.overrides);
-        file.map_or(f64::NAN, |file| file.scene.end())
-    }
-
-    /// The objective with another value for a number, and the steps that led there if they were not those of another run.
-    fn observe(
-        &self,
-        other: Option<(&Number, f64)>,
-        rtol: f64,
-        method: Method,
-        by: Option<&StepList>,
-        costs: &Costs,
-    ) -> Result<(Seen, Option<StepList>), Stop> {
-        let mut own: Vec<String> =
-            other.into_iter().map(|(number, value)| set(&number.key, value)).collect();
-        if self.target.is_at_rest() {
-            own.push(set("statics.rtol", rtol));
-        }
-        let read = || {
-            self.reader.parse_with(&self.text, &self.path, &[&self.overrides[..], &own].concat())
-        };
-        let mut list = None;
-        let mut has_other_steps = false;
-        let mut run = |file: &SceneFile, scene: &Scene, sampling: &Sampling| {
-            let settings = settings(&file.settings, rtol, method);
-            if method == Method::Differences {
-                return scene.simulate(&settings, sampling);
-            }
-            let mut simulation = scene.start(&settings)?;
-            simulation.record(sampling)?;
-            let Some(by) = by else {
-                let (motion, steps) = simulation.finish_with_steps()?;
-                list = Some(steps);
-                return Ok(motion);
-            };
-            simulation.finish_by_steps(by)?.ok_or_else(|| {
-                has_other_steps = true;
-                InputError::new("steps", "others", OTHER_STEPS).into()
-            })
-        };
-        let seen = match &self.target {
-            Target::Quantity(text) => read().and_then(|file| {
-                let quantity = objective::quantity(text, &file, false)?;
-                let sampling = objective::sampling(&quantity, file.scene.end());
-                objective::seen(&quantity, &run(&file, &file.scene, &sampling)?)
-            }),
-            Target::QuantityAtRest(text) => read().and_then(|file| {
-                let quantity = objective::quantity(text, &file, true)?;
-                let mut found = file.equilibrium()?;
-                found.read(&quantity.read_by(Sampling::phase_ends()))?;
-                let seen = objective::seen(&quantity, &found.trajectory().at_end())?;
-                Ok(Seen { steps: found.iterations, ..seen })
-            }),
-            Target::LeastSquares(fit) => {
-                let mut steps = 1;
-                let mut counted = |file: &SceneFile, scene: &Scene, sampling: &Sampling| {
-                    let motion: Trajectory = run(file, scene, sampling)?;
-                    steps = motion.report().steps();
-                    Ok(motion)
-                };
-                let sum = fit.sum_of_squares(&own, &mut counted);
-                sum.map(|sum| Seen { values: vec![sum], scale: sum, steps })
-            }
-        };
-        match seen {
-            _ if has_other_steps => Err(Stop::OtherSteps),
-            Ok(seen) => {
-                costs.add(seen.steps);
-                Ok((seen, list))
-            }
-            Err(error) => Err(Stop::Failed(error)),
-        }
-    }
-}
-
-/// Why the steps of one run are not those of another.
-const OTHER_STEPS: &str = "a run with another value needs other steps";
-
-impl Target {
-    fn is_at_rest(&self) -> bool {
-        match self {
-            Self::Quantity(_) => false,
-            Self::QuantityAtRest(_) => true,
-            Self::LeastSquares(fit) => fit.is_at_rest(),
-        }
-    }
-}
-
-/// Runs so far, and their steps.
-#[derive(Default)]
-struct Costs {
-    runs: AtomicUsize,
-    steps: AtomicUsize,
-}
-
-impl Costs {
-    fn add(&self, steps: usize) {
-        self.runs.fetch_add(1, Ordering::Relaxed);
-        self.steps.fetch_add(steps, Ordering::Relaxed);
-    }
-
-    fn runs(&self) -> usize {
-        self.runs.load(Ordering::Relaxed)
-    }
-}
-
-/// The settings of a file at another tolerance; of runs that take the same steps with a method that can, and without events, of which the
-/// times would be those of another motion.
-fn settings(of_file: &Settings, rtol: f64, method: Method) -> Settings {
-    use crate::scene::settings::Method::{Rk, Rosenbrock};
-    let tight = of_file.tightened(rtol / of_file.rtol);
-    match (method, of_file.method) {
-        (Method::Differences, _) => tight,
-        (Method::SameSteps, Rk | Rosenbrock) => {
-            Settings { contact_events: ContactEvents::StepOver, ..tight }
-        }
-        (Method::SameSteps, _) => Settings {
-            method: Rosenbrock,
-            max_order: None,
-            stability_limit_detection: false,
-            contact_events: ContactEvents::StepOver,
-            ..tight
-        },
     }
 }
 
 /// A tolerance without the digits of its product.
 fn rounded(rtol: f64) -> f64 {
     format!("{rtol:.2e}").parse().unwrap_or(rtol)
-}
-
-/// The numbers of the keys `by`.
-fn numbers(
-    by: &[impl AsRef<str>],
-    reader: &SceneReader,
-    (text, path): (&str, &Path),
-    overrides: &[String],
-) -> Result<Vec<Number>, Error> {
-    if by.is_empty() {
-        let help = "name a number at least, as body.material.young";
-        return Err(InputError::new("numbers of the gradient", "none", help).into());
-    }
-    let mut numbers: Vec<Number> = Vec::new();
-    for key in by.iter().map(AsRef::as_ref) {
-        if numbers.iter().any(|number| number.key == key) {
-            return Err(InputError::new(key, "twice", "name each number once").into());
-        }
-        numbers.push(Number::of(key, reader, (text, path), overrides)?);
-    }
-    Ok(numbers)
 }

@@ -1,0 +1,46 @@
+//! Ways to find derivatives.
+
+use std::fmt;
+use std::str::FromStr;
+
+use crate::base::input::InputError;
+
+/// How derivatives are found.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Method {
+    /// Differences of runs that take the same steps.
+    SameSteps,
+    /// Differences of whole runs, or of equilibria, at a tight tolerance.
+    Differences,
+}
+
+impl Method {
+    /// All methods.
+    pub const ALL: [Self; 2] = [Self::SameSteps, Self::Differences];
+
+    /// Its word: `same-steps`, `differences`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::SameSteps => "same-steps",
+            Self::Differences => "differences",
+        }
+    }
+}
+
+impl fmt::Display for Method {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.name())
+    }
+}
+
+impl FromStr for Method {
+    type Err = InputError;
+
+    fn from_str(name: &str) -> Result<Self, InputError> {
+        Self::ALL.into_iter().find(|method| method.name() == name).ok_or_else(|| {
+            let help = format!("it is one of {}", Self::ALL.map(Self::name).join(", "));
+            InputError::new("method of the gradient", format!("\"{name}\""), help)
+        })
+    }
+}

@@ -1,0 +1,176 @@
+//! The runs that derivatives are made of.
+
+use std::path::PathBuf;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use super::method::Method;
+use super::number::{Number, set};
+use super::objective::{self, Seen};
+use crate::base::input::InputError;
+use crate::dynamics::error::Error;
+use crate::dynamics::simulate::{Sampling, StepList};
+use crate::dynamics::trajectory::Trajectory;
+use crate::io::scene_file::{SceneFile, SceneReader};
+use crate::scene::settings::{ContactEvents, Settings};
+use crate::scene::timeline::Scene;
+use crate::studies::fit::SceneFit;
+
+/// A scene file, and what is seen of its runs.
+#[derive(Debug, Clone)]
+pub(super) struct Runs {
+    pub(super) reader: SceneReader,
+    pub(super) text: String,
+    pub(super) path: PathBuf,
+    pub(super) overrides: Vec<String>,
+    pub(super) target: Target,
+}
+
+/// An objective in a scene.
+#[derive(Debug, Clone)]
+pub(super) enum Target {
+    Quantity(String),
+    QuantityAtRest(String),
+    LeastSquares(Box<SceneFit>),
+}
+
+/// Why there is no derivative.
+pub(super) enum Stop {
+    /// A run by the steps of another one needed others.
+    OtherSteps,
+    Failed(Error),
+}
+
+impl From<Error> for Stop {
+    fn from(error: Error) -> Self {
+        Self::Failed(error)
+    }
+}
+
+/// Why the steps of one run are not those of another.
+pub(super) const OTHER_STEPS: &str = "a run with another value needs other steps";
+
+/// Runs so far, and their steps.
+#[derive(Default)]
+pub(super) struct Costs {
+    runs: AtomicUsize,
+    pub(super) steps: AtomicUsize,
+}
+
+impl Costs {
+    fn add(&self, steps: usize) {
+        self.runs.fetch_add(1, Ordering::Relaxed);
+        self.steps.fetch_add(steps, Ordering::Relaxed);
+    }
+
+    pub(super) fn runs(&self) -> usize {
+        self.runs.load(Ordering::Relaxed)
+    }
+}
+
+impl Runs {
+    /// The end of the scene (s).
+    pub(super) fn end(&self) -> f64 {
+        let file = self.reader.parse_with(&self.text, &self.path, &self.overrides);
+        file.map_or(f64::NAN, |file| file.scene.end())
+    }
+
+    /// The objective with another value for a number, and the steps that led there if they were not those of another run.
+    pub(super) fn observe(
+        &self,
+        other: Option<(&Number, f64)>,
+        rtol: f64,
+        method: Method,
+        by: Option<&StepList>,
+        costs: &Costs,
+    ) -> Result<(Seen, Option<StepList>), Stop> {
+        let mut own: Vec<String> =
+            other.into_iter().map(|(number, value)| set(&number.key, value)).collect();
+        if self.target.is_at_rest() {
+            own.push(set("statics.rtol", rtol));
+        }
+        let read = || {
+            self.reader.parse_with(&self.text, &self.path, &[&self.overrides[..], &own].concat())
+        };
+        let mut list = None;
+        let mut has_other_steps = false;
+        let mut run = |file: &SceneFile, scene: &Scene, sampling: &Sampling| {
+            let settings = settings(&file.settings, rtol, method);
+            if method == Method::Differences {
+                return scene.simulate(&settings, sampling);
+            }
+            let mut simulation = scene.start(&settings)?;
+            simulation.record(sampling)?;
+            let Some(by) = by else {
+                let (motion, steps) = simulation.finish_with_steps()?;
+                list = Some(steps);
+                return Ok(motion);
+            };
+            simulation.finish_by_steps(by)?.ok_or_else(|| {
+                has_other_steps = true;
+                InputError::new("steps", "others", OTHER_STEPS).into()
+            })
+        };
+        let seen = match &self.target {
+            Target::Quantity(text) => read().and_then(|file| {
+                let quantity = objective::quantity(text, &file, false)?;
+                let sampling = objective::sampling(&quantity, &file);
+                objective::seen(&quantity, &run(&file, &file.scene, &sampling)?)
+            }),
+            Target::QuantityAtRest(text) => read().and_then(|file| {
+                let quantity = objective::quantity(text, &file, true)?;
+                let mut found = file.equilibrium()?;
+                found.read(&quantity.read_by(Sampling::phase_ends()))?;
+                let seen = objective::seen(&quantity, &found.trajectory().at_end())?;
+                Ok(Seen { steps: found.iterations, ..seen })
+            }),
+            Target::LeastSquares(fit) => {
+                let mut steps = 1;
+                let mut counted = |file: &SceneFile, scene: &Scene, sampling: &Sampling| {
+                    let motion: Trajectory = run(file, scene, sampling)?;
+                    steps = motion.report().steps();
+                    Ok(motion)
+                };
+                let sum = fit.sum_of_squares(&own, &mut counted);
+                sum.map(|sum| Seen { values: vec![sum], scale: sum, steps })
+            }
+        };
+        match seen {
+            _ if has_other_steps => Err(Stop::OtherSteps),
+            Ok(seen) => {
+                costs.add(seen.steps);
+                Ok((seen, list))
+            }
+            Err(error) => Err(Stop::Failed(error)),
+        }
+    }
+}
+
+impl Target {
+    pub(super) fn is_at_rest(&self) -> bool {
+        match self {
+            Self::Quantity(_) => false,
+            Self::QuantityAtRest(_) => true,
+            Self::LeastSquares(fit) => fit.is_at_rest(),
+        }
+    }
+}
+
+/// The settings of a file at another tolerance; of runs that take the same steps with a method that can, and without events, of which the
+/// times would be those of another motion.
+fn settings(of_file: &Settings, rtol: f64, method: Method) -> Settings {
+    use crate::scene::settings::Method::{Rk, Rosenbrock};
+    let tight = of_file.tightened(rtol / of_file.rtol);
+    match (method, of_file.method) {
+        (Method::Differences, _) => tight,
+        (Method::SameSteps, Rk | Rosenbrock) => {
+            Settings { contact_events: ContactEvents::StepOver, ..tight }
+        }
+        (Method::SameSteps, _) => Settings {
+            method: Rosenbrock,
+            max_order: None,
+            stability_limit_detection: false,
+            contact_events: ContactEvents::StepOver,
+            ..tight
+        },
+    }
+}
