@@ -37,7 +37,7 @@ fn gradient(of: &str, at: [f64; 2]) -> Result<Gradient, Error> {
     let set: Vec<String> = KEYS.iter().zip(at).map(|(key, x)| format!("{key}={x:?}")).collect();
     let (reader, path) = (SceneReader::default(), Path::new("beam.toml"));
     let of = Objective::Quantity(of.into());
-    SceneGradient::of_text(&reader, BEAM, path, &set, of, &KEYS)?.find(&mut |_| {})
+    SceneGradient::of_text(&reader, BEAM, path, &set, of, &KEYS)?.value_and_gradient(&mut |_| {})
 }
 
 fn main() -> Result<(), Error> {

@@ -321,7 +321,7 @@ impl Scene {
             if check {
                 gradient = gradient.checked();
             }
-            gradient.find(&mut |_| {})
+            gradient.value_and_gradient(&mut |_| {})
         });
         found.map(|found| (found.to_string(), found.to_json().to_string())).map_err(raised)
     }

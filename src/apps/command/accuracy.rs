@@ -15,7 +15,7 @@ pub struct AccuracyArguments {
     #[arg(long, value_name = "PART")]
     accuracy: Option<Fraction>,
     /// Quantity that has to be as accurate: motion, a sensor or node set and a component such as tip.y, com.x, rotation; with
-    /// :end, :max, :min, :frequency or :damping that alone [default: motion]
+    /// :end, :max, :min, :mean, :frequency or :damping that alone [default: motion]
     #[arg(long, value_name = "QUANTITY")]
     quantity: Option<String>,
 }

@@ -39,7 +39,7 @@ pub struct Arguments {
     #[command(flatten)]
     settings: SettingsArguments,
     /// Quantity that has to be right: motion, a sensor or node set and a component such as tip.y, com.x, rotation; with :end,
-    /// :max, :min, :frequency or :damping that alone
+    /// :max, :min, :mean, :frequency or :damping that alone
     #[arg(long, value_name = "QUANTITY", default_value = "motion")]
     quantity: String,
     /// How right: 1% or 0.01

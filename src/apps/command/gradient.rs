@@ -22,7 +22,7 @@ pub struct Arguments {
     #[command(flatten)]
     pub(super) scene: SceneArguments,
     /// The quantity whose derivatives are wanted: a sensor or node set and a component, as tip.y, which is its value at the end, or, after a colon,
-    /// another number of it, as tip.y:max, min, frequency, damping
+    /// another number of it, as tip.y:max, min, mean, frequency, damping
     #[arg(long, value_name = "QUANTITY", required_unless_present = "data")]
     of: Option<String>,
     /// In place of a quantity the sum of the squares of what sensors read less what was measured: a table (CSV) as `pliant fit` takes it
@@ -76,7 +76,8 @@ fn run_in(arguments: &Arguments, place: &Path) -> Result<(), Failure> {
     }
     let mut directory = Directory::new(place.into())?;
     let progress = spinner(*quiet);
-    let found = gradient.find(&mut |runs| progress.set_message(format!("{runs} runs")));
+    let found =
+        gradient.value_and_gradient(&mut |runs| progress.set_message(format!("{runs} runs")));
     progress.finish_and_clear();
     let found = found?;
     print(&found)?;

@@ -55,9 +55,8 @@ impl Skew {
         value: impl Fn(usize, usize) -> f64,
     ) {
         let d = dimension;
+        self.clear();
         let Self { rows, places, entries, .. } = self;
-        rows.clear();
-        entries.clear();
         places.clear();
         places.resize(pattern.nodes() * d, NONE);
         constraints
@@ -87,6 +86,12 @@ impl Skew {
                 }
             }
         }
+    }
+
+    /// Sets S to 0.
+    pub(crate) fn clear(&mut self) {
+        self.rows.clear();
+        self.entries.clear();
     }
 
     /// Whether the matrix is symmetric.

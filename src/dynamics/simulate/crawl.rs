@@ -14,9 +14,10 @@ const OFTEN: f64 = 0.05;
 #[derive(Default)]
 pub(super) struct Crawl {
     steps: usize,
-    /// When they began (s), and the failures until then: of Newton's iteration, and of the error test.
+    /// When they began (s).
     began: f64,
-    failures: [usize; 2],
+    /// The failures until then, if the first of them was short: of Newton's iteration, and of the error test.
+    failures: Option<[usize; 2]>,
     /// The notice that was given of them.
     pub(super) told: Option<String>,
 }
@@ -28,27 +29,30 @@ impl Crawl {
         [start, end]: [f64; 2],
         length: f64,
         touches: bool,
-        counts: impl FnOnce() -> Counts,
+        counts: impl Fn() -> Counts,
     ) -> Option<&str> {
         if self.told.is_some() {
             return None;
         }
+        let failures = || {
+            let counts = counts();
+            [counts.convergence_failures, counts.error_test_failures]
+        };
         if self.steps == 0 {
             self.began = start;
+            // counts are not for each thousand steps of any run
+            self.failures = (end - start < SHORT * length).then(failures);
         }
         self.steps += 1;
         if self.steps < MANY {
             return None;
         }
         self.steps = 0;
-        let (mean, counts) = ((end - self.began) / MANY as f64, counts());
-        let failures = [counts.convergence_failures, counts.error_test_failures];
+        let mean = (end - self.began) / MANY as f64;
+        let before = self.failures.filter(|_| mean < SHORT * length)?;
         // an integrator that was started meanwhile counts from 0
-        let [of_newton, of_errors] = [0, 1].map(|k| failures[k].saturating_sub(self.failures[k]));
-        self.failures = failures;
-        if mean >= SHORT * length {
-            return None;
-        }
+        let now = failures();
+        let [of_newton, of_errors] = [0, 1].map(|k| now[k].saturating_sub(before[k]));
         let often = |count: usize| count as f64 > OFTEN * MANY as f64;
         let cause = match () {
             _ if often(of_newton) && of_newton >= of_errors => {

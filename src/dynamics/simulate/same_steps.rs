@@ -14,7 +14,7 @@ impl Simulation {
     /// use pliant::{Method, Settings, samples};
     ///
     /// let settings = Settings { method: Method::Rosenbrock, rtol: 1e-3, ..Settings::default() };
-    /// let start = || samples::square_press(3)?.start(&settings);
+    /// let start = || samples::square_press(4)?.start(&settings);
     /// let (motion, steps) = start()?.finish_with_steps()?;
     /// let again = start()?.finish_by_steps(&steps)?.expect("they are enough");
     /// assert_eq!(again.report().steps(), steps.count());

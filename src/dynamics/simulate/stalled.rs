@@ -4,7 +4,6 @@
 //! The cause of the short steps does not matter. A known one of BDF are undamped vibrations: they
 //! lie outside of the stability regions of its orders above 2 (E. Hairer, G. Wanner, *Solving Ordinary Differential Equations
 //! II*, section V.2), which bounds its steps by the fastest of them, however small they are.
-
 //!
 //! Where bodies touch, what sticks, slides, rests or chatters bounds the steps of one method and not of another, and no spectrum
 //! tells which. There others are tried as soon as many steps are still to come, in turn, and after one has failed.

@@ -10,8 +10,8 @@
 //! xu = ru + gamma xv
 //! ```
 //!
-//! This needs one sparse matrix N of half the size; alpha costs nothing, however large. Its symmetric part is factorized, and what is left
-//! of it follows by an iteration (`linear/skew.rs`).
+//! This needs one sparse matrix N of half the size; alpha costs nothing, however large. Its symmetric part is factorized. What is left
+//! of it follows by an iteration for methods that solve once (`linear/skew.rs`); Newton's iteration does without.
 //!
 //! Maxwell branches are eliminated point by point (`elements/body/branches.rs`), so that Kt includes their
 //! effect in a step of gamma. Amounts of gas are eliminated as well; what they add to Kt is of the rank of their number,
@@ -30,7 +30,7 @@
 use std::sync::Arc;
 
 use super::System;
-use super::newton_matrix::{ITERATED, NewtonMatrix, SOLVED_ONCE};
+use super::newton_matrix::{ITERATED, NewtonMatrix, SKEW, SOLVED_ONCE};
 use crate::base::sparse::BlockMatrix;
 use crate::base::vector::{dot, largest};
 use crate::dynamics::linear::{EntrySource, Indefinite, Skew, nodal_multipliers, stabilized};
@@ -182,7 +182,8 @@ impl System {
             &mut self.newton;
         let (stiffness, damping) = (stiffness.get(), damping.get());
         let inertia = &self.matrices.inertia;
-        if *follows {
+        skew.clear();
+        if *follows && *accuracy == SOLVED_ONCE {
             let block = (&**stiffness.pattern(), stiffness.dimension());
             let size = block.1 * block.1;
             skew.set(block, &self.rows, |entry, at| {
@@ -238,7 +239,7 @@ impl System {
 
     /// Corrects the solution by the symmetric part of N where the other part matters.
     fn add_skew(&mut self, skew: &mut Skew) {
-        let enough = self.newton.enough() * skew.size(&skew.kept[0]);
+        let enough = SKEW * skew.size(&skew.kept[0]);
         let mut left = skew.begin(&self.newton.xv);
         if left <= enough {
             return;

@@ -14,9 +14,8 @@ use crate::scene::constraint::ConstraintRow;
 pub(super) const ITERATED: f64 = 1e-5;
 pub(super) const SOLVED_ONCE: f64 = 1e-11;
 
-/// The same for what is not symmetric, which a Newton iteration and a Rosenbrock method of order 4 must know.
-const SKEW_ITERATED: f64 = 1e-3;
-const SKEW_SOLVED_ONCE: f64 = 1e-9;
+/// Residual, relative to the right-hand side, that may be left of what is not symmetric: a Rosenbrock method of order 4 must know it.
+pub(super) const SKEW: f64 = 1e-9;
 
 pub(super) struct NewtonMatrix {
     pub(super) solver: ConstrainedSolver,
@@ -138,11 +137,6 @@ impl NewtonMatrix {
         self.differences.forget_patterns();
         self.is_set = false;
         self.patterns += 1;
-    }
-
-    /// Residual, relative to the right-hand side, that may be left of what is not symmetric.
-    pub(super) fn enough(&self) -> f64 {
-        if self.iterates() { SKEW_ITERATED } else { SKEW_SOLVED_ONCE }
     }
 
     /// Whether the residuals of its systems are evaluated again and solutions corrected.

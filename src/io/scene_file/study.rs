@@ -171,7 +171,7 @@ pub(super) const STUDY: TableKeys = TableKeys::new(
             ValueType::List(&ValueType::Text),
             "quantities that are kept of each run: as `--quantity` of `run` takes them, each one number",
         )
-        .note("As `\"com.y:max\"`; `:end`, `:max`, `:min`, `:frequency`, `:damping`.")
+        .note("As `\"com.y:max\"`; `:end`, `:max`, `:min`, `:mean`, `:frequency`, `:damping`.")
         .required(),
         Key::new("static", ValueType::Flag, "whether equilibria are sought, and nothing is run")
             .note(

@@ -31,7 +31,7 @@ use crate::studies::fit::SceneFit;
 /// # "#).unwrap();
 /// // a bar, stretched by F L / (E A)
 /// let stretch = Objective::QuantityAtRest("tip.x".into());
-/// let gradient = SceneGradient::new(&scene, &[], stretch, &["body.material.young"])?.find(&mut |_| {})?;
+/// let gradient = SceneGradient::new(&scene, &[], stretch, &["body.material.young"])?.value_and_gradient(&mut |_| {})?;
 /// let by_young = &gradient.derivatives[0];
 /// assert!((by_young.value + gradient.value / 1e5).abs() < by_young.error + 1e-15);
 /// # Ok::<(), pliant::Error>(())
@@ -195,7 +195,7 @@ impl SceneGradient {
     ///
     /// # Errors
     /// [`Error::Integration`] and [`Error::Statics`] of a run that fails; with a [method](Self::by_method), a run that needs other steps.
-    pub fn find(&self, tell: &mut dyn FnMut(usize)) -> Result<Gradient, Error> {
+    pub fn value_and_gradient(&self, tell: &mut dyn FnMut(usize)) -> Result<Gradient, Error> {
         let differences = |first| Scheme {
             method: Method::Differences,
             rtols: match self.runs.target.is_at_rest() {

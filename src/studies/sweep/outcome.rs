@@ -178,7 +178,7 @@ fn sampling(file: &SceneFile, quantities: &[Quantity], is_verified: bool) -> Sam
         false => file.output.sampling(),
         true => file.output.verified_sampling(end),
     };
-    if quantities.iter().any(Quantity::is_of_swings) {
+    if quantities.iter().any(Quantity::is_of_history) {
         let times: Vec<f64> = (1..LOOKS).map(|k| end * (k as f64 / LOOKS as f64)).collect();
         sampling = match is_verified {
             false => sampling.also_at(times),

@@ -177,7 +177,7 @@ impl Sweep {
                 quantity.at_rest(&scene.scene).map_err(bad)?;
             } else if quantity.is_over_time() {
                 return refuse(format!(
-                    "a row has one number of it: add which one, as {text}:end, :max, :min, :frequency or :damping"
+                    "a row has one number of it: add which one, as {text}:end, :max, :min, :mean, :frequency or :damping"
                 ));
             }
             Ok(quantity.unit())

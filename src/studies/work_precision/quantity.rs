@@ -21,7 +21,7 @@ use crate::scene::timeline::Scene;
 /// | --- | --- |
 /// | the [whole motion](Self::motion) | a root mean square distance of the nodes, over all of them and all times, of a hundredth of their root mean square displacement |
 /// | a [reading](Self::reading) over time | a root mean square error over all times of a hundredth of the reading's root mean square change since the start |
-/// | its value at the end, its largest or its least | a hundredth of its largest change since the start |
+/// | its value at the end, its largest, least or mean | a hundredth of its largest change since the start |
 /// | its frequency or damping ratio | a hundredth of itself |
 ///
 /// Errors of a reading with several components (a position) are lengths of vectors.
@@ -46,6 +46,8 @@ pub enum Part {
     Largest,
     /// Its least value.
     Least,
+    /// Its mean over time.
+    Mean,
     /// The frequency (Hz) at which it swings: that of its turning points.
     Frequency,
     /// Its damping ratio: the mean logarithmic decrement of its swings.
@@ -54,10 +56,11 @@ pub enum Part {
 
 impl Part {
     /// All but the first, with the words after a colon that name them.
-    const WORDS: [(&'static str, Self); 5] = [
+    const WORDS: [(&'static str, Self); 6] = [
         ("end", Self::End),
         ("max", Self::Largest),
         ("min", Self::Least),
+        ("mean", Self::Mean),
         ("frequency", Self::Frequency),
         ("damping", Self::Damping),
     ];
@@ -89,7 +92,7 @@ impl Quantity {
     /// The quantity that a text names: `motion`; the name of one of the `sensors`, or of one of its
     /// components (`tip.y`); a set of nodes and an axis, `tip.y`, which is their position; `com` or `com.y`,
     /// the centre of mass; `rotation`, the angle by which a body in the plane has turned. After a colon the
-    /// part that counts: `tip.y:end`, `max`, `min`, `frequency`, `damping`; without, all times count.
+    /// part that counts: `tip.y:end`, `max`, `min`, `mean`, `frequency`, `damping`; without, all times count.
     ///
     /// # Errors
     /// A text that names nothing in `scene`.
@@ -266,6 +269,7 @@ impl Quantity {
             Part::End => values().next_back(),
             Part::Largest => Some(values().fold(largest, f64::max)),
             Part::Least => Some(values().fold(least, f64::min)),
+            Part::Mean => mean(times, series),
             Part::Frequency => swings(times, values()).map(|(frequency, _)| frequency),
             Part::Damping => swings(times, values()).map(|(_, damping)| damping),
         }
@@ -277,10 +281,10 @@ impl Quantity {
         self.reading.as_ref()
     }
 
-    /// Whether its swings count, which few samples do not show.
+    /// Whether its swings or its mean count, which few samples do not show.
     #[cfg(feature = "sweep")]
-    pub(crate) fn is_of_swings(&self) -> bool {
-        matches!(self.part, Part::Frequency | Part::Damping)
+    pub(crate) fn is_of_history(&self) -> bool {
+        matches!(self.part, Part::Mean | Part::Frequency | Part::Damping)
     }
 
     /// Whether its largest or least value counts, which may lie between samples.
@@ -321,6 +325,17 @@ impl Quantity {
     pub(crate) fn times(&self) -> usize {
         if self.is_over_time() { FEW_TIMES } else { MANY_TIMES }
     }
+}
+
+/// The mean over time of values at `times` (s), by the trapezoidal rule.
+fn mean(times: &[f64], values: &[f64]) -> Option<f64> {
+    let (first, last) = (times.first()?, times.last()?);
+    if first == last {
+        return values.last().copied();
+    }
+    let pieces = times.windows(2).zip(values.windows(2));
+    let sum: f64 = pieces.map(|(t, x)| 0.5 * (x[0] + x[1]) * (t[1] - t[0])).sum();
+    Some(sum / (last - first))
 }
 
 /// Times at which motions are compared: this many, evenly from the start (without it) to the end, ...
@@ -375,7 +390,7 @@ fn help(scene: &Scene, sensors: &[(String, Reading)]) -> String {
     known.extend(scene.body().mesh().sets().keys().map(String::as_str));
     format!(
         "it is motion, com, rotation, a sensor or a set of nodes ({}), where need be with a component as in tip.y, and \
-         with :end, :max, :min, :frequency or :damping where one number counts",
+         with :end, :max, :min, :mean, :frequency or :damping where one number counts",
         known.join(", ")
     )
 }
