@@ -106,7 +106,7 @@ fn a_stiffness_per_area_suits_all_meshes() {
             .gravity([0.0, -9.8])
             .obstacle(floor.damping(1e5))
             .phase(Phase::until(3.0));
-        let method = Method::CvodeBdf;
+        let method = Method::Arkode;
         let settings = Settings { method, rtol: 1e-6, ..Settings::default() };
         let trajectory = scene.simulate(&settings, &Sampling::phase_ends()).unwrap();
         let last = trajectory.last();

@@ -17,7 +17,7 @@ fn apart(a: &Trajectory, b: &Trajectory) -> f64 {
 
 fn settings() -> Settings {
     // counted work, by which the automatic choice goes, may differ by round-off
-    Settings { method: Method::CvodeBdf, rtol: 1e-6, ..Settings::default() }
+    Settings { method: Method::Rosenbrock, rtol: 1e-6, ..Settings::default() }
 }
 
 /// A soft block slides down a slope of 30 degrees that is lifted meanwhile: a face of a large box, or a half-plane.
