@@ -194,7 +194,7 @@ fn squares_have_the_gradient_of_their_residuals() {
     assert_eq!(squares.unit, "m^2");
 }
 
-/// What has no derivative is told by its key before anything runs.
+/// A key without a derivative is told before anything runs.
 #[test]
 fn numbers_that_are_none_are_refused() {
     let of = |of: &str, by: &[&str]| {

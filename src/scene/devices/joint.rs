@@ -1,6 +1,6 @@
 //! Joints between bodies, and motors in them.
 //!
-//! What a joint cannot keep by linear rows, teeth, threads and crosses, holds by a stiffness ([`coupling`]).
+//! Teeth, threads and crosses, which linear rows cannot keep, hold by a stiffness ([`coupling`]).
 //!
 //! The rows of a joint are linear in the displacements: that two points, or two directions, of its sides stay together. On rigid bodies one of the
 //! rows of a direction follows from the others, as both keep their lengths; the solver leaves out edges of a piece that follow from rows

@@ -33,7 +33,7 @@ pub(super) struct Geometry {
     pub(super) gear: Option<Gear>,
 }
 
-/// What couples the coordinate of a joint with the angle of another one.
+/// The coupling of the coordinate of a joint with the angle of another one.
 #[derive(Debug, Clone)]
 pub(super) struct Gear {
     pub(super) first: Box<Geometry>,

@@ -4,6 +4,8 @@
 //! chamber is closed by the plane, in which the force of that wall is held; what flows into its gas does so through half of an
 //! orifice (`orifices.rs`).
 
+use std::iter;
+
 use super::super::{Input, Phase, Quantity, Scene, Target};
 use super::same::{SAME, Same, times};
 use crate::base::input::InputError;
@@ -61,21 +63,21 @@ impl<'s> Same<'s> {
         let (at, tolerance) = (self.map.ends[0], SAME * self.scene.body.size());
         let (d, kept) = (self.map.mesh.dimension(), self.map.mesh.positions());
         let is_upper = kept.iter().skip(self.map.axis).step_by(d).any(|x| *x > at + tolerance);
-        let beside_it = |name: &str| (self.scene.lag_of(name), self.scene.gas_of(name));
+        let lag_and_gas = |name: &str| (self.scene.lag_of(name), self.scene.gas_of(name));
+        // of several in one place each is its own
+        let mut candidates = iter::once(own).chain(all);
         let (own, placed) = own;
         let is_image = |(other, at): &&(Component, Placed)| {
             let numbers = placed.at[1].iter().zip(&at.at[0]);
             placed.likeness == at.likeness
-                && format!("{:?}", beside_it(own.name)) == format!("{:?}", beside_it(other.name))
+                && format!("{:?}", lag_and_gas(own.name))
+                    == format!("{:?}", lag_and_gas(other.name))
                 && placed.at[1].len() == at.at[0].len()
                 && numbers.into_iter().all(|(a, b)| (a - b).abs() <= tolerance)
         };
         let name = format!("\"{}\"", own.name);
-        // of several in one place each is its own
-        let image = all.iter().filter(|(other, _)| other.name == own.name).chain(all);
-        let image = image.into_iter().find(is_image);
-        let (image, _) = image.ok_or_else(|| self.refused("component", &name))?;
-        let image = image.name;
+        let image = candidates.find(is_image);
+        let image = image.ok_or_else(|| self.refused("component", &name))?.0.name;
         let beside = placed.along.iter().filter(|x| (*x - at).abs() > tolerance);
         let sides: Vec<bool> = beside.map(|x| (*x > at) == is_upper).collect();
         let share = match (image == own.name, placed.is_line) {
