@@ -97,8 +97,8 @@ const LOSING: f64 = 0.25;
 const ONCE_LOST: f64 = 0.5;
 
 /// Relative tolerance below which implicit methods locate contact events: on Hirai's scenes that
-/// takes a quarter less time there, and at 1e-5 a quarter more.
-const FINE: f64 = 1e-6;
+/// takes a quarter less time there, and at 1e-5 a quarter more. Short steps between bodies that touch are then those that accuracy asks for.
+pub(super) const FINE: f64 = 1e-6;
 
 /// Part of the tolerances with which BDF continues where it has created energy.
 const FINER: f64 = 0.1;

@@ -8,7 +8,7 @@
 //! Where bodies touch, what sticks, slides, rests or chatters bounds the steps of one method and not of another, and no spectrum
 //! tells which. There others are tried as soon as many steps are still to come, in turn, and after one has failed.
 
-use super::auto::{Plan, Probe, TRIAL};
+use super::auto::{FINE, Plan, Probe, TRIAL};
 use crate::dynamics::phase::Failed;
 use crate::dynamics::report::Counts;
 use crate::integrators::common::{self, Cause};
@@ -35,7 +35,8 @@ impl Plan {
     /// phase lasts `left` (s) more; a second of the motion has a `cost`.
     pub(super) fn stalled(&self, step: f64, taken: usize, left: f64, cost: f64) -> Option<Self> {
         // the spectrum knows nothing of what sticks, slides and rests
-        let is_short = self.touches || step < self.expected_step;
+        let is_rubbed = self.touches && self.asked.rtol >= FINE;
+        let is_short = is_rubbed || step < self.expected_step;
         let is_short = is_short && left > self.patience_of_probes as f64 * step;
         if taken < self.patience_of_probes
             || !is_short
