@@ -238,3 +238,33 @@ fn bounces_end_the_meaning() {
     assert!(doubt.by_tolerance && doubt.since.is_some_and(|time| time > 0.1), "{doubt:?}");
     assert!(bounced.to_string().contains("means little"), "{bounced}");
 }
+
+/// The derivative of the computed motion by both methods that have it: relative differences.
+fn by_both(scene: &str, set: &[&str], of: &str, keys: &[&str]) -> Vec<f64> {
+    let [adjoint, same] = [Method::Adjoint, Method::SameSteps].map(|method| {
+        let gradient = gradient(scene, set, Objective::Quantity(of.into()), keys).unwrap();
+        let clock = std::time::Instant::now();
+        let found = gradient.by_method(method).unwrap().value_and_gradient(&mut |_| {}).unwrap();
+        println!("{:?}\n{found}", clock.elapsed());
+        assert_eq!((found.method, &found.reason), (method, &None));
+        found
+    });
+    let pairs = adjoint.derivatives.iter().zip(&same.derivatives);
+    let apart = pairs.map(|(adjoint, same)| (adjoint.value / same.value - 1.0).abs()).collect();
+    println!("{apart:?}");
+    apart
+}
+
+#[test]
+fn steps_taken_back() {
+    let keys = NUMBERS.map(|(key, _)| key);
+    by_both(BAR, &[], "tip.x", &keys);
+    let beam = r#"
+        gravity = [0.0, -9.8]
+        body = { mesh = { kind = "rectangle", size = [0.1, 0.02], nodes = [7, 3], cells = "triangles" }, thickness = 0.01, strain = "green", material = { density = 1000.0, young = 1e5, poisson = 0.3, viscosity = 10.0 } }
+        phase = [ { name = "sag", until = 0.05, hold = { nodes = "left" }, load = { nodes = "right", total = [0.01, "-0.1*sin(30*t)"] } }, { name = "swing", until = 0.09, hold = [{ nodes = "left" }, {nodes = "top-right"}] }, {until = 0.1, hold = {nodes = "top-right"} } ]
+        sensor = { name = "tip", kind = "position", nodes = "bottom-right" }
+        solver = { rtol = 1e-4 }
+    "#;
+    by_both(beam, &[], "tip.y", &["body.material.young", "body.material.poisson", "body.material.density", "body.material.viscosity", "body.mesh.size.1", "phase.sag.load.total.1", "phase.sag.until", "phase.swing.until", "gravity.2"]);
+}
