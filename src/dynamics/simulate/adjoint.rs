@@ -8,12 +8,16 @@
 //! States are handed from phase to phase as they are. Where nodes are held from where they are as a phase begins, what is prescribed
 //! depends on the state then, which is followed.
 
+use std::mem::take;
+use std::sync::Arc;
+
 use rayon::prelude::*;
 
 use super::records;
 use super::run::Run;
 use super::simulation::Simulation;
 use super::tape::{Tape, TapedStep};
+use crate::base::simd::add_multiple;
 use crate::base::vector::{dot, noise};
 use crate::dynamics::phase::{Failed, repeating};
 use crate::dynamics::system::System;
@@ -22,7 +26,6 @@ use crate::integrators::common::Integrator;
 use crate::integrators::ode::Failure;
 use crate::integrators::rosenbrock::StepAdjoint;
 use crate::scene::constraint::{ConstraintRow, PhaseStart, prescribe};
-use std::sync::Arc;
 
 /// Reads a number from a sample of a motion.
 pub(crate) type Read<'a> = dyn Fn(&Trajectory, &Sample) -> Option<f64> + Sync + 'a;
@@ -79,7 +82,7 @@ impl Tape {
         }
         let mut phases = self.phases(&mut own.run)?;
         let mut beside = self.phases(&mut again.run)?.systems;
-        let depends = self.held_from_their_start(&own.run, &phases)?;
+        let are_held = self.held_from_their_start(&own.run, &phases)?;
         let Some(end) = self.states.last() else { return Err("there are no steps".into()) };
         let mut lambda = self.slope(&own.run, &beside[beside.len() - 1], end, read)?;
         let mut starts = Vec::new();
@@ -92,6 +95,8 @@ impl Tape {
             starts.push(start);
             all.push(Other { phases, has_masses: false, weights: Default::default(), sum });
         }
+        // the derivative by shifts of what rows prescribe
+        let mut handed: Vec<f64> = Vec::new();
         while let (Some(system), Some(mut beside)) = (phases.systems.pop(), beside.pop()) {
             let number = phases.systems.len();
             for other in &mut all {
@@ -99,7 +104,9 @@ impl Tape {
             }
             let alpha = system.alpha();
             let rows = system.rows().to_vec();
-            let mut shifts = vec![0.0; rows.len()];
+            // those of nodes that the next phase goes on to hold
+            let mut shifts = take(&mut handed);
+            shifts.resize(rows.len(), 0.0);
             let mut integrator = repeating(system, &self.settings, (0.0, end))?;
             let mut adjoint = StepAdjoint::new(&integrator);
             for (at, step) in self.steps.iter().enumerate().rev() {
@@ -123,9 +130,16 @@ impl Tape {
                 let added = all.par_iter_mut().map(|other| other.add(&adjoint, step));
                 added.collect::<Result<Vec<()>, Failed>>()?;
             }
-            for ((row, shift), dofs) in rows.iter().zip(shifts).zip(&depends[number]) {
-                for (dof, c) in row.terms.iter().filter(|(dof, _)| dofs.contains(dof)) {
-                    lambda[*dof] += c * shift;
+            let before = phases.systems.last().map_or(&[][..], System::rows);
+            handed.resize(before.len(), 0.0);
+            for ((row, shift), _) in rows.iter().zip(shifts).zip(&are_held[number]).filter(|of| *of.1) {
+                for (dof, c) in &row.terms {
+                    let own = |row: &ConstraintRow| row.nodal().filter(|(own, _)| own == dof);
+                    let mut prescribed = before.iter().enumerate();
+                    match prescribed.find_map(|(at, row)| Some((at, own(row)?.1))) {
+                        Some((at, coefficient)) => handed[at] += c * shift / coefficient,
+                        None => lambda[*dof] += c * shift,
+                    }
                 }
             }
         }
@@ -167,52 +181,33 @@ impl Tape {
         Ok(&self.states[first.ok_or("a phase has no steps")?])
     }
 
-    /// For each row of each phase the degrees of freedom whose displacements at the start of the phase it prescribes from then on.
-    fn held_from_their_start(
-        &self,
-        run: &Run,
-        phases: &Phases,
-    ) -> Result<Vec<Vec<Vec<usize>>>, Failed> {
-        let none = |system: &System| vec![Vec::new(); system.rows().len()];
-        let mut all: Vec<Vec<Vec<usize>>> = phases.systems.iter().map(none).collect();
+    /// For each row of each phase whether it prescribes from then on where its nodes are as the phase begins, or where they are to be.
+    fn held_from_their_start(&self, run: &Run, phases: &Phases) -> Result<Vec<Vec<bool>>, Failed> {
+        let none = |system: &System| vec![false; system.rows().len()];
+        let mut all: Vec<Vec<bool>> = phases.systems.iter().map(none).collect();
         for number in 1..phases.systems.len() {
             let [before, system] = [number - 1, number].map(|at| &phases.systems[at]);
-            let (start, end) = (phases.bounds[number][0], run.scene.phases()[number].end());
-            let state = self.start_of(number)?;
-            let size = SHIFT * run.matrices.scales[0];
-            let shift: Vec<f64> = noise(system.dofs(), number).iter().map(|x| size * x).collect();
-            let mut u: Vec<f64> = state.iter().zip(&shift).map(|(u, shift)| u + shift).collect();
+            let (phase, start) = (&run.scene.phases()[number], phases.bounds[number][0]);
+            let mut u = self.start_of(number)?[..system.dofs()].to_vec();
             prescribe(before.rows(), start, &mut u);
-            let place = PhaseStart { time: start, u: &u };
-            let shifted = run.scene.rows(&run.scene.phases()[number], &place)?;
-            let is_prescribed = |dof: usize| {
-                before.rows().iter().filter_map(ConstraintRow::nodal).any(|(own, _)| own == dof)
-            };
-            for ((row, shifted), depends) in system.rows().iter().zip(&shifted).zip(&mut all[number]) {
-                let free = row.terms.iter().filter(|(dof, _)| !is_prescribed(*dof));
-                let expected: f64 = free.clone().map(|(dof, c)| c * shift[*dof]).sum();
-                let change = |t: f64| {
-                    let [own, other] = [row, shifted].map(|row| row.prescribed(t));
-                    [
-                        other.displacement - own.displacement,
-                        other.velocity - own.velocity,
-                        other.acceleration - own.acceleration,
-                    ]
-                };
-                let is_change = |of: f64| {
-                    [start, end].into_iter().all(|t| {
-                        let [displacement, velocity, acceleration] = change(t);
-                        (displacement - of).abs() <= SAME * size && [velocity, acceleration] == [0.0; 2]
+            let size = SHIFT * run.matrices.scales[0];
+            let shift: Vec<f64> = noise(u.len(), number).iter().map(|x| size * x).collect();
+            add_multiple(1.0, &shift, &mut u);
+            let shifted = run.scene.rows(phase, &PhaseStart { time: start, u: &u })?;
+            for ((row, shifted), is_held) in system.rows().iter().zip(&shifted).zip(&mut all[number]) {
+                let changes = |by: f64| {
+                    [start, phase.end()].into_iter().all(|t| {
+                        let [own, other] = [row, shifted].map(|row| row.prescribed(t));
+                        (other.displacement - own.displacement - by).abs() <= SAME * size
+                            && other.velocity == own.velocity
+                            && other.acceleration == own.acceleration
                     })
                 };
-                if is_change(0.0) {
-                    continue;
+                *is_held = !changes(0.0);
+                if *is_held && !changes(row.apply(&shift)) {
+                    let name = phase.name();
+                    return Err(format!("what turns in phase \"{name}\" is not taken back yet").into());
                 }
-                if !is_change(expected) {
-                    let name = run.scene.phases()[number].name();
-                    return Err(format!("motion of phase \"{name}\" depends on where it begins").into());
-                }
-                *depends = free.map(|(dof, _)| *dof).collect();
             }
         }
         Ok(all)
