@@ -266,5 +266,20 @@ fn steps_taken_back() {
         sensor = { name = "tip", kind = "position", nodes = "bottom-right" }
         solver = { rtol = 1e-4 }
     "#;
-    by_both(beam, &[], "tip.y", &["body.material.young", "body.material.poisson", "body.material.density", "body.material.viscosity", "body.mesh.size.1", "phase.sag.load.total.1", "phase.sag.until", "phase.swing.until", "gravity.2"]);
+    by_both(
+        beam,
+        &[],
+        "tip.y",
+        &[
+            "body.material.young",
+            "body.material.poisson",
+            "body.material.density",
+            "body.material.viscosity",
+            "body.mesh.size.1",
+            "phase.sag.load.total.1",
+            "phase.sag.until",
+            "phase.swing.until",
+            "gravity.2",
+        ],
+    );
 }

@@ -78,7 +78,9 @@ impl Tape {
         read: &Read,
     ) -> Result<Vec<f64>, Failed> {
         if own.run.sensors.need_forces() {
-            return Err("readings of forces, accelerations and energies are not taken back yet".into());
+            return Err(
+                "readings of forces, accelerations and energies are not taken back yet".into()
+            );
         }
         let mut phases = self.phases(&mut own.run)?;
         let mut beside = self.phases(&mut again.run)?.systems;
@@ -90,7 +92,8 @@ impl Tape {
         for mut other in others {
             let start = other.run.state.clone();
             let phases = self.phases(&mut other.run)?;
-            let number = number_at(&other.run, &phases.systems[phases.systems.len() - 1], end, read);
+            let number =
+                number_at(&other.run, &phases.systems[phases.systems.len() - 1], end, read);
             let sum = number.ok_or("the reading is not defined")?;
             starts.push(start);
             all.push(Other { phases, has_masses: false, weights: Default::default(), sum });
@@ -132,7 +135,9 @@ impl Tape {
             }
             let before = phases.systems.last().map_or(&[][..], System::rows);
             handed.resize(before.len(), 0.0);
-            for ((row, shift), _) in rows.iter().zip(shifts).zip(&are_held[number]).filter(|of| *of.1) {
+            for ((row, shift), _) in
+                rows.iter().zip(shifts).zip(&are_held[number]).filter(|of| *of.1)
+            {
                 for (dof, c) in &row.terms {
                     let own = |row: &ConstraintRow| row.nodal().filter(|(own, _)| own == dof);
                     let mut prescribed = before.iter().enumerate();
@@ -194,7 +199,9 @@ impl Tape {
             let shift: Vec<f64> = noise(u.len(), number).iter().map(|x| size * x).collect();
             add_multiple(1.0, &shift, &mut u);
             let shifted = run.scene.rows(phase, &PhaseStart { time: start, u: &u })?;
-            for ((row, shifted), is_held) in system.rows().iter().zip(&shifted).zip(&mut all[number]) {
+            for ((row, shifted), is_held) in
+                system.rows().iter().zip(&shifted).zip(&mut all[number])
+            {
                 let changes = |by: f64| {
                     [start, phase.end()].into_iter().all(|t| {
                         let [own, other] = [row, shifted].map(|row| row.prescribed(t));
@@ -206,7 +213,9 @@ impl Tape {
                 *is_held = !changes(0.0);
                 if *is_held && !changes(row.apply(&shift)) {
                     let name = phase.name();
-                    return Err(format!("what turns in phase \"{name}\" is not taken back yet").into());
+                    return Err(
+                        format!("what turns in phase \"{name}\" is not taken back yet").into()
+                    );
                 }
             }
         }

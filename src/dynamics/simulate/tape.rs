@@ -79,7 +79,8 @@ impl Simulation {
         } else if run.reduced.is_some() {
             Some("steps of reduced models are not taken back yet".into())
         } else {
-            projects.map(|phase| format!("phase \"{}\" changes velocities at its start", phase.name()))
+            projects
+                .map(|phase| format!("phase \"{}\" changes velocities at its start", phase.name()))
         }
     }
 }

@@ -145,7 +145,6 @@ impl StepAdjoint {
         Ok(sum)
     }
 
-
     /// Turns `lambda`, the derivative of a number by the end of the last step of the integrator, into that by its start. `other` are its
     /// equations once more, to be linearized at other states.
     pub(crate) fn pull_back<S: Transposed>(

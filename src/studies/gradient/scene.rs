@@ -1,5 +1,6 @@
 //! The gradient of an objective of a scene file: its runs, and what they tell.
 
+use std::ops::Range;
 use std::path::PathBuf;
 use std::sync::atomic::Ordering;
 
@@ -342,35 +343,41 @@ impl SceneGradient {
     }
 
     /// The derivatives by all numbers, from runs whose steps are taken back; or why they cannot be.
+    ///
+    /// At the smaller tolerance with the last step of the differences alone: their error is that at the larger one.
     fn taken_back(&self, scheme: &Scheme, bases: &[Base; 2]) -> Result<Vec<Found>, String> {
-        let steps = |number: &Number| {
-            let first = scheme.first * number.scale();
-            (0..scheme.rows).map(move |row| first * 0.5_f64.powi(row as i32))
-        };
-        let ends = |number| steps(number).flat_map(|step| number.ends(step));
-        let others: Vec<(&Number, f64)> =
-            self.numbers.iter().flat_map(|number| ends(number).map(move |at| (number, at))).collect();
-        let sums = |base: &Base| match &base.tape {
-            Some(tape) => self.runs.lagrangians(tape, base.rtol, &others),
-            None => Err(AT_THE_END.into()),
-        };
-        let [fine, coarse] = [sums(&bases[0])?, sums(&bases[1])?];
-        let each = 2 * scheme.rows;
-        let pairs = self.numbers.iter().zip(fine.chunks(each).zip(coarse.chunks(each)));
-        let found = pairs.filter_map(|(number, (fine, coarse))| {
-            let quotients = |sums: &[f64]| -> Vec<Vec<f64>> {
-                let ends = steps(number).map(|step| number.ends(step));
-                let each = sums.chunks(2).zip(ends);
-                each.map(|(sums, ends)| vec![(sums[0] - sums[1]) / (ends[0] - ends[1])]).collect()
+        let step =
+            |number: &Number, row: usize| scheme.first * number.scale() * 0.5_f64.powi(row as i32);
+        let last = scheme.rows - 1;
+        let quotients = |base: &Base, rows: Range<usize>| {
+            let ends: Vec<(&Number, [f64; 2])> = self
+                .numbers
+                .iter()
+                .flat_map(|number| {
+                    rows.clone().map(move |row| (number, number.ends(step(number, row))))
+                })
+                .collect();
+            let others: Vec<(&Number, f64)> =
+                ends.iter().flat_map(|(number, ends)| ends.map(|at| (*number, at))).collect();
+            let tape = base.tape.as_ref().ok_or(AT_THE_END)?;
+            let sums = self.runs.lagrangians(tape, base.rtol, &others)?;
+            let quotient = |(sums, (_, ends)): (&[f64], &(&Number, [f64; 2]))| {
+                let change = sums[0] - sums[1];
+                let is_same = change.abs() <= ROUND_OFF * sums[0].abs();
+                (vec![change / (ends[0] - ends[1])], is_same)
             };
-            let is_same =
-                |sums: &[f64]| (sums[0] - sums[1]).abs() <= ROUND_OFF * sums[0].abs();
-            let [of_fine, of_coarse] = [quotients(fine), quotients(coarse)];
-            Some(Found {
-                slope: extrapolated(&of_fine, number.order())?,
-                quotients: [of_fine.last()?.clone(), of_coarse.last()?.clone()],
-                is_constant: fine.chunks(2).chain(coarse.chunks(2)).all(is_same),
-            })
+            Ok::<Vec<(Vec<f64>, bool)>, String>(sums.chunks(2).zip(&ends).map(quotient).collect())
+        };
+        let fine = quotients(&bases[0], last..scheme.rows)?;
+        let coarse = quotients(&bases[1], 0..scheme.rows)?;
+        let each = self.numbers.iter().zip(fine.into_iter().zip(coarse.chunks(scheme.rows)));
+        let found = each.filter_map(|(number, ((fine, is_same), coarse))| {
+            let (of_coarse, are_same): (Vec<Vec<f64>>, Vec<bool>) = coarse.iter().cloned().unzip();
+            let mut slope = extrapolated(&of_coarse, number.order())?;
+            let of_coarse = of_coarse.last()?.clone();
+            slope.slopes[0] += fine[0] - of_coarse[0];
+            let is_constant = is_same && !are_same.contains(&false);
+            Some(Found { slope, quotients: [fine, of_coarse], is_constant })
         });
         Ok(found.collect())
     }
