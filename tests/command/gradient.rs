@@ -22,7 +22,7 @@ fn derivatives_are_printed_and_written() {
     assert!(ran.status.success(), "{}", stderr(&ran));
     says(
         &stdout(&ran),
-        &["tip.x:end = 1.61", "by body.material.young", "m/Pa", "whole runs", "same-steps"],
+        &["tip.x:end = 1.61", "by body.material.young", "m/Pa", "whole runs", "adjoint"],
     );
     let text = fs::read_to_string(place.path("g/gradient.json")).unwrap();
     let record: Value = serde_json::from_str(&text).unwrap();

@@ -15,6 +15,9 @@
 //! By a parameter p of the equations the derivative is that of sum z_i.(gamma h f + gamma h J u_i + gamma gamma_i h^2 df/dt) with the
 //! u_i, z_i and stages held: values of f by other equations, and no factorization.
 
+#[cfg(test)]
+mod tests;
+
 use super::solver::Rosenbrock;
 use super::tableau::Tableau;
 use crate::base::simd::add_multiple;
@@ -104,6 +107,7 @@ impl StepAdjoint {
     }
 
     /// The step size times the weights of each stage, which is that of a constant added to g.
+    #[cfg(feature = "gradient")]
     pub(crate) fn impulses(&self) -> impl Iterator<Item = (f64, &[f64])> {
         let gamma = self.tableau.gamma * self.h;
         self.weights.iter().map(move |weights| (gamma, &weights[..]))

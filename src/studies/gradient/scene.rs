@@ -362,22 +362,27 @@ impl SceneGradient {
             let tape = base.tape.as_ref().ok_or(AT_THE_END)?;
             let sums = self.runs.lagrangians(tape, base.rtol, &others)?;
             let quotient = |(sums, (_, ends)): (&[f64], &(&Number, [f64; 2]))| {
-                let change = sums[0] - sums[1];
-                let is_same = change.abs() <= ROUND_OFF * sums[0].abs();
-                (vec![change / (ends[0] - ends[1])], is_same)
+                let (change, width) = (sums[0] - sums[1], ends[0] - ends[1]);
+                let round_off = ROUND_OFF * sums[0].abs();
+                (change / width, round_off / width, change.abs() <= round_off)
             };
-            Ok::<Vec<(Vec<f64>, bool)>, String>(sums.chunks(2).zip(&ends).map(quotient).collect())
+            Ok::<Vec<(f64, f64, bool)>, String>(sums.chunks(2).zip(&ends).map(quotient).collect())
         };
         let fine = quotients(&bases[0], last..scheme.rows)?;
         let coarse = quotients(&bases[1], 0..scheme.rows)?;
-        let each = self.numbers.iter().zip(fine.into_iter().zip(coarse.chunks(scheme.rows)));
-        let found = each.filter_map(|(number, ((fine, is_same), coarse))| {
-            let (of_coarse, are_same): (Vec<Vec<f64>>, Vec<bool>) = coarse.iter().cloned().unzip();
-            let mut slope = extrapolated(&of_coarse, number.order())?;
-            let of_coarse = of_coarse.last()?.clone();
-            slope.slopes[0] += fine[0] - of_coarse[0];
-            let is_constant = is_same && !are_same.contains(&false);
-            Some(Found { slope, quotients: [fine, of_coarse], is_constant })
+        let each = self.numbers.iter().zip(fine.iter().zip(coarse.chunks(scheme.rows)));
+        let found = each.filter_map(|(number, (&(of_fine, round_off, is_same), coarse))| {
+            let of_coarse: Vec<Vec<f64>> = coarse.iter().map(|of| vec![of.0]).collect();
+            let Extrapolated { slopes, error } = extrapolated(&of_coarse, number.order())?;
+            let (limit, of_coarse) = (*slopes.last()?, coarse.last()?.0);
+            Some(Found {
+                slope: Extrapolated {
+                    slopes: vec![of_fine + limit - of_coarse],
+                    error: error.max(round_off),
+                },
+                quotients: [of_fine, of_coarse].map(|of| vec![of]),
+                is_constant: is_same && coarse.iter().all(|of| of.2),
+            })
         });
         Ok(found.collect())
     }
