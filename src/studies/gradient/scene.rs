@@ -292,7 +292,7 @@ impl SceneGradient {
         let all: Vec<usize> = (0..self.numbers.len()).collect();
         let (mut method, mut reason) = (scheme.method, None);
         let taken_back = match method {
-            Method::Adjoint => self.taken_back(scheme, &bases),
+            Method::Adjoint => self.taken_back(scheme, &bases, &costs),
             _ => Err(String::new()),
         };
         let mut found = match taken_back {
@@ -345,7 +345,12 @@ impl SceneGradient {
     /// The derivatives by all numbers, from runs whose steps are taken back; or why they cannot be.
     ///
     /// At the smaller tolerance with the last step of the differences alone: their error is that at the larger one.
-    fn taken_back(&self, scheme: &Scheme, bases: &[Base; 2]) -> Result<Vec<Found>, String> {
+    fn taken_back(
+        &self,
+        scheme: &Scheme,
+        bases: &[Base; 2],
+        costs: &Costs,
+    ) -> Result<Vec<Found>, String> {
         let step =
             |number: &Number, row: usize| scheme.first * number.scale() * 0.5_f64.powi(row as i32);
         let last = scheme.rows - 1;
@@ -361,6 +366,7 @@ impl SceneGradient {
                 ends.iter().flat_map(|(number, ends)| ends.map(|at| (*number, at))).collect();
             let tape = base.tape.as_ref().ok_or(AT_THE_END)?;
             let sums = self.runs.lagrangians(tape, base.rtol, &others)?;
+            costs.add_taken_back(base.seen.steps, others.len());
             let quotient = |(sums, (_, ends)): (&[f64], &(&Number, [f64; 2]))| {
                 let (change, width) = (sums[0] - sums[1], ends[0] - ends[1]);
                 let round_off = ROUND_OFF * sums[0].abs();
