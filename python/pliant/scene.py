@@ -183,7 +183,7 @@ class Scene:
         static : bool
             Of the equilibrium.
         method : str, optional
-            ``"same-steps"`` or ``"differences"``.
+            ``"adjoint"``, ``"same-steps"`` or ``"differences"``.
         check : bool
             With differences of whole runs beside the derivatives.
         """

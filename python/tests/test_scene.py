@@ -380,7 +380,7 @@ def test_a_gradient():
     # the bar is linear
     assert found.by == [force, young] and abs(found[force] * 0.1 / found.value - 1.0) < 1e-6
     assert found.derivatives.shape == (2,) and (found.errors < 1e-5 * abs(found.derivatives)).all()
-    assert found.unit == "m" and not found.warnings and "same-steps" in str(found)
+    assert found.unit == "m" and not found.warnings and "adjoint" in str(found)
     still = scene.gradient("tip.x", by=young, static=True)
     assert abs(still[young] + still.value / 1e5) <= still.errors[0] + 1e-17
     squares = scene.gradient(by=young, measured={"t": [0.05], "tip.x": [0.0]})

@@ -266,7 +266,7 @@ impl BlockMatrix {
     }
 
     /// y += factor A^T x
-    #[cfg(feature = "study")]
+    #[cfg(any(feature = "gradient", feature = "study"))]
     pub(crate) fn add_transposed_product(&self, factor: f64, x: &[f64], y: &mut [f64]) {
         let d = self.dimension;
         for (dof, x) in x.iter().enumerate() {

@@ -14,8 +14,8 @@ use super::scene::SceneArguments;
 
 /// Derivatives of what a scene does by numbers of its file, each with its estimated error
 ///
-/// Runs the scene, and again with the same steps and slightly other numbers, or, where that cannot be done, whole runs at a tight
-/// tolerance; equilibria in any case. Prints the derivatives, and writes them to gradient.json, to out/NAME-gradient for the scene
+/// Runs the scene and takes its steps back, or runs it again with the same steps and slightly other numbers, or, where neither can be done,
+/// makes whole runs at a tight tolerance; equilibria in any case. Prints the derivatives, and writes them to gradient.json, to out/NAME-gradient for the scene
 /// file NAME.toml if --out does not say otherwise. Warns of a derivative that means little: after bounces or in chaos.
 #[derive(Args)]
 pub struct Arguments {
@@ -34,7 +34,8 @@ pub struct Arguments {
     /// Of the equilibrium that `pliant static` finds, or of those in the rows of the table
     #[arg(long = "static")]
     at_rest: bool,
-    /// How they are found: same-steps or differences [default: same-steps where runs can take the same steps]
+    /// How they are found: adjoint, same-steps or differences [default: adjoint for several numbers of a reading at the end, same-steps where steps
+    /// cannot be taken back, differences where runs cannot take the same steps]
     #[arg(long, value_name = "METHOD")]
     method: Option<Method>,
     /// Put the differences of whole runs beside them

@@ -88,6 +88,12 @@ impl Skew {
         }
     }
 
+    /// Turns S into its transpose, -S.
+    #[cfg(feature = "gradient")]
+    pub(crate) fn transpose(&mut self) {
+        self.entries.iter_mut().for_each(|(_, _, value)| *value = -*value);
+    }
+
     /// Sets S to 0.
     pub(crate) fn clear(&mut self) {
         self.rows.clear();

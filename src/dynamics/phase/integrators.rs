@@ -216,6 +216,20 @@ pub(super) fn ode<S: IntoStepper>(
     })
 }
 
+/// The integrator that takes steps of a run by [`Method::Rosenbrock`] again, one by one.
+#[cfg(feature = "gradient")]
+pub(crate) fn repeating(
+    mut equations: System,
+    settings: &Settings,
+    (t, y): (f64, &[f64]),
+) -> Result<Rosenbrock<System>, Failed> {
+    equations.expect_iteration(false);
+    // errors of prescribed steps do not count
+    let (tolerances, is_linear) = (vec![1.0; y.len()], equations.is_linear());
+    let options = rosenbrock_options(settings, tolerances, &equations, is_linear);
+    Ok(Rosenbrock::new(equations, t, y, &options.prescribed())?)
+}
+
 /// Equations that are an ODE, with the stepper of their integrators.
 pub(super) trait IntoStepper: Integrable + Ode + Sized + 'static {
     fn into_stepper(

@@ -7,6 +7,8 @@ mod integrators;
 mod lifted;
 mod summary;
 
+#[cfg(feature = "gradient")]
+pub(crate) use integrators::repeating;
 pub use summary::PhaseSummary;
 
 use crate::base::input::InputError;

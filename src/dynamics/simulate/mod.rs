@@ -1,5 +1,7 @@
 //! Running a scene: phase by phase, with restarts in between and samples along the way.
 
+#[cfg(feature = "gradient")]
+mod adjoint;
 mod angles;
 mod at_rest;
 mod auto;
@@ -40,6 +42,8 @@ mod spot_gauge;
 mod stalled;
 mod step_list;
 mod steps;
+#[cfg(feature = "gradient")]
+mod tape;
 mod view;
 mod watch;
 mod watching;
@@ -68,6 +72,8 @@ pub use sampling::Sampling;
 pub use simulation::Simulation;
 pub use spot::Spot;
 pub use step_list::StepList;
+#[cfg(feature = "gradient")]
+pub(crate) use tape::Tape;
 use view::Gauges;
 pub use view::View;
 

@@ -398,7 +398,7 @@ impl Run {
     }
 
     /// As [`equations`](Self::equations), in all unknowns.
-    fn full_equations(&self, phase: &Phase, u: &[f64]) -> Result<System, InputError> {
+    pub(super) fn full_equations(&self, phase: &Phase, u: &[f64]) -> Result<System, InputError> {
         let start = PhaseStart { time: self.time, u };
         let forces = self.scene.forces_in(phase)?;
         let alpha = self.settings.alpha;

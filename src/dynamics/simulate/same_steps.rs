@@ -1,5 +1,6 @@
 //! Runs that list their steps, and runs that take those of another one.
 
+use super::run::Run;
 use super::simulation::Simulation;
 use super::step_list::{Prescribed, StepList};
 use crate::base::input::InputError;
@@ -24,7 +25,16 @@ impl Simulation {
     ///
     /// # Errors
     /// As [`finish`](Self::finish).
-    pub fn finish_with_steps(mut self) -> Result<(Trajectory, StepList), Error> {
+    pub fn finish_with_steps(self) -> Result<(Trajectory, StepList), Error> {
+        self.finish_noting(&mut |_, _| {})
+    }
+
+    /// As [`finish_with_steps`](Self::finish_with_steps); `note` is given the run after each step, and where the step begins and ends, as
+    /// fractions of its interval.
+    pub(super) fn finish_noting(
+        mut self,
+        note: &mut dyn FnMut(&Run, [f64; 2]),
+    ) -> Result<(Trajectory, StepList), Error> {
         let mut intervals: Vec<Vec<f64>> = Vec::new();
         let (mut before, mut span) = (self.run.time, [f64::NAN; 2]);
         while self.advance()? {
@@ -37,8 +47,9 @@ impl Simulation {
                 span = [before, stop];
                 intervals.push(Vec::new());
             }
-            let fraction = (time - span[0]) / (stop - span[0]);
-            intervals.last_mut().into_iter().for_each(|ends| ends.push(fraction));
+            let fraction = |time: f64| (time - span[0]) / (stop - span[0]);
+            intervals.last_mut().into_iter().for_each(|ends| ends.push(fraction(time)));
+            note(&self.run, [before, time].map(fraction));
             before = time;
         }
         Ok((self.into_trajectory(), StepList { intervals: intervals.into() }))

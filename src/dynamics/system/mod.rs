@@ -31,6 +31,8 @@
 //! that the error of the stabilization is not passed on. Multipliers follow from the constrained rows of M
 //! a - f; in the ODE form they are output.
 
+#[cfg(feature = "gradient")]
+mod adjoint;
 mod at_rest;
 mod dae;
 #[cfg(test)]

@@ -21,7 +21,7 @@ use crate::integrators::ode::{Ode, call};
 /// Output times do not change the steps. Stepping allocates nothing.
 #[derive(Debug)]
 pub struct OneStep<S, M> {
-    pub(super) march: March<S>,
+    pub(crate) march: March<S>,
     pub(crate) method: M,
 }
 

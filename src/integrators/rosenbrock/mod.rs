@@ -30,6 +30,8 @@
 //! # Ok::<(), pliant::rosenbrock::Error>(())
 //! ```
 
+#[cfg(any(test, feature = "gradient"))]
+mod adjoint;
 mod control;
 mod matrix;
 mod options;
@@ -37,6 +39,8 @@ mod solver;
 mod step;
 mod tableau;
 
+#[cfg(feature = "gradient")]
+pub(crate) use adjoint::{StepAdjoint, Transposed};
 pub use options::Options;
 pub use solver::Rosenbrock;
 

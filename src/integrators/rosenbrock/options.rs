@@ -92,7 +92,7 @@ impl Options {
     /// Prescribed steps: as long as a stop time is set the step ends there, whatever its error estimate says. With the steps of an
     /// earlier integration the result is a smooth function of initial values and parameters. A step whose equations cannot be
     /// evaluated or solved is still divided.
-    #[cfg(feature = "bodies")]
+    #[cfg(any(test, feature = "bodies"))]
     pub(crate) fn prescribed(mut self) -> Self {
         self.forward.prescribed = true;
         self

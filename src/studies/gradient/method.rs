@@ -9,6 +9,8 @@ use crate::base::input::InputError;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Method {
+    /// The steps of a run taken back: the discrete adjoint, for any number of numbers at once.
+    Adjoint,
     /// Differences of runs that take the same steps.
     SameSteps,
     /// Differences of whole runs, or of equilibria, at a tight tolerance.
@@ -17,11 +19,12 @@ pub enum Method {
 
 impl Method {
     /// All methods.
-    pub const ALL: [Self; 2] = [Self::SameSteps, Self::Differences];
+    pub const ALL: [Self; 3] = [Self::Adjoint, Self::SameSteps, Self::Differences];
 
-    /// Its word: `same-steps`, `differences`.
+    /// Its word: `adjoint`, `same-steps`, `differences`.
     pub fn name(self) -> &'static str {
         match self {
+            Self::Adjoint => "adjoint",
             Self::SameSteps => "same-steps",
             Self::Differences => "differences",
         }

@@ -1,7 +1,9 @@
 //! Derivatives of what a scene does by the numbers that it says, each with its estimated error.
 //!
-//! A [`SceneGradient`] is of one [`Objective`] and any numbers of a scene file. Two methods:
+//! A [`SceneGradient`] is of one [`Objective`] and any numbers of a scene file. Three methods:
 //!
+//! - [`Method::Adjoint`]: the steps of a run by a Rosenbrock method are taken back, one by one (`dynamics/simulate/adjoint.rs`), which gives the
+//!   derivative of the computed motion by any number of numbers. A number costs evaluations of forces in the states of the run.
 //! - [`Method::SameSteps`]: a run by an own one-step method lists its steps, and runs with another number take the same ones. What these
 //!   lead to is a smooth function of the number, so that central differences of a thousandth, extrapolated, are the derivative of the
 //!   computed motion to eight digits or more. How far that is from the derivative of the motion itself is seen from a second tolerance.

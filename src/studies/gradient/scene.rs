@@ -1,5 +1,6 @@
 //! The gradient of an objective of a scene file: its runs, and what they tell.
 
+use std::ops::Range;
 use std::path::PathBuf;
 use std::sync::atomic::Ordering;
 
@@ -9,11 +10,11 @@ use super::answer::{Check, Derivative, Doubt, Gradient};
 use super::method::Method;
 use super::number::{Number, numbers};
 use super::objective::{self, Objective, Seen, part_of_time};
-use super::runs::{Costs, OTHER_STEPS, Runs, Stop, Target};
+use super::runs::{AT_THE_END, Costs, OTHER_STEPS, Runs, Stop, Target};
 use super::tableau::{Extrapolated, extrapolated};
 use crate::base::input::InputError;
 use crate::dynamics::error::Error;
-use crate::dynamics::simulate::StepList;
+use crate::dynamics::simulate::{StepList, Tape};
 use crate::io::scene_file::{SceneReader, text_of};
 use crate::studies::fit::SceneFit;
 
@@ -48,6 +49,8 @@ pub struct SceneGradient {
     rtol: f64,
     /// Why runs do not take the steps of another one.
     refused: Option<String>,
+    /// Whether the objective is a reading at the end of a motion.
+    is_at_end: bool,
 }
 
 /// How runs are made, and which steps differences have.
@@ -64,7 +67,8 @@ struct Scheme {
 struct Base {
     rtol: f64,
     seen: Seen,
-    steps: Option<StepList>,
+    list: Option<StepList>,
+    tape: Option<Tape>,
 }
 
 /// The derivative by one number, from differences.
@@ -79,6 +83,9 @@ struct Found {
 /// Relative error of the differences from which on other steps are tried, and the factors of these.
 const ROUGH: f64 = 1e-5;
 const FACTORS: [f64; 2] = [16.0, 1.0 / 16.0];
+
+/// Numbers from which on steps are taken back, if nothing is said.
+const MANY: usize = 2;
 
 /// Part of a derivative by which results of both tolerances may differ.
 const MEANINGFUL: f64 = 0.1;
@@ -122,9 +129,11 @@ impl SceneGradient {
             let unit = fit.unit().map_or_else(|| "1".into(), |unit| format!("{unit}^2"));
             ("squares of what is left over".to_owned(), Target::LeastSquares(Box::new(fit)), unit)
         };
+        let mut is_at_end = false;
         let (of, target, unit) = match objective {
             Objective::Quantity(text) => {
                 let quantity = objective::quantity(&text, &file, false)?;
+                is_at_end = quantity.is_at_end();
                 (quantity.to_string(), Target::Quantity(text), quantity.unit().into())
             }
             Objective::QuantityAtRest(text) => {
@@ -168,16 +177,23 @@ impl SceneGradient {
             is_checked,
             rtol,
             refused,
+            is_at_end,
         })
     }
 
-    /// By this method. Default: [`Method::SameSteps`] where runs can take the same steps.
+    /// By this method. Default: [`Method::SameSteps`] for one number, and where steps cannot be taken back; [`Method::Adjoint`] for
+    /// several, of a reading at the end; [`Method::Differences`] where runs cannot take the same steps.
     ///
     /// # Errors
-    /// A method that the scene does not allow.
+    /// A method that the scene or the objective does not allow.
     pub fn by_method(mut self, method: Method) -> Result<Self, InputError> {
-        if let (Method::SameSteps, Some(why)) = (method, &self.refused) {
-            let help = format!("{why}: take {}", Method::Differences);
+        let refused = match (method, &self.refused) {
+            (Method::SameSteps | Method::Adjoint, Some(why)) => Some((&**why, Method::Differences)),
+            (Method::Adjoint, None) if !self.is_at_end => Some((AT_THE_END, Method::SameSteps)),
+            _ => None,
+        };
+        if let Some((why, other)) = refused {
+            let help = format!("{why}: take {other}");
             return Err(InputError::new("method of the gradient", method, help));
         }
         self.method = Some(method);
@@ -209,8 +225,13 @@ impl SceneGradient {
             rows: 4,
         };
         let fine = (0.01 * self.rtol).max(1e-10).min(0.1 * self.rtol);
+        let by_steps = match self.method {
+            Some(Method::Adjoint) => Method::Adjoint,
+            None if self.is_at_end && self.numbers.len() >= MANY => Method::Adjoint,
+            _ => Method::SameSteps,
+        };
         let same_steps =
-            Scheme { method: Method::SameSteps, rtols: [fine, 10.0 * fine], first: 5e-5, rows: 2 };
+            Scheme { method: by_steps, rtols: [fine, 10.0 * fine], first: 5e-5, rows: 2 };
         let why = match (self.method, &self.refused) {
             (Some(Method::Differences), _) => None,
             (_, Some(refused)) => Some(refused.clone()),
@@ -263,14 +284,33 @@ impl SceneGradient {
         let costs = Costs::default();
         let base = |rtol: f64| -> Result<Base, Stop> {
             let (seen, steps) = self.runs.observe(None, rtol, scheme.method, None, &costs)?;
-            Ok(Base { rtol, seen, steps })
+            let (list, tape) = steps.map(|steps| (steps.list, steps.tape)).unzip();
+            Ok(Base { rtol, seen, list, tape: tape.flatten() })
         };
         let [fine, coarse] = scheme.rtols;
         let bases = [base(fine)?, base(coarse)?];
         let all: Vec<usize> = (0..self.numbers.len()).collect();
-        let mut found = self.differences(scheme, &bases, &all, 1.0, &costs)?;
+        let (mut method, mut reason) = (scheme.method, None);
+        let taken_back = match method {
+            Method::Adjoint => self.taken_back(scheme, &bases, &costs),
+            _ => Err(String::new()),
+        };
+        let mut found = match taken_back {
+            Ok(found) => found,
+            Err(why) if self.method == Some(Method::Adjoint) => {
+                let help = format!("{why}: take {}", Method::SameSteps);
+                let error = InputError::new("method of the gradient", Method::Adjoint, help);
+                return Err(Stop::Failed(error.into()));
+            }
+            Err(why) => {
+                if method == Method::Adjoint {
+                    (method, reason) = (Method::SameSteps, Some(why));
+                }
+                self.differences(scheme, &bases, &all, 1.0, &costs)?
+            }
+        };
         tell(costs.runs());
-        for factor in FACTORS {
+        for factor in FACTORS.into_iter().filter(|_| method != Method::Adjoint) {
             let is_rough = |found: &Found| found.slope.error > ROUGH * found.slope.slope().abs();
             let rough: Vec<usize> =
                 all.iter().copied().filter(|&at| is_rough(&found[at])).collect();
@@ -293,13 +333,64 @@ impl SceneGradient {
             value: seen.value(),
             unit: self.unit.clone(),
             is_at_rest: self.runs.target.is_at_rest(),
-            method: scheme.method,
-            reason: None,
+            method,
+            reason,
             rtols: scheme.rtols.map(rounded),
             derivatives: derivatives.collect(),
             runs: costs.runs(),
             cost: costs.steps.load(Ordering::Relaxed) as f64 / steps as f64,
         })
+    }
+
+    /// The derivatives by all numbers, from runs whose steps are taken back; or why they cannot be.
+    ///
+    /// At the smaller tolerance with the last step of the differences alone: their error is that at the larger one.
+    fn taken_back(
+        &self,
+        scheme: &Scheme,
+        bases: &[Base; 2],
+        costs: &Costs,
+    ) -> Result<Vec<Found>, String> {
+        let step =
+            |number: &Number, row: usize| scheme.first * number.scale() * 0.5_f64.powi(row as i32);
+        let last = scheme.rows - 1;
+        let quotients = |base: &Base, rows: Range<usize>| {
+            let ends: Vec<(&Number, [f64; 2])> = self
+                .numbers
+                .iter()
+                .flat_map(|number| {
+                    rows.clone().map(move |row| (number, number.ends(step(number, row))))
+                })
+                .collect();
+            let others: Vec<(&Number, f64)> =
+                ends.iter().flat_map(|(number, ends)| ends.map(|at| (*number, at))).collect();
+            let tape = base.tape.as_ref().ok_or(AT_THE_END)?;
+            let sums = self.runs.lagrangians(tape, base.rtol, &others)?;
+            costs.add_taken_back(base.seen.steps, others.len());
+            let quotient = |(sums, (_, ends)): (&[f64], &(&Number, [f64; 2]))| {
+                let (change, width) = (sums[0] - sums[1], ends[0] - ends[1]);
+                let round_off = ROUND_OFF * sums[0].abs();
+                (change / width, round_off / width, change.abs() <= round_off)
+            };
+            Ok::<Vec<(f64, f64, bool)>, String>(sums.chunks(2).zip(&ends).map(quotient).collect())
+        };
+        let fine = quotients(&bases[0], last..scheme.rows)?;
+        let coarse = quotients(&bases[1], 0..scheme.rows)?;
+        let each = self.numbers.iter().zip(fine.iter().zip(coarse.chunks(scheme.rows)));
+        let found = each.filter_map(|(number, (&(of_fine, round_off, is_same), coarse))| {
+            let of_coarse: Vec<Vec<f64>> = coarse.iter().map(|of| vec![of.0]).collect();
+            let Extrapolated { slopes, error } = extrapolated(&of_coarse, number.order())?;
+            let (limit, of_coarse) = (*slopes.last()?, coarse.last()?.0);
+            Some(Found {
+                slope: Extrapolated {
+                    slopes: vec![of_fine + limit - of_coarse],
+                    error: error.max(round_off),
+                },
+                quotients: [of_fine, of_coarse].map(|of| vec![of]),
+                is_constant: is_same && coarse.iter().all(|of| of.2),
+            })
+        });
+        Ok(found.collect())
     }
 
     /// Differences by some of the numbers, with steps of so many times the usual ones.
@@ -326,7 +417,7 @@ impl SceneGradient {
             let at = |value: f64| match value == number.value {
                 true => Ok(base.seen.values.clone()),
                 false => {
-                    let (method, steps) = (scheme.method, base.steps.as_ref());
+                    let (method, steps) = (scheme.method, base.list.as_ref());
                     let seen =
                         self.runs.observe(Some((number, value)), base.rtol, method, steps, costs);
                     seen.map(|(seen, _)| seen.values)
