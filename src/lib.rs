@@ -131,6 +131,8 @@ pub use scene::constraint;
 pub use studies::fit;
 #[cfg(feature = "gradient")]
 pub use studies::gradient;
+#[cfg(feature = "gradient")]
+pub use studies::optimize;
 #[cfg(feature = "bodies")]
 pub use studies::reduce;
 pub use studies::samples;

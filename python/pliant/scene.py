@@ -11,6 +11,7 @@ from . import _pliant
 from .errors import ModelWarning, SceneError
 from .mesh import Mesh
 from .motion import Equilibrium, Motion
+from .optimum import Optimum
 from .plain import as_json
 from .progress import bar
 from .reduced import ReducedModel
@@ -198,6 +199,52 @@ class Scene:
         for key, warning in found.warnings.items():
             warnings.warn(f"the derivative by {key} means little: {warning}", ModelWarning, stacklevel=2)
         return found
+
+    def optimize(self, of, by, *, maximize=False, goals=None, static=False):
+        """The numbers with which a quantity is least, or largest, or with which quantities reach goals, as `pliant optimize` finds them: an
+        :class:`~pliant.optimum.Optimum`.
+
+        Parameters
+        ----------
+        of : str or list of str
+            The quantity, as in :meth:`gradient`: ``"tip.y"``; several with goals.
+        by : dict
+            The least and the most of each number: ``{"body.material.young": (1e5, 5e5)}``.
+        maximize : bool
+            As large as it can be.
+        goals : float or list of float
+            As near to these values as they can be.
+        static : bool
+            Of the equilibrium.
+        """
+        if maximize and goals is not None:
+            raise ValueError("a quantity is made large or brought to a goal: give `maximize` or `goals`")
+        of = [of] if isinstance(of, str) else [str(name) for name in of]
+        goals = None if goals is None else np.atleast_1d(np.asarray(goals, dtype=float)).tolist()
+        limits = [(str(key), float(least), float(most)) for key, (least, most) in by.items()]
+        text, data = self._scene.optimize(of, limits, bool(maximize), goals, bool(static))
+        found = Optimum(text, json.loads(data))
+        for key, warning in found.data["warnings"]:
+            warnings.warn(f"the derivative by {key} means little: {warning}", ModelWarning, stacklevel=2)
+        return found
+
+    def as_torch(self, of, by, *, static=False):
+        """A function of PyTorch, with gradients: from a tensor of the numbers `by` to a tensor of the quantities `of`, as in :meth:`gradient`.
+
+        Each call finds the derivatives, too, one :meth:`gradient` for each quantity.
+        """
+        from .torch import function
+
+        return function(self, of, by, static=static)
+
+    def as_jax(self, of, by, *, static=False):
+        """The same of JAX, for `jax.grad`, `jax.jacrev` and `jax.jit`: from an array of the numbers `by` to one of the quantities `of`.
+
+        Arrays of JAX have single precision unless ``jax.config.update("jax_enable_x64", True)`` was called.
+        """
+        from .jax import function
+
+        return function(self, of, by, static=static)
 
     def chart(self, directory, methods=None, rtol=(1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8), repetitions=3):
         """Charts speed against accuracy, as `pliant chart` does: chart.svg, .png, .md and .csv in `directory`.

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pliant::fit::{Measured, MeasuredAtRest, SceneFit, Unknown};
 use pliant::gradient::{Objective, SceneGradient};
+use pliant::optimize::{Aim, SceneOptimizer};
 use pliant::scene_file::{SetValue, override_of, toml_of as toml_of_scene};
 use pliant::study::{Adviser, Quantity, Scenes, Study, Verification, all_methods};
 use pliant::{Error, Mesh, Part, ReducedModel, SceneFile, SceneReader, Settings, Trajectory};
@@ -42,6 +43,17 @@ impl Scene {
             file.scene = file.scene.reduced(model.clone())?;
         }
         Ok(Self { text, path, overrides, file, model })
+    }
+
+    /// # Errors
+    /// A reduced model that is in no file, so that no text names it.
+    fn check_file(&self) -> PyResult<()> {
+        match self.model {
+            Some(_) => Err(PyValueError::new_err(
+                "its reduced model is in no file: write it, and take scene.reduced(path)",
+            )),
+            None => Ok(()),
+        }
     }
 
     fn motion(&self, mut trajectory: Trajectory, failure: Option<String>) -> Motion {
@@ -126,10 +138,7 @@ impl Scene {
 
     /// The same with the whole paths of files that it names, so that it may stand anywhere.
     fn to_toml_anywhere(&self) -> PyResult<String> {
-        if self.model.is_some() {
-            let help = "its reduced model is in no file: write it, and take scene.reduced(path)";
-            return Err(PyValueError::new_err(help));
-        }
+        self.check_file()?;
         SceneFile::moved_with(&self.text, &self.path, &self.overrides).map_err(raised)
     }
 
@@ -302,10 +311,7 @@ impl Scene {
         method: Option<String>,
         check: bool,
     ) -> PyResult<(String, String)> {
-        if self.model.is_some() {
-            let help = "its reduced model is in no file: write it, and take scene.reduced(path)";
-            return Err(PyValueError::new_err(help));
-        }
+        self.check_file()?;
         let objective = match (of, is_at_rest) {
             (Some(of), false) => Objective::Quantity(of),
             (Some(of), true) => Objective::QuantityAtRest(of),
@@ -322,6 +328,36 @@ impl Scene {
                 gradient = gradient.checked();
             }
             gradient.value_and_gradient(&mut |_| {})
+        });
+        found.map(|found| (found.to_string(), found.to_json().to_string())).map_err(raised)
+    }
+
+    /// The best numbers, each with the least and the most that it may be, of a quantity or of several with goals. The answer in words and as JSON.
+    fn optimize(
+        &self,
+        py: Python<'_>,
+        of: Vec<String>,
+        by: Vec<(String, f64, f64)>,
+        maximize: bool,
+        goals: Option<Vec<f64>>,
+        is_at_rest: bool,
+    ) -> PyResult<(String, String)> {
+        self.check_file()?;
+        let objective = match is_at_rest {
+            true => Objective::QuantityAtRest,
+            false => Objective::Quantity,
+        };
+        let objectives: Vec<Objective> = of.into_iter().map(objective).collect();
+        let aim = match (goals, maximize) {
+            (Some(goals), _) => Aim::Goals(goals),
+            (None, true) => Aim::Largest,
+            (None, false) => Aim::Least,
+        };
+        let found = py.detach(|| {
+            let (reader, text, path) = (SceneReader::default(), &*self.text, &self.path);
+            let set = &self.overrides;
+            SceneOptimizer::of_text(&reader, text, path, set, objectives, aim, &ranges(by))?
+                .optimize(&mut |_| Ok(()))
         });
         found.map(|found| (found.to_string(), found.to_json().to_string())).map_err(raised)
     }
@@ -380,6 +416,11 @@ impl Scene {
     }
 }
 
+/// Keys with the least and the most that each may be.
+fn ranges(keys: Vec<(String, f64, f64)>) -> Vec<Unknown> {
+    keys.into_iter().map(|(key, least, most)| Unknown::new(key, least, most)).collect()
+}
+
 /// The answer of a fit in words; the keys with their values and the half widths of their intervals of confidence; root mean
 /// squares of the residuals before and after, by sensors.
 type FoundByFit = (String, Vec<(String, f64, f64)>, Vec<(String, [f64; 2])>);
@@ -389,11 +430,7 @@ fn fitted(
     fit: impl FnOnce() -> Result<SceneFit, Error> + Send,
     unknowns: Vec<(String, f64, f64)>,
 ) -> PyResult<FoundByFit> {
-    let fitted = py.detach(|| {
-        let unknown = |(key, least, most): (String, f64, f64)| Unknown::new(key, least, most);
-        let unknowns: Vec<Unknown> = unknowns.into_iter().map(unknown).collect();
-        fit()?.fit(&unknowns, &mut |_, _| {})
-    });
+    let fitted = py.detach(|| fit()?.fit(&ranges(unknowns), &mut |_, _| {}));
     let fitted = fitted.map_err(raised)?;
     let found = fitted
         .fitted

@@ -1,5 +1,5 @@
 //! Many runs for one answer: speed against accuracy, what to choose, unknowns fitted to measurements, a scene for
-//! many values of its keys, derivatives by the numbers of a scene; and problems with trusted answers to try them on.
+//! many values of its keys, derivatives by the numbers of a scene, and the best of these; and problems with trusted answers to try them on.
 
 #[cfg(feature = "study")]
 pub mod advise;
@@ -7,6 +7,8 @@ pub mod advise;
 pub mod fit;
 #[cfg(feature = "gradient")]
 pub mod gradient;
+#[cfg(feature = "gradient")]
+pub mod optimize;
 #[cfg(feature = "bodies")]
 pub mod reduce;
 pub mod samples;

@@ -3,6 +3,7 @@
 mod beside;
 mod fit;
 mod gradient;
+mod optimize;
 mod printed;
 mod reduce;
 mod statics;

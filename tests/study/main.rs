@@ -4,6 +4,7 @@ mod advise;
 mod gradient;
 mod look;
 mod mesh_estimate;
+mod optimize;
 mod page;
 mod sweep;
 mod verified;

@@ -38,7 +38,8 @@ pub struct Arguments {
     quiet: bool,
 }
 
-fn unknown(text: &str) -> Result<Unknown, String> {
+/// A key and its range.
+pub fn unknown(text: &str) -> Result<Unknown, String> {
     let help = || "write KEY=LEAST..MOST, as body.material.young=1e5..5e5".to_owned();
     let (key, range) = text.split_once('=').ok_or_else(help)?;
     let (least, most) = range.split_once("..").ok_or_else(help)?;

@@ -24,6 +24,7 @@ mod gradient;
 mod laws;
 mod methods;
 mod new;
+mod optimize;
 #[cfg(feature = "play")]
 mod play;
 mod plot;
@@ -79,6 +80,8 @@ enum Command {
     Fit(fit::Arguments),
     #[command(allow_negative_numbers = true)]
     Gradient(gradient::Arguments),
+    #[command(allow_negative_numbers = true)]
+    Optimize(optimize::Arguments),
     Reduce(reduce::Arguments),
     Sweep(sweep::Arguments),
     Check(check::Arguments),
@@ -101,6 +104,7 @@ impl Command {
             Self::Advise(arguments) => &mut arguments.scene,
             Self::Fit(arguments) => &mut arguments.scene,
             Self::Gradient(arguments) => &mut arguments.scene,
+            Self::Optimize(arguments) => &mut arguments.scene,
             Self::Reduce(arguments) => &mut arguments.scene,
             Self::Check(arguments) => &mut arguments.scene,
             Self::Chart(arguments) => &mut arguments.scene,
@@ -127,6 +131,7 @@ pub fn main_with(devices: &[DeviceTable]) -> ExitCode {
         Command::Beside(arguments) => beside::run(&arguments),
         Command::Fit(arguments) => fit::run(&arguments),
         Command::Gradient(arguments) => gradient::run(&arguments),
+        Command::Optimize(arguments) => optimize::run(&arguments),
         Command::Reduce(arguments) => reduce::run(&arguments),
         Command::Sweep(arguments) => sweep::run(&arguments, reader),
         Command::Check(arguments) => check::run(&arguments),

@@ -21,7 +21,7 @@ impl Unknown {
 
     /// # Errors
     /// A range that is not valid.
-    pub(super) fn validate(&self) -> Result<(), InputError> {
+    pub(crate) fn validate(&self) -> Result<(), InputError> {
         let Self { name, range } = self;
         let input = || format!("range of {name}");
         finite(&input(), range)?;
@@ -33,16 +33,27 @@ impl Unknown {
     }
 
     /// The value at a `part` of the range: 0 its least, 1 its most.
-    pub(super) fn at(&self, part: f64) -> f64 {
+    pub(crate) fn at(&self, part: f64) -> f64 {
         let [least, most] = self.range;
         match least > 0.0 {
+            _ if part >= 1.0 => most,
             true => (least * (most / least).powf(part)).clamp(least, most),
             false => least + part * (most - least),
         }
     }
 
+    /// The part of the range at which it has a value.
+    #[cfg(feature = "gradient")]
+    pub(crate) fn part(&self, value: f64) -> f64 {
+        let [least, most] = self.range;
+        match least > 0.0 {
+            true => (value / least).ln() / (most / least).ln(),
+            false => (value - least) / (most - least),
+        }
+    }
+
     /// The derivative of the value with respect to the part.
-    pub(super) fn slope(&self, part: f64) -> f64 {
+    pub(crate) fn slope(&self, part: f64) -> f64 {
         let [least, most] = self.range;
         match least > 0.0 {
             true => self.at(part) * (most / least).ln(),

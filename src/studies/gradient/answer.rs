@@ -142,7 +142,7 @@ impl Derivative {
     }
 
     /// Its unit, of an objective of `unit`.
-    fn unit(&self, unit: &str) -> String {
+    pub(crate) fn unit(&self, unit: &str) -> String {
         match (unit, self.at_unit) {
             (unit, "" | "1") => unit.into(),
             (unit, own) if own.contains(['/', ' ', '*']) => format!("{unit}/({own})"),

@@ -23,5 +23,7 @@ mod tableau;
 
 pub use answer::{Check, Derivative, Doubt, Gradient};
 pub use method::Method;
+pub(crate) use number::set;
 pub use objective::Objective;
+pub(crate) use objective::quantity;
 pub use scene::SceneGradient;

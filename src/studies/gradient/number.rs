@@ -119,6 +119,6 @@ fn scale(value: f64) -> f64 {
 }
 
 /// The override that gives a key this value.
-pub(super) fn set(key: &str, value: f64) -> String {
+pub(crate) fn set(key: &str, value: f64) -> String {
     format!("{key}={value:?}")
 }

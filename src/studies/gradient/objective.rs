@@ -51,7 +51,7 @@ pub(super) fn part_of_time(number: usize) -> f64 {
 }
 
 /// The quantity that a `text` names, as a number: at the end if nothing else is said.
-pub(super) fn quantity(text: &str, file: &SceneFile, is_at_rest: bool) -> Result<Quantity, Error> {
+pub(crate) fn quantity(text: &str, file: &SceneFile, is_at_rest: bool) -> Result<Quantity, Error> {
     // an error about a component knows nothing of the text
     let named = |InputError { help, .. }| InputError::new("quantity", format!("\"{text}\""), help);
     let quantity = Quantity::named(text, &file.scene, &file.output.sensors).map_err(named)?;
