@@ -309,6 +309,9 @@ fn what_is_not_taken_back_is_said() {
     let mean = gradient(BAR, &[], Objective::Quantity("tip.x:mean".into()), &keys).unwrap();
     let error = mean.by_method(Method::Adjoint).unwrap_err().to_string();
     assert!(error.contains("at the end") && error.contains("same-steps"), "{error}");
+    let mean = found(BAR, &[], "tip.x:mean", &keys);
+    assert_eq!(mean.method, Method::SameSteps);
+    assert!(mean.reason.is_some_and(|why| why.contains("at the end")));
     let by_rk = found(BAR, &["solver.method=rk"], "tip.x", &keys);
     assert_eq!(by_rk.method, Method::SameSteps);
     assert!(by_rk.reason.is_some_and(|why| why.contains("rk")));

@@ -236,7 +236,12 @@ impl SceneGradient {
             (Some(Method::Differences), _) => None,
             (_, Some(refused)) => Some(refused.clone()),
             (method, None) => match (self.find_by(&same_steps, tell), method) {
-                (Ok(gradient), _) => return self.with_check(gradient, &differences(0.007), tell),
+                (Ok(mut gradient), method) => {
+                    let is_refused =
+                        method.is_none() && !self.is_at_end && self.numbers.len() >= MANY;
+                    gradient.reason = gradient.reason.or(is_refused.then(|| AT_THE_END.to_owned()));
+                    return self.with_check(gradient, &differences(0.007), tell);
+                }
                 (Err(Stop::Failed(error)), Some(_)) => return Err(error),
                 (Err(Stop::OtherSteps), Some(method)) => {
                     let help = format!("{OTHER_STEPS}: take {}", Method::Differences);
