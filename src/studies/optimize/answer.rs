@@ -5,7 +5,7 @@ use std::path::Path;
 
 use serde_json::{Map, Value, json};
 
-use super::scene::{Aim, Evaluation};
+use super::evaluation::{Aim, Evaluation};
 use super::search::Ending;
 use crate::base::input::four_digits;
 use crate::dynamics::error::Error;

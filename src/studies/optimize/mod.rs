@@ -5,12 +5,14 @@
 //! nothing to gain. An optimum of squares against measurements is a [`SceneFit`](crate::fit::SceneFit).
 
 mod answer;
+mod evaluation;
 mod model;
 mod scene;
 mod search;
 mod table;
 
 pub use answer::Optimum;
-pub use scene::{Aim, Evaluation, SceneOptimizer};
+pub use evaluation::{Aim, Evaluation};
+pub use scene::SceneOptimizer;
 pub use search::Ending;
 pub use table::EvaluationTable;

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use nalgebra::DVector;
 
 use super::answer::Optimum;
+use super::evaluation::{Aim, Evaluation};
 use super::model::Model;
 use super::search::{self, Seen};
 use crate::base::input::{InputError, finite, four_digits};
@@ -13,18 +14,6 @@ use crate::io::file::write_file;
 use crate::io::scene_file::{SceneFile, SceneReader, problem, text_of};
 use crate::studies::fit::Unknown;
 use crate::studies::gradient::{Derivative, Gradient, Objective, SceneGradient, quantity, set};
-
-/// What quantities ought to be.
-#[derive(Debug, Clone, PartialEq)]
-#[non_exhaustive]
-pub enum Aim {
-    /// The least value of one quantity.
-    Least,
-    /// The largest value of one quantity.
-    Largest,
-    /// These values, one for each quantity: the sum of the squares of the differences is to be least.
-    Goals(Vec<f64>),
-}
 
 /// A scene file, quantities of it that are to be as good as numbers within their ranges allow, and these numbers.
 ///
@@ -59,24 +48,6 @@ pub struct SceneOptimizer {
     numbers: Vec<Unknown>,
     /// The numbers of the file.
     start: Vec<f64>,
-}
-
-/// Quantities of the scene with some numbers.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Evaluation {
-    /// The numbers, in the order of their keys.
-    pub values: Vec<f64>,
-    /// The quantities with their derivatives, or why there are none.
-    pub gradients: Result<Vec<Gradient>, String>,
-    /// Whether it is the best one so far.
-    pub is_best: bool,
-}
-
-impl Evaluation {
-    /// The quantities with their derivatives; none if it failed.
-    pub fn quantities(&self) -> &[Gradient] {
-        self.gradients.as_deref().unwrap_or_default()
-    }
 }
 
 impl SceneOptimizer {

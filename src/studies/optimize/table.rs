@@ -4,7 +4,7 @@ use std::fs::{self, File};
 use std::io;
 use std::path::{Path, PathBuf};
 
-use super::scene::Evaluation;
+use super::evaluation::Evaluation;
 use crate::dynamics::error::Error;
 use crate::studies::fit::Unknown;
 
