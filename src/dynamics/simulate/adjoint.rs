@@ -190,7 +190,7 @@ impl Tape {
     fn held_from_their_start(&self, run: &Run, phases: &Phases) -> Result<Vec<Vec<bool>>, Failed> {
         let none = |system: &System| vec![false; system.rows().len()];
         let mut all: Vec<Vec<bool>> = phases.systems.iter().map(none).collect();
-        for number in 1..phases.systems.len() {
+        for (number, held) in all.iter_mut().enumerate().skip(1) {
             let [before, system] = [number - 1, number].map(|at| &phases.systems[at]);
             let (phase, start) = (&run.scene.phases()[number], phases.bounds[number][0]);
             let mut u = self.start_of(number)?[..system.dofs()].to_vec();
@@ -199,9 +199,7 @@ impl Tape {
             let shift: Vec<f64> = noise(u.len(), number).iter().map(|x| size * x).collect();
             add_multiple(1.0, &shift, &mut u);
             let shifted = run.scene.rows(phase, &PhaseStart { time: start, u: &u })?;
-            for ((row, shifted), is_held) in
-                system.rows().iter().zip(&shifted).zip(&mut all[number])
-            {
+            for ((row, shifted), is_held) in system.rows().iter().zip(&shifted).zip(held) {
                 let changes = |by: f64| {
                     [start, phase.end()].into_iter().all(|t| {
                         let [own, other] = [row, shifted].map(|row| row.prescribed(t));
@@ -258,7 +256,7 @@ impl Tape {
     }
 }
 
-/// What `read` reads in a state at the end of the run, whose phase has the equations of `system`.
+/// The number that `read` reads in a state at the end of the run, whose phase has the equations of `system`.
 fn number_at(run: &Run, system: &System, state: &[f64], read: &Read) -> Option<f64> {
     let mut sample = records::of_state(run.number, system, run.time, state);
     run.complete(&mut sample);

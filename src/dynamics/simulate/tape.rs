@@ -69,7 +69,7 @@ impl Simulation {
         Ok((trajectory, list, tape))
     }
 
-    /// What keeps the steps of the run from being taken back, as far as it is known at its start.
+    /// The reason that keeps the steps of the run from being taken back, as far as it is known at its start.
     fn why_not_taken_back(&self) -> Option<String> {
         let Self { run, .. } = self;
         let phases = run.scene.phases();

@@ -84,8 +84,8 @@ impl Optimum {
 
     /// How many evaluations failed, and why the last one of these did.
     pub fn failures(&self) -> (usize, Option<&str>) {
-        let failures = self.evaluations.iter().filter_map(|one| one.gradients.as_ref().err());
-        (failures.clone().count(), failures.last().map(String::as_str))
+        let mut failures = self.evaluations.iter().filter_map(|one| one.gradients.as_ref().err());
+        (failures.clone().count(), failures.next_back().map(String::as_str))
     }
 
     /// The values that were found, for keys of the scene file: see [`SceneFile::read_with`](crate::SceneFile::read_with).
