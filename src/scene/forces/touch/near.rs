@@ -57,17 +57,13 @@ impl Near {
                 let [low, high] = [low.map(|x| x - reach), high.map(|x| x + reach)];
                 let hull = known.hull(&at);
                 grid.each_within(&[low, high], |point| {
-                    let part = surfaces.part(point, feature);
-                    if part == 0.0 {
-                        return;
-                    }
                     let x = &places[point];
                     let radii = surfaces.radii(point, feature);
                     let bound = hull.as_ref().map(|hull| hull.distance(x) - radii);
                     if bound.is_some_and(|bound| bound > within) {
                         return;
                     }
-                    let weight = part * surfaces.weight(point, feature);
+                    let weight = surfaces.part(point, feature) * surfaces.weight(point, feature);
                     if weight == 0.0 {
                         return;
                     }

@@ -14,13 +14,6 @@ use crate::scene::forces::surface::{SurfacePoint, closed_points, is_within, piec
 /// that slides, press more evenly than those of the other one, as long as none stands for more than lies over it.
 const ALIKE: f64 = 2.0;
 
-/// Size of the facets of a rigid surface, of those of one that deforms, below which its points have most of the energy. Points of the
-/// surface that deforms press evenly on a rigid one, whose own points dent it.
-const RIGID: f64 = 0.4;
-
-/// A part of the energy that is left out.
-const NEGLIGIBLE: f64 = 1e-4;
-
 /// Refused bodies, and what to do.
 const STRING: [&str; 2] = ["a string among them", "a string has no surface: name the other bodies"];
 const NOT_ROUND: [&str; 2] = [
@@ -42,8 +35,6 @@ pub(super) struct Surfaces {
     pub(super) itself: bool,
     /// Size (m) of the finer facets of each body; 0 of bodies that do not touch.
     sizes: Vec<f64>,
-    /// Whether all of the surface of a body is rigid.
-    rigid: Vec<bool>,
     /// The cross sections of rods, by the nodes of their axes, up to the last of these.
     pub(super) sections: Vec<Option<Spokes>>,
     /// No point or place on a surface moves farther than this times the nodes: 1 of linear cells.
@@ -95,7 +86,6 @@ impl Surfaces {
             features: Vec::new(),
             itself,
             sizes: vec![0.0; body.parts().count()],
-            rigid: body.parts().map(|part| part.body.is_rigid()).collect(),
             sections: Vec::new(),
             reach: 1.0,
         };
@@ -234,14 +224,10 @@ impl Surfaces {
     pub(super) fn part(&self, point: usize, feature: usize) -> f64 {
         let [own, opposite] = self.bodies(point, feature).map(|body| self.sizes[body]);
         let of_coarse = |ratio: f64| 1.0 / (1.0 + (ratio / ALIKE).max(1.0).powi(4));
-        let of_rigid = |ratio: f64| 1.0 / (1.0 + (ratio / RIGID).powi(8));
-        let part = match self.bodies(point, feature).map(|body| self.rigid[body]) {
-            [true, false] => of_rigid(own / opposite),
-            [false, true] => 1.0 - of_rigid(opposite / own),
-            _ if own > opposite => of_coarse(own / opposite),
-            _ => 1.0 - of_coarse(opposite / own),
-        };
-        if (NEGLIGIBLE..1.0 - NEGLIGIBLE).contains(&part) { part } else { part.round() }
+        match own > opposite {
+            true => of_coarse(own / opposite),
+            false => 1.0 - of_coarse(opposite / own),
+        }
     }
 
     /// The weight of a feature for a point; 0 if the point does not feel it.
