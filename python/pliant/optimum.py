@@ -1,4 +1,4 @@
-"""What :meth:`pliant.Scene.optimize` finds."""
+"""The answer of :meth:`pliant.Scene.optimize`."""
 
 from dataclasses import dataclass
 

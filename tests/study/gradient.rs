@@ -302,7 +302,7 @@ fn steps_are_taken_back_through_contact() {
     assert_same_derivative(bodies, "high.x", &keys, 1e-6);
 }
 
-/// What is not at the end, and what is not taken back yet, falls to the same steps, and says so.
+/// A reading that is not at the end, and a method that is not taken back, fall to the same steps, and say so.
 #[test]
 fn what_is_not_taken_back_is_said() {
     let keys = ["body.material.young", "phase.pull.load.force.1"];

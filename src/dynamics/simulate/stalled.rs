@@ -35,8 +35,8 @@ impl Plan {
     /// phase lasts `left` (s) more; a second of the motion has a `cost`.
     pub(super) fn stalled(&self, step: f64, taken: usize, left: f64, cost: f64) -> Option<Self> {
         // the spectrum knows nothing of what sticks, slides and rests
-        let is_rubbed = self.touches && self.asked.rtol >= FINE;
-        let is_short = is_rubbed || step < self.expected_step;
+        let is_suspect = self.touches && self.asked.rtol >= FINE;
+        let is_short = is_suspect || step < self.expected_step;
         let is_short = is_short && left > self.patience_of_probes as f64 * step;
         if taken < self.patience_of_probes
             || !is_short

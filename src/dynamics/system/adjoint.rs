@@ -24,7 +24,7 @@ use crate::integrators::ode::Failure;
 use crate::integrators::rosenbrock::Transposed;
 
 impl System {
-    /// What keeps steps from being taken back, if anything does.
+    /// The reason that keeps steps from being taken back, if there is one.
     pub(crate) fn why_not_transposed(&self) -> Option<&'static str> {
         [
             (self.layout.strains > 0, "bodies with Maxwell branches are not taken back yet"),

@@ -295,24 +295,18 @@ impl SceneGradient {
         let [fine, coarse] = scheme.rtols;
         let bases = [base(fine)?, base(coarse)?];
         let all: Vec<usize> = (0..self.numbers.len()).collect();
-        let (mut method, mut reason) = (scheme.method, None);
-        let taken_back = match method {
-            Method::Adjoint => self.taken_back(scheme, &bases, &costs),
-            _ => Err(String::new()),
-        };
-        let mut found = match taken_back {
-            Ok(found) => found,
-            Err(why) if self.method == Some(Method::Adjoint) => {
-                let help = format!("{why}: take {}", Method::SameSteps);
-                let error = InputError::new("method of the gradient", Method::Adjoint, help);
-                return Err(Stop::Failed(error.into()));
-            }
-            Err(why) => {
-                if method == Method::Adjoint {
-                    (method, reason) = (Method::SameSteps, Some(why));
+        let differences = || self.differences(scheme, &bases, &all, 1.0, &costs);
+        let (mut found, method, reason) = match scheme.method {
+            Method::Adjoint => match self.taken_back(scheme, &bases, &costs) {
+                Ok(found) => (found, Method::Adjoint, None),
+                Err(why) if self.method == Some(Method::Adjoint) => {
+                    let help = format!("{why}: take {}", Method::SameSteps);
+                    let error = InputError::new("method of the gradient", Method::Adjoint, help);
+                    return Err(Stop::Failed(error.into()));
                 }
-                self.differences(scheme, &bases, &all, 1.0, &costs)?
-            }
+                Err(why) => (differences()?, Method::SameSteps, Some(why)),
+            },
+            method => (differences()?, method, None),
         };
         tell(costs.runs());
         for factor in FACTORS.into_iter().filter(|_| method != Method::Adjoint) {

@@ -1,18 +1,18 @@
-//! What a search has found, in words, as JSON and as a chart.
+//! The answer of a search, in words, as JSON and as a chart.
 
 use std::fmt;
 use std::path::Path;
 
 use serde_json::{Map, Value, json};
 
-use super::evaluation::{Aim, Evaluation};
+use super::evaluation::{Aim, Evaluation, overrides};
 use super::search::Ending;
 use crate::base::input::four_digits;
 use crate::dynamics::error::Error;
 use crate::io::file::write_file;
 use crate::io::output::Chart;
 use crate::studies::fit::Unknown;
-use crate::studies::gradient::{Derivative, Gradient, set};
+use crate::studies::gradient::{Derivative, Gradient};
 
 /// Part of the largest derivative by a number above which an error is told.
 const MEANINGFUL: f64 = 0.1;
@@ -20,7 +20,7 @@ const MEANINGFUL: f64 = 0.1;
 /// The best numbers of a scene, and all that were tried.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Optimum {
-    /// What was sought.
+    /// The aim of the search.
     pub aim: Aim,
     /// The numbers, with their ranges.
     pub numbers: Vec<Unknown>,
@@ -90,7 +90,7 @@ impl Optimum {
 
     /// The values that were found, for keys of the scene file: see [`SceneFile::read_with`](crate::SceneFile::read_with).
     pub fn overrides(&self) -> Vec<String> {
-        self.chosen().map(|(number, [_, value], _)| set(&number.name, value)).collect()
+        overrides(&self.numbers, &self.best().values)
     }
 
     /// JSON record: `aim`, `of` with the quantities `before` and `after`, `numbers` with the value, the range and the end `at` which it is for each

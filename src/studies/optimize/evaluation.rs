@@ -1,6 +1,7 @@
 //! The aim of a search, and the quantities that it meets on its way.
 
-use crate::studies::gradient::Gradient;
+use crate::studies::fit::Unknown;
+use crate::studies::gradient::{Gradient, set};
 
 /// The aim of a search: values that quantities ought to have.
 #[derive(Debug, Clone, PartialEq)]
@@ -30,4 +31,10 @@ impl Evaluation {
     pub fn quantities(&self) -> &[Gradient] {
         self.gradients.as_deref().unwrap_or_default()
     }
+}
+
+/// Values for numbers, as [`SceneFile::read_with`](crate::SceneFile::read_with) takes them.
+pub(super) fn overrides(numbers: &[Unknown], values: &[f64]) -> Vec<String> {
+    let pairs = numbers.iter().zip(values);
+    pairs.map(|(number, value)| set(&number.name, *value)).collect()
 }

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use nalgebra::DVector;
 
 use super::answer::Optimum;
-use super::evaluation::{Aim, Evaluation};
+use super::evaluation::{Aim, Evaluation, overrides};
 use super::model::Model;
 use super::search::{self, Seen};
 use crate::base::input::{InputError, finite, four_digits};
@@ -181,12 +181,6 @@ impl SceneOptimizer {
         self.objectives.iter().map(of).collect()
     }
 
-    /// The values, as [`SceneFile::read_with`] takes them, of an evaluation.
-    fn overrides_with(&self, values: &[f64]) -> Vec<String> {
-        let pairs = self.numbers.iter().zip(values);
-        pairs.map(|(number, value)| set(&number.name, *value)).collect()
-    }
-
     /// Writes the scene file with the values of an evaluation, and with whole paths of the files that it names, to a file.
     ///
     /// # Errors
@@ -196,7 +190,7 @@ impl SceneOptimizer {
         evaluation: &Evaluation,
         path: impl AsRef<Path>,
     ) -> Result<(), Error> {
-        let set = [&self.overrides[..], &self.overrides_with(&evaluation.values)].concat();
+        let set = [&self.overrides[..], &overrides(&self.numbers, &evaluation.values)].concat();
         let text = SceneFile::moved_with(&self.text, &self.path, &set)?;
         write_file(path.as_ref(), |file| file.write_all(text.as_bytes()))
     }
@@ -216,7 +210,7 @@ impl SceneOptimizer {
                 true => self.start.clone(),
                 false => self.numbers.iter().zip(parts).map(|(number, x)| number.at(*x)).collect(),
             };
-            let found = self.gradients(&self.overrides_with(&values)).and_then(|gradients| {
+            let found = self.gradients(&overrides(&self.numbers, &values)).and_then(|gradients| {
                 gradients.iter().map(|by| by.value_and_gradient(&mut |_| {})).collect()
             });
             let found: Result<Vec<Gradient>, Error> = found;
