@@ -179,6 +179,64 @@ fn equilibria_follow_their_scaling() {
     assert!(found.to_string().contains("nothing depends on it"), "{found}");
 }
 
+/// A beam of large rotations under a pressure, and a force that follows its end, whose stiffness is not symmetric, held by a spring and a grip that
+/// moves: the dual of its equations has the derivatives that differences of whole equilibria have, within their errors, which are below
+/// 1e-8 of each.
+#[test]
+fn equilibria_are_linearized() {
+    let beam = r#"
+        gravity = [0.0, -9.8]
+        body = { mesh = { kind = "rectangle", size = [0.1, 0.02], nodes = [7, 3], cells = "triangles6" }, thickness = 0.01, strain = "green", material = { density = 1000.0, young = 1e5, poisson = 0.4, viscosity = 1.0 } }
+        chamber = { name = "room", nodes = "top", closed_by_line = true }
+        spring = { name = "stay", ends = [7, { point = [0.1, -0.1] }], stiffness = 5.0, length = 0.05 }
+        phase = { name = "sag", until = 1.0, hold = { nodes = "left" }, move = { nodes = [5], axes = "y", velocity = 0.01 }, pressure = { chamber = "room", value = 200.0 }, follower = { nodes = "right", force = [0.0, -0.02] } }
+        sensor = [
+            { name = "tip", kind = "position", nodes = [7] },
+            { name = "grip", kind = "constraint-force", nodes = "left" },
+            { name = "stress", kind = "stress", nodes = [1] },
+            { name = "span", kind = "distance", from = 1, to = 21 },
+        ]
+    "#;
+    let keys = [
+        "body.material.young",
+        "body.material.poisson",
+        "body.material.density",
+        "body.mesh.size.2",
+        "body.thickness",
+        "spring.stay.length",
+        "phase.sag.move.velocity",
+        "phase.sag.pressure.value",
+        "phase.sag.follower.force.2",
+    ];
+    for (of, unit, keys) in
+        [("tip.y", "m", &keys[..]), ("grip.x", "N", &keys[..1]), ("span", "m", &keys[7..])]
+    {
+        let of = Objective::QuantityAtRest(of.into());
+        let found = gradient(beam, &[], of, keys).unwrap().checked();
+        let found = found.value_and_gradient(&mut |_| {}).unwrap();
+        println!("{found}");
+        assert_eq!((found.method, &found.reason, &found.unit[..]), (Method::Adjoint, &None, unit));
+        assert_eq!(found.runs, 2);
+        for Derivative { key, value, error, check, .. } in &found.derivatives {
+            let check = check.unwrap();
+            println!("{key}: {:.1e}", value / check.value - 1.0);
+            assert!((value - check.value).abs() <= error + check.error, "{key}: {value} {check:?}");
+            assert!(
+                [*error, check.error].iter().all(|error| *error < 1e-8 * value.abs()),
+                "{error:e}"
+            );
+        }
+    }
+    // by differences, with the reason
+    let of = Objective::QuantityAtRest("stress.xx".into());
+    let stress = gradient(beam, &[], of, &keys[..1]).unwrap();
+    let found = stress.value_and_gradient(&mut |_| {}).unwrap();
+    assert_eq!(found.method, Method::Differences);
+    assert!(found.reason.is_some_and(|why| why.contains("linearized for positions")));
+    let error = stress.by_method(Method::SameSteps).unwrap_err().to_string();
+    assert!(error.contains("no steps: take adjoint"), "{error}");
+}
+
 /// The gradient of squares is twice the residuals times their derivatives.
 #[test]
 fn squares_have_the_gradient_of_their_residuals() {

@@ -1,4 +1,4 @@
-//! Derivatives of readings of an equilibrium by displacements and constraint forces, on a richer mesh.
+//! Derivatives of readings of an equilibrium by displacements and constraint forces, on its own mesh or on a richer one.
 
 use std::f64::consts::TAU;
 
@@ -16,7 +16,7 @@ use crate::elements::mesh::Selection;
 use crate::scene::constraint::ConstraintRow;
 use crate::scene::timeline::Scene;
 
-/// A reading on a richer mesh, at the displacements of this one, to first order.
+/// A reading of an equilibrium, at the same displacements on its own mesh or on a richer one, to first order.
 pub(crate) struct Linearized {
     /// Its value there.
     pub(crate) value: f64,
@@ -26,16 +26,23 @@ pub(crate) struct Linearized {
     pub(crate) by_multipliers: Vec<f64>,
 }
 
-/// An equilibrium moved to a richer mesh.
+/// An equilibrium on the mesh where its reading is linearized.
 pub(crate) struct Moved<'a> {
     /// The scene there.
     pub(crate) scene: &'a Scene,
-    /// The numbers of the nodes there.
-    pub(crate) finer: &'a Finer,
+    /// The numbers of the nodes there; none on its own mesh.
+    pub(crate) finer: Option<&'a Finer>,
     /// The rows of its constraints.
     pub(crate) rows: &'a [ConstraintRow],
     /// The displacements there.
     pub(crate) u: &'a [f64],
+}
+
+impl Moved<'_> {
+    /// The number there of a node.
+    fn number(&self, node: usize) -> usize {
+        self.finer.map_or(node, |finer| finer.number(node))
+    }
 }
 
 impl Reading {
@@ -68,7 +75,7 @@ impl Reading {
         }
     }
 
-    /// This reading of `sample`, an equilibrium of `scene`, on a richer mesh. Its meaning is the same: nodes
+    /// This reading of `sample`, an equilibrium of `scene`, where that was moved to. Its meaning is the same: nodes
     /// are the original ones; a centre of mass, a volume and the force on what is held are those of the body,
     /// whatever its nodes.
     ///
@@ -93,7 +100,7 @@ impl Reading {
         // `along` times the mean displacement of nodes
         let mut add_mean = |nodes: &[usize], along: [f64; 3]| {
             for &node in nodes {
-                let dofs = by_displacements[moved.finer.number(node) * d..].iter_mut().take(d);
+                let dofs = by_displacements[moved.number(node) * d..].iter_mut().take(d);
                 dofs.zip(along).for_each(|(dof, along)| *dof += along / nodes.len() as f64);
             }
         };
@@ -161,9 +168,10 @@ impl Reading {
                 let along = self.direction(scene, sample)?;
                 let mut is_read = vec![false; body.mesh().node_count()];
                 let (points, nodes): (Vec<usize>, Vec<usize>) =
-                    select(nodes)?.into_iter().partition(|&node| moved.finer.number(node) != node);
-                let points = points.into_iter().map(|node| moved.finer.number(node));
-                let nodes = moved.finer.extended(&nodes).into_iter().chain(points);
+                    select(nodes)?.into_iter().partition(|&node| moved.number(node) != node);
+                let points = points.into_iter().map(|node| moved.number(node));
+                let nodes = moved.finer.map_or(nodes.clone(), |finer| finer.extended(&nodes));
+                let nodes = nodes.into_iter().chain(points);
                 nodes.for_each(|node| is_read[node] = true);
                 for (row, derivative) in moved.rows.iter().zip(&mut linearized.by_multipliers) {
                     let read = row.terms.iter().filter(|(dof, _)| is_read[dof / d]);

@@ -20,6 +20,8 @@
 
 #[cfg(feature = "study")]
 mod dual;
+#[cfg(feature = "gradient")]
+pub(crate) use dual::DUAL_ERROR;
 #[cfg(test)]
 mod tests;
 

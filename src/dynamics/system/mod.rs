@@ -64,6 +64,8 @@ mod tests;
 
 use std::sync::Arc;
 
+#[cfg(feature = "gradient")]
+pub(crate) use at_rest::DUAL_ERROR;
 pub(crate) use at_rest::{AtRest, ForceBalance};
 pub(crate) use dae::{DaeForm, Index};
 pub(crate) use differences::Differences;

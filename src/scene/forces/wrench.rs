@@ -151,6 +151,24 @@ impl WrenchForce {
         Ok(Spread { force: self, u, centre, inverse })
     }
 
+    /// The rotation R of the nodes, and P^-1, by which it changes (see [`add_tangents`](Force::add_tangents)).
+    fn turn(&self, spread: &Spread) -> (Matrix3<f64>, Matrix3<f64>) {
+        let rotation = self.rotation(spread);
+        let mut stretch = Matrix3::zeros();
+        for point in &self.points {
+            let natural = rotation * (point.natural - self.centre);
+            let r = spread.around(point);
+            stretch +=
+                point.weight * (Matrix3::identity() * r.dot(&natural) - r * natural.transpose());
+        }
+        let inverse = match self.dimension {
+            2 => Matrix3::from_diagonal(&Vector3::new(0.0, 0.0, 1.0 / stretch.m33)),
+            // nodes that are pressed flat turn in any way
+            _ => stretch.try_inverse().unwrap_or(spread.inverse),
+        };
+        (rotation, inverse)
+    }
+
     /// The rotation of the nodes from their undeformed positions.
     fn rotation(&self, spread: &Spread) -> Matrix3<f64> {
         let mut correlation = Matrix3::zeros();
@@ -211,8 +229,8 @@ impl Force for WrenchForce {
     /// df_i/du_j = w_i ([a] (delta_ij - w_j) + w_j [r_i] T^-1 (2 a r_j^T - (r_j . a) I - r_j a^T)),
     /// ```
     ///
-    /// and of a follower, as the nodes turn by T^-1 sum w_j r_j x du_j where they move as a rigid body, -w_i w_j [F] T^-1 [r_j] for the
-    /// force and w_i w_j [r_i] T^-1 [M] T^-1 [r_j] for the moment.
+    /// and of a follower, whose nodes turn by P^-1 sum w_j p_j x du_j with their undeformed places turned, p_j = R r_j(0), and
+    /// P = sum w_j ((r_j . p_j) I - r_j p_j^T), -w_i w_j [F] P^-1 [p_j] for the force and w_i w_j [r_i] T^-1 [M] P^-1 [p_j] for the moment.
     fn add_tangents(
         &self,
         t: f64,
@@ -229,14 +247,15 @@ impl Force for WrenchForce {
         let (d, inverse) = (self.dimension, spread.inverse);
         let turning = a.cross_matrix();
         let (force, moment) = (force.cross_matrix(), moment.cross_matrix());
-        let follows = self.kind.follows();
+        let turn = self.kind.follows().then(|| self.turn(&spread));
         for column in &self.points {
             let r = spread.around(column);
             let mut by_spread = inverse
                 * (2.0 * a * r.transpose() - Matrix3::identity() * r.dot(&a) - r * a.transpose());
             let mut by_force = Matrix3::zeros();
-            if follows {
-                let turned = inverse * r.cross_matrix();
+            if let Some((rotation, inverse_stretch)) = &turn {
+                let natural = rotation * (column.natural - self.centre);
+                let turned = inverse_stretch * natural.cross_matrix();
                 by_spread += inverse * moment * turned;
                 by_force = force * turned;
             }

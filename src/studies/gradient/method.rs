@@ -9,7 +9,7 @@ use crate::base::input::InputError;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Method {
-    /// The steps of a run taken back: the discrete adjoint, for any number of numbers at once.
+    /// The steps of a run taken back, or the dual of the equations of an equilibrium: the discrete adjoint, for any number of numbers at once.
     Adjoint,
     /// Differences of runs that take the same steps.
     SameSteps,

@@ -3,17 +3,19 @@
 //! A [`SceneGradient`] is of one [`Objective`] and any numbers of a scene file. Three methods:
 //!
 //! - [`Method::Adjoint`]: the steps of a run by a Rosenbrock method are taken back, one by one (`dynamics/simulate/adjoint.rs`), which gives the
-//!   derivative of the computed motion by any number of numbers. A number costs evaluations of forces in the states of the run.
+//!   derivative of the computed motion by any number of numbers. A number costs evaluations of forces in the states of the run. Of an
+//!   equilibrium the dual of its equations is solved (`at_rest.rs`).
 //! - [`Method::SameSteps`]: a run by an own one-step method lists its steps, and runs with another number take the same ones. What these
 //!   lead to is a smooth function of the number, so that central differences of a thousandth, extrapolated, are the derivative of the
 //!   computed motion to eight digits or more. How far that is from the derivative of the motion itself is seen from a second tolerance.
 //! - [`Method::Differences`]: whole runs or equilibria at a tight tolerance with several steps, extrapolated by Ridders' tableau. For
-//!   everything: equilibria, phases that sensors end, numbers on which the number of unknowns or of steps depends.
+//!   everything: squares over several equilibria, phases that sensors end, numbers on which the number of unknowns or of steps depends.
 //!
 //! A derivative is [doubtful](Derivative::doubt) where the two tolerances disagree about it: nearby motions part faster than
 //! any derivative says, by bounces or chaos.
 
 mod answer;
+mod at_rest;
 mod method;
 mod number;
 mod objective;

@@ -12,8 +12,9 @@ pub(super) struct Number {
     pub(super) key: String,
     pub(super) value: f64,
     pub(super) unit: &'static str,
-    /// Sides on which the scene takes values next to it.
+    /// Sides on which the scene takes values next to it, and how far, as a part of its scale.
     sides: Sides,
+    reach: f64,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -25,6 +26,8 @@ enum Sides {
 
 /// Part of a number, or of 1 in its unit where it is 0, within which a scene has to take other values on one side at least.
 const NEXT_TO: f64 = 1e-3;
+/// The same of the longest steps.
+const FAR: f64 = 0.02;
 
 impl Number {
     /// The number that `key` has in the scene of a `text` with other values for some keys.
@@ -57,20 +60,29 @@ impl Number {
             bad(stated.to_string(), help.into())
         })?;
         let unit = SceneFile::units(text, path, &[key])?.first().copied().unwrap_or_default();
-        let step = NEXT_TO * scale(value);
-        let sides = match [with(value + step), with(value - step)] {
-            [Ok(_), Ok(_)] => Sides::Both,
-            [Ok(_), Err(_)] => Sides::One(1),
-            [Err(_), Ok(_)] => Sides::One(-1),
-            [Err(error), Err(_)] => {
-                let help = format!("it takes no value next to this one: {}", problem(error));
-                return Err(bad(stated.to_string(), help));
-            }
+        let beside = |part: f64| [1.0, -1.0].map(|side| with(value + side * part * scale(value)));
+        let far = beside(FAR).map(|scene| scene.is_ok());
+        let (sides, reach) = match far {
+            [true, true] => (Sides::Both, FAR),
+            far => match beside(NEXT_TO) {
+                [Ok(_), Ok(_)] => (Sides::Both, NEXT_TO),
+                [Ok(_), Err(_)] => (Sides::One(1), if far[0] { FAR } else { NEXT_TO }),
+                [Err(_), Ok(_)] => (Sides::One(-1), if far[1] { FAR } else { NEXT_TO }),
+                [Err(error), Err(_)] => {
+                    let help = format!("it takes no value next to this one: {}", problem(error));
+                    return Err(bad(stated.to_string(), help));
+                }
+            },
         };
-        Ok(Self { key: key.into(), value, unit, sides })
+        Ok(Self { key: key.into(), value, unit, sides, reach })
     }
 
-    /// The size of its steps is in parts of this.
+    /// The longest step of differences that begin with a `part` of it.
+    pub(super) fn first_step(&self, part: f64) -> f64 {
+        part.min(self.reach) * self.scale()
+    }
+
+    /// Its size, of which steps are parts.
     pub(super) fn scale(&self) -> f64 {
         scale(self.value)
     }

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
+use super::at_rest::Balanced;
 use super::method::Method;
 use super::number::{Number, set};
 use super::objective::{self, Seen};
@@ -11,6 +12,7 @@ use crate::dynamics::error::Error;
 use rayon::prelude::*;
 
 use crate::dynamics::simulate::{Sampling, Simulation, StepList, Tape};
+use crate::dynamics::system::DUAL_ERROR;
 use crate::dynamics::trajectory::{Sample, Trajectory};
 use crate::io::scene_file::{SceneFile, SceneReader};
 use crate::scene::settings::{ContactEvents, Settings};
@@ -36,22 +38,50 @@ pub(super) enum Target {
     LeastSquares(Box<SceneFit>),
 }
 
-/// The steps of a run, with the states that they lead to if they are to be taken back.
-pub(super) struct Steps {
-    pub(super) list: StepList,
-    pub(super) tape: Option<Tape>,
+/// What a run leaves for others by other numbers.
+pub(super) enum Record {
+    Steps(StepList),
+    /// With the states that the steps lead to, to be taken back.
+    States(StepList, Tape),
+    Equilibrium(Box<Balanced>),
+}
+
+impl Record {
+    fn steps(&self) -> Option<&StepList> {
+        match self {
+            Self::Steps(list) | Self::States(list, _) => Some(list),
+            Self::Equilibrium(_) => None,
+        }
+    }
 }
 
 /// Why there is no derivative.
 pub(super) enum Stop {
-    /// A run by the steps of another one needed others.
-    OtherSteps,
+    /// The method is not one for this scene, and why.
+    Unsuited(String),
     Failed(Error),
 }
 
 impl From<Error> for Stop {
     fn from(error: Error) -> Self {
         Self::Failed(error)
+    }
+}
+
+/// A run without differences, at one tolerance.
+pub(super) struct Base {
+    pub(super) rtol: f64,
+    pub(super) seen: Seen,
+    pub(super) record: Option<Record>,
+}
+
+impl Base {
+    /// The relative error of derivatives by what is recorded, beside that of differences and tolerances.
+    pub(super) fn error(&self) -> f64 {
+        match self.record {
+            Some(Record::Equilibrium(_)) => DUAL_ERROR,
+            _ => 0.0,
+        }
     }
 }
 
@@ -80,6 +110,11 @@ impl Costs {
         self.add(3 * steps + 2 * steps * others / 5);
     }
 
+    /// Adds a dual solution, and scenes with other numbers, as an iteration each (measured with a strip of five cells of nine nodes).
+    pub(super) fn add_linearized(&self, others: usize) {
+        self.steps.fetch_add(1 + others, Ordering::Relaxed);
+    }
+
     pub(super) fn runs(&self) -> usize {
         self.runs.load(Ordering::Relaxed)
     }
@@ -92,16 +127,15 @@ impl Runs {
         file.map_or(f64::NAN, |file| file.scene.end())
     }
 
-    /// The objective with another value for a number, and the steps that led there if they were not those of another run; with the states
-    /// there if they are to be taken back.
+    /// The objective with another value for a number, by the steps of another run if its record has some; else with a record of its own.
     pub(super) fn observe(
         &self,
         other: Option<(&Number, f64)>,
         rtol: f64,
         method: Method,
-        by: Option<&StepList>,
+        by: Option<&Record>,
         costs: &Costs,
-    ) -> Result<(Seen, Option<Steps>), Stop> {
+    ) -> Result<(Seen, Option<Record>), Stop> {
         let mut own: Vec<String> =
             other.into_iter().map(|(number, value)| set(&number.key, value)).collect();
         if self.target.is_at_rest() {
@@ -110,7 +144,8 @@ impl Runs {
         let read = || {
             self.reader.parse_with(&self.text, &self.path, &[&self.overrides[..], &own].concat())
         };
-        let mut steps = None;
+        let by = by.and_then(Record::steps);
+        let mut record = None;
         let mut has_other_steps = false;
         let mut run = |file: &SceneFile, scene: &Scene, sampling: &Sampling| {
             let settings = settings(&file.settings, rtol, method);
@@ -122,11 +157,11 @@ impl Runs {
             let Some(by) = by else {
                 if method == Method::Adjoint {
                     let (motion, list, tape) = simulation.finish_with_tape()?;
-                    steps = Some(Steps { list, tape: Some(tape) });
+                    record = Some(Record::States(list, tape));
                     return Ok(motion);
                 }
                 let (motion, list) = simulation.finish_with_steps()?;
-                steps = Some(Steps { list, tape: None });
+                record = Some(Record::Steps(list));
                 return Ok(motion);
             };
             simulation.finish_by_steps(by)?.ok_or_else(|| {
@@ -134,6 +169,7 @@ impl Runs {
                 InputError::new("steps", "others", OTHER_STEPS).into()
             })
         };
+        let mut balanced = None;
         let seen = match &self.target {
             Target::Quantity(text) => read().and_then(|file| {
                 let quantity = objective::quantity(text, &file, false)?;
@@ -144,6 +180,9 @@ impl Runs {
                 let quantity = objective::quantity(text, &file, true)?;
                 let mut found = file.equilibrium()?;
                 found.read(&quantity.read_by(Sampling::phase_ends()))?;
+                if method == Method::Adjoint {
+                    balanced = Some(Balanced::new(&found, &quantity));
+                }
                 let seen = objective::seen(&quantity, &found.trajectory().at_end())?;
                 Ok(Seen { steps: found.iterations, ..seen })
             }),
@@ -159,10 +198,14 @@ impl Runs {
             }
         };
         match seen {
-            _ if has_other_steps => Err(Stop::OtherSteps),
+            _ if has_other_steps => Err(Stop::Unsuited(OTHER_STEPS.into())),
             Ok(seen) => {
                 costs.add(seen.steps);
-                Ok((seen, steps))
+                if let Some(balanced) = balanced {
+                    let balanced = balanced.map_err(Stop::Unsuited)?;
+                    record = Some(Record::Equilibrium(Box::new(balanced)));
+                }
+                Ok((seen, record))
             }
             Err(error) => Err(Stop::Failed(error)),
         }
@@ -170,17 +213,43 @@ impl Runs {
 }
 
 impl Runs {
-    /// The Lagrangian of the steps of a run at this tolerance for scenes with other values of numbers.
+    /// The Lagrangian of the recorded steps or equilibrium for scenes with other values of numbers.
     ///
     /// # Errors
-    /// Why they cannot be taken back.
+    /// Why steps cannot be taken back, or what an equilibrium cannot be.
     pub(super) fn lagrangians(
         &self,
+        base: &Base,
+        others: &[(&Number, f64)],
+        costs: &Costs,
+    ) -> Result<Vec<f64>, String> {
+        match (&self.target, &base.record) {
+            (Target::Quantity(text), Some(Record::States(_, tape))) => {
+                costs.add_taken_back(base.seen.steps, others.len());
+                self.taken_back(text, tape, base.rtol, others)
+            }
+            (Target::QuantityAtRest(text), Some(Record::Equilibrium(balanced))) => {
+                costs.add_linearized(others.len());
+                let of = |(number, value): &(&Number, f64)| {
+                    let set = [&self.overrides[..], &[set(&number.key, *value)]].concat();
+                    let file = self.reader.parse_with(&self.text, &self.path, &set);
+                    let file = file.map_err(|error| error.to_string())?;
+                    let quantity = objective::quantity(text, &file, true);
+                    balanced.lagrangian(&file, &quantity.map_err(|error| error.to_string())?)
+                };
+                others.par_iter().map(of).collect()
+            }
+            _ => Err(AT_THE_END.into()),
+        }
+    }
+
+    fn taken_back(
+        &self,
+        text: &str,
         tape: &Tape,
         rtol: f64,
         others: &[(&Number, f64)],
     ) -> Result<Vec<f64>, String> {
-        let Target::Quantity(text) = &self.target else { return Err(AT_THE_END.into()) };
         let start = |own: &[String]| -> Result<(Simulation, Quantity), Error> {
             let set = [&self.overrides[..], own].concat();
             let file = self.reader.parse_with(&self.text, &self.path, &set)?;

@@ -10,11 +10,10 @@ use super::answer::{Check, Derivative, Doubt, Gradient};
 use super::method::Method;
 use super::number::{Number, numbers};
 use super::objective::{self, Objective, Seen, part_of_time};
-use super::runs::{AT_THE_END, Costs, OTHER_STEPS, Runs, Stop, Target};
+use super::runs::{AT_THE_END, Base, Costs, Runs, Stop, Target};
 use super::tableau::{Extrapolated, extrapolated};
 use crate::base::input::InputError;
 use crate::dynamics::error::Error;
-use crate::dynamics::simulate::{StepList, Tape};
 use crate::io::scene_file::{SceneReader, text_of};
 use crate::studies::fit::SceneFit;
 
@@ -49,7 +48,7 @@ pub struct SceneGradient {
     rtol: f64,
     /// Why runs do not take the steps of another one.
     refused: Option<String>,
-    /// Whether the objective is a reading at the end of a motion.
+    /// Whether the objective is a reading at the end of a motion, or of an equilibrium.
     is_at_end: bool,
 }
 
@@ -61,14 +60,6 @@ struct Scheme {
     /// The first step of differences, as a part of a number, and how many there are, each half as long as the one before.
     first: f64,
     rows: usize,
-}
-
-/// A run without differences, at one tolerance.
-struct Base {
-    rtol: f64,
-    seen: Seen,
-    list: Option<StepList>,
-    tape: Option<Tape>,
 }
 
 /// The derivative by one number, from differences.
@@ -83,6 +74,12 @@ struct Found {
 /// Relative error of the differences from which on other steps are tried, and the factors of these.
 const ROUGH: f64 = 1e-5;
 const FACTORS: [f64; 2] = [16.0, 1.0 / 16.0];
+
+/// Relative tolerances of equilibria.
+const AT_REST: [f64; 2] = [1e-13, 1e-12];
+
+/// Why equilibria are not found by the steps of others.
+const NO_STEPS: &str = "equilibria have no steps";
 
 /// Numbers from which on steps are taken back, if nothing is said.
 const MANY: usize = 2;
@@ -137,6 +134,7 @@ impl SceneGradient {
                 (quantity.to_string(), Target::Quantity(text), quantity.unit().into())
             }
             Objective::QuantityAtRest(text) => {
+                is_at_end = true;
                 let unit = objective::quantity(&text, &file, true)?.unit().into();
                 (text.clone(), Target::QuantityAtRest(text), unit)
             }
@@ -157,7 +155,12 @@ impl SceneGradient {
         let refused = match is_at_rest {
             true => {
                 file.check_equilibrium()?;
-                Some("equilibria have no steps".to_owned())
+                let why = match &target {
+                    Target::LeastSquares(_) => Some(NO_STEPS),
+                    _ => (file.statics.options.arc_steps > 0)
+                        .then_some("equilibria by arc length have loads of their own"),
+                };
+                why.map(str::to_owned)
             }
             false => {
                 // all that is wrong with the scene
@@ -181,14 +184,18 @@ impl SceneGradient {
         })
     }
 
-    /// By this method. Default: [`Method::SameSteps`] for one number, and where steps cannot be taken back; [`Method::Adjoint`] for
-    /// several, of a reading at the end; [`Method::Differences`] where runs cannot take the same steps.
+    /// By this method. Default: [`Method::Adjoint`] of an equilibrium, and by several numbers of a reading at the end; else, and where steps
+    /// cannot be taken back, [`Method::SameSteps`]; [`Method::Differences`] where runs cannot take the same steps and equilibria cannot be
+    /// linearized.
     ///
     /// # Errors
     /// A method that the scene or the objective does not allow.
     pub fn by_method(mut self, method: Method) -> Result<Self, InputError> {
         let refused = match (method, &self.refused) {
             (Method::SameSteps | Method::Adjoint, Some(why)) => Some((&**why, Method::Differences)),
+            (Method::SameSteps, None) if self.runs.target.is_at_rest() => {
+                Some((NO_STEPS, Method::Adjoint))
+            }
             (Method::Adjoint, None) if !self.is_at_end => Some((AT_THE_END, Method::SameSteps)),
             _ => None,
         };
@@ -215,7 +222,7 @@ impl SceneGradient {
         let differences = |first| Scheme {
             method: Method::Differences,
             rtols: match self.runs.target.is_at_rest() {
-                true => [1e-13, 1e-12],
+                true => AT_REST,
                 false => {
                     let fine = (1e-5 * self.rtol).max(1e-10).min(0.1 * self.rtol);
                     [fine, 10.0 * fine]
@@ -225,17 +232,20 @@ impl SceneGradient {
             rows: 4,
         };
         let fine = (0.01 * self.rtol).max(1e-10).min(0.1 * self.rtol);
-        let by_steps = match self.method {
+        let is_at_rest = self.runs.target.is_at_rest();
+        let method = match self.method {
             Some(Method::Adjoint) => Method::Adjoint,
-            None if self.is_at_end && self.numbers.len() >= MANY => Method::Adjoint,
+            None if is_at_rest || self.is_at_end && self.numbers.len() >= MANY => Method::Adjoint,
             _ => Method::SameSteps,
         };
-        let same_steps =
-            Scheme { method: by_steps, rtols: [fine, 10.0 * fine], first: 5e-5, rows: 2 };
+        let by_equations = match is_at_rest {
+            true => Scheme { method, rtols: AT_REST, first: 1e-2, rows: 4 },
+            false => Scheme { method, rtols: [fine, 10.0 * fine], first: 5e-5, rows: 2 },
+        };
         let why = match (self.method, &self.refused) {
             (Some(Method::Differences), _) => None,
             (_, Some(refused)) => Some(refused.clone()),
-            (method, None) => match (self.find_by(&same_steps, tell), method) {
+            (method, None) => match (self.find_by(&by_equations, tell), method) {
                 (Ok(mut gradient), method) => {
                     let is_refused =
                         method.is_none() && !self.is_at_end && self.numbers.len() >= MANY;
@@ -243,11 +253,11 @@ impl SceneGradient {
                     return self.with_check(gradient, &differences(0.007), tell);
                 }
                 (Err(Stop::Failed(error)), Some(_)) => return Err(error),
-                (Err(Stop::OtherSteps), Some(method)) => {
-                    let help = format!("{OTHER_STEPS}: take {}", Method::Differences);
+                (Err(Stop::Unsuited(why)), Some(method)) => {
+                    let help = format!("{why}: take {}", Method::Differences);
                     return Err(InputError::new("method of the gradient", method, help).into());
                 }
-                (Err(Stop::OtherSteps), None) => Some(OTHER_STEPS.to_owned()),
+                (Err(Stop::Unsuited(why)), None) => Some(why),
                 (Err(Stop::Failed(error)), None) => Some(error.to_string()),
             },
         };
@@ -256,7 +266,7 @@ impl SceneGradient {
                 self.with_check(Gradient { reason: why, ..gradient }, &differences(0.007), tell)
             }
             Err(Stop::Failed(error)) => Err(error),
-            Err(Stop::OtherSteps) => Err(InputError::new("steps", "others", OTHER_STEPS).into()),
+            Err(Stop::Unsuited(why)) => Err(InputError::new("steps", "others", why).into()),
         }
     }
 
@@ -281,16 +291,15 @@ impl SceneGradient {
                 Ok(gradient)
             }
             Err(Stop::Failed(error)) => Err(error),
-            Err(Stop::OtherSteps) => Ok(gradient),
+            Err(Stop::Unsuited(_)) => Ok(gradient),
         }
     }
 
     fn find_by(&self, scheme: &Scheme, tell: &mut dyn FnMut(usize)) -> Result<Gradient, Stop> {
         let costs = Costs::default();
         let base = |rtol: f64| -> Result<Base, Stop> {
-            let (seen, steps) = self.runs.observe(None, rtol, scheme.method, None, &costs)?;
-            let (list, tape) = steps.map(|steps| (steps.list, steps.tape)).unzip();
-            Ok(Base { rtol, seen, list, tape: tape.flatten() })
+            let (seen, record) = self.runs.observe(None, rtol, scheme.method, None, &costs)?;
+            Ok(Base { rtol, seen, record })
         };
         let [fine, coarse] = scheme.rtols;
         let bases = [base(fine)?, base(coarse)?];
@@ -299,6 +308,7 @@ impl SceneGradient {
         let (mut found, method, reason) = match scheme.method {
             Method::Adjoint => match self.taken_back(scheme, &bases, &costs) {
                 Ok(found) => (found, Method::Adjoint, None),
+                Err(why) if self.runs.target.is_at_rest() => return Err(Stop::Unsuited(why)),
                 Err(why) if self.method == Some(Method::Adjoint) => {
                     let help = format!("{why}: take {}", Method::SameSteps);
                     let error = InputError::new("method of the gradient", Method::Adjoint, help);
@@ -343,16 +353,17 @@ impl SceneGradient {
 
     /// The derivatives by all numbers, from runs whose steps are taken back; or why they cannot be.
     ///
-    /// At the smaller tolerance with the last step of the differences alone: their error is that at the larger one.
+    /// At the smaller tolerance with the first step of the differences alone, which has the least round-off: what longer steps are off by is
+    /// that at the larger one.
     fn taken_back(
         &self,
         scheme: &Scheme,
         bases: &[Base; 2],
         costs: &Costs,
     ) -> Result<Vec<Found>, String> {
-        let step =
-            |number: &Number, row: usize| scheme.first * number.scale() * 0.5_f64.powi(row as i32);
-        let last = scheme.rows - 1;
+        let step = |number: &Number, row: usize| {
+            number.first_step(scheme.first) * 0.5_f64.powi(row as i32)
+        };
         let quotients = |base: &Base, rows: Range<usize>| {
             let ends: Vec<(&Number, [f64; 2])> = self
                 .numbers
@@ -363,9 +374,7 @@ impl SceneGradient {
                 .collect();
             let others: Vec<(&Number, f64)> =
                 ends.iter().flat_map(|(number, ends)| ends.map(|at| (*number, at))).collect();
-            let tape = base.tape.as_ref().ok_or(AT_THE_END)?;
-            let sums = self.runs.lagrangians(tape, base.rtol, &others)?;
-            costs.add_taken_back(base.seen.steps, others.len());
+            let sums = self.runs.lagrangians(base, &others, costs)?;
             let quotient = |(sums, (_, ends)): (&[f64], &(&Number, [f64; 2]))| {
                 let (change, width) = (sums[0] - sums[1], ends[0] - ends[1]);
                 let round_off = ROUND_OFF * sums[0].abs();
@@ -373,18 +382,17 @@ impl SceneGradient {
             };
             Ok::<Vec<(f64, f64, bool)>, String>(sums.chunks(2).zip(&ends).map(quotient).collect())
         };
-        let fine = quotients(&bases[0], last..scheme.rows)?;
+        let fine = quotients(&bases[0], 0..1)?;
         let coarse = quotients(&bases[1], 0..scheme.rows)?;
         let each = self.numbers.iter().zip(fine.iter().zip(coarse.chunks(scheme.rows)));
         let found = each.filter_map(|(number, (&(of_fine, round_off, is_same), coarse))| {
             let of_coarse: Vec<Vec<f64>> = coarse.iter().map(|of| vec![of.0]).collect();
             let Extrapolated { slopes, error } = extrapolated(&of_coarse, number.order())?;
-            let (limit, of_coarse) = (*slopes.last()?, coarse.last()?.0);
+            let (limit, of_coarse) = (*slopes.last()?, coarse.first()?.0);
+            let slope = of_fine + limit - of_coarse;
+            let error = error.max(round_off) + bases[0].error() * slope.abs();
             Some(Found {
-                slope: Extrapolated {
-                    slopes: vec![of_fine + limit - of_coarse],
-                    error: error.max(round_off),
-                },
+                slope: Extrapolated { slopes: vec![slope], error },
                 quotients: [of_fine, of_coarse].map(|of| vec![of]),
                 is_constant: is_same && coarse.iter().all(|of| of.2),
             })
@@ -407,7 +415,7 @@ impl SceneGradient {
             .iter()
             .flat_map(|&at| {
                 let number = &self.numbers[at];
-                let first = factor * scheme.first * number.scale();
+                let first = factor * number.first_step(scheme.first);
                 rows.clone()
                     .map(move |(row, base)| (number, first * 0.5_f64.powi(row as i32), base))
             })
@@ -416,9 +424,9 @@ impl SceneGradient {
             let at = |value: f64| match value == number.value {
                 true => Ok(base.seen.values.clone()),
                 false => {
-                    let (method, steps) = (scheme.method, base.list.as_ref());
+                    let (method, by) = (scheme.method, base.record.as_ref());
                     let seen =
-                        self.runs.observe(Some((number, value)), base.rtol, method, steps, costs);
+                        self.runs.observe(Some((number, value)), base.rtol, method, by, costs);
                     seen.map(|(seen, _)| seen.values)
                 }
             };

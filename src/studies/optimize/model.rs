@@ -52,29 +52,78 @@ impl Model {
         self.0 += &damped * damped.transpose() / step.dot(&damped) - &pull * pull.transpose() / own;
     }
 
-    /// The step d between `ends` that makes the model least, component by component in turn (Gauss and Seidel), and by how much.
+    /// The step d between `ends` that makes the model least, and by how much: passes over the components in turn (Gauss and Seidel) find
+    /// those that are at their ends, and Cholesky factors the best values of the others.
     pub(super) fn least(&self, slopes: &DVector<f64>, ends: &[[f64; 2]]) -> (DVector<f64>, f64) {
         let mut step = DVector::zeros(slopes.len());
         for _ in 0..MOST_PASSES {
-            let mut largest = 0.0_f64;
-            for (k, [low, high]) in ends.iter().enumerate() {
-                let (slope, curvature) = (slopes[k] + self.0.row(k).tr_dot(&step), self.0[(k, k)]);
-                let old: f64 = step[k];
-                let new = match curvature > 0.0 {
-                    true => (old - slope / curvature).clamp(*low, *high),
-                    // nothing is known of it
-                    false if slope > 0.0 => *low,
-                    false if slope < 0.0 => *high,
-                    false => old,
-                };
-                step[k] = new;
-                largest = largest.max((new - old).abs() / (high - low).max(f64::MIN_POSITIVE));
-            }
-            if largest < SETTLED {
+            let before = step.clone();
+            self.pass(slopes, ends, &mut step);
+            self.improve_inner(slopes, ends, &mut step);
+            let widths = ends.iter().map(|[low, high]| (high - low).max(f64::MIN_POSITIVE));
+            if (&step - before).iter().zip(widths).all(|(d, width)| d.abs() < SETTLED * width) {
                 break;
             }
         }
         let gain = -(slopes.dot(&step) + 0.5 * step.dot(&(&self.0 * &step)));
         (step, gain)
+    }
+
+    /// Makes the model least along each component in turn.
+    fn pass(&self, slopes: &DVector<f64>, ends: &[[f64; 2]], step: &mut DVector<f64>) {
+        for (k, [low, high]) in ends.iter().enumerate() {
+            let (slope, curvature) = (slopes[k] + self.0.row(k).tr_dot(step), self.0[(k, k)]);
+            step[k] = match curvature > 0.0 {
+                true => (step[k] - slope / curvature).clamp(*low, *high),
+                // nothing is known of it
+                false if slope > 0.0 => *low,
+                false if slope < 0.0 => *high,
+                false => step[k],
+            };
+        }
+    }
+
+    /// Goes on to the least value by all components that are between their ends, or on the way there to the first end, if there is one
+    /// such value.
+    fn improve_inner(&self, slopes: &DVector<f64>, ends: &[[f64; 2]], step: &mut DVector<f64>) {
+        let is_inner = |k: &usize| ends[*k][0] < step[*k] && step[*k] < ends[*k][1];
+        let inner: Vec<usize> = (0..ends.len()).filter(is_inner).collect();
+        let slopes = slopes + &self.0 * &*step;
+        let matrix = self.0.select_rows(&inner).select_columns(&inner);
+        let Some(factors) = matrix.cholesky() else { return };
+        let way = factors.solve(&-slopes.select_rows(&inner));
+        let room = |(&k, way): (&usize, &f64)| match *way {
+            0.0 => 1.0,
+            way => (ends[k][usize::from(way > 0.0)] - step[k]) / way,
+        };
+        let part = inner.iter().zip(&way).map(room).fold(1.0, f64::min);
+        for (&k, way) in inner.iter().zip(&way) {
+            step[k] = (step[k] + part * way).clamp(ends[k][0], ends[k][1]);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::DVector;
+
+    use super::Model;
+
+    /// Squares whose influences nearly coincide, so that single components hardly tell them apart: the step solves them exactly, and
+    /// with an end that one is held at, the slopes of the others are 0.
+    #[test]
+    fn influences_that_are_nearly_alike() {
+        let rows = [[1.0, 1.0, 1.0], [1.0, 1.01, 1.02], [1.0, 1.02, 1.0401]];
+        let rows = rows.map(|row| DVector::from_row_slice(&row));
+        let model = Model::of_squares(&rows, 3);
+        let exact = DVector::from_row_slice(&[0.3, -0.5, 0.4]);
+        let slopes = -(&model.0 * &exact);
+        let (step, gain) = model.least(&slopes, &[[-1.0, 1.0]; 3]);
+        assert!((&step - &exact).amax() < 1e-6, "{step}");
+        assert!((gain / (0.5 * exact.dot(&(&model.0 * &exact))) - 1.0).abs() < 1e-9, "{gain}");
+        let (step, _) = model.least(&slopes, &[[-1.0, 1.0], [-1.0, 1.0], [-1.0, 0.39]]);
+        let left = &slopes + &model.0 * &step;
+        assert!(step[2] == 0.39 && left[2] < 0.0, "{step} {left}");
+        assert!(left[0].abs() < 1e-9 && left[1].abs() < 1e-9, "{left}");
     }
 }

@@ -111,7 +111,7 @@ impl MeshEstimate {
             };
             refused(&format!("on a richer mesh ({reason})"), "take a finer mesh from the start")
         })?;
-        let moved = Moved { scene: &richer, finer: &finer, rows: &rows, u: &u };
+        let moved = Moved { scene: &richer, finer: Some(&finer), rows: &rows, u: &u };
         let Linearized { value: there, by_displacements, by_multipliers } =
             reading.linearized(scene, sample, &moved)?;
         if !by_displacements.iter().chain(&by_multipliers).all(|x| x.is_finite()) {

@@ -9,8 +9,8 @@ use crate::base::vector::largest;
 /// the error by about the relative size of the part that is not symmetric.
 const MOST_REFINEMENTS: usize = 100;
 
-/// Size of a refinement relative to the solution at which they end: no estimate of an error has more digits.
-const ENOUGH: f64 = 1e-9;
+/// Size of a refinement relative to the solution at which they end, about the error of the solution.
+pub(crate) const DUAL_ERROR: f64 = 1e-9;
 
 impl AtRest {
     /// Solves K x - A mu = f, A^T x = d by the last factorization, which must be that of K without a shift; K
@@ -61,7 +61,7 @@ impl AtRest {
                     row.terms.iter().for_each(|&(dof, c)| left[dof] += c * mu);
                 }
             }
-            if largest(&more) <= ENOUGH * largest(x) {
+            if largest(&more) <= DUAL_ERROR * largest(x) {
                 for (row, mu) in self.system.rows.iter().zip(mu) {
                     if let Some((dof, c)) = row.nodal() {
                         *mu = -left[dof] / c;
