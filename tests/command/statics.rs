@@ -101,12 +101,15 @@ fn static_writes_load_curves() {
     assert_eq!((pulled(&end), pulled(&rows)), (1.0, 1.0));
 
     // the first phase pulls by as much as none of the second; one equilibrium is one file
-    let plain = ["--phase", "pull", "--load-steps", "1", "--formats", "vtk", "--out", "plain"];
+    let plain = ["--phase", "pull", "--load-steps", "1", "--formats", "vtk,svg", "--out", "plain"];
     let output = place.run(&[&["static", "scene.toml"][..], &plain].concat());
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     let (header, rows) = place.table("plain");
     assert_eq!((rows.len(), rows[0][0], frames("plain")), (1, 1.0, 1));
     assert!(!header.contains(&"load factor".to_owned()));
+    // the undeformed shape and the equilibrium, each once
+    let picture = fs::read_to_string(place.path("plain/snapshots.svg")).unwrap();
+    assert_eq!(picture.matches("class=\"panel\"").count(), 2);
     let output = place.run(&["static", "scene.toml", "--phase", "pul"]);
     assert_eq!(output.status.code(), Some(2));
     says(&stderr(&output), &["phase of statics = \"pul\"", "\"pull\""]);

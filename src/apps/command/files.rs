@@ -7,7 +7,7 @@ use clap::Args;
 use pliant::output::{GrowingTable, Plot, Snapshots, Table, write_animation, write_csv, write_vtk};
 use pliant::scene_file::Format;
 use pliant::simulate::{Checkpoint, Simulation};
-use pliant::{Error, OutputRequest, SceneFile, Selection, Trajectory};
+use pliant::{Error, OutputRequest, Sample, SceneFile, Selection, Trajectory};
 
 use super::failure::{BAD_INPUT, Failure, print};
 
@@ -279,7 +279,7 @@ impl Directory {
     }
 }
 
-/// Times of the snapshots (s): the ends of the phases, and some between them, about ten in all.
+/// Times of the snapshots (s): the ends of the phases, and some between them, about ten in all, each of another sample.
 fn times(trajectory: &Trajectory) -> Vec<f64> {
     let phases = trajectory.scene().phases();
     let parts = (9 / phases.len()).max(1);
@@ -294,5 +294,12 @@ fn times(trajectory: &Trajectory) -> Vec<f64> {
     if times.last() != Some(&reached) {
         times.push(reached);
     }
+    for time in &mut times {
+        let from = |sample: &Sample| (sample.time - *time).abs();
+        let samples = trajectory.samples().iter();
+        let nearest = samples.min_by(|a, b| from(a).total_cmp(&from(b)));
+        *time = nearest.map_or(*time, |sample| sample.time);
+    }
+    times.dedup();
     times
 }
