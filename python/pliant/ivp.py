@@ -221,7 +221,7 @@ def asked_ivp(
     facts = engine_method(method)
     name, implicit = facts.name, facts.is_implicit
     is_sensitive = sensitivities is not None and sensitivities is not False
-    _check(facts, method, mass, is_sensitive)
+    _check(facts, method, mass, is_sensitive, krylov)
     events = event_list(events)
     y0, parts = unknowns(y0)
     is_compiled = hasattr(fun, "address")
@@ -259,7 +259,7 @@ def asked_ivp(
         max_order=max_order,
         max_steps=max_steps,
         check_jacobian=bool(check_jacobian),
-        krylov=krylov_key(krylov, jac, given, parts, sign),
+        krylov=krylov_key(krylov, jac, given, parts),
         observer=observer_key(observed_by, parts, sign),
         **limits,
         **wanted,
@@ -278,7 +278,7 @@ def engine_method(method):
     return EngineMethod(*_pliant.method(_SYNONYMS.get(method, method)))
 
 
-def _check(facts, method, mass, is_sensitive):
+def _check(facts, method, mass, is_sensitive, krylov):
     """Refuses what the method does not have."""
     if mass is None and facts.name == "ida":
         raise ValueError("\"ida\" goes with a mass matrix here: give `mass`, take \"bdf\", or call solve_dae")
@@ -286,6 +286,10 @@ def _check(facts, method, mass, is_sensitive):
         raise ValueError(f"{method!r} takes no mass matrix: take \"ida\", also for a singular one, or \"esdirk\"")
     if is_sensitive and not facts.has_sensitivities:
         raise ValueError(f"{method!r} has no sensitivities: take one of \"auto\", \"bdf\", \"adams\", \"ida\"")
+    if krylov is not None and mass is not None:
+        raise ValueError("with `mass` linear systems are solved by their matrix: leave out `krylov`, or call solve_dae")
+    if krylov is not None and (not facts.is_implicit or facts.name == "rosenbrock"):
+        raise ValueError(f"{method!r} takes no Krylov method: take one of \"auto\", \"bdf\", \"adams\", \"esdirk\"")
 
 
 def compiled(fun, parts):

@@ -38,8 +38,8 @@ class Krylov(NamedTuple):
     tolerance_factor: float | None = None
 
 
-def krylov_key(krylov, jac, given, parts, sign=1.0, is_residual=False):
-    """A Krylov method, or its name, as a dict for the engine, along the time `sign` t; None if there is none."""
+def krylov_key(krylov, jac, given, parts, is_residual=False):
+    """A Krylov method, or its name, as a dict for the engine; None if there is none."""
     if krylov is None:
         return None
     krylov = Krylov(krylov) if isinstance(krylov, str) else krylov
@@ -54,10 +54,10 @@ def krylov_key(krylov, jac, given, parts, sign=1.0, is_residual=False):
         raise ValueError(f"the preconditioner of a Krylov is \"ilu\" or a function, not {krylov.preconditioner!r}")
     if jac is not None and not is_ilu:
         raise ValueError("with `krylov` the preconditioner \"ilu\" alone uses `jac`: give its products with vectors by `products`")
-    products, preconditioner = given.of(krylov.products), None if is_ilu else given.of(krylov.preconditioner)
+    products = given.of(krylov.products)
     return krylov._replace(
-        products=_of_residual(products) if is_residual else _along(products, sign),
-        preconditioner=preconditioner if sign > 0.0 else _prepared_along(preconditioner),
+        products=_of_residual(products) if is_residual else products,
+        preconditioner=None if is_ilu else given.of(krylov.preconditioner),
     )._asdict() | dict(ilu=is_ilu, right=krylov.side == "right")
 
 
@@ -71,17 +71,3 @@ def _of_residual(products):
         return np.asarray(by_y, dtype=float) + cj * np.asarray(by_yp, dtype=float)
 
     return combined
-
-
-def _along(products, sign):
-    """Products of the Jacobian along the time `sign` t."""
-    if products is None or sign > 0.0:
-        return products
-    return lambda t, y, v, *p: -np.asarray(products(-t, y, v, *p), dtype=float)
-
-
-def _prepared_along(preconditioner):
-    """A preconditioner along the time -t, where df/dy has the other sign."""
-    if preconditioner is None:
-        return None
-    return lambda t, y, gamma, *p: preconditioner(-t, y, -gamma, *p)

@@ -16,26 +16,26 @@ def decay(t, y, rate):
 
 @pytest.mark.parametrize("method", ["bdf", "adams", "auto", "rosenbrock", "esdirk", "dormand-prince"])
 def test_steps_reach_the_end_as_solve_ivp_does(method):
-    """The same steps, to the last bit; and their states are those of exp(-2 t), within 100 rtol (measured: at most 28)."""
+    """The same steps, to the last bit; and their states are those of exp(-2 t), within 10 rtol (measured: at most 6)."""
     run = pliant.Run(decay, (0.0, 3.0), [1.0], method, args=(2.0,), **TIGHT)
     times, states = [0.0], [1.0]
     while (step := run.advance()) is not None:
         assert step.t_old == times[-1] and step.before is None and step.events == []
         middle = 0.5 * (step.t_old + step.t)
-        assert abs(run.interpolate(middle)[0] - np.exp(-2.0 * middle)) < 1e-6
+        assert abs(run.interpolate(middle)[0] - np.exp(-2.0 * middle)) < 1e-7
         times.append(step.t)
         states.append(step.y[0])
     assert run.end == "span" and run.t == 3.0 and run.nsteps == len(times) - 1 and run.nfev >= run.nsteps
     solution = pliant.solve_ivp(decay, (0.0, 3.0), [1.0], method, args=(2.0,), **TIGHT)
     assert np.array_equal(solution.t, times) and np.array_equal(solution.y[0], states)
-    assert np.abs(np.array(states) - np.exp(-2.0 * np.array(times))).max() < 1e-6
+    assert np.abs(np.array(states) - np.exp(-2.0 * np.array(times))).max() < 1e-7
 
 
 def test_a_change_of_parameters_and_the_way_back():
-    """y' = -p y, from t = 0.5 on with p = 3 in place of 2; and again with 2. Measured: 3e-9."""
+    """y' = -p y, from t = 0.5 on with p = 3 in place of 2; and again with 2. Measured: 1.3e-8 and 4e-9."""
     run = pliant.Run(decay, (0.0, 2.0), [1.0], "bdf", args=(2.0,), **TIGHT)
     run.advance_to(0.5)
-    assert run.t == 0.5 and abs(run.y[0] - np.exp(-1.0)) < 1e-7
+    assert run.t == 0.5 and abs(run.y[0] - np.exp(-1.0)) < 5e-8
     saved = run.save()
     for rate in (3.0, 2.0):
         run.restore(saved)
@@ -47,7 +47,7 @@ def test_a_change_of_parameters_and_the_way_back():
         run.jump(change)
         assert run.parameters.tolist() == [rate]
         run.advance_to(1.0)
-        assert abs(run.y[0] - np.exp(-1.0 - 0.5 * rate)) < 1e-7
+        assert abs(run.y[0] - np.exp(-1.0 - 0.5 * rate)) < 2e-8
     with pytest.raises(pliant.InputError, match="has reached 1.0"):
         run.advance_to(0.7)
     run.jump(lambda jump: jump.end())
@@ -57,7 +57,7 @@ def test_a_change_of_parameters_and_the_way_back():
 
 
 def test_events_integrals_and_sensitivities_of_a_run():
-    """A ball falls from 5 m at 10 m/s^2, and is thrown back after 1 s at half of its speed; dv/dp = 10 m/s there."""
+    """A ball falls from 5 m at 10 m/s^2, and is thrown back after 1 s at half of its speed; dv/dp = 10 m/s there. Measured: 7e-9."""
 
     def impact(jump):
         jump.y[1] *= -jump.p[0]
@@ -67,27 +67,27 @@ def test_events_integrals_and_sensitivities_of_a_run():
     options = dict(args=(0.5,), events=floor, sensitivities=True, integrands=lambda t, y, part: abs(y[1]), **TIGHT)
     run = pliant.Run(fall, (0.0, 1.75), [5.0, 0.0], "bdf", **options)
     met = run.advance_to(1.5)
-    assert [event.event for event in met] == [0] and abs(met[0].t - 1.0) < 1e-7 and abs(met[0].y[1] + 10.0) < 1e-6
+    assert [event.event for event in met] == [0] and abs(met[0].t - 1.0) < 1e-9 and abs(met[0].y[1] + 10.0) < 1e-8
     while (step := run.advance()) is not None:
         pass
-    assert abs(run.y[0] - 0.9375) < 1e-6 and abs(run.sensitivities[0, 0] - 7.5) < 1e-5
-    assert abs(run.integrals[0] - 6.5625) < 1e-5
+    assert abs(run.y[0] - 0.9375) < 3e-8 and abs(run.sensitivities[0, 0] - 7.5) < 1e-9
+    assert abs(run.integrals[0] - 6.5625) < 3e-8
     stepped = pliant.Run(fall, (0.0, 1.75), [5.0, 0.0], "bdf", **options)
     jumps = [step for step in iter(stepped.advance, None) if step.before is not None]
-    assert len(jumps) == 1 and abs(jumps[0].before[1] + 10.0) < 1e-6 and abs(jumps[0].y[1] - 5.0) < 1e-6
+    assert len(jumps) == 1 and abs(jumps[0].before[1] + 10.0) < 1e-8 and abs(jumps[0].y[1] - 5.0) < 1e-8
 
 
 def test_runs_of_residuals_of_complex_numbers_and_back_in_time():
-    """y1' = -y2 with y1 = y2; y' = i y; and y' = -2 y back from t = 1, by a method that goes forward alone. Measured: 4e-8."""
+    """y1' = -y2 with y1 = y2; y' = i y; and y' = -2 y back from t = 1, by a method that goes forward alone. Measured: at most 7e-9."""
     run = pliant.Run.dae(lambda t, y, yp: [yp[0] + y[1], y[0] - y[1]], (0.0, 1.0), [1.0, 0.0], differential=[True, False], **TIGHT)
     run.advance_to(1.0)
-    assert np.abs(run.y - np.exp(-1.0)).max() < 1e-6 and abs(run.yp[0] + np.exp(-1.0)) < 1e-5
+    assert np.abs(run.y - np.exp(-1.0)).max() < 3e-8 and abs(run.yp[0] + np.exp(-1.0)) < 3e-8
     turning = pliant.Run(lambda t, y: 1j * y, (0.0, 1.0), [1.0 + 0j], **TIGHT)
     turning.advance_to(1.0)
-    assert abs(turning.y[0] - np.exp(1j)) < 1e-6
+    assert abs(turning.y[0] - np.exp(1j)) < 3e-9
     back = pliant.Run(decay, (1.0, 0.0), [np.exp(-2.0)], "rosenbrock", args=(2.0,), **TIGHT)
     back.advance_to(0.5)
-    assert back.t == 0.5 and abs(back.y[0] - np.exp(-1.0)) < 1e-6
+    assert back.t == 0.5 and abs(back.y[0] - np.exp(-1.0)) < 3e-9
     assert abs(back.interpolate(0.5)[0] - back.y[0]) < 1e-15
     assert back.advance().t < 0.5
 
@@ -135,7 +135,7 @@ KRYLOV = {
 
 @pytest.mark.parametrize("kind", list(KRYLOV))
 def test_krylov_methods(kind):
-    """The decay of the first shape at its rate; within 1e-6 (measured: at most 3e-7)."""
+    """The decay of the first shape at its rate; within 10 rtol (measured: at most 4)."""
     matrix, shape, rate = heat(40)
     options = dict(lband=1, uband=1) if kind == "fgmres" else {}
     solution = pliant.solve_ivp(
@@ -148,8 +148,8 @@ def test_krylov_methods(kind):
 @pytest.mark.parametrize("span", [(0.0, 0.02), (0.02, 0.0)])
 @pytest.mark.parametrize("method", ["bdf", "esdirk"])
 def test_products_and_preconditioners(method, span):
-    """Both are called with `args`, and bring the number of evaluations down, as exact ones do; also where the time goes back, by a growing
-    solution."""
+    """Both are called with `args`, and save evaluations (measured: 45 for 127, 76 for 170); also where time goes back. The shape decays at
+    its rate (measured: 2.4e-7)."""
     splu = pytest.importorskip("scipy.sparse.linalg").splu
     matrix, shape, rate = heat(40)
     matrix = matrix if span[0] < span[1] else -matrix
@@ -170,13 +170,14 @@ def test_products_and_preconditioners(method, span):
     fun = lambda t, y, factor: factor * (matrix @ y)
     led = pliant.solve_ivp(fun, span, shape, method, krylov=krylov, **options)
     assert led.success and min(called.values()) > 0
-    assert np.abs(led.y[:, -1] - np.exp(-0.04 * rate) * shape).max() < 2e-6
+    assert np.abs(led.y[:, -1] - np.exp(-0.04 * rate) * shape).max() < 1e-6
     alone = pliant.solve_ivp(fun, span, shape, method, krylov=pliant.Krylov("gmres", iterations=40), **options)
     assert 2 * led.nfev < alone.nfev, (led.nfev, alone.nfev)
 
 
 def test_krylov_methods_of_residuals():
-    """y1' = -1000 y1 + y2 with y2 = y1: a rate of 999; products, and a preconditioner that solves all. Measured: 2e-8."""
+    """y1' = -1000 y1 + y2 with y2 = y1: a rate of 999; products, and a preconditioner that solves all. Measured: 3e-9."""
+
     def products(t, y, yp, v):
         return [1000.0 * v[0] - v[1], v[0] - v[1]], [v[0], 0.0]
 
@@ -188,7 +189,7 @@ def test_krylov_methods_of_residuals():
     solution = pliant.solve_dae(
         fun, (0.0, 0.002), [1.0, 1.0], [-999.0, -999.0], krylov=pliant.Krylov(products=products, preconditioner=preconditioner), **TIGHT
     )
-    assert solution.success and np.abs(solution.y[:, -1] - np.exp(-1.998)).max() < 1e-6
+    assert solution.success and np.abs(solution.y[:, -1] - np.exp(-1.998)).max() < 1e-8
 
 
 def test_what_krylov_methods_refuse():
@@ -209,8 +210,11 @@ def test_what_krylov_methods_refuse():
         solve(krylov=pliant.Krylov(side="up"))
     with pytest.raises(TypeError, match="pliant.Krylov"):
         solve(krylov=5)
-    with pytest.raises(ValueError):
-        solve("dormand-prince", krylov="gmres")
+    for method in ("dormand-prince", "rosenbrock"):
+        with pytest.raises(ValueError, match="takes no Krylov method"):
+            solve(method, krylov="gmres")
+    with pytest.raises(ValueError, match="leave out `krylov`"):
+        solve("esdirk", krylov="gmres", mass=[1.0])
     with pytest.raises(ZeroDivisionError):
         solve(krylov=pliant.Krylov(products=lambda t, y, v: 1 / 0))
     with pytest.raises(ValueError, match="2 numbers where 1"):
@@ -225,7 +229,7 @@ def test_observers(method):
     assert solution.success and [progress.t for progress in seen] == solution.t[1:].tolist()
     assert [progress.steps for progress in seen] == list(range(1, solution.nsteps + 1))
     assert [progress.y[0] for progress in seen] == solution.y[0, 1:].tolist() and seen[-1].part == 1.0
-    half = lambda progress: progress.y[0] > 0.5
+    half = lambda progress: abs(progress.y[0] - np.exp(-progress.t)) > 1e-6 or progress.y[0] > 0.5
     stopped = pliant.solve_ivp(decay, (2.0, 0.0), [np.exp(-2.0)], method, args=(1.0,), observed_by=half, **TIGHT)
     assert stopped.status == -1 and "cancelled" in stopped.message
     assert stopped.y[0, -1] > 0.5 >= stopped.y[0, -2] and abs(stopped.y[0, -1] - np.exp(-stopped.t[-1])) < 1e-6
@@ -234,12 +238,12 @@ def test_observers(method):
 
 
 def test_ensembles():
-    """exp(-3) for each rate over three times its decay time, in the order of the rates; one that raises is its exception."""
+    """exp(-3) for each rate over three times its decay time, in the order of the rates; one that raises is its exception. Measured: 4e-9."""
     rates = [0.5, 1.0, 2.0, 0.0, 4.0]
     results = pliant.ensemble(5, lambda k: pliant.solve_ivp(decay, (0.0, 3.0 / rates[k]), [1.0], "bdf", args=(rates[k],), **TIGHT))
     assert isinstance(results.pop(3), ZeroDivisionError)
     assert [solution.t[-1] for solution in results] == [6.0, 3.0, 1.5, 0.75]
-    assert max(abs(solution.y[0, -1] - np.exp(-3.0)) for solution in results) < 1e-7
+    assert max(abs(solution.y[0, -1] - np.exp(-3.0)) for solution in results) < 1e-8
 
 
 def test_compiled_functions_leave_python_to_others():
