@@ -1,6 +1,7 @@
 """Runs led step by step, Krylov methods, observers and ensembles against closed forms."""
 
 import threading
+import time
 
 import numpy as np
 import pytest
@@ -247,7 +248,8 @@ def test_ensembles():
 
 
 def test_compiled_functions_leave_python_to_others():
-    """While one is integrated, another thread runs: it counts on by more than 1000 (measured: 2e6; 0 where the run keeps Python)."""
+    """While one is integrated, another thread runs, without pauses of half the time that it takes (measured: 0.014; nearly
+    all of it where the run keeps Python)."""
     numba = pytest.importorskip("numba")
     from numba import types
 
@@ -258,19 +260,21 @@ def test_compiled_functions_leave_python_to_others():
         ydot[0] = y[1]
         ydot[1] = -y[0]
 
-    counted, done = [0], threading.Event()
+    pauses, done = [0.0], threading.Event()
 
-    def count():
+    def look():
+        last = time.perf_counter()
         while not done.is_set():
-            counted[0] += 1
+            now = time.perf_counter()
+            last, pauses[0] = now, max(pauses[0], now - last)
 
-    thread = threading.Thread(target=count)
+    thread = threading.Thread(target=look)
     thread.start()
     try:
-        before = counted[0]
+        start, pauses[0] = time.perf_counter(), 0.0
         solution = pliant.solve_ivp(oscillator, (0.0, 1e3), [1.0, 0.0], rtol=1e-8, atol=1e-10)
-        counts = counted[0] - before
+        duration, longest = time.perf_counter() - start, pauses[0]
     finally:
         done.set()
         thread.join()
-    assert solution.success and counts > 1000
+    assert solution.success and longest < 0.5 * duration
