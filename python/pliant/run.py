@@ -1,5 +1,6 @@
 """Runs that a program leads, step by step."""
 
+import weakref
 from typing import NamedTuple
 
 import numpy as np
@@ -36,6 +37,25 @@ class Step(NamedTuple):
     events: list
 
 
+class _Functions(list):
+    """The functions of a run, which live as long as it does."""
+
+
+def _lent(keys, functions):
+    """`keys` with functions that look up their originals in the list `functions`: the engine, into which Python's collection of garbage does
+    not look, then has none that leads back to its run.
+    """
+    if isinstance(keys, dict):
+        return {name: _lent(value, functions) for name, value in keys.items()}
+    if isinstance(keys, (list, tuple)) and any(isinstance(value, dict) or callable(value) for value in keys):
+        return type(keys)(_lent(value, functions) for value in keys)
+    if not callable(keys):
+        return keys
+    found, place = weakref.ref(functions), len(functions)
+    functions.append(keys)
+    return lambda *at: found()[place](*at)
+
+
 class Run:
     """An initial value problem that is solved step by step, under the control of a program.
 
@@ -59,17 +79,19 @@ class Run:
     """
 
     def __init__(self, fun, t_span, y0, method="RK45", **options):
-        self._begin(*asked_ivp(fun, t_span, y0, method, are_parameters=True, **options))
+        self._begin(fun, *asked_ivp(fun, t_span, y0, method, are_parameters=True, **options))
 
     @classmethod
     def dae(cls, fun, t_span, y0, yp0=None, **options):
         """A run of the residual ``fun(t, y, yp)``, with the arguments of :func:`solve_dae` but for `t_eval` and `dense_output`."""
         run = cls.__new__(cls)
-        run._begin(*asked_dae(fun, t_span, y0, yp0, are_parameters=True, **options))
+        run._begin(fun, *asked_dae(fun, t_span, y0, yp0, are_parameters=True, **options))
         return run
 
-    def _begin(self, keys, how):
-        self._run, self._parts, self._sign = _pliant.Run(keys), how.parts, how.sign
+    def _begin(self, fun, keys, how):
+        self._fun = fun  # a compiled function is only an address there
+        self._functions = _Functions()
+        self._run, self._parts, self._sign = _pliant.Run(_lent(keys, self._functions)), how.parts, how.sign
 
     def advance(self):
         """Takes one step, and returns it as a :class:`Step`; None once the run has ended."""

@@ -1,7 +1,9 @@
 """Runs led step by step, Krylov methods, observers and ensembles against closed forms."""
 
+import gc
 import threading
 import time
+import weakref
 
 import numpy as np
 import pytest
@@ -113,6 +115,36 @@ def test_what_a_run_refuses():
         other.restore(run.save())
     with pytest.raises(KeyError, match="mine"):
         pliant.Run(lambda t, y: {}["mine"], (0.0, 1.0), [1.0], "dormand-prince").advance()
+
+
+def test_a_run_that_its_own_functions_lead_to_is_collected():
+    class Plant:
+        def __init__(self):
+            floor = pliant.Event(lambda t, y: self.level(y), action=self.impact)
+            self.run = pliant.Run(self.fun, (0.0, 1.0), [1.0], "bdf", events=floor, observed_by=self.observe, jac=self.jac)
+
+        def level(self, y):
+            return y[0] - 0.5
+
+        def impact(self, jump):
+            jump.y[0] = 1.0
+
+        def observe(self, progress):
+            self.seen = progress.t
+
+        def fun(self, t, y):
+            return -y
+
+        def jac(self, t, y):
+            return [[-1.0]]
+
+    plant = Plant()
+    plant.run.advance_to(0.9)
+    assert plant.seen == 0.9 and abs(plant.run.y[0] - 2.0 * np.exp(-0.9)) < 5e-3
+    seen = weakref.ref(plant)
+    del plant
+    gc.collect()
+    assert seen() is None
 
 
 def heat(n):
