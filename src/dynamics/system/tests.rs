@@ -69,7 +69,7 @@ fn state(system: &System) -> Vec<f64> {
 }
 
 /// y and y' that are consistent at t = 0.1.
-fn consistent(equations: &mut DaeForm, state: &[f64]) -> (Vec<f64>, Vec<f64>) {
+pub(super) fn consistent(equations: &mut DaeForm, state: &[f64]) -> (Vec<f64>, Vec<f64>) {
     let [mut y, mut yp] = [(); 2].map(|()| vec![0.0; equations.size()]);
     equations.consistent(0.1, state, [&mut y, &mut yp]).unwrap();
     (y, yp)
