@@ -186,7 +186,8 @@ def unknowns(y0):
     return y0, (Complex if np.issubdtype(y0.dtype, np.complexfloating) else Real)(len(y0))
 
 
-def tolerances(rtol, atol, parts):
+def tolerances(rtol, atol, parts, level=4):
+    """The tolerances for the engine; a warning names the line that is so many calls away."""
     atol = np.asarray(atol, dtype=float)
     if np.any(np.asarray(rtol) < 0):
         raise ValueError("`rtol` must be positive.")
@@ -197,7 +198,7 @@ def tolerances(rtol, atol, parts):
     rtol = float(np.min(rtol))  # of several the smallest, for all unknowns
     least = 100 * np.finfo(float).eps
     if rtol < least:
-        warnings.warn(f"`rtol` is too small, setting to {least}", stacklevel=3)
+        warnings.warn(f"`rtol` is too small, setting to {least}", stacklevel=level)
         rtol = least
     atol = np.broadcast_to(atol, (parts.count,))
     count = 2 if isinstance(parts, Complex) else 1

@@ -117,6 +117,17 @@ def test_what_a_run_refuses():
         pliant.Run(lambda t, y: {}["mine"], (0.0, 1.0), [1.0], "dormand-prince").advance()
 
 
+def test_a_warning_names_the_line_of_the_caller():
+    for call in (
+        lambda: pliant.Run(decay, (0.0, 1.0), [1.0], args=(1.0,), rtol=1e-20),
+        lambda: pliant.solve_ivp(decay, (0.0, 1.0), [1.0], args=(1.0,), rtol=1e-20, max_steps=1),
+        lambda: pliant.gradient(decay, (0.0, 0.1), [1.0], (1.0,), terminal=lambda t, y, rate: y[0], rtol=1e-20),
+    ):
+        with pytest.warns(UserWarning, match="`rtol` is too small") as warned:
+            call()
+        assert warned[0].filename == __file__
+
+
 def test_a_run_that_its_own_functions_lead_to_is_collected():
     class Plant:
         def __init__(self):
