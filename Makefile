@@ -88,7 +88,7 @@ docs: setup ## Documentation of the library
 
 package: ## The package for a registry, built by itself from what is in it, and its documentation as docs.rs builds it
 	@scripts/setup.sh cmake
-	cargo package -p pliant
+	cargo package -p pliant $(READ)
 	DOCS_RS=1 RUSTDOCFLAGS=-Dwarnings cargo doc -p pliant --no-deps --features play,png,study,vendored $(READ)
 	@ls -l target/package/*.crate
 

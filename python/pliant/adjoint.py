@@ -103,7 +103,7 @@ def gradient(
             parameters=given.parameters,
             **newton(slopes, first, jac_sparsity, None, None, parts, mass, given, start),
         )
-    rtol, atol = tolerances(rtol, atol, parts)
+    rtol, atol = tolerances(rtol, atol, parts, level=3)
     watched = watched_events(event_list(events), given, parts) or []
     asked = NOTHING | equations | dict(span=(start, end), rtol=rtol, atol=atol, events=watched, max_steps=max_steps)
     adjoint_atol = min(atol) if adjoint_atol is None else float(adjoint_atol)

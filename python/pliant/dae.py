@@ -2,13 +2,17 @@
 
 import numpy as np
 
+from . import _pliant
 from .equations import (
+    NOTHING,
     Arguments,
     Complex,
+    How,
+    check_times,
     engine_breaks,
     nonnegative_places,
+    observer_key,
     result_of,
-    run_of,
     step_limits,
     tolerances,
     unknowns,
@@ -17,6 +21,7 @@ from .equations import (
     wanted_times,
 )
 from .events import event_list, have_actions, watched_events
+from .krylov import krylov_key
 from .matrices import newton
 
 
@@ -48,6 +53,8 @@ def solve_dae(
     breaks=None,
     nonnegative=None,
     check_jacobian=True,
+    krylov=None,
+    observed_by=None,
 ):
     """Integrates F(t, y, y') = 0 from `t_span[0]` to `t_span[1]` by IDA; for equations of index 1 or 0.
 
@@ -70,7 +77,7 @@ def solve_dae(
     integrands : callable, optional
         ``integrands(t, y, yp)``, otherwise as of :func:`solve_ivp`.
     t_eval, dense_output, rtol, atol, jac_sparsity, lband, uband, first_step, min_step, max_step, max_order, max_steps, breaks,
-    nonnegative, check_jacobian
+    nonnegative, check_jacobian, krylov, observed_by
         As of :func:`solve_ivp`. `jac_sparsity` tells where dF/dy or dF/dy' has entries.
     sensitivities, initial_sensitivities
         As of :func:`solve_ivp`; those of the algebraic unknowns at the start are corrected, too.
@@ -88,35 +95,103 @@ def solve_dae(
     True
     """
     start, end = map(float, t_span)
+    t_eval = wanted_times(t_eval, start, end)
+    check_times(t_eval, dense_output, sensitivities=sensitivities, integrals=integrands)
+    keys, how = asked_dae(
+        fun,
+        t_span,
+        y0,
+        yp0,
+        events=events,
+        args=args,
+        differential=differential,
+        rtol=rtol,
+        atol=atol,
+        jac=jac,
+        jac_sparsity=jac_sparsity,
+        lband=lband,
+        uband=uband,
+        first_step=first_step,
+        min_step=min_step,
+        max_step=max_step,
+        max_order=max_order,
+        max_steps=max_steps,
+        sensitivities=sensitivities,
+        initial_sensitivities=initial_sensitivities,
+        integrands=integrands,
+        breaks=breaks,
+        nonnegative=nonnegative,
+        check_jacobian=check_jacobian,
+        krylov=krylov,
+        observed_by=observed_by,
+    )
+    run = _pliant.solve(keys | dict(times=None if t_eval is None or dense_output else t_eval.tolist()))
+    return result_of(run, how, np.sign(end - start), t_eval, dense_output, last_yp=run.last_yp)
+
+
+def asked_dae(
+    fun,
+    t_span,
+    y0,
+    yp0=None,
+    *,
+    events=None,
+    args=None,
+    differential=None,
+    rtol=1e-3,
+    atol=1e-6,
+    jac=None,
+    jac_sparsity=None,
+    lband=None,
+    uband=None,
+    first_step=None,
+    min_step=None,
+    max_step=np.inf,
+    max_order=None,
+    max_steps=1_000_000,
+    sensitivities=None,
+    initial_sensitivities=None,
+    integrands=None,
+    breaks=None,
+    nonnegative=None,
+    check_jacobian=True,
+    krylov=None,
+    observed_by=None,
+    are_parameters=False,
+):
+    """The arguments of :func:`solve_dae` as keys for the engine, and what makes its result; `args` are parameters wherever the engine
+    changes them, or if `are_parameters`.
+    """
+    start, end = map(float, t_span)
     if hasattr(fun, "address"):
         raise TypeError("the residual is a function of Python: compiled ones are right-hand sides, for solve_ivp")
     is_sensitive = sensitivities is not None and sensitivities is not False
     events = event_list(events)
-    given = Arguments(args, is_sensitive or have_actions(events))
+    given = Arguments(args, is_sensitive or are_parameters or have_actions(events))
     y0, parts = unknowns(y0)
     residual = equations_of(fun, y0, parts, yp0, differential, jac, jac_sparsity, lband, uband, given, start)
     limits = step_limits(start, end, first_step, min_step, max_step)
     rtol, atol = tolerances(rtol, atol, parts)
-    t_eval = wanted_times(t_eval, start, end)
-    wanted = wanted_sensitivities(sensitivities, initial_sensitivities, len(given.parameters), parts, t_eval, dense_output)
+    wanted = wanted_sensitivities(sensitivities, initial_sensitivities, len(given.parameters), parts)
     watched = watched_events(events, given, parts)
-    run = run_of(
+    keys = NOTHING | dict(
         span=(start, end),
         rtol=rtol,
         atol=atol,
         events=watched or [],
-        times=None if t_eval is None or dense_output else t_eval.tolist(),
         max_order=max_order,
         max_steps=max_steps,
         breaks=engine_breaks(breaks),
         check_jacobian=bool(check_jacobian),
+        krylov=krylov_key(krylov, jac, given, parts, is_residual=True),
+        observer=observer_key(observed_by, parts),
         **residual,
         **limits,
         **wanted,
         **nonnegative_places(nonnegative, parts),
-        **wanted_integrals(integrands, given, (start, y0, np.array(residual["yp0"])), lambda *at: at, t_eval, dense_output),
+        **wanted_integrals(integrands, given, (start, y0, np.array(residual["yp0"])), lambda *at: at),
     )
-    return result_of(run, parts, "ida", 1.0, np.sign(end - start), t_eval, dense_output, watched, jac, is_sensitive, last_yp=run.last_yp)
+    return keys, How(parts, "ida", 1.0, watched, jac, is_sensitive)
 
 
 def equations_of(fun, y0, parts, yp0, differential, jac, jac_sparsity, lband, uband, given, start):

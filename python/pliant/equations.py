@@ -5,8 +5,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from . import _pliant
-
 MESSAGES = {
     0: "The solver successfully reached the end of the integration interval.",
     1: "A termination event occurred.",
@@ -22,6 +20,34 @@ class MethodUse(NamedTuple):
     method: str
     #: Why it is used.
     reason: str
+
+
+class Progress(NamedTuple):
+    """Progress of a run, for `observed_by`."""
+
+    #: Time reached.
+    t: float
+    #: State there.
+    y: np.ndarray
+    #: Steps taken.
+    steps: int
+    #: Part of the span that is done, from 0 to 1.
+    part: float
+
+
+class How(NamedTuple):
+    """What makes a result of a run of the engine."""
+
+    #: The kind of the unknowns.
+    parts: object
+    #: The method.
+    method: str
+    #: The engine goes along the time `sign` t.
+    sign: float
+    #: The events, None if there are none.
+    watched: list | None
+    jac: object
+    is_sensitive: bool
 
 
 class OdeResult(dict):
@@ -160,7 +186,8 @@ def unknowns(y0):
     return y0, (Complex if np.issubdtype(y0.dtype, np.complexfloating) else Real)(len(y0))
 
 
-def tolerances(rtol, atol, parts):
+def tolerances(rtol, atol, parts, level=4):
+    """The tolerances for the engine; a warning names the line that is so many calls away."""
     atol = np.asarray(atol, dtype=float)
     if np.any(np.asarray(rtol) < 0):
         raise ValueError("`rtol` must be positive.")
@@ -171,7 +198,7 @@ def tolerances(rtol, atol, parts):
     rtol = float(np.min(rtol))  # of several the smallest, for all unknowns
     least = 100 * np.finfo(float).eps
     if rtol < least:
-        warnings.warn(f"`rtol` is too small, setting to {least}", stacklevel=3)
+        warnings.warn(f"`rtol` is too small, setting to {least}", stacklevel=level)
         rtol = least
     atol = np.broadcast_to(atol, (parts.count,))
     count = 2 if isinstance(parts, Complex) else 1
@@ -181,13 +208,8 @@ def tolerances(rtol, atol, parts):
 #: What equations need not have: keys for the engine.
 NOTHING = dict.fromkeys(
     ["yp0", "differential", "jac", "sparsity", "band", "mass", "times", "first_step", "min_step", "max_step", "max_order"]
-    + ["sensitivities", "initial_sensitivities", "integrands", "integral_count"]
+    + ["sensitivities", "initial_sensitivities", "integrands", "integral_count", "krylov", "observer"]
 ) | dict(nonnegative=[], breaks=[], check_jacobian=True)
-
-
-def run_of(**keys):
-    """A run of the engine."""
-    return _pliant.solve(NOTHING | keys)
 
 
 def step_limits(start, end, first_step, min_step, max_step):
@@ -216,19 +238,19 @@ def wanted_times(t_eval, start, end):
     return t_eval
 
 
-def _check_times(what, t_eval, dense_output):
-    """Refuses what no polynomial between the steps gives."""
-    if t_eval is not None and dense_output:
-        raise ValueError(f"`{what}` are known at the steps or at `t_eval`: leave out `t_eval` or `dense_output`")
+def check_times(t_eval, dense_output, **wanted):
+    """Refuses what is wanted where no polynomial between the steps gives it."""
+    for what, value in wanted.items():
+        if value is not None and value is not False and t_eval is not None and dense_output:
+            raise ValueError(f"`{what}` are known at the steps or at `t_eval`: leave out `t_eval` or `dense_output`")
 
 
-def wanted_sensitivities(sensitivities, initial, count, parts, t_eval, dense_output):
+def wanted_sensitivities(sensitivities, initial, count, parts):
     """Places among `count` parameters, and the sensitivities at the start, one column after the other: keys for the engine."""
     if sensitivities is None or sensitivities is False:
         if initial is not None:
             raise ValueError("`initial_sensitivities` belong to `sensitivities`: give both")
         return {}
-    _check_times("sensitivities", t_eval, dense_output)
     places = list(range(count)) if sensitivities is True else [int(place) for place in np.ravel(sensitivities)]
     if not places:
         raise ValueError("`sensitivities` are derivatives by the numbers in `args`, of which there are none")
@@ -261,14 +283,20 @@ def nonnegative_places(places, parts):
     return dict(nonnegative=places)
 
 
-def wanted_integrals(function, given, first, whole, t_eval, dense_output):
+def observer_key(observer, parts, sign=1.0):
+    """An observer as a function of the engine's time, state, number of steps and part of the span; None if there is none."""
+    if observer is None:
+        return None
+    return lambda t, y, steps, part: bool(observer(Progress(sign * t, parts.whole(y), steps, part)))
+
+
+def wanted_integrals(function, given, first, whole):
     """The integrands as a function of the engine's arguments, and their number: keys for the engine.
 
     `first` are the arguments at the start; `whole` makes arguments of `function` of those of the engine.
     """
     if function is None:
         return {}
-    _check_times("integrals", t_eval, dense_output)
     bound = given.of(function)
 
     def values(*at):
@@ -277,8 +305,9 @@ def wanted_integrals(function, given, first, whole, t_eval, dense_output):
     return dict(integrands=values, integral_count=len(values(*first, *given.last)))
 
 
-def result_of(run, parts, method, sign, direction, t_eval, dense_output, watched, jac, is_sensitive, **more):
-    """The result of a run by `method` along `sign` t, in the `direction` of t."""
+def result_of(run, how, direction, t_eval, dense_output, **more):
+    """The result of a run in the `direction` of t."""
+    parts, method, sign, watched, jac, is_sensitive = how
     status = -1 if run.failure else int(run.ended_by_event)
     t, y = sign * run.t, parts.unpack(run.y)
     kept = slice(None)

@@ -125,8 +125,8 @@ def _watched(event, given, parts, sign):
         samples=getattr(event, "samples", None),
         start=None if start is None else sign * start,
         period=period,
-        action=_acting(getattr(event, "action", None), parts, sign),
-        at_accumulation=_acting(getattr(event, "at_accumulation", None), parts, sign),
+        action=acting(getattr(event, "action", None), parts, sign),
+        at_accumulation=acting(getattr(event, "at_accumulation", None), parts, sign),
     )
 
 
@@ -134,7 +134,7 @@ def _number(function, parts, sign):
     return lambda t, y, *p: float(np.ravel(function(sign * t, parts.whole(y), *p))[0])
 
 
-def _acting(action, parts, sign):
+def acting(action, parts, sign):
     """`action` as a function of the engine's t, y, y', p that returns the new y, y', p, what is armed, and whether the run ends."""
     if action is None:
         return None

@@ -7,14 +7,17 @@ import numpy as np
 from . import _pliant
 from .equations import (
     MESSAGES,
+    NOTHING,
     Arguments,
     Complex,
+    How,
     MethodUse,
     OdeResult,
+    check_times,
     engine_breaks,
     nonnegative_places,
+    observer_key,
     result_of,
-    run_of,
     step_limits,
     tolerances,
     unknowns,
@@ -23,6 +26,7 @@ from .equations import (
     wanted_times,
 )
 from .events import event_list, have_actions, watched_events
+from .krylov import krylov_key
 from .matrices import newton
 
 #: Other names of methods, SciPy's among them, and the names of the library for methods of the same kind.
@@ -77,6 +81,8 @@ def solve_ivp(
     breaks=None,
     nonnegative=None,
     check_jacobian=True,
+    krylov=None,
+    observed_by=None,
 ):
     """Integrates y' = fun(t, y) from `t_span[0]` to `t_span[1]`, with the arguments and the result of SciPy's `solve_ivp`.
 
@@ -119,6 +125,11 @@ def solve_ivp(
     check_jacobian : bool
         Whether `jac`, `jac_sparsity`, `lband` and `uband` are compared with differences now and then; switch it off for what is meant to be
         an approximation.
+    krylov : Krylov or str, optional
+        How implicit methods solve their linear systems without a matrix; see :class:`Krylov`.
+    observed_by : callable, optional
+        ``observed_by(progress)`` is called after each step, with `t`, `y`, `steps` and `part` of :class:`Progress`; the run ends, with status -1, if
+        it returns true.
 
     Returns
     -------
@@ -137,39 +148,104 @@ def solve_ivp(
     True
     """
     start, end = map(float, t_span)
+    t_eval = wanted_times(t_eval, start, end)
+    check_times(t_eval, dense_output, sensitivities=sensitivities, integrals=integrands)
+    keys, how = asked_ivp(
+        fun,
+        t_span,
+        y0,
+        method,
+        events=events,
+        args=args,
+        rtol=rtol,
+        atol=atol,
+        jac=jac,
+        jac_sparsity=jac_sparsity,
+        lband=lband,
+        uband=uband,
+        first_step=first_step,
+        min_step=min_step,
+        max_step=max_step,
+        max_order=max_order,
+        max_steps=max_steps,
+        mass=mass,
+        sensitivities=sensitivities,
+        initial_sensitivities=initial_sensitivities,
+        integrands=integrands,
+        breaks=breaks,
+        nonnegative=nonnegative,
+        check_jacobian=check_jacobian,
+        krylov=krylov,
+        observed_by=observed_by,
+    )
+    if (start == end or how.parts.count == 0) and not how.is_sensitive:
+        return _at_once(start, end, how.parts.unpack(np.array(keys["y0"])[None, :]), t_eval, dense_output, how)
+    times = None if t_eval is None or dense_output else (how.sign * t_eval).tolist()
+    return result_of(_pliant.solve(keys | dict(times=times)), how, np.sign(end - start), t_eval, dense_output)
+
+
+def asked_ivp(
+    fun,
+    t_span,
+    y0,
+    method,
+    *,
+    events=None,
+    args=None,
+    rtol=1e-3,
+    atol=1e-6,
+    jac=None,
+    jac_sparsity=None,
+    lband=None,
+    uband=None,
+    first_step=None,
+    min_step=None,
+    max_step=np.inf,
+    max_order=None,
+    max_steps=1_000_000,
+    mass=None,
+    sensitivities=None,
+    initial_sensitivities=None,
+    integrands=None,
+    breaks=None,
+    nonnegative=None,
+    check_jacobian=True,
+    krylov=None,
+    observed_by=None,
+    are_parameters=False,
+):
+    """The arguments of :func:`solve_ivp` as keys for the engine, and what makes its result; `args` are parameters wherever the engine
+    changes them, or if `are_parameters`.
+    """
+    start, end = map(float, t_span)
     facts = engine_method(method)
     name, implicit = facts.name, facts.is_implicit
     is_sensitive = sensitivities is not None and sensitivities is not False
-    _check(facts, method, mass, is_sensitive)
+    _check(facts, method, mass, is_sensitive, krylov)
     events = event_list(events)
     y0, parts = unknowns(y0)
     is_compiled = hasattr(fun, "address")
-    given = Arguments(args, is_sensitive or is_compiled or have_actions(events))
+    given = Arguments(args, is_sensitive or is_compiled or are_parameters or have_actions(events))
     function = compiled(fun, parts) if is_compiled else parts.function(given.of(fun))
     jac = given.of(jac)
     limits = step_limits(start, end, first_step, min_step, max_step)
     rtol, atol = tolerances(rtol, atol, parts)
-    t_eval = wanted_times(t_eval, start, end)
-    times = None if t_eval is None or dense_output else t_eval.tolist()
-    wanted = wanted_sensitivities(sensitivities, initial_sensitivities, len(given.parameters), parts, t_eval, dense_output)
+    wanted = wanted_sensitivities(sensitivities, initial_sensitivities, len(given.parameters), parts)
     # what goes forward only goes back along s = -t
     sign = -1.0 if end < start and not facts.goes_backward else 1.0
     watched = watched_events(events, given, parts, sign)
-    if (start == end or parts.count == 0) and not is_sensitive:
-        return _at_once(start, end, parts.unpack(parts.pack(y0)[None, :]), t_eval, dense_output, watched, name)
     if sign < 0.0:
         if is_compiled:
             raise ValueError(f"{method!r} goes forward in time: take \"bdf\" or \"esdirk\" for a compiled function")
         function = (lambda fun: lambda t, y, *p: -np.asarray(fun(-t, y, *p), dtype=float))(function)
-        times = None if times is None else [-t for t in times]
         jac = (lambda slopes: lambda t, y, *p: slopes(-t, y, *p))(jac) if callable(jac) else jac
     matrices = {}
-    if implicit or mass is not None:
+    if (implicit or mass is not None) and parts.count > 0 and start != end:
         first = jac(sign * start, y0, *given.last) if implicit and callable(jac) else jac
         matrices = newton(jac if implicit else None, first, jac_sparsity, lband, uband, parts, mass, given, start)
         if sign < 0.0 and matrices["jac"] is not None:
             matrices["jac"] = (lambda slopes: lambda t, y, *p: -slopes(t, y, *p))(matrices["jac"])
-    run = run_of(
+    keys = NOTHING | dict(
         fun=function,
         is_compiled=is_compiled,
         span=(sign * start, sign * end),
@@ -179,18 +255,19 @@ def solve_ivp(
         rtol=rtol,
         atol=atol,
         events=watched or [],
-        times=times,
         breaks=engine_breaks(breaks, sign),
         max_order=max_order,
         max_steps=max_steps,
         check_jacobian=bool(check_jacobian),
+        krylov=krylov_key(krylov, jac, given, parts),
+        observer=observer_key(observed_by, parts, sign),
         **limits,
         **wanted,
         **matrices,
         **nonnegative_places(nonnegative, parts),
-        **wanted_integrals(integrands, given, (start, y0), lambda t, y, *p: (t, parts.whole(y), *p), t_eval, dense_output),
+        **wanted_integrals(integrands, given, (start, y0), lambda t, y, *p: (t, parts.whole(y), *p)),
     )
-    return result_of(run, parts, name, sign, np.sign(end - start), t_eval, dense_output, watched, jac, is_sensitive)
+    return keys, How(parts, name, sign, watched, jac, is_sensitive)
 
 
 def engine_method(method):
@@ -201,7 +278,7 @@ def engine_method(method):
     return EngineMethod(*_pliant.method(_SYNONYMS.get(method, method)))
 
 
-def _check(facts, method, mass, is_sensitive):
+def _check(facts, method, mass, is_sensitive, krylov):
     """Refuses what the method does not have."""
     if mass is None and facts.name == "ida":
         raise ValueError("\"ida\" goes with a mass matrix here: give `mass`, take \"bdf\", or call solve_dae")
@@ -209,6 +286,10 @@ def _check(facts, method, mass, is_sensitive):
         raise ValueError(f"{method!r} takes no mass matrix: take \"ida\", also for a singular one, or \"esdirk\"")
     if is_sensitive and not facts.has_sensitivities:
         raise ValueError(f"{method!r} has no sensitivities: take one of \"auto\", \"bdf\", \"adams\", \"ida\"")
+    if krylov is not None and mass is not None:
+        raise ValueError("with `mass` linear systems are solved by their matrix: leave out `krylov`, or call solve_dae")
+    if krylov is not None and (not facts.is_implicit or facts.name == "rosenbrock"):
+        raise ValueError(f"{method!r} takes no Krylov method: take one of \"auto\", \"bdf\", \"adams\", \"esdirk\"")
 
 
 def compiled(fun, parts):
@@ -223,11 +304,11 @@ def compiled(fun, parts):
     return fun.address
 
 
-def _at_once(t, end, y, t_eval, dense_output, watched, name):
+def _at_once(t, end, y, t_eval, dense_output, how):
     """The result where nothing changes: the span has no length, or there are no unknowns."""
     times = np.array([t] if t == end else [t, end]) if t_eval is None else t_eval
     states = np.repeat(y.T, len(times), axis=1)
-    nothing = None if watched is None else [np.array([]) for _ in watched]
+    nothing = None if how.watched is None else [np.array([]) for _ in how.watched]
 
     class Constant:
         ts, t_min, t_max = np.array([t, end]), min(t, end), max(t, end)
@@ -237,5 +318,5 @@ def _at_once(t, end, y, t_eval, dense_output, watched, name):
 
     return OdeResult(
         t=times, y=states, sol=Constant() if dense_output else None, t_events=nothing, y_events=nothing,
-        method=name, methods=[MethodUse(t, name, "as asked for")], nfev=0, njev=0, nlu=0, nsteps=0, status=0, message=MESSAGES[0], success=True,
+        method=how.method, methods=[MethodUse(t, how.method, "as asked for")], nfev=0, njev=0, nlu=0, nsteps=0, status=0, message=MESSAGES[0], success=True,
     )

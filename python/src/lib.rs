@@ -20,7 +20,7 @@ use pyo3::prelude::*;
 #[pymodule]
 mod _pliant {
     #[pymodule_export]
-    use super::integrators::{Run, gradient, method, solve};
+    use super::integrators::{Run, Saved, Solution, gradient, method, solve};
     #[pymodule_export]
     use super::motion::Motion;
     #[pymodule_export]

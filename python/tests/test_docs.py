@@ -3,6 +3,7 @@
 import doctest
 import json
 import re
+import sys
 import warnings
 from pathlib import Path
 
@@ -11,8 +12,11 @@ import pytest
 import pliant
 import pliant.adjoint
 import pliant.dae
+import pliant.ensemble
 import pliant.events
 import pliant.ivp
+import pliant.krylov
+import pliant.run
 import pliant.scene
 
 ROOT = Path(__file__).parents[2]
@@ -28,7 +32,10 @@ def test_blocks_of_the_page(number, tmp_path, monkeypatch):
         exec(compile(BLOCKS[number], f"block {number + 1} of docs/python.md", "exec"), {})
 
 
-@pytest.mark.parametrize("module", [pliant.scene, pliant.ivp, pliant.dae, pliant.adjoint, pliant.events])
+MODULES = ["adjoint", "dae", "ensemble", "events", "ivp", "krylov", "run", "scene"]
+
+
+@pytest.mark.parametrize("module", [sys.modules[f"pliant.{name}"] for name in MODULES])
 def test_docstrings(module):
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", pliant.ModelWarning)

@@ -1,6 +1,6 @@
 //! Equations and functionals whose functions are those of Python or of C.
 
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 
 use faer::MatMut;
 use numpy::{PyArray1, PyReadonlyArray1, PyReadonlyArray2};
@@ -63,9 +63,9 @@ pub struct Integrands {
     pub count: usize,
 }
 
-/// Storage for the first exception of a Python function.
-#[derive(Default)]
-pub struct Raised(Mutex<Option<PyErr>>);
+/// Storage for the first exception of a Python function, shared by all functions of a run.
+#[derive(Clone, Default)]
+pub struct Raised(Arc<Mutex<Option<PyErr>>>);
 
 impl Raised {
     /// Keeps the first one.
@@ -80,13 +80,27 @@ impl Raised {
 
 /// y' = f(t, y) or M y' = f(t, y), or F(t, y, y') = 0. Functions of Python take the parameters as their last argument if
 /// there are any.
-pub struct Equations<'a> {
+pub struct Equations {
     pub function: Function,
     pub jacobian: Jacobian,
+    pub iterative: Iterative,
     pub mass: Option<Mass>,
     pub integrands: Option<Integrands>,
     pub parameters: Vec<f64>,
-    pub raised: &'a Raised,
+    pub raised: Raised,
+}
+
+/// Functions for a Krylov method.
+#[derive(Default)]
+pub struct Iterative {
+    /// A function of the arguments of the equations, a vector and, for a residual, cj, that returns the product of the
+    /// Jacobian with the vector.
+    pub products: Option<Py<PyAny>>,
+    /// A function of the arguments of the equations and gamma or cj that returns another one, which solves the Newton
+    /// system there approximately.
+    pub preconditioner: Option<Py<PyAny>>,
+    /// What it has returned last.
+    pub prepared: Option<Py<PyAny>>,
 }
 
 /// Result of `call`; an exception is kept, and ends the run.
@@ -143,7 +157,7 @@ fn copy(numbers: impl ExactSizeIterator<Item = f64>, out: &mut [f64], what: &str
     Ok(())
 }
 
-impl Equations<'_> {
+impl Equations {
     /// Writes the value of a function of `t`, `arrays` and a factor into `out`.
     fn call(
         &self,
@@ -152,7 +166,7 @@ impl Equations<'_> {
         out: &mut [f64],
         what: &str,
     ) -> Result<(), Failure> {
-        guarded(self.raised, |py| {
+        guarded(&self.raised, |py| {
             let given = arguments(py, t, arrays, factor, &self.parameters)?;
             write(&function.bind(py).call1(given)?, out, what)
         })
@@ -164,7 +178,7 @@ impl Equations<'_> {
         mut jacobian: MatMut<'_, f64>,
     ) -> Result<(), Failure> {
         let Jacobian::Dense(function) = &self.jacobian else { return Err(no_jacobian()) };
-        guarded(self.raised, |py| {
+        guarded(&self.raised, |py| {
             let given = arguments(py, t, arrays, factor, &self.parameters)?;
             let returned = function.bind(py).call1(given)?;
             let matrix: PyReadonlyArray2<'_, f64> = returned.extract()?;
@@ -186,6 +200,36 @@ impl Equations<'_> {
     fn sparse(&self, at: (f64, &[&[f64]], Option<f64>), values: &mut [f64]) -> Result<(), Failure> {
         let Jacobian::Sparse(function) = &self.jacobian else { return Err(no_jacobian()) };
         self.call(function, at, values, "jac")
+    }
+
+    fn product(
+        &self,
+        at: (f64, &[&[f64]], Option<f64>),
+        product: &mut [f64],
+    ) -> Result<(), Failure> {
+        let Some(function) = &self.iterative.products else {
+            return Err(fatal("there are no products".into()));
+        };
+        self.call(function, at, product, "products")
+    }
+
+    /// Prepares the preconditioner at these arguments.
+    fn prepare(&mut self, t: f64, arrays: &[&[f64]], factor: f64) -> Result<(), Failure> {
+        let Iterative { preconditioner, prepared, .. } = &mut self.iterative;
+        let Some(function) = preconditioner else { return Err(no_preconditioner()) };
+        *prepared = Some(guarded(&self.raised, |py| {
+            let given = arguments(py, t, arrays, Some(factor), &self.parameters)?;
+            Ok(function.bind(py).call1(given)?.unbind())
+        })?);
+        Ok(())
+    }
+
+    fn precondition(&self, r: &mut [f64]) -> Result<(), Failure> {
+        let Some(function) = &self.iterative.prepared else { return Err(no_preconditioner()) };
+        guarded(&self.raised, |py| {
+            let solved = function.bind(py).call1((PyArray1::from_slice(py, r),))?;
+            write(&solved, r, "the function that the preconditioner returns")
+        })
     }
 
     fn integral_count(&self) -> usize {
@@ -230,7 +274,11 @@ fn no_jacobian() -> Failure {
     fatal("there is no jac".into())
 }
 
-impl Ode for Equations<'_> {
+fn no_preconditioner() -> Failure {
+    fatal("there is no preconditioner".into())
+}
+
+impl Ode for Equations {
     fn rhs(&mut self, t: f64, y: &[f64], ydot: &mut [f64]) -> Result<(), Failure> {
         match &self.function {
             Function::Python(function) => self.call(function, (t, &[y], None), ydot, "fun"),
@@ -261,6 +309,32 @@ impl Ode for Equations<'_> {
         values: &mut [f64],
     ) -> Result<(), Failure> {
         self.sparse((t, &[y], None), values)
+    }
+
+    fn jacobian_times(
+        &mut self,
+        t: f64,
+        y: &[f64],
+        _ydot: &[f64],
+        v: &[f64],
+        jv: &mut [f64],
+    ) -> Result<(), Failure> {
+        self.product((t, &[y, v], None), jv)
+    }
+
+    fn newton_setup(
+        &mut self,
+        t: f64,
+        y: &[f64],
+        _ydot: &[f64],
+        gamma: f64,
+        _reuse: bool,
+    ) -> Result<bool, Failure> {
+        self.prepare(t, &[y], gamma).map(|()| true)
+    }
+
+    fn newton_solve(&mut self, _gamma: f64, r: &mut [f64]) -> Result<(), Failure> {
+        self.precondition(r)
     }
 
     fn mass_kind(&self) -> MassKind {
@@ -301,7 +375,7 @@ impl Ode for Equations<'_> {
     }
 }
 
-impl Dae for Equations<'_> {
+impl Dae for Equations {
     fn residual(
         &mut self,
         t: f64,
@@ -337,6 +411,26 @@ impl Dae for Equations<'_> {
         self.sparse((t, &[y, yp], Some(cj)), values)
     }
 
+    fn jacobian_times(
+        &mut self,
+        t: f64,
+        cj: f64,
+        y: &[f64],
+        yp: &[f64],
+        v: &[f64],
+        jv: &mut [f64],
+    ) -> Result<(), Failure> {
+        self.product((t, &[y, yp, v], Some(cj)), jv)
+    }
+
+    fn newton_setup(&mut self, t: f64, cj: f64, y: &[f64], yp: &[f64]) -> Result<(), Failure> {
+        self.prepare(t, &[y, yp], cj)
+    }
+
+    fn newton_solve(&mut self, r: &mut [f64]) -> Result<(), Failure> {
+        self.precondition(r)
+    }
+
     fn quadrature_count(&self) -> usize {
         self.integral_count()
     }
@@ -362,13 +456,13 @@ impl Dae for Equations<'_> {
 
 /// A functional whose parts are functions of (t, y, p, whether its derivatives are wanted): they return a number, or one
 /// and its derivatives by y and by p.
-pub struct Sought<'a> {
+pub struct Sought {
     pub terminal: Option<Py<PyAny>>,
     pub running: Option<Py<PyAny>>,
-    pub raised: &'a Raised,
+    pub raised: Raised,
 }
 
-impl Sought<'_> {
+impl Sought {
     fn value(
         &self,
         (function, what): (&Option<Py<PyAny>>, &str),
@@ -376,7 +470,7 @@ impl Sought<'_> {
         slopes: Option<Slopes<'_>>,
     ) -> Result<f64, Failure> {
         let Some(function) = function else { return Ok(0.0) };
-        guarded(self.raised, |py| {
+        guarded(&self.raised, |py| {
             let (y, p) = (PyArray1::from_slice(py, y), PyArray1::from_slice(py, p));
             let returned = function.bind(py).call1((t, y, p, slopes.is_some()))?;
             let Some(slopes) = slopes else { return returned.extract() };
@@ -389,7 +483,7 @@ impl Sought<'_> {
     }
 }
 
-impl Functional for Sought<'_> {
+impl Functional for Sought {
     fn running(
         &mut self,
         t: f64,

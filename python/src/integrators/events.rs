@@ -39,9 +39,9 @@ type Landed<'py> = (
 
 impl AskedEvent {
     /// The event; exceptions are kept in `raised`.
-    pub fn event(self, raised: &Raised) -> PyResult<Event<'_>> {
+    pub fn event(self, raised: &Raised) -> PyResult<Event<'static>> {
         let mut event = match (self.function, self.period, self.start) {
-            (Some(function), _, _) => rooted(function, raised),
+            (Some(function), _, _) => rooted(function, raised.clone()),
             (None, Some(period), None) => Event::every(period),
             (None, Some(period), Some(start)) => Event::every(period).starting_at(start),
             (None, None, Some(t)) => Event::at(t),
@@ -63,17 +63,19 @@ impl AskedEvent {
         event = self.touching.into_iter().fold(event, Event::touching);
         event = self.samples.into_iter().fold(event, Event::samples);
         if let Some(action) = self.action {
-            event = event.action(move |jump| act(&action, jump, raised));
+            let raised = raised.clone();
+            event = event.action(move |jump| act(&action, jump, &raised));
         }
         if let Some(action) = self.at_accumulation {
-            event = event.at_accumulation(move |jump| act(&action, jump, raised));
+            let raised = raised.clone();
+            event = event.at_accumulation(move |jump| act(&action, jump, &raised));
         }
         Ok(event)
     }
 }
 
 /// An event at the roots of a function.
-fn rooted(function: Py<PyAny>, raised: &Raised) -> Event<'_> {
+fn rooted(function: Py<PyAny>, raised: Raised) -> Event<'static> {
     Event::with_parameters(move |t, y, p| {
         let value = Python::attach(|py| {
             let returned = function.bind(py).call1(arguments(py, t, &[y], None, p)?)?;
@@ -87,7 +89,7 @@ fn rooted(function: Py<PyAny>, raised: &Raised) -> Event<'_> {
 }
 
 /// Calls an action; an exception ends the run.
-fn act(action: &Py<PyAny>, jump: &mut Jump<'_>, raised: &Raised) {
+pub fn act(action: &Py<PyAny>, jump: &mut Jump<'_>, raised: &Raised) {
     let outcome = Python::attach(|py| {
         let [y, yp, p] = [&*jump.y, &*jump.yp, &*jump.p].map(|part| PyArray1::from_slice(py, part));
         let (y, yp, p, armed, ends): Landed<'_> =

@@ -2,13 +2,15 @@
 
 mod equations;
 mod events;
+mod krylov;
 mod run;
+mod solution;
 
 use std::ops::ControlFlow;
 
 use numpy::PyArray1;
 use pliant::solve::{
-    Error, MassMatrices, Method, Options, Output, Problem, Reason, gradient as gradient_of,
+    Error, MassMatrices, Method, Options, Output, Problem, Progress, gradient as gradient_of,
     solve as solve_problem,
 };
 use pliant::sundials::{
@@ -21,8 +23,11 @@ use self::equations::{
     Equations, Function, Integrands, Jacobian, Mass, MassValues, Raised, Sought,
 };
 use self::events::AskedEvent;
-pub use self::run::Run;
-use crate::errors::{made, raised};
+use self::krylov::AskedKrylov;
+use self::run::completed;
+pub use self::run::{Run, Saved};
+pub use self::solution::Solution;
+use crate::errors::raised;
 
 /// Problem, method and options: the dict from `pliant/equations.py`.
 #[derive(FromPyObject)]
@@ -44,6 +49,7 @@ pub struct Asked {
     /// The pattern of the Newton matrix by columns: pointers and rows.
     sparsity: Option<(Vec<usize>, Vec<usize>)>,
     band: Option<(usize, usize)>,
+    krylov: Option<AskedKrylov>,
     /// Rows and columns of the entries of the mass matrix, and their values.
     mass: Option<(Vec<usize>, Vec<usize>, MassValues)>,
     events: Vec<AskedEvent>,
@@ -52,6 +58,8 @@ pub struct Asked {
     /// A function as `fun`, which returns the integrands, and their number.
     integrands: Option<Py<PyAny>>,
     integral_count: Option<usize>,
+    /// A function of time, state, number of steps and part of the span; it returns whether the run ends.
+    observer: Option<Py<PyAny>>,
     times: Option<Vec<f64>>,
     first_step: Option<f64>,
     min_step: Option<f64>,
@@ -73,7 +81,7 @@ impl Asked {
     }
 
     /// The equations, their events, and the options.
-    fn problem<'a>(self, py: Python<'_>, error: &'a Raised) -> PyResult<(Problem<'a>, Options)> {
+    fn problem(self, py: Python<'_>, raised: &Raised) -> PyResult<(Problem<'static>, Options)> {
         let options = self.options()?;
         let function = match self.is_compiled {
             false => Function::Python(self.fun),
@@ -98,8 +106,9 @@ impl Asked {
             jacobian,
             mass,
             integrands,
+            iterative: self.krylov.map(AskedKrylov::functions).unwrap_or_default(),
             parameters: self.parameters,
-            raised: error,
+            raised: raised.clone(),
         };
         let mut problem = match self.yp0 {
             None => Problem::ode(equations, self.y0),
@@ -109,18 +118,12 @@ impl Asked {
         let given = self.initial_sensitivities.into_iter();
         problem = given.fold(problem, Problem::initial_sensitivities);
         for event in self.events {
-            problem = problem.event(event.event(error)?);
+            problem = problem.event(event.event(raised)?);
         }
         problem = problem.breaks(self.breaks);
-        if self.is_compiled {
-            // Python's own functions meet signals by themselves
-            problem = problem.observed_by(move |_| match Python::attach(|py| py.check_signals()) {
-                Ok(()) => ControlFlow::Continue(()),
-                Err(signal) => {
-                    error.keep(signal);
-                    ControlFlow::Break(())
-                }
-            });
+        if self.is_compiled || self.observer.is_some() {
+            let (observer, raised) = (self.observer, raised.clone());
+            problem = problem.observed_by(move |progress| observe(&observer, progress, &raised));
         }
         Ok((problem, options))
     }
@@ -147,16 +150,23 @@ impl Asked {
         }
         let jacobian =
             if self.jac.is_some() { Source::Supplied } else { Source::DifferenceQuotients };
-        let solver = match (&self.sparsity, self.band) {
-            (Some((columns, rows)), _) => {
-                let pattern = Pattern::from_csc(columns, rows).map_err(raised)?;
-                Some(LinearSolver::Klu { pattern, jacobian })
+        let pattern = self
+            .sparsity
+            .as_ref()
+            .map(|(columns, rows)| Pattern::from_csc(columns, rows).map_err(raised));
+        let solver = match (&self.krylov, pattern.transpose()?, self.band) {
+            (Some(krylov), Some(pattern), _) => Some(krylov.solver(Some((pattern, jacobian)))?),
+            (Some(krylov), None, band) => {
+                let n = self.y0.len();
+                let pattern = band.map(|(lower, upper)| Pattern::band(n, lower, upper));
+                let pattern = pattern.transpose().map_err(raised)?;
+                Some(krylov.solver(pattern.map(|pattern| (pattern, jacobian)))?)
             }
-            (None, Some((lower, upper))) => {
-                let jacobian = Source::DifferenceQuotients;
+            (None, Some(pattern), _) => Some(LinearSolver::Klu { pattern, jacobian }),
+            (None, None, Some((lower, upper))) => {
                 Some(LinearSolver::Band { lower, upper, jacobian })
             }
-            (None, None) => self.jac.is_some().then_some(LinearSolver::Dense(jacobian)),
+            (None, None, None) => self.jac.is_some().then_some(LinearSolver::Dense(jacobian)),
         };
         options = solver.into_iter().fold(options, Options::linear_solver);
         let mut sensitivities = self.sensitivities.clone().map(Sensitivities::of);
@@ -164,6 +174,34 @@ impl Asked {
             sensitivities = sensitivities.map(Sensitivities::integrals);
         }
         Ok(sensitivities.into_iter().fold(options, Options::sensitivities))
+    }
+}
+
+/// Steps of compiled functions between two looks for signals: each may wait for another thread to let go of Python.
+const STEPS_BETWEEN_SIGNALS: u64 = 64;
+
+/// Shows a step to the observer, or looks for signals if there is none; both may end the run.
+fn observe(
+    observer: &Option<Py<PyAny>>,
+    progress: Progress<'_>,
+    raised: &Raised,
+) -> ControlFlow<()> {
+    let Progress { t, y, steps, part } = progress;
+    if observer.is_none() && !steps.is_multiple_of(STEPS_BETWEEN_SIGNALS) {
+        return ControlFlow::Continue(());
+    }
+    let ends = Python::attach(|py| {
+        py.check_signals()?;
+        let Some(observer) = observer else { return Ok(false) };
+        observer.bind(py).call1((t, PyArray1::from_slice(py, y), steps, part))?.extract()
+    });
+    match ends {
+        Ok(false) => ControlFlow::Continue(()),
+        Ok(true) => ControlFlow::Break(()),
+        Err(exception) => {
+            raised.keep(exception);
+            ControlFlow::Break(())
+        }
     }
 }
 
@@ -199,21 +237,22 @@ pub fn method(name: &str) -> PyResult<(&'static str, bool, bool, bool, bool, boo
     Ok((facts.name, implicit, backward, takes_mass, takes_singular_mass, facts.has_sensitivities))
 }
 
-/// Integrates equations.
+/// Integrates equations; while compiled ones are, other threads have Python.
 #[pyfunction]
-pub fn solve(py: Python<'_>, asked: Asked) -> PyResult<Run> {
+pub fn solve(py: Python<'_>, asked: Asked) -> PyResult<Solution> {
     let (unknowns, method, span) = (asked.y0.len(), asked.method()?, asked.span);
-    let error = Raised::default();
-    let (problem, options) = asked.problem(py, &error)?;
-    let result = solve_problem(problem, method, span, &options);
-    if let Some(raised) = error.take() {
-        return Err(raised);
+    let (is_compiled, kept) = (asked.is_compiled, Raised::default());
+    let (problem, options) = asked.problem(py, &kept)?;
+    let solved = || solve_problem(problem, method, span, &options);
+    let result = if is_compiled { py.detach(solved) } else { solved() };
+    if let Some(exception) = kept.take() {
+        return Err(exception);
     }
     match result {
-        Ok(solution) => Ok(Run { solution, unknowns, failure: None }),
+        Ok(solution) => Ok(Solution { solution, unknowns, failure: None }),
         Err(Error::Stopped(stopped)) => {
             let failure = Some(stopped.to_string());
-            Ok(Run { solution: stopped.solution, unknowns, failure })
+            Ok(Solution { solution: stopped.solution, unknowns, failure })
         }
         Err(Error::Input(error)) => Err(raised(error)),
         Err(other) => Err(PyValueError::new_err(other.to_string())),
@@ -235,19 +274,11 @@ pub fn gradient<'py>(
 ) -> PyResult<Slopes<'py>> {
     let (method, span) = (asked.method()?, asked.span);
     let back = AdjointOptions::new(asked.rtol, adjoint_atol);
-    let error = Raised::default();
-    let (problem, options) = asked.problem(py, &error)?;
-    let sought = Sought { terminal, running, raised: &error };
+    let kept = Raised::default();
+    let (problem, options) = asked.problem(py, &kept)?;
+    let sought = Sought { terminal, running, raised: kept.clone() };
     let result = gradient_of(problem, sought, method, span, &options, &back);
-    if let Some(raised) = error.take() {
-        return Err(raised);
-    }
-    match result {
-        Ok(found) => {
-            let parameters = PyArray1::from_vec(py, found.parameters);
-            Ok((found.value, parameters, PyArray1::from_vec(py, found.initial_state)))
-        }
-        Err(Reason::Input(error)) => Err(raised(error)),
-        Err(reason) => Err(made(py, "Error", (reason.to_string(),))?),
-    }
+    let found = completed(py, result, &kept)?;
+    let parameters = PyArray1::from_vec(py, found.parameters);
+    Ok((found.value, parameters, PyArray1::from_vec(py, found.initial_state)))
 }

@@ -1,144 +1,167 @@
-//! Results of a run as arrays.
+//! A run that a program leads step by step.
 
-use faer::MatRef;
-use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods};
-use pliant::solve::{End, Solution};
+use std::sync::{Mutex, MutexGuard, TryLockError};
+
+use numpy::{PyArray1, PyArray2, PyArrayMethods};
+use pliant::solve::{self, End, Occurrence, Reason};
+use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 
-use crate::errors::raised;
+use super::Asked;
+use super::equations::Raised;
+use super::events::act;
+use crate::errors::{made, raised};
 
-/// Results of a run.
+/// Where a run stands.
+#[pyclass(frozen, module = "pliant._pliant")]
+pub struct Saved(solve::Saved);
+
+/// A run that a program leads step by step.
 #[pyclass(frozen, module = "pliant._pliant")]
 pub struct Run {
-    pub solution: Solution,
-    pub unknowns: usize,
-    pub failure: Option<String>,
+    run: Mutex<solve::Run<'static>>,
+    raised: Raised,
+}
+
+/// An event that was met: its number, its time and the state before its action.
+pub type Met<'py> = (usize, f64, Bound<'py, PyArray1<f64>>);
+
+/// A step: times of its start and end, the state there, that before a jump, and its events.
+type Step<'py> =
+    (f64, f64, Bound<'py, PyArray1<f64>>, Option<Bound<'py, PyArray1<f64>>>, Vec<Met<'py>>);
+
+/// The value of `outcome`, or the exception of a function that was called, or that for the reason.
+pub fn completed<T>(py: Python<'_>, outcome: Result<T, Reason>, kept: &Raised) -> PyResult<T> {
+    if let Some(exception) = kept.take() {
+        return Err(exception);
+    }
+    match outcome {
+        Ok(value) => Ok(value),
+        Err(Reason::Input(error)) => Err(raised(error)),
+        Err(reason) => Err(made(py, "Error", (reason.to_string(),))?),
+    }
+}
+
+/// Events that were met.
+pub fn met<'py>(py: Python<'py>, events: &[Occurrence]) -> Vec<Met<'py>> {
+    events.iter().map(|met| (met.event, met.t, PyArray1::from_slice(py, &met.y))).collect()
 }
 
 impl Run {
-    /// The matrices of all times: [time, column, row].
-    fn stacked<'py, 's>(
-        &'s self,
-        py: Python<'py>,
-        matrix: impl Fn(usize) -> MatRef<'s, f64>,
-    ) -> PyResult<Bound<'py, PyArray3<f64>>> {
-        let times = self.solution.t().len();
-        let [rows, columns] = [matrix(0).nrows(), matrix(0).ncols()];
-        let all = (0..times).flat_map(|k| matrix(k).col_iter().collect::<Vec<_>>());
-        let numbers: Vec<f64> = all.flat_map(|column| column.iter().copied()).collect();
-        PyArray1::from_vec(py, numbers).reshape([times, columns, rows])
+    fn lock(&self) -> PyResult<MutexGuard<'_, solve::Run<'static>>> {
+        match self.run.try_lock() {
+            Ok(run) => Ok(run),
+            Err(TryLockError::Poisoned(poisoned)) => Ok(poisoned.into_inner()),
+            Err(TryLockError::WouldBlock) => Err(PyRuntimeError::new_err(
+                "the run is at work, in another thread or in a function that it calls: make one for each thread",
+            )),
+        }
     }
 }
 
 #[pymethods]
 impl Run {
-    /// The times.
+    #[new]
+    fn new(py: Python<'_>, asked: Asked) -> PyResult<Self> {
+        let (method, span, raised) = (asked.method()?, asked.span, Raised::default());
+        let (problem, options) = asked.problem(py, &raised)?;
+        let run = completed(py, solve::Run::new(problem, method, span, &options), &raised)?;
+        Ok(Self { run: Mutex::new(run), raised })
+    }
+
+    /// Takes one step; nothing once the run has ended.
+    fn advance<'py>(&self, py: Python<'py>) -> PyResult<Option<Step<'py>>> {
+        let mut run = self.lock()?;
+        let step = completed(py, run.advance(), &self.raised)?;
+        Ok(step.map(|step| {
+            let before = step.before.map(|before| PyArray1::from_slice(py, before));
+            (step.t_old, step.t, PyArray1::from_slice(py, step.y), before, met(py, step.events))
+        }))
+    }
+
+    /// Goes to a time, and returns the events on the way.
+    fn advance_to<'py>(&self, py: Python<'py>, t: f64) -> PyResult<Vec<Met<'py>>> {
+        let events = completed(py, self.lock()?.advance_to(t), &self.raised)?;
+        Ok(met(py, &events))
+    }
+
+    /// Changes state and parameters by an action, as that of an event.
+    fn jump(&self, py: Python<'_>, action: Py<PyAny>) -> PyResult<()> {
+        let outcome = self.lock()?.jump(|jump| act(&action, jump, &self.raised));
+        completed(py, outcome, &self.raised)
+    }
+
+    fn save(&self) -> PyResult<Saved> {
+        Ok(Saved(self.lock()?.save()))
+    }
+
+    fn restore(&self, py: Python<'_>, saved: &Saved) -> PyResult<()> {
+        completed(py, self.lock()?.restore(&saved.0), &self.raised)
+    }
+
+    /// The state at a time within the last step.
+    fn interpolate<'py>(&self, py: Python<'py>, t: f64) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let mut run = self.lock()?;
+        let mut state = vec![0.0; run.y().len()];
+        completed(py, run.interpolate(t, &mut state).map_err(Reason::from), &self.raised)?;
+        Ok(PyArray1::from_vec(py, state))
+    }
+
     #[getter]
-    fn t<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        PyArray1::from_slice(py, self.solution.t())
+    fn t(&self) -> PyResult<f64> {
+        Ok(self.lock()?.t())
     }
 
-    /// The states at the times: [time, unknown].
     #[getter]
-    fn y<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let states = PyArray1::from_slice(py, self.solution.states());
-        states.reshape([self.solution.t().len(), self.unknowns])
+    fn y<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        Ok(PyArray1::from_slice(py, self.lock()?.y()))
     }
 
-    /// The time derivative of the last state of a DAE; empty otherwise.
+    /// The time derivative of the state of a residual; empty otherwise.
     #[getter]
-    fn last_yp<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        PyArray1::from_slice(py, self.solution.last_yp())
+    fn yp<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        Ok(PyArray1::from_slice(py, self.lock()?.yp()))
     }
 
-    /// The sensitivities at the times: [time, parameter, unknown].
     #[getter]
-    fn sensitivities<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray3<f64>>> {
-        self.stacked(py, |k| self.solution.sensitivities(k))
+    fn parameters<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        Ok(PyArray1::from_slice(py, self.lock()?.parameters()))
     }
 
-    /// How many integrals there are.
+    /// The sensitivities: [parameter, unknown].
     #[getter]
-    fn integral_count(&self) -> usize {
-        self.solution.quadratures(0).len()
+    fn sensitivities<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let run = self.lock()?;
+        let s = run.sensitivities();
+        let numbers: Vec<f64> = s.col_iter().flat_map(|column| column.iter().copied()).collect();
+        PyArray1::from_vec(py, numbers).reshape([s.ncols(), s.nrows()])
     }
 
-    /// The integrals at the times: [time, integral].
     #[getter]
-    fn integrals<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let times = self.solution.t().len();
-        let all = (0..times).flat_map(|k| self.solution.quadratures(k)).copied();
-        PyArray1::from_vec(py, all.collect()).reshape([times, self.integral_count()])
+    fn integrals<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        Ok(PyArray1::from_slice(py, self.lock()?.quadratures()))
     }
 
-    /// Their sensitivities: [time, parameter, integral].
+    /// How the run has ended; nothing before.
     #[getter]
-    fn integral_sensitivities<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray3<f64>>> {
-        self.stacked(py, |k| self.solution.quadrature_sensitivities(k))
+    fn end(&self) -> PyResult<Option<&'static str>> {
+        Ok(self.lock()?.end().map(|end| match end {
+            End::Span => "span",
+            End::Event(_) => "event",
+            End::Break => "break",
+            _ => "early",
+        }))
     }
 
-    /// The methods: the time of the start of each, its name, and why it is used.
     #[getter]
-    fn methods(&self) -> Vec<(f64, String, String)> {
-        let uses = self.solution.methods().iter();
-        uses.map(|used| (used.t, used.method.to_string(), used.reason.clone())).collect()
-    }
-
-    /// The parameters at the end.
-    #[getter]
-    fn parameters<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        PyArray1::from_slice(py, self.solution.parameters())
-    }
-
-    /// States at any times within the run: [time, unknown].
-    fn at<'py>(&self, py: Python<'py>, times: Vec<f64>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let mut states = vec![0.0; times.len() * self.unknowns];
-        for (t, y) in times.iter().zip(states.chunks_exact_mut(self.unknowns)) {
-            self.solution.at_into(*t, y).map_err(raised)?;
-        }
-        PyArray1::from_vec(py, states).reshape([times.len(), self.unknowns])
-    }
-
-    /// The events that were met: number, time, state.
-    fn events<'py>(&self, py: Python<'py>) -> Vec<(usize, f64, Bound<'py, PyArray1<f64>>)> {
-        let events = self.solution.events().iter();
-        events.map(|met| (met.event, met.t, PyArray1::from_slice(py, &met.y))).collect()
-    }
-
-    /// Whether an event has ended the run.
-    #[getter]
-    fn ended_by_event(&self) -> bool {
-        matches!(self.solution.end(), End::Event(_))
-    }
-
-    /// Why the run ended early.
-    #[getter]
-    fn failure(&self) -> Option<&str> {
-        self.failure.as_deref()
+    fn steps(&self) -> PyResult<u64> {
+        Ok(self.lock()?.statistics().steps)
     }
 
     /// Evaluations of the right-hand side, with those for difference quotients.
     #[getter]
-    fn evaluations(&self) -> u64 {
-        let counts = self.solution.statistics();
-        counts.evaluations + counts.difference_quotient_evaluations
-    }
-
-    /// Evaluations of the Jacobian.
-    #[getter]
-    fn jacobian_evaluations(&self) -> u64 {
-        self.solution.statistics().jacobian_evaluations
-    }
-
-    /// Factorizations of the Newton matrix.
-    #[getter]
-    fn factorizations(&self) -> u64 {
-        self.solution.statistics().linear_setups
-    }
-
-    /// Steps.
-    #[getter]
-    fn steps(&self) -> u64 {
-        self.solution.statistics().steps
+    fn evaluations(&self) -> PyResult<u64> {
+        let counts = self.lock()?.statistics();
+        Ok(counts.evaluations + counts.difference_quotient_evaluations)
     }
 }

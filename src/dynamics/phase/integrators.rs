@@ -17,64 +17,74 @@ use crate::integrators::sundials::{
 };
 use crate::scene::settings::{Method, Settings};
 
-impl<I: Integrator<System: Form> + Send> Stepper for I {
+/// An integrator of the equations of a phase in one of their forms.
+struct Driven<I, B> {
+    integrator: I,
+    /// Starts the integrator again from a state at a time (s); `false` if that needs a new one.
+    begin: B,
+}
+
+impl<I, B> Stepper for Driven<I, B>
+where
+    I: Integrator<System: Form> + Send,
+    B: FnMut(&mut I, f64, &[f64]) -> Result<bool, Failed> + Send,
+{
     fn step(&mut self, end: f64) -> Result<f64, Failed> {
-        keep_end(self);
-        let _ = Integrator::step(self, end)?;
-        keep_end(self);
-        Ok(self.t())
+        keep_end(&mut self.integrator);
+        let _ = self.integrator.step(end)?;
+        keep_end(&mut self.integrator);
+        Ok(self.integrator.t())
     }
 
     fn stop_at(&mut self, t: f64) -> Result<(), Failed> {
-        Ok(self.set_stop_time(Some(t))?)
+        Ok(self.integrator.set_stop_time(Some(t))?)
     }
 
     fn resume(&mut self, t: f64, state: &[f64]) -> Result<bool, Failed> {
-        Ok(state.len() == self.y().len() && Integrator::resume(self, t, state)?)
+        Ok(state.len() == self.unknowns() && self.integrator.resume(t, state)?)
     }
 
     fn restart(&mut self, t: f64, state: &[f64]) -> Result<Option<Counts>, Failed> {
-        if !I::System::IS_ODE || state.len() != self.y().len() {
+        let counts = self.counts();
+        if !(self.begin)(&mut self.integrator, t, state)? {
             return Ok(None);
         }
-        let counts = Stepper::counts(self);
-        Integrator::reinit(self, t, state)?;
-        Integrator::system_mut(self).forget_counts();
+        self.integrator.system_mut().forget_counts();
         Ok(Some(counts))
     }
 
     fn interpolate(&mut self, t: f64, state: &mut [f64]) -> Result<(), Failed> {
-        Integrator::interpolate(self, t, 0, state)?;
-        Integrator::system_mut(self).full_mut().settle(t, state);
+        self.integrator.interpolate(t, 0, state)?;
+        self.integrator.system_mut().full_mut().settle(t, state);
         Ok(())
     }
 
     fn last_order(&self) -> u32 {
-        Integrator::last_order(self)
+        self.integrator.last_order()
     }
 
     fn next_step(&self) -> f64 {
-        self.statistics().current_step
+        self.integrator.statistics().current_step
     }
 
     fn state(&self) -> &[f64] {
-        self.y()
+        self.integrator.y()
     }
 
     fn system(&self) -> &dyn PhaseSystem {
-        Integrator::system(self)
+        self.integrator.system()
     }
 
     fn system_mut(&mut self) -> &mut dyn PhaseSystem {
-        Integrator::system_mut(self)
+        self.integrator.system_mut()
     }
 
     fn into_system(self: Box<Self>) -> Box<dyn Integrable> {
-        Box::new(Integrator::into_system(*self).into_system())
+        Box::new(self.integrator.into_system().into_system())
     }
 
     fn counts(&self) -> Counts {
-        counts(self, Stepper::system(self))
+        counts(&self.integrator, self.system())
     }
 }
 
@@ -162,15 +172,27 @@ impl Integrable for System {
                 let index = if method == Method::Ida { Index::One } else { Index::Two };
                 let mut equations = DaeForm::new(system, index);
                 tolerances.extend(equations.tolerances([atol.force, atol.momentum]));
-                let (y, yp) = equations.consistent(t, state).map_err(Failure::into_error)?;
+                let [mut y, mut yp] = [(); 2].map(|()| vec![0.0; equations.size()]);
+                equations.consistent(t, state, [&mut y, &mut yp]).map_err(Failure::into_error)?;
                 let options = ida_options(settings, tolerances, &equations);
-                Ok(Box::new(Ida::new(equations, t, &y, &yp, &options)?))
+                let integrator = Ida::new(equations, t, &y, &yp, &options)?;
+                let begin = move |integrator: &mut Ida<DaeForm>, t: f64, state: &[f64]| {
+                    let equations = integrator.system_mut();
+                    equations
+                        .consistent(t, state, [&mut y, &mut yp])
+                        .map_err(Failure::into_error)?;
+                    integrator.reinit_with(t, &y, &yp)?;
+                    Ok(true)
+                };
+                Ok(Box::new(Driven { integrator, begin }))
             }
             Method::CentralDifference => {
                 let options = rk::Options::new(settings.rtol, tolerances).max_step(longest);
                 let options = first.into_iter().fold(options, rk::Options::initial_step);
                 let equations = SecondOrderForm::new(system);
-                Ok(Box::new(CentralDifference::new(equations, t, state, &options)?))
+                let integrator = CentralDifference::new(equations, t, state, &options)?;
+                // its first step is that of the one before
+                Ok(Box::new(Driven { integrator, begin: |_: &mut _, _: f64, _: &[f64]| Ok(false) }))
             }
             _ => ode(system, tolerances, start, state),
         }
@@ -241,7 +263,11 @@ impl IntoStepper for System {
     fn into_stepper(
         integrator: impl Integrator<System = Self> + Send + 'static,
     ) -> Box<dyn Stepper> {
-        Box::new(integrator)
+        let begin = |integrator: &mut _, t: f64, state: &[f64]| {
+            Integrator::reinit(integrator, t, state)?;
+            Ok(true)
+        };
+        Box::new(Driven { integrator, begin })
     }
 }
 

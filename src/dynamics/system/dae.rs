@@ -93,26 +93,27 @@ impl DaeForm {
         }
     }
 
-    /// y and y' with which the residual vanishes, from the `state` of the phase.
+    /// Writes y and y' with which the residual vanishes, from the `state` of the phase at time `t` (s).
     pub(crate) fn consistent(
         &mut self,
         t: f64,
         state: &[f64],
-    ) -> Result<(Vec<f64>, Vec<f64>), Failure> {
+        [y, yp]: [&mut [f64]; 2],
+    ) -> Result<(), Failure> {
         let layout = self.system.layout;
         let State { u, v, internal, .. } = layout.of(state);
         self.system.evaluate(t, u, v, internal)?;
         let (dissipated, supplied) = self.system.powers(v, &self.system.at.multipliers);
-        let of_edges = &self.system.edges.multipliers;
-        let mut y = [state, &self.system.at.multipliers, of_edges].concat();
-        y.resize(self.size(), 0.0);
-        let mut yp = vec![0.0; self.size()];
-        let rates = layout.of_mut(&mut yp);
+        let parts = [state, &self.system.at.multipliers, &self.system.edges.multipliers];
+        y.fill(0.0);
+        y.iter_mut().zip(parts.into_iter().flatten()).for_each(|(y, part)| *y = *part);
+        yp.fill(0.0);
+        let rates = layout.of_mut(yp);
         rates.u.copy_from_slice(v);
         rates.v.copy_from_slice(&self.system.at.acceleration);
         self.system.copy_internal_rates(rates.internal);
         (*rates.dissipated, *rates.supplied) = (dissipated, supplied);
-        Ok((y, yp))
+        Ok(())
     }
 
     /// Takes the state for that in which rigid pieces enter the Newton matrix.

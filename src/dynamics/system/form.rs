@@ -8,9 +8,6 @@ use super::second_order::SecondOrderForm;
 /// The equations of a phase in the form that an integrator takes: as an ODE, or wrapped in a type that gives
 /// them another form.
 pub(crate) trait Form: PhaseSystem {
-    /// Whether it is an ODE of the unknowns of a state.
-    const IS_ODE: bool;
-
     fn into_system(self) -> System;
 }
 
@@ -25,8 +22,6 @@ impl PhaseSystem for System {
 }
 
 impl Form for System {
-    const IS_ODE: bool = true;
-
     fn into_system(self) -> System {
         self
     }
@@ -43,8 +38,6 @@ impl PhaseSystem for DaeForm {
 }
 
 impl Form for DaeForm {
-    const IS_ODE: bool = false;
-
     fn into_system(self) -> System {
         self.system
     }
@@ -61,8 +54,6 @@ impl PhaseSystem for SecondOrderForm {
 }
 
 impl Form for SecondOrderForm {
-    const IS_ODE: bool = false;
-
     fn into_system(self) -> System {
         self.system
     }

@@ -68,6 +68,13 @@ fn state(system: &System) -> Vec<f64> {
     state_with(system, &[])
 }
 
+/// y and y' that are consistent at t = 0.1.
+pub(super) fn consistent(equations: &mut DaeForm, state: &[f64]) -> (Vec<f64>, Vec<f64>) {
+    let [mut y, mut yp] = [(); 2].map(|()| vec![0.0; equations.size()]);
+    equations.consistent(0.1, state, [&mut y, &mut yp]).unwrap();
+    (y, yp)
+}
+
 /// df/dy of a function, column by column, by central differences: exact up to round-off where
 /// `f` is linear or quadratic, as all forces here are away from d = 0.
 pub(super) fn derivative(y: &[f64], step: f64, mut f: impl FnMut(&[f64]) -> Vec<f64>) -> Mat<f64> {
@@ -260,7 +267,7 @@ fn structured_solve_is_that_of_the_index_one_jacobian() {
     let mut equations = DaeForm::new(system(), Index::One);
     let n = equations.system.dofs();
     let state = state(&equations.system);
-    let (y, yp) = equations.consistent(0.1, &state).unwrap();
+    let (y, yp) = consistent(&mut equations, &state);
     for cj in [100.0, 1e4] {
         let mut jacobian = Mat::<f64>::zeros(y.len(), y.len());
         equations.newton_setup(0.1, cj, &y, &yp).unwrap();
@@ -306,7 +313,7 @@ fn structured_solve_is_that_of_the_index_two_jacobian() {
 /// depends, are left out.
 fn newton_and_dense(equations: &mut DaeForm, state: &[f64], step: f64) -> [[Vec<f64>; 2]; 2] {
     let energies = equations.system.layout().energies();
-    let (y, yp) = equations.consistent(0.1, state).unwrap();
+    let (y, yp) = consistent(equations, state);
     let kept: Vec<usize> = (0..y.len()).filter(|i| !energies.contains(i)).collect();
     let [by_y, by_yp] = residual_derivatives(equations, &y, &yp, step);
     [100.0, 1e4].map(|cj| {
@@ -326,7 +333,7 @@ fn index_one_jacobian_is_the_derivative_of_the_residual() {
     let mut equations = DaeForm::new(system(), Index::One);
     let n = equations.system.dofs();
     let state = state(&equations.system);
-    let (y, yp) = equations.consistent(0.1, &state).unwrap();
+    let (y, yp) = consistent(&mut equations, &state);
     let [by_y, by_yp] = residual_derivatives(&mut equations, &y, &yp, 1e-5);
     let cj = 50.0;
     let mut jacobian = Mat::<f64>::zeros(y.len(), y.len());
@@ -345,7 +352,7 @@ fn index_one_jacobian_is_the_derivative_of_the_residual() {
 fn consistent_start_satisfies_the_residual() {
     let mut equations = DaeForm::new(system(), Index::One);
     let state = state(&equations.system);
-    let (y, yp) = equations.consistent(0.1, &state).unwrap();
+    let (y, yp) = consistent(&mut equations, &state);
     let mut residual = vec![0.0; y.len()];
     equations.residual(0.1, &y, &yp, &mut residual).unwrap();
     let scale = equations.system.at.total.iter().fold(0.0_f64, |s, f| s.max(f.abs()));

@@ -1,5 +1,7 @@
 //! Where IDA starts: states and their time derivatives, and how they are made consistent.
 
+use std::mem;
+
 use faer::MatRef;
 
 use super::setup::IdaKind;
@@ -145,13 +147,14 @@ impl<S: Dae> StartsDae for Session<IdaKind, S> {
     fn reinit_with(&mut self, t: f64, y: &[f64], yp: &[f64]) -> Result<(), Error> {
         check_length("length of yp", yp.len(), self.y().len())?;
         check_finite("yp", yp)?;
-        let before = self.yp().to_vec();
+        // the present one stays in the other vector until the start is accepted
+        mem::swap(&mut self.yp, &mut self.slope_scratch);
         if let Some(vector) = &mut self.yp {
             vector.as_mut_slice().copy_from_slice(yp);
         }
         let outcome = self.reinit(t, y);
-        if let (Err(_), Some(vector)) = (&outcome, &mut self.yp) {
-            vector.as_mut_slice().copy_from_slice(&before);
+        if outcome.is_err() {
+            mem::swap(&mut self.yp, &mut self.slope_scratch);
         }
         outcome
     }
