@@ -3,9 +3,11 @@
 //! Both are one map of nodes (`elements/mesh/node_map.rs`). The scene is compared with its images node by node (`smaller/same.rs`), and
 //! not by the words in which it was written; what the images leave is made of it by `smaller/made.rs`.
 
+mod bodies;
 mod components;
+mod fields;
 mod made;
-mod orifices;
+mod passages;
 mod same;
 
 use std::fmt;
@@ -147,10 +149,7 @@ impl Scene {
         is_upper: bool,
     ) -> Result<NodeMap, InputError> {
         match shrink {
-            Shrink::Half => {
-                self.body.single("a half")?;
-                self.body.mesh().half(axis.index(), is_upper)
-            }
+            Shrink::Half => NodeMap::half(&self.body.meshes(), axis.index(), is_upper),
             Shrink::Section => {
                 self.body.single("a section")?;
                 self.body.mesh().section(axis.index())
@@ -163,7 +162,7 @@ impl Scene {
         self.validate()?;
         let same = same::Same { scene: self, map: &map };
         let held = same::check(&same)?;
-        let (scene, plane) = made::made(&same, &held, &same.components()?)?;
+        let (scene, plane) = made::made(&same, &held)?;
         let axis = Axis::all(3)[map.axis];
         let kind = match plane {
             Some(plane) => Smaller::Plane { axis, plane },
