@@ -269,7 +269,7 @@ impl Fluid {
         let rest = vec![0.0; body.dofs()];
         Ok(FluidForce {
             input: input("velocity"),
-            is_closed: depth.is_some() && faces.is_closed(&rest),
+            is_closed: depth.is_some() && faces.is_closed(&rest, body.mesh().plane_of_symmetry()),
             carried: [self.carried(body, &faces, &rest), self.carried_by(&pieces, body)].concat(),
             rods: self.rods(body, &pieces),
             drag: Drag::new(density, self.drag),
