@@ -17,12 +17,12 @@ fn fibres_act_on_the_half() {
         pitch,
     };
     let scene = |courses: [FibreDirection; 3]| {
-        let mesh = Mesh::cuboid([0.1, 0.04, 0.02], [5, 3, 2], SolidCells::Hexahedra).unwrap();
+        let mesh = Mesh::cuboid([0.1, 0.04, 0.02], [3, 2, 2], SolidCells::Hexahedra).unwrap();
         let fibres = courses.map(|course| Fibres { course, young: 3e5, stiffening: 1.0 });
         let made_of = fibres.into_iter().fold(Substance::from(RUBBER), Substance::fibres);
         let body = Body::new(mesh, made_of);
         Scene::new(body.build().unwrap())
-            .phase(Phase::until(0.01).hold("bottom").load_total("top", [0.0, 0.5, 2.0]))
+            .phase(Phase::until(0.005).hold("bottom").load_total("top", [0.0, 0.5, 2.0]))
     };
     agrees(&scene([course(0.5), course(-0.5), ring(0.05, 0.0)]), Axis::X);
     for other in
@@ -90,7 +90,7 @@ fn surfaces_of_liquids_are_level_in_the_half() {
         .gravity([0.0, 0.0, -9.8])
         .chamber(Chamber::within("bottle", walls))
         .liquid(Liquid::in_chamber("bottle").fill(0.5).density(1e4).surface())
-        .phase(Phase::until(0.01).hold(bottom(2)).flow("bottle", 2e-5));
+        .phase(Phase::until(0.004).hold(bottom(2)).flow("bottle", 2e-5));
     agrees(&scene, Axis::X);
 }
 
