@@ -13,6 +13,12 @@ use crate::elements::body::CellSelection;
 use crate::elements::mesh::Selection;
 use crate::scene::forces::{ComponentMap, Drive, Placed};
 
+/// The quantities that phases set of a component, and whether its half has its share of them.
+pub(super) type Inputs = &'static [(Quantity, bool)];
+
+/// A component with its place and its image's.
+type InPlace<'a> = (&'a str, Placed, Inputs);
+
 /// A component of a scene, and what its half has of it.
 pub(super) struct Component<'a> {
     pub(super) name: &'a str,
@@ -20,8 +26,7 @@ pub(super) struct Component<'a> {
     pub(super) image: &'a str,
     /// Share of it that the half has; none of what is on the other side.
     pub(super) share: Option<f64>,
-    /// The quantities that phases set, and whether the half has its share of them.
-    pub(super) inputs: &'static [(Quantity, bool)],
+    pub(super) inputs: Inputs,
 }
 
 /// All of them, by kinds, as the scene has them.
@@ -48,19 +53,19 @@ impl<'s> Same<'s> {
     pub(super) fn components(&self) -> Result<Components<'s>, InputError> {
         let (scene, body) = (self.scene, &self.scene.body);
         let actuators = scene.actuators.iter().map(|own| {
-            let inputs: &'static [_] = match own.kind().drive {
+            let inputs: Inputs = match own.kind().drive {
                 Drive::Force => &[(Quantity::Actuation, true)],
                 _ => &[(Quantity::Actuation, false)],
             };
             Ok((own.name(), own.placed(body, self.map)?, inputs))
         });
         let chambers = scene.chambers.iter().map(|own| {
-            let inputs: &'static [_] = &[(Quantity::Pressure, false), (Quantity::Flow, true)];
+            let inputs: Inputs = &[(Quantity::Pressure, false), (Quantity::Flow, true)];
             Ok((own.name(), own.placed(body.mesh(), self.map)?, inputs))
         });
         let times: Vec<f64> = self.phase_starts().flat_map(|(phase, t)| times(phase, t)).collect();
         let fluids = scene.fluids.iter().map(|own| {
-            let inputs: &'static [_] = &[];
+            let inputs: Inputs = &[];
             Ok((own.name(), own.placed(body.mesh(), self.map, &times)?, inputs))
         });
         let chambers = self.images(chambers.collect::<Result<_, _>>()?)?;
@@ -82,11 +87,8 @@ impl<'s> Same<'s> {
     }
 
     /// Components of one kind that are `placed`.
-    fn images(
-        &self,
-        placed: Vec<(&'s str, Placed, &'static [(Quantity, bool)])>,
-    ) -> Result<Vec<Component<'s>>, InputError> {
-        let component = |own: &(&'s str, Placed, &'static [(Quantity, bool)])| {
+    fn images(&self, placed: Vec<InPlace<'s>>) -> Result<Vec<Component<'s>>, InputError> {
+        let component = |own: &InPlace<'s>| {
             let (image, share) = self.image(own, &placed)?;
             Ok(Component { name: own.0, image, share, inputs: own.2 })
         };
@@ -96,8 +98,8 @@ impl<'s> Same<'s> {
     /// The mirror image of a component among `all`, and the share of it that the half has.
     fn image(
         &self,
-        own: &(&'s str, Placed, &'static [(Quantity, bool)]),
-        all: &[(&'s str, Placed, &'static [(Quantity, bool)])],
+        own: &InPlace<'s>,
+        all: &[InPlace<'s>],
     ) -> Result<(&'s str, Option<f64>), InputError> {
         let (at, tolerance) = (self.map.ends[0], SAME * self.scene.body.size());
         let content = |name: &str| {
@@ -108,7 +110,7 @@ impl<'s> Same<'s> {
         // of several in one place each is its own
         let mut candidates = iter::once(own).chain(all);
         let (name, placed, _) = own;
-        let is_image = |(other, at, _): &&(&str, Placed, _)| {
+        let is_image = |(other, at, _): &&InPlace| {
             let numbers = placed.at[1].iter().zip(&at.at[0]);
             placed.likeness == at.likeness
                 && content(name) == content(other)

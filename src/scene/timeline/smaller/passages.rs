@@ -3,8 +3,7 @@
 //! A chamber that the plane cuts has half of its gas or liquid there, which half of the flow fills as fast. Between a chamber and its own
 //! mirror image nothing flows.
 
-use super::super::Quantity;
-use super::components::Component;
+use super::components::{Component, Inputs};
 use super::same::Same;
 use crate::base::input::InputError;
 
@@ -16,7 +15,7 @@ impl<'s> Same<'s> {
     pub(super) fn passages(
         &self,
         chambers: &[Component<'s>],
-        (kind, inputs): (&str, &'static [(Quantity, bool)]),
+        (kind, inputs): (&str, Inputs),
         all: Vec<(&'s str, &'s [String; 2], String)>,
     ) -> Result<Vec<Component<'s>>, InputError> {
         let own = |own: &(&'s str, &'s [String; 2], String)| {
@@ -34,8 +33,8 @@ impl<'s> Same<'s> {
             let told = format!("\"{name}\"");
             let image = std::iter::once(own).chain(&all).find(is_image);
             let image = image.ok_or_else(|| self.refused(kind, &told))?.0;
-            let mut beside = of.iter().filter_map(|(_, chamber)| *chamber);
-            let mut beside = beside.by_ref().filter(|end| end.image != end.name);
+            let chambers = of.iter().filter_map(|(_, chamber)| *chamber);
+            let mut beside = chambers.filter(|end| end.image != end.name);
             let share = if image == name {
                 beside.next().is_none().then_some(0.5)
             } else {
