@@ -48,7 +48,6 @@ impl NodeMap {
     }
 
     /// The node of the smaller mesh that stands for a node or its image.
-    #[cfg(any(feature = "scene-file", feature = "study"))]
     pub(crate) fn number(&self, node: usize) -> usize {
         let [own, image] = [node, self.images[node]].map(|node| self.numbers[node]);
         own.or(image).unwrap_or_default()
