@@ -151,11 +151,11 @@ impl Mesh {
 
 #[cfg(test)]
 mod tests {
-    use super::mirrored;
+    use super::{InputError, mirrored};
     use crate::elements::mesh::{Cells, Mesh, NodeMap};
 
-    fn half(mesh: &Mesh, axis: usize) -> Option<Mesh> {
-        NodeMap::half(&[mesh], axis, false).ok()?.meshes.remove(0)
+    fn lower(mesh: &Mesh, axis: usize) -> Result<NodeMap, InputError> {
+        NodeMap::half(&[mesh], axis, false)
     }
 
     #[test]
@@ -165,7 +165,7 @@ mod tests {
         let (at, images) = mirrored(&[&mesh], 0).unwrap();
         assert!((at - 1.2).abs() < 1e-15);
         assert_eq!(images, [4, 3, 2, 1, 0, 9, 8, 7, 6, 5]);
-        let half = half(&mesh, 0).unwrap();
+        let half = lower(&mesh, 0).unwrap().meshes.remove(0).unwrap();
         assert_eq!((half.node_count(), half.cell_count()), (6, 4));
         // the cut is open: its edge is none of the boundary, and its ends are on others
         assert_eq!(half.boundary_faces().len(), 5);
@@ -175,6 +175,28 @@ mod tests {
         assert_eq!(half.sets()["bottom"], [0, 1, 2]);
         // one node off its place
         let bent = mesh.mapped(|x| [x[0] + if x[0] > 1.35 { 1e-6 } else { 0.0 }, x[1]]).unwrap();
-        assert!(half(&bent, 0).is_none() && half(&bent, 1).is_some());
+        assert!(lower(&bent, 0).is_err() && lower(&bent, 1).is_ok());
+    }
+
+    /// Two meshes that are images of each other, and one between them with nodes in the places of theirs.
+    #[test]
+    fn of_several_meshes_each_has_an_image() {
+        let block = |x: f64, width: f64, nodes: usize| {
+            let mesh = Mesh::rectangle([width, 0.1], [nodes, 2], Cells::Rectangles).unwrap();
+            mesh.translated(&[x, 0.0]).unwrap()
+        };
+        let [left, middle, right] = [block(0.0, 0.1, 2), block(0.1, 0.2, 3), block(0.3, 0.1, 2)];
+        let (at, images) = mirrored(&[&left, &middle, &right], 0).unwrap();
+        assert!((at - 0.2).abs() < 1e-15);
+        assert_eq!(images, [11, 10, 13, 12, 6, 5, 4, 9, 8, 7, 1, 0, 3, 2]);
+        let map = NodeMap::half(&[&left, &middle, &right], 0, true).unwrap();
+        assert!(map.meshes[0].is_none());
+        let counts = [1, 2].map(|k| map.meshes[k].as_ref().unwrap().node_count());
+        assert_eq!(counts, [4, 4]);
+        let numbers: Vec<i32> = map.numbers.iter().map(|x| x.map_or(-1, |x| x as i32)).collect();
+        assert_eq!(numbers, [-1, -1, -1, -1, -1, 0, 1, -1, 2, 3, 4, 5, 6, 7]);
+        assert_eq!(map.cells, [None, None, Some(0), Some(1)]);
+        assert_eq!(map.cell_images, [3, 2, 1, 0].map(Some));
+        assert!(mirrored(&[&left, &middle], 0).is_none());
     }
 }
