@@ -7,28 +7,32 @@ use pliant::{
     SolidCells, Spring,
 };
 
-const RUBBER: Material = Material { density: 1000.0, young: 1e5, poisson: 0.3, viscosity: 20.0 };
+pub(super) const RUBBER: Material =
+    Material { density: 1000.0, young: 1e5, poisson: 0.3, viscosity: 20.0 };
 const TIGHT: f64 = 1e-9;
 
 /// The largest distance (m) of nodes of the half, which are at the same undeformed places, from those of the whole, and the largest
 /// displacement (m), at the end of both.
-fn apart(scene: &Scene, axis: Axis) -> [f64; 2] {
+pub(super) fn apart(scene: &Scene, axis: Axis) -> [f64; 2] {
     let half = scene.symmetric_half(axis).unwrap();
     let settings = Settings { rtol: TIGHT, max_steps: 200_000, ..Settings::default() };
     let run = |scene: &Scene| scene.simulate(&settings, &Sampling::phase_ends()).unwrap();
     let [whole, own] = [scene, &half].map(run);
-    let (d, mesh) = (scene.body().dimension(), scene.body().mesh());
-    let place = |mesh: &Mesh, node: usize| mesh.position(node).to_vec();
+    let d = scene.body().dimension();
     let [mut far, mut moved] = [0.0_f64; 2];
-    for node in 0..half.body().mesh().node_count() {
-        let x = place(half.body().mesh(), node);
-        let same = (0..mesh.node_count())
-            .find(|&other| place(mesh, other).iter().zip(&x).all(|(a, b)| (a - b).abs() < 1e-12));
-        let same = same.unwrap();
-        for i in 0..d {
-            let [a, b] = [own.last().u[node * d + i], whole.last().u[same * d + i]];
-            far = far.max((a - b).abs());
-            moved = moved.max(b.abs());
+    for own_part in half.body().parts() {
+        let part = scene.body().parts().find(|part| part.name == own_part.name).unwrap();
+        for (node, x) in own_part.nodes.zip(own_part.body.mesh().positions().chunks(d)) {
+            let is_there = |other: &usize| {
+                let there = scene.body().mesh().position(*other);
+                there.iter().zip(x).all(|(a, b)| (a - b).abs() < 1e-12)
+            };
+            let same = part.nodes.clone().find(is_there).unwrap();
+            for i in 0..d {
+                let [a, b] = [own.last().u[node * d + i], whole.last().u[same * d + i]];
+                far = far.max((a - b).abs());
+                moved = moved.max(b.abs());
+            }
         }
     }
     println!("{far:.2e} of {moved:.2e} m");
@@ -37,12 +41,12 @@ fn apart(scene: &Scene, axis: Axis) -> [f64; 2] {
 
 /// Both agree as far as the integration is exact: to some errors of its steps, which are not the same ones (measured: 6e-10).
 #[track_caller]
-fn agrees(scene: &Scene, axis: Axis) {
+pub(super) fn agrees(scene: &Scene, axis: Axis) {
     let [far, moved] = apart(scene, axis);
     assert!(far < 10.0 * TIGHT * moved, "{far:e} of {moved:e}");
 }
 
-fn block(change: impl FnOnce(BodyBuilder) -> BodyBuilder) -> Body {
+pub(super) fn block(change: impl FnOnce(BodyBuilder) -> BodyBuilder) -> Body {
     let mesh = Mesh::rectangle([0.2, 0.1], [5, 4], Cells::Rectangles).unwrap();
     change(Body::new(mesh, RUBBER).thickness(0.05)).build().unwrap()
 }
@@ -166,7 +170,7 @@ fn muscles_and_growths_act_on_the_half() {
 }
 
 /// The cells of a mesh without those whose centres are in one of some boxes.
-fn hollow(mesh: &Mesh, boxes: &[[Vec<f64>; 2]]) -> Mesh {
+pub(super) fn hollow(mesh: &Mesh, boxes: &[[Vec<f64>; 2]]) -> Mesh {
     let d = mesh.dimension();
     let is_left = |cell: &&[usize]| {
         let x = |i: usize| {
@@ -307,7 +311,7 @@ fn what_is_not_symmetric_is_refused() {
     assert!(refusal(&bent, Axis::X).contains("mesh along x"));
 }
 
-fn refusal(scene: &Scene, axis: Axis) -> String {
+pub(super) fn refusal(scene: &Scene, axis: Axis) -> String {
     let error: InputError = scene.symmetric_half(axis).unwrap_err();
     println!("{error}");
     error.to_string()

@@ -32,6 +32,8 @@ mod gripping;
 mod growth;
 mod growth_by_direction;
 mod halves;
+mod halves_of_fields;
+mod halves_of_several;
 mod hill;
 mod in_plane;
 mod index_two;

@@ -7,7 +7,7 @@ use crate::base::input::percent;
 use crate::dynamics::report::Indicator;
 use crate::dynamics::trajectory::Sample;
 use crate::elements::body::Body;
-use crate::elements::mesh::Mesh;
+use crate::elements::mesh::{Mesh, mirrored};
 
 /// Largest deviation of a motion from a plane one, and from its mirror image, for which the simpler body suffices.
 const PLANE: f64 = 0.01;
@@ -45,7 +45,8 @@ pub(super) fn mirrors(body: &Body, samples: &[&Sample]) -> Vec<Indicator> {
     let d = body.dimension();
     let can_be_halved = d > 1 && !body.is_axisymmetric();
     let Some(scale) = motion(body, samples).filter(|_| can_be_halved) else { return Vec::new() };
-    let images = (0..d).filter_map(|axis| Some((axis, body.mesh().mirrored(axis)?.1)));
+    let meshes = body.meshes();
+    let images = (0..d).filter_map(|axis| Some((axis, mirrored(&meshes, axis)?.1)));
     let parts = images.map(|(axis, partner)| {
         let square = |sample: &&Sample| {
             let off = |dof: usize| {

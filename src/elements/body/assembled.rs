@@ -170,15 +170,18 @@ impl Body {
         })
     }
 
-    /// The index of each cell's substance among the [`substances`](Self::substances) of a single body.
-    pub(crate) fn substance_numbers(&self) -> Vec<usize> {
-        let count = self.mesh.cell_count();
-        let mut numbers = vec![0; count];
-        for (number, cells) in self.continua[0].regions.by_substance(count).into_iter().enumerate()
-        {
-            cells.into_iter().for_each(|cell| numbers[cell] = number);
+    /// The substance of each cell.
+    pub(crate) fn substances_of_cells(&self) -> Vec<&Substance> {
+        let mut all = Vec::with_capacity(self.mesh.cell_count());
+        for Continuum { recipe, regions, cells, .. } in &self.continua {
+            let mut own = vec![&recipe.material; cells.len()];
+            let of_regions = regions.by_substance(cells.len()).into_iter().skip(1);
+            for (cells, (_, substance)) in of_regions.zip(&recipe.regions) {
+                cells.into_iter().for_each(|cell| own[cell] = substance);
+            }
+            all.extend(own);
         }
-        numbers
+        all
     }
 
     /// Its rigid pieces, if it has any.

@@ -166,31 +166,35 @@ impl BodyBuilder {
         })
     }
 
-    /// The smaller body that stands for a single one: with half of the point masses on a plane of symmetry, or in a `plane`, as thick as
-    /// the prism is long.
+    /// The smaller bodies that stand for these: on one side of a plane of symmetry, with half of the point masses on it, or in a `plane`, as
+    /// thick as the prism is long. One that is left of several keeps the names of its nodes among these.
     ///
     /// # Errors
-    /// Point masses in a section, whose place in it is not known; regions of cells that the mesh does not have.
-    pub(crate) fn by_map(
-        mut self,
-        map: &NodeMap,
-        plane: Option<Plane>,
-    ) -> Result<Self, InputError> {
-        for (mesh, recipe) in &mut self.bodies {
+    /// Point masses in a section, whose place in it is not known; rods; regions of cells that the mesh does not have.
+    pub(crate) fn by_map(self, map: &NodeMap, plane: Option<Plane>) -> Result<Self, InputError> {
+        let is_single = self.bodies.len() == 1;
+        let (mut bodies, [mut node, mut cell, mut own_cell]) = (Vec::new(), [0; 3]);
+        for ((mesh, mut recipe), own) in self.bodies.into_iter().zip(&map.meshes) {
             if recipe.rod.is_some() {
                 let help = "rods are run whole: they have few unknowns";
                 return Err(InputError::new("smaller model", "of a rod", help));
             }
+            let (first_point, first_cell) = (node + mesh.node_count(), cell);
+            (node, cell) = (first_point + recipe.points.len(), cell + mesh.cell_count());
+            let Some(own) = own else { continue };
             let mut regions = Vec::new();
             for (selection, substance) in recipe.regions.drain(..) {
-                let cells = selection.cells(mesh)?.into_iter().filter_map(|cell| map.cells[cell]);
-                let numbers: Vec<usize> = distinct(cells).iter().map(|cell| cell + 1).collect();
+                let cells = selection.cells(&mesh)?.into_iter();
+                let cells = cells.filter_map(|cell| map.cells[first_cell + cell]);
+                let numbers = distinct(cells).into_iter().map(|cell| cell - own_cell + 1);
+                let numbers: Vec<usize> = numbers.collect();
                 if !numbers.is_empty() {
                     regions.push((CellSelection::Numbers(numbers), substance));
                 }
             }
+            own_cell += own.cell_count();
             recipe.regions = regions;
-            let points = (mesh.node_count()..).zip(recipe.points.drain(..));
+            let points = (first_point..).zip(recipe.points.drain(..));
             let points = points.filter(|(node, _)| map.numbers[*node].is_some());
             recipe.points = points
                 .map(|(node, (name, position, mass))| (name, position, map.share(node) * mass))
@@ -205,9 +209,12 @@ impl BodyBuilder {
                     recipe.dilatation = Dilatation::AtPoints;
                 }
             }
-            *mesh = map.mesh.clone();
+            bodies.push((own.clone(), recipe));
         }
-        Ok(self)
+        if let ([(mesh, Recipe { name: Some(name), .. })], false) = (&mut bodies[..], is_single) {
+            *mesh = mesh.clone().also_named(name);
+        }
+        Ok(Self { bodies })
     }
 
     /// Another material, everywhere outside regions.

@@ -19,10 +19,11 @@ use super::continuum::Continuum;
 use super::elements::too_many;
 use super::nodal_masses::NodalMasses;
 use super::offset::Offset;
+use super::recipe::Recipe;
 use super::rigid::RigidPieces;
 use crate::base::input::{InputError, find};
 use crate::base::sparse::{BlockMatrix, NodeMatrix};
-use crate::elements::material::Strain;
+use crate::elements::material::{Material, Strain, Substance};
 use crate::elements::mesh::Mesh;
 
 impl Joined {
@@ -151,6 +152,31 @@ impl Body {
     pub fn parts(&self) -> impl Iterator<Item = Part<'_>> {
         let single = self.is_single().then(|| self.whole());
         single.into_iter().chain(self.joined.iter().map(Joined::part))
+    }
+
+    /// The meshes of the parts, with their point masses.
+    pub(crate) fn meshes(&self) -> Vec<&Mesh> {
+        match self.is_single() {
+            true => vec![&self.mesh],
+            false => self.joined.iter().map(|part| &part.body.mesh).collect(),
+        }
+    }
+
+    /// The options of a single body but for its name, materials and point masses, as a text.
+    pub(crate) fn likeness(&self) -> String {
+        let recipe = (*self.continua[0].recipe).clone();
+        let material = Substance::from(Material::rigid(0.0));
+        let (name, regions, points) = (None, Vec::new(), Vec::new());
+        format!("{:?}", Recipe { name, material, regions, points, ..recipe })
+    }
+
+    /// Numbers of the point masses, which no cell has.
+    pub(crate) fn point_nodes(&self) -> Vec<usize> {
+        let points = |part: Part| {
+            let count = part.body.continua[0].recipe.points.len();
+            part.nodes.end - count..part.nodes.end
+        };
+        self.parts().flat_map(points).collect()
     }
 
     /// The body with a name; `input` is where that was given.

@@ -128,7 +128,12 @@ impl FibreDirection {
     pub(crate) fn numbers(&self) -> Vec<f64> {
         let (direction, mut numbers) = match self {
             Self::Along(direction) => (direction, Vec::new()),
-            Self::Around { centre, axis, pitch } => (axis, [&centre[..], &[*pitch]].concat()),
+            Self::Around { centre, axis, pitch } => {
+                // every point of the axis will do
+                let along = dot(centre, axis) / dot(axis, axis).max(f64::MIN_POSITIVE);
+                let beside = |(i, x): (usize, &f64)| x - along * axis.get(i).unwrap_or(&0.0);
+                (axis, centre.iter().enumerate().map(beside).chain([*pitch]).collect())
+            }
         };
         let square = dot(direction, direction);
         let products = |a: &f64| direction.iter().map(move |b| a * b / square).collect::<Vec<_>>();

@@ -25,6 +25,7 @@ pub use cell::CellKind;
 pub(crate) use cell::FaceKind;
 pub(crate) use generate::BYTES_PER_NODE;
 pub use generate::{Cells, SolidCells};
+pub(crate) use mirror::mirrored;
 pub(crate) use node_map::NodeMap;
 pub use select::Selection;
 pub(crate) use surface::Enclosed;

@@ -10,18 +10,20 @@ use crate::base::vector::{axes_across, distinct};
 /// The map of the nodes and cells of a mesh to those of a smaller one.
 #[derive(Debug, Clone)]
 pub(crate) struct NodeMap {
-    /// The smaller mesh, without point masses.
-    pub(crate) mesh: Mesh,
+    /// The smaller mesh of each body, without point masses; none of a body on the side that is left out.
+    pub(crate) meshes: Vec<Option<Mesh>>,
     /// The number of the axis across which it is.
     pub(crate) axis: usize,
     /// Where the prism begins and ends on the axis (m); twice the place of a plane of symmetry.
     pub(crate) ends: [f64; 2],
+    /// Whether a half is that above the plane.
+    pub(crate) is_upper: bool,
     /// Factor of the component along the axis in the image of a vector: -1 of a mirror image, 0 in a section.
     pub(super) across: f64,
     /// The image of each node.
     pub(crate) images: Vec<usize>,
-    /// The image of each cell, if all cells have one.
-    pub(crate) cell_images: Option<Vec<usize>>,
+    /// The image of each cell, of those that have one.
+    pub(crate) cell_images: Vec<Option<usize>>,
     /// The node of the smaller mesh (from 0) that stands for each node; none on the side that is left out.
     pub(crate) numbers: Vec<Option<usize>>,
     /// The same of the cells.
@@ -31,29 +33,9 @@ pub(crate) struct NodeMap {
 }
 
 impl NodeMap {
-    /// The same with the names of nodes and cells that the mesh `of` has, and the cuts of that.
-    pub(super) fn named(mut self, of: &Mesh) -> Self {
-        let on_plane = (0..self.images.len()).filter(|&node| self.is_on_plane(node));
-        let own = on_plane.filter_map(|node| self.numbers[node]).chain(self.within(&of.plane));
-        let count = self.mesh.node_count();
-        let own = distinct(own.filter(|&node| node < count));
-        if !own.is_empty() {
-            self.mesh.cut_at(own);
-        }
-        for (name, nodes) in &of.sets {
-            let own: Vec<usize> =
-                self.within(nodes).into_iter().filter(|&node| node < count).collect();
-            if !own.is_empty() && !["all", "boundary"].contains(&&name[..]) {
-                self.mesh.set_nodes(name, own);
-            }
-        }
-        for (name, group) in &of.cell_groups {
-            let own = within(&self.cells, group);
-            if !own.is_empty() {
-                self.mesh.set_cells(name, own);
-            }
-        }
-        self
+    /// Whether a half has what is at a place (m) on the axis.
+    pub(crate) fn is_kept(&self, x: f64) -> bool {
+        (x > self.ends[0]) == self.is_upper
     }
 
     pub(crate) fn is_section(&self) -> bool {
@@ -66,7 +48,6 @@ impl NodeMap {
     }
 
     /// The node of the smaller mesh that stands for a node or its image.
-    #[cfg(any(feature = "scene-file", feature = "study"))]
     pub(crate) fn number(&self, node: usize) -> usize {
         let [own, image] = [node, self.images[node]].map(|node| self.numbers[node]);
         own.or(image).unwrap_or_default()
@@ -77,11 +58,16 @@ impl NodeMap {
         if self.is_on_plane(node) { 0.5 } else { 1.0 }
     }
 
+    /// The number of axes of the smaller meshes.
+    fn dimension(&self) -> usize {
+        self.meshes.iter().flatten().next().map_or(0, Mesh::dimension)
+    }
+
     /// The axes of the smaller mesh, by their numbers here.
     pub(crate) fn axes(&self) -> Vec<usize> {
         match self.is_section() {
             true => axes_across(self.axis).into(),
-            false => (0..self.mesh.dimension()).collect(),
+            false => (0..self.dimension()).collect(),
         }
     }
 
@@ -113,10 +99,10 @@ impl NodeMap {
         (own.iter().filter(|node| **node < first_middle).count() == touched).then_some(own)
     }
 
-    fn within(&self, nodes: &[usize]) -> Vec<usize> {
+    pub(super) fn within(&self, nodes: &[usize]) -> Vec<usize> {
         let mut own = within(&self.numbers, nodes);
-        if !self.middles.is_empty() {
-            let mut is_there = vec![false; self.mesh.node_count()];
+        if let Some((last, _)) = self.middles.last() {
+            let mut is_there = vec![false; last + 1];
             own.iter().for_each(|&node| is_there[node] = true);
             let within = self.middles.iter().filter(|(_, all)| all.iter().all(|x| is_there[x.0]));
             own.extend(within.map(|(middle, _)| middle));
@@ -146,7 +132,7 @@ impl NodeMap {
 }
 
 /// The numbers all of whose places are among those that are `chosen`.
-fn within(numbers: &[Option<usize>], chosen: &[usize]) -> Vec<usize> {
+pub(super) fn within(numbers: &[Option<usize>], chosen: &[usize]) -> Vec<usize> {
     let count = numbers.iter().flatten().max().map_or(0, |last| last + 1);
     let mut left = vec![0_usize; count];
     numbers.iter().flatten().for_each(|&number| left[number] += 1);
@@ -155,4 +141,37 @@ fn within(numbers: &[Option<usize>], chosen: &[usize]) -> Vec<usize> {
         left[*number] == 0
     };
     chosen.iter().filter_map(|&place| numbers[place]).filter(|number| is_last(number)).collect()
+}
+
+impl Mesh {
+    /// Takes over the names of nodes and cells of the mesh `of` for those that stand for them, which `nodes` and `cells` tell, and its
+    /// cuts together with a `plane` of its nodes.
+    pub(super) fn take_names(
+        &mut self,
+        of: &Self,
+        plane: Vec<usize>,
+        nodes: impl Fn(&[usize]) -> Vec<usize>,
+        cells: &[Option<usize>],
+    ) {
+        let count = self.node_count();
+        let nodes = |all: &[usize]| -> Vec<usize> {
+            nodes(all).into_iter().filter(|&node| node < count).collect()
+        };
+        let plane = distinct(nodes(&plane).into_iter().chain(nodes(&of.plane)));
+        if !plane.is_empty() {
+            self.cut_at(plane);
+        }
+        for (name, all) in &of.sets {
+            let own = nodes(all);
+            if !own.is_empty() && !["all", "boundary"].contains(&&name[..]) {
+                self.set_nodes(name, own);
+            }
+        }
+        for (name, group) in &of.cell_groups {
+            let own = within(cells, group);
+            if !own.is_empty() {
+                self.set_cells(name, own);
+            }
+        }
+    }
 }

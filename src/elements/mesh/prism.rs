@@ -77,7 +77,7 @@ impl Mesh {
             let count = known.len();
             let (place, image) = *known.entry(key).or_insert((count, number));
             cells.push(Some(place));
-            cell_images.push(image);
+            cell_images.push(Some(image));
             if place < count {
                 continue;
             }
@@ -102,13 +102,24 @@ impl Mesh {
             }
             connectivity.extend(own);
         }
-        let mesh = Self::named(2, positions, of_section, connectivity);
+        let mut mesh = Self::named(2, positions, of_section, connectivity);
         let images = columns.iter().map(|&column| firsts[column]).collect();
         let numbers = columns.into_iter().map(Some).collect();
-        let (across, cell_images) = (0.0, Some(cell_images));
-        let map =
-            NodeMap { mesh, axis, ends, across, images, cell_images, numbers, cells, middles };
-        Ok(map.named(self))
+        let mut map = NodeMap {
+            meshes: Vec::new(),
+            axis,
+            ends,
+            is_upper: false,
+            across: 0.0,
+            images,
+            cell_images,
+            numbers,
+            cells,
+            middles,
+        };
+        mesh.take_names(self, Vec::new(), |nodes| map.within(nodes), &map.cells);
+        map.meshes.push(Some(mesh));
+        Ok(map)
     }
 
     /// The column of each node along an axis, numbered as they are met, and the first node of each.
@@ -161,7 +172,7 @@ mod tests {
             for axis in 0..3 {
                 let map = mesh.section(axis).unwrap();
                 let [i, j] = map.axes()[..] else { unreachable!() };
-                let section = &map.mesh;
+                let section = map.meshes[0].as_ref().unwrap();
                 assert_eq!(section.kind(), kind);
                 let grid =
                     [i, j].map(|i| if kind.is_quadratic() { 2 * nodes[i] - 1 } else { nodes[i] });

@@ -113,6 +113,13 @@ impl Device for Wind {
         Ok(Arc::new(Self { nodes, ..self.clone() }))
     }
 
+    fn in_half(
+        &self,
+        nodes: &dyn Fn(&Selection) -> Result<Selection, InputError>,
+    ) -> Result<Arc<dyn Device>, InputError> {
+        self.on_finer_mesh(nodes)
+    }
+
     /// A line from the middle of the body along the velocity: as long as the body in a wind of 10 m/s.
     fn lines(&self, now: &DeviceState<'_>) -> Vec<[[f64; 3]; 2]> {
         const USUAL: f64 = 10.0;

@@ -184,9 +184,9 @@ impl Placed {
             let cells = distinct(cells).into_iter().map(|cell| cell as f64);
             cells.chain(course.iter().flat_map(FibreDirection::numbers)).collect()
         };
-        let image = map.cell_images.as_ref().map_or_else(Vec::new, |images| {
-            let mirrored = course.map(|course| course.mirrored(map.axis, map.ends[0]));
-            numbers(cells.iter().map(|&cell| images[cell]).collect(), mirrored)
+        let images: Option<Vec<usize>> = cells.iter().map(|&cell| map.cell_images[cell]).collect();
+        let image = images.map_or_else(Vec::new, |images| {
+            numbers(images, course.map(|course| course.mirrored(map.axis, map.ends[0])))
         });
         let all: Vec<&[usize]> = mesh.cells().collect();
         let nodes = cells.iter().flat_map(|&cell| all[cell]);

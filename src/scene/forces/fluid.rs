@@ -24,14 +24,15 @@ pub(crate) use force::FluidForce;
 use rods::RodDrag;
 use traction::{Depth, Drag};
 
+use super::actuator::Placed;
 use super::faces::{loaded_faces, on_no_face};
 use super::followed::FollowedFaces;
 use super::signal::VectorSignal;
 use super::time_table::TimeTable;
 use crate::base::input::{InputError, finite, not_negative, positive};
-use crate::base::vector::{cross, norm, padded};
+use crate::base::vector::{cross, distinct, norm, padded};
 use crate::elements::body::{Body, Inertia};
-use crate::elements::mesh::Selection;
+use crate::elements::mesh::{Mesh, NodeMap, Selection};
 use crate::elements::rod::TubePiece;
 
 /// A fluid at rest, or one that flows everywhere alike, around the bodies of a scene: what it does to the faces of their boundary, each by itself.
@@ -178,6 +179,40 @@ impl Fluid {
         Ok(Self { nodes: self.nodes.as_ref().map(change).transpose()?, ..self.clone() })
     }
 
+    /// Where it is, with its velocities at some `times` (s), and where its mirror image is.
+    ///
+    /// # Errors
+    /// Nodes that do not exist.
+    pub(crate) fn placed(
+        &self,
+        mesh: &Mesh,
+        map: &NodeMap,
+        times: &[f64],
+    ) -> Result<Placed, InputError> {
+        let nodes = match &self.nodes {
+            None => mesh.boundary_nodes().to_vec(),
+            Some(nodes) => distinct(mesh.select(nodes)?),
+        };
+        let velocities = self.velocity.iter().flat_map(|velocity| {
+            times.iter().flat_map(|t| velocity.components(*t, mesh.dimension()))
+        });
+        let own: Vec<f64> = velocities.collect();
+        let mut mirrored = own.clone();
+        mirrored.iter_mut().skip(map.axis).step_by(mesh.dimension()).for_each(|x| *x = -*x);
+        let numbers = |nodes: &[usize], velocities: Vec<f64>| {
+            nodes.iter().map(|node| *node as f64).chain(velocities).collect()
+        };
+        let images = map.images_of(&nodes).unwrap_or_default();
+        let (name, velocity, of_nodes) = (String::new(), None, None);
+        let rest = Self { name, velocity, nodes: of_nodes, ..self.clone() };
+        Ok(Placed {
+            likeness: format!("{rest:?}"),
+            at: [numbers(&nodes, own), numbers(&images, mirrored)],
+            along: nodes.iter().map(|&node| mesh.position(node)[map.axis]).collect(),
+            is_line: false,
+        })
+    }
+
     /// Its velocity (m/s), if it flows.
     pub(crate) fn flow(&self) -> Option<&VectorSignal> {
         self.velocity.as_ref()
@@ -234,7 +269,7 @@ impl Fluid {
         let rest = vec![0.0; body.dofs()];
         Ok(FluidForce {
             input: input("velocity"),
-            is_closed: depth.is_some() && faces.is_closed(&rest),
+            is_closed: depth.is_some() && faces.is_closed(&rest, body.mesh().plane_of_symmetry()),
             carried: [self.carried(body, &faces, &rest), self.carried_by(&pieces, body)].concat(),
             rods: self.rods(body, &pieces),
             drag: Drag::new(density, self.drag),

@@ -99,8 +99,8 @@ impl FollowedFaces {
     }
 
     /// Whether they are a closed surface, where `rest` are displacements of 0: its vector area stays 0 whichever node moves, so the derivatives of the
-    /// normals by the place of a node add up to 0 over the faces around it.
-    pub(super) fn is_closed(&self, rest: &[f64]) -> bool {
+    /// normals by the place of a node add up to 0 over the faces around it. A plane of symmetry closes those that end at nodes of it (`plane`).
+    pub(super) fn is_closed(&self, rest: &[f64], plane: &[usize]) -> bool {
         let mut rims = BTreeMap::new();
         self.each_point(rest, |at| {
             for (&node, c) in at.nodes.iter().zip(at.turning()) {
@@ -109,7 +109,8 @@ impl FollowedFaces {
                 *size += at.point.weight.abs() * norm(&c);
             }
         });
-        rims.into_values().all(|(sum, size)| norm(&sum) <= NO_RIM * size)
+        let is_rim = |(_, (sum, size)): &(&usize, &([f64; 3], f64))| norm(sum) > NO_RIM * size;
+        rims.iter().filter(is_rim).all(|(node, _)| plane.contains(node))
     }
 }
 

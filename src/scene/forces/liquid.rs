@@ -135,6 +135,11 @@ impl Liquid {
         self
     }
 
+    /// Its properties but for its chamber, as a text.
+    pub(crate) fn likeness(&self) -> String {
+        format!("{:?}", Self { chamber: String::new(), ..self.clone() })
+    }
+
     /// Whether it has a surface.
     pub(crate) fn has_surface(&self) -> bool {
         self.has_surface

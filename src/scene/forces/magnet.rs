@@ -179,6 +179,18 @@ impl MagneticField {
         Self { gradient: Some(Gradient { rows, centre: centre.into() }), ..self }
     }
 
+    /// Its value (T) at time `t` (s) at a point (m).
+    pub(crate) fn at(&self, t: f64, x: &[f64]) -> Vec<f64> {
+        let mut field = self.field.components(t, x.len());
+        if let Some(Gradient { rows, centre }) = &self.gradient {
+            for (field, row) in field.iter_mut().zip(rows) {
+                let from_centre = x.iter().zip(centre).map(|(x, centre)| x - centre);
+                *field += row.iter().zip(from_centre).map(|(g, x)| g * x).sum::<f64>();
+            }
+        }
+        field
+    }
+
     fn validate(&self, input: &str, dimension: usize) -> Result<(), InputError> {
         self.field.validate(input, dimension, "T")?;
         let Some(Gradient { rows, centre }) = &self.gradient else { return Ok(()) };

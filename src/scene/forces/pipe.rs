@@ -86,6 +86,18 @@ impl Pipe {
         &self.ends
     }
 
+    /// Its properties but for its name and its ends, as a text.
+    pub(crate) fn likeness(&self) -> String {
+        let (name, ends) = (String::new(), [const { String::new() }; 2]);
+        format!("{:?}", Self { name, ends, ..self.clone() })
+    }
+
+    /// A pipe through which a `share` of that flows between the same pressures, as fast.
+    pub(crate) fn times(self, share: f64) -> Self {
+        // R goes with mu/A^2, and is to grow as 1/A
+        Self { area: share * self.area, viscosity: share * self.viscosity, ..self }
+    }
+
     /// The flow between `ends` of a liquid of this `density`.
     ///
     /// # Errors

@@ -1,6 +1,6 @@
 //! Devices: parts of a scene that are defined in one place, by this crate or by another one.
 //!
-//! A [`Device`] says all that the scene has to know of it: its inputs, its outputs, its force, what it is on a finer mesh, the lines
+//! A [`Device`] says all that the scene has to know of it: its inputs, its outputs, its force, what it is on a finer mesh and in a half, the lines
 //! and needles by which it is drawn. Inputs are quantities as all others are (`input.rs`): phases and commands set them, tables and formulas of
 //! time end steps at their breaks, statics scale them, checkpoints hold them. Nothing else in the crate knows of a single device.
 
@@ -100,6 +100,20 @@ pub trait Device: Any + fmt::Debug + Send + Sync {
         let _ = nodes;
         let help = "it does not say what it is on another mesh: implement Device::on_finer_mesh";
         Err(InputError::new("device", format!("\"{}\"", self.name()), help))
+    }
+
+    /// The device in the half of a scene to which it is symmetric ([`Scene::symmetric_half`](crate::Scene::symmetric_half)), where `nodes` are what
+    /// selections of nodes become: an error of those that are not their own mirror images. Inputs that are vectors are known to point along the plane.
+    ///
+    /// # Errors
+    /// Default: it is not known to be its own mirror image.
+    fn in_half(
+        &self,
+        nodes: &dyn Fn(&Selection) -> Result<Selection, InputError>,
+    ) -> Result<Arc<dyn Device>, InputError> {
+        let _ = nodes;
+        let help = "it is not known to be its own mirror image, as of this crate wind is alone: leave the scene whole, or implement Device::in_half";
+        Err(InputError::new(self.kind(), format!("\"{}\"", self.name()), help))
     }
 
     /// The lines by which pictures and animations show it: their two ends (m). Default: none.

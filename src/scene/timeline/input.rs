@@ -180,11 +180,16 @@ impl Quantity {
         self.row().on_nodes.is_some()
     }
 
-    /// Whether halves and sections of a body know it.
+    /// Whether halves and sections have it by what their nodes and components are of those of the whole.
     pub(super) fn is_known_of_parts(self) -> bool {
         matches!(
             self,
-            Self::FacePressure | Self::Load(_) | Self::Actuation | Self::Pressure | Self::Opening
+            Self::FacePressure
+                | Self::Load(_)
+                | Self::Actuation
+                | Self::Pressure
+                | Self::Opening
+                | Self::Flow
         )
     }
 

@@ -3,9 +3,11 @@
 //! Both are one map of nodes (`elements/mesh/node_map.rs`). The scene is compared with its images node by node (`smaller/same.rs`), and
 //! not by the words in which it was written; what the images leave is made of it by `smaller/made.rs`.
 
+mod bodies;
 mod components;
+mod fields;
 mod made;
-mod orifices;
+mod passages;
 mod same;
 
 use std::fmt;
@@ -68,14 +70,16 @@ pub(crate) struct SmallerScene {
 }
 
 impl Scene {
-    /// The half of a symmetric scene below its plane of symmetry, which is normal to `axis` and goes through the middle of the body.
+    /// The half of a symmetric scene below its plane of symmetry, which is normal to `axis` and goes through the middle of all bodies.
     ///
     /// It moves as the whole scene does, as long as that stays symmetric: a column that buckles does not, nor does what is pushed
     /// by round-off out of an unstable place. Nodes on the plane slide in it ([`Phase::symmetry`](crate::Phase::symmetry)), with half of their loads, point masses and
     /// contact stiffness per node; the cut is no surface. Energies and forces are half of those of the whole scene.
     ///
-    /// Springs, cables, muscles, growths, chambers and orifices are each their own mirror images or that of another one that is driven alike, of which one is left. A
-    /// spring or cable in the plane has half of its forces, and the plane closes a chamber that it cuts, whose gas is half of the whole, as are flows.
+    /// Bodies, ties, touches, springs, cables, muscles, growths, chambers, orifices, pipes and fluids are each their own mirror images or that of another one that is
+    /// driven alike, of which one is left. A spring or cable in the plane has half of its forces, and the plane closes a chamber that it cuts, which has half of the gas
+    /// or liquid, as flows are half of those of the whole. Remanences of magnets and fields are mirrored as arrows are, or both with the other sign. A body that the
+    /// plane cuts touches what is on its own side: where surfaces touch at the plane and rise towards it, the part of facets beyond it is missing.
     ///
     /// ```
     /// use pliant::{Axis, Body, Cells, Material, Mesh, Obstacle, Phase, Scene};
@@ -96,8 +100,8 @@ impl Scene {
     /// # Errors
     /// Scenes that [`validate`](Self::validate) refuses. A mesh in which a node has no mirror image, or a cell lies
     /// across the plane; anything else that is not symmetric: materials, prescribed displacements, loads, pressures on
-    /// faces, gravity, the start, obstacles, actuators. Unsupported features: several bodies, fibrous materials, springs
-    /// that cross the plane, liquids, magnets, fluids, bodies that touch, forces that are not of this crate.
+    /// faces, gravity, the start, obstacles, components. Unsupported features: springs that cross the plane, bodies on both sides of it that touch or are tied,
+    /// rods, moments and followers, [devices](crate::Device) that do not say what they are in a half, forces that are not of this crate.
     pub fn symmetric_half(&self, axis: Axis) -> Result<Self, InputError> {
         Ok(self.by_map(self.map_across(Shrink::Half, axis, false)?)?.scene)
     }
@@ -147,10 +151,7 @@ impl Scene {
         is_upper: bool,
     ) -> Result<NodeMap, InputError> {
         match shrink {
-            Shrink::Half => {
-                self.body.single("a half")?;
-                self.body.mesh().half(axis.index(), is_upper)
-            }
+            Shrink::Half => NodeMap::half(&self.body.meshes(), axis.index(), is_upper),
             Shrink::Section => {
                 self.body.single("a section")?;
                 self.body.mesh().section(axis.index())
@@ -163,7 +164,7 @@ impl Scene {
         self.validate()?;
         let same = same::Same { scene: self, map: &map };
         let held = same::check(&same)?;
-        let (scene, plane) = made::made(&same, &held, &same.components()?)?;
+        let (scene, plane) = made::made(&same, &held)?;
         let axis = Axis::all(3)[map.axis];
         let kind = match plane {
             Some(plane) => Smaller::Plane { axis, plane },

@@ -30,8 +30,8 @@ const NO_SHARE: f64 = 1e-12;
 /// Nodes that are glued to the body with the name `to`, with the constraints of that, found once: they are of one mesh.
 #[derive(Debug, Clone)]
 pub(super) struct Tie {
-    nodes: Selection,
-    to: String,
+    pub(super) nodes: Selection,
+    pub(super) to: String,
     pub(super) constraints: Result<Arc<[Constraint]>, InputError>,
 }
 

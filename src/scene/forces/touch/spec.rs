@@ -158,8 +158,14 @@ impl Touch {
     }
 
     /// Whether it is of the body with this name.
-    pub(super) fn is_of(&self, name: &str) -> bool {
+    pub(crate) fn is_of(&self, name: &str) -> bool {
         self.bodies.is_empty() || self.bodies.iter().any(|body| body == name)
+    }
+
+    /// Its properties but for its name and its bodies, as a text.
+    pub(crate) fn likeness(&self) -> String {
+        let (name, bodies) = (String::new(), Vec::new());
+        format!("{:?}", Self { name, bodies, ..self.clone() })
     }
 
     /// Whether its distance is the default.

@@ -9,7 +9,6 @@ use std::sync::Arc;
 
 use super::super::start::Start;
 use super::super::{Input, LoadKind, Phase, Quantity, Scene};
-use super::components::Component;
 use super::same::{SAME, Same};
 use crate::base::input::InputError;
 use crate::base::vector::axes_across;
@@ -23,11 +22,7 @@ const SAME_PART: f64 = 1e-12;
 
 /// The smaller scene by a map, in plane strain or plane stress if it is a section; `held` are the nodes that are held along its axis in
 /// each phase.
-pub(super) fn made(
-    same: &Same,
-    held: &[Vec<bool>],
-    components: &[Component],
-) -> Result<(Scene, Option<Plane>), InputError> {
+pub(super) fn made(same: &Same, held: &[Vec<bool>]) -> Result<(Scene, Option<Plane>), InputError> {
     let (whole, map) = (same.scene, same.map);
     let plane = map.is_section().then(|| same.plane(held)).transpose()?;
     let body = whole.body.to_builder().by_map(map, plane)?.build()?;
@@ -42,14 +37,17 @@ pub(super) fn made(
         all.iter().filter_map(|obstacle| same.obstacle(obstacle, &[]).ok()).collect()
     };
     scene.obstacles = obstacles(&whole.obstacles);
-    same.keep(components, &mut scene)?;
+    let components = same.components()?;
+    same.keep(&components, &mut scene)?;
+    (scene.ties, scene.touches) = (same.ties()?, same.touches()?);
+    (scene.magnets, scene.devices) = (same.magnets()?, same.devices()?);
     let phases = whole.phases.iter().zip(held).map(|(phase, held)| {
         let mut own = phase.clone();
         own.gravity = phase.gravity.as_ref().map(|gravity| map.vector(gravity));
         own.constraints = same.constraints(phase, held)?;
         own.without_inputs(Quantity::is_known_of_parts);
         own.inputs.extend(same.loads(phase, &scene)?);
-        own.inputs.extend(same.driven(phase, components));
+        own.inputs.extend(same.driven(phase, &components));
         for (selection, pressure) in phase.face_pressures() {
             if let Some(nodes) = same.faces(selection, phase)? {
                 own = own.pressure_on(nodes, pressure.clone());

@@ -1,11 +1,13 @@
 //! Whether a scene is the same in its images: initial state, point masses, materials, and at 17 times of each phase prescribed motion
 //! and the sum of the loads.
 
-use super::super::{Phase, Scene};
+use std::iter;
+
+use super::super::{Phase, Quantity, Scene};
 use crate::base::input::{InputError, four_digits};
 use crate::base::vector::{distinct, largest};
-use crate::elements::mesh::{NodeMap, Selection};
-use crate::scene::constraint::{Axis, ConstraintRow, PhaseStart, prescribe};
+use crate::elements::mesh::{Mesh, NodeMap, Selection};
+use crate::scene::constraint::{Axis, ConstraintRow, PhaseStart, prescribe, rows};
 use crate::scene::forces::{Obstacle, Signal};
 
 /// Differences below this part of the largest value are round-off.
@@ -24,18 +26,14 @@ pub(super) fn check(same: &Same) -> Result<Vec<Vec<bool>>, InputError> {
     scene.body.refuse_around("half of the scene", format!("at a plane across {}", same.axis()))?;
     same.check_known(model)?;
     same.check_cells()?;
+    same.check_bodies()?;
     let (u, v) = (scene.initial_displacements(), scene.initial_velocities()?);
     let d = scene.body.dimension();
     same.check_field("initial displacements", u, 0..d)?;
     same.check_field("initial velocities", &v, 0..d)?;
     same.check_point_masses()?;
-    let (mut time, mut reached) = (0.0, u.to_vec());
-    let mut held = Vec::new();
-    for phase in &scene.phases {
-        held.push(same.check_phase(phase, time, &mut reached)?);
-        time = phase.until;
-    }
-    Ok(held)
+    let mut reached = u.to_vec();
+    same.phase_starts().map(|(phase, time)| same.check_phase(phase, time, &mut reached)).collect()
 }
 
 /// Times (s) of a phase that begins at `start` (s), at which things are compared.
@@ -50,7 +48,13 @@ pub(super) struct Same<'a> {
     pub(super) map: &'a NodeMap,
 }
 
-impl Same<'_> {
+impl<'s> Same<'s> {
+    /// The phases with the times (s) at which they start.
+    pub(super) fn phase_starts(&self) -> impl Iterator<Item = (&'s Phase, f64)> {
+        let phases = &self.scene.phases;
+        phases.iter().zip(iter::once(0.0).chain(phases.iter().map(|phase| phase.until)))
+    }
+
     fn axis(&self) -> &'static str {
         Axis::all(3)[self.map.axis].word()
     }
@@ -76,29 +80,27 @@ impl Same<'_> {
     /// Refuses what `model`, as in "a half", of is not known.
     fn check_known(&self, model: &str) -> Result<(), InputError> {
         let (scene, body) = (self.scene, &self.scene.body);
+        let is_section = self.map.is_section();
+        let of_section = |count: usize| if is_section { count } else { 0 };
+        let is_known = |quantity: Quantity| {
+            let is_set_by_halves = matches!(quantity, Quantity::Field | Quantity::Device(_));
+            quantity.is_known_of_parts() || (!is_section && is_set_by_halves)
+        };
         let inputs = scene.phases.iter().flat_map(|phase| &phase.inputs);
-        let of_section = |count: usize| if self.map.is_section() { count } else { 0 };
-        let unknown_inputs = inputs.filter(|input| !input.quantity.is_known_of_parts());
-        let actuators = scene.actuators.first();
+        let unknown_inputs = inputs.filter(|input| !is_known(input.quantity));
+        let actuators = scene.actuators.first().map_or("actuators", |own| own.kind().list);
+        let substances = || body.substances();
         let unknown = [
-            (
-                actuators.map_or("actuators", |own| own.kind().list),
-                of_section(scene.actuators.len()),
-            ),
-            ("magnets", scene.magnets.len()),
-            ("fluids", scene.fluids.len()),
-            ("chambers", of_section(scene.chambers.len())),
-            ("liquids in chambers", scene.liquids.len()),
-            ("touches", scene.touches.len()),
             ("moments, followers and other inputs of phases", unknown_inputs.count()),
-            ("ties", scene.ties.len()),
-            ("devices", scene.devices.len()),
             ("forces that are not of this crate", scene.forces.len()),
-            (
-                "rigid materials",
-                of_section(body.substances().filter(|made_of| made_of.is_rigid).count()),
-            ),
-            ("families of fibres", body.substances().map(|made_of| made_of.fibres.len()).sum()),
+            (actuators, of_section(scene.actuators.len())),
+            ("magnets", of_section(scene.magnets.len())),
+            ("fluids", of_section(scene.fluids.len())),
+            ("chambers", of_section(scene.chambers.len())),
+            ("touches", of_section(scene.touches.len())),
+            ("devices", of_section(scene.devices.len())),
+            ("rigid materials", of_section(substances().filter(|of| of.is_rigid).count())),
+            ("families of fibres", of_section(substances().map(|of| of.fibres.len()).sum())),
         ];
         match unknown.iter().find(|(_, count)| *count > 0) {
             Some((name, count)) => {
@@ -109,7 +111,7 @@ impl Same<'_> {
         }
     }
 
-    /// No cell lies across the plane of symmetry or in it, and cells have their images' materials.
+    /// No cell lies across the plane of symmetry or in it.
     fn check_cells(&self) -> Result<(), InputError> {
         let (map, body) = (self.map, &self.scene.body);
         for (number, cell) in (1..).zip(body.mesh().cells()) {
@@ -123,35 +125,7 @@ impl Same<'_> {
                 return Err(InputError::new("cell", number, help));
             }
         }
-        let made_of = body.substance_numbers();
-        if made_of.iter().all(|number| *number == made_of[0]) {
-            return Ok(());
-        }
-        let images = map.cell_images.as_ref();
-        let images = images.ok_or_else(|| self.refused("cells", "of several materials"))?;
-        let substances: Vec<_> = body.substances().collect();
-        let differs = |(cell, image): &(usize, &usize)| {
-            substances[made_of[*cell]] != substances[made_of[**image]]
-        };
-        match images.iter().enumerate().find(differs) {
-            Some((cell, _)) => Err(self.refused("material of cell", (cell + 1).to_string())),
-            None => Ok(()),
-        }
-    }
-
-    /// Point masses of halves have those of their images.
-    fn check_point_masses(&self) -> Result<(), InputError> {
-        let (body, map) = (&self.scene.body, self.map);
-        let masses = body.nodal_masses();
-        let mut points = body.to_builder().own_mesh().node_count()..masses.len();
-        let is_off = |node: &usize| {
-            let off = (masses[*node] - masses[map.images[*node]]).abs();
-            !map.is_section() && off > SAME * masses[*node]
-        };
-        match points.find(is_off) {
-            Some(node) => Err(self.refused("point masses", format!("of node {}", node + 1))),
-            None => Ok(()),
-        }
+        Ok(())
     }
 
     /// Refuses vectors at the nodes that differ from their images along some `axes`.
@@ -236,7 +210,7 @@ impl Same<'_> {
 
     /// Whether some nodes (from 0) have one in each place of a cell of a section.
     fn has_end_face(&self, nodes: &[usize]) -> bool {
-        let section = &self.map.mesh;
+        let Some(section) = &self.map.meshes[0] else { return false };
         // middles that stand for no node are there, too
         let mut is_there = vec![true; section.node_count()];
         self.map.numbers.iter().flatten().for_each(|&number| is_there[number] = false);
@@ -255,7 +229,9 @@ impl Same<'_> {
             self.scene.body.dimension(),
             format!("held and moved nodes of phase \"{}\"", phase.name),
         );
-        let rows = self.scene.rows(phase, &PhaseStart { time: times[0], u: reached })?;
+        // those of ties are looked at by themselves, and devices of halves have none
+        let start = PhaseStart { time: times[0], u: reached };
+        let rows = rows(phase.constraints.iter(), &self.scene.body, &phase.name, &start)?;
         let mut by_dof: Vec<Option<(&ConstraintRow, f64)>> = vec![None; reached.len()];
         for row in &rows {
             let Some((dof, coefficient)) = row.nodal() else {
@@ -309,9 +285,10 @@ impl Same<'_> {
             return Ok(own);
         }
         // what several nodes in one place have together
-        let mut counts = vec![0; map.mesh.node_count()];
+        let section = map.meshes.iter().flatten();
+        let mut counts = vec![0; section.clone().map(Mesh::node_count).sum()];
         map.numbers.iter().flatten().for_each(|&node| counts[node] += 1);
-        let mut counts = map.mesh.boundary_nodes().iter().map(|&node| counts[node]);
+        let mut counts = section.flat_map(Mesh::boundary_nodes).map(|&node| counts[node]);
         let count = counts.next().unwrap_or(1);
         if counts.all(|other| other == count) {
             return Ok(own.shared_out(f64::from(count)));
