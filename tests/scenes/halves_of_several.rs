@@ -91,7 +91,7 @@ fn blocks_that_touch_at_the_plane_move_as_their_half() {
         let touch = Touch::all().distance(2e-3).friction_coefficient(friction);
         Scene::new(body)
             .touch(touch)
-            .phase(Phase::until(0.003).hold("lower/bottom").load_total("upper/top", force))
+            .phase(Phase::until(0.005).hold("lower/bottom").load_total("upper/top", force))
     };
     let flat = joined([
         part("lower", 0.0, 0.0, [0.06, 0.02], [5, 2]),
