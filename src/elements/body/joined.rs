@@ -23,7 +23,7 @@ use super::recipe::Recipe;
 use super::rigid::RigidPieces;
 use crate::base::input::{InputError, find};
 use crate::base::sparse::{BlockMatrix, NodeMatrix};
-use crate::elements::material::{Material, Strain, Substance};
+use crate::elements::material::{Material, Strain};
 use crate::elements::mesh::Mesh;
 
 impl Joined {
@@ -165,7 +165,7 @@ impl Body {
     /// The options of a single body but for its name, materials and point masses, as a text.
     pub(crate) fn likeness(&self) -> String {
         let recipe = (*self.continua[0].recipe).clone();
-        let material = Substance::from(Material::rigid(0.0));
+        let material = Material::rigid(0.0);
         let (name, regions, points) = (None, Vec::new(), Vec::new());
         format!("{:?}", Recipe { name, material, regions, points, ..recipe })
     }

@@ -104,9 +104,9 @@ impl NodeMap {
             [&self.numbers, &self.cells].map(|all| all.iter().flatten().count());
         let is_on_plane = |node: usize| self.images[first + node] == first + node;
         let (mut numbers, mut kept) = (vec![None; mesh.node_count()], Vec::new());
-        for node in 0..numbers.len() {
+        for (node, number) in numbers.iter_mut().enumerate() {
             if is_on_plane(node) || self.is_kept(mesh.position(node)[self.axis]) {
-                numbers[node] = Some(kept.len());
+                *number = Some(kept.len());
                 kept.push(node);
             }
         }
