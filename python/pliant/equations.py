@@ -36,7 +36,7 @@ class Progress(NamedTuple):
 
 
 class How(NamedTuple):
-    """What makes a result of a run of the engine."""
+    """Facts by which a run of the engine becomes a result."""
 
     #: The kind of the unknowns.
     parts: object

@@ -99,7 +99,7 @@ pub struct Iterative {
     /// A function of the arguments of the equations and gamma or cj that returns another one, which solves the Newton
     /// system there approximately.
     pub preconditioner: Option<Py<PyAny>>,
-    /// What it has returned last.
+    /// Its last return value.
     pub prepared: Option<Py<PyAny>>,
 }
 

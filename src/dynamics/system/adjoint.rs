@@ -58,13 +58,6 @@ impl System {
     pub(crate) fn of_rows<'w>(&self, weights: &'w [f64]) -> &'w [f64] {
         self.parts(weights)[2]
     }
-
-    /// Adds `factor` A m.
-    fn add_rows(&self, factor: f64, of_rows: &[f64], out: &mut [f64]) {
-        for (row, m) in self.rows.iter().zip(of_rows) {
-            row.terms.iter().for_each(|&(dof, c)| out[dof] += factor * c * m);
-        }
-    }
 }
 
 impl Transposed for System {

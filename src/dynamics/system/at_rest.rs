@@ -391,9 +391,7 @@ impl AtRest {
     /// Largest component of f + A mu (N).
     pub(crate) fn residual(&self, f: &[f64], mu: &[f64], work: &mut [f64]) -> f64 {
         work.copy_from_slice(f);
-        for (row, mu) in self.system.rows.iter().zip(mu) {
-            row.terms.iter().for_each(|&(dof, c)| work[dof] += c * mu);
-        }
+        self.system.add_rows(1.0, mu, work);
         self.system.matrices.gather(work);
         largest(work)
     }

@@ -261,6 +261,13 @@ impl System {
         &self.rows
     }
 
+    /// Adds `factor` A m, m being multipliers of the rows.
+    pub(crate) fn add_rows(&self, factor: f64, of_rows: &[f64], out: &mut [f64]) {
+        for (row, m) in self.rows.iter().zip(of_rows) {
+            row.terms.iter().for_each(|&(dof, c)| out[dof] += factor * c * m);
+        }
+    }
+
     /// Starts the counts below from 0.
     pub(crate) fn forget_counts(&mut self) {
         self.newton.forget_counts();

@@ -12,6 +12,7 @@
 
 use crate::base::vector::{dot, largest};
 use crate::dynamics::equilibrium::Equilibrium;
+use crate::dynamics::phase::Failed;
 use crate::dynamics::simulate::{Linearized, Moved};
 use crate::dynamics::system::{AtRest, ForceBalance};
 use crate::dynamics::trajectory::Sample;
@@ -34,7 +35,7 @@ pub(super) struct Balanced {
 impl Balanced {
     /// # Errors
     /// Why there is no dual solution.
-    pub(super) fn new(found: &Equilibrium, quantity: &Quantity) -> Result<Self, String> {
+    pub(super) fn new(found: &Equilibrium, quantity: &Quantity) -> Result<Self, Failed> {
         let (scene, sample) = (found.trajectory().scene(), found.sample().clone());
         if !found.removed.is_empty() {
             return Err("nothing holds the body".into());
@@ -43,26 +44,21 @@ impl Balanced {
             let kinds = "positions, displacements, distances, angles between lines, centres of mass, volumes of chambers and constraint forces";
             format!("equilibria are linearized for {kinds}")
         })?;
-        let mut rest = scene.at_rest_in(sample.phase).map_err(|error| error.to_string())?;
+        let mut rest = scene.at_rest_in(sample.phase)?;
         let rows = rest.system().rows().to_vec();
         let here = Moved { scene, finer: None, rows: &rows, u: &sample.u };
-        let linearized = reading.linearized(scene, &sample, &here);
         let Linearized { by_displacements, by_multipliers, .. } =
-            linearized.map_err(|error| error.to_string())?;
+            reading.linearized(scene, &sample, &here)?;
         if !by_displacements.iter().chain(&by_multipliers).all(|x| x.is_finite()) {
             return Err("the reading has no derivative there".into());
         }
-        rest.update_tangent(1.0, &sample.u);
-        let (mut z, mut nu) = (vec![0.0; sample.u.len()], vec![0.0; rows.len()]);
-        let is_solved = rest.factorize_any()
-            && rest.solve_dual([&by_displacements, &by_multipliers], &mut z, &mut nu);
-        if !is_solved {
-            return Err("the tangent at the equilibrium cannot be inverted".into());
-        }
+        let [z, nu] = rest
+            .dual(&sample.u, [&by_displacements, &by_multipliers])
+            .ok_or("the tangent at the equilibrium cannot be inverted")?;
         let off = tangent_error(&mut rest, &sample.u, &z, scene.body().size());
-        match off.map_err(|failure| failure.into_error().to_string())? {
+        match off.map_err(Failure::into_error)? {
             off if off <= EXACT => Ok(Self { sample, z, nu }),
-            off => Err(format!("the tangent of its forces is off by {off:.0e} of it")),
+            off => Err(format!("the tangent of its forces is off by {off:.0e} of it").into()),
         }
     }
 
@@ -70,23 +66,19 @@ impl Balanced {
     ///
     /// # Errors
     /// Another number of unknowns; a scene that cannot be in these displacements.
-    pub(super) fn lagrangian(&self, file: &SceneFile, quantity: &Quantity) -> Result<f64, String> {
+    pub(super) fn lagrangian(&self, file: &SceneFile, quantity: &Quantity) -> Result<f64, Failed> {
         let Self { sample, z, nu } = self;
         let scene = &file.scene;
-        let mut rest: AtRest = scene.at_rest_in(sample.phase).map_err(|error| error.to_string())?;
+        let mut rest = scene.at_rest_in(sample.phase)?;
         if rest.system().dofs() != z.len() || rest.system().rows().len() != nu.len() {
             return Err("the scenes have different unknowns".into());
         }
         let mut balance = ForceBalance::zeros(z.len());
-        let evaluated = rest.evaluate(1.0, &sample.u, &mut balance);
-        evaluated.map_err(|failure| failure.into_error().to_string())?;
-        for (row, mu) in rest.system().rows().iter().zip(&sample.multipliers) {
-            row.terms.iter().for_each(|&(dof, c)| balance.total[dof] += c * mu);
-        }
+        rest.evaluate(1.0, &sample.u, &mut balance).map_err(Failure::into_error)?;
+        rest.system().add_rows(1.0, &sample.multipliers, &mut balance.total);
         let mut lacking = vec![0.0; nu.len()];
         rest.lacking(1.0, &sample.u, &mut lacking);
-        let reading = quantity.of_equilibrium(scene).and_then(|reading| reading.at(scene, sample));
-        let value = reading.map_err(|error| error.to_string())?;
+        let value = quantity.of_equilibrium(scene)?.at(scene, sample)?;
         Ok(value + dot(z, &balance.total) - dot(nu, &lacking))
     }
 }

@@ -9,6 +9,7 @@ use super::number::{Number, set};
 use super::objective::{self, Seen};
 use crate::base::input::InputError;
 use crate::dynamics::error::Error;
+use crate::dynamics::phase::Failed;
 use rayon::prelude::*;
 
 use crate::dynamics::simulate::{Sampling, Simulation, StepList, Tape};
@@ -38,7 +39,7 @@ pub(super) enum Target {
     LeastSquares(Box<SceneFit>),
 }
 
-/// What a run leaves for others by other numbers.
+/// The part of a run that others by other numbers need.
 pub(super) enum Record {
     Steps(StepList),
     /// With the states that the steps lead to, to be taken back.
@@ -202,7 +203,7 @@ impl Runs {
             Ok(seen) => {
                 costs.add(seen.steps);
                 if let Some(balanced) = balanced {
-                    let balanced = balanced.map_err(Stop::Unsuited)?;
+                    let balanced = balanced.map_err(|why| Stop::Unsuited(why.to_string()))?;
                     record = Some(Record::Equilibrium(Box::new(balanced)));
                 }
                 Ok((seen, record))
@@ -232,12 +233,11 @@ impl Runs {
                 costs.add_linearized(others.len());
                 let of = |(number, value): &(&Number, f64)| {
                     let set = [&self.overrides[..], &[set(&number.key, *value)]].concat();
-                    let file = self.reader.parse_with(&self.text, &self.path, &set);
-                    let file = file.map_err(|error| error.to_string())?;
-                    let quantity = objective::quantity(text, &file, true);
-                    balanced.lagrangian(&file, &quantity.map_err(|error| error.to_string())?)
+                    let file = self.reader.parse_with(&self.text, &self.path, &set)?;
+                    balanced.lagrangian(&file, &objective::quantity(text, &file, true)?)
                 };
-                others.par_iter().map(of).collect()
+                let all: Result<_, Failed> = others.par_iter().map(of).collect();
+                all.map_err(|why| why.to_string())
             }
             _ => Err(AT_THE_END.into()),
         }

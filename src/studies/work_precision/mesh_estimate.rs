@@ -120,15 +120,11 @@ impl MeshEstimate {
                 "ask for another component",
             ));
         }
-        rest.update_tangent(1.0, &u);
-        let (mut z, mut nu) = (vec![0.0; u.len()], vec![0.0; rows.len()]);
-        if !(rest.factorize_any()
-            && rest.solve_dual([&by_displacements, &by_multipliers], &mut z, &mut nu))
-        {
+        let Some([z, nu]) = rest.dual(&u, [&by_displacements, &by_multipliers]) else {
             let help =
                 "hold it so that it cannot move as a whole, load it less, or take a finer mesh";
             return Err(refused("with a tangent that cannot be inverted on a richer mesh", help));
-        }
+        };
         let mut lacking = vec![0.0; rows.len()];
         rest.lacking(1.0, &u, &mut lacking);
         let weighted = |f: &[f64], lacking: &[f64]| dot(&z, f) - dot(&nu, lacking);

@@ -25,6 +25,15 @@ impl AtRest {
         self.refine([f, d], x, mu, BlockMatrix::add_product)
     }
 
+    /// The dual solution z and nu of a quantity with the derivatives j by displacements and g by multipliers, at the displacements `u` under the
+    /// whole load, whose tangent is factorized; none if that cannot be inverted.
+    pub(crate) fn dual(&mut self, u: &[f64], of: [&[f64]; 2]) -> Option<[Vec<f64>; 2]> {
+        self.update_tangent(1.0, u);
+        let (mut z, mut nu) = (vec![0.0; u.len()], vec![0.0; self.system.rows.len()]);
+        let is_solved = self.factorize_any() && self.solve_dual(of, &mut z, &mut nu);
+        is_solved.then_some([z, nu])
+    }
+
     /// Solves the dual K^T z - A nu = j, A^T z = -g likewise: the step above has j . x + g . mu = z . f - nu . d.
     pub(crate) fn solve_dual(
         &mut self,
