@@ -6,10 +6,32 @@
 
 #![allow(clippy::needless_range_loop, reason = "indices that several arrays share read best")]
 
-use pulp::{Arch, Simd, WithSimd};
+use pulp::{Simd, WithSimd};
 
 use crate::base::lane::{Lane, SIDE_BY_SIDE};
 use crate::base::tensor::Real;
+
+/// Runs a loop with the widest registers that this machine has.
+///
+/// It is compiled for each kind of machine; by a compiler that is told of AVX2 (`-C target-cpu=x86-64-v3` or `native`), and not asked for
+/// kernels for AVX-512, for that one alone.
+pub(crate) fn at_once<O: WithSimd>(work: O) -> O::Output {
+    #[cfg(any(
+        feature = "avx512",
+        not(all(target_feature = "avx2", target_feature = "bmi2", target_feature = "fma"))
+    ))]
+    return pulp::Arch::new().dispatch(work);
+    #[cfg(all(
+        not(feature = "avx512"),
+        target_feature = "avx2",
+        target_feature = "bmi2",
+        target_feature = "fma"
+    ))]
+    match pulp::x86::V3::try_new() {
+        Some(simd) => Simd::vectorize(simd, work),
+        None => unreachable!("what is compiled for AVX2 runs where it is"),
+    }
+}
 
 /// A formula for each component by itself: it gives new numbers of `O` vectors, and terms of `P` sums.
 pub(crate) trait Formula<const I: usize, const O: usize, const P: usize> {
@@ -24,7 +46,7 @@ pub(crate) fn each<const I: usize, const O: usize, const P: usize>(
     from: [&[f64]; I],
     to: [&mut [f64]; O],
 ) -> [f64; P] {
-    Arch::new().dispatch(Pass::new(formula, from, to))
+    at_once(Pass::new(formula, from, to))
 }
 
 /// y += x

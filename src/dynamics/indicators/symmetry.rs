@@ -98,7 +98,7 @@ fn motion(body: &Body, samples: &[&Sample]) -> Option<f64> {
 /// the nodes of the mesh do not lie one behind the other along the axis.
 fn across(body: &Body, samples: &[&Sample], axis: usize) -> Option<f64> {
     let mesh = body.mesh();
-    let mut rows: HashMap<Place, Vec<usize>> = HashMap::new();
+    let mut rows: HashMap<RoundedPosition, Vec<usize>> = HashMap::new();
     for node in 0..mesh.node_count() {
         let mut place = mesh.position(node).to_vec();
         place[axis] = 0.0;
@@ -121,10 +121,10 @@ fn across(body: &Body, samples: &[&Sample], axis: usize) -> Option<f64> {
     Some(samples.iter().map(square).sum::<f64>().sqrt())
 }
 
-type Place = [i64; 3];
+type RoundedPosition = [i64; 3];
 
 /// A place, rounded to steps within which places count as the same.
-fn rounded(mesh: &Mesh, x: &[f64]) -> Place {
+fn rounded(mesh: &Mesh, x: &[f64]) -> RoundedPosition {
     let step = SAME * mesh.size();
     // with an offset, as round numbers may lie in the middle between two steps
     let number = |i: usize| x.get(i).map_or(0, |x| (x / step + 0.123).round() as i64);

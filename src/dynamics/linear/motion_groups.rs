@@ -50,12 +50,12 @@ pub(super) fn add_multiple(factor: f64, x: &[f64], y: &mut [f64]) {
 
 /// The group of a free degree of freedom, and its number there.
 #[derive(Clone, Copy)]
-pub(super) struct Place {
+pub(super) struct GroupMember {
     pub(super) group: usize,
     pub(super) dof: usize,
 }
 
-impl Place {
+impl GroupMember {
     /// The group, and how this degree of freedom moves in each of its motions.
     pub(super) fn of<'a>(
         self,
@@ -167,7 +167,7 @@ pub(super) fn grouped(
 /// The blocks of X, whose lower triangle has the `pattern`, and the lower triangle of B.
 pub(super) fn blocks(
     groups: &[Group],
-    places: &[Place],
+    places: &[GroupMember],
     pattern: &SymbolicSparseColMat<usize>,
 ) -> (Vec<Block>, SymbolicSparseColMat<usize>) {
     let mut numbers: HashMap<[usize; 2], usize> = HashMap::new();

@@ -24,7 +24,7 @@ use super::edges::Edges;
 use super::entry_source::EntrySource;
 use super::free_matrix::FreeMatrix;
 use super::general_rows::GeneralRows;
-use super::motion_groups::{Block, Frame, Group, Place, add_multiple, blocks, grouped};
+use super::motion_groups::{Block, Frame, Group, GroupMember, add_multiple, blocks, grouped};
 use super::simplex::{ByEdge, Nodal, Simplex, edge_between};
 use crate::base::vector::{dot, largest};
 
@@ -46,7 +46,7 @@ pub(super) struct RigidMotions {
     groups: Vec<Group>,
     frames: Vec<Frame>,
     /// That of each free degree of freedom.
-    places: Vec<Place>,
+    places: Vec<GroupMember>,
     blocks: Vec<Block>,
     /// B: where the columns of its lower triangle begin, their entries, and its factor.
     offsets: Vec<usize>,
@@ -79,10 +79,10 @@ impl RigidMotions {
         general: &mut GeneralRows,
     ) -> Self {
         let (groups, frames) = grouped(&matrix.free, frames, edges, dimension);
-        let mut places = vec![Place { group: 0, dof: 0 }; matrix.free.len()];
+        let mut places = vec![GroupMember { group: 0, dof: 0 }; matrix.free.len()];
         for (number, group) in groups.iter().enumerate() {
             for (dof, &at) in group.dofs.iter().enumerate() {
-                places[at] = Place { group: number, dof };
+                places[at] = GroupMember { group: number, dof };
             }
         }
         let (blocks, lower) = blocks(&groups, &places, &pattern);

@@ -7,7 +7,7 @@ use nalgebra::Vector3;
 
 use super::contact_gauge::ContactGauge;
 use super::output::Value;
-use super::reading::{Lever, OfContact, Place, Reading, ReadingKind};
+use super::reading::{FieldPoint, Lever, OfContact, Reading, ReadingKind};
 use super::rigid_fit::{RigidFit, Turning};
 use super::spot::Motion;
 use super::view::{View, mean};
@@ -274,17 +274,17 @@ fn line(scene: &Scene, ends: &[Selection; 2]) -> Result<[Vec<usize>; 2], InputEr
 /// Strain or stress at a place, with that of the `branches`.
 fn field(
     scene: &Scene,
-    place: &Place,
+    place: &FieldPoint,
     branches: Option<Branches>,
     tensor: fn(&NodalField) -> [[f64; 3]; 3],
 ) -> Result<Gauge, InputError> {
     let body = scene.body();
     let weights = match place {
-        Place::Nodes(nodes) => {
+        FieldPoint::Nodes(nodes) => {
             let nodes = body.mesh().select(nodes)?;
             nodes.iter().map(|&node| (node, 1.0 / nodes.len() as f64)).collect()
         }
-        Place::Point(x) => body.shares_at(x)?,
+        FieldPoint::Point(x) => body.shares_at(x)?,
     };
     let probe = body.probe(&weights);
     Ok(Box::new(move |view, sample| {

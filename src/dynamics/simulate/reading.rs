@@ -46,8 +46,8 @@ pub(super) enum ReadingKind {
     MagneticMoment,
     /// Of all nodes, or of these.
     FluidForce(String, Option<Selection>),
-    Stress(Place),
-    Strain(Place),
+    Stress(FieldPoint),
+    Strain(FieldPoint),
     Distance([Selection; 2]),
     Angle([[Selection; 2]; 2]),
     CentreOfMass,
@@ -88,7 +88,7 @@ pub(super) struct Lever {
 
 /// Where a field is read.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) enum Place {
+pub(super) enum FieldPoint {
     Nodes(Selection),
     Point(Vec<f64>),
 }
@@ -222,23 +222,23 @@ impl Reading {
     /// Stress at nodes (Pa), of the elastic law and of Maxwell branches, without viscosity: see
     /// [`Body::nodal_fields`](crate::Body::nodal_fields), which has that of the elastic law alone.
     pub fn stress(nodes: impl Into<Selection>) -> Self {
-        ReadingKind::Stress(Place::Nodes(nodes.into())).into()
+        ReadingKind::Stress(FieldPoint::Nodes(nodes.into())).into()
     }
 
     /// Stress (Pa) at the point of the body whose undeformed position is `x` (m): interpolated from the nodes
     /// around it by their shape functions.
     pub fn stress_at(x: impl Into<Vec<f64>>) -> Self {
-        ReadingKind::Stress(Place::Point(x.into())).into()
+        ReadingKind::Stress(FieldPoint::Point(x.into())).into()
     }
 
     /// Strain at nodes, as [`stress`](Self::stress).
     pub fn strain(nodes: impl Into<Selection>) -> Self {
-        ReadingKind::Strain(Place::Nodes(nodes.into())).into()
+        ReadingKind::Strain(FieldPoint::Nodes(nodes.into())).into()
     }
 
     /// Strain at a point, as [`stress_at`](Self::stress_at).
     pub fn strain_at(x: impl Into<Vec<f64>>) -> Self {
-        ReadingKind::Strain(Place::Point(x.into())).into()
+        ReadingKind::Strain(FieldPoint::Point(x.into())).into()
     }
 
     /// Distance (m) between nodes, or the middles of sets.

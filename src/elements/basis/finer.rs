@@ -22,14 +22,14 @@ pub(crate) struct Finer {
     first_child: Vec<usize>,
     /// The numbers of the nodes of the first mesh, and the place of every node in it.
     olds: Vec<usize>,
-    places: Vec<Place>,
+    places: Vec<NodeOrigin>,
     /// Node numbers by their places.
     numbers: BTreeMap<Corners, usize>,
     is_boundary: Vec<bool>,
 }
 
 /// Where a node is in the first mesh.
-struct Place {
+struct NodeOrigin {
     corners: Corners,
     /// Nodes of the first mesh with the values of their shape functions.
     shares: Vec<(usize, f64)>,
@@ -165,23 +165,23 @@ impl Finer {
             numbers: BTreeMap::new(),
             is_boundary: Vec::new(),
         };
-        let mut places: Vec<Option<Place>> = (0..old).map(|_| None).collect();
+        let mut places: Vec<Option<NodeOrigin>> = (0..old).map(|_| None).collect();
         let reference = nodes(mesh.kind());
         for cell in mesh.cells() {
             for (node, at) in cell.iter().zip(&reference) {
-                let place = Place::new(mesh.kind(), cell, at);
+                let place = NodeOrigin::new(mesh.kind(), cell, at);
                 finer.numbers.insert(place.corners.clone(), *node);
                 places[*node] = Some(place);
             }
         }
         // nodes of no cell keep their places
-        let placed = |(node, place): (_, Option<_>)| place.unwrap_or_else(|| Place::at(node));
+        let placed = |(node, place): (_, Option<_>)| place.unwrap_or_else(|| NodeOrigin::at(node));
         finer.places = places.into_iter().enumerate().map(placed).collect();
         let mut connectivity = Vec::new();
         for (number, cell) in mesh.cells().enumerate() {
             let children = children(number);
             for point in children.iter().flat_map(|child| with_mid_nodes(kind, child)) {
-                let place = Place::new(mesh.kind(), cell, &point);
+                let place = NodeOrigin::new(mesh.kind(), cell, &point);
                 let next = finer.places.len();
                 let number = *finer.numbers.entry(place.corners.clone()).or_insert(next);
                 if number == next {
@@ -249,7 +249,7 @@ impl Finer {
         let mut is_given = vec![false; self.olds.len()];
         nodes.iter().for_each(|&node| is_given[node] = true);
         let all_outside = nodes.iter().all(|&node| self.is_boundary[self.olds[node]]);
-        let between = |(place, &is_outside): (&Place, &bool)| {
+        let between = |(place, &is_outside): (&NodeOrigin, &bool)| {
             let is_between = place.corners.iter().all(|(corner, _)| is_given[*corner]);
             is_between && (is_outside || !all_outside)
         };
@@ -305,7 +305,7 @@ impl Finer {
     }
 }
 
-impl Place {
+impl NodeOrigin {
     /// That of a node of the first mesh.
     fn at(node: usize) -> Self {
         Self { corners: vec![(node, WHOLE as u32)], shares: vec![(node, 1.0)] }

@@ -48,7 +48,7 @@ pub(crate) use hexahedron::Hexahedron;
 pub(crate) use hexahedron20::Hexahedron20;
 pub(crate) use hexahedron27::Hexahedron27;
 pub(crate) use locate::{shares_at, shares_in};
-pub(crate) use nearest::{Place, nearest};
+pub(crate) use nearest::{NearestPoint, nearest};
 pub(crate) use quadrilateral::Quadrilateral;
 pub(crate) use quadrilateral8::Quadrilateral8;
 pub(crate) use quadrilateral9::Quadrilateral9;

@@ -7,14 +7,14 @@ use crate::elements::mesh::FaceKind;
 
 /// A place on a face, and the part of the face on which it is: its inside, an edge or a corner.
 #[derive(Debug, Clone)]
-pub(crate) struct Place {
+pub(crate) struct NearestPoint {
     /// The nodes of that part, by their numbers on the face.
     pub(crate) nodes: &'static [usize],
     kind: FaceKind,
     xi: [f64; 2],
 }
 
-impl Place {
+impl NearestPoint {
     fn inside(kind: FaceKind, count: usize, xi: [f64; 2]) -> Self {
         Self { nodes: &[0, 1, 2, 3, 4, 5, 6, 7, 8][..count], kind, xi }
     }
@@ -69,31 +69,31 @@ impl Place {
 
 /// The place of a face of a kind, with its nodes at `at`, that is nearest to `x`. Of a curved face that is the nearest one
 /// around the node that is nearest: another one may be nearer where `x` is farther away than the face is curved.
-pub(crate) fn nearest(kind: FaceKind, at: &[[f64; 3]], x: &[f64; 3]) -> Place {
+pub(crate) fn nearest(kind: FaceKind, at: &[[f64; 3]], x: &[f64; 3]) -> NearestPoint {
     match (kind, at) {
         (FaceKind::Segment3, [a, b, middle]) => on_parabola([a, b, middle], x),
         _ if is_affine(kind) => of_affine(kind, at, x),
         _ => match inside(kind, at, x) {
-            Some(xi) => Place::inside(kind, at.len(), xi),
+            Some(xi) => NearestPoint::inside(kind, at.len(), xi),
             None => on_rim(kind, at, x),
         },
     }
 }
 
 /// The nearest place on the edges of a face.
-fn on_rim(kind: FaceKind, at: &[[f64; 3]], x: &[f64; 3]) -> Place {
+fn on_rim(kind: FaceKind, at: &[[f64; 3]], x: &[f64; 3]) -> NearestPoint {
     let places = kind.edges().iter().map(|edge| {
-        let place = Place::on_edge(edge, at, x);
+        let place = NearestPoint::on_edge(edge, at, x);
         (place.distance(at, x), place)
     });
     let nearest = places.min_by(|(a, _), (b, _)| a.total_cmp(b));
-    nearest.map_or(Place::corner(0), |(_, place)| place)
+    nearest.map_or(NearestPoint::corner(0), |(_, place)| place)
 }
 
 /// The nearest place of an edge with a mid node, p_0 + p_1 xi + p_2 xi^2 from `x`. Half of its squared distance has a cubic
 /// as slope; where that changes its sign from one end to the other, its root is found by Newton's method, kept between
 /// places at which the slope has either sign.
-fn on_parabola([a, b, middle]: [&[f64; 3]; 3], x: &[f64; 3]) -> Place {
+fn on_parabola([a, b, middle]: [&[f64; 3]; 3], x: &[f64; 3]) -> NearestPoint {
     let p0 = difference(a, x);
     let p1: [f64; 3] = std::array::from_fn(|i| 4.0 * middle[i] - 3.0 * a[i] - b[i]);
     let p2: [f64; 3] = std::array::from_fn(|i| 2.0 * (a[i] + b[i] - 2.0 * middle[i]));
@@ -102,11 +102,11 @@ fn on_parabola([a, b, middle]: [&[f64; 3]; 3], x: &[f64; 3]) -> Place {
     let slope = |xi: f64| ((c3 * xi + c2) * xi + c1) * xi + c0;
     match (slope(0.0) < 0.0, slope(1.0) > 0.0) {
         (true, true) => {}
-        (true, false) => return Place::corner(1),
-        (false, true) => return Place::corner(0),
+        (true, false) => return NearestPoint::corner(1),
+        (false, true) => return NearestPoint::corner(0),
         (false, false) => {
             let away = |end: &[f64; 3]| norm(&difference(end, x));
-            return Place::corner(usize::from(away(b) < away(a)));
+            return NearestPoint::corner(usize::from(away(b) < away(a)));
         }
     }
     let (mut low, mut high, mut xi) = (0.0, 1.0, 0.5);
@@ -125,21 +125,21 @@ fn on_parabola([a, b, middle]: [&[f64; 3]; 3], x: &[f64; 3]) -> Place {
             break;
         }
     }
-    Place::inside(FaceKind::Segment3, 3, [xi, 0.0])
+    NearestPoint::inside(FaceKind::Segment3, 3, [xi, 0.0])
 }
 
 /// The nearest place of a point, straight segment or triangle.
-fn of_affine(kind: FaceKind, at: &[[f64; 3]], x: &[f64; 3]) -> Place {
+fn of_affine(kind: FaceKind, at: &[[f64; 3]], x: &[f64; 3]) -> NearestPoint {
     let shares = closest(at, x);
     let mut parts = (0..at.len()).filter(|&k| shares[k] != 0.0);
     match [parts.next(), parts.next(), parts.next()] {
-        [Some(node), None, _] => Place::corner(node),
-        [Some(_), Some(_), Some(_)] => Place::inside(kind, 3, [shares[1], shares[2]]),
+        [Some(node), None, _] => NearestPoint::corner(node),
+        [Some(_), Some(_), Some(_)] => NearestPoint::inside(kind, 3, [shares[1], shares[2]]),
         [Some(a), Some(b), None] if kind == FaceKind::Triangle => {
             const EDGES: [&[usize]; 3] = [&[0, 1], &[0, 2], &[1, 2]];
-            Place { nodes: EDGES[a + b - 1], kind: FaceKind::Segment, xi: [shares[b], 0.0] }
+            NearestPoint { nodes: EDGES[a + b - 1], kind: FaceKind::Segment, xi: [shares[b], 0.0] }
         }
-        _ => Place::inside(kind, at.len(), [shares[1], shares[2]]),
+        _ => NearestPoint::inside(kind, at.len(), [shares[1], shares[2]]),
     }
 }
 

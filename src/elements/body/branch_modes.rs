@@ -39,18 +39,18 @@ pub(super) trait BranchModal {
         at: [&[f64]; 2],
         shapes: &[&[f64]],
         first: usize,
-        found: &mut Found,
+        found: &mut ModeSet,
     );
 }
 
 /// The modes of all branches, as they are found.
-pub(super) struct Found {
+pub(super) struct ModeSet {
     modes: usize,
-    groups: Vec<FoundGroup>,
+    groups: Vec<ModeGroup>,
 }
 
 /// Those of one relaxation time: the components of internal strains by their numbers, with E_0 and the modes of each.
-struct FoundGroup {
+struct ModeGroup {
     time: f64,
     products: Strains<1>,
     numbers: Vec<usize>,
@@ -93,7 +93,7 @@ struct Group {
     strains: Vec<f64>,
 }
 
-impl Found {
+impl ModeSet {
     /// None yet, along so many shapes; of linear strains each shape has one mode, and pairs of shapes have none.
     pub(super) fn new(shapes: usize, are_linear: bool) -> Self {
         let modes = if are_linear { 1 + shapes } else { modes(shapes) };
@@ -101,13 +101,13 @@ impl Found {
     }
 
     /// The group of a relaxation time.
-    fn group(&mut self, time: f64) -> &mut FoundGroup {
+    fn group(&mut self, time: f64) -> &mut ModeGroup {
         let known = self.groups.iter().position(|own| own.time == time);
         let number = known.unwrap_or_else(|| {
             let zeros = Mat::zeros(self.modes, self.modes);
             let products = Strains::new(self.modes, [Some(zeros)]);
             let [start, rows] = [Vec::new(), Vec::new()];
-            self.groups.push(FoundGroup { time, products, numbers: Vec::new(), start, rows });
+            self.groups.push(ModeGroup { time, products, numbers: Vec::new(), start, rows });
             self.groups.len() - 1
         });
         &mut self.groups[number]
@@ -123,7 +123,7 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> BranchModal
         [origin, internal]: [&[f64]; 2],
         shapes: &[&[f64]],
         first: usize,
-        found: &mut Found,
+        found: &mut ModeSet,
     ) {
         let fields: Vec<&[[f64; D]]> = shapes.iter().map(|shape| shape.as_chunks().0).collect();
         let mut gradients = vec![[[0.0; D]; M]; shapes.len()];
@@ -198,9 +198,9 @@ fn symmetric<const M: usize, const D: usize>(
 
 impl BranchModes {
     /// Those that were found, along so many shapes.
-    pub(super) fn new(shapes: usize, found: Found) -> Self {
-        let Found { modes, groups } = found;
-        let group = |FoundGroup { time, products, numbers, start, rows }: FoundGroup| {
+    pub(super) fn new(shapes: usize, found: ModeSet) -> Self {
+        let ModeSet { modes, groups } = found;
+        let group = |ModeGroup { time, products, numbers, start, rows }: ModeGroup| {
             let [product] = products.done();
             let column = |mode: usize| rows.iter().skip(mode).step_by(modes).copied();
             Group {

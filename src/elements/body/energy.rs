@@ -4,13 +4,14 @@
 
 use std::ops::Range;
 
-use pulp::{Arch, Simd, WithSimd};
+use pulp::{Simd, WithSimd};
 
 use super::elements::{ElementsOf, gradient};
 use super::projection::Projected;
 use super::regions::Regions;
 use super::revolved::Revolved;
 use crate::base::lane::{Lane, SIDE_BY_SIDE};
+use crate::base::simd::at_once;
 use crate::elements::material::{CellLaw, Deformation, Elastic};
 
 impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<N, M, D, Q> {
@@ -35,7 +36,7 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<
         u: &[f64],
         sum: f64,
     ) -> f64 {
-        Arch::new().dispatch(Pass { elements: self, cells, u, law, sum })
+        at_once(Pass { elements: self, cells, u, law, sum })
     }
 }
 

@@ -16,13 +16,14 @@
 
 use std::ops::Range;
 
-use pulp::{Arch, Simd, WithSimd};
+use pulp::{Simd, WithSimd};
 
 use super::contiguous::{self, Vectors};
 use super::elements::{ElementsOf, gradients};
 use super::projection::Projected;
 use super::regions::{Laws, Regions};
 use crate::base::lane::{Lane, SIDE_BY_SIDE};
+use crate::base::simd::at_once;
 use crate::base::tensor::{Matrix, Real};
 use crate::elements::force::NodalForces;
 use crate::elements::material::{
@@ -175,7 +176,7 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<
         forces: &mut [f64],
         pull: impl StressTerm<K>,
     ) -> Result<(), Failure> {
-        Arch::new().dispatch(Pass { elements: self, cells, fields, first, forces, pull })
+        at_once(Pass { elements: self, cells, fields, first, forces, pull })
     }
 
     /// Fails with a message about the first of `cells` that is outside the domain of its law.

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use nalgebra::Matrix3;
 
 use super::assembly::Elements;
-use super::branch_modes::{BranchModes, Found};
+use super::branch_modes::{BranchModes, ModeSet};
 use super::branch_state::{BranchCells, BranchState};
 use super::continuum::Continuum;
 use super::fields::Probe;
@@ -82,7 +82,7 @@ impl Branches {
     /// The branches along `shapes` from displacements `origin` (m) and internal strains on.
     pub(crate) fn modes(&self, origin: &[f64], strains: &[f64], shapes: &[&[f64]]) -> BranchModes {
         let mut all = self.bodies.iter().flat_map(|body| body.regions.branches());
-        let mut found = Found::new(shapes.len(), !all.any(Relaxing::is_quadratic));
+        let mut found = ModeSet::new(shapes.len(), !all.any(Relaxing::is_quadratic));
         for OfBody { elements, regions, internal, .. } in &self.bodies {
             let at = [origin, &strains[internal.clone()]];
             elements.add_branch_modes(regions, at, shapes, internal.start, &mut found);

@@ -11,12 +11,11 @@
 
 use std::ops::Range;
 
-use pulp::Arch;
-
 use super::elements::{ElementsOf, pairs};
 use super::forces::Terms;
 use super::projection::COEFFICIENTS;
 use super::regions::{Laws, Regions};
+use crate::base::simd::at_once;
 use crate::base::sparse::{BlockMatrix, Rows};
 use crate::base::tensor::{Matrix, times};
 use crate::elements::material::{Blocks, Deformation, Elastic, ObjectiveViscosity, ViscousLaw};
@@ -188,7 +187,7 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<
         fields: [&[f64]; K],
         slope: impl TangentTerm<K>,
     ) {
-        Arch::new().dispatch(Pass { elements: self, rows, cells, fields, slope });
+        at_once(Pass { elements: self, rows, cells, fields, slope });
     }
 }
 

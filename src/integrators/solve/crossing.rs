@@ -23,7 +23,7 @@ use crate::integrators::{
 };
 
 /// Events within a step.
-pub(super) enum Found {
+pub(super) enum StepEvents {
     /// Events that stop it, all at one time; or none.
     Jumps(Vec<(usize, Root)>),
     /// The event of this number accumulates where the step began.
@@ -34,7 +34,7 @@ impl<'a> Run<'a> {
     /// Finds the events of the step that has just been made, up to `t`, and records them. Returns those that
     /// stop the step, which are recorded last. `is_last` says that the next step, if any, does not continue
     /// from there, but starts at a break.
-    pub(super) fn look_for_events(&mut self, t: f64, is_last: bool) -> Result<Found, Reason> {
+    pub(super) fn look_for_events(&mut self, t: f64, is_last: bool) -> Result<StepEvents, Reason> {
         let mut seen = mem::take(&mut self.seen);
         seen.fill(Seen::default());
         let found = self.look_for_roots((t, is_last), &mut seen);
@@ -42,13 +42,17 @@ impl<'a> Run<'a> {
         found
     }
 
-    fn look_for_roots(&mut self, up_to: (f64, bool), seen: &mut [Seen]) -> Result<Found, Reason> {
+    fn look_for_roots(
+        &mut self,
+        up_to: (f64, bool),
+        seen: &mut [Seen],
+    ) -> Result<StepEvents, Reason> {
         let tolerance = time_tolerance(up_to.0 - self.span.0, up_to.0 - self.t);
         for (i, seen) in seen.iter_mut().enumerate() {
             self.watches[i].begin_step(self.t, self.sign);
             let sight = self.search(i, up_to, tolerance, &mut seen.undefined)?;
             if let Sight::Passage(turn) = sight {
-                return Ok(Found::Accumulation(i, turn));
+                return Ok(StepEvents::Accumulation(i, turn));
             }
             seen.root = sight.root();
         }
@@ -63,7 +67,7 @@ impl<'a> Run<'a> {
                 }
             }
             if first == f64::INFINITY {
-                return Ok(Found::Jumps(Vec::new()));
+                return Ok(StepEvents::Jumps(Vec::new()));
             }
             let mut met: Vec<(usize, Root)> = Vec::new();
             for (i, seen) in seen.iter().enumerate() {
@@ -92,7 +96,7 @@ impl<'a> Run<'a> {
                 self.occurred.push(occurrence);
             }
             if stops || self.switches(&met, at, &y)? {
-                return Ok(Found::Jumps(met));
+                return Ok(StepEvents::Jumps(met));
             }
             for (i, _) in met {
                 let Seen { root, undefined } = &mut seen[i];

@@ -7,7 +7,7 @@ use std::{
 };
 
 use super::{
-    crossing::Found,
+    crossing::StepEvents,
     error::Reason,
     problem::Progress,
     run::{Run, Step},
@@ -45,10 +45,10 @@ impl Run<'_> {
         let at_break = self.is_before_break(t);
         self.note_step()?;
         let jumps = match self.look_for_events(t, at_break || t == end)? {
-            Found::Jumps(jumps) => jumps,
+            StepEvents::Jumps(jumps) => jumps,
             // the step passes through zero, where the action should have turned the solution back: a jump
             // replaces it
-            Found::Accumulation(event, turn) => {
+            StepEvents::Accumulation(event, turn) => {
                 self.accumulate(event, turn)?;
                 self.t_old = self.t;
                 return Ok(Some(self.made_step()));

@@ -21,7 +21,7 @@ use self::assembly::Assembly;
 use self::force::JointForce;
 use self::geometry::{Gear, Geometry, Ratio};
 pub use self::kind::JointKind;
-use self::law::Law;
+use self::law::JointLaw;
 use self::side::is_world;
 use crate::base::input::InputError;
 use crate::elements::body::Body;
@@ -61,7 +61,7 @@ use crate::scene::timeline::{
 #[derive(Debug, Clone)]
 pub struct Joint {
     geometry: Geometry,
-    law: Law,
+    law: JointLaw,
 }
 
 /// Lists of a phase in scene files, and the key of a joint in them.
@@ -148,7 +148,7 @@ impl Joint {
                 bearing: None,
                 gear: None,
             },
-            law: Law::default(),
+            law: JointLaw::default(),
         }
     }
 

@@ -15,7 +15,7 @@ mod tests;
 use switches::SwitchStates;
 
 use super::friction::{Backward, Coulomb, Drag};
-use super::obstacle::{Law, Obstacle};
+use super::obstacle::{Obstacle, PenaltyLaw};
 use super::passage::{Path, deepest, is_passed};
 use super::shape::Nearest;
 use super::signal::finite_at;
@@ -47,7 +47,7 @@ struct ContactPoint {
     on: SurfacePoint,
     /// Natural position; components beyond the dimension are 0.
     natural: [f64; 3],
-    law: Law,
+    law: PenaltyLaw,
 }
 
 /// One point inside an obstacle.

@@ -45,10 +45,10 @@ use crate::integrators::ode::Failure;
 /// # Ok::<(), pliant::Error>(())
 /// ```
 #[derive(Debug, Clone)]
-pub struct Lag(Law);
+pub struct Lag(LagLaw);
 
 #[derive(Debug, Clone)]
-enum Law {
+enum LagLaw {
     Times { rise: f64, fall: f64 },
     Activation { rise: f64, fall: f64 },
     Heat { capacity: f64, loss: f64, per_kelvin: f64 },
@@ -62,7 +62,7 @@ impl Lag {
 
     /// A first-order lag with a time (s) for commands above the state, and one for those below.
     pub fn rise_and_fall(rise: f64, fall: f64) -> Self {
-        Self(Law::Times { rise, fall })
+        Self(LagLaw::Times { rise, fall })
     }
 
     /// The activation a of a muscle with [Hill's law](crate::Hill), by its excitation e, both from 0 to 1: its stress is a times the largest, and the command e times
@@ -71,7 +71,7 @@ impl Lag {
     /// T is `rise` (0.5 + 1.5 a) where e > a, and `fall`/(0.5 + 1.5 a) where it is not (s): calcium is released faster than it is taken up again. 0.015 s and
     /// 0.05 s are usual (D. G. Thelen, Journal of Biomechanical Engineering 125 (2003) 70-77).
     pub fn activation(rise: f64, fall: f64) -> Self {
-        Self(Law::Activation { rise, fall })
+        Self(LagLaw::Activation { rise, fall })
     }
 
     /// An actuator that is driven by its warmth: a shape memory alloy, a coiled thread of nylon, a layer that expands.
@@ -80,7 +80,7 @@ impl Lag {
     /// `capacity` (J/K) theta' = P - `loss` (W/K) theta. The actuator is driven by `per_kelvin` theta: a force (N/K, below 0 where a spring contracts), a tension, a
     /// length of a winch (m/K), a stress (Pa/K), a strain (1/K). (M. C. Yip, G. Niemeyer, IEEE Transactions on Robotics 33 (2017) 689-699, for coiled threads.)
     pub fn heated(capacity: f64, loss: f64, per_kelvin: f64) -> Self {
-        Self(Law::Heat { capacity, loss, per_kelvin })
+        Self(LagLaw::Heat { capacity, loss, per_kelvin })
     }
 
     /// # Errors
@@ -88,11 +88,11 @@ impl Lag {
     pub(crate) fn validate(&self, actuator: &str) -> Result<(), InputError> {
         let input = |key: &str| format!("lag of \"{actuator}\" {key}");
         match self.0 {
-            Law::Times { rise, fall } | Law::Activation { rise, fall } => {
+            LagLaw::Times { rise, fall } | LagLaw::Activation { rise, fall } => {
                 positive(&input("rise"), rise, "s")?;
                 positive(&input("fall"), fall, "s")?;
             }
-            Law::Heat { capacity, loss, per_kelvin } => {
+            LagLaw::Heat { capacity, loss, per_kelvin } => {
                 positive(&input("capacity"), capacity, "J/K")?;
                 positive(&input("loss"), loss, "W/K")?;
                 finite(&input("per_kelvin"), &[per_kelvin])?;
@@ -107,21 +107,21 @@ impl Lag {
 
     /// Whether it is the activation of a muscle, which needs Hill's law.
     pub(crate) fn is_activation(&self) -> bool {
-        matches!(self.0, Law::Activation { .. })
+        matches!(self.0, LagLaw::Activation { .. })
     }
 
     /// Steady-state input of the actuator under a command of 1.
     pub(crate) fn gain(&self) -> f64 {
         match self.0 {
-            Law::Times { .. } | Law::Activation { .. } => 1.0,
-            Law::Heat { loss, per_kelvin, .. } => per_kelvin / loss,
+            LagLaw::Times { .. } | LagLaw::Activation { .. } => 1.0,
+            LagLaw::Heat { loss, per_kelvin, .. } => per_kelvin / loss,
         }
     }
 
     /// Actuation per kelvin of temperature rise, if the actuator is heated.
     pub(crate) fn per_kelvin(&self) -> Option<f64> {
         match self.0 {
-            Law::Heat { per_kelvin, .. } => Some(per_kelvin),
+            LagLaw::Heat { per_kelvin, .. } => Some(per_kelvin),
             _ => None,
         }
     }
@@ -130,7 +130,7 @@ impl Lag {
     #[cfg(feature = "play")]
     pub(crate) fn loss(&self) -> Option<f64> {
         match self.0 {
-            Law::Heat { loss, .. } => Some(loss),
+            LagLaw::Heat { loss, .. } => Some(loss),
             _ => None,
         }
     }
@@ -139,18 +139,18 @@ impl Lag {
     pub(crate) fn rate(&self, drives: f64, state: f64, full: f64) -> f64 {
         let apart = drives - state;
         let time = match self.0 {
-            Law::Times { rise, fall } => {
+            LagLaw::Times { rise, fall } => {
                 if apart > 0.0 {
                     rise
                 } else {
                     fall
                 }
             }
-            Law::Activation { rise, fall } => {
+            LagLaw::Activation { rise, fall } => {
                 let slowing = 0.5 + 1.5 * (state / full).clamp(0.0, 1.0);
                 if apart > 0.0 { rise * slowing } else { fall / slowing }
             }
-            Law::Heat { capacity, loss, .. } => capacity / loss,
+            LagLaw::Heat { capacity, loss, .. } => capacity / loss,
         };
         apart / time
     }

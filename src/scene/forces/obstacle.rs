@@ -74,7 +74,7 @@ enum Stiffness {
 
 /// The numbers of the law, for one point.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Law {
+pub(super) struct PenaltyLaw {
     /// K_p (N/m)
     pub(super) stiffness: f64,
     /// B_p (N s/m)
@@ -83,7 +83,7 @@ pub(super) struct Law {
     pub(super) tangential_damping: f64,
 }
 
-impl Law {
+impl PenaltyLaw {
     /// K_p d + B_p d': the normal force (N), above 0 where it pulls.
     pub(super) fn pull(&self, distance: f64, rate: f64) -> f64 {
         self.stiffness * distance + self.damping * rate
@@ -468,9 +468,9 @@ impl Obstacle {
     }
 
     /// The law for a point that stands for `area` (m^2; 1 for a node).
-    pub(super) fn law(&self, area: f64) -> Law {
+    pub(super) fn law(&self, area: f64) -> PenaltyLaw {
         let (stiffness, _) = self.given_stiffness();
-        Law {
+        PenaltyLaw {
             stiffness: area * stiffness,
             damping: area * self.damping,
             tangential_damping: area * self.tangential_damping,

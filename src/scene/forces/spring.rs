@@ -79,10 +79,10 @@ enum Kind {
 
 /// A place on the path of a [cable](Spring::cable): nodes that it is led by, a place in the body, or a fixed point of space.
 #[derive(Debug, Clone)]
-pub struct Guide(Place);
+pub struct Guide(GuidePoint);
 
 #[derive(Debug, Clone)]
-enum Place {
+enum GuidePoint {
     Nodes(Selection),
     Inside(Vec<f64>),
     Point(Vec<f64>),
@@ -92,7 +92,7 @@ impl Guide {
     /// Nodes of the body: numbers in their order, those of a set or a box by their distance from the place before them, or
     /// from the first of them.
     pub fn nodes(nodes: impl Into<Selection>) -> Self {
-        Self(Place::Nodes(nodes.into()))
+        Self(GuidePoint::Nodes(nodes.into()))
     }
 
     /// The place in the body, within a cell or on its surface, whose undeformed position is `place` (m). It moves with the body, whatever
@@ -116,12 +116,12 @@ impl Guide {
     /// # Ok::<(), pliant::Error>(())
     /// ```
     pub fn inside(place: impl Into<Vec<f64>>) -> Self {
-        Self(Place::Inside(place.into()))
+        Self(GuidePoint::Inside(place.into()))
     }
 
     /// A `point` of space (m), which stays where it is.
     pub fn point(point: impl Into<Vec<f64>>) -> Self {
-        Self(Place::Point(point.into()))
+        Self(GuidePoint::Point(point.into()))
     }
 }
 
@@ -262,7 +262,7 @@ impl Spring {
                 _ => self.input(&format!("second {key}")),
             };
             match place {
-                Place::Nodes(selection) => {
+                GuidePoint::Nodes(selection) => {
                     let mut nodes = mesh.select(selection)?;
                     if !self.is_cable() && nodes.len() != 1 {
                         let help = format!("it selects {} nodes: an end is one node", nodes.len());
@@ -278,7 +278,7 @@ impl Spring {
                         |node| LinePoint { at: natural(mesh, node), shares: vec![(node, 1.0)] };
                     joints.extend(nodes.into_iter().map(joint));
                 }
-                Place::Inside(point) | Place::Point(point) => {
+                GuidePoint::Inside(point) | GuidePoint::Point(point) => {
                     let given = || format!("{point:?}");
                     if point.len() != mesh.dimension() {
                         let help = format!("it needs {} coordinates (m)", mesh.dimension());
@@ -286,7 +286,7 @@ impl Spring {
                     }
                     finite(&input("end"), point)?;
                     let shares = match place {
-                        Place::Inside(place) => shares_at(mesh, place).ok_or_else(|| {
+                        GuidePoint::Inside(place) => shares_at(mesh, place).ok_or_else(|| {
                             let help = "it lies outside the body: give the undeformed position of one of its points";
                             InputError::new(input("end"), given(), help)
                         })?,
@@ -363,11 +363,11 @@ impl Spring {
     ///
     /// # Errors
     /// As [`joints`](Self::joints); places that follow each other and are the same; numbers out of range.
-    fn law(&self, mesh: &Mesh) -> Result<Law, InputError> {
+    fn law(&self, mesh: &Mesh) -> Result<Pull, InputError> {
         let path = self.checked(mesh)?;
         let (stiffness, damping) = (self.stiffness, self.damping);
         let Kind::Cable { is_winch, friction } = self.kind else {
-            return Ok(Law::Spring(Elastic { path, stiffness, damping }));
+            return Ok(Pull::Spring(Elastic { path, stiffness, damping }));
         };
         friction.validate(&|key| self.input(key))?;
         if is_winch && stiffness == 0.0 {
@@ -375,7 +375,7 @@ impl Spring {
             return Err(InputError::new(self.input("stiffness"), "0 N/m", help));
         }
         let friction = if friction.acts() { friction.coulomb(path.length) } else { None };
-        Ok(Law::Cable(Cable { path, stiffness, damping, is_winch, friction }))
+        Ok(Pull::Cable(Cable { path, stiffness, damping, is_winch, friction }))
     }
 
     /// The forces of the spring, driven by the sum of the signals `actuation`.
@@ -388,9 +388,9 @@ impl Spring {
         actuation: Vec<Signal>,
     ) -> Result<Vec<Arc<dyn Force>>, InputError> {
         Ok(match self.law(mesh)? {
-            Law::Cable(cable) => vec![Arc::new(CableForce { cable, drive: actuation })],
-            Law::Spring(elastic) if actuation.is_empty() => vec![Arc::new(elastic)],
-            Law::Spring(elastic) => {
+            Pull::Cable(cable) => vec![Arc::new(CableForce { cable, drive: actuation })],
+            Pull::Spring(elastic) if actuation.is_empty() => vec![Arc::new(elastic)],
+            Pull::Spring(elastic) => {
                 let actuator = Driven { path: elastic.path.clone(), force: actuation };
                 vec![Arc::new(elastic), Arc::new(actuator)]
             }
@@ -398,12 +398,12 @@ impl Spring {
     }
 }
 
-enum Law {
+enum Pull {
     Spring(Elastic),
     Cable(Cable),
 }
 
-impl Law {
+impl Pull {
     /// Length (m) under the displacements `u`.
     fn length(&self, u: &[f64]) -> f64 {
         let (Self::Spring(Elastic { path, .. }) | Self::Cable(Cable { path, .. })) = self;
@@ -497,7 +497,7 @@ impl Actuator for Spring {
 
     fn mapped(&self, map: &ComponentMap<'_>) -> Result<Arc<dyn Actuator>, InputError> {
         let path = self.path.iter().map(|Guide(place)| match place {
-            Place::Nodes(nodes) => (map.nodes)(nodes).map(Guide::nodes),
+            GuidePoint::Nodes(nodes) => (map.nodes)(nodes).map(Guide::nodes),
             other => Ok(Guide(other.clone())),
         });
         let (stiffness, damping) = (map.share * self.stiffness, map.share * self.damping);

@@ -8,7 +8,7 @@
 //! ```
 //!
 //! with the part p that the points of its surface have, the distances d_i from the facets (segments in the plane, triangles
-//! in space), edges and corners of the other surface, and the [law](law::Law) phi, 0 from
+//! in space), edges and corners of the other surface, and the [law](law::NormalLaw) phi, 0 from
 //! the contact distance on. The weights are those of inclusion and
 //! exclusion: 1 for a facet, 1 less the number of its facets for an edge, and what makes the sum 1 for a corner. Where
 //! the surface is flat or convex all terms but that of the nearest point cancel, so that a point which slides over an

@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 use std::path::PathBuf;
 
 use super::advice::{Advice, Candidate};
-use super::found::Found;
+use super::evidence::Evidence;
 use super::runs::Runs;
 use super::search::{Request, Search, Solved, Stop};
 use crate::base::input::{Fraction, InputError, positive};
@@ -105,8 +105,8 @@ impl<'a> Adviser<'a> {
         let runs = Runs::open(self.file.as_deref())?;
         let look = Look::of(self.scene, settings, LOOK.min(LOOK_SHARE * budget))?;
         let mut search = Search::new(&self.request, self.scene, runs, observer);
-        let (mut found, mut is_cut_short) = (Found::default(), false);
-        let mut climb = |search: &mut Search, found: &mut Found| match search.climb(found) {
+        let (mut found, mut is_cut_short) = (Evidence::default(), false);
+        let mut climb = |search: &mut Search, found: &mut Evidence| match search.climb(found) {
             Ok(()) => Ok(()),
             Err(Stop::Trouble(error)) => Err(error),
             Err(Stop::Budget | Stop::Interrupted) => {
@@ -120,14 +120,14 @@ impl<'a> Adviser<'a> {
             // once more, for the part that can be known
             search.scene = self.scene.clone().ended_at(KNOWN * until);
             let known_until = found.known_until;
-            found = Found::default();
+            found = Evidence::default();
             climb(&mut search, &mut found)?;
             found.known_until = known_until;
         }
         Ok(Advice { look: Some(look), ..self.advice(search, found, is_cut_short)? })
     }
 
-    fn advice(&self, search: Search, found: Found, is_cut_short: bool) -> Result<Advice, Error> {
+    fn advice(&self, search: Search, found: Evidence, is_cut_short: bool) -> Result<Advice, Error> {
         let truth = found.truth();
         let named = |candidate: Candidate| {
             let set = candidate.choice.overrides(self.scene, &self.request.settings);

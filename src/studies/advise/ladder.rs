@@ -14,7 +14,7 @@
 use std::iter;
 
 use super::choice::{Choice, RicherCells};
-use super::found::Found;
+use super::evidence::Evidence;
 use super::search::{Cut, Search, Solved, Stop};
 use crate::dynamics::equilibrium::MeshEstimate;
 use crate::elements::body::{Inertia, Strain};
@@ -53,7 +53,7 @@ pub(super) const PATIENCE: f64 = 2.0;
 
 impl Search<'_> {
     /// Runs all stages, until everything is known or there is no more time.
-    pub(super) fn climb(&mut self, found: &mut Found) -> Result<(), Stop> {
+    pub(super) fn climb(&mut self, found: &mut Evidence) -> Result<(), Stop> {
         let written = Choice::written(&self.scene, &self.request.settings);
         found.written = self.run(&written)?;
         let Some(tight) = self.tight(&written, found)? else { return Ok(()) };
@@ -83,7 +83,7 @@ impl Search<'_> {
     }
 
     /// The model as it was written with hardly any error of the integration. `None` if it has no such motion.
-    fn tight(&mut self, written: &Choice, found: &mut Found) -> Result<Option<Solved>, Stop> {
+    fn tight(&mut self, written: &Choice, found: &mut Evidence) -> Result<Option<Solved>, Stop> {
         let accuracy = self.request.accuracy;
         let mut rtol = tightening::first(accuracy);
         let mut before: Option<Solved> = None;
@@ -127,7 +127,7 @@ impl Search<'_> {
     }
 
     /// Finds an alpha of which ten times as much makes no significant change.
-    fn alpha(&mut self, tight: Solved, found: &mut Found) -> Result<Solved, Stop> {
+    fn alpha(&mut self, tight: Solved, found: &mut Evidence) -> Result<Solved, Stop> {
         let has_rows = self.scene.phases().iter().any(|phase| !phase.constraints.is_empty());
         let mut firm = tight;
         while has_rows && firm.choice.settings.alpha < FIRMEST {
@@ -149,7 +149,7 @@ impl Search<'_> {
 
     /// Finds the run with the measure of strain that is right however far cells turn, and what the other one
     /// changes.
-    fn law(&mut self, firm: Solved, found: &mut Found) -> Result<Solved, Stop> {
+    fn law(&mut self, firm: Solved, found: &mut Evidence) -> Result<Solved, Stop> {
         let strain = match firm.choice.strain {
             Strain::Cauchy => Strain::Green,
             // rigid pieces turn
@@ -170,7 +170,7 @@ impl Search<'_> {
 
     /// The run with consistent inertia, if it was written lumped: what that changes is an error of the model, which an error of the
     /// mesh may hide.
-    fn consistent(&mut self, rich: Solved, found: &mut Found) -> Result<Solved, Stop> {
+    fn consistent(&mut self, rich: Solved, found: &mut Evidence) -> Result<Solved, Stop> {
         if rich.choice.inertia == Inertia::Consistent {
             return Ok(rich);
         }
@@ -184,7 +184,7 @@ impl Search<'_> {
     /// Runs finer meshes, until the finest show that they are fine enough, or take too long. Three of one kind have to show it:
     /// two may agree by chance. Where halving all cells takes too long, triangles and tetrahedra are divided where their strains
     /// jump most.
-    fn refine(&mut self, rich: &Solved, found: &mut Found) -> Result<(), Stop> {
+    fn refine(&mut self, rich: &Solved, found: &mut Evidence) -> Result<(), Stop> {
         if !self.scene.body().is_single() {
             found.not_tried.push(OF_SEVERAL.into());
             return Ok(());
@@ -218,12 +218,12 @@ impl Search<'_> {
     }
 
     /// Whether the finest mesh is known to be fine enough.
-    fn is_fine(&self, found: &Found) -> bool {
+    fn is_fine(&self, found: &Evidence) -> bool {
         found.has_rate() && found.resolution() < OF_TRUTH * self.request.accuracy
     }
 
     /// Runs the mesh of a `choice`. False if there is no such mesh, or no time for it.
-    fn run_mesh(&mut self, choice: &Choice, found: &mut Found) -> Result<bool, Stop> {
+    fn run_mesh(&mut self, choice: &Choice, found: &mut Evidence) -> Result<bool, Stop> {
         let Some(last) = found.truth() else { return Ok(false) };
         let scene = match choice.scene(&self.scene) {
             Ok(scene) => scene,
@@ -246,7 +246,7 @@ impl Search<'_> {
     }
 
     /// Tries what may be left out.
-    fn leave_out(&mut self, rich: &Solved, found: &mut Found) -> Result<(), Stop> {
+    fn leave_out(&mut self, rich: &Solved, found: &mut Evidence) -> Result<(), Stop> {
         for term in self.scene.terms() {
             let choice = Choice { without: vec![term.clone()], ..rich.choice.clone() };
             if let Some(solved) = self.run(&choice)? {
@@ -266,7 +266,7 @@ impl Search<'_> {
     }
 
     /// The cheapest model on the cheapest mesh that is right, apart from errors of the integration.
-    fn enough(&self, rich: &Solved, found: &Found) -> Option<Choice> {
+    fn enough(&self, rich: &Solved, found: &Evidence) -> Option<Choice> {
         let left = found.left(self.request.accuracy);
         let truth = found.truth()?;
         let is_fine = |mesh: &&Solved| mesh.error(truth) <= OF_MESH * left;
@@ -283,7 +283,7 @@ impl Search<'_> {
 
     /// Choice `enough`, if its omitted terms and its measure of strain change as little on the finest mesh as on that which was
     /// written; all of the model otherwise.
-    fn confirmed(&mut self, enough: Choice, found: &mut Found) -> Result<Choice, Stop> {
+    fn confirmed(&mut self, enough: Choice, found: &mut Evidence) -> Result<Choice, Stop> {
         let Some(truth) = found.truth().cloned() else { return Ok(enough) };
         let (strain, without) = (enough.strain, enough.without.clone());
         let poor = Choice { strain, without, ..truth.choice.clone() };
@@ -304,7 +304,11 @@ impl Search<'_> {
     }
 
     /// A run that was made already, or else is made and added to the models.
-    fn known_or_run(&mut self, choice: &Choice, found: &mut Found) -> Result<Option<Solved>, Stop> {
+    fn known_or_run(
+        &mut self,
+        choice: &Choice,
+        found: &mut Evidence,
+    ) -> Result<Option<Solved>, Stop> {
         let known = found.all().chain(found.meshes.first()).find(|solved| solved.choice == *choice);
         if let Some(known) = known {
             return Ok(Some(known.clone()));
@@ -315,7 +319,7 @@ impl Search<'_> {
     }
 
     /// Tries the equilibrium in place of the motion, and estimates its error on the mesh as it was written.
-    fn rest(&mut self, enough: &Choice, found: &mut Found) -> Result<(), Stop> {
+    fn rest(&mut self, enough: &Choice, found: &mut Evidence) -> Result<(), Stop> {
         // what damps a motion has no effect at rest
         let choice = Choice { is_static: true, ..enough.clone() };
         let Some(solved) = self.run(&choice)? else { return Ok(()) };
@@ -333,7 +337,7 @@ impl Search<'_> {
 
     /// Tries methods and tolerances for a model that is enough, and with the fastest of them the ways to
     /// treat contact events.
-    fn sweep(&mut self, enough: &Choice, found: &mut Found) -> Result<(), Stop> {
+    fn sweep(&mut self, enough: &Choice, found: &mut Evidence) -> Result<(), Stop> {
         let accuracy = self.request.accuracy;
         let implicit = [Method::Auto, Method::Arkode, Method::CvodeBdf];
         let mut ways = implicit.map(|method| (method, enough.inertia)).to_vec();

@@ -11,7 +11,7 @@ mod adviser;
 mod answer;
 mod chart;
 mod choice;
-mod found;
+mod evidence;
 mod ladder;
 mod page;
 mod parts;

@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use super::found::Found;
+use super::evidence::Evidence;
 use super::reduced_candidate::ReducedCandidate;
 use super::runs::Outcome;
 use super::search::{Cut, SHARE, Search, Solved, Stop};
@@ -19,7 +19,7 @@ const RUNS: f64 = 4.0;
 
 impl Search<'_> {
     /// Learns a reduced model of the fastest motion that is right, from that motion itself.
-    pub(super) fn reduce(&mut self, found: &mut Found) -> Result<(), Stop> {
+    pub(super) fn reduce(&mut self, found: &mut Evidence) -> Result<(), Stop> {
         let best = found.best(self.request.accuracy).filter(|best| best.choice.is_of_soft_motion());
         let Some(best) = best.cloned() else { return Ok(()) };
         if RUNS * best.seconds > SHARE * self.left() {

@@ -1,7 +1,7 @@
 //! A rung of the ladder: what changes if nothing strains.
 
 use super::choice::Choice;
-use super::found::Found;
+use super::evidence::Evidence;
 use super::ladder::PATIENCE;
 use super::search::{Cut, SHORT, Search, Solved, Stop};
 use super::smaller_model::SmallerModel;
@@ -13,7 +13,7 @@ use crate::studies::work_precision::rigid_motion::distance_from_rigid;
 
 impl Search<'_> {
     /// Runs the fastest motion that is right with all bodies rigid, unless its strains show that no rigid motion is near enough.
-    pub(super) fn rigid(&mut self, found: &mut Found) -> Result<(), Stop> {
+    pub(super) fn rigid(&mut self, found: &mut Evidence) -> Result<(), Stop> {
         let accuracy = self.request.accuracy;
         let Some([best, exact]) = self.soft(found) else { return Ok(()) };
         if self.scene.body().substances().all(|made_of| made_of.is_rigid) {
@@ -52,7 +52,7 @@ impl Search<'_> {
     }
 
     /// The fastest motion that is right, and the same with hardly any error of the integration, where it has no smaller model yet.
-    pub(super) fn soft(&self, found: &Found) -> Option<[Solved; 2]> {
+    pub(super) fn soft(&self, found: &Evidence) -> Option<[Solved; 2]> {
         let best = found.best(self.request.accuracy)?;
         let exact = found.exact(&best.choice)?;
         best.choice.is_of_soft_motion().then(|| [best.clone(), exact.clone()])
@@ -63,7 +63,7 @@ impl Search<'_> {
         &mut self,
         choice: &Choice,
         seconds: f64,
-        found: &mut Found,
+        found: &mut Evidence,
     ) -> Result<Option<Solved>, Stop> {
         self.patience = (PATIENCE * seconds).max(SHORT);
         let solved = self.run(choice);

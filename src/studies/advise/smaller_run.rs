@@ -1,6 +1,6 @@
 //! Runs of a smaller model beside what it is a model of.
 
-use super::found::Found;
+use super::evidence::Evidence;
 use super::ladder::PATIENCE;
 use super::runs::Outcome;
 use super::search::{Cut, SHORT, Search, Solved, Stop};
@@ -35,7 +35,7 @@ impl Shrunk {
 impl Search<'_> {
     /// Runs a half or section of the fastest motion that is right, across the first axis that has one. Why there is none across any axis is
     /// told, of meshes that have one.
-    pub(super) fn smaller(&mut self, shrink: Shrink, found: &mut Found) -> Result<(), Stop> {
+    pub(super) fn smaller(&mut self, shrink: Shrink, found: &mut Evidence) -> Result<(), Stop> {
         let Some([best, exact]) = self.soft(found) else { return Ok(()) };
         let Ok(scene) = best.choice.scene(&self.scene) else { return Ok(()) };
         let mut refused = Vec::new();
@@ -80,7 +80,7 @@ impl Search<'_> {
         &mut self,
         [best, exact]: [Solved; 2],
         model: &Shrunk,
-        found: &mut Found,
+        found: &mut Evidence,
     ) -> Result<(), Stop> {
         let kind = model.kind;
         let Some(tight) = self.run_as(&exact, model, found)? else { return Ok(()) };
@@ -102,7 +102,7 @@ impl Search<'_> {
         &mut self,
         full: &Solved,
         model: &Shrunk,
-        found: &mut Found,
+        found: &mut Evidence,
     ) -> Result<Option<Outcome>, Stop> {
         let Shrunk { kind, scene, quantity, points, .. } = model;
         let nodes = points.iter().max().map_or(0, |last| last + 1);

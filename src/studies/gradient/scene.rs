@@ -63,7 +63,7 @@ struct Scheme {
 }
 
 /// The derivative by one number, from differences.
-struct Found {
+struct DifferenceQuotients {
     slope: Extrapolated,
     /// The quotients of the second step at both tolerances.
     quotients: [Vec<f64>; 2],
@@ -320,7 +320,8 @@ impl SceneGradient {
         };
         tell(costs.runs());
         for factor in FACTORS.into_iter().filter(|_| method != Method::Adjoint) {
-            let is_rough = |found: &Found| found.slope.error > ROUGH * found.slope.slope().abs();
+            let is_rough =
+                |found: &DifferenceQuotients| found.slope.error > ROUGH * found.slope.slope().abs();
             let rough: Vec<usize> =
                 all.iter().copied().filter(|&at| is_rough(&found[at])).collect();
             // a scene may not take numbers so far away
@@ -360,7 +361,7 @@ impl SceneGradient {
         scheme: &Scheme,
         bases: &[Base; 2],
         costs: &Costs,
-    ) -> Result<Vec<Found>, String> {
+    ) -> Result<Vec<DifferenceQuotients>, String> {
         let step = |number: &Number, row: usize| {
             number.first_step(scheme.first) * 0.5_f64.powi(row as i32)
         };
@@ -391,7 +392,7 @@ impl SceneGradient {
             let (limit, of_coarse) = (*slopes.last()?, coarse.first()?.0);
             let slope = of_fine + limit - of_coarse;
             let error = error.max(round_off) + bases[0].error() * slope.abs();
-            Some(Found {
+            Some(DifferenceQuotients {
                 slope: Extrapolated { slopes: vec![slope], error },
                 quotients: [of_fine, of_coarse].map(|of| vec![of]),
                 is_constant: is_same && coarse.iter().all(|of| of.2),
@@ -408,7 +409,7 @@ impl SceneGradient {
         numbers: &[usize],
         factor: f64,
         costs: &Costs,
-    ) -> Result<Vec<Found>, Stop> {
+    ) -> Result<Vec<DifferenceQuotients>, Stop> {
         // the second step at both tolerances, the others at the first
         let rows = (0..scheme.rows).map(|row| (row, &bases[0])).chain([(1, &bases[1])]);
         let jobs: Vec<(&Number, f64, &Base)> = numbers
@@ -449,7 +450,11 @@ impl SceneGradient {
                 quotients.iter().map(|(quotient, _)| quotient.clone()).collect();
             let coarse = quotients.pop()?;
             let slope = extrapolated(&quotients, self.numbers[*at].order())?;
-            Some(Found { slope, quotients: [quotients.swap_remove(1), coarse], is_constant })
+            Some(DifferenceQuotients {
+                slope,
+                quotients: [quotients.swap_remove(1), coarse],
+                is_constant,
+            })
         };
         Ok(numbers.iter().zip(quotients.chunks(scheme.rows + 1)).filter_map(of_number).collect())
     }
@@ -457,11 +462,11 @@ impl SceneGradient {
     fn derivative(
         &self,
         number: &Number,
-        found: Found,
+        found: DifferenceQuotients,
         seen: &Seen,
         scheme: &Scheme,
     ) -> Derivative {
-        let Found { slope, quotients: [fine, coarse], is_constant } = found;
+        let DifferenceQuotients { slope, quotients: [fine, coarse], is_constant } = found;
         if is_constant {
             // differences are round-off
             return Derivative::constant(number.key.clone(), (number.value, number.unit));

@@ -348,7 +348,7 @@ impl Search<'_> {
         mut model: ReducedModel,
         checks: &[(Trajectory, f64)],
         what: &str,
-    ) -> Result<(ReducedModel, Found), Error> {
+    ) -> Result<(ReducedModel, ModelChecks), Error> {
         let (mut error, mut worst) = (0.0_f64, 0);
         let (mut per_imbalance, mut imbalance) = (0.0_f64, 0.0_f64);
         let scenes = checks.iter().map(|(full, _)| full.scene());
@@ -373,12 +373,12 @@ impl Search<'_> {
         let (unknowns, cells) = (model.unknowns(), model.cells());
         let tried = Tried { unknowns, cells, error, told: imbalance * per_imbalance, seconds };
         (model.error, model.error_per_imbalance) = (error, per_imbalance);
-        Ok((model, Found { tried, worst, problem }))
+        Ok((model, ModelChecks { tried, worst, problem }))
     }
 }
 
 /// Results of the runs of a model.
-struct Found {
+struct ModelChecks {
     tried: Tried,
     /// The check with the largest error.
     worst: usize,

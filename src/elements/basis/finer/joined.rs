@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::{Corners, Finer, Place};
+use super::{Corners, Finer, NodeOrigin};
 use crate::elements::mesh::Mesh;
 
 impl Finer {
@@ -15,7 +15,7 @@ impl Finer {
             mesh: mesh.clone(),
             first_child: (0..=mesh.cell_count()).collect(),
             olds: (0..nodes).collect(),
-            places: (0..nodes).map(Place::at).collect(),
+            places: (0..nodes).map(NodeOrigin::at).collect(),
             numbers: BTreeMap::new(),
             is_boundary,
         }
@@ -41,7 +41,7 @@ impl Finer {
             all.first_child.extend(own.first_child[1..].iter().map(|first| cell + first));
             all.olds.extend(own.olds.iter().map(|node| new + node));
             all.numbers.extend(own.numbers.into_iter().map(|(at, node)| (moved(at), new + node)));
-            all.places.extend(own.places.into_iter().map(|place| Place {
+            all.places.extend(own.places.into_iter().map(|place| NodeOrigin {
                 corners: moved(place.corners),
                 shares: place.shares.into_iter().map(|(node, part)| (old + node, part)).collect(),
             }));

@@ -70,8 +70,8 @@ fn is_the_same_on_all_machines<
             [by_place.values, by_rate.values]
         };
     let at_once = tangents(&|by_place, by_rate| {
-        Arch::new().dispatch(by_place);
-        Arch::new().dispatch(by_rate);
+        at_once(by_place);
+        at_once(by_rate);
     });
     let one_by_one = tangents(&|by_place, by_rate| {
         by_place.with_simd(Scalar);

@@ -3,12 +3,13 @@
 
 use nalgebra::{Rotation3, Vector3};
 use num_dual::DualNum;
-use pulp::{Arch, Scalar, Simd, WithSimd};
+use pulp::{Scalar, Simd, WithSimd};
 
 use super::hookean_viscosity::HookeanViscosity;
 use super::newtonian::NewtonianViscosity;
 use super::*;
 use crate::base::lane::{Lane, SIDE_BY_SIDE};
+use crate::base::simd::at_once;
 use crate::base::tensor::{Matrix, Real, dot, product};
 use crate::elements::material::{Blocks, Deformation, ElasticLaw, Lame, Material, Plane};
 
@@ -562,7 +563,7 @@ impl<const M: usize, const D: usize> WithSimd for AtOnce<M, D> {
 #[test]
 fn several_points_at_once() {
     fn check<const M: usize, const D: usize>() {
-        Arch::new().dispatch(AtOnce::<M, D>);
+        at_once(AtOnce::<M, D>);
         AtOnce::<M, D>.with_simd(Scalar);
     }
     in_all_dimensions!(check);

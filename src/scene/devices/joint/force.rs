@@ -2,7 +2,7 @@
 
 use super::coordinate::{At, Coordinate};
 use super::coupling::Coupling;
-use super::law::{Law, Part};
+use super::law::{JointLaw, Part};
 use crate::base::sparse::BlockMatrix;
 use crate::elements::force::{Force, NodalForces, Reservoir, Tangents};
 use crate::integrators::ode::Failure;
@@ -15,7 +15,7 @@ pub(super) struct JointForce {
     /// The coordinate, if anything acts along it.
     coordinate: Option<Coordinate>,
     couplings: Vec<Coupling>,
-    law: Law,
+    law: JointLaw,
     inputs: DeviceSignals,
 }
 
@@ -23,7 +23,7 @@ impl JointForce {
     pub(super) fn new(
         name: &str,
         (coordinate, couplings): (Option<Coordinate>, Vec<Coupling>),
-        law: Law,
+        law: JointLaw,
         inputs: DeviceSignals,
     ) -> Self {
         let acts = law.is_of_state() || inputs.are_set();

@@ -15,7 +15,7 @@ use crate::base::input::{InputError, finite, not_negative, positive};
 
 /// The numbers of the law; 0 of what is not there.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub(super) struct Law {
+pub(super) struct JointLaw {
     pub(super) stiffness: f64,
     pub(super) rest: f64,
     pub(super) damping: f64,
@@ -38,7 +38,7 @@ pub(super) struct Part {
     pub(super) slopes: [f64; 2],
 }
 
-impl Law {
+impl JointLaw {
     /// Whether the state of the joint has a part in its forces.
     pub(super) fn is_of_state(&self) -> bool {
         self.stiffness > 0.0
@@ -184,7 +184,7 @@ mod tests {
     /// Derivatives against central differences, away from kinks: the laws are polynomials of third order there, off by h^2 and round-off.
     #[test]
     fn slopes_are_those_of_differences() {
-        let law = Law {
+        let law = JointLaw {
             stiffness: 2.0,
             rest: 0.3,
             damping: 0.1,
@@ -223,7 +223,7 @@ mod tests {
     /// While it drives, a motor is on the line from its stall torque to its no-load speed; braking it has all of the torque.
     #[test]
     fn a_motor_is_on_its_line() {
-        let law = Law { most: Some(2.0), no_load_speed: Some(10.0), ..Law::default() };
+        let law = JointLaw { most: Some(2.0), no_load_speed: Some(10.0), ..JointLaw::default() };
         let force = |given: f64, rate: f64| law.motor([given, 0.0, 0.0], [0.0, rate], |x| x).force;
         assert_eq!(
             [force(9.0, 0.0), force(9.0, 2.5), force(9.0, 11.0), force(9.0, -5.0), force(1.0, 2.5)],

@@ -123,7 +123,7 @@ impl Orifice {
             Opening::Conductance(conductance) => {
                 let conductance = positive(&input("conductance"), conductance, "m^3/(s Pa)")?;
                 // C rho_0, with rho_0 = p_0/(R T_0)
-                (conductance * 1e5 / GAS_CONSTANT_TIMES_TEMPERATURE, Law::Standard { ratio })
+                (conductance * 1e5 / GAS_CONSTANT_TIMES_TEMPERATURE, OrificeLaw::Standard { ratio })
             }
             Opening::Nozzle(area, discharge) => {
                 let area = positive(&input("area"), area, "m^2")?;
@@ -133,7 +133,10 @@ impl Orifice {
                     return Err(InputError::new(input("discharge"), discharge, help));
                 }
                 let choked = nozzle(CRITICAL).sqrt();
-                (discharge * area * choked / GAS_CONSTANT_TIMES_TEMPERATURE.sqrt(), Law::Nozzle)
+                (
+                    discharge * area * choked / GAS_CONSTANT_TIMES_TEMPERATURE.sqrt(),
+                    OrificeLaw::Nozzle,
+                )
             }
         };
         Ok(OrificeFlow { name: self.name.clone(), ends, scale, law, opening })
@@ -165,7 +168,7 @@ const AIR: f64 = 1.4;
 const CRITICAL: f64 = 0.528_281_787_717_174_3;
 
 /// How the flow depends on the ratio of pressures.
-enum Law {
+enum OrificeLaw {
     /// That of ISO 6358, of this critical ratio.
     Standard {
         ratio: f64,
@@ -179,7 +182,7 @@ pub(crate) struct OrificeFlow {
     pub(super) ends: [End; 2],
     /// Choked flow over the pressure (kg/(s Pa)): C rho_0 or that of a nozzle.
     scale: f64,
-    law: Law,
+    law: OrificeLaw,
     opening: Vec<Signal>,
 }
 
@@ -254,11 +257,11 @@ impl OrificeFlow {
         }
         let drop = 1.0 - p2 / p1;
         let (span, [share, slope]) = match self.law {
-            Law::Standard { ratio } => {
+            OrificeLaw::Standard { ratio } => {
                 let span = 1.0 - ratio;
                 (span, share(drop / span, (1.0 - LAMINAR) / span, standard_share))
             }
-            Law::Nozzle => (1.0, share(drop, 1.0 - LAMINAR, nozzle_share)),
+            OrificeLaw::Nozzle => (1.0, share(drop, 1.0 - LAMINAR, nozzle_share)),
         };
         let flow = thinning * p1 * share;
         let up = thinning * (share + slope * p2 / (p1 * span)) - cooling * flow / p1;

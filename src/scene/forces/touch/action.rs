@@ -1,6 +1,6 @@
 //! Contact action between two nearby surfaces: pressure, damping, friction.
 
-use super::law::Law;
+use super::law::NormalLaw;
 use super::pair::{MOST, Pair};
 use crate::base::vector::{dot, norm};
 use crate::scene::forces::friction::{Coulomb, Drag};
@@ -27,7 +27,7 @@ impl Action {
         pair: &Pair,
         share: f64,
         velocity: [f64; 3],
-        law: &Law,
+        law: &NormalLaw,
         coulomb: Option<Coulomb>,
     ) -> Self {
         let rate = dot(&pair.normal, &velocity);

@@ -6,7 +6,7 @@
 //! F phi_e(d)
 //! ```
 //!
-//! with the distance d, a [`Window`] F, and the [law](Law) phi_e: that of points and facets for half of the distance D, in which
+//! with the distance d, a [`Window`] F, and the [law](NormalLaw) phi_e: that of points and facets for half of the distance D, in which
 //! pressures are the same at the same part of it. Points within D of the other surface share what presses; where only
 //! edges cross, these come as near as D/2. So surfaces that lie on each other are carried by their points alone, as long
 //! as the pressure is below that of the law at D/2.
@@ -30,7 +30,7 @@
 //! the nodal quantities of contact, as edges cross in points.
 
 use super::crossing::Ways;
-use super::law::Law;
+use super::law::NormalLaw;
 use super::pair::Pair;
 use super::surfaces::Surfaces;
 use super::window::Window;
@@ -45,7 +45,7 @@ pub(super) struct Edges {
     edges: Vec<Edge>,
     /// Pairs that do not act, ascending.
     unfelt: Vec<[usize; 2]>,
-    pub(super) law: Law,
+    pub(super) law: NormalLaw,
 }
 
 struct Edge {
@@ -76,9 +76,9 @@ const PARALLEL: f64 = 1e-6;
 
 impl Edges {
     /// The edges of surfaces whose points feel facets by a `law`; halves of edges with a mid node.
-    pub(super) fn new(surfaces: &Surfaces, law: &Law) -> Self {
+    pub(super) fn new(surfaces: &Surfaces, law: &NormalLaw) -> Self {
         let (damping, distance) = (law.damping / PART, law.distance * PART);
-        let law = Law { stiffness: law.stiffness / PART, damping, distance, ..*law };
+        let law = NormalLaw { stiffness: law.stiffness / PART, damping, distance, ..*law };
         let mut edges = Vec::new();
         if surfaces.dimension == 3 {
             for (feature, of) in surfaces.features.iter().enumerate() {

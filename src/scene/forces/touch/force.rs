@@ -4,7 +4,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use super::action::{Action, changed};
 use super::edge_pairs::Edges;
-use super::law::{Kind, Law};
+use super::law::{Kind, NormalLaw};
 use super::near::{Near, NearPair};
 use super::pair::Pair;
 use super::surfaces::Surfaces;
@@ -21,7 +21,7 @@ pub(crate) struct TouchForce {
     pub(crate) name: String,
     pub(super) surfaces: Surfaces,
     pub(super) edges: Edges,
-    pub(super) law: Law,
+    pub(super) law: NormalLaw,
     pub(super) coulomb: Option<Coulomb>,
     /// Search distance for pairs beyond the contact range (m), so that not each evaluation needs a search.
     margin: f64,
@@ -33,7 +33,7 @@ impl TouchForce {
     pub(super) fn new(
         name: String,
         (surfaces, edges): (Surfaces, Edges),
-        law: Law,
+        law: NormalLaw,
         coulomb: Option<Coulomb>,
         margin: f64,
         u: &[f64],
@@ -112,7 +112,7 @@ impl TouchForce {
     }
 
     /// The law of a pair.
-    fn law(&self, pair: &Pair) -> &Law {
+    fn law(&self, pair: &Pair) -> &NormalLaw {
         if pair.window.is_some() { &self.edges.law } else { &self.law }
     }
 

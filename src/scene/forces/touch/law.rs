@@ -2,7 +2,7 @@
 
 /// The law of the normal force between two surfaces.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Law {
+pub(super) struct NormalLaw {
     pub(super) kind: Kind,
     /// Stiffness k (N/m^3).
     pub(super) stiffness: f64,
@@ -21,7 +21,7 @@ pub(super) enum Kind {
     Spring,
 }
 
-impl Law {
+impl NormalLaw {
     /// phi (J/m^2) at a distance `d` (m) from 0 to D.
     pub(super) fn energy(&self, d: f64) -> f64 {
         let x = self.distance - d;

@@ -20,7 +20,7 @@
 
 use super::window::Window;
 use crate::base::vector::{cross, difference, dot, norm};
-use crate::elements::basis::{FacePoint, MOST_NODES, Place, closest};
+use crate::elements::basis::{FacePoint, MOST_NODES, NearestPoint, closest};
 use crate::scene::forces::surface::weighted;
 
 /// Most nodes of a pair: those of the faces of a point and of a place.
@@ -116,7 +116,7 @@ impl Pair {
     pub(super) fn new(
         (r, point): ([f64; 3], impl Iterator<Item = (usize, f64)>),
         (of, at): (&[usize], &[[f64; 3]]),
-        (place, shape): (&Place, &FacePoint),
+        (place, shape): (&NearestPoint, &FacePoint),
         radii: f64,
     ) -> Self {
         let distance = norm(&r);

@@ -2,7 +2,7 @@
 
 use super::edge_pairs::Edges;
 use super::force::TouchForce;
-use super::law::{Kind, Law};
+use super::law::{Kind, NormalLaw};
 use super::near::{Near, NearPair};
 use super::site::{Parts, TouchSite, way};
 use super::surfaces::Surfaces;
@@ -238,7 +238,7 @@ impl Touch {
         positive(&input("stiffness_density"), stiffness, "N/m^3")?;
         not_negative(&input("damping_density"), self.damping, "N s/m^3")?;
         self.friction.validate(&input)?;
-        let law = Law { kind: self.kind, stiffness, damping: self.damping, distance };
+        let law = NormalLaw { kind: self.kind, stiffness, damping: self.damping, distance };
         let mut edges = Edges::new(&surfaces, &law);
         surfaces.feel_all();
         if parts.itself || !site.glued.is_empty() {

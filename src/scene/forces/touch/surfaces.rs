@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::hull::Hull;
 use crate::base::vector::{cross, difference, dot, norm, padded};
-use crate::elements::basis::{MOST_NODES, Place, control_points, is_affine, nearest, reach};
+use crate::elements::basis::{MOST_NODES, NearestPoint, control_points, is_affine, nearest, reach};
 use crate::elements::body::Body;
 use crate::elements::mesh::FaceKind;
 use crate::elements::rod::Spokes;
@@ -419,7 +419,7 @@ impl Feature {
     }
 
     /// Its place that is nearest to `x`, if its nodes are `at` these positions (m), as [`Surfaces::nodes_at`] gives them.
-    pub(super) fn nearest(&self, at: &[[f64; 3]; MOST_NODES], x: &[f64; 3]) -> Place {
+    pub(super) fn nearest(&self, at: &[[f64; 3]; MOST_NODES], x: &[f64; 3]) -> NearestPoint {
         nearest(self.kind, &at[..self.count], x)
     }
 }

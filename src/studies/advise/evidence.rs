@@ -19,7 +19,7 @@ use crate::scene::timeline::Term;
 
 /// Runs, by their purpose, and what they show.
 #[derive(Debug, Default)]
-pub(super) struct Found {
+pub(super) struct Evidence {
     /// The scene as it was written, by its own settings.
     pub(super) written: Option<Solved>,
     /// The same with hardly any error of the integration.
@@ -64,7 +64,7 @@ const LOCAL: f64 = 2.0;
 /// nodes.
 const LEAST_ORDER: f64 = 10.0;
 
-impl Found {
+impl Evidence {
     /// Reference of all runs: the one on the finest mesh.
     pub(super) fn truth(&self) -> Option<&Solved> {
         self.meshes.last()
@@ -195,7 +195,7 @@ mod tests {
     use crate::studies::samples::beam_jump;
 
     /// Meshes on which a number is off by `errors` of its scale.
-    fn meshes(errors: &[(bool, f64)]) -> Found {
+    fn meshes(errors: &[(bool, f64)]) -> Evidence {
         let scene = beam_jump().unwrap();
         let meshes = errors.iter().zip(0..).map(|(&(quadratic, error), halved)| {
             let values = [[1.0 + error]];
@@ -210,7 +210,7 @@ mod tests {
                 worst: Vec::new(),
             }
         });
-        Found { meshes: meshes.collect(), ..Found::default() }
+        Evidence { meshes: meshes.collect(), ..Evidence::default() }
     }
 
     #[test]
