@@ -326,6 +326,8 @@ def test_what_krylov_methods_refuse():
         back("gmres")
     with pytest.raises(ValueError, match="a function is not"):
         back(pliant.Krylov(transposed=lambda t, y, v, p: -p * v, preconditioner=lambda t, y, gamma, p: lambda r: r))
+    with pytest.raises(pliant.Error, match="adjoint_rhs is wrong"):
+        back(pliant.Krylov(transposed=lambda t, y, v, p: p * v))
     with pytest.raises(ZeroDivisionError):
         back(pliant.Krylov(transposed=lambda t, y, v, p: 1 / 0))
     with pytest.raises(ZeroDivisionError):
