@@ -12,7 +12,6 @@ use std::time::Instant;
 
 use pliant::ode::{MassKind, Ode};
 use pliant::rk::DormandPrince;
-use pliant::rosenbrock::{self, Rosenbrock};
 use pliant::samples::TransistorAmplifier;
 use pliant::study::{EndState, Failed, Findings, General, Goal, Study, time_text};
 use pliant::sundials::{Arkode, Cvode, Ida, Jacobian, LinearSolver, MassForm};
@@ -65,7 +64,6 @@ enum Way {
     Arkode,
     Ida,
     Rk,
-    Rosenbrock,
     Diffsol(Kind),
     /// Python, the name of the system, and a folder for what it reads and writes.
     Scipy(Program, String, PathBuf),
@@ -85,7 +83,6 @@ fn problem(name: &str, folder: &Path) -> Result<General, Failed> {
         let mut ways = vec![
             ("pliant cvode-bdf", "cvode-bdf", Way::Bdf),
             ("pliant arkode", "arkode", Way::Arkode),
-            ("pliant rosenbrock", "rosenbrock", Way::Rosenbrock),
             ("pliant rk", "rk", Way::Rk),
         ];
         for (name_of_line, method) in
@@ -153,11 +150,6 @@ impl Way {
                 goal.reach(Arkode::new(system.ode(), 0.0, y0, &options)?)
             }
             Self::Rk => goal.reach(DormandPrince::new(system.ode(), 0.0, y0, &goal.rk())?),
-            Self::Rosenbrock => {
-                let options = rosenbrock::Options::new(goal.rtol, goal.atol.to_vec());
-                let options = options.newton(newton());
-                goal.reach(Rosenbrock::new(system.ode(), 0.0, y0, &options)?)
-            }
             Self::Ida => {
                 let newton = LinearSolver::Dense(jacobian);
                 let form = MassForm::new(system.ode(), y0.len(), &newton)?;
