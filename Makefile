@@ -100,8 +100,9 @@ features: ## The library with none, each alone and all of its features: no warni
 		cargo clippy --quiet -p pliant --lib --no-default-features --features "$$feature" $(READ) -- -D warnings; done
 	cargo clippy --quiet -p pliant --lib --bins --all-features $(READ) -- -D warnings
 
+# It documents all features, `vendored` among them.
 semver: ## What the public interface changes since the last commit, by cargo-semver-checks (cargo install cargo-semver-checks)
-	@scripts/setup.sh
+	@scripts/setup.sh cmake
 	cargo semver-checks -p pliant --baseline-rev HEAD
 
 # The runner of the test binary is valgrind; PLIANT_LIFECYCLES sets the rounds of 30 solvers.

@@ -9,6 +9,7 @@ from .dae import equations_of
 from .equations import NOTHING, Arguments, Complex, tolerances, unknowns
 from .events import event_list, watched_events
 from .ivp import compiled, engine_method
+from .krylov import krylov_key
 from .matrices import newton
 
 
@@ -39,6 +40,9 @@ def gradient(
     adjoint_atol=None,
     jac=None,
     jac_sparsity=None,
+    lband=None,
+    uband=None,
+    krylov=None,
     mass=None,
     yp0=None,
     differential=None,
@@ -65,7 +69,9 @@ def gradient(
     adjoint_atol : float, optional
         Absolute tolerance of the adjoint dG/dy(t) in the backward run, for which `rtol` is the relative one; the least `atol` by
         default.
-    jac, jac_sparsity, mass, yp0, differential, rtol, atol, max_steps
+    krylov : Krylov, optional
+        A Krylov method, forward and backward, with its `transposed` products; its preconditioner is ``"ilu"`` or none.
+    jac, jac_sparsity, lband, uband, mass, yp0, differential, rtol, atol, max_steps
         As of :func:`solve_ivp` and :func:`solve_dae`.
 
     >>> import pliant
@@ -88,7 +94,7 @@ def gradient(
         raise ValueError(f"{method!r} takes no mass matrix: take \"ida\"")
     given = Arguments(args, True)
     if name == "ida" and mass is None:
-        equations = equations_of(fun, y0, parts, yp0, differential, jac, jac_sparsity, None, None, given, start)
+        equations = equations_of(fun, y0, parts, yp0, differential, jac, jac_sparsity, lband, uband, given, start)
     else:
         if yp0 is not None or differential is not None:
             raise ValueError("`yp0` and `differential` are those of a residual, with the method \"ida\" and without `mass`")
@@ -101,11 +107,12 @@ def gradient(
             method=name,
             y0=parts.pack(y0).tolist(),
             parameters=given.parameters,
-            **newton(slopes, first, jac_sparsity, None, None, parts, mass, given, start),
+            **newton(slopes, first, jac_sparsity, lband, uband, parts, mass, given, start),
         )
     rtol, atol = tolerances(rtol, atol, parts, level=3)
     watched = watched_events(event_list(events), given, parts) or []
-    asked = NOTHING | equations | dict(span=(start, end), rtol=rtol, atol=atol, events=watched, max_steps=max_steps)
+    solver = krylov_key(krylov, jac, given, parts, mass, is_residual=name == "ida", goes_back=True)
+    asked = NOTHING | equations | dict(span=(start, end), rtol=rtol, atol=atol, events=watched, max_steps=max_steps, krylov=solver)
     adjoint_atol = min(atol) if adjoint_atol is None else float(adjoint_atol)
     return Gradient(*_pliant.gradient(asked, _valued(terminal, given), _valued(running, given), adjoint_atol))
 

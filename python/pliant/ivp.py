@@ -259,7 +259,7 @@ def asked_ivp(
         max_order=max_order,
         max_steps=max_steps,
         check_jacobian=bool(check_jacobian),
-        krylov=krylov_key(krylov, jac, given, parts),
+        krylov=krylov_key(krylov, jac, given, parts, mass),
         observer=observer_key(observed_by, parts, sign),
         **limits,
         **wanted,
@@ -286,8 +286,6 @@ def _check(facts, method, mass, is_sensitive, krylov):
         raise ValueError(f"{method!r} takes no mass matrix: take \"ida\", also for a singular one, or \"esdirk\"")
     if is_sensitive and not facts.has_sensitivities:
         raise ValueError(f"{method!r} has no sensitivities: take one of \"auto\", \"bdf\", \"adams\", \"ida\"")
-    if krylov is not None and mass is not None:
-        raise ValueError("with `mass` linear systems are solved by their matrix: leave out `krylov`, or call solve_dae")
     if krylov is not None and (not facts.is_implicit or facts.name == "rosenbrock"):
         raise ValueError(f"{method!r} takes no Krylov method: take one of \"auto\", \"bdf\", \"adams\", \"esdirk\"")
 

@@ -36,12 +36,17 @@ class Krylov(NamedTuple):
     side: str = "left"
     #: Error allowed to a linear system, relative to that allowed to Newton's iteration; 0.05 by default.
     tolerance_factor: float | None = None
+    #: ``transposed(t, y, v, *args)`` returns (df/dy)^T v, which :func:`gradient` needs; ``transposed(t, y, yp, v, w, *args)`` of a residual
+    #: (dF/dy)^T v + (dF/dy')^T w.
+    transposed: Callable | None = None
 
 
-def krylov_key(krylov, jac, given, parts, is_residual=False):
-    """A Krylov method, or its name, as a dict for the engine; None if there is none."""
+def krylov_key(krylov, jac, given, parts, mass=None, is_residual=False, goes_back=False):
+    """A Krylov method, or its name, as a dict for the engine; None if there is none. A gradient `goes_back`."""
     if krylov is None:
         return None
+    if mass is not None:
+        raise ValueError("with `mass` linear systems are solved by their matrix: leave out `krylov`, or give a residual")
     krylov = Krylov(krylov) if isinstance(krylov, str) else krylov
     if not isinstance(krylov, Krylov):
         raise TypeError(f"`krylov` is a pliant.Krylov or the name of its method, not {krylov!r}")
@@ -52,12 +57,17 @@ def krylov_key(krylov, jac, given, parts, is_residual=False):
     is_ilu = krylov.preconditioner == "ilu"
     if not is_ilu and krylov.preconditioner is not None and not callable(krylov.preconditioner):
         raise ValueError(f"the preconditioner of a Krylov is \"ilu\" or a function, not {krylov.preconditioner!r}")
+    if goes_back and krylov.transposed is None:
+        raise ValueError("a gradient with `krylov` needs the products of the transposed Jacobian: give `transposed` of pliant.Krylov")
+    if goes_back and callable(krylov.preconditioner):
+        raise ValueError("a gradient needs a preconditioner of the transposed matrix, too: \"ilu\" is one, a function is not")
     if jac is not None and not is_ilu:
         raise ValueError("with `krylov` the preconditioner \"ilu\" alone uses `jac`: give its products with vectors by `products`")
     products = given.of(krylov.products)
     return krylov._replace(
         products=_of_residual(products) if is_residual else products,
         preconditioner=None if is_ilu else given.of(krylov.preconditioner),
+        transposed=given.of(krylov.transposed),
     )._asdict() | dict(ilu=is_ilu, right=krylov.side == "right")
 
 

@@ -117,11 +117,14 @@ class Run:
         self._run.jump(acting(action, self._parts, self._sign))
 
     def save(self):
-        """Where the run stands, for :meth:`restore`."""
+        """Where the run stands, for :meth:`restore`: numbers alone, which `pickle` writes to a file."""
         return self._run.save()
 
     def restore(self, saved):
-        """Goes back, or on, to where the run stood when it was saved: with its state, parameters and events. Counters of cost go on."""
+        """Goes back, or on, to where the run stood when it was saved: with its state, parameters and events. Counters of cost go on.
+
+        It may have been another run of the same problem, also of another program, whose span has that time, too.
+        """
         self._run.restore(saved)
 
     def interpolate(self, t):

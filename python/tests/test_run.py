@@ -1,6 +1,7 @@
 """Runs led step by step, Krylov methods, observers and ensembles against closed forms."""
 
 import gc
+import pickle
 import threading
 import time
 import weakref
@@ -78,6 +79,40 @@ def test_events_integrals_and_sensitivities_of_a_run():
     stepped = pliant.Run(fall, (0.0, 1.75), [5.0, 0.0], "bdf", **options)
     jumps = [step for step in iter(stepped.advance, None) if step.before is not None]
     assert len(jumps) == 1 and abs(jumps[0].before[1] + 10.0) < 1e-8 and abs(jumps[0].y[1] - 5.0) < 1e-8
+
+
+def test_a_run_goes_on_from_a_file(tmp_path):
+    """The ball above, whose run is saved to a file after the impact: another run that reads it has the same numbers, and ends alike to the last
+    bit, with the event counted."""
+
+    def impact(jump):
+        jump.y[1] *= -jump.p[0]
+        jump.p[0] *= 0.9
+
+    floor = pliant.Event(lambda t, y, part: y[0], direction=-1, action=impact, terminal=2)
+    options = dict(args=(0.5,), events=floor, sensitivities=True, integrands=lambda t, y, part: abs(y[1]), **TIGHT)
+
+    def ball():
+        return pliant.Run(lambda t, y, part: [y[1], -10.0], (0.0, 9.0), [5.0, 0.0], "bdf", **options)
+
+    file = tmp_path / "ball.run"
+    first = ball()
+    first.advance_to(1.25)
+    file.write_bytes(pickle.dumps(first.save()))
+    first.restore(first.save())
+    later = ball()
+    later.restore(pickle.loads(file.read_bytes()))
+    for name in ("t", "y", "parameters", "sensitivities", "integrals"):
+        assert np.array_equal(getattr(later, name), getattr(first, name)), name
+    ends = []
+    for run in (first, later):
+        while run.advance() is not None:
+            pass
+        assert run.end == "event" and abs(run.t - 2.0) < 1e-8 and run.parameters.tolist() == [0.5 * 0.9 * 0.9]
+        ends.append((run.t, *run.y, *run.sensitivities.ravel(), *run.integrals))
+    assert ends[0] == ends[1]
+    with pytest.raises(ValueError, match="no saved run"):
+        type(first.save())("{}")
 
 
 def test_runs_of_residuals_of_complex_numbers_and_back_in_time():
@@ -236,6 +271,33 @@ def test_krylov_methods_of_residuals():
     assert solution.success and np.abs(solution.y[:, -1] - np.exp(-1.998)).max() < 1e-8
 
 
+@pytest.mark.parametrize("form", ["ode", "ilu", "residual"])
+def test_gradients_by_krylov_methods(form):
+    """G = c y(T) of y' = p A y with a flow in A, which makes it differ from its transpose: dG/dp = c A T exp(p A T) y0 and
+    dG/dy0 = exp(p A T)^T c, within 2 rtol of the weights (measured: at most 0.3)."""
+    scipy = pytest.importorskip("scipy.sparse")
+    expm = pytest.importorskip("scipy.linalg").expm
+    n, p, end = 20, 2.0, 0.05
+    matrix = (heat(n)[0] + scipy.diags([-np.ones(n - 1), np.ones(n)], [-1, 0]) * -60.0).tocsc()
+    weights, y0 = np.linspace(1.0, 2.0, n), np.sin(np.arange(n))
+    options = dict(terminal=lambda t, y, p: (weights @ y, weights, [0.0]), rtol=1e-8, atol=1e-10)
+    if form == "residual":
+        krylov = pliant.Krylov("gmres", iterations=20, transposed=lambda t, y, yp, v, w, p: w - p * (matrix.T @ v))
+        options |= dict(method="ida", yp0=p * (matrix @ y0), differential=[True] * n)
+        fun = lambda t, y, yp, p: yp - p * (matrix @ y)
+    else:
+        ilu = dict(preconditioner="ilu") if form == "ilu" else {}
+        options |= dict(lband=1, uband=1) if form == "ilu" else {}
+        krylov = pliant.Krylov("gmres", iterations=20, transposed=lambda t, y, v, p: p * (matrix.T @ v), **ilu)
+        fun = lambda t, y, p: p * (matrix @ y)
+    found = pliant.gradient(fun, (0.0, end), y0, (p,), krylov=krylov, **options)
+    flow = expm(p * end * matrix.toarray())
+    size = np.abs(weights).max()
+    assert abs(found.value - weights @ flow @ y0) < 2e-8 * size
+    assert abs(found.parameters[0] - weights @ (matrix.toarray() @ flow @ y0) * end) < 2e-8 * size
+    assert np.abs(found.initial_state - flow.T @ weights).max() < 2e-8 * size
+
+
 def test_what_krylov_methods_refuse():
     def solve(method="bdf", y0=(1.0,), **options):
         return pliant.solve_ivp(lambda t, y: -y, (0.0, 1.0), list(y0), method, **options)
@@ -259,6 +321,15 @@ def test_what_krylov_methods_refuse():
             solve(method, krylov="gmres")
     with pytest.raises(ValueError, match="leave out `krylov`"):
         solve("esdirk", krylov="gmres", mass=[1.0])
+    back = lambda krylov: pliant.gradient(lambda t, y, p: -p * y, (0.0, 1.0), [1.0], (1.0,), terminal=lambda t, y, p: y[0], krylov=krylov)
+    with pytest.raises(ValueError, match="`transposed`"):
+        back("gmres")
+    with pytest.raises(ValueError, match="a function is not"):
+        back(pliant.Krylov(transposed=lambda t, y, v, p: -p * v, preconditioner=lambda t, y, gamma, p: lambda r: r))
+    with pytest.raises(pliant.Error, match="adjoint_rhs is wrong"):
+        back(pliant.Krylov(transposed=lambda t, y, v, p: p * v))
+    with pytest.raises(ZeroDivisionError):
+        back(pliant.Krylov(transposed=lambda t, y, v, p: 1 / 0))
     with pytest.raises(ZeroDivisionError):
         solve(krylov=pliant.Krylov(products=lambda t, y, v: 1 / 0))
     with pytest.raises(ValueError, match="2 numbers where 1"):

@@ -3,6 +3,8 @@
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use faer::MatMut;
+use std::error::Error as _;
+
 use pliant::{
     ode::{BandMut, Failure, Functional, Ode, Slopes},
     sundials::{
@@ -515,6 +517,41 @@ fn troubles_on_the_way_back_are_told() {
     let mut adjoint = Adjoint::new(Reactions::new(), Mixed, 0.0, &START, &few, &options).unwrap();
     let error = stopped(Ok(adjoint.gradient(10.0)));
     assert!(matches!(error.cause, Cause::TooManySteps { steps: 10, .. }), "{error}");
+}
+
+/// Transposed products that forget an entry: the gradient is refused, with the slope of lambda^T f and what differences say.
+#[test]
+fn wrong_products_are_found() {
+    struct Forgetful(Reactions);
+    impl Ode for Forgetful {
+        fn rhs(&mut self, t: f64, y: &[f64], ydot: &mut [f64]) -> Result<(), Failure> {
+            self.0.rhs(t, y, ydot)
+        }
+
+        fn adjoint_rhs(
+            &mut self,
+            t: f64,
+            y: &[f64],
+            lambda: &[f64],
+            out: &mut [f64],
+        ) -> Result<(), Failure> {
+            self.0.adjoint_rhs(t, y, lambda, out)?;
+            out[1] -= self.0.entries(y)[2][1] * lambda[2];
+            Ok(())
+        }
+
+        fn parameters(&self) -> &[f64] {
+            self.0.parameters()
+        }
+    }
+    let krylov = Krylov::new(KrylovMethod::Gmres { dimension: 3, restarts: 0 });
+    let forward = CvodeOptions::new(1e-6, 1e-8).newton(LinearSolver::Krylov(krylov));
+    let back = AdjointOptions::new(1e-6, 1e-8).supplied_rhs();
+    let system = Forgetful(Reactions::new());
+    let mut adjoint = Adjoint::new(system, Mixed, 0.0, &START, &forward, &back).unwrap();
+    let error = adjoint.gradient(10.0).unwrap_err();
+    let words = error.source().unwrap().to_string();
+    assert!(words.contains("adjoint_rhs is wrong: its slope by y[1] is"), "{words}");
 }
 
 #[test]

@@ -11,6 +11,7 @@ mod difference_quotients;
 mod edges;
 mod ensembles;
 mod events;
+mod few_numbers;
 mod gradients;
 mod integrals;
 mod interpolation;

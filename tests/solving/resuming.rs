@@ -112,4 +112,33 @@ fn what_does_not_fit_is_refused() {
     assert!(with(|saved| saved.yp.push(1.0)).contains("length of yp"));
     assert!(with(|saved| saved.parameters.push(1.0)).contains("have 0 parameters"));
     assert!(with(|saved| saved.counts.push(1)).contains("length of counts"));
+    assert!(with(|saved| saved.event_values.push(0.0)).contains("length of event_values"));
+}
+
+/// Of a run that was saved without `armed`, as by earlier versions, all events take place but those that happened once; an infinite value of an
+/// event function is saved as a finite one, as JSON has no other.
+#[test]
+fn events_of_an_earlier_version_are_armed() {
+    let problem = || {
+        let once = Event::new(|_, y: &[f64]| y[1]).once().action(|_| ());
+        // 1/t is infinite at the start, and leaves 1 behind at t = 1
+        sine().event(once).event(Event::new(|t, _| 1.0 / t - 1.0))
+    };
+    let mut run = Run::new(problem(), Method::Bdf, (0.0, 9.0), &tight()).unwrap();
+    let start = run.save();
+    assert_eq!(start.event_values[1], f64::MAX);
+    assert_eq!(
+        run.advance_to(2.0).unwrap().iter().map(|met| met.event).collect::<Vec<_>>(),
+        [1, 0]
+    );
+    let middle = run.save();
+    for (saved, expected) in [(start, vec![1, 0]), (middle, vec![])] {
+        let earlier = Saved { armed: Vec::new(), ..saved };
+        run.restore(&earlier).unwrap();
+        let met: Vec<usize> = run.advance_to(9.0).unwrap().iter().map(|met| met.event).collect();
+        assert_eq!(met, expected);
+        assert!((run.y()[0] - 9.0_f64.sin()).abs() < 1e-8);
+    }
+    let nowhere = Saved { t: f64::NAN, ..run.save() };
+    assert!(run.restore(&nowhere).unwrap_err().to_string().contains("time of the saved run"));
 }

@@ -101,6 +101,9 @@ pub struct Iterative {
     pub preconditioner: Option<Py<PyAny>>,
     /// Its last return value.
     pub prepared: Option<Py<PyAny>>,
+    /// A function of the arguments of the equations and a vector, or two for a residual, that returns the product of the
+    /// transposed Jacobian, or the sum of those by y and by y'.
+    pub transposed: Option<Py<PyAny>>,
 }
 
 /// Result of `call`; an exception is kept, and ends the run.
@@ -211,6 +214,18 @@ impl Equations {
             return Err(fatal("there are no products".into()));
         };
         self.call(function, at, product, "products")
+    }
+
+    fn transposed_product(
+        &self,
+        t: f64,
+        arrays: &[&[f64]],
+        product: &mut [f64],
+    ) -> Result<(), Failure> {
+        let Some(function) = &self.iterative.transposed else {
+            return Err(fatal("there are no transposed products".into()));
+        };
+        self.call(function, (t, arrays, None), product, "transposed")
     }
 
     /// Prepares the preconditioner at these arguments.
@@ -337,6 +352,16 @@ impl Ode for Equations {
         self.precondition(r)
     }
 
+    fn adjoint_rhs(
+        &mut self,
+        t: f64,
+        y: &[f64],
+        lambda: &[f64],
+        out: &mut [f64],
+    ) -> Result<(), Failure> {
+        self.transposed_product(t, &[y, lambda], out)
+    }
+
     fn mass_kind(&self) -> MassKind {
         match &self.mass {
             None => MassKind::Identity,
@@ -429,6 +454,18 @@ impl Dae for Equations {
 
     fn newton_solve(&mut self, r: &mut [f64]) -> Result<(), Failure> {
         self.precondition(r)
+    }
+
+    fn adjoint_residual(
+        &mut self,
+        t: f64,
+        y: &[f64],
+        yp: &[f64],
+        lambda: &[f64],
+        mu: &[f64],
+        out: &mut [f64],
+    ) -> Result<(), Failure> {
+        self.transposed_product(t, &[y, yp, lambda, mu], out)
     }
 
     fn quadrature_count(&self) -> usize {

@@ -17,6 +17,7 @@ pub struct AskedKrylov {
     restarts: u32,
     products: Option<Py<PyAny>>,
     preconditioner: Option<Py<PyAny>>,
+    transposed: Option<Py<PyAny>>,
     /// Whether the preconditioner is the incomplete factorization.
     ilu: bool,
     /// Whether the preconditioner is applied on the right.
@@ -62,7 +63,7 @@ impl AskedKrylov {
 
     /// Its functions of Python.
     pub fn functions(self) -> Iterative {
-        let Self { products, preconditioner, .. } = self;
-        Iterative { products, preconditioner, prepared: None }
+        let Self { products, preconditioner, transposed, .. } = self;
+        Iterative { products, preconditioner, prepared: None, transposed }
     }
 }

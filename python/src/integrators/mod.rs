@@ -273,7 +273,10 @@ pub fn gradient<'py>(
     adjoint_atol: f64,
 ) -> PyResult<Slopes<'py>> {
     let (method, span) = (asked.method()?, asked.span);
-    let back = AdjointOptions::new(asked.rtol, adjoint_atol);
+    let mut back = AdjointOptions::new(asked.rtol, adjoint_atol);
+    if asked.krylov.is_some() {
+        back = back.supplied_rhs();
+    }
     let kept = Raised::default();
     let (problem, options) = asked.problem(py, &kept)?;
     let sought = Sought { terminal, running, raised: kept.clone() };

@@ -4,7 +4,7 @@ use std::sync::{Mutex, MutexGuard, TryLockError};
 
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pliant::solve::{self, End, Occurrence, Reason};
-use pyo3::exceptions::PyRuntimeError;
+use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 
 use super::Asked;
@@ -12,9 +12,23 @@ use super::equations::Raised;
 use super::events::act;
 use crate::errors::{made, raised};
 
-/// Where a run stands.
+/// Where a run stands. It is pickled as JSON, whose names later versions may add to.
 #[pyclass(frozen, module = "pliant._pliant")]
 pub struct Saved(solve::Saved);
+
+#[pymethods]
+impl Saved {
+    #[new]
+    fn new(json: &str) -> PyResult<Self> {
+        let unusable = |error| PyValueError::new_err(format!("this is no saved run: {error}"));
+        serde_json::from_str(json).map(Self).map_err(unusable)
+    }
+
+    fn __getnewargs__(&self) -> PyResult<(String,)> {
+        let failed = |error: serde_json::Error| PyValueError::new_err(error.to_string());
+        Ok((serde_json::to_string(&self.0).map_err(failed)?,))
+    }
+}
 
 /// A run that a program leads step by step.
 #[pyclass(frozen, module = "pliant._pliant")]

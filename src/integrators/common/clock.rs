@@ -15,13 +15,18 @@ pub(crate) struct Clock {
 /// Times (s) up to here are fine by themselves: SUNDIALS distinguishes those that are 2e-12 s apart.
 const FINE: f64 = 100.0;
 
+/// Whether times around `t` are fine by themselves.
+pub(crate) fn is_fine(t: f64) -> bool {
+    t.abs() <= FINE
+}
+
 /// Part of a step by which the time of its end may be rounded.
 const ROUNDED: f64 = 1e-9;
 
 impl Clock {
     /// A clock that begins at time `t`; it counts from zero where times are fine by themselves.
     pub(crate) fn starting_at(t: f64) -> Self {
-        let origin = if t.abs() > FINE { t } else { 0.0 };
+        let origin = if is_fine(t) { 0.0 } else { t };
         Self { origin, start: t - origin, last: f64::NAN }
     }
 
@@ -86,13 +91,18 @@ impl Clock {
 
     /// Whether a step of this size that ends `elapsed` after the origin has passed a time that is a number, after `t`.
     pub(crate) fn passes(self, t: f64, elapsed: f64, step: f64) -> bool {
-        self.last_within(elapsed, step).0 != t
+        self.before(elapsed) != t && self.last_within(elapsed, step).0 != t
     }
 
     /// The time at which a step of this size ends `elapsed` after the origin, and its distance from there: the end, unless rounding of its
-    /// time would count; then the last time before it that is a number.
+    /// time would count; then the last time before it that is a number. The last one that is shown to the equations stands for the stop
+    /// behind it, where another step ends.
     pub(crate) fn last_within(self, elapsed: f64, step: f64) -> (f64, f64) {
-        let t = self.before(elapsed);
+        let t = match self.before(elapsed) {
+            t if t != self.last => t,
+            t if elapsed > 0.0 => t.next_down(),
+            t => t.next_up(),
+        };
         let exact = self.elapsed(t);
         match (elapsed - exact).abs() <= ROUNDED * step.abs() {
             true => (self.origin + elapsed, elapsed),

@@ -364,10 +364,13 @@ impl From<IntegrationError> for Error {
 
 impl fmt::Display for IntegrationError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { integrator, cause, t, step, order, message, .. } = self;
+        let Self { integrator, cause, t, step, order, message, source, .. } = self;
         let (what, advice) = (cause.describe(), cause.advice());
         write!(f, "{integrator} stopped at t = {t:?} (step size {step:.3e}, order {order}): ")?;
-        write!(f, "{what}; {advice}")?;
+        match (cause, source) {
+            (Cause::Fatal(_), Some(source)) => write!(f, "{what}: {source}")?,
+            _ => write!(f, "{what}; {advice}")?,
+        }
         if !message.is_empty() {
             write!(f, " [{message}]")?;
         }

@@ -19,7 +19,7 @@ mod roots;
 mod statistics;
 mod tolerances;
 
-pub(crate) use clock::Clock;
+pub(crate) use clock::{Clock, is_fine};
 pub use error::{Callback, Cause, Error, IntegrationError};
 pub use explicit_options::ExplicitOptions;
 pub(crate) use explicit_options::{check_stop_time, check_target};

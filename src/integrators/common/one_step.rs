@@ -371,7 +371,12 @@ impl<S: Ode, M: StepMethod> Integrator for OneStep<S, M> {
 
     fn set_stop_before(&mut self, t: f64) -> Result<(), Error> {
         let before = number_before(t, self.t());
-        self.set_stop_time(Some(before))?;
+        if before == self.t() {
+            self.march.clock.go_on();
+            self.march.stop_given = before;
+        } else {
+            self.set_stop_time(Some(before))?;
+        }
         let March { clock, stop_time, t: now, .. } = &mut self.march;
         *stop_time = Some(clock.end_before(t, before, *now));
         Ok(())

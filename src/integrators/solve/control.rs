@@ -125,7 +125,7 @@ impl Run<'_> {
         self.yp.clone_from(&saved.yp);
         self.parameters.clone_from(&saved.parameters);
         self.counts.clone_from(&saved.counts);
-        self.armed.clone_from(&saved.armed);
+        self.armed = saved.armed(&self.events);
         self.quadratures = [saved.quadratures.clone(), saved.quadratures.clone()];
         self.occurred.clear();
         (self.before, self.shown, self.stale) = (None, 0, true);

@@ -7,7 +7,7 @@
 use std::mem;
 
 use super::{
-    engine::Start,
+    engine::{Engine, Start},
     error::Reason,
     event::{Jump, check_crosses},
     run::Run,
@@ -18,7 +18,7 @@ use super::{
 };
 use crate::base::input::InputError;
 use crate::integrators::{
-    common::{check_finite, time_tolerance},
+    common::{Error, check_finite, time_tolerance},
     ode::Failure,
 };
 
@@ -81,7 +81,7 @@ impl<'a> Run<'a> {
             let at =
                 met.iter().map(|(_, root)| root.t * self.sign).fold(first, f64::max) * self.sign;
             let mut y = vec![0.0; self.y.len()];
-            self.engine.interpolate(at, 0, &mut y)?;
+            write_state(self.engine.as_mut(), (self.t, &self.y), at, &mut y)?;
             let mut stops = false;
             for (i, root) in &mut met {
                 root.t = at;
@@ -114,11 +114,11 @@ impl<'a> Run<'a> {
         tolerance: f64,
         undefined: &mut Option<f64>,
     ) -> Result<Sight, Reason> {
-        let Self { engine, events, watches, scratch, parameters, sign, t, .. } = self;
+        let Self { engine, events, watches, scratch, parameters, sign, t, y, .. } = self;
         let event = &mut events[i];
         let is_short = (up_to.0 - *t).abs() <= tolerance;
         let mut value = |at: f64| {
-            engine.interpolate(at, 0, scratch)?;
+            write_state(engine.as_mut(), (*t, y), at, scratch)?;
             let value = event.function.at(at, scratch, parameters);
             if value.is_nan() && undefined.is_none_or(|first| at * *sign < first * *sign) {
                 *undefined = Some(at);
@@ -377,4 +377,22 @@ impl<'a> Run<'a> {
         }
         self.note_flow()
     }
+}
+
+/// Writes the state at a time within the step from `start`, where it was `first`. At neighbouring numbers, between which an integrator makes
+/// many steps, it knows the last of these alone: states at the ends are those that the run has had.
+pub(super) fn write_state(
+    engine: &mut dyn Engine,
+    (start, first): (f64, &[f64]),
+    at: f64,
+    out: &mut [f64],
+) -> Result<(), Error> {
+    if at == engine.t() {
+        out.copy_from_slice(engine.y());
+    } else if at == start {
+        out.copy_from_slice(first);
+    } else {
+        engine.interpolate(at, 0, out)?;
+    }
+    Ok(())
 }

@@ -5,11 +5,13 @@ use std::{error, fmt, time::Duration};
 use thiserror::Error;
 
 use super::solution::Solution;
-use crate::base::input::InputError;
+use crate::base::input::{InputError, debug_in_words};
 use crate::integrators::common;
 
-/// An error of [`solve`](super::solve) or of a member of an [`ensemble`](super::ensemble). `Debug` is short, for logs; `Display` has the words.
-#[derive(Debug, Error)]
+debug_in_words!(Error, Stopped, Reason);
+
+/// An error of [`solve`](super::solve) or of a member of an [`ensemble`](super::ensemble). It is shown in words, also by [`Debug`](std::fmt::Debug).
+#[derive(Error)]
 #[non_exhaustive]
 pub enum Error {
     /// A value that was handed in cannot be used; nothing was computed.
@@ -26,7 +28,6 @@ pub enum Error {
 }
 
 /// A run that stopped: the reason, and the solution until then.
-#[derive(Debug)]
 pub struct Stopped {
     /// Why.
     pub reason: Reason,
@@ -35,7 +36,6 @@ pub struct Stopped {
 }
 
 /// Why a run stopped, or did not begin.
-#[derive(Debug)]
 #[non_exhaustive]
 pub enum Reason {
     /// A value that was handed in cannot be used.

@@ -25,7 +25,7 @@ use super::{
 };
 use crate::base::input::InputError;
 use crate::integrators::common::{
-    self, SHORTEST, Statistics, Tolerances, check_start_time, check_time,
+    self, SHORTEST, Statistics, Tolerances, check_start_time, check_time, is_fine,
 };
 
 /// A problem that is solved step by step, by [`advance`](Self::advance).
@@ -160,11 +160,11 @@ impl<'a> Run<'a> {
         let sign = (end - start).signum();
         options.check(span)?;
         let Problem { mut equations, mut y, events, mut breaks, .. } = problem;
-        let Problem { observer, cancel, mut saved, initial_sensitivities, mut sides, .. } = problem;
+        let Problem { observer, cancel, saved, initial_sensitivities, mut sides, .. } = problem;
         for (i, event) in events.iter().enumerate() {
             event.check(i, span)?;
         }
-        if let Some(saved) = &mut saved {
+        if let Some(saved) = &saved {
             let derivatives = match &mut equations {
                 Equations::Dae { yp, .. } => {
                     yp.clone_from(&saved.yp);
@@ -172,10 +172,6 @@ impl<'a> Run<'a> {
                 }
                 Equations::Ode(_) => 0,
             };
-            let armed = events.iter().zip(&saved.counts).map(|(event, n)| !event.once || *n == 0);
-            if saved.armed.is_empty() {
-                saved.armed = armed.collect();
-            }
             saved.check([y.len(), derivatives, events.len(), equations.quadrature_count()])?;
             if start != saved.t {
                 let help = format!("the saved run stands at {:?}", saved.t);
@@ -253,7 +249,7 @@ impl<'a> Run<'a> {
         let mut run = Self {
             engine,
             method: MethodUse { t: start, method, reason: reason.into() },
-            armed: saved.as_ref().map_or(vec![true; events.len()], |saved| saved.armed.clone()),
+            armed: saved.as_ref().map_or(vec![true; events.len()], |saved| saved.armed(&events)),
             ticks: vec![None; events.len()],
             seen: vec![Seen::default(); events.len()],
             counts: saved.as_ref().map_or(vec![0; events.len()], |saved| saved.counts.clone()),
@@ -305,7 +301,9 @@ impl<'a> Run<'a> {
         let end = self.target.unwrap_or(self.span.1);
         let before_break = self.breaks.last().map(|next| (next.t, self.just_before(next.t)));
         match before_break.filter(|(_, stop)| (end - stop) * self.sign > 0.0) {
-            Some((next, stop)) if stop != self.t => self.engine.set_stop_before(next),
+            Some((next, stop)) if stop != self.t || !is_fine(stop) => {
+                self.engine.set_stop_before(next)
+            }
             None if end != self.t => self.engine.set_stop_time(end),
             _ => Ok(()),
         }

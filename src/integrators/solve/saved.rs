@@ -1,5 +1,6 @@
 //! A run that is saved and continued later.
 
+use super::event::Event;
 use crate::base::input::InputError;
 use crate::integrators::common::{check_finite, check_length};
 
@@ -21,7 +22,7 @@ pub struct Saved {
     /// How often each event was met.
     pub counts: Vec<u32>,
     /// Whether each event may take place: none that happened [once](super::Event::once), or was
-    /// [disarmed](super::Jump::disarm). Empty: all.
+    /// [disarmed](super::Jump::disarm). Empty: all but those that happened once.
     #[cfg_attr(feature = "serde", serde(default))]
     pub armed: Vec<bool>,
     /// The sensitivities, one column after the other; empty if there are none.
@@ -35,7 +36,7 @@ pub struct Saved {
     /// The sensitivities of the integrals, one column after the other; empty if there are none.
     #[cfg_attr(feature = "serde", serde(default))]
     pub quadrature_sensitivities: Vec<f64>,
-    /// Values of the event functions; 0 for one that is about to leave zero.
+    /// Values of the event functions, all finite; 0 for one that is about to leave zero.
     pub event_values: Vec<f64>,
 }
 
@@ -46,10 +47,12 @@ impl Saved {
         [n, derivatives, events, integrals]: [usize; 4],
     ) -> Result<(), InputError> {
         check_length("length of y in the saved run", self.y.len(), n)?;
+        check_finite("time of the saved run", &[self.t])?;
         check_finite("y of the saved run", &self.y)?;
         check_finite("yp of the saved run", &self.yp)?;
         check_finite("parameters of the saved run", &self.parameters)?;
         check_finite("quadratures of the saved run", &self.quadratures)?;
+        check_finite("event_values of the saved run", &self.event_values)?;
         if self.quadratures.len() != integrals {
             let help = format!("the equations have {integrals}");
             let input = "length of quadratures in the saved run";
@@ -76,5 +79,12 @@ impl Saved {
             }
         }
         Ok(())
+    }
+    /// Whether each of these events may take place.
+    pub(super) fn armed(&self, events: &[Event<'_>]) -> Vec<bool> {
+        match self.armed.is_empty() {
+            true => events.iter().zip(&self.counts).map(|(e, n)| !e.once || *n == 0).collect(),
+            false => self.armed.clone(),
+        }
     }
 }

@@ -13,6 +13,7 @@ use super::{
     run::{Run, Step},
     solution::End,
 };
+use crate::integrators::common::is_fine;
 
 impl Run<'_> {
     /// Makes one step; `None` at the end of the run.
@@ -34,9 +35,9 @@ impl Run<'_> {
         self.log.clear();
         self.before = None;
         let (t_old, end) = (self.t, self.span.1);
-        // no step from one number to the next, where a break directly follows another one, an event or the
-        // start
-        if !self.is_before_break(t_old)
+        // no step from one number to the next among fine ones, where a break directly follows another one, an event
+        // or the start
+        if !(is_fine(t_old) && self.is_before_break(t_old))
             && let Err(error) = self.engine.step(end)
         {
             return self.at_edge(error).map(Some);
@@ -56,18 +57,23 @@ impl Run<'_> {
         };
         let stops_at = jumps.first().map(|(_, root)| root.t);
         self.check_step(stops_at.unwrap_or(t))?;
-        if let Some(at) = stops_at {
-            t = at;
-            let y = &mut self.scratch;
-            self.engine.interpolate(t, 0, y)?;
-            self.y.copy_from_slice(y);
-            if !self.yp.is_empty() {
-                self.engine.interpolate(t, 1, y)?;
-                self.yp.copy_from_slice(y);
+        match stops_at.unwrap_or(t) {
+            end if end == t => {
+                self.y.copy_from_slice(self.engine.y());
+                self.yp.copy_from_slice(self.engine.yp());
             }
-        } else {
-            self.y.copy_from_slice(self.engine.y());
-            self.yp.copy_from_slice(self.engine.yp());
+            // its state is the present one
+            start if start == t_old => t = start,
+            at => {
+                t = at;
+                let y = &mut self.scratch;
+                self.engine.interpolate(t, 0, y)?;
+                self.y.copy_from_slice(y);
+                if !self.yp.is_empty() {
+                    self.engine.interpolate(t, 1, y)?;
+                    self.yp.copy_from_slice(y);
+                }
+            }
         }
         (self.t_old, self.t) = (t_old, t);
         if let Some(carried) = &mut self.carried {

@@ -107,9 +107,9 @@ impl EventTracker {
         }
     }
 
-    /// The function where it was last looked at; 0 where it has not left zero.
+    /// The function where it was last looked at; 0 where it has not left zero, and the largest number where it is infinite, which JSON cannot hold.
     pub(super) fn value(&self) -> f64 {
-        if self.held.is_some() { 0.0 } else { self.g }
+        if self.held.is_some() { 0.0 } else { self.g.clamp(-f64::MAX, f64::MAX) }
     }
 
     /// Continues at time `t`, where the function now is `g` and values up to `noise` count as 0.

@@ -96,7 +96,13 @@ impl<K, S> Integrator for Session<K, S> {
 
     fn set_stop_before(&mut self, t: f64) -> Result<(), Error> {
         let before = number_before(t, self.t);
-        self.set_stop_time(Some(before))?;
+        if before == self.t {
+            let clock = &mut self.host.get_mut().clock;
+            clock.go_on();
+            self.stop_time.set(Some(before), *clock);
+        } else {
+            self.set_stop_time(Some(before))?;
+        }
         let stop = self.host.get_mut().clock.end_before(t, before, self.elapsed);
         self.stop_time.keep(Some(stop));
         Ok(())

@@ -1,5 +1,7 @@
 //! Backward runs of DAEs by Krylov methods and products of the system.
 
+use std::error::Error as _;
+
 use pliant::{
     ode::{Dae, Failure},
     sundials::{
@@ -108,6 +110,37 @@ fn equations_in_any_order_have_the_gradient_of_matrices() {
     let error = difference(&found, &numbers(&exact));
     println!("{error:e}");
     assert!(error < 5e-8, "{found:?} {exact:?}");
+}
+
+/// Products that are wrong by a sign, in dF/dy or in dF/dy', are refused with the variable.
+#[test]
+fn wrong_products_are_found() {
+    let residual = |_t: f64, y: &[f64], yp: &[f64], p: &[f64], r: &mut [f64]| {
+        (r[0], r[1]) = (yp[0] + p[0] * y[1], y[1] - y[0]);
+        Ok(())
+    };
+    let refusal = |signs: [f64; 2]| {
+        let transposed = move |_y: &[f64], p: &[f64], [l, m]: [&[f64]; 2], out: &mut [f64]| {
+            (out[0], out[1]) = (signs[1] * m[0] - l[1], signs[0] * p[0] * l[0] + l[1]);
+        };
+        let system = WithProducts { residual, transposed, p: [2.0, 0.0, 0.0] };
+        let forward =
+            IdaOptions::new(1e-8, 1e-10).newton(gmres(2, None)).differential([true, false]);
+        let back = AdjointOptions::new(1e-8, 1e-10).supplied_rhs();
+        let (y0, yp0) = ([1.0, 1.0], [-2.0, -2.0]);
+        let end = |y: &[f64], slopes: &mut [f64]| {
+            slopes[0] = 1.0;
+            y[0]
+        };
+        let functional = By(end, |_: &[f64], _: &mut [f64]| 0.0);
+        let made = DaeAdjoint::new(system, functional, 0.0, &y0, &yp0, &forward, &back);
+        made.unwrap().gradient(1.0).map_err(|error| error.source().unwrap().to_string())
+    };
+    assert!((refusal([1.0; 2]).unwrap().parameters[0] + (-2.0_f64).exp()).abs() < 1e-7);
+    let by_state = refusal([-1.0, 1.0]).unwrap_err();
+    assert!(by_state.contains("adjoint_residual is wrong: its slope by y[1]"), "{by_state}");
+    let by_slope = refusal([1.0, -1.0]).unwrap_err();
+    assert!(by_slope.contains("adjoint_residual is wrong: its slope by y'[0]"), "{by_slope}");
 }
 
 /// A nonlinear rod whose rates are unknowns of their own, of 60 unknowns: as by a sparse matrix.

@@ -1,6 +1,10 @@
 //! A system, of any kind, with a functional: their derivatives in the backward run.
 
-use super::{gradient::Gradient, parameters::ParameterDifferences, slopes::SlopesCheck};
+use super::{
+    gradient::Gradient,
+    parameters::ParameterDifferences,
+    slopes::{Names, SlopesCheck},
+};
 use crate::base::input::InputError;
 use crate::integrators::{
     common::{Callback, Cause, Error, IntegrationError, Tolerances},
@@ -32,7 +36,7 @@ pub(in crate::integrators::sundials) struct Equations<S, F> {
     pub(super) slopes_y: Vec<f64>,
     pub(super) slopes_p: Vec<f64>,
     differences: ParameterDifferences,
-    scratch: Vec<f64>,
+    pub(super) scratch: Vec<f64>,
 }
 
 impl<S, F: Functional> Equations<S, F> {
@@ -120,9 +124,12 @@ impl<S, F: Functional> Equations<S, F> {
         if !check.is_due() {
             return Ok(());
         }
-        check.check("running", [y, p], [slopes_y, slopes_p], |y, p| {
-            functional.running(t, y, p, None)
-        })
+        check.check(
+            Names::of_functional("running of the functional"),
+            [y, p],
+            [slopes_y, slopes_p],
+            |y, p| functional.running(t, y, p, None),
+        )
     }
 
     /// g(T, y, p), and its derivatives with respect to p and y at the end of a run of `integrator`.

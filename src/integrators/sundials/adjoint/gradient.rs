@@ -1,6 +1,6 @@
 //! The result of an adjoint problem.
 
-use super::slopes::SlopesCheck;
+use super::slopes::{Names, SlopesCheck};
 use crate::base::input::InputError;
 use crate::integrators::{
     common::{Tolerances, check_finite},
@@ -33,9 +33,12 @@ impl Gradient {
         let slopes = Slopes { y: &mut initial_state, p: &mut parameters };
         let value = functional.terminal(t, y, p, Some(slopes))?;
         let mut check = SlopesCheck::new((y.len(), tolerances), p.len());
-        check.check("terminal", [y, p], [&initial_state, &parameters], |y, p| {
-            functional.terminal(t, y, p, None)
-        })?;
+        check.check(
+            Names::of_functional("terminal of the functional"),
+            [y, p],
+            [&initial_state, &parameters],
+            |y, p| functional.terminal(t, y, p, None),
+        )?;
         Ok(Self { value, parameters, initial_state })
     }
 

@@ -1,15 +1,22 @@
 //! The backward run by products with transposed matrices, in place of their entries.
 
+use std::mem;
+
 use super::{
     gmres,
     products::Products,
     system::{AdjointDae, uneven},
 };
+use crate::base::vector::dot;
 use crate::integrators::{
     common::{Error, check_finite},
     ode::{Dae, Failure, Functional, call},
     sundials::{
-        adjoint::{backward::Point, equations::refused},
+        adjoint::{
+            backward::Point,
+            equations::{Equations, refused},
+            slopes::{Names, SlopesCheck},
+        },
         ilu::no_pivot,
     },
 };
@@ -88,6 +95,34 @@ impl<S: Dae, F: Functional> AdjointDae<S, F> {
         let outcome = if is_due { self.compare_products(at, &products) } else { Ok(()) };
         products.checked = outcome.is_ok().then_some(at.0);
         self.products = Some(products);
+        outcome
+    }
+
+    /// Refuses products with `lambda` that differences of lambda^T F refute, now and then.
+    pub(super) fn check_supplied(&mut self, at: Point<'_>, lambda: &[f64]) -> Result<(), Failure> {
+        if !self.supplied_rhs.as_mut().is_some_and(SlopesCheck::is_due) {
+            return Ok(());
+        }
+        let [mut by_state, mut by_slope] = mem::take(&mut self.residuals);
+        let mut check = || {
+            self.transposed_times(at, [1.0, 0.0], lambda, &mut by_state)?;
+            self.transposed_times(at, [0.0, 1.0], lambda, &mut by_slope)?;
+            let Self { supplied_rhs: Some(check), equations, .. } = &mut *self else {
+                return Ok(());
+            };
+            let ((t, y, yp), Equations { system, scratch, .. }) = (at, equations);
+            check.check(
+                Names::of_products("adjoint_residual"),
+                [y, yp],
+                [&by_state, &by_slope],
+                |y, yp| {
+                    call::residual(system, t, y, yp, scratch)?;
+                    Ok(dot(lambda, scratch))
+                },
+            )
+        };
+        let outcome = check();
+        self.residuals = [by_state, by_slope];
         outcome
     }
 

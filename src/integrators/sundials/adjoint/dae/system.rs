@@ -13,6 +13,7 @@ use crate::integrators::{
             backward::Point,
             equations::{Equations, refused},
             options::AdjointOptions,
+            slopes::SlopesCheck,
         },
         sensitivity::Access,
         stored_matrix::StoredMatrix,
@@ -23,7 +24,8 @@ use crate::integrators::{
 /// linear in y'.
 pub(super) struct AdjointDae<S, F> {
     pub(super) equations: Equations<S, F>,
-    supplied_rhs: bool,
+    /// The check of (dF/dy)^T lambda and (dF/dy')^T lambda, where the system supplies them.
+    pub(super) supplied_rhs: Option<SlopesCheck>,
     supplied_parameters: bool,
     /// Of a Krylov method.
     pub(super) products: Option<Products>,
@@ -58,7 +60,7 @@ impl<S: Dae, F: Functional> AdjointDae<S, F> {
         Ok(Self {
             equations,
             products,
-            supplied_rhs: options.supplied_rhs,
+            supplied_rhs: options.supplied_rhs.then(|| SlopesCheck::new((n, tolerances), n)),
             supplied_parameters: options.supplied_parameters,
             differential: differential.to_vec(),
             mass: StoredMatrix::new(solver, n),
@@ -132,8 +134,9 @@ impl<S: Dae, F: Functional> AdjointDae<S, F> {
         (lambda, slope): (&[f64], &[f64]),
         out: &mut [f64],
     ) -> Result<(), Failure> {
-        if self.supplied_rhs {
+        if self.supplied_rhs.is_some() {
             self.check_products((t, y, yp))?;
+            self.check_supplied((t, y, yp), lambda)?;
             let [negative, _] = &mut self.moved;
             negative.iter_mut().zip(lambda).for_each(|(negative, lambda)| *negative = -lambda);
             let system = &mut self.equations.system;
@@ -156,7 +159,7 @@ impl<S: Dae, F: Functional> AdjointDae<S, F> {
         lambda: &[f64],
         out: &mut [f64],
     ) -> Result<(), Failure> {
-        if self.supplied_rhs {
+        if self.supplied_rhs.is_some() {
             return self.transposed_times(at, [1.0, 0.0], lambda, out);
         }
         self.update_jacobian(at)?;

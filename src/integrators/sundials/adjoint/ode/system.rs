@@ -2,13 +2,17 @@
 
 use faer::MatMut;
 
-use crate::base::input::InputError;
+use crate::base::{input::InputError, vector::dot};
 use crate::integrators::{
     common::Tolerances,
     ode::{BandMut, Entries, Failure, Functional, Ode, call, delegate::delegate},
     sundials::{
         LinearSolver,
-        adjoint::{equations::Equations, options::AdjointOptions},
+        adjoint::{
+            equations::Equations,
+            options::AdjointOptions,
+            slopes::{Names, SlopesCheck},
+        },
         ilu::{IncompleteLu, no_pivot},
         sensitivity::Access,
     },
@@ -17,7 +21,8 @@ use crate::integrators::{
 /// An [`Ode`] with the integral of a functional in addition.
 pub(super) struct AdjointSystem<S, F> {
     pub(super) equations: Equations<S, F>,
-    supplied_rhs: bool,
+    /// The check of (df/dy)^T lambda, where the system supplies it.
+    supplied_rhs: Option<SlopesCheck>,
     supplied_parameters: bool,
     /// The preconditioner of a Krylov method in the backward run.
     ilu: Option<IncompleteLu>,
@@ -39,7 +44,7 @@ impl<S: Ode, F: Functional> AdjointSystem<S, F> {
             return Err(InputError::new("linear solver", "Krylov", help));
         }
         Ok(Self {
-            supplied_rhs: options.supplied_rhs,
+            supplied_rhs: options.supplied_rhs.then(|| SlopesCheck::new((n, forward.1), 0)),
             supplied_parameters: options.supplied_parameters,
             ilu: equations.backward.ilu().map(|(pattern, _)| IncompleteLu::new(pattern)),
             equations,
@@ -54,8 +59,16 @@ impl<S: Ode, F: Functional> AdjointSystem<S, F> {
         lambda: &[f64],
         out: &mut [f64],
     ) -> Result<(), Failure> {
-        if self.supplied_rhs {
-            call::adjoint_rhs(&mut self.equations.system, t, y, lambda, out)?;
+        if let Some(check) = &mut self.supplied_rhs {
+            let Equations { system, scratch, .. } = &mut self.equations;
+            call::adjoint_rhs(system, t, y, lambda, out)?;
+            if check.is_due() {
+                // the slope of lambda^T f
+                check.check(Names::of_products("adjoint_rhs"), [y, &[]], [out, &[]], |y, _| {
+                    call::rhs(system, t, y, scratch)?;
+                    Ok(dot(lambda, scratch))
+                })?;
+            }
         } else {
             self.update_jacobian(t, y)?;
             out.fill(0.0);
