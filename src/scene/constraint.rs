@@ -19,7 +19,7 @@ use std::sync::Arc;
 pub use axis::Axis;
 pub use prescribed::{Path, Prescribed};
 pub(crate) use resolve::rows;
-pub(crate) use rigid_holds::check_rigid_holds;
+pub(crate) use rigid_holds::{check_rigid_holds, held_pieces};
 pub(crate) use row::{ConstraintRow, independent_terms, prescribe};
 pub(crate) use spline::Spline;
 pub(crate) use start::PhaseStart;

@@ -276,6 +276,12 @@ fn all_scenes_are_run() {
         "gust",
         // where joints are tested
         "hopping-leg",
+        // where rods are tested
+        "catheter",
+        "rod-gripper",
+        "rope-pile",
+        "three-tendon-arm",
+        "walking-machine",
         // where contact is tested
         "cradle",
         "ring-on-table",

@@ -527,6 +527,24 @@ fn what_is_no_joint_is_refused() {
     let beside = Joint::spherical("hook", ["world", "top"], [0.05, 0.06]);
     let error = refusal(block.joint(beside)).to_string();
     assert!(error.contains("at of joint \"hook\"") && error.contains("beside"), "{error}");
+    // a servo is what leads to an angle
+    let aimless = scene().joint(revolute(["bar", "lower"]).servo(0.0, 1.0));
+    let phase = Phase::until(1.0).device_input("elbow", &Joint::TARGET_ANGLE, 0.5);
+    let error = aimless.clone().phase(phase).validate().unwrap_err().to_string();
+    println!("{error}");
+    assert!(error.contains("of joint \"elbow\"") && error.contains("servo_stiffness"), "{error}");
+    let phase = Phase::until(1.0).device_input("elbow", &Joint::TARGET_SPEED, 0.5);
+    aimless.phase(phase).validate().unwrap();
+    // both sides are held: all nodes of rigid bodies, or as many of their components as they have freedoms
+    for (held, is_refused) in [("lower/left", false), ("bar/left", true), ("bar", true)] {
+        let driven = scene().joint(revolute(["bar", "lower"]));
+        let phase = Phase::until(1.0).hold(held);
+        let phase = if is_refused { phase.hold("lower") } else { phase };
+        let phase = phase.device_input("elbow", &Joint::TORQUE, 0.5);
+        let result = driven.phase(phase).validate();
+        let error = result.err().map(|error| error.to_string()).unwrap_or_default();
+        assert!(error.contains("both of its sides are held") == is_refused, "{held}: {error}");
+    }
     // the joint holds them together across a gap
     let apart = Scene::new(Body::join([bar("bar", 0.0), bar("lower", LENGTH + 0.05)]).unwrap())
         .joint(revolute(["bar", "lower"]))

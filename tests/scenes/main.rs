@@ -69,6 +69,8 @@ mod rigid_mass;
 mod ring;
 mod robots;
 mod rod_loads;
+mod rod_of_solid;
+mod rod_scenes;
 mod rod_touch;
 mod rods;
 mod rubber_motion;

@@ -150,7 +150,7 @@ fn pieces_of(pieces: &[usize], first_node: usize) -> Option<Indicator> {
 fn joints(scene: &Scene) -> Vec<[usize; 2]> {
     let body = scene.body();
     let mut joints = Vec::new();
-    for line in scene.actuators().iter().filter_map(|own| own.line(body.mesh()).ok()) {
+    for line in scene.actuators().iter().filter_map(|own| own.line(body).ok()) {
         let nodes = line.iter().flat_map(|point| &point.shares).map(|share| share.0);
         joints.extend(nodes.clone().zip(nodes.skip(1)).map(|(one, other)| [one, other]));
     }

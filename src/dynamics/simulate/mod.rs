@@ -30,6 +30,8 @@ mod records;
 mod reduced_checks;
 mod resolution;
 mod rigid_fit;
+#[cfg(any(feature = "scene-file", feature = "study"))]
+mod rod_reading;
 mod run;
 mod same_steps;
 mod sampling;

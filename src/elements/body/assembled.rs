@@ -389,7 +389,8 @@ impl Body {
             return Err(InputError::new("point", format!("{x:?}"), help));
         }
         finite("point", x)?;
-        shares_at(&self.mesh, x).ok_or_else(|| {
+        let of_rods = || self.shares_in_rods(x);
+        shares_at(&self.mesh, x).or_else(of_rods).ok_or_else(|| {
             let help =
                 "it lies outside the body: give the undeformed position of one of its points";
             InputError::new("point", format!("{x:?}"), help)

@@ -1,5 +1,6 @@
 //! A body: a mesh made of a material, and the constant matrices that follow from both.
 
+mod as_rod;
 mod assembled;
 mod assembly;
 mod axis;

@@ -69,6 +69,11 @@ impl Body {
         nodes.iter().map(at).collect()
     }
 
+    /// Nodes (from 0) with their shares in the point of a rod that is undeformed at `x` (m), if it is within one.
+    pub(super) fn shares_in_rods(&self, x: &[f64]) -> Option<Vec<(usize, f64)>> {
+        self.continua.iter().filter_map(|own| own.rod.as_ref()).find_map(|rod| rod.shares_at(x))
+    }
+
     /// Whether a node is that of a rod's axis or of a director.
     pub(crate) fn is_of_rod(&self, node: usize) -> bool {
         self.continua.iter().any(|own| own.rod.is_some() && own.nodes.contains(&node))

@@ -5,6 +5,7 @@
 
 mod boundary;
 mod cell;
+mod cut;
 mod generate;
 #[cfg(feature = "gmsh")]
 mod gmsh;
@@ -23,6 +24,7 @@ use std::sync::Arc;
 pub use boundary::Face;
 pub use cell::CellKind;
 pub(crate) use cell::FaceKind;
+pub(crate) use cut::Cut;
 pub(crate) use generate::BYTES_PER_NODE;
 pub use generate::{Cells, SolidCells};
 pub(crate) use mirror::mirrored;

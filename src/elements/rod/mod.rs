@@ -5,13 +5,16 @@
 
 mod branches;
 mod chain;
+mod cut_section;
 mod elements;
 mod end;
 mod growth;
 mod nodes;
 mod path;
+mod places;
 mod screw;
 mod section;
+mod solid_axis;
 mod strain;
 #[cfg(test)]
 mod tests;
@@ -25,6 +28,7 @@ pub(crate) use growth::RodGrowth;
 use nodes::Nodes;
 pub use path::RodPath;
 pub use section::{RodSection, SectionNumbers};
+pub(crate) use solid_axis::SolidAxis;
 use strain::{Deformed, Section};
 pub(crate) use tube::{Bend, RodPoint, Spokes, Tube, TubePiece};
 pub(crate) use turning::{CrossSection, SectionLoad};

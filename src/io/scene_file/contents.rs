@@ -18,7 +18,7 @@ pub struct SceneFile {
     pub title: String,
     /// The scene, by the smaller models of it by which it is run.
     pub scene: Scene,
-    /// How it is smaller than what the tables say: `half` and `plane` of `[solver]`.
+    /// How it is smaller than what the tables say: `half`, `plane` and `rod` of `[solver]`.
     pub smaller: Vec<Smaller>,
     /// How it is integrated.
     pub settings: Settings,

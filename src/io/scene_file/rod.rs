@@ -162,9 +162,19 @@ pub(super) const SECTION: TableKeys = TableKeys::new(
 /// The number of elements where none is given.
 const USUAL: usize = 20;
 
-/// The rods that `value` describes.
-pub(super) fn rods(value: &Value) -> Result<Vec<Body>, Error> {
-    value.tables(&ROD)?.iter().map(rod).collect()
+/// The rods that `value` describes, in a space of `dimension` (default: that of their paths).
+pub(super) fn rods(value: &Value, dimension: Option<&Value>) -> Result<Vec<Body>, Error> {
+    let rods = value.tables(&ROD)?.iter().map(rod).collect::<Result<Vec<Body>, _>>()?;
+    if let Some(dimension) = dimension
+        && let wanted = dimension.count()?
+        && let Some(other) = rods.iter().find(|rod| rod.dimension() != wanted)
+    {
+        let (name, own) = (other.name().unwrap_or_default(), other.dimension());
+        return Err(
+            dimension.unexpected(format!("{own}, as points of the path of rod \"{name}\" have"))
+        );
+    }
+    Ok(rods)
 }
 
 fn rod(table: &Table) -> Result<Body, Error> {

@@ -3,7 +3,7 @@
 use super::contents::{AccuracyRequest, Format, OutputRequest, StaticsRequest};
 use super::keys::{Key, TableKeys, ValueType};
 use super::selection::selection;
-use super::smaller::{HALF, PLANE};
+use super::smaller::{HALF, PLANE, ROD};
 use super::value::Value;
 use crate::base::input::{find, positive};
 use crate::dynamics::error::Error;
@@ -20,12 +20,13 @@ pub(super) const SOLVER: TableKeys = TableKeys::new(
     "[solver]\nmethod = \"cvode-bdf\"\nrtol = 1e-6\nalpha = 1e4",
 );
 
-const OPTIONS: [Key; SettingsOption::ALL.len() + 5] = {
-    let mut keys = [QUANTITY; SettingsOption::ALL.len() + 5];
+const OPTIONS: [Key; SettingsOption::ALL.len() + 6] = {
+    let mut keys = [QUANTITY; SettingsOption::ALL.len() + 6];
     keys[0] = ACCURACY;
     keys[SettingsOption::ALL.len() + 2] = REDUCED;
     keys[SettingsOption::ALL.len() + 3] = HALF;
     keys[SettingsOption::ALL.len() + 4] = PLANE;
+    keys[SettingsOption::ALL.len() + 5] = ROD;
     let mut number = 0;
     while number < SettingsOption::ALL.len() {
         keys[number + 1] = key(&SettingsOption::ALL[number]);

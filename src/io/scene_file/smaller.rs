@@ -1,4 +1,4 @@
-//! Smaller models by which a scene is run: `half` and `plane` of `[solver]`.
+//! Smaller models by which a scene is run: `half`, `plane` and `rod` of `[solver]`.
 
 use super::contents::OutputRequest;
 use super::keys::{Key, ValueType};
@@ -7,6 +7,7 @@ use crate::base::input::InputError;
 use crate::base::vector::distinct;
 use crate::dynamics::error::Error;
 use crate::elements::mesh::{NodeMap, Selection};
+use crate::elements::rod::SolidAxis;
 use crate::scene::constraint::Axis;
 use crate::scene::timeline::{Scene, Shrink, Smaller};
 
@@ -31,6 +32,17 @@ pub(super) const PLANE: Key = Key::new(
 )
 .default("all of space");
 
+pub(super) const ROD: Key = Key::new(
+    "rod",
+    ValueType::Count,
+    "the number of elements of a rod that is run in place of a slender solid",
+)
+.note(
+    "The solid has the same cross section all along a straight axis. Held nodes and sensors are in whole cross sections between elements, as at its \
+     ends. `0` is the solid.",
+)
+.default("the solid");
+
 const AXES: [(&str, Option<Axis>); 4] =
     [("x", Some(Axis::X)), ("y", Some(Axis::Y)), ("z", Some(Axis::Z)), ("", None)];
 
@@ -49,7 +61,41 @@ pub(super) fn smaller(
         (scene, output) = (smaller.scene, written);
         all.push(smaller.kind);
     }
+    if let Some(value) = solver.get("rod")
+        && let elements = value.count()?
+        && elements > 0
+    {
+        let made = scene.rod_scene(elements).and_then(|rod| {
+            let written = of_rod(&scene, &output, &rod.axis)?;
+            Ok((rod, written))
+        });
+        let (rod, written) = made.map_err(|error| value.error(error))?;
+        (scene, output) = (rod.scene, written);
+        all.push(rod.kind);
+    }
     Ok((scene, output, all))
+}
+
+/// Output request for the rod that stands for a solid.
+fn of_rod(
+    solid: &Scene,
+    output: &OutputRequest,
+    axis: &SolidAxis,
+) -> Result<OutputRequest, InputError> {
+    let mut output = output.clone();
+    for (name, reading) in &mut output.sensors {
+        *reading = reading.of_rod(solid, axis).map_err(|error| of_sensor(name, error))?;
+    }
+    if let Some(track) = &mut output.track {
+        let sections = solid.sections_of(track, axis, false, || "output.track".into())?;
+        *track = Selection::of_nodes(sections.into_iter().map(|section| axis.nodes(section)[0]));
+    }
+    Ok(output)
+}
+
+/// An error of the reading of a sensor.
+fn of_sensor(name: &str, error: InputError) -> InputError {
+    InputError { input: format!("{} of sensor \"{name}\"", error.input), ..error }
 }
 
 /// Output request for a smaller model of a scene.
@@ -60,10 +106,7 @@ fn mapped(
 ) -> Result<OutputRequest, InputError> {
     let mut output = output.clone();
     for (name, reading) in &mut output.sensors {
-        *reading = reading.by_map(scene, map).map_err(|error| InputError {
-            input: format!("{} of sensor \"{name}\"", error.input),
-            ..error
-        })?;
+        *reading = reading.by_map(scene, map).map_err(|error| of_sensor(name, error))?;
     }
     if let Some(track) = &mut output.track {
         let nodes = scene.body().mesh().select(track)?;

@@ -65,7 +65,11 @@ const END: TableKeys = TableKeys::new(
 const INSIDE: TableKeys = TableKeys::new(
     "inside",
     "A place in the body by which a cable is led. It moves with the body, and is the same on a finer mesh.",
-    &[Key::vector("inside", "its undeformed position, within a cell or on the surface", "m")],
+    &[Key::vector(
+        "inside",
+        "its undeformed position, within a cell or on the surface, of a rod in a cross section",
+        "m",
+    )],
     "[[cable]]\npath = [{ inside = [0.02, 0.08] }, { inside = [0.05, 0.08] }, { inside = [0.08, 0.08] }]",
 );
 

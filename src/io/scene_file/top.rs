@@ -144,7 +144,8 @@ pub(super) const TOP: TableKeys = TableKeys::new(
 pub(super) fn scene_file(top: &Table, devices: Vec<Arc<dyn Device>>) -> Result<SceneFile, Error> {
     let title = top.optional("title", Value::string)?.unwrap_or_default();
     let (dimension, points) = (top.get("dimension"), top.get("point"));
-    let rods = top.optional("rod", rod::rods)?.unwrap_or_default();
+    let rods = top.optional("rod", |value| rod::rods(value, dimension.as_ref()))?;
+    let rods = rods.unwrap_or_default();
     let bodies = match top.get("body") {
         None if !rods.is_empty() => Vec::new(),
         _ => top.required("body", |value| {

@@ -120,6 +120,21 @@ pub(crate) fn check_rigid_holds(
     Ok(())
 }
 
+/// Of each rigid piece, whether its `rows` leave it no motion at the displacements `u` (m).
+pub(crate) fn held_pieces(
+    rows: &[ConstraintRow],
+    (body, pieces): (&Body, &RigidPieces),
+    u: &[f64],
+) -> Vec<bool> {
+    let is_held = |frame: &Vec<usize>| {
+        let piece = Piece::new(frame, rows, (body, pieces), u);
+        let (count, all) = (piece.freedoms(), piece.derivatives());
+        all.len() >= count
+            && DMatrix::from_fn(all.len(), count, |i, k| all[i][k]).rank(NOTHING_NEW) == count
+    };
+    pieces.frames().iter().map(is_held).collect()
+}
+
 /// Where a node is under the displacements `u` (m); 0 beyond the dimension.
 fn place(body: &Body, u: &[f64], node: usize) -> Vector3<f64> {
     let (d, x) = (body.dimension(), body.mesh().position(node));

@@ -360,6 +360,7 @@ impl Device for Joint {
         inputs: DeviceSignals,
     ) -> Result<Arc<dyn Force>, InputError> {
         self.check(site.body)?;
+        self.law.check_targets(&self.geometry.name, |target| inputs.is_set(1 + target))?;
         let Assembly { coordinate, couplings, .. } = Assembly::new(&self.geometry, site.body)?;
         let (name, held) = (&self.geometry.name, (coordinate, couplings));
         Ok(Arc::new(JointForce::new(name, held, self.law.clone(), inputs)))

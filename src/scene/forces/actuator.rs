@@ -125,8 +125,8 @@ pub(crate) trait Actuator: Any + fmt::Debug + Send + Sync {
     ///
     /// # Errors
     /// Nodes that do not exist.
-    fn line(&self, mesh: &Mesh) -> Result<Vec<LinePoint>, InputError> {
-        let _ = mesh;
+    fn line(&self, body: &Body) -> Result<Vec<LinePoint>, InputError> {
+        let _ = body;
         Ok(Vec::new())
     }
 

@@ -29,10 +29,9 @@ use super::signal::Signal;
 use super::surface::natural;
 use crate::base::input::{InputError, finite, not_negative, positive};
 use crate::base::vector::norm;
-use crate::elements::basis::shares_at;
 use crate::elements::body::Body;
 use crate::elements::force::{Force, Forces};
-use crate::elements::mesh::{Mesh, NodeMap, Selection};
+use crate::elements::mesh::{NodeMap, Selection};
 
 /// A spring between two nodes, or between a node and a fixed point of space.
 ///
@@ -96,7 +95,8 @@ impl Guide {
     }
 
     /// The place in the body, within a cell or on its surface, whose undeformed position is `place` (m). It moves with the body, whatever
-    /// nodes are near, so that a finer mesh has the same guides. Of several bodies there the first has it.
+    /// nodes are near, so that a finer mesh has the same guides. Of several bodies there the first has it; in a rod it is a point of a cross
+    /// section, beside its axis or on it.
     ///
     /// ```
     /// use pliant::{Body, Cells, Guide, Material, Mesh, Phase, Sampling, Scene, Settings, Spring};
@@ -253,7 +253,8 @@ impl Spring {
     ///
     /// # Errors
     /// Ends of a spring that are not one node each; less than two places; a point with a wrong number of coordinates.
-    fn joints(&self, mesh: &Mesh) -> Result<Vec<LinePoint>, InputError> {
+    fn joints(&self, body: &Body) -> Result<Vec<LinePoint>, InputError> {
+        let mesh = body.mesh();
         let mut joints: Vec<LinePoint> = Vec::new();
         for (number, Guide(place)) in (1..).zip(&self.path) {
             let input = |key: &str| match (self.is_cable(), number) {
@@ -286,10 +287,9 @@ impl Spring {
                     }
                     finite(&input("end"), point)?;
                     let shares = match place {
-                        GuidePoint::Inside(place) => shares_at(mesh, place).ok_or_else(|| {
-                            let help = "it lies outside the body: give the undeformed position of one of its points";
-                            InputError::new(input("end"), given(), help)
-                        })?,
+                        GuidePoint::Inside(place) => body
+                            .shares_at(place)
+                            .map_err(|error| InputError { input: input("end"), ..error })?,
                         _ => Vec::new(),
                     };
                     let at = std::array::from_fn(|i| point.get(i).copied().unwrap_or(0.0));
@@ -318,9 +318,9 @@ impl Spring {
     ///
     /// # Errors
     /// As [`joints`](Self::joints); places that follow each other and are the same; numbers out of range.
-    fn checked(&self, mesh: &Mesh) -> Result<Path, InputError> {
+    fn checked(&self, body: &Body) -> Result<Path, InputError> {
         let input = |key: &str| self.input(key);
-        let joints = self.joints(mesh)?;
+        let joints = self.joints(body)?;
         not_negative(&input("stiffness"), self.stiffness, "N/m")?;
         not_negative(&input("damping"), self.damping, "N s/m")?;
         let places: Vec<[f64; 3]> = joints.iter().map(|joint| joint.at).collect();
@@ -352,7 +352,7 @@ impl Spring {
         Ok(Path {
             what: self.what(),
             name: self.name.clone(),
-            dimension: mesh.dimension(),
+            dimension: body.dimension(),
             places: joints.into_iter().map(|joint| joint.shares).collect(),
             natural: lines,
             length,
@@ -363,8 +363,8 @@ impl Spring {
     ///
     /// # Errors
     /// As [`joints`](Self::joints); places that follow each other and are the same; numbers out of range.
-    fn law(&self, mesh: &Mesh) -> Result<Pull, InputError> {
-        let path = self.checked(mesh)?;
+    fn law(&self, body: &Body) -> Result<Pull, InputError> {
+        let path = self.checked(body)?;
         let (stiffness, damping) = (self.stiffness, self.damping);
         let Kind::Cable { is_winch, friction } = self.kind else {
             return Ok(Pull::Spring(Elastic { path, stiffness, damping }));
@@ -384,10 +384,10 @@ impl Spring {
     /// As [`law`](Self::law).
     pub(super) fn forces(
         &self,
-        mesh: &Mesh,
+        body: &Body,
         actuation: Vec<Signal>,
     ) -> Result<Vec<Arc<dyn Force>>, InputError> {
-        Ok(match self.law(mesh)? {
+        Ok(match self.law(body)? {
             Pull::Cable(cable) => vec![Arc::new(CableForce { cable, drive: actuation })],
             Pull::Spring(elastic) if actuation.is_empty() => vec![Arc::new(elastic)],
             Pull::Spring(elastic) => {
@@ -460,11 +460,11 @@ impl Actuator for Spring {
     }
 
     fn driven(&self, body: &Body, signals: Vec<Signal>) -> Result<Forces, InputError> {
-        self.forces(body.mesh(), signals)
+        self.forces(body, signals)
     }
 
     fn gauge(&self, body: &Body) -> Result<ActuatorGauge, InputError> {
-        let law = self.law(body.mesh())?;
+        let law = self.law(body)?;
         Ok(Box::new(move |output, now| match output {
             Self::PULL => law.pulls(now.u, now.v, now.drive)[0],
             Self::PULL_AT_END => law.pulls(now.u, now.v, now.drive)[1],
@@ -491,8 +491,8 @@ impl Actuator for Spring {
         }
     }
 
-    fn line(&self, mesh: &Mesh) -> Result<Vec<LinePoint>, InputError> {
-        self.joints(mesh)
+    fn line(&self, body: &Body) -> Result<Vec<LinePoint>, InputError> {
+        self.joints(body)
     }
 
     fn mapped(&self, map: &ComponentMap<'_>) -> Result<Arc<dyn Actuator>, InputError> {
@@ -506,7 +506,7 @@ impl Actuator for Spring {
     }
 
     fn placed(&self, body: &Body, map: &NodeMap) -> Result<Placed, InputError> {
-        let joints = self.joints(body.mesh())?;
+        let joints = self.joints(body)?;
         let numbers = |is_image: bool| {
             let number = |joint: &LinePoint| {
                 let mut x = joint.at;

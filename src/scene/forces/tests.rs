@@ -89,17 +89,22 @@ pub(super) fn bar(dimension: usize) -> Mesh {
     Mesh::new(dimension, positions.collect(), CellKind::Segment, vec![0, 1, 1, 2]).unwrap()
 }
 
+/// A body of them.
+pub(super) fn bar_body(dimension: usize) -> Body {
+    Body::new(bar(dimension), SQUARE_MATERIAL).area(1e-4).build().unwrap()
+}
+
 #[test]
 fn springs() {
     for dimension in 1..=3 {
-        let mesh = bar(dimension);
+        let body = bar_body(dimension);
         let spring = Spring::between([3], [1]).named("s").stiffness(20.0).length(1.2).damping(3.0);
         let actuation = vec![Signal::constant(-2.0), Signal::function(|t| 5.0 * t)];
-        let forces = spring.forces(&mesh, actuation).unwrap();
+        let forces = spring.forces(&body, actuation).unwrap();
         let [force, actuator] = &forces[..] else { panic!("{}", forces.len()) };
         let point = [-0.3, 0.1, 0.4][..dimension].to_vec();
         let anchored = Spring::anchored([3], point).stiffness(20.0).length(1.2).damping(3.0);
-        let anchored = &anchored.forces(&mesh, Vec::new()).unwrap()[0];
+        let anchored = &anchored.forces(&body, Vec::new()).unwrap()[0];
         assert_eq!(anchored.couplings(), Vec::<[usize; 2]>::new());
         for seed in [1.0, 2.0, 3.0] {
             let n = 3 * dimension;
@@ -125,7 +130,7 @@ fn springs() {
 #[test]
 fn a_spring_pulls_its_second_end_back() {
     let spring = Spring::between([1], [3]).stiffness(20.0).length(1.5).damping(3.0);
-    let forces = spring.forces(&bar(1), vec![Signal::constant(0.25)]).unwrap();
+    let forces = spring.forces(&bar_body(1), vec![Signal::constant(0.25)]).unwrap();
     let [force, actuator] = &forces[..] else { panic!("{}", forces.len()) };
     // from 1.6 m to 1.7 m, at 2 m/s
     let (u, v) = ([0.1, 0.0, 0.2], [1.0, 0.0, 3.0]);

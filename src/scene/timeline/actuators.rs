@@ -112,7 +112,7 @@ impl Scene {
     pub(crate) fn actuator_lines(&self) -> Result<Vec<(usize, Vec<LinePoint>)>, InputError> {
         let mut lines = Vec::new();
         for (number, own) in self.actuators.iter().enumerate() {
-            let line = own.line(self.body.mesh())?;
+            let line = own.line(&self.body)?;
             if !line.is_empty() {
                 lines.push((number, line));
             }

@@ -186,6 +186,11 @@ impl DeviceSignals {
         self.signals.iter().any(|own| !own.is_empty())
     }
 
+    /// Whether there is a value for the input of a number (from 0).
+    pub(crate) fn is_set(&self, number: usize) -> bool {
+        self.signals.get(number).is_some_and(|own| !own.is_empty())
+    }
+
     /// The value of the input of a number (from 0) at time `t` (s): the sum of the phase's signals for it. Components beyond its own
     /// are 0, and so is an input that the device does not have.
     pub fn at(&self, number: usize, t: f64) -> [f64; 3] {

@@ -2,6 +2,7 @@
 
 mod actuators;
 mod around;
+mod as_rod;
 mod changed;
 mod contacts;
 mod device;
@@ -35,6 +36,8 @@ mod written;
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
+#[cfg(any(feature = "scene-file", feature = "study"))]
+pub(crate) use as_rod::RodScene;
 pub(crate) use contacts::ContactReader;
 pub use device::{
     Device, DeviceGauge, DeviceMultipliers, DeviceRow, DeviceSignals, DeviceSite, DeviceState,
@@ -538,7 +541,7 @@ impl Scene {
         let of_devices = self.device_constraints()?;
         let all = phase.constraints.iter().chain(tied).chain(&on_axis).chain(&of_devices);
         let rows = rows(all, &self.body, &phase.name, start)?;
-        self.check_driven(phase, &rows)?;
+        self.check_driven(phase, &rows, start.u)?;
         Ok(rows)
     }
 }

@@ -11,7 +11,7 @@ use super::input::{Input, InputSignal, Quantity, Target};
 use super::{Phase, Scene, taken};
 use crate::base::input::{InputError, find};
 use crate::elements::force::Forces;
-use crate::scene::constraint::{Constrained, Constraint, ConstraintRow, Motion};
+use crate::scene::constraint::{Constrained, Constraint, ConstraintRow, Motion, held_pieces};
 
 impl Scene {
     /// Adds a device, which acts in all phases.
@@ -80,24 +80,38 @@ impl Scene {
         number.is_some_and(|number| self.rows_of_device(number).is_ok_and(|own| !own.is_empty()))
     }
 
-    /// Checks that what a phase drives can move under its `rows`.
+    /// Checks that what a phase drives can move under its `rows`, at the displacements `u` (m).
     ///
     /// # Errors
-    /// A joint that is driven, of which each node is held.
+    /// A joint that is driven, of which each node is held, or belongs to a rigid piece that is.
     pub(super) fn check_driven(
         &self,
         phase: &Phase,
         rows: &[ConstraintRow],
+        u: &[f64],
     ) -> Result<(), InputError> {
         let is_driven = |device: &dyn Device| {
             (0..device.inputs().len())
                 .any(|number| phase.device_signals(device, number).next().is_some())
         };
-        let held =
-            |dof: usize| rows.iter().any(|row| matches!(row.terms[..], [(own, _)] if own == dof));
-        for (number, device) in
-            self.devices.iter().enumerate().filter(|(_, own)| is_driven(&***own))
-        {
+        let driven: Vec<_> =
+            self.devices.iter().enumerate().filter(|(_, own)| is_driven(&***own)).collect();
+        if driven.is_empty() {
+            return Ok(());
+        }
+        let (d, pieces) = (self.body.dimension(), self.body.rigid_pieces());
+        let held_pieces = pieces.map(|pieces| held_pieces(rows, (&self.body, pieces), u));
+        let is_in_held_piece = |node: usize| {
+            let Some((pieces, held)) = pieces.zip(held_pieces.as_ref()) else { return false };
+            let frames = || pieces.frames().iter().zip(held);
+            let is_held = |node| frames().any(|(frame, held)| *held && frame.contains(&node));
+            pieces.contains(node) && pieces.shares(node).all(|(node, _)| is_held(node))
+        };
+        let held = |dof: usize| {
+            rows.iter().any(|row| matches!(row.terms[..], [(own, _)] if own == dof))
+                || is_in_held_piece(dof / d)
+        };
+        for (number, device) in driven {
             let own = self.terms_of_device(number)?;
             let mut dofs = own.iter().flatten().map(|(dof, _)| *dof);
             if !own.is_empty() && dofs.all(held) {

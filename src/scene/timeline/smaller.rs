@@ -38,6 +38,11 @@ pub enum Smaller {
         /// Assumption along the axis: plane strain or plane stress.
         plane: Plane,
     },
+    /// A rod in place of a slender solid: see [`Scene::as_rod`].
+    Rod {
+        /// Number of its elements.
+        elements: usize,
+    },
 }
 
 impl fmt::Display for Smaller {
@@ -50,6 +55,7 @@ impl fmt::Display for Smaller {
             Self::Plane { axis, plane } => {
                 write!(f, "in a plane across {} (plane {})", axis.word(), plane.name())
             }
+            Self::Rod { elements } => write!(f, "a rod of {elements} elements"),
         }
     }
 }

@@ -5,7 +5,7 @@ use super::parts::Parts;
 use super::reduced_candidate::ReducedCandidate;
 use super::smaller_model::SmallerModel;
 use crate::dynamics::equilibrium::MeshEstimate;
-use crate::scene::timeline::Term;
+use crate::scene::timeline::{Smaller, Term};
 use crate::studies::work_precision::look::Look;
 
 /// Recommended model of a scene, and the findings that lead to it.
@@ -74,16 +74,28 @@ pub struct Advice {
 }
 
 impl Advice {
-    /// The fastest half or section (of [`smaller`](Self::smaller)) with which what is enough stays so, if one saves time: what it changes
-    /// and the error of what is enough are within the accuracy together.
+    /// The fastest half, section or rod (of [`smaller`](Self::smaller)) with which what is enough stays so, if one saves time: its
+    /// [error](Self::error_of) is within the accuracy.
     pub fn smaller_enough(&self) -> Option<&SmallerModel> {
-        let enough = self.enough.as_ref()?.parts?.sum();
         let is_right = |model: &&SmallerModel| {
             let saves_time = model.seconds < model.full_seconds;
-            model.set().is_some() && saves_time && enough + model.change <= self.accuracy
+            let error = self.error_of(model);
+            model.set().is_some() && saves_time && error.is_some_and(|error| error <= self.accuracy)
         };
         let right = self.smaller.iter().filter(is_right);
         right.min_by(|a, b| a.seconds.total_cmp(&b.seconds))
+    }
+
+    /// Bound of the error of a [smaller model](Self::smaller) (relative): its change and the error of what is enough; of a rod, whose
+    /// change is the distance from the reference, that and the error that the reference may have.
+    pub fn error_of(&self, model: &SmallerModel) -> Option<f64> {
+        let enough = self.enough.as_ref()?.parts?.sum();
+        let of_full = match model.kind {
+            Smaller::Rod { .. } if self.resolution.is_nan() => 0.0,
+            Smaller::Rod { .. } => self.resolution,
+            _ => enough,
+        };
+        Some(of_full + model.change)
     }
 
     /// Overrides in the file of the scene, as `--set` takes them, for the recommended model, by a

@@ -148,10 +148,12 @@ impl fmt::Display for Advice {
             Some(enough) => writeln!(f, "\nEnough:      {}", run(enough))?,
             None => writeln!(f, "\nNothing that was tried is enough.")?,
         }
-        let parts = self.enough.as_ref().and_then(|enough| enough.parts);
-        if let (Some(smaller), Some(parts)) = (self.smaller_enough(), parts) {
-            let SmallerModel { kind, change, seconds, .. } = smaller;
-            let (off, time) = (percent(parts.sum() + change), time_text(*seconds));
+        let smaller = self.smaller_enough();
+        if let Some((smaller, error)) =
+            smaller.and_then(|model| Some((model, self.error_of(model)?)))
+        {
+            let SmallerModel { kind, seconds, .. } = smaller;
+            let (off, time) = (percent(error), time_text(*seconds));
             writeln!(
                 f,
                 "Smaller:     {kind}, with the same settings: {off} off at most in {time}"

@@ -79,6 +79,7 @@ impl Search<'_> {
         self.rigid(found)?;
         self.smaller(Shrink::Half, found)?;
         self.smaller(Shrink::Section, found)?;
+        self.rod(found)?;
         self.reduce(found)
     }
 

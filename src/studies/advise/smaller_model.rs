@@ -5,8 +5,9 @@
 //! (`studies/work_precision/rigid_motion.rs`, Kabsch's rotation of each piece at each time, which no rigid
 //! motion can undercut) is above the accuracy. Half and section are compared with the whole by runs with
 //! hardly any error of the integration (`smaller_run.rs`), so that the change is the symmetry that the motion
-//! breaks; one that saves time within the accuracy is written with the answer (`Advice::set`). The last rung
-//! is a reduced model, learned within half of the accuracy. Half, section and reduced model are no
+//! breaks; one that saves time within the accuracy is written with the answer (`Advice::set`). So is the rod in
+//! place of a slender solid, whose change is its distance from the reference. The last rung
+//! is a reduced model, learned within half of the accuracy. Half, section, rod and reduced model are no
 //! candidates: their errors are of the model that was found, on its mesh.
 
 use std::fmt;
@@ -22,7 +23,8 @@ use crate::studies::work_precision::time_text;
 pub struct SmallerModel {
     /// How it is smaller.
     pub kind: Smaller,
-    /// Change of the quantity by the model, relative to the same scale as the accuracy, from runs with small integration errors.
+    /// Change of the quantity by the model, relative to the same scale as the accuracy, from runs with small integration errors; of a rod
+    /// the distance from the reference, with that of its faster run.
     pub change: f64,
     /// Time (s) of a run by it, and of one of what it is a model of.
     pub seconds: f64,
@@ -49,6 +51,7 @@ impl SmallerModel {
             Smaller::Rigid => None,
             Smaller::Half { axis, .. } => Some(format!("solver.half={}", axis.word())),
             Smaller::Plane { axis, .. } => Some(format!("solver.plane={}", axis.word())),
+            Smaller::Rod { elements } => Some(format!("solver.rod={elements}")),
         }
     }
 
@@ -81,6 +84,12 @@ impl fmt::Display for SmallerModel {
         match ratio > 1.0 {
             true => write!(f, "{} at {} times the speed ({time})", percent(*change), short(ratio)),
             false => write!(f, "{} and is no faster ({time})", percent(*change)),
+        }?;
+        match kind {
+            Smaller::Rod { .. } => {
+                f.write_str("; left out: cross sections that warp or change their shape")
+            }
+            _ => Ok(()),
         }
     }
 }

@@ -1,4 +1,7 @@
 //! Runs of a smaller model beside what it is a model of.
+//!
+//! Half and section are compared with the motion that was found right, on its mesh. The rod in place of a slender solid has no mesh of
+//! its own to share with it, and is compared with the reference; more and more elements are tried, until it is right or changes no more.
 
 use super::evidence::Evidence;
 use super::ladder::PATIENCE;
@@ -7,26 +10,30 @@ use super::search::{Cut, SHORT, Search, Solved, Stop};
 use super::smaller_model::SmallerModel;
 use crate::base::input::InputError;
 use crate::scene::constraint::Axis;
-use crate::scene::timeline::{Scene, Shrink, Smaller, SmallerScene};
+use crate::scene::timeline::{RodScene, Scene, Shrink, Smaller, SmallerScene};
 use crate::studies::work_precision::quantity::{Quantity, Seen};
 use crate::studies::work_precision::truth::reason;
+
+/// Numbers of elements of a rod that are tried, one after the other, ...
+const ELEMENTS: [usize; 4] = [5, 10, 20, 40];
+/// ... as long as what it changes is below this part of what the one before changes.
+const CHANGING: f64 = 0.8;
 
 /// A smaller model, what is read in it, and what of the motion that it is a model of that is compared with.
 struct Shrunk {
     kind: Smaller,
     scene: Scene,
     quantity: Quantity,
-    /// Its nodes that stand for the nodes compared with.
-    points: Vec<usize>,
+    /// Its nodes that stand for each of the nodes compared with, with their shares.
+    shares: Vec<Vec<(usize, f64)>>,
     full: Seen,
 }
 
 impl Shrunk {
     /// Difference of the observed motion or quantity from that of the full model.
     fn change(&self, seen: &Seen) -> f64 {
-        let axes: Vec<usize> = (0..self.scene.body().dimension()).collect();
         match self.quantity.is_motion() {
-            true => self.full.error(&seen.chosen(&self.points, &axes)).mean,
+            true => self.full.error(&seen.combined(&self.shares)).mean,
             false => self.full.error(seen).mean,
         }
     }
@@ -44,7 +51,11 @@ impl Search<'_> {
                 continue;
             }
             match self.shrunk(&scene, (shrink, axis), &exact.seen) {
-                Ok(model) => return self.run_smaller([best, exact], &model, found),
+                Ok(model) => {
+                    let smaller = self.run_smaller([&best, &exact], &model, found)?;
+                    found.smaller.extend(smaller);
+                    return Ok(());
+                }
                 Err(error) => {
                     let name = ["half of it, cut across", "in a plane across"];
                     let name = name[usize::from(shrink == Shrink::Section)];
@@ -72,29 +83,75 @@ impl Search<'_> {
             true => full.chosen(&nodes, &map.axes()),
             false => full.clone(),
         };
-        Ok(Shrunk { kind, scene, quantity, points, full })
+        let shares = points.into_iter().map(|point| vec![(point, 1.0)]).collect();
+        Ok(Shrunk { kind, scene, quantity, shares, full })
     }
 
-    /// Runs a smaller model as exactly as what it is a model of was run, to see what it changes, and then as fast.
+    /// Runs the rod in place of a slender solid, with as few elements as are right.
+    pub(super) fn rod(&mut self, found: &mut Evidence) -> Result<(), Stop> {
+        let Some([best, exact]) = self.soft(found) else { return Ok(()) };
+        let Some(truth) = found.truth().cloned() else { return Ok(()) };
+        let (mut nearest, mut refused): (Option<SmallerModel>, _) = (None, None);
+        for elements in ELEMENTS {
+            let model = match self.rod_model(elements, &truth.seen) {
+                Ok(model) => model,
+                Err(error) => {
+                    refused = Some(format!("a rod of {elements} elements: {error}"));
+                    continue;
+                }
+            };
+            let Some(rod) = self.run_smaller([&best, &exact], &model, found)? else { break };
+            let before = nearest.as_ref().map_or(f64::INFINITY, |nearest| nearest.change);
+            let is_right = rod.change <= found.left(self.request.accuracy);
+            let goes_on = rod.change < CHANGING * before;
+            if rod.change < before {
+                nearest = Some(rod);
+            }
+            if is_right || !goes_on {
+                break;
+            }
+        }
+        if nearest.is_none() {
+            found.not_tried.extend(refused);
+        }
+        found.smaller.extend(nearest);
+        Ok(())
+    }
+
+    fn rod_model(&self, elements: usize, full: &Seen) -> Result<Shrunk, InputError> {
+        let RodScene { scene, axis, kind } = self.scene.rod_scene(elements)?;
+        let quantity = self.request.quantity.of_rod(&self.scene, &axis)?;
+        let mesh = self.scene.body().mesh();
+        let shares = (0..self.nodes).map(|node| axis.shares(mesh.position(node))).collect();
+        Ok(Shrunk { kind, scene, quantity, shares, full: full.clone() })
+    }
+
+    /// Runs a smaller model as exactly as what it is a model of was run, to see what it changes, and then as fast: of a rod, which is
+    /// compared with the reference, that adds what the faster run changes.
     fn run_smaller(
         &mut self,
-        [best, exact]: [Solved; 2],
+        [best, exact]: [&Solved; 2],
         model: &Shrunk,
         found: &mut Evidence,
-    ) -> Result<(), Stop> {
+    ) -> Result<Option<SmallerModel>, Stop> {
         let kind = model.kind;
-        let Some(tight) = self.run_as(&exact, model, found)? else { return Ok(()) };
-        let change = tight.seen.as_ref().map_or(f64::NAN, |seen| model.change(seen));
-        let mut pair = (tight, exact);
-        if change <= self.request.accuracy
-            && let Some(loose) = self.run_as(&best, model, found)?
-        {
-            pair = (loose, best);
+        let Some(tight) = self.run_as(exact, model, found)? else { return Ok(None) };
+        let mut change = tight.seen.as_ref().map_or(f64::NAN, |seen| model.change(seen));
+        let (mut own, mut full) = (&tight, exact);
+        let loose = match change <= self.request.accuracy {
+            true => self.run_as(best, model, found)?,
+            false => None,
+        };
+        if let Some(loose) = &loose {
+            if let (Smaller::Rod { .. }, Some(tight), Some(loose)) =
+                (kind, &tight.seen, &loose.seen)
+            {
+                change += tight.distance(loose).mean / model.full.scale;
+            }
+            (own, full) = (loose, best);
         }
-        let (own, full) = pair;
         let runs = [(own.seconds, own.unknowns), (full.seconds, full.unknowns)];
-        found.smaller.push(SmallerModel::new(kind, change, runs));
-        Ok(())
+        Ok(Some(SmallerModel::new(kind, change, runs)))
     }
 
     /// Runs a smaller model with the settings of a run of what it is a model of, if it was not run before.
@@ -104,8 +161,8 @@ impl Search<'_> {
         model: &Shrunk,
         found: &mut Evidence,
     ) -> Result<Option<Outcome>, Stop> {
-        let Shrunk { kind, scene, quantity, points, .. } = model;
-        let nodes = points.iter().max().map_or(0, |last| last + 1);
+        let Shrunk { kind, scene, quantity, shares, .. } = model;
+        let nodes = shares.iter().flatten().map(|(node, _)| node + 1).max().unwrap_or(0);
         let name = self.kept.name(scene, quantity, &full.choice);
         if let Some(known) = self.kept.get(&name).cloned() {
             self.known += 1;

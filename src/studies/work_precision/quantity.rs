@@ -13,6 +13,7 @@ use crate::dynamics::equilibrium::Equilibrium;
 use crate::dynamics::simulate::{Component, Reading, Sampling};
 use crate::dynamics::trajectory::{Sample, Trajectory};
 use crate::elements::mesh::NodeMap;
+use crate::elements::rod::SolidAxis;
 use crate::scene::timeline::Scene;
 
 /// A quantity of interest: the whole motion, or a number that follows from it.
@@ -301,6 +302,15 @@ impl Quantity {
         Ok(Self { reading: reading.transpose()?, ..self.clone() })
     }
 
+    /// Equivalent quantity of the rod that stands for a `solid` along its `axis`; for the whole motion, that of its nodes.
+    ///
+    /// # Errors
+    /// A reading that the rod does not have.
+    pub(crate) fn of_rod(&self, solid: &Scene, axis: &SolidAxis) -> Result<Self, InputError> {
+        let reading = self.reading.as_ref().map(|reading| reading.of_rod(solid, axis));
+        Ok(Self { reading: reading.transpose()?, ..self.clone() })
+    }
+
     /// Whether it is the whole motion.
     pub(crate) fn is_motion(&self) -> bool {
         self.reading.is_none()
@@ -424,6 +434,18 @@ impl Seen {
         let of_time = |x: &Vec<f64>| points.iter().flat_map(|&point| of_point(x, point)).collect();
         let values = self.values.iter().map(of_time).collect();
         Self { dimension: axes.len(), values, scale: self.scale }
+    }
+
+    /// Observation of points whose motion is made of that of its own, each with its share.
+    pub(crate) fn combined(&self, shares: &[Vec<(usize, f64)>]) -> Self {
+        let d = self.dimension;
+        let of_time = |x: &Vec<f64>| {
+            let component = |own: &[(usize, f64)], i| -> f64 {
+                own.iter().map(|(point, share)| share * x[point * d + i]).sum()
+            };
+            shares.iter().flat_map(|own| (0..d).map(move |i| component(own, i))).collect()
+        };
+        Self { values: self.values.iter().map(of_time).collect(), ..self.clone() }
     }
 
     pub(crate) fn distance(&self, other: &Self) -> Distance {

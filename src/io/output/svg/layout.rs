@@ -145,7 +145,7 @@ fn pairs(trajectory: &Trajectory, pairs: Vec<[[f64; 3]; 2]>) -> Vec<[Point; 2]> 
 /// The points of space (m) that actuators are joined to, dimension coordinates each.
 fn anchors(scene: &Scene) -> Vec<Vec<f64>> {
     let mesh = scene.body().mesh();
-    let joints = scene.actuators().iter().filter_map(|actuator| actuator.line(mesh).ok());
+    let joints = scene.actuators().iter().filter_map(|actuator| actuator.line(scene.body()).ok());
     let point =
         |joint: LinePoint| joint.shares.is_empty().then(|| joint.at[..mesh.dimension()].to_vec());
     joints.flatten().filter_map(point).collect()

@@ -98,6 +98,21 @@ impl JointLaw {
         }
     }
 
+    /// # Errors
+    /// A target that is commanded, of place (0) or speed (1), without the gain of the servo that leads to it.
+    pub(super) fn check_targets(
+        &self,
+        name: &str,
+        is_set: impl Fn(usize) -> bool,
+    ) -> Result<(), InputError> {
+        let without = (0..2).find(|&target| is_set(target) && self.servo[target] == 0.0);
+        let Some(target) = without else { return Ok(()) };
+        let (word, gain) = [("angle or displacement", "stiffness"), ("speed", "damping")][target];
+        let help =
+            format!("no servo leads to it: give servo_{gain}, or command the torque or force");
+        Err(InputError::new(format!("{word} of joint \"{name}\""), "commanded", help))
+    }
+
     /// How far `q` is from the rest, and behind a stop; both without whole turns by `wrapped`.
     fn strains(&self, q: f64, wrapped: impl Fn(f64) -> f64) -> [f64; 2] {
         let behind = self.stops.map_or(0.0, |([low, high], _)| {
