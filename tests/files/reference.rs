@@ -30,7 +30,7 @@ const PARTS: [(&str, &str); 14] = [
     ),
     (
         "[[joint]]",
-        "[[joint]]\nname = \"hip\"\nkind = \"revolute\"\nbetween = [\"world\", \"left\"]\nat = [0.0, 0.05]\n",
+        "[[joint]]\nname = \"hip\"\nkind = \"revolute\"\nbetween = [\"world\", \"left\"]\nat = [0.0, 0.05]\nservo_stiffness = 2.0\n",
     ),
     ("[[phase]]", "[[phase]]\nuntil = 0.5\n"),
 ];
