@@ -238,7 +238,7 @@ fn rods_refuse_what_they_are_not() -> Outcome {
             "length of the solid along its axis = 2 times",
         ),
         (
-            Scene::new(body(mesh()?, Material::rigid(1000.0).into())?).phase(Phase::until(1.0)),
+            Scene::new(body(mesh()?, Material::rigid(1000.0))?).phase(Phase::until(1.0)),
             "rigid materials = 1",
         ),
         (beam()?.obstacle(floor).phase(held.clone()), "obstacles = 1"),
