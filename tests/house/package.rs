@@ -24,9 +24,9 @@ fn the_package_is_small_and_the_readme_leads_into_it() {
     let list = cargo(&["package", "--package", "pliant", "--list", "--allow-dirty"]);
     let packaged: Vec<&str> = list.lines().collect();
     let sizes = packaged.iter().filter_map(|file| fs::metadata(root.join(file)).ok());
-    // 6.9 MB are 1.94 MB compressed
+    // 7.11 MB are 1.987 MB compressed
     let size: u64 = sizes.map(|file| file.len()).sum();
-    assert!(size < 7_100_000, "{size} bytes, which are more than 2 MB compressed");
+    assert!(size < 7_150_000, "{size} bytes, which are more than 2 MB compressed");
     // the sources, one concept to a file, and few others
     let others = packaged.iter().filter(|file| !file.starts_with("src/")).count();
     assert!(others < 60, "{others} files besides the sources");

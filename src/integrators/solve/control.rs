@@ -4,7 +4,7 @@ use super::{
     error::Reason,
     event::Jump,
     problem::Break,
-    run::Run,
+    run::{Run, armed},
     saved::Saved,
     solution::{End, Occurrence},
     watch::EventTracker,
@@ -125,7 +125,7 @@ impl Run<'_> {
         self.yp.clone_from(&saved.yp);
         self.parameters.clone_from(&saved.parameters);
         self.counts.clone_from(&saved.counts);
-        self.armed = saved.armed(&self.events);
+        self.armed = armed(saved, &self.events);
         self.quadratures = [saved.quadratures.clone(), saved.quadratures.clone()];
         self.occurred.clear();
         (self.before, self.shown, self.stale) = (None, 0, true);

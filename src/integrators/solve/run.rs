@@ -249,7 +249,7 @@ impl<'a> Run<'a> {
         let mut run = Self {
             engine,
             method: MethodUse { t: start, method, reason: reason.into() },
-            armed: saved.as_ref().map_or(vec![true; events.len()], |saved| saved.armed(&events)),
+            armed: saved.as_ref().map_or(vec![true; events.len()], |saved| armed(saved, &events)),
             ticks: vec![None; events.len()],
             seen: vec![Seen::default(); events.len()],
             counts: saved.as_ref().map_or(vec![0; events.len()], |saved| saved.counts.clone()),
@@ -476,5 +476,13 @@ impl<'a> Run<'a> {
     /// Steps of the run so far.
     pub(super) fn steps(&self) -> u64 {
         self.past.steps + self.engine.steps()
+    }
+}
+
+/// Whether each event may take place, by what was saved.
+pub(super) fn armed(saved: &Saved, events: &[Event<'_>]) -> Vec<bool> {
+    match saved.armed.is_empty() {
+        true => events.iter().zip(&saved.counts).map(|(e, n)| !e.once || *n == 0).collect(),
+        false => saved.armed.clone(),
     }
 }

@@ -1,6 +1,5 @@
 //! A run that is saved and continued later.
 
-use super::event::Event;
 use crate::base::input::InputError;
 use crate::integrators::common::{check_finite, check_length};
 
@@ -79,12 +78,5 @@ impl Saved {
             }
         }
         Ok(())
-    }
-    /// Whether each of these events may take place.
-    pub(super) fn armed(&self, events: &[Event<'_>]) -> Vec<bool> {
-        match self.armed.is_empty() {
-            true => events.iter().zip(&self.counts).map(|(e, n)| !e.once || *n == 0).collect(),
-            false => self.armed.clone(),
-        }
     }
 }
