@@ -78,7 +78,7 @@ impl Klu {
                 self.free_symbolic();
                 self.symbolic = klu_l_analyze(n, starts, rows, &raw mut self.common);
                 if self.symbolic.is_null() {
-                    return ffi::SUNLS_PACKAGE_FAIL_UNREC as i32;
+                    return ffi::SUNLS_PACKAGE_FAIL_UNREC;
                 }
                 let code = self.factorize_anew(a);
                 self.is_first = code != 0;
@@ -113,7 +113,7 @@ impl Klu {
         // SAFETY: the caller vouches for the arrays and the analysis.
         self.numeric =
             unsafe { klu_l_factor(starts, rows, values, self.symbolic, &raw mut self.common) };
-        if self.numeric.is_null() { ffi::SUNLS_PACKAGE_FAIL_UNREC as i32 } else { 0 }
+        if self.numeric.is_null() { ffi::SUNLS_PACKAGE_FAIL_UNREC } else { 0 }
     }
 
     fn free_symbolic(&mut self) {
