@@ -98,7 +98,10 @@ fn forces_and_tangents_belong_to_the_energy() {
     for (number, (body, chamber)) in rooms().iter().enumerate() {
         let (d, n) = (body.dimension(), body.dofs());
         let cells: Vec<&[usize]> = body.mesh().cells().collect();
-        for (fill, seed) in [(0.2, 1.0), (0.5, 2.0), (0.8, 3.0)] {
+        let fills = [(0.2, 1.0), (0.5, 2.0), (0.8, 3.0)];
+        // rooms of many nodes one level each
+        let some = if n < 300 { &fills[..] } else { &fills[number % 3..][..1] };
+        for &(fill, seed) in some {
             let u = noise(n, 0.01, seed);
             let liquid = poured(body, chamber, fill, DOWN[d - 2]);
             let amount = liquid.amount();
