@@ -31,7 +31,7 @@
 
 // docs.rs marks what needs a feature.
 #![cfg_attr(docsrs, feature(doc_cfg))]
-// Upper rooms use more of lower ones than these do by themselves.
+// Upper layers use more of the lower ones than these do by themselves.
 #![cfg_attr(
     not(all(feature = "cli", feature = "play")),
     allow(dead_code, unused_imports, unused_macros)
