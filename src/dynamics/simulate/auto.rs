@@ -1,4 +1,4 @@
-//! Which method integrates a phase, and why.
+//! Automatic choice of the method that integrates a phase.
 //!
 //! The rules come from charts of speed against accuracy over Hirai's scenes: diagonally implicit Runge-Kutta
 //! methods lead where vibrations are lightly damped, as they are L-stable and may step over them; BDF leads

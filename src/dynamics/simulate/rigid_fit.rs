@@ -19,7 +19,7 @@ use crate::base::rotation::{nearest_rotation, plane_rotation};
 use crate::elements::body::Part;
 use crate::elements::mesh::Mesh;
 
-/// The least inertia about any axis, as a part of that about all, of nodes that tell how they turn.
+/// The least inertia about any axis, as a part of that about all, of nodes that determine a rotation.
 const SLENDER: f64 = 1e-12;
 
 /// Nodes with weights, by which a rotation is found.
@@ -44,7 +44,7 @@ impl RigidFit {
     /// That of `nodes` (counted from 0), which count alike.
     ///
     /// # Errors
-    /// Nodes that do not tell how they turn.
+    /// Nodes that do not determine a rotation.
     pub(super) fn of_nodes(mesh: &Mesh, nodes: Vec<usize>) -> Result<Self, InputError> {
         let d = mesh.dimension();
         let middle = super::view::mean(&nodes, mesh.positions(), d);
