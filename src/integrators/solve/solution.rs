@@ -37,7 +37,7 @@ pub enum End {
     Event(usize),
     /// The action of a break ended the run.
     Break,
-    /// It was stopped; [`Stopped`](super::Stopped) says why.
+    /// It was stopped; [`Stopped`](super::Stopped) has the reason.
     Early,
 }
 
@@ -374,7 +374,7 @@ impl Solution {
         self.notice.as_deref()
     }
 
-    /// Where the run stood at its end, to go on from there: [`Problem::resume`](super::Problem::resume).
+    /// The state of the run at its end, to continue from there: [`Problem::resume`](super::Problem::resume).
     #[must_use]
     pub fn saved(&self) -> &Saved {
         &self.saved
