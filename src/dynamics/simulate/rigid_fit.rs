@@ -68,8 +68,12 @@ impl RigidFit {
     fn checked(self, mesh: &Mesh) -> Result<Self, InputError> {
         let help = match self.dimension {
             1 => "nothing turns on a line",
-            2 => "they are in one place, and do not tell how they turn: name nodes around it",
-            _ => "they are on a line, and do not tell how they turn about it: name nodes beside it",
+            2 => {
+                "they are in one position, which does not determine a rotation: name nodes around it"
+            }
+            _ => {
+                "they are on a line, which does not determine the rotation about it: name nodes off the line"
+            }
         };
         let inertia = inertia(self.correlation(mesh.positions()), self.dimension);
         let is_slender = inertia.symmetric_eigenvalues().min() <= SLENDER * inertia.trace()

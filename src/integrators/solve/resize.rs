@@ -51,7 +51,7 @@ impl<'a> Run<'a> {
     /// before.
     pub fn resize(&mut self, mut problem: Problem<'a>, options: &Options) -> Result<(), Reason> {
         if let Some(end) = self.end {
-            let help = "it has ended, and nothing is left to go on with: make a longer one";
+            let help = "it has ended: give it a longer span";
             return Err(InputError::new("run", format!("{end:?}"), help).into());
         }
         if problem.events.len() != self.events.len() {

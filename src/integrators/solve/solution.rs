@@ -289,7 +289,7 @@ impl Solution {
         check_length("length of out", out.len(), self.n)?;
         check_time("t", t)?;
         let Some(inner) = &self.inner else {
-            let help = "what lies between the times was not kept: take Output::Steps";
+            let help = "the solution between the times was not kept: use Output::Steps";
             return Err(InputError::new("output", "Times or End", help));
         };
         let (start, end) = (self.t[0], self.t[self.t.len() - 1]);

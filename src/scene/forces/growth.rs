@@ -171,7 +171,7 @@ impl Growth {
     }
 
     fn check_across(&self) -> Result<(), InputError> {
-        let help = "growth without a direction is alike in all: give along or centre, too";
+        let help = "growth without a direction is isotropic: give along or centre, too";
         match (&self.across, &self.course) {
             (Some(Across::KeepsVolume), None) => Err(InputError::new("keeps_volume", true, help)),
             (Some(Across::Share(share)), None) => Err(InputError::new("across", share, help)),

@@ -269,7 +269,7 @@ impl fmt::Debug for Signal {
 
 /// Error: a `period` (s) given for a signal that is not a table.
 fn not_repeated(period: f64) -> InputError {
-    let help = "only a table is repeated: formulas and functions say themselves how they go on";
+    let help = "only tables have a period: formulas and functions can repeat by themselves";
     InputError::new("period", format!("{period} s"), help)
 }
 

@@ -98,7 +98,7 @@ pub trait Device: Any + fmt::Debug + Send + Sync {
         nodes: &dyn Fn(&Selection) -> Result<Selection, InputError>,
     ) -> Result<Arc<dyn Device>, InputError> {
         let _ = nodes;
-        let help = "it does not say what it is on another mesh: implement Device::on_finer_mesh";
+        let help = "other meshes are not supported: implement Device::on_finer_mesh";
         Err(InputError::new("device", format!("\"{}\"", self.name()), help))
     }
 

@@ -112,7 +112,7 @@ impl Scene {
     ) -> Result<(Self, Finer), InputError> {
         if !self.forces.is_empty() {
             let help =
-                "they know the nodes of this mesh alone: build the scene anew on the finer one";
+                "they refer to the nodes of this mesh only: build the scene on the finer mesh";
             return Err(InputError::new(
                 "forces that are not of this crate",
                 self.forces.len(),
