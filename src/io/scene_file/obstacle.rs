@@ -54,11 +54,19 @@ const BACKWARD: TableKeys = TableKeys::new(
     "Larger friction against sliding one way; what slides at an angle to it has less, and all other ways have \
      `friction_coefficient`.",
     &[
-        Key::new("direction", ValueType::Vector, "the direction of larger friction, fixed in space")
-            .required(),
-        Key::number("friction_coefficient", "the static coefficient of friction in that direction", "1")
-            .note("The kinetic one is larger in proportion.")
-            .required(),
+        Key::new(
+            "direction",
+            ValueType::Vector,
+            "the direction of larger friction, fixed in space",
+        )
+        .required(),
+        Key::number(
+            "friction_coefficient",
+            "the static coefficient of friction in that direction",
+            "1",
+        )
+        .note("The kinetic one is larger in proportion.")
+        .required(),
     ],
     "[[obstacle]]\nkind = \"half-plane\"\npoint = [0.0, 0.0]\nnormal = [0.0, 1.0]\nstiffness_density = 1.0e7\n\
      friction_coefficient = 0.15\nbackward = { direction = [-1.0, 0.0], friction_coefficient = 0.8 }",

@@ -45,9 +45,10 @@ const ACCURACY: Key = Key::new(
      `rtol`.",
 )
 .default("one run by `rtol`");
-const QUANTITY: Key = Key::new("quantity", ValueType::Text, "the quantity to which `accuracy` applies")
-    .note(QUANTITIES)
-    .default("the whole motion");
+const QUANTITY: Key =
+    Key::new("quantity", ValueType::Text, "the quantity to which `accuracy` applies")
+        .note(QUANTITIES)
+        .default("the whole motion");
 const REDUCED: Key = Key::new(
     "reduced",
     ValueType::Text,

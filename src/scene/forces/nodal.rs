@@ -65,7 +65,8 @@ impl NodalContact {
 
     /// The mean pressure (Pa) on the [area](Self::area); 0 without contact.
     pub fn pressure(&self) -> f64 {
-        if self.area > 0.0 { self.normal_force / self.area } else { 0.0 }
+        // corners of quadratic triangles have shares near 0 of both, of either sign
+        if self.area == 0.0 { 0.0 } else { self.normal_force / self.area }
     }
 
     /// Whether it sticks; where some points around the node slide, the larger part of the normal force counts.

@@ -14,9 +14,11 @@ use crate::scene::forces::surface::{SurfacePoint, closed_points, is_within, piec
 /// that slides, press more evenly than those of the other one, as long as none stands for more than lies over it.
 const ALIKE: f64 = 2.0;
 
-/// Size of the facets of a rigid body for that, over what they measure: as flat as it is between them, it needs no points there where the other
-/// body yields.
-const RIGID: f64 = 4.0;
+/// Size of the facets of a rigid body for that, over what they measure, opposite one that yields: as flat as it is between its edges, it needs
+/// no points there.
+const RIGID: f64 = 8.0;
+/// Ratio of the areas around a point to what it stands for from which it is at an edge of its surface: of two facets at an angle of 53 degrees.
+const SHARP: f64 = 1.25;
 
 /// Refused bodies, and what to do.
 const STRING: [&str; 2] = ["a string among them", "a string has no surface: name the other bodies"];
@@ -37,8 +39,9 @@ pub(super) struct Surfaces {
     pub(super) features: Vec<Feature>,
     /// Whether a body touches itself.
     pub(super) itself: bool,
-    /// Size (m) of the finer facets of each body, [larger](RIGID) of a rigid one; 0 of bodies that do not touch.
+    /// Size (m) of the finer facets of each body; 0 of bodies that do not touch.
     sizes: Vec<f64>,
+    are_rigid: Vec<bool>,
     /// The cross sections of rods, by the nodes of their axes, up to the last of these.
     pub(super) sections: Vec<Option<Spokes>>,
     /// No point or place on a surface moves farther than this times the nodes: 1 of linear cells.
@@ -92,11 +95,11 @@ impl Surfaces {
             features: Vec::new(),
             itself,
             sizes: vec![0.0; body.parts().count()],
+            are_rigid: body.parts().map(|part| part.body.is_rigid()).collect(),
             sections: Vec::new(),
             reach: 1.0,
         };
-        let (parts, are_rigid): (Vec<_>, Vec<_>) =
-            body.parts().map(|part| (part.nodes, part.body.is_rigid())).unzip();
+        let parts: Vec<_> = body.parts().map(|part| part.nodes).collect();
         let faces = body.mesh().boundary_faces();
         for &number in bodies {
             if let Some(pieces) = body.tube_pieces(&parts[number]) {
@@ -114,8 +117,7 @@ impl Surfaces {
                 surfaces.features.push(Feature::new(kind, face, number, 0.0));
             }
             surfaces.nodes.extend(own.concat());
-            let rigid = if are_rigid[number] { RIGID } else { 1.0 };
-            surfaces.sizes[number] = rigid * surfaces.usual_size(number);
+            surfaces.sizes[number] = surfaces.usual_size(number);
         }
         surfaces.nodes.sort_unstable();
         surfaces.nodes.dedup();
@@ -230,7 +232,13 @@ impl Surfaces {
 
     /// The part of the energy that the points of a surface have, opposite a feature.
     pub(super) fn part(&self, point: usize, feature: usize) -> f64 {
-        let [own, opposite] = self.bodies(point, feature).map(|body| self.sizes[body]);
+        let bodies = self.bodies(point, feature);
+        let [mut own, mut opposite] = bodies.map(|body| self.sizes[body]);
+        match bodies.map(|body| self.are_rigid[body]) {
+            [true, false] if self.points[point].is_flat() => own *= RIGID,
+            [false, true] => opposite *= RIGID,
+            _ => {}
+        }
         let of_coarse = |ratio: f64| 1.0 / (1.0 + (ratio / ALIKE).max(1.0).powi(4));
         match own > opposite {
             true => of_coarse(own / opposite),
@@ -392,6 +400,11 @@ impl Surfaces {
 impl Point {
     pub(super) fn new(on: SurfacePoint, around: f64, body: usize, radius: f64) -> Self {
         Self { on, around, body, radius, unfelt: Vec::new() }
+    }
+
+    /// Whether the surface around it is smooth.
+    fn is_flat(&self) -> bool {
+        self.around < SHARP * self.on.area
     }
 }
 
