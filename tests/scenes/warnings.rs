@@ -108,7 +108,7 @@ fn motions_below_their_tolerance() {
         warnings
     };
     let warnings = told(-0.02, None);
-    only(&warnings, &["of the way that nodes go (limit: 1 %)", "set atol_position to"]);
+    only(&warnings, &["of the travel of nodes (limit: 1 %)", "set atol_position to"]);
     let enough = warnings[0].split("set atol_position to ").nth(1).unwrap();
     let enough: f64 = enough.split(' ').next().unwrap().parse().unwrap();
     assert_eq!(told(-0.02, Some(enough)), NONE);

@@ -79,7 +79,7 @@ impl Tape {
     ) -> Result<Vec<f64>, Failed> {
         if own.run.sensors.need_forces() {
             return Err(
-                "readings of forces, accelerations and energies are not taken back yet".into()
+                "adjoint gradients do not yet support readings of forces, accelerations and energies".into()
             );
         }
         let mut phases = self.phases(&mut own.run)?;
@@ -212,7 +212,7 @@ impl Tape {
                 if *is_held && !changes(row.apply(&shift)) {
                     let name = phase.name();
                     return Err(
-                        format!("what turns in phase \"{name}\" is not taken back yet").into()
+                        format!("adjoint gradients do not yet support the rotation prescribed in phase \"{name}\"").into()
                     );
                 }
             }

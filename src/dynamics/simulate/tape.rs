@@ -75,9 +75,9 @@ impl Simulation {
         let phases = run.scene.phases();
         let projects = phases.iter().skip(1).find(|phase| phase.projects_velocity);
         if run.settings.method != Method::Rosenbrock {
-            Some(format!("steps by {} are not taken back", run.settings.method))
+            Some(format!("adjoint gradients do not support {}", run.settings.method))
         } else if run.reduced.is_some() {
-            Some("steps of reduced models are not taken back yet".into())
+            Some("adjoint gradients do not yet support reduced models".into())
         } else {
             projects
                 .map(|phase| format!("phase \"{}\" changes velocities at its start", phase.name()))

@@ -27,9 +27,12 @@ impl System {
     /// The reason that keeps steps from being taken back, if there is one.
     pub(crate) fn why_not_transposed(&self) -> Option<&'static str> {
         [
-            (self.layout.strains > 0, "bodies with Maxwell branches are not taken back yet"),
-            (self.layout.amounts > 0, "gas, liquids and actuators that lag are not taken back yet"),
-            (self.matrices.rigid.is_some(), "rigid pieces are not taken back yet"),
+            (self.layout.strains > 0, "adjoint gradients do not yet support Maxwell branches"),
+            (
+                self.layout.amounts > 0,
+                "adjoint gradients do not yet support gas, liquids and actuators that lag",
+            ),
+            (self.matrices.rigid.is_some(), "adjoint gradients do not yet support rigid pieces"),
         ]
         .into_iter()
         .find_map(|(is, why)| is.then_some(why))

@@ -153,7 +153,7 @@ impl<T: Changing> Stored<T> {
         match self {
             Self::Itself(value) => Ok(value),
             Self::SceneFunction(place) => own.nth(place).cloned().ok_or_else(|| {
-                format!("{what} {place} is none of the phase in the scene: write it anew")
+                format!("the phase in the scene has no {what} {place}: recreate the checkpoint")
             }),
         }
     }

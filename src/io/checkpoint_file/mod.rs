@@ -98,13 +98,13 @@ fn open(path: &Path, most: u64) -> std::io::Result<Result<Vec<u8>, String>> {
     if !fs::metadata(path)?.is_file() {
         return Ok(Err("it is no regular file: name one".into()));
     }
-    let help = "it is no checkpoint of this scene, or was damaged: write it anew";
+    let help = "it is no checkpoint of this scene, or was damaged: recreate it";
     let too_long = || format!("it has more than {most} bytes: {help}");
     Ok(read_if_at_most(path, most)?.ok_or_else(too_long))
 }
 
 fn parse(text: &[u8], simulation: &Simulation) -> Result<Checkpoint, String> {
-    let damaged = |error| format!("it is damaged or cut off ({error}): write it anew");
+    let damaged = |error| format!("it is damaged or cut off ({error}): recreate it");
     let head: Head = serde_json::from_slice(text).map_err(|error| match error.is_data() {
         true => format!("it does not say \"{WHAT}\": name a file of `Checkpoint::write`"),
         false => damaged(error),

@@ -70,8 +70,7 @@ impl Advice {
         let sets = self.enough.as_ref().map_or_else(String::new, |_| {
             let lines = escaped(&self.set().join("\n"));
             match &lines[..] {
-                "" => "<p>What is enough stands in the scene file: nothing has to be set.</p>\n"
-                    .into(),
+                "" => "<p>The scene file is enough as it is: nothing has to be set.</p>\n".into(),
                 _ => format!(
                     "<h3>What is enough, as <code>--set</code> takes it:</h3>\n<pre>{lines}</pre>\n"
                 ),

@@ -87,7 +87,7 @@ impl Base {
 }
 
 /// Which objectives are found by taking steps back.
-pub(super) const AT_THE_END: &str = "steps are taken back for readings at the end";
+pub(super) const AT_THE_END: &str = "adjoint gradients need a reading at the end";
 
 /// Why the steps of one run are not those of another.
 pub(super) const OTHER_STEPS: &str = "a run with another value needs other steps";
