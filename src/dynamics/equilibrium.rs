@@ -1,4 +1,4 @@
-//! A scene in equilibrium, and what a search for one returns that fails.
+//! A scene in equilibrium, and the result of a failed search for one.
 
 use std::fmt;
 

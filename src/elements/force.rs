@@ -13,12 +13,12 @@ pub use nodal::{ForceVector, NodalForces, Reservoir, Step};
 use crate::base::sparse::{BlockMatrix, NodePattern};
 use crate::integrators::ode::Failure;
 
-/// Where the tangents of a force come from, as [`Force::add_tangents`] returns it.
+/// Source of the tangents of a force, as [`Force::add_tangents`] returns it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Tangents {
     /// The force has added them.
     Added,
-    /// Finite differences of [`Force::add_forces`] stand in for them.
+    /// Finite differences of [`Force::add_forces`] replace them.
     ByDifferences,
 }
 
@@ -30,7 +30,7 @@ pub enum Tangents {
 /// [`is_nonlinear`](Self::is_nonlinear)), couple distant nodes ([`couplings`](Self::couplings)), or have kinks, meet surfaces or
 /// lose their meaning between two steps ([`capabilities`](Self::capabilities)).
 ///
-/// # What a force may rely on, and what it has to keep
+/// # Guarantees and obligations
 ///
 /// - `u` and `v` have dimension components for each node of the body, node after node.
 /// - Integrators evaluate the force at trial points: in any order, back and forth in time, off the motion,
@@ -91,7 +91,7 @@ pub trait Force: Send + Sync {
         0.0
     }
 
-    /// Where that energy belongs.
+    /// The account of that energy.
     fn reservoir(&self) -> Reservoir {
         Reservoir::None
     }
@@ -220,23 +220,23 @@ pub trait ContactForce {
         damping: &mut [f64],
     );
 
-    /// Velocity (m/s) at time `t` (s) of the source of the force, if it moves by itself: an obstacle.
+    /// Velocity (m/s) at time `t` (s) of the source of the force, if its motion is prescribed: an obstacle.
     fn velocity(&self, _t: f64) -> Option<[f64; 3]> {
         None
     }
 
     /// Pairs of nodes (counted from 0) that the force couples under the displacements `u` (m), or may soon, if it
     /// couples any there that `pattern` lacks; none otherwise. For a force between nodes that move past each other,
-    /// whose [`couplings`](Force::couplings) would be too many: the Newton matrix gets room for these pairs before
+    /// whose [`couplings`](Force::couplings) would be too many: the Newton matrix gets entries for these pairs before
     /// tangents are evaluated.
     fn couplings_near(&self, _u: &[f64], _pattern: &NodePattern) -> Vec<[usize; 2]> {
         Vec::new()
     }
 }
 
-/// A force that looks at steps after they were taken.
+/// A force that checks completed steps.
 pub trait StepCheck {
-    /// Checks a step after it was taken, to time `t`, from displacements `before` to `after`.
+    /// Checks a completed step, to time `t`, from displacements `before` to `after`.
     ///
     /// # Errors
     /// A step that leapt over states in which the force has no meaning.

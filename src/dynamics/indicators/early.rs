@@ -4,7 +4,7 @@ use crate::base::input::four_digits;
 use crate::dynamics::report::Indicator;
 use crate::scene::timeline::Scene;
 
-/// How many there are, and what the first does.
+/// Their number, and a description of the first.
 pub(super) fn tables(scene: &Scene) -> Option<Indicator> {
     let early = scene.early_tables();
     let first = early.first()?;

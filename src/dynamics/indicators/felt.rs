@@ -65,7 +65,7 @@ fn forces(trajectory: &Trajectory, sample: &Sample) -> Result<[Vec<f64>; 2], Inp
     Ok([of(&rough)?, of(&smooth)?])
 }
 
-/// How deep nodes are in obstacles, relative to the distance that nodes travel.
+/// Depth of nodes in obstacles, relative to the distance that nodes travel.
 pub(super) fn depth(
     trajectory: &Trajectory,
     samples: &[&Sample],

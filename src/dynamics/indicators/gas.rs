@@ -1,4 +1,4 @@
-//! Whether the numbers of gas are absolute pressures, and conductances of orifices in their unit.
+//! Checks of the numbers of gas: pressures that are not absolute, conductances of orifices in a wrong unit.
 
 use super::units::as_meant;
 use crate::base::input::four_digits;

@@ -1,4 +1,4 @@
-//! Bodies that begin nearer to each other than where their touch sets in.
+//! Bodies that begin nearer to each other than the distance of their touch.
 
 use super::units::as_meant;
 use crate::base::input::four_digits;
@@ -27,7 +27,7 @@ fn of_touch(scene: &Scene, force: &TouchForce) -> Option<Indicator> {
     let distance = force.distance();
     let masses: Vec<f64> = body.parts().map(|part| part.body.mass()).collect();
     let total: f64 = masses.iter().sum();
-    // the heaviest of several is what the others lie on
+    // the heaviest of several supports the others
     let mass = if masses.len() > 1 { total - largest(&masses) } else { total };
     let weight = mass * scene.acceleration().map_or(0.0, norm);
     let drift = mass * distance / scene.end().powi(2);

@@ -1,4 +1,4 @@
-//! Whether the strain measure of the body fits its motion.
+//! Suitability of the strain measure of the body for its motion.
 
 use crate::base::input::four_digits;
 use crate::dynamics::report::Indicator;

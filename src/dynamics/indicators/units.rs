@@ -1,4 +1,4 @@
-//! Whether a scene is in units other than metres, kilograms, seconds and pascals.
+//! Evidence that a scene is in units other than metres, kilograms, seconds and pascals.
 
 use crate::base::input::{four_digits, percent};
 use crate::base::vector::{dot, norm};
@@ -205,7 +205,7 @@ fn materials(body: &Body) -> Vec<Indicator> {
     all
 }
 
-/// How thick a body in the plane is.
+/// Thickness of a body in the plane.
 fn thickness(body: &Body) -> Option<Indicator> {
     let mesh = body.mesh();
     let (thickness, size) = (body.section(), mesh.size());

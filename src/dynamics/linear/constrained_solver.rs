@@ -4,7 +4,7 @@
 //! Nodal rows of A^T are eliminated: their components of x are known at once, and what remains is a Cholesky
 //! solve with the free part of X. General rows, of which there are few, are satisfied by a Schur complement
 //! of the size of their number. Nodes of rigid pieces (`elements/body/rigid.rs`) that move with others, x = W q, are
-//! eliminated as well: what is factorized is W^T X W. Where there are many pieces, they move by their
+//! eliminated as well: the factorized matrix is W^T X W. Many pieces move by their
 //! [rigid motions](super::rigid_motions).
 //!
 //! X may be singular without the general rows: oblique planes of symmetry may be all that holds a body. So
@@ -50,7 +50,7 @@ pub(crate) struct ConstrainedSolver {
     pub(crate) edges: Option<EdgeSolver>,
     general: GeneralRows,
     springs: Vec<Spring>,
-    /// Entries of the free part, and what the springs add to them.
+    /// Entries of the free part, and contributions of the springs.
     stiffening: Vec<(usize, f64)>,
     /// Right-hand side and solution at the free degrees of freedom.
     work: Vec<f64>,
@@ -287,7 +287,7 @@ impl ConstrainedSolver {
         self.eliminate(false)
     }
 
-    /// Prepares what the general rows and the edges need of the X in force, `definite` or not.
+    /// Prepares the general rows and the edges for the current X, `definite` or not.
     fn eliminate(&mut self, definite: bool) -> Result<(), Indefinite> {
         // rigid motions are not known yet
         let Kernel::Symmetric(symmetric) = &mut self.kernel else { return Ok(()) };
@@ -437,7 +437,7 @@ fn each_source(
                     Coupling::AllAxes => true,
                 };
                 if is_coupled {
-                    // X is symmetric: entry (column, row) stands for (row, column).
+                    // X is symmetric: entry (column, row) is that of (row, column).
                     let source = EntrySource::new(entry, pattern.transposed(entry), axes);
                     visit(source, [node * dimension + axis, column]);
                 }

@@ -32,7 +32,7 @@ pub(super) struct Component {
     pub(super) pull: Vec<f64>,
 }
 
-/// Where edges are to be at the end of a step.
+/// Required edges at the end of a step.
 pub(crate) struct Arrival {
     /// The part of accelerations in displacements at the end of the step (s^2), if lengths are asked for.
     pub(crate) weight: Option<f64>,
@@ -131,7 +131,7 @@ impl Piece {
     }
 }
 
-/// How X and general rows couple the free degrees of freedom.
+/// Coupling of the free degrees of freedom by X and general rows.
 pub(super) struct Coupled<'a> {
     /// The lower triangle of X.
     pub(super) pattern: &'a SymbolicSparseColMat<usize>,

@@ -1,8 +1,8 @@
 //! The part of a matrix that is not symmetric.
 //!
-//! Friction follows the normal force, and the normal force does not follow friction: N = P + S, with P symmetric and S skew.
-//! P is factorized. Where contact is stiff, S is as large as P, and a step by P alone is none of Newton's. S has few rows, those of what
-//! rubs, so that
+//! Friction depends on the normal force, and the normal force does not depend on friction: N = P + S, with P symmetric and S skew.
+//! P is factorized. Where contact is stiff, S is as large as P, and a step by P alone is not a Newton step. S has few rows, those of points
+//! in friction, so that
 //!
 //! ```text
 //! (I + S P^-1) z = f,   x = P^-1 z
@@ -110,7 +110,7 @@ impl Skew {
         self.rows.len().min(MOST)
     }
 
-    /// Size of `f` without what is prescribed.
+    /// Norm of `f` without prescribed components.
     pub(crate) fn size(&self, f: &[f64]) -> f64 {
         let free = f.iter().zip(&self.places).filter(|(_, place)| **place != FIXED);
         free.map(|(f, _)| f * f).sum::<f64>().sqrt()

@@ -362,7 +362,7 @@ fn rosenbrock_options(
 }
 
 fn ida_options(settings: &Settings, tolerances: Vec<f64>, equations: &DaeForm) -> IdaOptions {
-    // What is not marked as differential stays out of the error test: energies and multipliers.
+    // unknowns that are not marked as differential are excluded from the error test: energies and multipliers
     let first_energy = equations.system.layout().energies().start;
     let differential: Vec<bool> = (0..equations.size()).map(|i| i < first_energy).collect();
     let options = IdaOptions::new(settings.rtol, tolerances)

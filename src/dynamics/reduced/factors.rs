@@ -1,4 +1,4 @@
-//! The dense Newton matrix I + gamma D + gamma^2 K of a reduced model, and the tangents of which it is made.
+//! The dense Newton matrix I + gamma D + gamma^2 K of a reduced model, and the tangents in it.
 
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::lu::partial_pivoting::{factor, solve};

@@ -1,5 +1,5 @@
 //! Gas and liquids that flow, and actuators that lag, in a reduced model: their amounts are unknowns beside q, all of them,
-//! and what they do at the nodes is seen along the shapes.
+//! and their nodal forces are projected onto the shapes.
 //!
 //! It is the Newton system of `dynamics/linear/flow_matrix.rs` with Phi^T G in place of G. As the matrix is dense, gamma^2 C of the amounts, eliminated, is
 //! added to it.

@@ -20,7 +20,7 @@ pub(super) struct Shapes {
 #[derive(Default)]
 struct Active {
     dofs: Vec<usize>,
-    /// Where those of a node begin among them, if it has any.
+    /// Index of the first of a node among them, if it has any.
     places: Vec<Option<usize>>,
     /// Their rows of Psi column by column, and row by row.
     columns: Vec<f64>,

@@ -6,7 +6,7 @@ use std::fmt;
 use crate::base::input::{four_digits, percent};
 use crate::scene::reduced_model::ReducedModel;
 
-/// How a run by a reduced model went.
+/// Results of a run by a reduced model: its estimated error and its range.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ReducedReport {
     /// Shapes of the phase that has most.

@@ -22,16 +22,16 @@ const LEAST_TURN: f64 = 0.01;
 /// The longest first steps that are tried, in sizes of the body: straight, and turning.
 const FAR: [f64; 2] = [0.5, 2.0];
 
-/// How cells move along a step.
+/// Deformation of cells along a step.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Path {
     Straight,
     Turning,
 }
 
-/// Where a step leads.
+/// Result of a step.
 enum End {
-    /// Down: it has been taken.
+    /// Lower energy: accepted.
     Lower,
     /// Up; the factor for which the energy is lowest, by the parabola through the known values.
     Higher(f64),
@@ -160,7 +160,7 @@ impl Search<'_> {
         Ok(End::Higher(-0.5 * slope * factor / (rise / factor - slope)))
     }
 
-    /// Where `factor` times x leads, for `work`, and the forces there, for `trial`; or why it leads nowhere.
+    /// Where `factor` times x leads, for `work`, and the forces there, for `trial`; or the reason for its failure.
     fn reach(&mut self, factor: f64, path: Path) -> Result<Option<End>, Stuck> {
         self.work.copy_from_slice(&self.u);
         add_multiple(factor, &self.x, &mut self.work);

@@ -16,7 +16,7 @@
 //! Friction does not act either, as it depends on how the body came there.
 //!
 //! A scene that starts from a given state is in equilibrium near it: the search begins there under the whole load, and
-//! what the loads leave unbalanced is released by a factor.
+//! the unbalanced force is released by a factor.
 //!
 //! A body that nothing holds is in equilibrium if its loads balance each other. Of all its positions the one
 //! is taken in which it has not moved as a whole: the displacements have no component along any rigid motion
@@ -55,7 +55,7 @@ impl Scene {
     /// The equilibrium under the constraints, gravity, loads, obstacles and springs of the first phase at its
     /// end, without motion.
     ///
-    /// The body would come to rest in it if they stayed in force.
+    /// The body would reach rest in it if they continued to act.
     ///
     /// The search begins at the displacements of the [start](Self::starting_from): in the undeformed shape without load, or in a given
     /// state under the whole load, of which what is unbalanced there is released step by step. So one load step follows another by hand,

@@ -44,7 +44,7 @@ pub(crate) struct AtRest {
     /// Velocities of the nodes for each of the forces: those of an obstacle in motion, so that it drags
     /// nothing along and no damper acts, as if it stood still. Empty for others.
     velocities: Vec<Vec<f64>>,
-    /// Where the search starts (m), and, of a given start, the forces (N) that are unbalanced there.
+    /// Start of the search (m), and, of a given start, the unbalanced forces (N) there.
     start: Vec<f64>,
     unbalanced: Option<Vec<f64>>,
     nodal: NodalForces,
@@ -158,7 +158,7 @@ impl AtRest {
         Ok(self)
     }
 
-    /// Where the search starts (m).
+    /// Start of the search (m).
     pub(crate) fn start(&self) -> &[f64] {
         &self.start
     }

@@ -1,4 +1,4 @@
-//! How velocities follow from forces under the constraints,
+//! Velocities from forces under the constraints,
 //!
 //! ```text
 //! M a = f + A lambda,   w = v + tau a,   A^T w = rates

@@ -110,7 +110,7 @@ pub(crate) struct System {
     linear_edges: Edges,
     newton: NewtonMatrix,
     at: Evaluation,
-    /// Why a force was undefined, the last time that one was.
+    /// Reason of the last undefined force.
     refusal: String,
     /// Pressures of liquids at the ends of the last step.
     ends: Ends,
@@ -314,7 +314,7 @@ impl System {
         self.inertia.solve(&self.rows, &momentum, &demands, v, &mut vec![0.0; demands.len()]);
     }
 
-    /// Why a force was undefined at a trial point, the last time that one was; empty if none ever was.
+    /// Reason of the last undefined force at a trial point; empty if there was none.
     pub(crate) fn refusal(&self) -> &str {
         &self.refusal
     }

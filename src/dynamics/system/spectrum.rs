@@ -1,4 +1,4 @@
-//! How fast the motions of a phase are: the numbers by which a method is chosen.
+//! Rates of the motions of a phase: the numbers by which a method is chosen.
 //!
 //! Power iteration finds the highest frequency and rate of decay, subspace iteration with K + shift M the
 //! lowest vibration and its damping ratio. Rigid motions are recognized by their Rayleigh quotient.
@@ -14,7 +14,7 @@ use crate::base::vector::{dot, noise};
 use crate::dynamics::linear::{ConstrainedSolver, Coupling};
 use crate::dynamics::matrices::Matrices;
 
-/// How fast a body can move in a phase.
+/// Frequencies and decay rates of a body in a phase.
 ///
 /// It follows from the tangents M, Kt, D in one state and the motions that the constraints allow. Contacts
 /// and springs count as far as they act in that state, Maxwell branches as springs, without their damping.

@@ -1,4 +1,4 @@
-//! Where forces change suddenly: steps that make no sense, switches, and obstacles that are passed within a step.
+//! Discontinuities of forces: inadmissible steps, switches, and obstacles that are passed within a step.
 
 use std::ops::Range;
 use std::sync::Arc;

@@ -103,7 +103,7 @@ pub(crate) struct StrainPoint<T, const N: usize, const M: usize, const D: usize>
     /// Derivative F_0 of the undeformed position by the coordinates of the cell: the identity where the
     /// cell fills space, else its tangent frame.
     pub frame: Matrix<T, D, M>,
-    /// Length, area or volume that the point stands for (m, m^2, m^3).
+    /// Length, area or volume of the point (m, m^2, m^3).
     pub volume: T,
 }
 

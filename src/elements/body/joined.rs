@@ -38,7 +38,7 @@ impl Joined {
 pub struct Part<'a> {
     /// Its name; empty for a single body that has none.
     pub name: &'a str,
-    /// The body by itself.
+    /// The single body.
     pub body: &'a Body,
     /// Numbers of its nodes among those of all (from 0).
     pub nodes: Range<usize>,
@@ -210,7 +210,7 @@ impl Body {
         &self.continua[self.continua.partition_point(|continuum| continuum.cells.end <= cell)]
     }
 
-    /// How strain is measured in a cell (counted from 0 among those of all).
+    /// Strain measure of a cell (counted from 0 among those of all).
     pub(crate) fn strain_of(&self, cell: usize) -> Strain {
         self.continuum_of(cell).strain
     }
@@ -238,7 +238,7 @@ impl Body {
         self.continua.iter().map(|own| own.material.wave_speed()).fold(0.0, f64::max)
     }
 
-    /// Whether it is one body by itself.
+    /// Whether it is a single body.
     pub(crate) fn is_single(&self) -> bool {
         self.joined.is_empty()
     }

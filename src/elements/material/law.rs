@@ -26,7 +26,7 @@ pub(crate) trait Blocks<T, const D: usize> {
 /// volume that is 0 at rest. So U may be given a projection of g onto few functions of a cell ("projected
 /// dilatation", such as its mean) in place of g at each point; then `pull` is U' of that, projected in turn, else `None`.
 pub(crate) trait ElasticLaw {
-    /// Whether strains are taken as small: then E is Cauchy's strain, and natural and present shape count as
+    /// Whether strains are assumed small: then E is Cauchy's strain, and natural and present shape count as
     /// the same; else E is Green's.
     const SMALL_STRAIN: bool = false;
 

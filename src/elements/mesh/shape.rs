@@ -1,4 +1,4 @@
-//! Which way cells run, and what is wrong with those that have no volume.
+//! Orientation of cells, and errors of those without a volume.
 //!
 //! The lengths, areas or volumes that the edges span at the corners tell the cause: all below 0, the nodes
 //! run the wrong way round; of both signs, the cell is a bow-tie (as many of each, in a quadrilateral),

@@ -51,7 +51,7 @@ impl Fibre {
         [energy, young * strain * growth, young * growth * (1.0 + 2.0 * exponent)]
     }
 
-    /// k2; one that pulls by itself has no limit of stretch.
+    /// k2; an active one has no limit of stretch.
     #[inline(always)]
     fn stiffening(&self) -> f64 {
         match *self {

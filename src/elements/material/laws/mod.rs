@@ -35,7 +35,7 @@ pub(crate) use viscous::ViscousLaw;
 
 use super::hooke::{Hooke, Lame, Plane};
 
-/// How the strain of a body follows from its displacements, and with it the elastic law.
+/// Strain measure of a body, as a function of its displacements, and with it the elastic law.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Strain {
     /// Cauchy's small strain: force -K u, linear. Not invariant to rotation: a body that turns by
@@ -46,7 +46,7 @@ pub enum Strain {
     Green,
 }
 
-/// How the viscous force of a body follows from its velocities.
+/// Viscous force of a body as a function of its velocities.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Viscosity {
@@ -118,7 +118,7 @@ impl Elastic {
     }
 }
 
-/// Evaluates an expression with the law that an [`Elastic`] holds, compiled for each law by itself.
+/// Evaluates an expression with the law that an [`Elastic`] holds, compiled separately for each law.
 macro_rules! with_law {
     ($elastic:expr, $law:ident => $expression:expr) => {
         match $elastic {

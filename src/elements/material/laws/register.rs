@@ -55,7 +55,7 @@ pub(crate) type LawOfConstants = Result<(Law, Option<f64>), String>;
 pub struct LawInformation {
     /// Its name, the word in scene files.
     pub name: &'static str,
-    /// Its strain energy and what it is for, in words.
+    /// Its strain energy and its purpose, in words.
     pub about: &'static str,
     /// Its constants in scene files; none where Young's modulus and Poisson's ratio are its constants.
     pub constants: &'static [LawConstant],

@@ -35,7 +35,7 @@ pub(super) fn mended(corners: &[[f64; 3]]) -> Result<Mesh, InputError> {
             count => divided += count,
         }
     }
-    // nodes of triangles that were left out may belong to no other one
+    // nodes of omitted triangles may belong to no other one
     let mut numbers = vec![None; positions.len()];
     let mut kept = Vec::new();
     for node in triangles.iter_mut().flatten() {
