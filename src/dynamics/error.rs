@@ -18,7 +18,7 @@ pub enum Error {
     #[error(transparent)]
     Input(#[from] InputError),
 
-    /// The integrator gave up; what was computed until then is kept inside.
+    /// The integrator failed; the results until then are kept inside.
     #[error(transparent)]
     Integration(#[from] Box<IntegrationFailure>),
 

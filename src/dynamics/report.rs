@@ -199,7 +199,7 @@ impl Report {
         self.counts().convergence_failures
     }
 
-    /// The warnings of the [`indicators`](Self::indicators), each with what to change.
+    /// The warnings of the [`indicators`](Self::indicators), each with its remedy.
     pub fn doubts(&self) -> Vec<String> {
         warnings(&self.indicators)
     }
@@ -222,7 +222,7 @@ impl Report {
             Some(("integrator", format!("phase \"{}\": {notice}", phase.name)))
         };
         let mut warnings: Vec<_> = self.phases.iter().filter_map(notice).collect();
-        // the balance is off by the larger of what was created and what was lost
+        // the error of the balance is the larger of created and lost energy
         let doubt = match self.energy_error > self.energy_created {
             true => loss(self.energy_error, self.energy_scale),
             false => creation(self.energy_created, self.energy_scale),
@@ -408,7 +408,7 @@ impl Counts {
 mod tests {
     use super::*;
 
-    /// The balance is told by the larger of what was lost and what was created.
+    /// The reported error of the balance is the larger of lost and created energy.
     #[test]
     fn energy_is_lost_or_created() {
         let told = |energy_error, energy_created| {

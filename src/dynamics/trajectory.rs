@@ -368,7 +368,7 @@ impl Trajectory {
     }
 }
 
-/// An integration that gave up or was stopped: where, why, and what was computed until then.
+/// An integration that failed or was stopped: time, reason, and the results until then.
 #[derive(Debug)]
 pub struct IntegrationFailure {
     /// Name of the phase.
@@ -379,7 +379,7 @@ pub struct IntegrationFailure {
     pub time: f64,
     /// Last step size (s).
     pub step: f64,
-    /// The error of the integrator, with the likely cause and what to try; [`Interrupted`] if it was
+    /// The error of the integrator, with the likely cause and the remedy; [`Interrupted`] if it was
     /// stopped from outside.
     pub source: Box<dyn Error + Send + Sync>,
     /// The motion until then, up to the last step.

@@ -187,7 +187,7 @@ pub trait Switches {
     /// Writes the values of the switches: above 0 where a part of the force is off.
     fn switch_values(&self, t: f64, u: &[f64], v: &[f64], values: &mut [f64]);
 
-    /// Keeps each switch on or off, whatever its value, so that the force is smooth; `None` lets all
+    /// Keeps each switch on or off, independent of its value, so that the force is smooth; `None` lets all
     /// of them act by their values again.
     fn hold_switches(&self, on: Option<&[bool]>);
 

@@ -39,7 +39,7 @@ mod tests {
         tables(&scene).into_iter().map(|told| told.text).collect()
     }
 
-    /// A table of the times within its phase, taken for those since the start of the run, is told; one that goes on where the last
+    /// A table of the times within its phase, mistaken for those since the start of the run, is reported; one that continues the last
     /// phase ended, or begins within its phase, is not.
     #[test]
     fn tables_that_are_over_are_told() {

@@ -16,7 +16,7 @@ use crate::elements::body::Body;
 use crate::elements::mesh::Mesh;
 use crate::scene::forces::natural;
 
-/// Largest part of what curved faces enclose that may lie between them and facets.
+/// Largest fraction of the area within curved faces that may lie between them and facets.
 const MOST_LACKING: f64 = 0.02;
 /// Angles (rad) between facets from which they are separate, and from which they represent no arc: those of an octagon.
 const FLAT: f64 = 0.01;
@@ -60,7 +60,7 @@ pub(super) fn faceted(body: &Body) -> Option<Indicator> {
     Some(Indicator::trusted("facets", (part, "1"), limits, || said.clone(), beyond))
 }
 
-/// The part of what arcs enclose that lies between them and their facets, and by how much (rad) these turn; `None` without arcs.
+/// The fraction of the area within arcs that lies between them and their facets, and the angle (rad) between facets; `None` without arcs.
 fn lacking(mesh: &Mesh) -> Option<(f64, f64)> {
     let faces = mesh.boundary_faces();
     let ridges = ridges(mesh, &faces);
@@ -86,7 +86,7 @@ fn lacking(mesh: &Mesh) -> Option<(f64, f64)> {
     let (mut lacks, mut encloses, mut turning, mut length) = (0.0, 0.0, 0.0, 0.0);
     for ridge in bent().filter(is_of_arc) {
         for width in ridge.widths {
-            // half of what lies between, and half of the sector
+            // half of the area between, and half of the sector
             lacks += ridge.length * ridge.turn * width * width / 24.0;
             encloses += ridge.length * width * width / ridge.turn / 4.0;
         }

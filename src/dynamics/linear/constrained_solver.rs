@@ -1,7 +1,7 @@
 //! The linear systems of a phase, [X -A; -A^T 0] [x; mu] = [f; -d], with X the inertia matrix or
 //! the Newton matrix.
 //!
-//! Nodal rows of A^T are eliminated: their components of x are known at once, and what remains is a Cholesky
+//! Nodal rows of A^T are eliminated: their components of x are known at once, which leaves a Cholesky
 //! solve with the free part of X. General rows, of which there are few, are satisfied by a Schur complement
 //! of the size of their number. Nodes of rigid pieces (`elements/body/rigid.rs`) that move with others, x = W q, are
 //! eliminated as well: the factorized matrix is W^T X W. Many pieces move by their
@@ -58,7 +58,7 @@ pub(crate) struct ConstrainedSolver {
     gathered: Vec<f64>,
 }
 
-/// The free part of X, with what solves its systems.
+/// The free part of X, with the solver of its systems.
 enum Kernel {
     Symmetric(Box<Symmetric>),
     /// Together with edges and general rows.
@@ -127,7 +127,7 @@ impl ConstrainedSolver {
         let (mut offsets, mut row_indices) = (vec![0; free.len() + 1], Vec::new());
         let (mut sources, mut border) = (Vec::new(), Vec::new());
         each_source(pattern, dimension, coupling, |source, [row, column]| {
-            // what nodes that move with others add follows below
+            // contributions of dependent nodes follow below
             if is_dependent(row / dimension) || is_dependent(column / dimension) {
                 return;
             }

@@ -1,4 +1,4 @@
-//! Edges that are coupled, directly or by others, with their part of X^-1: what [`EdgeSolver`](super::edge_solver::EdgeSolver) finds multipliers with.
+//! Edges that are coupled, directly or by others, with their part of X^-1, from which [`EdgeSolver`](super::edge_solver::EdgeSolver) finds multipliers.
 
 use std::collections::HashMap;
 
@@ -36,7 +36,7 @@ pub(super) struct Component {
 pub(crate) struct Arrival {
     /// The part of accelerations in displacements at the end of the step (s^2), if lengths are asked for.
     pub(crate) weight: Option<f64>,
-    /// The edges there without accelerations (m), and what half of the squares of their lengths is to be (m^2).
+    /// The edges there without accelerations (m), and the required halves of the squares of their lengths (m^2).
     pub(crate) starts: Vec<[f64; 3]>,
     pub(crate) halves: Vec<f64>,
     /// Whether no multipliers were found, the last time.

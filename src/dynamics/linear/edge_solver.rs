@@ -20,7 +20,7 @@
 //!
 //! Rows G turn with the piece and are no part of the factorized matrix. Z takes 6 solves per piece for each
 //! factor, 12 in space; the small matrix, 3 x 3 or 6 x 6 for each piece or for several that feel each other
-//! through X, is set up anew as pieces turn. CVODE and ARKODE, which evaluate residuals again, take the edges
+//! through X, is rebuilt as pieces rotate. CVODE and ARKODE, which evaluate residuals again, take the edges
 //! in R at the trial point: a matrix is kept for many steps, and iterations then converge as if the piece had
 //! not turned. Rosenbrock methods, whose order rests on the Jacobian at the start of a step, take them there.
 //! Forces of the multipliers turn with the edges; their derivative is part of Kt.
@@ -90,7 +90,7 @@ impl EdgeSolver {
         Self::of(edges, components)
     }
 
-    /// Finds Z for the X in force; `z` is room for one column of it.
+    /// Finds Z for the current X; `z` is a workspace of one column.
     pub(super) fn respond(
         &mut self,
         z: &mut [f64],

@@ -44,7 +44,7 @@ pub(crate) struct FlowMatrix {
     /// H.
     pub(crate) compliance: Vec<f64>,
     work: Vec<f64>,
-    /// Changes of the volumes, and what follows from them.
+    /// Changes of the volumes, and of the quantities that follow from them.
     volumes: Vec<f64>,
     changes: Vec<f64>,
     /// A column of N^-1 G.

@@ -1,7 +1,7 @@
 //! Linear systems with X of many rigid pieces, in their rigid motions.
 //!
 //! With x the velocities of a frame, R x = demands leaves its rigid motions, x = T xi + p, where p is a strain ([`Simplex`]) and R T = 0; and
-//! test motions T' with G T' = 0 are orthogonal to the multipliers of the edges. Together, general rows with the multipliers mu among them,
+//! test motions T' with G T' = 0 eliminate the multipliers of the edges. Together, general rows with the multipliers mu among them,
 //!
 //! ```text
 //! T'^T X T xi - T'^T A mu = T'^T (f - X p),   A^T T xi = d - A^T p
@@ -162,7 +162,7 @@ impl RigidMotions {
         self.is_here = false;
     }
 
-    /// Factorizes B at the motions in force, with what general rows need of it.
+    /// Factorizes B at the current motions, with its products for general rows.
     fn factorize(&mut self, general: &mut GeneralRows) -> Result<(), Indefinite> {
         let Self { matrix, groups, blocks, offsets, values, .. } = self;
         blocks.iter().for_each(|block| block.assemble(&matrix.values, groups, offsets, values));

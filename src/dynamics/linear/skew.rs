@@ -189,7 +189,7 @@ impl Skew {
         }
     }
 
-    /// Adds `sign` times what z has beside f.
+    /// Adds `sign` times z - f.
     pub(crate) fn add(&self, sign: f64, f: &mut [f64]) {
         let directions = self.directions.chunks_exact(self.rows.len().max(1));
         for (direction, share) in directions.zip(&self.aim[..self.rotations.len()]) {

@@ -25,7 +25,7 @@ pub(crate) trait Integrable: PhaseSystem {
     /// Starts the integrator that the settings name.
     ///
     /// # Errors
-    /// A method that is not for these equations; what the integrator refuses.
+    /// A method that is not for these equations; errors of the integrator.
     fn start(self: Box<Self>, start: &Start) -> Result<Box<dyn Stepper>, Failed>;
 }
 

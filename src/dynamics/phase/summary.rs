@@ -40,7 +40,7 @@ pub struct PhaseSummary {
 impl Scene {
     /// Spectrum of the body in each phase, in its undeformed shape and at rest.
     ///
-    /// It shows what makes a scene stiff, and which method is suitable for it. Orifices count as shut.
+    /// It shows the stiff parts of a scene, and suitable methods. Orifices count as closed.
     ///
     /// ```
     /// let scene = pliant::samples::square_jump(4)?;

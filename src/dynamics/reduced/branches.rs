@@ -156,7 +156,7 @@ impl ReducedBranches {
         matches!(self.way, Way::Modes(_))
     }
 
-    /// Updates what is kept of the tangents to the last evaluation.
+    /// Updates the stored tangents to the last evaluation.
     pub(super) fn update_tangents(&mut self) {
         if let Way::Modes(Some(own)) = &mut self.way {
             own.modes.update_tangents();
@@ -189,7 +189,7 @@ impl ReducedBranches {
         }
     }
 
-    /// gamma times the forces along Psi of what the `residuals` of the unknowns pass to the springs.
+    /// gamma times the forces along Psi that the `residuals` of the unknowns cause in the springs.
     pub(super) fn of_residuals(&mut self, residuals: &[f64], shapes: &mut Shapes) -> &[f64] {
         let Self { branches, way, gamma, along, .. } = self;
         along.fill(0.0);

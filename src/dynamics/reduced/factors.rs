@@ -19,7 +19,7 @@ pub(super) struct Tangents {
 /// I + gamma D + gamma^2 K, factorized.
 pub(super) struct Factors {
     pub(super) matrix: Mat<f64>,
-    /// K, with what branches do in such a step.
+    /// K, with the contribution of branches in such a step.
     pub(super) stiffness: Vec<f64>,
     forward: Vec<usize>,
     inverse: Vec<usize>,

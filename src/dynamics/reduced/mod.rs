@@ -259,7 +259,7 @@ impl PhaseSystem for ReducedSystem {
     }
 }
 
-/// Parts of a phase after which states are looked at: often at first, where what acts has just changed.
+/// Fractions of a phase after which states are checked: often at first, where forces have just changed.
 const CHECKS: [f64; 6] = [0.02, 0.05, 0.12, 0.25, 0.5, 0.8];
 
 /// q, q', internal unknowns and energies of y, or of y' or a residual.

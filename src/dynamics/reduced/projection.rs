@@ -133,7 +133,7 @@ impl Projection {
         shapes.weigh(|x, y| matrices.add_momentum(1.0, x, y));
         let s = shapes.count();
 
-        // what the forces couple
+        // couplings of the forces
         let mut seen = BTreeSet::new();
         let mut pairs = body.cell_pairs(model.cells.keys().copied());
         let mut is_anywhere = false;
@@ -257,7 +257,7 @@ impl Projection {
                 self.acting.push(force.clone());
             }
         }
-        // cells stay what they are
+        // cells are unchanged
         self.generalize(false);
         let parts = [&steady.conservative, &steady.applied];
         for (sum, force) in self.constant.steady.iter_mut().zip(parts) {

@@ -59,7 +59,7 @@ impl Shapes {
         }
     }
 
-    /// Sets what is active: the `dimension` degrees of freedom of each of some `nodes`.
+    /// Sets the active degrees of freedom: the `dimension` ones of each of some `nodes`.
     pub(super) fn activate(&mut self, nodes: impl Iterator<Item = usize>, dimension: usize) {
         let Self { columns, dofs, count, .. } = &*self;
         let mut active = Active { places: vec![None; dofs / dimension], ..Active::default() };
@@ -133,7 +133,7 @@ impl Shapes {
         add_products(&self.columns, f, sum);
     }
 
-    /// sum += Psi^T f for forces f on what is active alone.
+    /// sum += Psi^T f for forces f on active degrees of freedom only.
     pub(super) fn add_projected_active(&mut self, f: &[f64], sum: &mut [f64]) {
         let Active { dofs, columns, room: [own, _], .. } = &mut self.active;
         own.iter_mut().zip(&*dofs).for_each(|(own, &dof)| *own = f[dof]);

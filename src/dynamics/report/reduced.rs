@@ -17,7 +17,7 @@ pub struct ReducedReport {
     pub checked_error: f64,
     /// The error that was wanted of it.
     pub within: f64,
-    /// The error that this run estimates, relative to the largest displacement in it or in these runs: what the forces left over would move, times the ratio of the two in the runs that the
+    /// The error that this run estimates, relative to the largest displacement in it or in these runs: the displacement by the residual forces, times the ratio of the two in the runs that the
     /// model was checked with.
     pub estimated_error: f64,
     /// Extrapolation: distance outside the training range, relative to the largest modal range.
@@ -81,7 +81,7 @@ impl ReducedReport {
         self.estimated_error = self.per_imbalance * self.imbalance();
     }
 
-    /// Adds by how much an imbalance would change what sensors read.
+    /// Adds the change of sensor readings by an imbalance.
     pub(crate) fn note_changes(&mut self, changes: Vec<SensorErrorEstimate>) {
         for change in changes {
             let error = self.per_imbalance * change.error;

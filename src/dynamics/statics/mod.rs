@@ -10,7 +10,7 @@
 //! Where the tangent is indefinite, a multiple of M is added to it until it is positive definite, so that the
 //! energy falls in the search. If the search does not converge, constraints and loads are applied in smaller
 //! and smaller steps: constraints and obstacles along their paths; gravity, loads, pressure, the forces of
-//! actuators, what winches draw in, growth and amounts of gas and liquids by a factor. Where no step is small
+//! actuators, lengths of winches, growth and amounts of gas and liquids by a factor. Where no step is small
 //! enough, damped motion finds the next equilibrium. Obstacles in
 //! motion count as standing where they are: nothing is dragged along.
 //! Friction does not act either, as it depends on how the body came there.
@@ -58,7 +58,7 @@ impl Scene {
     /// The body would reach rest in it if they continued to act.
     ///
     /// The search begins at the displacements of the [start](Self::starting_from): in the undeformed shape without load, or in a given
-    /// state under the whole load, of which what is unbalanced there is released step by step. So one load step follows another by hand,
+    /// state under the whole load, whose unbalanced part there is released step by step. So one load step follows another by hand,
     /// and of several equilibria the near one is found.
     ///
     /// ```

@@ -7,10 +7,10 @@
 //!
 //! with K = -df/du. External actions are applied gradually. From the undeformed shape, gravity, loads, pressure and the
 //! forces of actuators act by a fraction of their strength; obstacles in motion are at that fraction of their paths; tensions of
-//! cables, what winches draw in, strains of growth and amounts of gas and liquids have risen by it
+//! cables, lengths of winches, strains of growth and amounts of gas and liquids have risen by it
 //! ([`Scene::loaded`](crate::Scene)). The body and its springs do not change.
 //!
-//! From a given start u_0, all these act whole, and what they leave unbalanced there is released instead: with the fraction s the
+//! From a given start u_0, all these act fully, and the unbalanced force there is released instead: with the fraction s the
 //! forces are f(u) - (1 - s) f(u_0). Where u_0 was in equilibrium under other dead loads, that is the straight way from these loads
 //! to the present ones.
 //!
@@ -150,7 +150,7 @@ impl AtRest {
         let mut at = ForceBalance::zeros(start.len());
         self.unbalanced = Some(vec![0.0; start.len()]);
         self.evaluate(0.0, &start, &mut at)?;
-        // forces on what is held are those of the constraints
+        // forces on held components are those of the constraints
         for dof in self.system.rows.iter().filter_map(|row| row.nodal()) {
             at.total[dof.0] = 0.0;
         }
@@ -375,7 +375,7 @@ impl AtRest {
         8.0 * f64::EPSILON * terms.fold(0.0, f64::max)
     }
 
-    /// Factorizes the matrix that `add` makes in the place of K. A slight multiple of M holds what it does not hold.
+    /// Factorizes the matrix that `add` makes in the place of K. A small multiple of M holds its free motions.
     pub(crate) fn factorize_other(&mut self, add: impl FnOnce(&mut BlockMatrix)) -> bool {
         let Some(matrix) = self.system.newton.stiffness.begin(&None) else { return false };
         add(matrix);

@@ -89,7 +89,7 @@ use crate::scene::constraint::ConstraintRow;
 
 /// Equations of one phase, with everything that evaluating and solving them needs.
 pub(crate) struct System {
-    /// The matrices of the scene, and those with room for what is near now.
+    /// The matrices of the scene, and those with entries for pairs that are near now.
     base: Arc<Matrices>,
     matrices: Arc<Matrices>,
     forces: Forces,
@@ -132,7 +132,7 @@ struct Evaluation {
     /// Rates (1/s) of the internal strains, and the power (W) that they dissipate.
     relaxing: Vec<f64>,
     relaxed: f64,
-    /// Rates of the amounts of gas (kg/s) and of the flows of pipes, room for as many numbers, and the power (W) supplied with them.
+    /// Rates of the amounts of gas (kg/s) and of the flows of pipes, a workspace of the same size, and the power (W) supplied with them.
     flowing: [Vec<f64>; 2],
     brought: f64,
 }
@@ -230,7 +230,7 @@ impl System {
         self.matrices.dofs()
     }
 
-    /// Replaces the forces, if the Newton matrix has room for their tangents; all else is unchanged. Returns
+    /// Replaces the forces, if the Newton matrix has entries for their tangents; all else is unchanged. Returns
     /// whether it has.
     pub(crate) fn change_forces(&mut self, forces: Forces) -> bool {
         if follows(&self.matrices, &forces) != self.newton.follows {
@@ -251,7 +251,7 @@ impl System {
         self.newton.is_set = false;
     }
 
-    /// The matrices, with room for what is near now.
+    /// The matrices, with entries for pairs that are near now.
     pub(crate) fn matrices(&self) -> &Matrices {
         &self.matrices
     }

@@ -16,7 +16,7 @@ use crate::base::simd::add;
 use crate::base::vector::largest;
 use crate::integrators::ode::Failure;
 
-/// A state of a reduced model, with what all unknowns would feel in it except the forces of cells, which depend on nothing else.
+/// A state of a reduced model, with the forces on all unknowns in it except those of cells, which depend on nothing else.
 #[derive(Debug, Clone)]
 pub(crate) struct ResidualSnapshot {
     /// Time (s), and how long the phase has lasted then (s).
@@ -24,7 +24,7 @@ pub(crate) struct ResidualSnapshot {
     pub(crate) age: f64,
     /// Displacements (m), velocities (m/s) and accelerations (m/s^2) of all nodes.
     pub(crate) state: [Vec<f64>; 3],
-    /// Strains of Maxwell branches, and amounts of what flows.
+    /// Strains of Maxwell branches, and amounts of flowing gas and liquids.
     pub(crate) internal: Vec<f64>,
     /// The nodal forces (N) of all but the cells and their branches.
     pub(crate) forces: Vec<f64>,
@@ -54,7 +54,7 @@ impl System {
         Ok(self.at.total.clone())
     }
 
-    /// For each of some states of a phase the displacements (m) by which what a reduced model leaves over would be balanced; none
+    /// For each of some states of a phase the displacements (m) that would balance the residual of a reduced model; none
     /// where no tangents tell.
     ///
     /// Of the tangents of the first and of the last state those tell that resist more: a body on the way to where it comes to
@@ -123,7 +123,7 @@ impl System {
         let (mut gamma, mut is_factorized) = (0.0, false);
         let mut imbalances = Vec::new();
         for (state, residual) in states.iter().zip(residuals) {
-            // what has just begun to act has not moved the body far
+            // a force that has just begun to act has not moved the body far
             if gamma != step(state) {
                 gamma = step(state);
                 is_factorized = match are_definite {

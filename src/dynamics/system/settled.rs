@@ -12,7 +12,7 @@ use crate::base::vector::dot;
 use crate::dynamics::state::{State, StateMut};
 
 /// Multiples of the tolerance of an amount by which volumes are changed at most, each relative to the whole. Beyond them the pressure
-/// does what a parabola does not.
+/// deviates from a parabola.
 const LARGEST_CHANGE: f64 = 10.0;
 
 /// Rounds over the chambers: walls of one may be those of another.

@@ -85,7 +85,7 @@ impl System {
         }
     }
 
-    /// For each force, what the body rubs against, and [whether it
+    /// For each force, the counterpart in friction, and [whether it
     /// slides](crate::elements::force::Switches::slides) there.
     pub(crate) fn slides(&self) -> impl Iterator<Item = Option<(&str, Option<bool>)>> {
         self.forces.iter().map(|force| force.capabilities().switches?.slides())

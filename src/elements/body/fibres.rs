@@ -27,7 +27,7 @@ pub(super) trait Reinforced {
     ) -> Result<Box<dyn Strings>, InputError>;
 }
 
-/// Fibres in cells, whatever these are.
+/// Fibres in cells of any kind.
 pub(super) trait Strings: Send + Sync {
     fn add_forces(&self, law: &Fibre, u: &[f64], forces: &mut [f64]) -> Result<(), Failure>;
 

@@ -2,7 +2,7 @@
 //!
 //! Nodes and cells of one body come after those of the other, node sets have the names of their bodies before
 //! their own, and M, K and B are blocks on the diagonal. Forces, constraints, sensors, samples and
-//! checkpoints know nodes of any body; only what depends on the make of a body asks for its parts. All
+//! checkpoints know nodes of any body; only code that depends on the contents of a body asks for its parts. All
 //! numbers are to the last bit those of each body alone, as the sums at a node are the same. Finer meshes and
 //! advice are for single bodies: new nodes of the first would come between, and nodes of the second could not
 //! keep their numbers.

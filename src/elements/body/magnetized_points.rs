@@ -93,7 +93,7 @@ pub(crate) struct TooNear {
     pub(crate) distances: [f64; 2],
 }
 
-/// Cells that are magnetized, whatever these are.
+/// Magnetized cells of any kind.
 pub(crate) trait MagnetizedPoints: Send + Sync {
     /// Adds the forces on the nodes under the displacements `u` (m).
     ///

@@ -11,7 +11,7 @@
 //! strain. The edges of the frame keep it at 0, as constraints of the motion
 //! (`dynamics/linear/edges.rs`), and in equilibria the elasticity of the piece keeps it small.
 //!
-//! The frame spans a large simplex, each node the farthest from what those before it span, so that no weight
+//! The frame spans a large simplex, each node the farthest from the span of those before it, so that no weight
 //! is large. Dependent nodes stay in the state with their own u and v: forces, contact, sensors, samples and
 //! checkpoints find them where they find those of any node. Only the algebra knows of pieces: `shares` are
 //! the weights, `carry` moves dependent nodes along, `gather` moves nodal forces to the frames, where they do

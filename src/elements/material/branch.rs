@@ -41,7 +41,7 @@ use crate::base::tensor::{Matrix, dot, product, times};
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MaxwellBranch {
     /// Share g of stiffness (1), above 0: Young's modulus of the spring over that of the material, which is
-    /// what remains when all branches have relaxed.
+    /// the remainder when all branches have relaxed.
     pub share: f64,
     /// Relaxation time tau (s), above 0.
     pub time: f64,
@@ -102,7 +102,7 @@ impl Relaxing {
         let flowing = (yield_stress > 0.0).then(|| Flowing::new(&hooke, dimension, yield_stress));
         let is_free = hooke.is_free_across(dimension);
         let rubber = matches!(elastic, Elastic::ByPoint(_)).then(|| {
-            // a free thickness follows the motion, whatever the bulk modulus is
+            // a free thickness follows the motion with any bulk modulus
             let Lame { lambda, mu } = match is_free {
                 true => spring.elastic(),
                 false => spring.bounded(spring.young),

@@ -141,7 +141,7 @@ impl FibreDirection {
         numbers
     }
 
-    /// The same as helices, which climb along the axis by an `angle` (rad); what runs along a vector does not change.
+    /// The same as helices, which climb along the axis by an `angle` (rad); fibres along a vector do not change.
     pub(crate) fn with_pitch(mut self, angle: f64) -> Self {
         if let Self::Around { pitch, .. } = &mut self {
             *pitch = angle;

@@ -464,7 +464,7 @@ impl Mesh {
     }
 }
 
-/// The first two cells that have the same nodes, in whatever order.
+/// The first two cells that have the same nodes, in any order.
 fn twice<'a>(cells: impl Iterator<Item = &'a [usize]>) -> Option<[usize; 2]> {
     let sorted = cells.map(|cell| {
         let mut nodes = cell.to_vec();

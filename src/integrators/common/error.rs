@@ -115,7 +115,7 @@ impl fmt::Display for Callback {
     }
 }
 
-/// Why an integration stopped.
+/// Cause of the failure of an integration.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Cause {
@@ -153,7 +153,7 @@ pub enum Cause {
     },
     /// Time stands still: steps as short as rounding allows make no progress. Another call continues.
     StandsStill {
-        /// How many such steps were taken.
+        /// Number of such steps.
         steps: u64,
     },
     /// The tolerances require more digits than double precision has.
@@ -342,7 +342,7 @@ impl Cause {
 pub struct IntegrationError {
     /// The integrator, such as "CVODE".
     pub integrator: &'static str,
-    /// Why it stopped.
+    /// Cause of the failure.
     pub cause: Cause,
     /// Time that was reached.
     pub t: f64,

@@ -44,7 +44,7 @@ pub struct March<S> {
     pub(crate) roots: Roots,
     /// Size of the next step, once known.
     pub(crate) next_step: Option<f64>,
-    /// Why a step was last refused, until steps grow again.
+    /// Reason for the last rejection of a step, until steps grow again.
     pub(crate) setback: Option<Cause>,
     pub(crate) statistics: Statistics,
 }

@@ -99,7 +99,7 @@ impl<S: Ode, M: StepMethod> OneStep<S, M> {
         }
     }
 
-    /// How a call ended that did not stop at a root.
+    /// End of a call that did not stop at a root.
     fn reached(&mut self) -> Reached {
         let elapsed = self.march.rest.unwrap_or(self.march.t);
         match self.march.stop_time.take_if(|stop| *stop == elapsed) {

@@ -113,7 +113,7 @@ impl Tolerances {
         self.atol_of(unknown) / rtol
     }
 
-    /// The distance from the state `y` along `direction` at which the first unknown has changed by what it may be off, but at most
+    /// The distance from the state `y` along `direction` at which the first unknown has changed by its tolerance, but at most
     /// `longest`.
     pub(crate) fn error_reach(&self, y: &[f64], direction: &[f64], longest: f64) -> f64 {
         let allowed = |i: usize| match self.rtol * f64::abs(y[i]) + self.atol_of(i) {

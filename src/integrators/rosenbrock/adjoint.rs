@@ -59,7 +59,7 @@ pub(crate) trait Transposed: Ode {
     fn weights_of(&mut self, z: &[f64], weights: &mut [f64]);
 }
 
-/// A step that was taken back: its stages and their adjoint vectors.
+/// Adjoint of a step: its stages and their adjoint vectors.
 #[derive(Debug)]
 pub(crate) struct StepAdjoint {
     tableau: &'static Tableau,
@@ -113,7 +113,7 @@ impl StepAdjoint {
         self.weights.iter().map(move |weights| (gamma, &weights[..]))
     }
 
-    /// The sum of which the derivative is that of the number, of other equations, and another start `t` and size `h` of the step. `has_masses` says whether they have the same L; `weights` has room for two.
+    /// The sum of which the derivative is that of the number, of other equations, and another start `t` and size `h` of the step. `has_masses` says whether they have the same L; `weights` has space for two.
     pub(crate) fn weigh<S: Transposed>(
         &self,
         other: &mut S,

@@ -19,7 +19,7 @@ struct Factored {
     has_factors: bool,
 }
 
-/// Who factorizes.
+/// Implementation of the factorization.
 pub(super) enum Direct {
     /// This crate, a dense matrix.
     Dense(DenseFactors),

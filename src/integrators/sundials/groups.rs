@@ -7,7 +7,7 @@
 
 use std::ops::Range;
 
-/// How many groups there are at first.
+/// Initial number of groups.
 const FIRST: usize = 16;
 
 /// Unknowns of neighbouring numbers, and the equations that they occur in.

@@ -100,7 +100,7 @@ pub enum Preconditioner {
     Ilu {
         /// The entries that are used; the Jacobian may have others if its values are supplied.
         pattern: Pattern,
-        /// Where the values come from.
+        /// Source of the values.
         jacobian: Jacobian,
     },
 }
@@ -112,7 +112,7 @@ impl Krylov {
         Self { method, products, preconditioner: None, tolerance_factor: None }
     }
 
-    /// Where the products of the Jacobian with vectors come from (`CVodeSetJacTimes`). Default: difference
+    /// Source of the products of the Jacobian with vectors (`CVodeSetJacTimes`). Default: difference
     /// quotients; supplied ones are `jacobian_times`.
     pub fn products(mut self, products: Jacobian) -> Self {
         self.products = products;

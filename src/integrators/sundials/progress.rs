@@ -3,7 +3,7 @@
 /// After how many steps this is checked.
 pub(super) const STRETCH: u64 = 100;
 
-/// Where a run was some steps ago.
+/// Time of a run some steps ago.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Progress {
     steps: u64,

@@ -35,7 +35,7 @@ impl ObjectiveViscosity {
         let hooke = Hooke::new(material.viscous(), dimension, plane);
         match elastic {
             Elastic::StVenantKirchhoff(_) => Self::Hookean(HookeanViscosity(hooke)),
-            // a free thickness follows the motion, whatever the bulk viscosity is
+            // a free thickness follows the motion with any bulk viscosity
             _ if hooke.is_free_across(dimension) => Self::Newtonian(NewtonianViscosity(hooke)),
             _ => {
                 let lame = material.bounded(material.viscosity);

@@ -31,7 +31,7 @@ pub struct Tableau {
 }
 
 impl Tableau {
-    /// Of this order, with the rows of a, in which zeros at the end may be left out, and the weights b.
+    /// Of this order, with the rows of a, in which zeros at the end may be omitted, and the weights b.
     ///
     /// Coefficients that cannot be used are an error of the solver's `new`.
     pub fn new<R: AsRef<[f64]>>(
