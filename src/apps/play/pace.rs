@@ -1,4 +1,4 @@
-//! How fast simulated time advances: as requested, or as fast as the computer can.
+//! Pace of simulated time: as requested, or as fast as the computer can.
 //!
 //! Time advances in portions, as long as requested but of no more than some 20 ms of computing, judged by the
 //! last ones, with answers in between. Time that cannot be computed fast enough is not made up for; the page

@@ -1,4 +1,4 @@
-//! Integration by one-step methods, whose steps know nothing of each other but their size.
+//! Integration by one-step methods, whose steps share only the step size.
 //!
 //! `rk` and `rosenbrock` are one struct over a [`StepMethod`] (stages, error, size of the next step, dense
 //! output), compiled for each method and system. Central differences, whose steps depend on each other,

@@ -1,4 +1,4 @@
-//! Whether the steps of an integrator make progress in time.
+//! Detection of steps without progress in time.
 
 /// After how many steps this is checked.
 pub(super) const STRETCH: u64 = 100;

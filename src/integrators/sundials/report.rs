@@ -1,4 +1,4 @@
-//! Statistics of an integrator of SUNDIALS, and why it stopped.
+//! Statistics of an integrator of SUNDIALS, and the cause of its stop.
 
 use super::{
     ffi,

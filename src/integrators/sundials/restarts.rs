@@ -1,4 +1,4 @@
-//! New starts of C: after a first step or an explicit stage that failed, from the present state; and what C has then.
+//! Restarts of C: after a first step or an explicit stage that failed, from the present state; and the state of C then.
 
 use super::{
     ffi,

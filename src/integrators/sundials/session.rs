@@ -1,4 +1,4 @@
-//! A session of an integrator of SUNDIALS and everything it uses: how it is put together.
+//! A session of an integrator of SUNDIALS with all its parts: construction.
 //!
 //! CVODE, ARKODE and IDA are one struct over a table of C functions. A solver as users see it owns the system
 //! and lends it to the session as `dyn Ode` or `dyn Dae`: all code that touches C is compiled once, in the

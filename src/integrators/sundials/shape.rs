@@ -1,4 +1,4 @@
-//! Which entries of a matrix are stored, and in which order.
+//! Stored entries of a matrix, and their order.
 
 use std::ops::Range;
 

@@ -95,7 +95,7 @@ enum Stored<T> {
 
 /// Values that may be given by a function.
 trait Changing: Clone {
-    /// Where the function is, and its breaks, if it is one.
+    /// Index of the function, and its breaks, if it is one.
     fn function(&self) -> Option<(*const (), &[f64])>;
 }
 
@@ -245,7 +245,7 @@ impl PhaseOverrides {
         })
     }
 
-    /// The phase in force; `own` is what the scene has.
+    /// The current phase; `own` is that of the scene.
     ///
     /// # Errors
     /// Functions that do not exist. All else is [checked](Phase) by the scene.

@@ -76,7 +76,7 @@ impl Simulation {
     ///
     /// # Errors
     /// [`Error::Read`] if there is no file that can be read; a file that is no checkpoint, of a format that
-    /// this version cannot read, damaged, or of another scene: the message names what differs.
+    /// this version cannot read, damaged, or of another scene: the message names the difference.
     pub fn read_checkpoint(&self, path: impl AsRef<Path>) -> Result<Checkpoint, Error> {
         let path = path.as_ref();
         let refuse = |help| InputError::new("checkpoint file", path.display(), help).into();
@@ -86,13 +86,13 @@ impl Simulation {
     }
 }
 
-/// The most bytes that a file may have, of a body with `dofs` displacement components: ten times what the
-/// state takes, and room for commands.
+/// The largest size (bytes) of a file of a body with `dofs` displacement components: ten times what the
+/// state takes, and some more for commands.
 fn most_bytes(dofs: usize) -> u64 {
     (1 << 24) + 512 * dofs as u64
 }
 
-/// The contents of a file of `most` bytes at most, or what is wrong with it.
+/// The contents of a file of `most` bytes at most, or its defect.
 fn open(path: &Path, most: u64) -> std::io::Result<Result<Vec<u8>, String>> {
     // opening a pipe may block for ever
     if !fs::metadata(path)?.is_file() {

@@ -53,7 +53,7 @@ pub(super) struct Record {
     energies_noted: [f64; 3],
     dissipated: f64,
     supplied: f64,
-    /// Where each constraint starts: displacement and time.
+    /// Start of each constraint: displacement and time.
     constraint_starts: Vec<[f64; 4]>,
     displacements: Vec<f64>,
     velocities: Vec<f64>,

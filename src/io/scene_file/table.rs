@@ -19,7 +19,7 @@ use super::value::Value;
 use crate::base::input::{InputError, list, unknown};
 use crate::dynamics::error::Error;
 
-/// The key that says what kind of thing a table describes.
+/// The key of the kind of a table.
 const KIND: &str = "kind";
 
 /// A table whose keys are all known, with exactly one of its groups of keys, if it has any.
@@ -80,7 +80,7 @@ impl<'a> Table<'a> {
         self.kind.map_or("", |kind| kind.word)
     }
 
-    /// Where the file is.
+    /// Path of the file.
     #[cfg(feature = "sweep")]
     pub(super) fn path(&self) -> &'a std::path::Path {
         self.source.path

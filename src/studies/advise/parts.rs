@@ -13,9 +13,9 @@ use std::fmt;
 /// parts themselves may cancel.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Parts {
-    /// Of the model: measure of strain, inertia, alpha, what is left out.
+    /// Of the model: measure of strain, inertia, alpha, omitted terms.
     pub model: f64,
-    /// Of the mesh, with what the finest mesh may be off by itself. If no other mesh was compared with, what residuals tell, or NaN.
+    /// Of the mesh, with the possible error of the finest mesh. Without another mesh to compare with, the estimate by residuals, or NaN.
     pub mesh: f64,
     /// Of the integration over time.
     pub time: f64,

@@ -21,16 +21,16 @@ use crate::studies::work_precision::time_text;
 /// A smaller model of a motion that is right, on the same mesh and with the same settings.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SmallerModel {
-    /// How it is smaller.
+    /// Kind of simplification.
     pub kind: Smaller,
     /// Change of the quantity by the model, relative to the same scale as the accuracy, from runs with small integration errors; of a rod
     /// the distance from the reference, with that of its faster run.
     pub change: f64,
-    /// Time (s) of a run by it, and of one of what it is a model of.
+    /// Time (s) of a run by it, and of one of the full model.
     pub seconds: f64,
     /// See `seconds`.
     pub full_seconds: f64,
-    /// Unknowns of the integrator, and those of what it is a model of; what is rigid counts with all its nodes, most of which move
+    /// Unknowns of the integrator, and those of the full model; a rigid body counts with all its nodes, most of which move
     /// with others.
     pub unknowns: usize,
     /// See `unknowns`.
@@ -38,7 +38,7 @@ pub struct SmallerModel {
 }
 
 impl SmallerModel {
-    /// A model by the times (s) and unknowns of two runs: one by it, and one of what it is a model of.
+    /// A model by the times (s) and unknowns of two runs: one by it, and one of the full model.
     pub(super) fn new(kind: Smaller, change: f64, runs: [(f64, usize); 2]) -> Self {
         let [(seconds, unknowns), (full_seconds, full_unknowns)] = runs;
         Self { kind, change, seconds, full_seconds, unknowns, full_unknowns }

@@ -30,14 +30,14 @@ pub struct Fitted {
     pub unknowns: Vec<Determined>,
     /// Root mean square of the residuals: in the middle of the ranges, and at the values that were found.
     pub rms: [f64; 2],
-    /// How many residuals there are.
+    /// Number of residuals.
     pub residuals: usize,
     /// How many independent residuals they count as, at the values that were found: n / (1 + 2 sum |rho_k|)
     /// for a series of n, with its significant autocorrelations rho_k.
     pub independent: f64,
-    /// How often the residuals were computed.
+    /// Number of evaluations of the residuals.
     pub runs: usize,
-    /// How many of these runs failed: they counted as bad steps.
+    /// Number of failed runs among these: they counted as bad steps.
     pub failed: usize,
     /// Whether the search has converged: further runs would change next to nothing.
     pub is_converged: bool,
@@ -170,7 +170,7 @@ struct Search<'a> {
     bad: f64,
     /// A point with known derivatives, and these.
     known: Option<(Vec<f64>, Vec<Vec<f64>>)>,
-    /// Why a run failed.
+    /// Reason for the failure of a run.
     failure: Option<Error>,
     settings: MPConfig,
     limits: Vec<MPPar>,

@@ -1,8 +1,8 @@
-//! Derivatives of what a scene does by the numbers that it says, each with its estimated error.
+//! Derivatives of an objective of a scene by numbers of its file, each with its estimated error.
 //!
 //! A [`SceneGradient`] is of one [`Objective`] and any numbers of a scene file. Three methods:
 //!
-//! - [`Method::Adjoint`]: the steps of a run by a Rosenbrock method are taken back, one by one (`dynamics/simulate/adjoint.rs`), which gives the
+//! - [`Method::Adjoint`]: the discrete adjoint of the steps of a run by a Rosenbrock method (`dynamics/simulate/adjoint.rs`), which gives the
 //!   derivative of the computed motion by any number of numbers. A number costs evaluations of forces in the states of the run. Of an
 //!   equilibrium the dual of its equations is solved (`at_rest.rs`).
 //! - [`Method::SameSteps`]: a run by an own one-step method lists its steps, and runs with another number take the same ones. What these

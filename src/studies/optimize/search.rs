@@ -28,13 +28,13 @@ pub(super) struct Seen {
 /// The function at a point, none where it has no value there.
 pub(super) type Function<'a> = &'a mut dyn FnMut(&[f64]) -> Result<Option<Seen>, Error>;
 
-/// Why a search ended.
+/// Reason for the end of a search.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Ending {
     /// All derivatives by numbers that may change are below their own errors.
     WithinError,
-    /// The next step would be below 1e-5 of each range, or gain less than 1e-9 of what was gained so far.
+    /// The next step would be below 1e-5 of each range, or gain less than 1e-9 of the gain so far.
     Settled,
     /// Steps of 1e-5 of the ranges lead to nothing better: the quantity has kinks or jumps there, or its derivatives mean little.
     NothingBetter,
@@ -80,7 +80,7 @@ impl fmt::Display for Ending {
 const FIRST: f64 = 0.2;
 /// Steps below this part of the ranges count as none.
 const NO_STEP: f64 = 1e-5;
-/// Steps that promise less than this part of what was gained so far are not made, unless it is squares that are to be 0: where a quantity is curved, it
+/// Steps with a predicted gain of less than this fraction of the gain so far are not made, unless the objective is a sum of squares: where a quantity is curved, it
 /// is the gain of the last 3e-5 of a way.
 const NO_GAIN: f64 = 1e-9;
 /// Most evaluations.

@@ -1,4 +1,4 @@
-//! How far the motion of a reduced model is from that of all unknowns.
+//! Error of the motion of a reduced model relative to that of all unknowns.
 //!
 //! A model is checked with all runs, those that it was learned from included.
 

@@ -23,7 +23,7 @@ pub(super) struct LearnedPhase {
     rows: usize,
     /// The columns of E.
     pub(super) lifts: Vec<Vec<f64>>,
-    /// Orthonormal in M: those that are always taken, and the others, of which those that belong together follow each other.
+    /// Orthonormal in M: those that are always used, and the others, of which those that belong together follow each other.
     shapes: Vec<Vec<f64>>,
     always: usize,
     together: usize,
@@ -40,7 +40,7 @@ pub(super) struct State {
     origin: Arc<Vec<f64>>,
     u: Vec<f64>,
     pub(super) v: Vec<f64>,
-    /// u - u_0 without what the constraints move, and that: E (b - b_0).
+    /// u - u_0 without the motion of the constraints, and that motion: E (b - b_0).
     own: Vec<f64>,
     moved: Vec<f64>,
 }
@@ -116,7 +116,7 @@ impl LearnedPhase {
         self.shapes.truncate(count);
         let found = beyond(&self.shapes, displacements, false, &mass);
         let mut new: Vec<Vec<f64>> = found.shapes.into_iter().take(added).collect();
-        // what is small beside what was removed has its round-off
+        // a remainder that is small relative to the removed part is round-off
         new.iter_mut().for_each(|shape| system.constrain(shape));
         let all: Vec<Vec<f64>> = self.shapes.drain(..).chain(new).collect();
         self.shapes = orthonormal(&all, &mass);
@@ -129,7 +129,7 @@ impl LearnedPhase {
         (self.always + others / self.together * self.together).min(self.shapes.len())
     }
 
-    /// Number of shapes that are always taken: all linear displacements, where nothing holds the body.
+    /// Number of shapes that are always used: all linear displacements, where nothing holds the body.
     pub(super) fn least(&self) -> usize {
         self.always
     }
@@ -341,7 +341,7 @@ fn beyond(shapes: &[Vec<f64>], mut displacements: Vec<Vec<f64>>, turns: bool, ma
     pod(&displacements, mass)
 }
 
-/// Removes from `x` what orthonormal shapes have of it.
+/// Removes from `x` its projection onto orthonormal shapes.
 fn remove(shapes: &[Vec<f64>], mass: &dyn Fn(&[f64], &mut [f64]), x: &mut [f64]) {
     let mut momentum = vec![0.0; x.len()];
     mass(x, &mut momentum);

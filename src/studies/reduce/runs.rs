@@ -19,7 +19,7 @@ pub(super) struct ByModel {
     pub(super) lengths: [f64; 2],
     /// Time (s) of a run, the mean of those that came to their end.
     pub(super) seconds: f64,
-    /// Why a run failed, if one did.
+    /// Reason of a failed run, if there was one.
     pub(super) problem: Option<Error>,
 }
 

@@ -18,7 +18,7 @@ impl Reduced {
         self.tried.iter().find(|tried| [tried.unknowns, tried.cells] == [unknowns, cells])
     }
 
-    /// From which run on the time that learning has taken is won back; none if the model is not faster.
+    /// Number of the run from which on the training time is recovered; none if the model is not faster.
     pub fn pays_from(&self) -> Option<f64> {
         pays_from(self.training_seconds, self.full_seconds? - self.chosen()?.seconds)
     }
@@ -133,7 +133,7 @@ impl Reduced {
 }
 
 impl fmt::Display for Reduced {
-    /// A table of what was tried, and what was chosen.
+    /// A table of the tried models, and the choice.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [unknowns, cells] = self.full;
         let Some(full) = self.full_seconds else { return self.fmt_by_modes(f) };
@@ -174,7 +174,7 @@ impl fmt::Display for Reduced {
 }
 
 impl fmt::Display for Verified {
-    /// The error that was found, and the one that the run told.
+    /// The measured error, and the one that the run estimated.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { reduced: Tried { error, told: said, seconds, .. }, full_seconds } = *self;
         if error.is_infinite() {

@@ -114,7 +114,7 @@ pub fn report_8() -> Result<Scene, InputError> {
 }
 
 /// A bending actuator: bellows over a stiff layer, clamped at one end (15 mm wide, plane stress, Green
-/// strain), whose rooms are blown up by 5 kPa at once; after 1 s the air is let out, until 2 s. `mesh`
+/// strain), whose chambers are inflated by 5 kPa at once; after 1 s the air is let out, until 2 s. `mesh`
 /// has the regions, nodes and walls of `scenes/meshes/bending-actuator.geo`.
 ///
 /// # Errors

@@ -27,7 +27,7 @@ pub struct Plan {
 /// One point: the values of all keys that are varied.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Point {
-    /// A hash of the keys and their values, whatever order they have and however they are written, in 16 digits.
+    /// A hash of the keys and their values, independent of their order and notation, in 16 digits.
     pub id: String,
     /// The keys.
     pub keys: Arc<[String]>,
@@ -76,7 +76,7 @@ impl Plan {
         &self.keys
     }
 
-    /// A point, by its number from 0; numbers beyond the last begin anew.
+    /// A point, by its number from 0; numbers beyond the last wrap around.
     pub fn point(&self, number: usize) -> Point {
         let mut rest = number;
         let mut parts: Vec<Vec<SetValue>> = Vec::with_capacity(self.factors.len());

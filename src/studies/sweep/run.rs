@@ -51,7 +51,7 @@ pub struct Sweep {
 pub struct PointRun {
     /// Its row.
     pub row: Row,
-    /// The scene, and what it asks for; none if it cannot be read.
+    /// The scene, and its requests; none if it cannot be read.
     pub file: Option<SceneFile>,
     /// Its outcome; none if the run did not begin.
     pub outcome: Option<Outcome>,

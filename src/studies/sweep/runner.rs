@@ -51,14 +51,14 @@ impl<'a> Runner<'a> {
         Self { sweep, store, cores: thread::available_parallelism().map_or(1, Into::into) }
     }
 
-    /// How many points are run at once. Default: as many as there are cores.
+    /// Number of points that are run at once. Default: the number of cores.
     #[must_use]
     pub fn cores(mut self, count: usize) -> Self {
         self.cores = count;
         self
     }
 
-    /// How many points are run at once: no more than fit into memory, as far as that can be known beforehand from
+    /// Number of points that are run at once: no more than fit into memory, as estimated beforehand from
     /// the first and the last point.
     ///
     /// # Errors

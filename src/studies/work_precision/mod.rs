@@ -76,7 +76,7 @@ use std::time::Duration;
 
 use crate::dynamics::error::Error;
 
-/// Why a run gave no result.
+/// Reason for a missing result of a run.
 pub type Failed = Box<dyn std::error::Error + Send + Sync>;
 
 /// Problem that is solved in several ways.
@@ -101,7 +101,7 @@ pub trait Problem {
     /// Solves the problem and compares with the reference.
     ///
     /// # Errors
-    /// Why there is no solution; that it took more processor time than `limit`, for one.
+    /// Reason for a missing solution, such as more processor time than `limit`.
     fn measure(&mut self, line: usize, point: usize, limit: Duration) -> Result<Measured, Failed>;
 
     /// Solves the problem again and returns the time (s) that it took.
@@ -122,7 +122,7 @@ pub struct Line {
     pub points: Vec<Point>,
 }
 
-/// How fine a run was: a point on a line.
+/// Fineness of a run: a point on a line.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Point {
     /// Name, unique within the line: the tolerance or the mesh.

@@ -22,7 +22,7 @@ impl Yardstick {
         Self { least: (0..5).map(|_| arithmetic()).fold(f64::INFINITY, f64::min) }
     }
 
-    /// How many times slower than at its best the machine is now.
+    /// Present slow-down of the machine, relative to its best.
     pub(crate) fn slowdown(&mut self) -> f64 {
         let seconds = arithmetic();
         self.least = self.least.min(seconds);
@@ -41,7 +41,7 @@ fn arithmetic() -> f64 {
     clock.elapsed().as_secs_f64()
 }
 
-/// How long a run took (s).
+/// Duration of a run (s).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Time {
     /// Wall-clock time.

@@ -1,4 +1,4 @@
-//! IDA as users see it.
+//! The public solver of IDA.
 
 use faer::MatRef;
 

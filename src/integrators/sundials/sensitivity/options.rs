@@ -1,4 +1,4 @@
-//! Which sensitivities are computed, and how.
+//! Selection of sensitivities, and options of their computation.
 
 use crate::base::{input::InputError, vector::size_or_one};
 use crate::integrators::common::check_finite;

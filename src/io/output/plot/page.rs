@@ -7,7 +7,7 @@ use crate::io::output::{COLOURS, DASHES};
 
 /// Width of the page, and height of the field of a panel (px).
 const SIZE: [f64; 2] = [720.0, 170.0];
-/// Width of a field, about, and room above it for names of phases (px).
+/// Approximate width of a field, and margin above it for names of phases (px).
 const FIELD: f64 = 600.0;
 const PHASES: f64 = 14.0;
 /// Approximate number of lines across a panel and along the axis of time.
