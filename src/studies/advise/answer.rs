@@ -144,7 +144,7 @@ impl fmt::Display for Advice {
                 writeln!(f, "\nEnough on this mesh: {}", run(enough))?;
             }
             Some(enough) => writeln!(f, "\nEnough:      {}", run(enough))?,
-            None => writeln!(f, "\nNothing that was tried is enough.")?,
+            None => writeln!(f, "\nNo candidate is enough.")?,
         }
         let smaller = self.smaller_enough();
         if let Some((smaller, error)) =
