@@ -63,10 +63,10 @@ pub trait Force: Send + Sync {
     /// Adds -df/du to `stiffness` and -df/dv to `damping`. They need not be symmetric: the Newton
     /// matrix takes their symmetric part.
     ///
-    /// A force that leaves this out (and returns [`Tangents::ByDifferences`], without adding anything) gets
+    /// A force that omits this (and returns [`Tangents::ByDifferences`], without adding anything) gets
     /// finite differences of [`add_forces`](Self::add_forces). They cost one evaluation at the state itself
     /// and, for each of the two matrices: one if the force does not depend on u (or v); else one more than
-    /// the dimension of space if it acts on each node by itself, and several times as many if it couples
+    /// the dimension of space if it acts on each node separately, and several times as many if it couples
     /// nodes. The report gives their number. A force whose [`is_nonlinear`](Self::is_nonlinear) is false has
     /// no tangents.
     fn add_tangents(
@@ -96,7 +96,7 @@ pub trait Force: Send + Sync {
         Reservoir::None
     }
 
-    /// Nodes (counted from 0) that it depends on or acts on; any if it does not say.
+    /// Nodes (counted from 0) that it depends on or acts on; any if it names none.
     #[doc(hidden)]
     fn nodes(&self) -> Option<Vec<usize>> {
         None
@@ -106,7 +106,7 @@ pub trait Force: Send + Sync {
     /// have entries for these pairs only, and for nodes that share a cell, which need not be named.
     ///
     /// Finite differences look for couplings of the named pairs alone first, which is cheap, and of
-    /// nodes that share a cell if those do not explain how the force changes.
+    /// nodes that share a cell if those do not explain the change of the force.
     fn couplings(&self) -> Vec<[usize; 2]> {
         Vec::new()
     }

@@ -7,7 +7,7 @@ use crate::elements::body::Body;
 /// Largest reach of a section over the radius of curvature in an element: beyond it adjacent sections intersect.
 const MOST: f64 = 1.0;
 
-/// Sections beside each other that overlap, in a single body that is a rod.
+/// Adjacent sections that overlap, in a single body that is a rod.
 pub(super) fn kinked(body: &Body) -> Option<Indicator> {
     let bend = body.sharpest_bend()?;
     let value = bend.reach * bend.angle / bend.length;

@@ -218,7 +218,7 @@ pub(crate) fn of_motion(trajectory: &Trajectory) -> Vec<Indicator> {
     measured.chain(is_whole.then(missed).into_iter().flatten()).collect()
 }
 
-/// Indicators of how far an equilibrium can be trusted, or the last one on the way to it.
+/// Indicators of the reliability of an equilibrium, or of the last one before a failure.
 pub(crate) fn of_equilibrium(trajectory: &Trajectory, is_found: bool) -> Vec<Indicator> {
     let samples = [trajectory.last()];
     let meetings = touch::meetings(trajectory, &samples);

@@ -16,7 +16,7 @@ const MOST_OF_CELL: f64 = 0.5;
 const MOST_OF_BODY: f64 = 0.02;
 /// Part of the thickness of the body.
 const MOST_OF_THICKNESS: f64 = 0.5;
-/// Part of the way to the middle of the obstacle, where forces turn to its other side.
+/// Fraction of the distance to the middle of the obstacle, beyond which forces act towards its other side.
 const MOST_OF_OBSTACLE: f64 = 0.5;
 /// A point between nodes of quadratic faces moves at most this much farther than they do.
 const REACH: f64 = 1.5;

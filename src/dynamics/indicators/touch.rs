@@ -228,7 +228,7 @@ pub(super) fn begun_inside(scene: &Scene) -> Vec<Indicator> {
     contacts.iter().filter_map(of_contact).collect()
 }
 
-/// Obstacles and other bodies that touch and would hold the body by friction, on the way to an equilibrium, where friction does not act.
+/// Obstacles and other bodies that touch and would hold the body by friction, in the search for an equilibrium, where friction does not act.
 pub(super) fn slippery(trajectory: &Trajectory) -> Vec<Indicator> {
     let scene = trajectory.scene();
     let meetings = match scene.obstacles().iter().any(Obstacle::has_friction) {

@@ -7,7 +7,7 @@
 //! eliminated as well: the factorized matrix is W^T X W. Many pieces move by their
 //! [rigid motions](super::rigid_motions).
 //!
-//! X may be singular without the general rows: oblique planes of symmetry may be all that holds a body. So
+//! X may be singular without the general rows: a body may be held by oblique planes of symmetry only. So
 //! where X itself is factorized, springs with the stiffness rho of its diagonal are added along the rows g of
 //! single nodes, which fit into its pattern: X + rho g g^T has the same solution where g.x = d, with a
 //! multiplier that is rho d larger.
@@ -95,7 +95,7 @@ impl ConstrainedSolver {
         Self::with_motions(matrices, rows, edges, coupling, false)
     }
 
-    /// For the Newton matrix of a phase, in which rigid pieces that touch feel each other: many of them move by their rigid motions.
+    /// For the Newton matrix of a phase, in which rigid pieces that touch are coupled: many of them are solved by their rigid motions.
     pub(crate) fn of_newton_matrix(
         matrices: &Matrices,
         rows: &[ConstraintRow],

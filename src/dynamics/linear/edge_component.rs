@@ -34,7 +34,7 @@ pub(super) struct Component {
 
 /// Required edges at the end of a step.
 pub(crate) struct Arrival {
-    /// The part of accelerations in displacements at the end of the step (s^2), if lengths are asked for.
+    /// The part of accelerations in displacements at the end of the step (s^2), if lengths are prescribed.
     pub(crate) weight: Option<f64>,
     /// The edges there without accelerations (m), and the required halves of the squares of their lengths (m^2).
     pub(crate) starts: Vec<[f64; 3]>,
@@ -43,7 +43,7 @@ pub(crate) struct Arrival {
     pub(crate) is_missed: bool,
 }
 
-/// Edges that feel each other through X, with their factorized small matrix.
+/// Edges that are coupled through X, with their factorized small matrix.
 pub(super) struct Piece {
     /// Numbers of edges in the component, and in the list of all.
     pub(super) numbers: Vec<usize>,
@@ -219,7 +219,7 @@ impl Component {
         }
     }
 
-    /// Finds which edges feel each other, once Z is set.
+    /// Finds the coupled edges, once Z is set.
     pub(super) fn divide(&mut self) {
         let d = self.dimension;
         let feels = |a: usize, b: usize| {

@@ -1,6 +1,6 @@
-//! Rigid pieces keep their shape: the nodes of their frames keep their distances.
+//! Edges of rigid pieces: constant distances between the nodes of their frames.
 //!
-//! The frame of a piece (`elements/body/rigid.rs`) is a simplex, whose 3 edges in the plane, 6 in space, are what rigid
+//! The frame of a piece (`elements/body/rigid.rs`) is a simplex, whose 3 edges in the plane, 6 in space, are the lengths that rigid
 //! motion leaves unchanged (natural coordinates: J. García de Jalón, E. Bayo, "Kinematic and Dynamic Simulation
 //! of Multibody Systems", Springer 1994). An edge x from one node to another, of the length L, is a constraint
 //! that is stabilized like all others,
@@ -9,7 +9,7 @@
 //! g = (x.x - L^2)/2 = 0,   x.x'' = -x'.x' - 2 alpha x.x' - alpha^2 g
 //! ```
 //!
-//! with a multiplier that presses with x at both nodes. `edge_solver.rs` finds the multipliers.
+//! with a multiplier whose force acts along x at both nodes. `edge_solver.rs` finds the multipliers.
 //!
 //! Constraints on nodes of rigid pieces are general rows, written for the independent displacements, even
 //! where they hold one component; those that follow from others because nodes move together are omitted

@@ -21,7 +21,7 @@ impl EntrySource {
         self.entry as usize
     }
 
-    /// Index of the same pair the other way round.
+    /// Index of the transposed pair.
     pub(crate) fn transposed(self) -> usize {
         self.transposed as usize
     }

@@ -126,7 +126,7 @@ mod tests {
         rates
     }
 
-    /// Rigid motions leave all lengths, strains have the rates asked for, and forces along edges do the work of those at the nodes; the
+    /// Rigid motions leave all lengths, strains have the requested rates, and forces along edges do the work of those at the nodes; the
     /// numbers are of the size 1, so that round-off is some 1e-16.
     #[test]
     fn motions_are_rigid_and_strains_stretch_as_asked() {

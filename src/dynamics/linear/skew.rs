@@ -20,7 +20,7 @@ use crate::scene::constraint::ConstraintRow;
 /// Directions at most; as many rows are solved exactly.
 const MOST: usize = 60;
 
-/// Part of two entries, one the other way round, below which their difference is round-off.
+/// Fraction of two transposed entries below which their difference is round-off.
 const ROUND_OFF: f64 = 1e-12;
 
 /// S, and the directions of its iteration.
@@ -176,7 +176,7 @@ impl Skew {
         aim[number + 1].abs()
     }
 
-    /// Finds how much of each direction z has beside f.
+    /// Finds the components of z - f along each direction.
     pub(crate) fn finish(&mut self) {
         let height = self.aim.len();
         for k in (0..self.rotations.len()).rev() {

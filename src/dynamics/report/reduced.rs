@@ -44,7 +44,7 @@ pub struct SensorErrorEstimate {
     pub name: String,
     /// Its unit.
     pub unit: String,
-    /// The largest error at the times that were looked at, in that unit.
+    /// The largest error at the checked times, in that unit.
     pub error: f64,
 }
 

@@ -12,15 +12,15 @@
 //! and smaller steps: constraints and obstacles along their paths; gravity, loads, pressure, the forces of
 //! actuators, lengths of winches, growth and amounts of gas and liquids by a factor. Where no step is small
 //! enough, damped motion finds the next equilibrium. Obstacles in
-//! motion count as standing where they are: nothing is dragged along.
-//! Friction does not act either, as it depends on how the body came there.
+//! motion are held in their positions: nothing is dragged along.
+//! Friction does not act either, as it depends on the motion before.
 //!
 //! A scene that starts from a given state is in equilibrium near it: the search begins there under the whole load, and
 //! the unbalanced force is released by a factor.
 //!
 //! A body that nothing holds is in equilibrium if its loads balance each other. Of all its positions the one
-//! is taken in which it has not moved as a whole: the displacements have no component along any rigid motion
-//! R, R^T M u = 0. With Green's strain a body turns to where loads of constant direction balance each other,
+//! without rigid motion is chosen: the displacements have no component along any rigid motion
+//! R, R^T M u = 0. With Green's strain a body rotates until loads of constant direction balance each other,
 //! and is free only for motions that no force resists: all of them if it is under pressure all around.
 //!
 //! With arc length the load is not given, but found together with the displacements, along the path of

@@ -6,7 +6,7 @@
 //! u' = v,   M a - A lambda = f(t, u, v),   A^T a = -C(t, u, v)
 //! ```
 //!
-//! weighted with y, w and m, where A^T w = 0: (y, w, m) stand for the adjoint vector (y, M w + A m). Its product with (u', v') is
+//! weighted with y, w and m, where A^T w = 0: (y, w, m) represent the adjoint vector (y, M w + A m). Its product with (u', v') is
 //! y.v + w.f - m.C, so that no product solves a system with M. The Newton system transposed is
 //!
 //! ```text

@@ -11,7 +11,7 @@
 //! ([`Scene::loaded`](crate::Scene)). The body and its springs do not change.
 //!
 //! From a given start u_0, all these act fully, and the unbalanced force there is released instead: with the fraction s the
-//! forces are f(u) - (1 - s) f(u_0). Where u_0 was in equilibrium under other dead loads, that is the straight way from these loads
+//! forces are f(u) - (1 - s) f(u_0). Where u_0 was in equilibrium under other dead loads, that is the straight path from these loads
 //! to the present ones.
 //!
 //! The shift of K + shift M is 0 unless K is indefinite; M is the natural measure of displacements, and the
@@ -163,7 +163,7 @@ impl AtRest {
         &self.start
     }
 
-    /// The fraction of the loads that acts at a `fraction` of the way.
+    /// The fraction of the loads that acts at a `fraction` of the path.
     pub(crate) fn acting(&self, fraction: f64) -> f64 {
         if self.unbalanced.is_some() { 1.0 } else { fraction }
     }
@@ -261,7 +261,7 @@ impl AtRest {
         Ok(())
     }
 
-    /// The part of the straight way from displacements `u` to `to` on which surfaces that touch come much nearer to each
+    /// The part of the straight path from displacements `u` to `to` on which surfaces that touch come much nearer to each
     /// other than at both of its ends, if they do: they would pass through each other.
     pub(crate) fn passage(&self, u: &[f64], to: &[f64]) -> Option<f64> {
         // obstacles, which have switches, push back from any depth

@@ -35,7 +35,7 @@
 //! G s = r4 - gamma r3 + gamma x'.xu,   (G + gamma x') xv = r3 - x'.s
 //! ```
 //!
-//! gamma x'.xu, known last, is left out: iterations converge by the angle that a piece turns in a time gamma.
+//! gamma x'.xu, known last, is omitted: iterations converge by the rotation of a piece in a time gamma.
 
 use super::System;
 use crate::dynamics::state::State;

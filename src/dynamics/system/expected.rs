@@ -16,7 +16,7 @@ use crate::scene::constraint::ConstraintRow;
 const VIBRATIONS: usize = 24;
 const CURVED: usize = 10;
 
-/// Parts of a phase at which loads are looked at.
+/// Fractions of a phase at which loads are evaluated.
 const TIMES: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
 
 /// Part of the largest motion that the lowest vibration makes at least, and each other as its period is shorter.

@@ -17,7 +17,7 @@
 //! Maxwell branches, gas that flows and actuators that lag have unknowns beside u and v: internal strains and amounts, in this order.
 //!
 //! Two more unknowns are integrated: the energy dissipated and the energy supplied since t = 0. They cost two
-//! dot products, nothing depends on them, and the error control leaves them out; they make the energy balance
+//! dot products, nothing depends on them, and the error control excludes them; they make the energy balance
 //! as accurate as the integration itself.
 //!
 //! `dynamics/state.rs` owns the order of the unknowns, y = (u, v, strains, amounts, E_d, E_s), behind which differential-algebraic
@@ -27,7 +27,7 @@
 //! not infinite: unknowns that Newton's iteration does not control grow without bound, as BDF extrapolates
 //! their errors. To Rosenbrock methods and the internal Runge-Kutta method they are integrals.
 //!
-//! A row of the constraints that goes on into the next phase starts where the phase before prescribed it, so
+//! A row of the constraints that continues into the next phase starts from its prescribed value in the phase before, so
 //! that the error of the stabilization is not passed on. Multipliers follow from the constrained rows of M
 //! a - f; in the ODE form they are output.
 
@@ -93,9 +93,9 @@ pub(crate) struct System {
     base: Arc<Matrices>,
     matrices: Arc<Matrices>,
     forces: Forces,
-    /// Those that keep rigid pieces in their shape, which their edges do here.
+    /// Forces that keep rigid pieces in shape, as their edges do here.
     of_rigid: Forces,
-    /// That whose amounts are unknowns, if there is one.
+    /// The force whose amounts are unknowns, if there is one.
     flow: Option<Arc<dyn Force>>,
     layout: Layout,
     rows: Vec<ConstraintRow>,

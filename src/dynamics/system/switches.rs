@@ -47,7 +47,7 @@ impl System {
         }
     }
 
-    /// Whether switches and [`passage`](Self::passage) are to be asked after each step.
+    /// Whether switches and [`passage`](Self::passage) are to be checked after each step.
     pub(crate) fn can_be_passed(&self) -> bool {
         self.forces.iter().any(|force| {
             let Capabilities { switches, contact, .. } = force.capabilities();

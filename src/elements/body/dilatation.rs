@@ -35,7 +35,7 @@ pub enum Dilatation {
     /// Projected onto linear functions of the undeformed position in each cell (Q2/P-1, with a discontinuous linear
     /// pressure; D. Boffi, L. Gastaldi, Mathematical Models and Methods in Applied Sciences 12 (2002) 1589-1603): for
     /// quadratic hexahedra and quadrilaterals, and for triangles and tetrahedra with bubbles ([`Mesh::with_bubbles`](crate::Mesh::with_bubbles);
-    /// M. Crouzeix, P.-A. Raviart, RAIRO 7 (1973) R3, 33-75). Hexahedra of 20 nodes have more pressures than their faces can feel: displacements
+    /// M. Crouzeix, P.-A. Raviart, RAIRO 7 (1973) R3, 33-75). Hexahedra of 20 nodes have more pressures than their faces can control: displacements
     /// are better than with the mean, pressures are not reliable.
     Linear,
 }

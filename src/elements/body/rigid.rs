@@ -13,7 +13,7 @@
 //!
 //! The frame spans a large simplex, each node the farthest from the span of those before it, so that no weight
 //! is large. Dependent nodes stay in the state with their own u and v: forces, contact, sensors, samples and
-//! checkpoints find them where they find those of any node. Only the algebra knows of pieces: `shares` are
+//! checkpoints find them where they find those of any node. Only the linear algebra has pieces: `shares` are
 //! the weights, `carry` moves dependent nodes along, `gather` moves nodal forces to the frames, where they do
 //! the same work. The elasticity of a piece in equilibria is a force that motions leave out
 //! (`Capabilities::keeps_rigid`). `docs/decisions/0012-rigid-pieces.md` has the alternatives.

@@ -207,7 +207,7 @@ impl Mesh {
         }
     }
 
-    /// Whether it was read from a file, which knows no shape but that of the cells.
+    /// Whether it was read from a file, which has no shape but that of the cells.
     pub(crate) fn is_from_file(&self) -> bool {
         self.file.is_some()
     }

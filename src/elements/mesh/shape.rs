@@ -27,7 +27,7 @@ const OF_HEXAHEDRON: &[&[usize]] = &[
 const FLAT: f64 = 1e-12;
 
 /// Lengths, areas or volumes that the edges at the corners of a cell span, in order; they are below 0 where the cell runs the wrong
-/// way round. Of simplices one corner stands for all.
+/// way round. For simplices one corner is sufficient.
 pub(super) fn corner_measures(
     kind: CellKind,
     cell: &[usize],

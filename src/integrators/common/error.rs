@@ -119,7 +119,7 @@ impl fmt::Display for Callback {
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Cause {
-    /// The user's system asked to stop; its error is the source of this one.
+    /// The user's system requested a stop; its error is the source of this one.
     Fatal(Callback),
     /// The user's system kept rejecting the trial points, whatever the step size.
     Rejected {

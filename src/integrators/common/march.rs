@@ -21,7 +21,7 @@ pub struct March<S> {
     pub(crate) weight: Vec<f64>,
     /// Counts all times below from the start.
     pub(crate) clock: Clock,
-    /// Time of the present state, and the stop time, as users know them.
+    /// Time of the present state, and the stop time, in the user's time.
     pub(crate) now: f64,
     pub(crate) stop_given: f64,
     pub(crate) stop_time: Option<f64>,

@@ -74,7 +74,7 @@ pub(crate) struct StepAdjoint {
     vectors: Vec<Vec<f64>>,
     /// The right-hand sides for z_i.
     wanted: Vec<Vec<f64>>,
-    /// Y_i; a state beside the start.
+    /// Y_i; a second state beside the start.
     pulled: Vec<f64>,
     beside: Vec<f64>,
 }

@@ -71,7 +71,7 @@ pub(super) struct Host<S> {
     pub(super) checks_answers: bool,
     /// Checks the Jacobian that the system supplies, with its shape if it is a matrix.
     pub(super) check: Option<(JacobianCheck, Option<Shape>)>,
-    /// Finds out whether a DAE failed because of its index; none if the user knows that.
+    /// Check whether a DAE failed because of its index; none if the user has declared the index.
     pub(super) find_index: Option<FindIndex<S>>,
     /// The preconditioner of a Krylov method, if it is not the system's own.
     pub(super) ilu: Option<IncompleteLu>,
@@ -179,7 +179,7 @@ impl Troubles {
         }
     }
 
-    /// Whether the user's code has asked to stop.
+    /// Whether the user's code has requested a stop.
     pub(super) fn is_fatal(&self) -> bool {
         self.fatal.is_some()
     }

@@ -1,5 +1,5 @@
 //! A safe, general layer over SUNDIALS, for any system of ordinary differential equations (CVODE) or
-//! differential-algebraic equations (IDA). It knows nothing about bodies.
+//! differential-algebraic equations (IDA). It is independent of bodies.
 //!
 //! The system is a closure or a struct, see [`crate::integrators::ode`]; the solver owns it, chooses its
 //! steps by the tolerances, and reports failures by a typed [`Error`] that names time, step size, order,

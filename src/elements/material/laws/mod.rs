@@ -57,7 +57,7 @@ pub enum Viscosity {
     ///
     /// Beside Hooke's law for Green's strain it is that law, with viscous moduli, for the rate of Green's strain: S = lambda tr(E')
     /// I + 2 mu E' is second Piola stress. Beside all other laws it is a Newtonian fluid: lambda tr(d) I + 2 mu d is Kirchhoff
-    /// stress, with the rate of deformation d = sym(F' F^-1). A motion that keeps the volume does not feel lambda there, and a bar
+    /// stress, with the rate of deformation d = sym(F' F^-1). A motion that keeps the volume is independent of lambda there, and a bar
     /// of rubber at the stretch l resists with 3 mu l'/l. From a Poisson's ratio of 0.45 on the bulk viscosity lambda + 2 mu / 3 of
     /// solids and of plane strain is that of 0.45, and in cells that grow it is 0.
     Objective,

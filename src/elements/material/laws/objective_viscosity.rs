@@ -1,7 +1,7 @@
 //! Which law of objective viscosity a cell has.
 //!
 //! The bulk viscosity of the fluid is bounded by that of a Poisson's ratio of 0.45: changes of volume that
-//! are not elastic, and laws that keep the volume to first order alone (corotated), would feel it. That takes
+//! are not elastic, and laws that keep the volume to first order only (corotated), would depend on it. That takes
 //! 0.84 % at most from the viscosity of a bar at small strains, nothing up to nu = 0.45. Cells that are free
 //! to change their thickness keep lambda, reduced as in elasticity, which bounds it by 2 mu. The derivative
 //! of objective viscosity by u is not symmetric: tangents are exact, and the Newton matrix has their

@@ -1,4 +1,4 @@
-//! The laws that a material may have, with all that is known of each beside its formulas in one row: word and constants in
+//! The laws that a material may have, with all data of each except its formulas in one row: word and constants in
 //! scene files, reference and lists, how it is made from its constants, and how near it is to rubber.
 
 use super::own::{OwnEnergy, StrainEnergy};

@@ -89,7 +89,7 @@ type Division<const N: usize, const C: usize> = [[[usize; N]; C]];
 /// One quadrilateral.
 const WHOLE: [[[usize; 2]; 4]; 1] = [[A, B, C, D]];
 
-/// Which way a diagonal runs.
+/// Direction of a diagonal.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Diagonal {
     /// From the upper left to the lower right corner.

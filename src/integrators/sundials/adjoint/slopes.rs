@@ -18,7 +18,7 @@ pub(super) struct Names {
     pub(super) slopes: &'static str,
     /// The variables of the derivatives.
     pub(super) by: [&'static str; 2],
-    /// The function of [`ode::check`](crate::integrators::ode::check) that looks at all of them.
+    /// The function of [`ode::check`](crate::integrators::ode::check) that checks all of them.
     pub(super) all: &'static str,
 }
 

@@ -109,7 +109,7 @@ impl Tableau {
         self.compare(orders)
     }
 
-    /// Refuses orders above those that C has found, which knows conditions up to order 6.
+    /// Rejects orders above those that C has found, by its conditions up to order 6.
     fn compare(&self, found: [i32; 2]) -> Result<(), InputError> {
         let embedded = self.embedded.as_ref().map_or(0, |(order, _)| *order);
         let wrong = |(declared, found): (u32, i32)| i64::from(declared).min(6) > i64::from(found);
