@@ -1,5 +1,5 @@
 //! The shapes of a reduced model as one matrix Psi: those that are free, and behind them those that constraints move. For
-//! the degrees of freedom that forces see, the active ones, there is a copy of their rows.
+//! the active degrees of freedom, on which forces depend, there is a copy of their rows.
 
 use crate::base::simd::add_multiple;
 use crate::base::sparse::BlockMatrix;

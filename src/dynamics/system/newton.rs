@@ -10,8 +10,8 @@
 //! xu = ru + gamma xv
 //! ```
 //!
-//! This needs one sparse matrix N of half the size; alpha costs nothing, however large. Its symmetric part is factorized. What is left
-//! of it follows by an iteration for methods that solve once (`linear/skew.rs`); Newton's iteration does without.
+//! This needs one sparse matrix N of half the size; alpha costs nothing, however large. Its symmetric part is factorized. The skew part
+//! follows by an iteration for methods that solve once (`linear/skew.rs`); Newton's iteration omits it.
 //!
 //! Maxwell branches are eliminated point by point (`elements/body/branches.rs`), so that Kt includes their
 //! effect in a step of gamma. Amounts of gas are eliminated as well; their contribution to Kt has the rank of their number,

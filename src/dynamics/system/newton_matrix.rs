@@ -1,4 +1,4 @@
-//! The Newton matrix, factorized, and the tangents of the forces of which it is made.
+//! The Newton matrix, factorized, and the tangents of the forces in it.
 
 use std::sync::Arc;
 

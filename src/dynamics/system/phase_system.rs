@@ -1,4 +1,4 @@
-//! The equations of a phase as a run sees them, in any unknowns.
+//! The equations of a phase as the interface of a run, in any unknowns.
 
 use super::{Energy, ResidualSnapshot, Spectrum, System};
 use crate::elements::force::Forces;

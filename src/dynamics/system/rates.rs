@@ -1,4 +1,4 @@
-//! Bounds on how fast the stiffest motions of a phase are.
+//! Bounds on the rates of the stiffest motions of a phase.
 //!
 //! No eigenvalue of D^-1 K, with D diagonal and above 0, exceeds in absolute value
 //!

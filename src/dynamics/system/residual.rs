@@ -4,9 +4,9 @@
 //! The residual f - M u'' along all directions is divided by K + D/gamma + M/gamma^2, with gamma 30 times the
 //! time of a wave across the body, or the time since the start of the phase if that is shorter. Tangents are
 //! those of the first or the last of the states of a phase, whichever resist more, as a body that is about to buckle
-//! would move far under any force; indefinite ones are factorized only where the others report more than was
-//! wanted, or nothing. The ratio to the largest displacement, times the largest ratio of error to it in the
-//! runs that the model was checked with, is the error estimate of a run. Sensors read the state with and
+//! would move far under any force; indefinite ones are factorized only where the others report more than the
+//! requested error, or nothing. The ratio to the largest displacement, times the largest ratio of error to it in the
+//! verification runs of the model, is the error estimate of a run. Sensors read the state with and
 //! without these displacements: one solve serves all of them and all nodes, to first order the dual-weighted
 //! residual (R. Becker, R. Rannacher, *Acta Numerica* 10 (2001) 1-102), as s'.(A^-1 r) = (A^-T s').r, and
 //! nonlinear sensors keep their nonlinearity.

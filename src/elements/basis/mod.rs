@@ -1,6 +1,6 @@
 //! Elements: shape functions and quadrature, one small file per cell.
 //!
-//! The rest of the crate sees only the quadrature points of a cell: the gradients g_a of its shape functions
+//! The rest of the crate uses only the quadrature points of a cell: the gradients g_a of its shape functions
 //! and a weight each. The map from the reference cell to the undeformed shape is isoparametric for all cells.
 //!
 //! A cell of dimension M may live in a space of higher dimension D (a string, a membrane). It is

@@ -1,9 +1,9 @@
 //! Interface of material laws: one formula for energy, stress and tangent, shared by forces, tangents of forces
 //! and fields.
 //!
-//! Laws see one point of a cell of dimension `M`, by its strain in the coordinates of the cell. They are
+//! Laws are evaluated at one point of a cell of dimension `M`, by its strain in the coordinates of the cell. They are
 //! generic over a number `T` that may be a lane of several points, so no branch may depend on a value: where
-//! a law has meaning is given by a separate number ([`ElasticLaw::domain`]), not by its stress.
+//! a law is defined is given by a separate number ([`ElasticLaw::domain`]), not by its stress.
 //!
 //! A cell outside of the domain (det F <= 0) makes the evaluation fail recoverably, with the name of the
 //! cell: the integrator tries a smaller step, and the run ends with that message if none helps.

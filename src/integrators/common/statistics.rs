@@ -29,7 +29,7 @@ pub struct Statistics {
     pub linear_iterations: u64,
     /// Linear systems that the Krylov method did not solve to its tolerance.
     pub linear_failures: u64,
-    /// Preconditioners made of a fresh Jacobian.
+    /// Preconditioners from a fresh Jacobian.
     pub preconditioner_setups: u64,
     /// Systems solved with the preconditioner.
     pub preconditioner_solves: u64,

@@ -38,7 +38,7 @@ impl<const N: usize> From<[f64; N]> for AbsoluteTolerance {
     }
 }
 
-/// Below this an rtol, 0 or next to it, says nothing about sizes of noise: increments of difference quotients, 1.5e-8 of a size at least,
+/// Smallest rtol that determines sizes of noise: below it, increments of difference quotients, 1.5e-8 of a size at least,
 /// would be more than 150 atol. The usual one is assumed.
 const LEAST_RTOL: f64 = 1e-10;
 const USUAL_RTOL: f64 = 1e-6;

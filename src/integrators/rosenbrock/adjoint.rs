@@ -1,4 +1,4 @@
-//! The discrete adjoint of a step: how a number that follows from the end of a step depends on its start, and on the equations.
+//! The discrete adjoint of a step: derivatives of a function of the end of a step by its start, and by the equations.
 //!
 //! It is that of the step as computed, stages and all, and not an integration of the adjoint equations. With lambda the derivative of the
 //! number by the end, and J = df/dy at the start, each stage has a vector

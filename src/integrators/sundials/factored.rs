@@ -1,6 +1,6 @@
 //! Direct linear solvers that record whether they have factors.
 //!
-//! When a Jacobian cannot be evaluated, the matrix is left half written, and an integrator that is called
+//! When a Jacobian cannot be evaluated, the matrix remains half written, and an integrator that is called
 //! again continues with it as if it were factorized: with pivots of another matrix, or with pivots that were
 //! never set, and these are indices into memory. So each solver that factorizes is one of this file, which
 //! then requests a new set-up.

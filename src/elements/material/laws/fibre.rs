@@ -1,4 +1,4 @@
-//! The law of a fibre: an exponential of its strain where it is stretched, or a pull of its own.
+//! The law of a fibre: an exponential of its strain in tension, or an active stress.
 
 use crate::base::tensor::{Matrix, Real};
 use crate::elements::material::law::{Blocks, ElasticLaw};
