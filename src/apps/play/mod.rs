@@ -1,6 +1,6 @@
 //! A scene played live, and controlled by a person, on a page in the web browser.
 //!
-//! The page is served on the loopback interface alone, under an address with a random token. The scene runs
+//! The page is served on the loopback interface only, under an address with a random token. The scene runs
 //! in one thread, as fast as the page requests or as fast as it can; each message of the page, JSON over a
 //! WebSocket, gets one answer: data to show, a confirmation, or the reason of a failure.
 //!

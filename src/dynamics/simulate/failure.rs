@@ -33,9 +33,9 @@ pub(super) fn crawling(count: usize, step: f64, time: f64, refusal: &str) -> Opt
 fn cause_of_stall(refusal: &str) -> &str {
     match refusal {
         "" => {
-            "accelerations grow without bound: a part of the body has collapsed, or a force is unbounded or undefined there \
-             (walls that have passed through each other, a contact, spring or load that is far too stiff or large); look at the \
-             last samples, and at the forces near this time"
+            "the motion becomes singular: a part of the body has collapsed or is driven without limit, or a force is undefined \
+             there (walls that have passed through each other, a contact, spring or load that is far too stiff or large); look at \
+             the last samples, and at the forces near this time"
         }
         reason => reason,
     }

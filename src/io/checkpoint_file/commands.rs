@@ -1,5 +1,5 @@
-//! The phase in force, as commands have changed it: numbers and names as they are, and functions by their
-//! place in the scene.
+//! The current phase, as commands have changed it: numbers and names as values, and functions by their
+//! index in the scene.
 
 use std::collections::BTreeMap;
 use std::mem::take;

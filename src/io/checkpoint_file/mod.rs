@@ -1,10 +1,10 @@
 //! Checkpoints in files: written by one process, read by another, for a simulation of the same scene.
 //!
-//! A file has data that identify the scene and not the scene: numbers of nodes and cells, and a hash
-//! (SipHash, the same with every version of Rust) of each part, so that a refusal names the part. Of the
-//! phase in force it has all numbers and names; functions of time, which no file can hold, are stored as
-//! their place in the scene's own phase. Constraints keep where and when they started, so that held nodes go
-//! on at the same place bit by bit.
+//! A file identifies the scene without containing it: numbers of nodes and cells, and a hash
+//! (SipHash, the same with every version of Rust) of each part, so that an error names the part. Of the
+//! current phase it has all numbers and names; functions of time, which no file can hold, are stored as
+//! their index in the scene's own phase. Constraints store position and time of their start, so that held nodes
+//! continue at the same position to the last bit.
 
 mod commands;
 mod identity;

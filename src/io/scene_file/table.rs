@@ -1,9 +1,9 @@
-//! Tables of a scene file, and which of their keys an error is about.
+//! Tables of a scene file, and the keys of errors.
 //!
 //! Each table is read straight into the builder that it describes, so words, defaults and checks are those of
-//! the API. Parsing keeps the place of every key (`toml::de::DeTable`; a serde derive would lose it inside
+//! the API. Parsing keeps the position of every key (`toml::de::DeTable`; a serde derive would lose it inside
 //! tables whose keys depend on `kind`, and knows no units). Overrides are parsed as if they followed the text
-//! of the file and merged into its tables, so that their errors have a place, too. After each table the scene
+//! of the file and merged into its tables, so that their errors have a position, too. After each table the scene
 //! so far is validated, and an error is put on the line of the key that it names.
 
 use std::fmt::Display;

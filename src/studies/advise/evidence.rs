@@ -4,9 +4,9 @@
 //! including the error of the reference. That follows from the rate of three meshes of one kind (order 2 at
 //! best, order 1 for cells divided in some places, and of two such meshes in a row twice the last step at
 //! least, as the error of all other cells does not show; ten times the last step where it is no smaller than
-//! the one before), and is all of the distance of the last two meshes where there are not three. Linear cells
+//! the one before), and is the whole distance of the last two meshes where there are not three. Linear cells
 //! alone are not trusted, because those that lock may agree with each other. Where the finest mesh is not
-//! known to be fine enough, the mesh is taken as written, and the answer says so with the difference of finer
+//! known to be fine enough, the mesh is used as written, and the answer reports it with the difference of finer
 //! ones.
 
 use super::choice::Choice;

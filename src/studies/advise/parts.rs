@@ -2,8 +2,8 @@
 //!
 //! The error of the scene as written and of the answer is split by runs between them and the reference: same
 //! model and mesh without error in time; richest model on that mesh; reference, whose own error counts as one
-//! of the mesh. Errors of different signs may cancel in a run and part again in the next scene: the answer is
-//! right by the sum of its parts, and that sum is reported.
+//! of the mesh. Errors of different signs may cancel in one run but not in the next scene: the answer is
+//! accepted by the sum of its parts, and that sum is reported.
 
 use crate::base::input::percent;
 use std::fmt;

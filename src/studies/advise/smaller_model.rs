@@ -1,12 +1,12 @@
-//! Smaller models of a motion that is right.
+//! Smaller models of an accurate motion.
 //!
-//! A rigid model is a candidate as any other, and the answer where it is right, having the fewest unknowns;
+//! A rigid model is a candidate as any other, and the answer where it is accurate, as it has the fewest unknowns;
 //! no run is spent on it where the distance of the whole motion from the nearest rigid one
 //! (`studies/work_precision/rigid_motion.rs`, Kabsch's rotation of each piece at each time, which no rigid
 //! motion can undercut) is above the accuracy. Half and section are compared with the whole by runs with
-//! hardly any error of the integration (`smaller_run.rs`), so that the change is the symmetry that the motion
-//! breaks; one that saves time within the accuracy is written with the answer (`Advice::set`). So is the rod in
-//! place of a slender solid, whose change is its distance from the reference. The last rung
+//! a negligible error of the integration (`smaller_run.rs`), so that the change is the asymmetry of the
+//! motion; one that saves time within the accuracy is written with the answer (`Advice::set`). So is the rod in
+//! place of a slender solid, whose change is its distance from the reference. The last stage
 //! is a reduced model, learned within half of the accuracy. Half, section, rod and reduced model are no
 //! candidates: their errors are of the model that was found, on its mesh.
 

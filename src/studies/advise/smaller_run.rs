@@ -1,7 +1,7 @@
 //! Runs of a smaller model, compared with the full model.
 //!
-//! Half and section are compared with the motion that was found right, on its mesh. The rod in place of a slender solid has no mesh of
-//! its own to share with it, and is compared with the reference; more and more elements are tried, until it is right or changes no more.
+//! Half and section are compared with the accurate motion, on its mesh. The rod in place of a slender solid has no mesh of
+//! its own to share with it, and is compared with the reference; more and more elements are tried, until it is accurate or changes no more.
 
 use super::evidence::Evidence;
 use super::ladder::PATIENCE;

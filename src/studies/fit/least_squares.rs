@@ -6,8 +6,8 @@
 //! above 0. Differences are central, with a step of the square root of the tolerance of the runs: the noise of
 //! results is then an error of that relative size in a derivative, and an unknown whose column of the
 //! Jacobian is below that fraction of the largest one, or a combination whose singular value is, is not
-//! fitted but named, before the search and after it. A run that fails is a bad step with large residuals; a
-//! derivative then takes the other side.
+//! fitted but reported, before the search and after it. A run that fails is a bad step with large residuals; a
+//! derivative then uses the other side.
 
 use rayon::prelude::*;
 use rmpfit::{MPConfig, MPError, MPFitter, MPPar, MPResult, MPSide, MPSuccess};

@@ -1,9 +1,9 @@
 //! The least value of a function of numbers between 0 and 1, by its slopes and their errors.
 //!
-//! A trust region in the box: a quadratic [model](Model) is minimized within the box and a distance from the best point so far, and its promise is compared
-//! with what is found there (A. R. Conn, N. I. M. Gould and Ph. L. Toint, "Trust-Region Methods" (2000), chapter 12). A point at which nothing is found
-//! is a shorter step next time. There are as many slopes as a person names numbers, so that B is dense; the pure port of L-BFGS-B among the
-//! crates (`lbfgsb-rs-pure`) has no word for a point without a value, and steps until slopes are far below their errors.
+//! A trust region in the box: a quadratic [model](Model) is minimized within the box and a distance from the best point so far, and its prediction is compared
+//! with the value there (A. R. Conn, N. I. M. Gould and Ph. L. Toint, "Trust-Region Methods" (2000), chapter 12). A point without a value
+//! shortens the next step. Numbers are named by a user and therefore few, so that B is dense; the pure port of L-BFGS-B among the
+//! crates (`lbfgsb-rs-pure`) has no means for a point without a value, and steps until slopes are far below their errors.
 
 use std::fmt;
 

@@ -1,8 +1,8 @@
-//! Reduced models: a scene in a few unknowns, learned from runs of all of them, with the error that this makes.
+//! Reduced models: a scene in a few unknowns, learned from runs of all of them, with its error.
 //!
 //! The shapes are a proper orthogonal decomposition of the displacements in these runs, phase by phase (L. Sirovich,
 //! Quart. Appl. Math. 45 (1987) 561-571); of bodies that nothing holds they contain all linear displacements and, in the
-//! plane, each shape turned by a quarter: so the body may turn by any angle. The cells are found by energy-conserving
+//! plane, each shape rotated by a quarter turn: so the body may rotate by any angle. The cells are found by energy-conserving
 //! sampling and weighting (`scene/reduced_model.rs`).
 
 mod alike;

@@ -1,6 +1,6 @@
 //! The outcome of a point: a motion, or an equilibrium.
 //!
-//! A run is sampled as the scene asks, so that its warnings are those of `pliant run`; quantities are
+//! A run is sampled as in the scene, so that its warnings are those of `pliant run`; quantities are
 //! additional sensors, removed before an output is kept. A run has one core, by a pool of one thread. Reading
 //! a scene and building its body is not shared between runs: 4 to 8 % of a run (`docs/notes/studies.md`).
 

@@ -1,4 +1,4 @@
-//! The points of a study: which values the keys have in each run.
+//! The points of a study: the values of the keys in each run.
 //!
 //! A plan is a product of factors from which any point is computed by its number: a million points take no
 //! memory. An id is a hash of sorted keys and values in one form, independent of the order of keys, of how

@@ -2,7 +2,7 @@
 //!
 //! The table needs no lock and no process in charge, as it is gathered from the files. A process that
 //! computes a row locks a file with its id; locks end with their process, so that a kill leaves nothing to be
-//! cleared. On file systems without locks a row may be computed twice, and is there once. The identity of a
+//! cleared. On file systems without locks a row may be computed twice, and is stored once. The identity of a
 //! study is the scene as it is read, not its text, so that comments may change, and the names of the keys,
 //! not their values, so that values can be added.
 

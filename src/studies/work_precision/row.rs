@@ -1,4 +1,4 @@
-//! One run of a study, and the file that keeps them.
+//! One run of a study, and the file of these rows.
 //!
 //! A row is the same run if the scene is the same: a hash of its `Debug` text and of its accelerations at a
 //! few times of each phase, as functions of time have no text.

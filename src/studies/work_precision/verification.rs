@@ -1,7 +1,7 @@
-//! A motion with its error: runs with tighter and tighter tolerances, until two agree.
+//! A motion with its error: runs with successively tighter tolerances, until two agree.
 //!
 //! Tolerances fall by ten until two runs agree, contact events located. Where stability bounds the steps a
-//! tighter tolerance changes nothing, and two runs would agree for that reason alone: if a run took less than
+//! tighter tolerance changes nothing, and two runs would agree for that reason only: if a run took less than
 //! 1.3 times the steps of the one before, steps of the next are bounded by half of their mean. True errors
 //! beside the reported ones are in `docs/notes/studies.md`.
 
