@@ -95,7 +95,7 @@ impl Kind {
     fn parse<T: DeserializeOwned>(&self, text: &[u8]) -> Result<T, String> {
         let Self { what, format, oldest, help, .. } = self;
         let none = || format!("it does not say \"{what}\": name {help}");
-        let damaged = |error| format!("it is damaged or cut off ({error}): make it anew");
+        let damaged = |error| format!("it is damaged or cut off ({error}): recreate it");
         let head: Head = serde_json::from_slice(text).map_err(|error| match error.is_data() {
             true => none(),
             false => damaged(error),

@@ -43,8 +43,8 @@ pub(super) fn faceted(body: &Body) -> Option<Indicator> {
     }
     let (part, turn) = lacking(mesh)?;
     let said = format!(
-        "straight cells stand for curved ones: facets that turn by {:.0} degrees from one to the next leave out about {} of what such \
-         curves enclose (limit: {})",
+        "straight cells approximate curves: facets with angles of {:.0} degrees between them lack about {} of the area or volume within \
+         such curves (limit: {})",
         turn.to_degrees(),
         percent(part),
         percent(MOST_LACKING)
@@ -52,7 +52,7 @@ pub(super) fn faceted(body: &Body) -> Option<Indicator> {
     let beyond = || {
         let finer = (part / MOST_LACKING).sqrt();
         format!(
-            "{said}, which no halving of cells mends: make the file with cells {finer:.1} times as fine along the curves, or quadratic \
+            "{said}; halving cells does not reduce it: make the file with cells {finer:.1} times as fine along the curves, or quadratic \
              ones (in Gmsh: Mesh.ElementOrder = 2)"
         )
     };

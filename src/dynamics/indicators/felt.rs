@@ -47,7 +47,7 @@ pub(super) fn friction(trajectory: &Trajectory, samples: &[&Sample]) -> Option<I
         percent(part),
         percent(FELT)
     );
-    let enough = || format!("{said}: smooth obstacles would do");
+    let enough = || format!("{said}: obstacles without friction suffice");
     Some(Indicator::needed("friction", (part, "1"), FELT, || said.clone(), enough))
 }
 
@@ -84,7 +84,7 @@ pub(super) fn depth(
         percent(part),
         percent(MOST_DEPTH)
     );
-    let beyond = || format!("{said}: it gives way where it should not; raise its stiffness");
+    let beyond = || format!("{said}: it is too soft; raise its stiffness");
     let limits = [0.0, MOST_DEPTH];
     Some(Indicator::trusted("depth-of-way", (part, "1"), limits, || said.clone(), beyond))
 }

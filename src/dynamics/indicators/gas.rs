@@ -67,7 +67,7 @@ fn area(scene: &Scene) -> Option<Indicator> {
     }
     let (part, area, name) = widest?;
     let said = format!(
-        "orifice \"{name}\" lets pass what a hole of {} m^2 does, {} times a face of a cube as large as the chamber (limit: {WIDEST})",
+        "orifice \"{name}\" has the flow of a hole of {} m^2, {} times a face of a cube as large as the chamber (limit: {WIDEST})",
         four_digits(area),
         four_digits(part)
     );

@@ -38,7 +38,7 @@ fn of_touch(scene: &Scene, force: &TouchForce) -> Option<Indicator> {
     let part = energy / lying;
     let names = nodes.map(|node| body.part_of(node).name);
     let said = format!(
-        "touch \"{}\" begins with {energy:.1e} J, {} times what bodies that lie on each other have (limit: {MOST} times): node {} of \"{}\" and \
+        "touch \"{}\" begins with {energy:.1e} J, {} times the energy of bodies at rest on each other (limit: {MOST} times): node {} of \"{}\" and \
          node {} of \"{}\" are {gap:.1e} m apart, within its distance of {distance:.2e} m",
         force.name,
         four_digits(part),

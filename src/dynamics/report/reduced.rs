@@ -125,10 +125,10 @@ impl fmt::Display for ReducedReport {
         let (checked, said) = (percent(*checked_error), percent(*estimated_error));
         match self.is_estimate {
             true => {
-                write!(f, "; error {said} as told by this run, checked with none of all unknowns")?
+                write!(f, "; error {said} estimated by this run, not verified with all unknowns")?
             }
             false => {
-                write!(f, "; error {checked} where it was checked, {said} as told by this run")?
+                write!(f, "; error {checked} in its verification, {said} estimated by this run")?
             }
         }
         for SensorErrorEstimate { name, unit, error } in &self.readings {

@@ -434,7 +434,7 @@ impl Reading {
                 | ReadingKind::FluidForce(..)
         );
         if let Some(name) = self.body.as_ref().filter(|_| !is_of_bodies) {
-            let help = "the centre of mass, how it turns, the momentum and what a touch or a fluid does are all that is read of a body: name its nodes instead";
+            let help = "a body has readings of its centre of mass, rotation, momentum, touches and fluids only: name its nodes instead";
             return Err(InputError::new("body", format!("\"{name}\""), help));
         }
         // the components that are columns by default, and one more that must be requested

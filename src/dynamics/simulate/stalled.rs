@@ -47,9 +47,11 @@ impl Plan {
         }
         let reason = match self.touches {
             true => {
-                format!("bodies touch, and {taken} steps of {step:.1e} s in the mean lead not far")
+                format!(
+                    "bodies touch, and {taken} steps of {step:.1e} s in the mean make little progress"
+                )
             }
-            false => format!("{taken} steps of {step:.1e} s in the mean lead nearly nowhere"),
+            false => format!("{taken} steps of {step:.1e} s in the mean make almost no progress"),
         };
         let before = Box::new(self.less_impatient());
         let plan = before.followed_by(self.other()?, self.asked.max_order, &reason);

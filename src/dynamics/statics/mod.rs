@@ -196,7 +196,7 @@ impl Scene {
             }
             if search.rest.is_driven() {
                 let input = format!("statics.arc_steps for phase \"{}\"", phase.name());
-                let help = "obstacles that move cannot go back with the load: let them stand, or leave it 0";
+                let help = "obstacles in motion cannot follow a load that falls: give them no motion, or leave it 0";
                 return Err(InputError::new(input, statics.arc_steps, help).into());
             }
         }

@@ -248,7 +248,7 @@ impl Body {
         if self.is_single() {
             return Ok(());
         }
-        let help = format!("{what} can be had of one body by itself only");
+        let help = format!("{what} needs a single body");
         Err(InputError::new("number of bodies", self.joined.len(), help))
     }
 

@@ -227,7 +227,9 @@ impl Cause {
                 format!("{steps} steps taken, and still short of t = {target:?}")
             }
             Self::StandsStill { steps } => {
-                format!("time stands still: the last {steps} steps led on by no more than rounding")
+                format!(
+                    "no progress in time: the last {steps} steps advanced by no more than round-off"
+                )
             }
             Self::TooMuchAccuracy => "the tolerances ask for more than double precision".into(),
             Self::ErrorTest => "the local error stays too large at the smallest step".into(),

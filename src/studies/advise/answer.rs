@@ -28,7 +28,7 @@ impl Advice {
             reasons.push(format!("{other} {}", self.change(law)));
         }
         if self.law.is_none() && rich.is_some_and(|rich| rich.strain == Strain::Cauchy) {
-            reasons.push("what Green strain changes is not known: it gave no motion".into());
+            reasons.push("the effect of Green strain is unknown: it gave no motion".into());
         }
         for candidate in &self.candidates {
             let is_mesh = |rich: &Choice| {
@@ -195,7 +195,7 @@ impl fmt::Display for Advice {
             writeln!(f, "- {less}{}", indicator.text)?;
         }
         let written = ("as written", &self.written);
-        let others = [("what is enough", &self.enough), ("the reference", &self.truth)];
+        let others = [("the sufficient model", &self.enough), ("the reference", &self.truth)];
         let others = others.iter().filter_map(|(name, run)| Some((*name, run.as_ref()?)));
         let mut told: Vec<&str> = Vec::new();
         for (name, candidate) in others.chain([written]) {

@@ -423,7 +423,7 @@ impl fmt::Display for SceneFitted {
         if *independent < *residuals as f64 {
             writeln!(
                 f,
-                "what is left over is alike from one row to the next: {residuals} residuals count as {independent:.0} independent ones"
+                "residuals of successive rows are correlated: {residuals} residuals count as {independent:.0} independent ones"
             )?;
         }
         let end = if *is_converged { "" } else { "; the search has not come to its end" };

@@ -115,7 +115,7 @@ impl Reduced {
     /// As [`Display`](fmt::Display), where no run of all unknowns was made.
     fn fmt_by_modes(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [unknowns, cells] = self.full;
-        writeln!(f, "unknowns     cells      error       told    time (s)")?;
+        writeln!(f, "unknowns     cells      error  estimated    time (s)")?;
         for Tried { unknowns, cells, error, told: said, seconds } in &self.tried {
             let cells = if *cells == 0 { "exact".into() } else { cells.to_string() };
             let error = if error.is_finite() { percent(*error) } else { String::new() };
@@ -137,7 +137,7 @@ impl fmt::Display for Reduced {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [unknowns, cells] = self.full;
         let Some(full) = self.full_seconds else { return self.fmt_by_modes(f) };
-        writeln!(f, "unknowns     cells      error       told    time (s)  speed-up")?;
+        writeln!(f, "unknowns     cells      error  estimated    time (s)  speed-up")?;
         for Tried { unknowns, cells, error, told: said, seconds } in &self.tried {
             let cells = if *cells == 0 { "exact".into() } else { cells.to_string() };
             if error.is_infinite() {
@@ -185,7 +185,7 @@ impl fmt::Display for Verified {
         let [full, seconds] = [full_seconds, seconds].map(four_digits);
         write!(
             f,
-            "off by {error}, the run tells {said}; {seconds} s in place of {full} s, {faster} times the speed"
+            "off by {error}, the run estimates {said}; {seconds} s in place of {full} s, {faster} times the speed"
         )
     }
 }

@@ -63,7 +63,7 @@ impl VariedKey {
         let table = self.key.split('.').next().unwrap_or_default();
         if NOT_OF_SCENES.contains(&table) {
             let help =
-                format!("[{table}] is no part of what happens: vary loads, pressures, signals");
+                format!("[{table}] does not change the motion: vary loads, pressures, signals");
             return Err(InputError::new("key that is varied", &self.key, help));
         }
         Ok(())
