@@ -19,7 +19,7 @@ pub(super) fn pressed(scene: &Scene) -> Vec<Indicator> {
 }
 
 /// Bodies that lie on each other have the pressure that carries them, and an energy below weight times distance, as pressures
-/// only grow on the way; motions or drifts beyond the distance are not affected either.
+/// only grow during the approach; motions or drifts beyond the distance are not affected either.
 fn of_touch(scene: &Scene, force: &TouchForce) -> Option<Indicator> {
     let (body, u) = (scene.body(), scene.initial_displacements());
     let (gap, nodes) = force.nearest(u)?;

@@ -36,7 +36,7 @@ use super::symmetric::Symmetric;
 
 /// Solver of systems with X under the constraints of edges.
 pub(crate) struct EdgeSolver {
-    /// R and G of all edges, those that are implied last; the factor of x in R; whether they have been set since this was last asked.
+    /// R and G of all edges, those that are implied last; the factor of x in R; whether they have been set since the last query.
     pub(super) rows: Vec<[f64; 3]>,
     pub(super) factor: f64,
     pub(super) columns: Vec<[f64; 3]>,

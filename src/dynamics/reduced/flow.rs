@@ -24,9 +24,9 @@ pub(super) struct ReducedFlow {
     /// The derivatives at the nodes, and along the shapes that are free.
     nodal: FlowDerivatives,
     matrix: FlowMatrix,
-    /// dV/dz of the shapes that constraints move, of one room after the other.
+    /// dV/dz of the shapes that constraints move, of one reservoir after the other.
     moved: Vec<f64>,
-    /// dV/dz of a room.
+    /// dV/dz of a reservoir.
     along: Vec<f64>,
 }
 

@@ -55,11 +55,11 @@ impl System {
     }
 
     /// For each of some states of a phase the displacements (m) that would balance the residual of a reduced model; none
-    /// where no tangents tell.
+    /// without suitable tangents.
     ///
-    /// Of the tangents of the first and of the last state those tell that resist more: a body on the way to where it comes to
-    /// rest may be about to buckle, and move far under any force. Those that do not resist every motion, which take longer to factorize, are asked only where
-    /// the others tell more than `enough` (m), or nothing.
+    /// Of the tangents of the first and of the last state the stiffer ones are used: a body on its way to
+    /// rest may be about to buckle, and move far under any force. Indefinite ones, which take longer to factorize, are used only where
+    /// the others give more than `enough` (m), or nothing.
     pub(crate) fn imbalances(
         &mut self,
         states: &[ResidualSnapshot],

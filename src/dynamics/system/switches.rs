@@ -27,7 +27,7 @@ impl System {
         self.forces.iter().map(switches).sum()
     }
 
-    /// Writes the values of the switches of each force of which `is_wanted` says so by their numbers.
+    /// Writes the values of the switches of each force for which `is_wanted` is true, by their numbers.
     pub(crate) fn switch_values(
         &self,
         t: f64,

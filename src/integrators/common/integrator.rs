@@ -146,7 +146,7 @@ pub trait Integrator {
         Self: Sized;
 }
 
-/// The neighbour of time `t` on the way there from `now`.
+/// The neighbouring number of time `t` towards `now`.
 pub(crate) fn number_before(t: f64, now: f64) -> f64 {
     if t > now { t.next_down() } else { t.next_up() }
 }

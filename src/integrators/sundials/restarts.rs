@@ -48,7 +48,7 @@ impl<K, S> Session<K, S> {
         Ok(true)
     }
 
-    /// After an explicit stage of ARKODE without a right-hand side: lets C go on from the end of the last step with a smaller one, up to the time
+    /// After an explicit stage of ARKODE without a right-hand side: C continues from the end of the last step with a smaller one, up to the time
     /// `stop`, with its counts as they are, if that may help. C has no retry there.
     pub(super) fn shortens_explicit_step(
         &mut self,

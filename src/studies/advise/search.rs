@@ -91,7 +91,7 @@ pub(super) struct Search<'a> {
 /// Reason for cutting a run short.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Cut {
-    /// The observer says so.
+    /// A request of the observer.
     Interrupted,
     /// Its share of the time that is left is spent.
     Share,

@@ -57,7 +57,7 @@ pub struct Derivative {
     pub is_constant: bool,
     /// Reason for which it is of little use for another value of the number, if there is one.
     pub doubt: Option<Doubt>,
-    /// The same by whole runs, if that was asked for.
+    /// The same by whole runs, if requested.
     pub check: Option<Check>,
 }
 

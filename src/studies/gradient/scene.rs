@@ -270,7 +270,7 @@ impl SceneGradient {
         }
     }
 
-    /// Adds checks, if that is asked for.
+    /// Adds checks, if requested.
     fn with_check(
         &self,
         mut gradient: Gradient,

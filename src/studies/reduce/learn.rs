@@ -221,7 +221,7 @@ impl Undeformed {
     }
 }
 
-/// Displacements (m) on the way to the equilibrium of phase `number` of a scene, as its loads grow; none where there is none.
+/// Displacements (m) along the path to the equilibrium of phase `number` of a scene, as its loads grow; none where there is none.
 pub(super) fn equilibria(scene: &Scene, number: usize) -> Vec<Vec<f64>> {
     let statics = Statics { load_steps: LOAD_STEPS, rtol: 1e-6, ..Statics::default() };
     let Ok(found) = scene.equilibrium_of(scene.phases()[number].name(), &statics) else {
@@ -232,7 +232,7 @@ pub(super) fn equilibria(scene: &Scene, number: usize) -> Vec<Vec<f64>> {
     ways.map(|way| way.map(|(u, first)| u - first).collect()).collect()
 }
 
-/// Steps of the loads on the way to an equilibrium.
+/// Steps of the loads along the path to an equilibrium.
 const LOAD_STEPS: usize = 8;
 
 /// The displacements (m) that are expected in phase `number` of a scene by what is linear and of second order, no larger than `most` (m) if

@@ -94,8 +94,8 @@ pub struct Tried {
 /// Numbers of unknowns that are tried.
 const SIZES: [usize; 10] = [4, 6, 8, 12, 16, 24, 32, 48, 64, 96];
 
-/// Parts of the error that is wanted by which the work of the sampled cells may differ from that of all: at first, and where
-/// more shapes do not help at last.
+/// Fractions of the requested error by which the work of the sampled cells may differ from that of all: at first, and
+/// where more shapes no longer reduce the error.
 const OF_CELLS: [f64; 2] = [0.03, 1e-4];
 
 /// Part of an error to which another model has to come for more shapes to have helped.

@@ -23,7 +23,7 @@ pub(super) struct ByModel {
     pub(super) problem: Option<Error>,
 }
 
-/// Runs scenes by a model, and has each one seen, with its number and time (s), none where it failed: as long as `see` goes on.
+/// Runs scenes by a model, and passes each one to `see`, with its number and time (s), none where it failed, until `see` ends it.
 ///
 /// # Errors
 /// A model of another scene; runs that the observer has ended.

@@ -87,7 +87,7 @@ pub fn ring_springs(force: f64) -> Result<Scene, InputError> {
 }
 
 /// The ring of [`ring_springs`] jumps: A1 and A5 shrink with a force that grows to 1 N within 0.1 s,
-/// then everything is let go until 1 s.
+/// then everything is released until 1 s.
 ///
 /// # Errors
 /// None: it returns a `Result` as the other scenes do.

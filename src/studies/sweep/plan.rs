@@ -122,7 +122,7 @@ impl Point {
     }
 }
 
-/// A hash of the values, in which neither order nor the way in which they are written counts.
+/// A hash of the values, independent of their order and notation.
 fn id(keys: &[String], values: &[SetValue]) -> String {
     let pairs = keys.iter().zip(values);
     let mut lines: Vec<String> =

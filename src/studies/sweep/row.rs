@@ -22,7 +22,7 @@ pub struct Row {
     pub warnings: Vec<String>,
     /// Reason for the failure of the run.
     pub failure: Option<String>,
-    /// Relative difference of the last two runs, if an accuracy was asked for.
+    /// Relative difference of the last two runs, if an accuracy was requested.
     pub difference: Option<f64>,
     /// Time reached (s); in an equilibrium the end of its phase, or that part of it to which the load was brought on.
     pub reached: Option<f64>,

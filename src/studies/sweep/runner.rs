@@ -31,10 +31,10 @@ pub trait Watch: Sync {
     /// An error that ends the study.
     fn ran(&self, run: &PointRun) -> Result<(), Error>;
 
-    /// Called when a row is there, whoever has computed it.
+    /// Called when a row is available, from any process.
     fn has(&self, row: &Row);
 
-    /// Whether to go on; asked after each step.
+    /// Whether to continue; called after each step.
     fn goes_on(&self) -> bool {
         true
     }

@@ -87,7 +87,7 @@ impl Budget {
         processor_time() - self.start
     }
 
-    /// Whether too much was spent. To be asked after each step; reads the clock only now and then, as steps
+    /// Whether the budget is spent. To be called after each step; reads the clock only now and then, as steps
     /// may be shorter than a reading.
     pub(crate) fn is_spent(&mut self) -> bool {
         self.asked += 1;

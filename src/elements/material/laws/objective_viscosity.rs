@@ -44,8 +44,8 @@ impl ObjectiveViscosity {
         }
     }
 
-    /// The same of cells of `dimension` that grow: a Newtonian fluid without bulk viscosity, which growth alike in all
-    /// directions does not feel.
+    /// The same of cells of `dimension` that grow: a Newtonian fluid without bulk viscosity, in which isotropic
+    /// growth causes no stress.
     pub(crate) fn of_growing(&self, dimension: usize) -> Self {
         let hooke = self.hooke();
         let lame = match hooke.is_free_across(dimension) {

@@ -71,7 +71,7 @@ fn panel(table: &Table, x: &Axis, columns: &[&Column]) -> Panel {
     Panel { axes, names, series, ..Panel::default() }
 }
 
-/// The ends of the phases but the last, and above the first panel their names where there is room.
+/// The ends of the phases but the last, and above the first panel their names where there is space.
 fn add_phases(panels: &mut [Panel], phases: &[(String, f64)]) {
     let Some(x) = panels.first().map(|panel| panel.axes[0].clone()) else { return };
     if phases.len() < 2 {

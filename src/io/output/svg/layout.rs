@@ -191,7 +191,7 @@ struct PanelRow {
 }
 
 impl Layout {
-    /// Panels that each have room for a caption of so many characters and `beside` it (px).
+    /// Panels with space for a caption of so many characters and `beside` it (px).
     pub(super) fn new(
         view: &View,
         columns: Option<usize>,
