@@ -22,7 +22,7 @@ pub struct Reading {
     pub(super) in_degrees: bool,
     /// The name of the body that is read; all of them together without one.
     pub(super) body: Option<String>,
-    /// How often each node counts in a mean, in their order; each once without.
+    /// Weight of each node in a mean, in their order; all 1 without.
     pub(super) counts: Option<Box<[usize]>>,
 }
 
@@ -86,7 +86,7 @@ pub(super) struct Lever {
     pub(super) axis: Option<Vec<f64>>,
 }
 
-/// Where a field is read.
+/// Place of the reading of a field.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum FieldPoint {
     Nodes(Selection),
@@ -259,7 +259,7 @@ impl Reading {
         ReadingKind::Angle([from, to].map(|line| line.map(Into::into))).into()
     }
 
-    /// Where the centre of mass of all bodies is, or of one [of them](Self::of_body) (m).
+    /// Position of the centre of mass of all bodies, or of one [of them](Self::of_body) (m).
     pub fn centre_of_mass() -> Self {
         ReadingKind::CentreOfMass.into()
     }

@@ -5,7 +5,7 @@
 //! lie outside of the stability regions of its orders above 2 (E. Hairer, G. Wanner, *Solving Ordinary Differential Equations
 //! II*, section V.2), which bounds its steps by the fastest of them, however small they are.
 //!
-//! Where bodies touch, what sticks, slides, rests or chatters bounds the steps of one method and not of another, and no spectrum
+//! Where bodies touch, sticking, sliding, rest or chatter bounds the steps of some methods only, and no spectrum
 //! tells which. There others are tried as soon as many steps are still to come, in turn, and after one has failed.
 
 use super::auto::{FINE, Plan, Probe, TRIAL};

@@ -16,11 +16,11 @@ pub(crate) struct Tape {
     pub(super) states: Vec<Vec<f64>>,
     /// The angles of sensors at the end.
     pub(super) angles: Angles,
-    /// Why the steps cannot be taken back, if that is known.
+    /// Reason for which the adjoint is not available, if it is known.
     pub(super) refused: Option<String>,
 }
 
-/// Where a step lies.
+/// Position of a step.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct TapedStep {
     /// Number of the phase, and of its interval.
@@ -69,7 +69,7 @@ impl Simulation {
         Ok((trajectory, list, tape))
     }
 
-    /// The reason that keeps the steps of the run from being taken back, as far as it is known at its start.
+    /// The reason for which the adjoint of the run is not available, as far as it is known at its start.
     fn why_not_taken_back(&self) -> Option<String> {
         let Self { run, .. } = self;
         let phases = run.scene.phases();

@@ -24,7 +24,7 @@ use crate::integrators::ode::Failure;
 use crate::integrators::rosenbrock::Transposed;
 
 impl System {
-    /// The reason that keeps steps from being taken back, if there is one.
+    /// The reason for which the adjoint of steps is not available, if there is one.
     pub(crate) fn why_not_transposed(&self) -> Option<&'static str> {
         [
             (self.layout.strains > 0, "adjoint gradients do not yet support Maxwell branches"),

@@ -43,7 +43,7 @@ pub enum KrylovMethod {
     Gmres {
         /// Dimensions of the subspace, 1 to 1000; the default of C is 5.
         dimension: u32,
-        /// How often it may restart from the point it has reached, at most 1000; 0: not at all.
+        /// Largest number of restarts from the reached point, at most 1000; 0: none.
         restarts: u32,
     },
     /// The stabilized method of biconjugate gradients (`SUNLinSol_SPBCGS`): two products for each iteration,
@@ -57,7 +57,7 @@ pub enum KrylovMethod {
     Fgmres {
         /// Dimensions of the subspace, 1 to 1000; the default of C is 5.
         dimension: u32,
-        /// How often it may restart from the point it has reached, at most 1000; 0: not at all.
+        /// Largest number of restarts from the reached point, at most 1000; 0: none.
         restarts: u32,
     },
     /// The quasi-minimal residual method without products with the transposed matrix (`SUNLinSol_SPTFQMR`): two

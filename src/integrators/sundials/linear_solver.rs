@@ -22,15 +22,15 @@ pub enum LinearSolver {
         lower: usize,
         /// Diagonals above the main one.
         upper: usize,
-        /// Where the entries come from.
+        /// Source of the entries.
         jacobian: Jacobian,
     },
     /// Sparse LU factorization by KLU.
     Klu {
-        /// Where the nonzeros are. Difference quotients are wrong where the Jacobian has others, which is checked
+        /// Pattern of the nonzeros. Difference quotients are wrong where the Jacobian has others, which is checked
         /// ([`CvodeOptions::check_jacobian`](super::CvodeOptions::check_jacobian)).
         pattern: Pattern,
-        /// Where the entries come from.
+        /// Source of the entries.
         jacobian: Jacobian,
     },
     /// A Krylov method: no matrix, but products with vectors.

@@ -35,7 +35,7 @@ pub struct StudyFile {
     pub table: Option<Written>,
     /// The keys that are varied.
     pub keys: Vec<VariedKey>,
-    /// How ranges without steps are filled.
+    /// Filling of ranges without steps.
     pub sample: Option<SampleRequest>,
 }
 
@@ -86,7 +86,7 @@ pub enum Spacing {
     Sampled,
 }
 
-/// How ranges without steps are filled.
+/// Filling of ranges without steps.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct SampleRequest {
     /// Which points.

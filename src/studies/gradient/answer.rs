@@ -31,7 +31,7 @@ pub struct Gradient {
     pub derivatives: Vec<Derivative>,
     /// Runs or searches for equilibria, without those of checks.
     pub runs: usize,
-    /// Their steps, in multiples of those of the run of the value; steps taken back count as about three, and two fifths for each scene with
+    /// Their steps, in multiples of those of the run of the value; adjoint steps count as about three, and two fifths for each scene with
     /// another number; linearized equilibria as an iteration, and one for each.
     pub cost: f64,
 }

@@ -105,7 +105,7 @@ impl Costs {
         self.steps.fetch_add(steps, Ordering::Relaxed);
     }
 
-    /// Adds the steps of a run that were taken back, with so many scenes with other numbers: about three of them, and two fifths of a step for
+    /// Adds the adjoint steps of a run, with so many scenes with other numbers: about three of them, and two fifths of a step for
     /// each scene (measured with a beam of some hundred triangles).
     pub(super) fn add_taken_back(&self, steps: usize, others: usize) {
         self.add(3 * steps + 2 * steps * others / 5);

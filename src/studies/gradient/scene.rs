@@ -185,7 +185,7 @@ impl SceneGradient {
     }
 
     /// By this method. Default: [`Method::Adjoint`] of an equilibrium, and by several numbers of a reading at the end; else, and where steps
-    /// cannot be taken back, [`Method::SameSteps`]; [`Method::Differences`] where runs cannot take the same steps and equilibria cannot be
+    /// have no adjoint, [`Method::SameSteps`]; [`Method::Differences`] where runs cannot take the same steps and equilibria cannot be
     /// linearized.
     ///
     /// # Errors

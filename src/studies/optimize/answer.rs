@@ -28,7 +28,7 @@ pub struct Optimum {
     pub evaluations: Vec<Evaluation>,
     /// The place of the best one among them.
     pub best: usize,
-    /// Why there are no more.
+    /// Reason for the end.
     pub ending: Ending,
 }
 

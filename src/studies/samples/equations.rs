@@ -109,7 +109,7 @@ macro_rules! of_unknowns {
                 Self { pattern: Self::pattern_of($n) }
             }
 
-            /// Where its Jacobian may be nonzero.
+            /// Pattern of its Jacobian.
             #[must_use]
             pub fn pattern(&self) -> &Pattern {
                 &self.pattern

@@ -107,7 +107,7 @@ pub trait Problem {
     /// Solves the problem again and returns the time (s) that it took.
     ///
     /// # Errors
-    /// Why there is no solution.
+    /// Reason for a missing solution.
     fn time(&mut self, line: usize, point: usize) -> Result<f64, Failed>;
 }
 
