@@ -526,7 +526,7 @@ fn cells_turned_inside_out_under_cauchy_strain() {
     let crossing =
         Scene::new(body.strain(Strain::Cauchy).thickness(0.01).build().unwrap()).phase(crossing);
     let mut warnings = run(&crossing, &Sampling::every(0.2));
-    warnings.retain(|warning| warning.contains("inside out"));
+    warnings.retain(|warning| warning.contains("cell(s) are inverted"));
     only(&warnings, &["1 cell(s)", "at t = 0.6 s", "cell 2"]);
 }
 

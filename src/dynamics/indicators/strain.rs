@@ -33,7 +33,7 @@ pub(super) fn largest_turn<'a>(body: &Body, displacements: impl Iterator<Item = 
     displacements.flat_map(|u| body.cell_rotations(u)).fold(0.0, f64::max)
 }
 
-/// Cells that are turned inside out, which linear forces do not resist.
+/// Inverted cells, which linear forces do not resist.
 pub(super) fn inversion(body: &Body, samples: &[&Sample]) -> Option<Indicator> {
     if body.strain() != Strain::Cauchy {
         return None;
